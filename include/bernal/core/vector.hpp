@@ -1,0 +1,22 @@
+#pragma once
+#include <Eigen/Core>
+
+namespace bernal {
+
+/// A point or a displacement in D dimensions, in the length unit of its owner.
+template <int D>
+using Vector = Eigen::Matrix<double, D, 1>;
+
+/// Axis-aligned bounds, `lower <= upper` in every component.
+template <int D>
+struct Bounds {
+  Vector<D> lower = Vector<D>::Zero();
+  Vector<D> upper = Vector<D>::Zero();
+
+  Vector<D> size() const { return upper - lower; }
+  Vector<D> center() const { return lower + 0.5 * (upper - lower); }
+  double diagonal() const { return size().norm(); }
+  double volume() const { return size().prod(); }
+};
+
+}  // namespace bernal

@@ -1,0 +1,73 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "bernal/domain/facet.hpp"
+#include "bernal/domain/shape.hpp"
+
+namespace bernal {
+
+/// How the question "does this sphere clear the wall?" is decided.
+enum class WallArithmetic {
+  plain,     ///< double; wrong answers only within a few roundoffs of the largest coordinate
+  filtered,  ///< double with a certified bound, exact where the bound cannot decide
+  exact,     ///< exact constructions throughout
+};
+
+/// A point of the wall as a sphere's centre sees it.
+struct WallPoint {
+  Vector<3> point;    ///< on the wall
+  Vector<3> inward;   ///< unit normal at `point` towards the centre, or inward where the centre lies on it
+  double clearance;   ///< signed distance from the centre, positive inside
+};
+
+/// What spheres are packed into: a bounded region of three-dimensional space and its wall.
+///
+/// Lengths are in the unit of the shape it was made from. All queries are const and may be called from
+/// several threads at once.
+class Container {
+ public:
+  virtual ~Container() = default;
+
+  virtual std::string_view kind() const = 0;
+  virtual Bounds<3> bounds() const = 0;
+  virtual double volume() const = 0;
+
+  /// Signed distance from `p` to the wall, positive inside; 1-Lipschitz. Error: a few roundoffs of the
+  /// largest coordinate.
+  virtual double clearance(const Vector<3>& p) const = 0;
+
+  /// Whether the ball of radius r >= 0 around c lies inside, touching allowed; decided as the container's
+  /// WallArithmetic promises.
+  virtual bool contains(const Vector<3>& c, double r) const = 0;
+
+  /// Appends every facet of the wall nearer than `reach` to `c`, nearest first; `c` is inside. A mesh may
+  /// be asked for thousands of these, so keep the answer for as long as the sphere stays near.
+  virtual void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const = 0;
+
+  /// How far a sphere of radius r at c, inside, may move along the unit vector `direction` before its
+  /// clearance falls to the skin (see core/tolerance.hpp), at most `limit`. Never rounded towards the wall: the clearance stays at or above
+  /// r + skin/2 on the whole way if it was so at the start. A sphere that rests on the wall can leave it; one
+  /// that penetrates slightly can move outwards of the wall, never further in: then the answer is 0.
+  double first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const;
+
+  /// Appends the wall points within `reach` of `c`, one a facet, edge or corner (each once), nearest first.
+  void walls_near(const Vector<3>& c, double reach, std::vector<WallPoint>& out) const;
+
+  /// Largest rounding error of a coordinate: `Frame::resolution` of the frame the container lives in.
+  double resolution() const { return resolution_; }
+
+ protected:
+  explicit Container(double resolution) : resolution_(resolution) {}
+
+ private:
+  double resolution_;
+};
+
+/// The container of a box, cylinder or sphere. Throws Error{bad_argument} for a mesh: see
+/// `make_mesh_container` in bernal/cad.
+std::unique_ptr<Container> make_analytic_container(const Shape&, WallArithmetic, double resolution);
+
+}  // namespace bernal

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+
+#include "bernal/core/vector.hpp"
+
+namespace bernal {
+
+/// One smooth piece of a container's wall, as plain data: what a moving sphere has to know of it.
+///
+/// | kind     | a                | b                  | c      | radius | signed distance of p |
+/// |----------|------------------|--------------------|--------|--------|----------------------|
+/// | plane    | a point          | inward unit normal |        |        | (p - a)·b            |
+/// | cylinder | a point of the axis | unit axis       |        | R      | R - |p - a|⊥b        |
+/// | sphere   | centre           |                    |        | R      | R - |p - a|          |
+/// | triangle | vertex           | vertex             | vertex |        | |p - triangle| (unsigned) |
+struct Facet {
+  enum class Kind : std::uint8_t { plane, cylinder, sphere, triangle };
+  Kind kind = Kind::plane;
+  std::uint32_t id = 0;  ///< which facet of its container
+  Vector<3> a = Vector<3>::Zero();
+  Vector<3> b = Vector<3>::Zero();
+  Vector<3> c = Vector<3>::Zero();
+  double radius = 0;
+};
+
+/// A facet and its distance from the point that asked.
+struct NearFacet {
+  double distance;
+  Facet facet;
+};
+
+/// Distance of p from the facet, signed as the table above says.
+double distance(const Facet&, const Vector<3>& p);
+
+/// The point of the facet nearest to p. On an axis or at a centre, where it is not unique, any one of them.
+Vector<3> closest_point(const Facet&, const Vector<3>& p);
+
+/// How far a sphere of radius r at c may move along the unit vector `direction`, at most `limit`, so that its
+/// distance from the facet stops at r + skin; invariant: it never falls below r + skin/2 if it was not below
+/// at the start; if it was, the answer is 0 unless the distance grows. See core/tolerance.hpp.
+double first_contact(const Facet&, const Vector<3>& c, double r, const Vector<3>& direction, double limit,
+                     double skin);
+
+}  // namespace bernal

@@ -1,0 +1,56 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/shape.hpp"
+#include "bernal/scene/scene.hpp"
+
+namespace bernal {
+
+/// How a run ended.
+enum class Outcome {
+  converged,  ///< what the scene asked for is there
+  full,       ///< a count or packing fraction was asked that the stages could not reach: no place is left
+  hit_limit,  ///< a limit on iterations ended it
+  cancelled,  ///< the user did
+};
+std::string_view name_of(Outcome);
+
+/// What one effect (insertion, compression, walls, neighbour lists, …) cost in a run.
+struct Effect {
+  std::string name;
+  std::uint64_t calls = 0;
+  double seconds = 0;
+};
+
+/// The state of the packing after a stage or a round of one: the run's history, for the report.
+struct Milestone {
+  std::string stage;
+  std::uint64_t spheres = 0;
+  double packing_fraction = 0;
+  double potential = 0;  ///< mean height of the spheres along the compression direction, scene units
+  double seconds = 0;    ///< since the start of the run
+};
+
+/// The result of a run: plain data. Lengths are in the scene's unit and frame.
+struct Packing {
+  Spheres<3> spheres;
+  Shape container;
+  double container_volume = 0;
+  Scene scene;
+  std::uint64_t seed = 1;
+  int threads = 1;
+  std::string version;
+  Outcome outcome = Outcome::converged;
+  std::string reason;  ///< one sentence behind the outcome
+  std::vector<Effect> effects;
+  std::vector<Milestone> history;
+  double seconds = 0;
+
+  double packing_fraction() const;
+};
+
+}  // namespace bernal

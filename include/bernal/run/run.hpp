@@ -1,0 +1,56 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bernal/core/monitor.hpp"
+#include "bernal/run/packing.hpp"
+#include "bernal/sizes/size_distribution.hpp"
+
+namespace bernal {
+
+/// One line of `bernal explain`: something that would run, and what it costs.
+struct PlanItem {
+  std::string name;   ///< "walls", "neighbour lists", "compress", …
+  std::string what;   ///< one phrase
+  std::string cost;   ///< "O(N)", "O(N log T)", …
+};
+
+/// A scene that has been checked as a whole, with everything it names made and nothing else.
+struct Plan {
+  Scene scene;
+  Shape container;                          ///< in the scene's unit
+  std::string container_notes;              ///< what the importer did: reader, welding, repairs; may be empty
+  std::unique_ptr<SizeDistribution> radii;  ///< in the scene's unit
+
+  double expected_packing_fraction = 0;
+  double expected_count = 0;
+  double expected_memory_bytes = 0;
+  std::vector<PlanItem> items;      ///< what would run, in order
+  std::vector<std::string> absent;  ///< effects that the scene does not call for and that are not built
+};
+
+/// Makes what the scene names. Throws Error (bad_scene, bad_mesh) where parts do not fit each other: a sphere
+/// larger than the container, a mesh that is no container. Cost: reading the mesh.
+Plan build(const Scene& scene);
+
+/// The container that a scene describes, in the scene's unit: what `build` and the certificate share.
+/// `notes` receives what the importer did. Throws as `build`.
+Shape shape_of(const Scene& scene, std::string* notes = nullptr);
+
+/// The size distribution of radii that a scene describes, in the scene's unit. Throws as `build`.
+std::unique_ptr<SizeDistribution> radii_of(const Scene& scene);
+
+struct RunOptions {
+  std::optional<std::uint64_t> seed;  ///< the scene's own if absent
+  int threads = 0;                    ///< 0: as many as the machine has
+  Monitor monitor;
+};
+
+/// Runs the plan's stages. One seed gives one packing, bit for bit, for any number of threads.
+Packing run(const Plan& plan, const RunOptions& options = {});
+
+}  // namespace bernal

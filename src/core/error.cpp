@@ -1,0 +1,15 @@
+#include "bernal/core/error.hpp"
+
+namespace bernal {
+
+std::string Location::text() const {
+  if (file.empty()) return line > 0 ? "line " + std::to_string(line) : "";
+  return line > 0 ? file + ":" + std::to_string(line) : file;
+}
+
+Error::Error(ErrorCode code, const std::string& message, Location location)
+    : std::runtime_error(location.text().empty() ? message : location.text() + ": " + message),
+      code_(code),
+      location_(std::move(location)) {}
+
+}  // namespace bernal
