@@ -19,4 +19,7 @@ Scene parse_scene(std::string_view toml, const std::filesystem::path& name);
 /// relative to `folder`, if that is not empty, so that the result can be read from there.
 std::string scene_as_toml(const Scene&, const std::filesystem::path& folder = {});
 
+/// Only its stages, every default explicit: the protocol, ready to be pasted into another scene.
+std::string stages_as_toml(const Scene&);
+
 }  // namespace bernal

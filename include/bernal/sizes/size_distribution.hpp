@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -25,8 +26,10 @@ class SizeDistribution {
   /// Infinity where the distribution has an unbounded tail.
   virtual double max() const = 0;
 
-  /// One radius, by inversion of the cumulative distribution: the k-th draw is a function of the k-th number.
-  double sample(Random& random) const { return quantile(random.uniform()); }
+  /// One radius, always positive and finite, by inversion of the cumulative distribution: the k-th draw is a
+  /// function of the k-th number. An unbounded lower tail is cut at its quantile 2^-54, below the smallest
+  /// number that can be drawn but 0.
+  double sample(Random& random) const { return quantile(std::max(random.uniform(), 0x1p-54)); }
 };
 
 /// What the shares or the density of a distribution count.
@@ -34,11 +37,15 @@ enum class Basis { number, volume };
 
 /// All of these throw Error{bad_argument} on absurd values (not finite, not positive, empty, min > max).
 std::unique_ptr<SizeDistribution> make_constant(double radius);
-/// `shares` in any positive scale; equal length with `radii`, which are distinct.
+/// `shares` are positive, in any scale, one for each of `radii`, which are distinct and in any order.
 std::unique_ptr<SizeDistribution> make_classes(std::vector<double> radii, std::vector<double> shares, Basis);
+/// The density of the stated basis is constant on [min, max]; a constant distribution where they are equal.
 std::unique_ptr<SizeDistribution> make_uniform(double min, double max, Basis);
 /// ln r is normal with standard deviation `sigma` about ln `median`, both of the stated basis; truncated to
 /// [min, max] (0 and infinity for none).
 std::unique_ptr<SizeDistribution> make_lognormal(double median, double sigma, Basis, double min, double max);
+/// The lognormal distribution whose volume-weighted mean <r⁴>/<r³> is `r43` and whose surface-weighted mean
+/// <r³>/<r²> is `r32`, before it is truncated: sigma² = ln(r43 / r32), median by number r32·exp(-5/2 sigma²).
+std::unique_ptr<SizeDistribution> make_lognormal_of_means(double r43, double r32, double min, double max);
 
 }  // namespace bernal

@@ -1,0 +1,59 @@
+// The command: one subcommand a file; this one only turns what they throw into a line and an exit code.
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+
+namespace {
+
+constexpr const char* description =
+    "bernal packs spheres into real shapes and proves that nothing overlaps.\n"
+    "A scene, a short TOML file, says which container, which sizes and how many.";
+
+constexpr const char* examples = R"(Examples:
+  bernal pack data/scenes/cylinder_han.toml -o out   fill a cylinder; results in out/
+  bernal verify out                                  certify what stands in the files, from scratch
+  bernal inspect part.stl --unit mm                  can this CAD file be a container?
+  bernal explain data/scenes/hopper.toml             what would run, and what it would cost
+
+Exit codes: 0 done; 1 not certified, or not usable; 2 bad input; 3 ended without reaching what the scene asks.
+Messages go to standard error, results to files or standard output.)";
+
+int complain(std::string what) {
+  std::ranges::replace(what, '\n', ' ');
+  fmt::print(stderr, "bernal: {}\n", what);
+  return exit_code::bad_input;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is an error to report, not a reason to die
+  CLI::App app{description, "bernal"};
+  app.footer(examples);
+  app.set_version_flag("--version", "bernal " BERNAL_VERSION);
+  app.require_subcommand(1);
+  int status = exit_code::done;
+  add_pack(app, status);
+  add_verify(app, status);
+  add_inspect(app, status);
+  add_explain(app, status);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    app.exit(asked);
+  } catch (const CLI::ParseError& wrong) {
+    return complain(fmt::format("{}; see bernal --help", wrong.what()));
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory");
+  } catch (const std::exception& error) {
+    return complain(error.what());
+  }
+  if (std::fflush(stdout) != 0) return complain("standard output cannot be written");
+  return status;
+}

@@ -1,0 +1,18 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "bernal/run/run.hpp"
+
+/// 28312 as "28,312".
+std::string grouped(std::uint64_t n);
+
+/// "cylinder of 2 x 2 x 2 m, volume 6.28319 m³".
+std::string describe_container(const bernal::Plan& plan);
+
+/// "diameter in mm: lognormal, basis number, median 1, sigma 0.3": what was understood, with the unit and
+/// with the word radius or diameter, which users mix up.
+std::string describe_sizes(const bernal::Scene& scene);
+
+/// "as many as fit", "10,000", "up to packing fraction 0.45".
+std::string describe_target(const bernal::Scene& scene);

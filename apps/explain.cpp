@@ -1,0 +1,89 @@
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "bernal/run/run.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "commands.hpp"
+#include "describe.hpp"
+
+using namespace bernal;
+
+namespace {
+
+struct ExplainCall {
+  std::filesystem::path scene;
+  bool json = false;
+};
+
+void print(const Plan& plan) {
+  const Scene& scene = plan.scene;
+  fmt::print("container  {}\n", describe_container(plan));
+  if (!plan.container_notes.empty()) fmt::print("           {}\n", plan.container_notes);
+  fmt::print("spheres    {}; {}\n", describe_target(scene), describe_sizes(scene));
+  fmt::print("accuracy   walls {}, overlap {}\n", scene.walls, scene.overlap);
+  fmt::print("expected   about {:.3g} spheres, packing fraction {:.3f}, {:.3g} MB of memory\n\n",
+             plan.expected_count, plan.expected_packing_fraction, plan.expected_memory_bytes / 1e6);
+
+  std::size_t name_width = 0, what_width = 0;
+  for (const PlanItem& item : plan.items) {
+    name_width = std::max(name_width, item.name.size());
+    what_width = std::max(what_width, item.what.size());
+  }
+  fmt::print("What would run:\n");
+  for (const PlanItem& item : plan.items)
+    fmt::print("  {:<{}}  {:<{}}  {}\n", item.name, name_width, item.what, what_width, item.cost);
+  if (!plan.absent.empty()) fmt::print("\nNot called for, not built: {}.\n", fmt::join(plan.absent, ", "));
+  if (scene.stages_are_default)
+    fmt::print("\nThe scene names no stages. This protocol runs; paste it to change it:\n\n{}",
+               stages_as_toml(scene));
+}
+
+nlohmann::ordered_json as_json(const Plan& plan) {
+  using nlohmann::ordered_json;
+  const Bounds<3> bounds = bounds_of(plan.container);
+  const auto point = [](const Vector<3>& p) { return ordered_json{p[0], p[1], p[2]}; };
+  ordered_json items = ordered_json::array();
+  for (const PlanItem& item : plan.items)
+    items.push_back({{"name", item.name}, {"what", item.what}, {"cost", item.cost}});
+  return {{"unit", plan.scene.unit},
+          {"container",
+           {{"kind", kind_of(plan.container)},
+            {"volume", volume_of(plan.container)},
+            {"bounds", {point(bounds.lower), point(bounds.upper)}},
+            {"notes", plan.container_notes}}},
+          {"spheres", {{"target", describe_target(plan.scene)}, {"sizes", describe_sizes(plan.scene)}}},
+          {"accuracy", {{"walls", plan.scene.walls}, {"overlap", plan.scene.overlap}}},
+          {"expected",
+           {{"count", plan.expected_count},
+            {"packing_fraction", plan.expected_packing_fraction},
+            {"memory_bytes", plan.expected_memory_bytes}}},
+          {"items", items},
+          {"absent", plan.absent},
+          {"stages_are_default", plan.scene.stages_are_default},
+          {"stages", stages_as_toml(plan.scene)}};
+}
+
+void explain(const ExplainCall& call) {
+  const Plan plan = build(read_scene(call.scene));
+  if (call.json)
+    fmt::print("{}\n", as_json(plan).dump(2));
+  else
+    print(plan);
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app, int& status) {
+  auto call = std::make_shared<ExplainCall>();
+  CLI::App* command = app.add_subcommand("explain", "Say what a scene would run and cost; run nothing");
+  command->add_option("SCENE", call->scene, "The scene, a TOML file")->required();
+  command->add_flag("--json", call->json, "One JSON object on standard output");
+  command->callback([call, &status] {
+    explain(*call);
+    status = exit_code::done;
+  });
+}

@@ -1,0 +1,117 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <nlohmann/json.hpp>
+
+#include "bernal/core/error.hpp"
+#include "bernal/io/read_packing.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "bernal/verify/certificate.hpp"
+#include "commands.hpp"
+#include "describe.hpp"
+
+using namespace bernal;
+
+namespace {
+
+struct VerifyCall {
+  std::filesystem::path target;
+  std::filesystem::path scene;
+  int threads = 0;
+  bool json = false;
+};
+
+std::filesystem::path scene_file(const VerifyCall& call) {
+  if (!call.scene.empty()) return call.scene;
+  if (std::filesystem::is_directory(call.target)) return call.target / "scene.toml";
+  throw Error(ErrorCode::bad_argument,
+              "one file does not say what it was packed into; give --scene SCENE.toml too",
+              {call.target.string()});
+}
+
+SpheresFile read_spheres(const std::filesystem::path& file, const Scene& scene) {
+  SpheresFile read = read_csv(file);
+  if (!read.unit.empty() && read.unit != scene.unit)
+    throw Error(ErrorCode::bad_packing,
+                fmt::format("the spheres are in {}, but the scene is in {}; both must have one unit",
+                            read.unit, scene.unit),
+                {file.string()});
+  return read;
+}
+
+nlohmann::ordered_json as_json(const Certificate& c) {
+  return {{"certified", c.certified},
+          {"spheres", c.spheres},
+          {"pairs_tested", c.pairs_tested},
+          {"walls_tested", c.walls_tested},
+          {"centers_tested", c.centers_tested},
+          {"decided_double", c.decided_double},
+          {"decided_exact", c.decided_exact},
+          {"overlapping_pairs", c.overlapping_pairs},
+          {"protruding_spheres", c.protruding_spheres},
+          {"worst_pair", {c.worst_pair[0], c.worst_pair[1]}},
+          {"max_overlap", c.max_overlap},
+          {"worst_wall", c.worst_wall},
+          {"min_wall_gap", c.min_wall_gap},
+          {"seconds", c.seconds},
+          {"statement", c.statement}};
+}
+
+void print(const Certificate& c, const std::string& unit) {
+  fmt::print("certified  {}\n", c.certified ? "yes" : "NO");
+  fmt::print("spheres    {}, in {}\n", grouped(c.spheres), unit);
+  fmt::print("pairs      {} near, {} overlapping", grouped(c.pairs_tested), grouped(c.overlapping_pairs));
+  if (c.worst_pair[0] != c.worst_pair[1])
+    fmt::print("; worst: {} and {}, overlap ratio {:.3g}", c.worst_pair[0], c.worst_pair[1], c.max_overlap);
+  fmt::print("\nwalls      {} near, {} spheres protruding", grouped(c.walls_tested),
+             grouped(c.protruding_spheres));
+  if (c.walls_tested > 0)
+    fmt::print("; worst: sphere {}, gap {:.3g} of its radius", c.worst_wall, c.min_wall_gap);
+  fmt::print("\ndecided    {} in double with a proven bound, {} in exact arithmetic, in {:.3f} s\n",
+             grouped(c.decided_double), grouped(c.decided_exact), c.seconds);
+  fmt::print("{}\n", c.statement);
+}
+
+int verify(const VerifyCall& call) {
+  const Scene scene = read_scene(scene_file(call));
+  const std::filesystem::path file =
+      std::filesystem::is_directory(call.target) ? call.target / "spheres.csv" : call.target;
+  const SpheresFile read = read_spheres(file, scene);
+
+  std::optional<tbb::global_control> limit;
+  if (call.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
+  const Certificate certificate = certify(read.spheres, shape_of(scene), scene.overlap);
+  if (call.json)
+    fmt::print("{}\n", as_json(certificate).dump(2));
+  else
+    print(certificate, scene.unit);
+  return certificate.certified ? exit_code::done : exit_code::no;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, int& status) {
+  auto call = std::make_shared<VerifyCall>();
+  CLI::App* command = app.add_subcommand("verify", "Certify files from scratch: no overlap, nothing outside");
+  command->add_option("DIR", call->target, "What bernal pack wrote, or one CSV file with x,y,z,r lines")
+      ->required()
+      ->type_name("DIR|FILE.csv");
+  command->add_option("--scene", call->scene, "The scene that names the container, if not DIR/scene.toml")
+      ->type_name("SCENE.toml");
+  command
+      ->add_option("--threads", call->threads, "As many as the machine has if absent; the answer is the same")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  command->add_flag("--json", call->json, "One JSON object on standard output");
+  command->footer(
+      "Every near pair and every near wall is decided: in double arithmetic where a proven error bound "
+      "allows,\n"
+      "else exactly. Exit codes: 0 certified; 1 not; 2 bad input.");
+  command->callback([call, &status] { status = verify(*call); });
+}

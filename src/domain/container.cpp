@@ -1,0 +1,81 @@
+#include "bernal/domain/container.hpp"
+
+#include <algorithm>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/tolerance.hpp"
+#include "domain/analytic.hpp"
+
+namespace bernal {
+namespace {
+
+/// Whether the nearest point of a facet is on another one that comes nearer to the centre. Then it is no
+/// nearest point of the wall as a whole: next to it, on the other facet, the wall comes nearer. This
+/// happens where triangles share an edge or a corner; the pieces of analytic walls never share their nearest
+/// points.
+bool on_nearer_facet(const Vector<3>& q, std::size_t index, const std::vector<NearFacet>& near,
+                     double tolerance) {
+  if (near[index].facet.kind != Facet::Kind::triangle) return false;
+  for (std::size_t k = 0; k < index; ++k) {
+    if (near[k].facet.kind == Facet::Kind::triangle && distance(near[k].facet, q) <= tolerance) return true;
+  }
+  return false;
+}
+
+/// The unit normal of the wall at q, the facet's point nearest to c, towards c.
+Vector<3> inward_normal(const Facet& f, const Vector<3>& q, const Vector<3>& c, double d) {
+  switch (f.kind) {
+    case Facet::Kind::plane:
+      return f.b;
+    case Facet::Kind::cylinder:
+    case Facet::Kind::sphere: {
+      Vector<3> outward = q - f.a;
+      if (f.kind == Facet::Kind::cylinder) outward -= outward.dot(f.b) * f.b;
+      return -outward / f.radius;
+    }
+    case Facet::Kind::triangle:
+      break;
+  }
+  if (d > 0) return (c - q) / d;
+  return -(f.b - f.a).cross(f.c - f.a).normalized();
+}
+
+}  // namespace
+
+double Container::first_contact(const Vector<3>& c, double r, const Vector<3>& direction,
+                                double limit) const {
+  const double skin = tolerance::skin(r, resolution_);
+  thread_local std::vector<NearFacet> near;
+  near.clear();
+  facets_near(c, r + skin + limit, near);
+  for (const NearFacet& n : near) {
+    if (n.distance - r - skin >= limit) break;
+    limit = bernal::first_contact(n.facet, c, r, direction, limit, skin);
+  }
+  return limit;
+}
+
+void Container::walls_near(const Vector<3>& c, double reach, std::vector<WallPoint>& out) const {
+  thread_local std::vector<NearFacet> near;
+  near.clear();
+  facets_near(c, reach, near);
+  // A nearest point is known to a few resolutions, and so is its distance from another facet.
+  const double tolerance = 32 * resolution_;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const Vector<3> q = closest_point(near[i].facet, c);
+    if (on_nearer_facet(q, i, near, tolerance)) continue;
+    out.push_back({q, inward_normal(near[i].facet, q, c, near[i].distance), near[i].distance});
+  }
+}
+
+std::unique_ptr<Container> make_analytic_container(const Shape& shape, WallArithmetic arithmetic,
+                                                   double resolution) {
+  if (const auto* box = std::get_if<BoxShape>(&shape)) return make_box(*box, arithmetic, resolution);
+  if (const auto* cylinder = std::get_if<CylinderShape>(&shape))
+    return make_cylinder(*cylinder, arithmetic, resolution);
+  if (const auto* sphere = std::get_if<SphereShape>(&shape))
+    return make_sphere(*sphere, arithmetic, resolution);
+  throw Error(ErrorCode::bad_argument, "a mesh is no analytic container: use make_mesh_container");
+}
+
+}  // namespace bernal

@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <cmath>
+
+#include "bernal/core/tolerance.hpp"
+#include "domain/analytic.hpp"
+#include "domain/exact_analytic.hpp"
+#include "domain/nearest_first.hpp"
+
+namespace bernal {
+namespace {
+
+class Cylinder final : public Container {
+ public:
+  Cylinder(const CylinderShape& shape, WallArithmetic arithmetic, double resolution)
+      : Container(resolution), shape_(shape), axis_(shape.axis.normalized()), arithmetic_(arithmetic) {
+    Facet& lateral = facets_[0];
+    lateral.kind = Facet::Kind::cylinder;
+    lateral.a = shape.base;
+    lateral.b = axis_;
+    lateral.radius = shape.radius;
+    Facet& bottom = facets_[1];
+    bottom.a = shape.base;
+    bottom.b = axis_;
+    Facet& top = facets_[2];
+    top.a = shape.base + shape.height * axis_;
+    top.b = -axis_;
+    for (std::uint32_t id = 0; id < 3; ++id) facets_[id].id = id;
+  }
+
+  std::string_view kind() const override { return "cylinder"; }
+  Bounds<3> bounds() const override { return bounds_of(shape_); }
+  double volume() const override { return volume_of(shape_); }
+
+  double clearance(const Vector<3>& p) const override {
+    const Vector<3> w = p - shape_.base;
+    const double height = w.dot(axis_);
+    const double lateral = shape_.radius - (w - height * axis_).norm();
+    const double axial = std::min(height, shape_.height - height);
+    const double least = std::min(lateral, axial);
+    return least >= 0 ? least : -std::hypot(std::min(lateral, 0.0), std::min(axial, 0.0));
+  }
+
+  bool contains(const Vector<3>& c, double r) const override {
+    // |w| <= n, n = |w|_1. The unit axis is wrong by at most 5u in each component, the height w·axis by
+    // 10u·n, the distance from the axis line by 24u·n; u·(radius + height + r) covers the subtractions.
+    const double n = (c - shape_.base).lpNorm<1>();
+    const double error = 32 * tolerance::roundoff * (n + shape_.radius + shape_.height + r);
+    return decide_contains(arithmetic_, clearance(c), r, error,
+                           [&] { return contains_exactly(shape_, c, r); });
+  }
+
+  void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
+    append_nearest_first(facets_, c, reach, out);
+  }
+
+ private:
+  CylinderShape shape_;
+  Vector<3> axis_;
+  WallArithmetic arithmetic_;
+  std::array<Facet, 3> facets_;
+};
+
+}  // namespace
+
+std::unique_ptr<Container> make_cylinder(const CylinderShape& shape, WallArithmetic arithmetic,
+                                         double resolution) {
+  return std::make_unique<Cylinder>(shape, arithmetic, resolution);
+}
+
+}  // namespace bernal

@@ -1,0 +1,68 @@
+#include "bernal/domain/facet.hpp"
+
+#include "kernels/closest_point.hpp"
+#include "kernels/first_contact.hpp"
+
+namespace bernal {
+namespace {
+
+Vector<3> radial(const Facet& f, const Vector<3>& p) {
+  const Vector<3> w = p - f.a;
+  if (f.kind == Facet::Kind::cylinder) return w - w.dot(f.b) * f.b;
+  return w;
+}
+
+/// Any direction that is radial for the facet, for a point that has none of its own.
+Vector<3> any_radial(const Facet& f) {
+  if (f.kind == Facet::Kind::sphere) return Vector<3>::UnitX();
+  return f.b.unitOrthogonal();
+}
+
+}  // namespace
+
+double distance(const Facet& f, const Vector<3>& p) {
+  switch (f.kind) {
+    case Facet::Kind::plane:
+      return (p - f.a).dot(f.b);
+    case Facet::Kind::cylinder:
+    case Facet::Kind::sphere:
+      return f.radius - radial(f, p).norm();
+    case Facet::Kind::triangle:
+      break;
+  }
+  return PreparedTriangle(f.a, f.b, f.c).offset(p).norm();
+}
+
+Vector<3> closest_point(const Facet& f, const Vector<3>& p) {
+  switch (f.kind) {
+    case Facet::Kind::plane:
+      return p - (p - f.a).dot(f.b) * f.b;
+    case Facet::Kind::cylinder:
+    case Facet::Kind::sphere: {
+      const Vector<3> w = radial(f, p);
+      const double length = w.norm();
+      const Vector<3> outward = length > 0 ? Vector<3>(w / length) : any_radial(f);
+      return p + (f.radius - length) * outward;
+    }
+    case Facet::Kind::triangle:
+      break;
+  }
+  return closest_point_of_triangle(p, f.a, f.b, f.c);
+}
+
+double first_contact(const Facet& f, const Vector<3>& c, double r, const Vector<3>& direction, double limit,
+                     double skin) {
+  switch (f.kind) {
+    case Facet::Kind::plane:
+      return first_contact_with_plane(c, r, direction, limit, f.a, f.b, skin);
+    case Facet::Kind::cylinder:
+      return first_contact_inside_cylinder(c, r, direction, limit, f.a, f.b, f.radius, skin);
+    case Facet::Kind::sphere:
+      return first_contact_inside_sphere(c, r, direction, limit, f.a, f.radius, skin);
+    case Facet::Kind::triangle:
+      break;
+  }
+  return first_contact_with_triangle(c, r, direction, limit, f.a, f.b, f.c, skin);
+}
+
+}  // namespace bernal

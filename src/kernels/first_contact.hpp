@@ -1,0 +1,140 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "bernal/core/tolerance.hpp"
+#include "bernal/core/vector.hpp"
+#include "kernels/closest_point.hpp"
+
+namespace bernal {
+
+// How far a sphere may move along a unit vector before it meets an obstacle: at most `limit` (>= 0).
+//
+// One rule for all (core/tolerance.hpp). Let gap(t) be the distance of the moving sphere's surface from the
+// obstacle after it has moved by t, and `skin` > 0.
+//   gap never below skin/2 on [0, limit]:  the obstacle is ignored, the answer is limit.
+//   otherwise:                             the first t from which gap falls below `skin`; 0 if it does at
+//   once. gap(0) < skin/2 (slight penetration):  0, unless the gap grows; it then limits only where the gap,
+//   having
+//                                          grown, falls again, which it never does for convex obstacles.
+// Invariant: gap >= min(gap(0), skin/2) on the whole way, to a few roundoffs of the distances involved;
+// `skin` is at least a thousand of them.
+
+/// A sphere against a resting one in D dimensions: centres `c` and `other`, gap(t) = |c + t·direction -
+/// other|
+/// - sum_of_radii. The root of the quadratic is taken in the form without cancellation.
+/// Cost: 3 ns; less for a neighbour that is not on the way.
+template <int D>
+inline double first_contact(const Vector<D>& c, const Vector<D>& direction, double limit,
+                            const Vector<D>& other, double sum_of_radii, double skin) {
+  const Vector<D> to_other = other - c;
+  const double along = to_other.dot(direction);
+  const double stop = sum_of_radii + skin;
+  if (along <= 0 || along - stop >= limit) return limit;
+  const double ignore = sum_of_radii + 0.5 * skin;
+  const double squared_miss = (to_other - along * direction).squaredNorm();
+  if (squared_miss >= ignore * ignore) return limit;
+  const double t = (to_other.squaredNorm() - stop * stop) / (along + std::sqrt(stop * stop - squared_miss));
+  if (t >= limit) return limit;
+  const double rest = along - limit;
+  if (rest > 0 && squared_miss + rest * rest >= ignore * ignore) return limit;
+  return std::max(t, 0.0);
+}
+
+/// A sphere of radius r against the plane through `point` with the unit normal `normal` towards the free
+/// side: gap(t) = (c + t·direction - point)·normal - r.
+inline double first_contact_with_plane(const Vector<3>& c, double r, const Vector<3>& direction, double limit,
+                                       const Vector<3>& point, const Vector<3>& normal, double skin) {
+  const double slope = direction.dot(normal);
+  if (slope >= 0) return limit;
+  const double gap = (c - point).dot(normal) - r;
+  if (gap + slope * limit >= 0.5 * skin) return limit;
+  return std::clamp((gap - skin) / -slope, 0.0, limit);
+}
+
+/// How far a point at `w` may move by multiples of `v` before its distance from the origin grows beyond
+/// `stop`; not limited where that distance stays within `ignore` (> stop). Both may be negative: then it is
+/// never within. Invariant: |w + t·v| <= max(|w|, ignore), verified.
+inline double first_exit(const Vector<3>& w, const Vector<3>& v, double limit, double stop, double ignore) {
+  const double squared_speed = v.squaredNorm();
+  if (squared_speed == 0) return limit;
+  const double outward = w.dot(v);
+  const double squared_start = w.squaredNorm();
+  const double squared_ignore = ignore > 0 ? ignore * ignore : 0;
+  // The distance is a convex function of t, so what holds at both ends holds in between.
+  const double squared_end = squared_start + limit * (2 * outward + limit * squared_speed);
+  if (ignore > 0 && squared_end <= squared_ignore) return limit;
+
+  // The farther root of |w + t·v| = stop; where it has none, the t of the least distance.
+  const double room = (stop > 0 ? stop * stop : 0) - squared_start;
+  const double root = std::sqrt(std::max(0.0, outward * outward + squared_speed * room));
+  double t = outward > 0 ? room / (outward + root) : (root - outward) / squared_speed;
+  t = std::clamp(t, 0.0, limit);
+  const double squared_bound = std::max(squared_start, squared_ignore);
+  for (double back = 4 * tolerance::roundoff * t; t > 0 && (w + t * v).squaredNorm() > squared_bound;
+       back *= 2)
+    t = std::max(0.0, t - back);
+  return t;
+}
+
+/// A sphere of radius r inside the endless cylinder of radius R about the line through `point` along the unit
+/// vector `axis`: gap(t) = R - r - |c + t·direction - point|⊥axis, a concave function: it may grow and fall
+/// again.
+inline double first_contact_inside_cylinder(const Vector<3>& c, double r, const Vector<3>& direction,
+                                            double limit, const Vector<3>& point, const Vector<3>& axis,
+                                            double R, double skin) {
+  const Vector<3> from_point = c - point;
+  const Vector<3> w = from_point - from_point.dot(axis) * axis;
+  if (w.norm() + limit <= R - r - skin) return limit;
+  const Vector<3> v = direction - direction.dot(axis) * axis;
+  return first_exit(w, v, limit, R - r - skin, R - r - 0.5 * skin);
+}
+
+/// A sphere of radius r inside the sphere of radius R about `center`: gap(t) = R - r - |c + t·direction -
+/// center|.
+inline double first_contact_inside_sphere(const Vector<3>& c, double r, const Vector<3>& direction,
+                                          double limit, const Vector<3>& center, double R, double skin) {
+  const Vector<3> w = c - center;
+  if (w.norm() + limit <= R - r - skin) return limit;
+  return first_exit(w, direction, limit, R - r - skin, R - r - 0.5 * skin);
+}
+
+/// A sphere of radius r against a triangle, from either side: faces, edges and corners.
+///
+/// f(t) = distance(c + t·direction, triangle) is convex and 1-Lipschitz, so Newton's method started left of
+/// the first root of f = level never passes it, and f(t) + f'(t)·(limit - t) bounds what is still to come.
+/// The slope is lowered by its own error bound, which keeps both statements true in floating point, also on
+/// slivers. Cost: 40 ns where the triangle does not limit, 25 ns an iteration (three to six) where it does.
+inline double first_contact_with_triangle(const Vector<3>& c, double r, const Vector<3>& direction,
+                                          double limit, const Vector<3>& a, const Vector<3>& b,
+                                          const Vector<3>& corner_c, double skin) {
+  const PreparedTriangle triangle(a, b, corner_c);
+  const double stop = r + skin;
+  const double ignore = r + 0.5 * skin;
+  constexpr int most_iterations = 64;
+
+  double t = 0;          // f is known to be at least `ignore` up to here
+  double answer = 0;     // the same, and at least about `stop`
+  bool stopped = false;  // `answer` is final unless the path proves harmless
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    const Vector<3> p = c + t * direction;
+    const Vector<3> offset = triangle.offset(p);
+    const double f = offset.norm();
+    if (f - stop >= limit - t) return limit;
+    const double nominal_slope = offset.dot(direction) / f;
+    if (f < ignore) return iteration == 0 && nominal_slope >= 0 ? limit : answer;
+
+    const double slope = nominal_slope - triangle.direction_error(f);
+    if (slope >= 0 || f + slope * (limit - t) >= ignore) return limit;
+    if (!stopped) {
+      answer = t;
+      stopped = f - stop <= skin / 64 * -slope;
+    }
+    const double step = (f - (stopped ? ignore : stop)) / -slope;
+    if (stopped && step <= skin / 64) return answer;
+    t += step;
+  }
+  return answer;
+}
+
+}  // namespace bernal

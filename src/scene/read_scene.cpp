@@ -1,0 +1,382 @@
+#include "bernal/scene/read_scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include "bernal/core/text.hpp"
+#include "bernal/core/unit.hpp"
+#include "scene/schema.hpp"
+#include "scene/toml_text.hpp"
+
+namespace bernal {
+namespace {
+
+using schema::Entry;
+using schema::Key;
+using schema::Type;
+using Names = std::vector<std::string_view>;
+
+/// What the user wrote, short enough for an error of one line.
+std::string written(const toml::node& node) {
+  constexpr std::size_t longest = 60;
+  if (const auto* text = node.as_string()) {
+    std::string_view shown = text->get();
+    if (shown.size() <= longest) return toml_string(shown);
+    shown = shown.substr(0, longest);
+    while (!shown.empty() && (shown.back() & 0xC0) == 0x80) shown.remove_suffix(1);  // whole UTF-8 characters
+    return toml_string(shown.substr(0, shown.size() - 1)) + "…";
+  }
+  if (const auto* number = node.as_floating_point()) return toml_text(number->get());
+  if (const auto* number = node.as_integer()) return toml_text(number->get());
+  if (const auto* flag = node.as_boolean()) return toml_text(flag->get());
+  if (node.is_table()) return "a table";
+  if (const auto* array = node.as_array()) {
+    std::vector<std::string> items;
+    for (const toml::node& item : *array) {
+      if (items.size() == 6 || item.is_array()) return fmt::format("an array of {} values", array->size());
+      items.push_back(written(item));
+    }
+    return fmt::format("[{}]", fmt::join(items, ", "));
+  }
+  return "a date or time";
+}
+
+std::optional<Value> number_in(const toml::node& node) {
+  if (!node.is_number()) return std::nullopt;
+  return *node.value<double>();
+}
+
+/// The node as the kind of value that a key of this type has; nothing if it is of another kind.
+std::optional<Value> value_in(const toml::node& node, Type type) {
+  switch (type) {
+    case Type::flag:
+      if (const auto* flag = node.as_boolean()) return flag->get();
+      return std::nullopt;
+    case Type::integer:
+      if (const auto* number = node.as_integer()) return number->get();
+      return std::nullopt;
+    case Type::number:
+    case Type::length:
+    case Type::distribution:
+      return number_in(node);
+    case Type::word:
+    case Type::unit:
+    case Type::file:
+      if (const auto* text = node.as_string()) return text->get();
+      return std::nullopt;
+    case Type::direction:
+    case Type::position:
+    case Type::extents:
+    case Type::lengths:
+    case Type::shares: {
+      const toml::array* array = node.as_array();
+      if (!array) return std::nullopt;
+      std::vector<double> numbers;
+      for (const toml::node& item : *array) {
+        const std::optional<Value> number = number_in(item);
+        if (!number) return std::nullopt;
+        numbers.push_back(std::get<double>(*number));
+      }
+      return numbers;
+    }
+  }
+  return std::nullopt;
+}
+
+Names names_of(const std::vector<Entry>& entries) {
+  Names names;
+  for (const Entry& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+Names names_of(const std::vector<Key>& keys) {
+  Names names;
+  for (const Key& key : keys) names.push_back(key.name);
+  return names;
+}
+
+/// `; did you mean "diameter"?` or, where nothing is near, `; known: "count", "radius"`.
+std::string remedy(std::string_view name, const Names& candidates) {
+  if (const std::string_view near = nearest_name(name, candidates); !near.empty())
+    return fmt::format("; did you mean \"{}\"?", near);
+  return fmt::format("; known: \"{}\"", fmt::join(candidates, "\", \""));
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& file) : path_(file), file_(file.string()) {}
+
+  Scene read(std::string_view text) const {
+    const toml::table root = parse(text);
+    Scene scene;
+    scene.file = path_;
+    check_tables(root);
+    const Spec top = read_keys(root, all_.scene, {}, "the scene");
+    scene.unit = top.text("unit");
+    scene.seed = static_cast<std::uint64_t>(top.integer("seed"));
+    read_container(root, scene);
+    read_spheres(table_in(root, "spheres"), scene);
+    read_accuracy(root, scene);
+    read_stages(root, scene);
+    return scene;
+  }
+
+ private:
+  template <class... Args>
+  [[noreturn]] void fail(const toml::source_region& where, fmt::format_string<Args...> format,
+                         Args&&... args) const {
+    throw Error(ErrorCode::bad_scene, fmt::format(format, std::forward<Args>(args)...), at(where));
+  }
+
+  Location at(const toml::source_region& where) const {
+    return {file_, static_cast<int>(where.begin.line), static_cast<int>(where.begin.column)};
+  }
+
+  toml::table parse(std::string_view text) const {
+    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+    if (std::ranges::all_of(text, blank))
+      throw Error(ErrorCode::bad_scene, "the scene is empty; it needs at least [container] and [spheres]",
+                  {file_});
+    try {
+      return toml::parse(text, file_);
+    } catch (const toml::parse_error& error) {
+      std::string what(error.description());
+      std::ranges::replace_if(
+          what, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+      fail(error.source(), "this is not TOML: {}", what);
+    }
+  }
+
+  /// A misspelt table is reported as such, before anything is missed for it.
+  void check_tables(const toml::table& root) const {
+    Names known = names_of(all_.scene.keys);
+    known.insert(known.end(), tables.begin(), tables.end());
+    check_names(root, known, "the scene");
+    for (const std::string_view name : tables)
+      if (const toml::node* node = root.get(name); node && name != "stage" && !node->is_table())
+        fail(node->source(), "\"{0}\" must be a table [{0}], not {1}", name, written(*node));
+  }
+
+  /// Reports the first unknown key in the order of the file.
+  void check_names(const toml::table& table, const Names& known, std::string_view where) const {
+    const toml::key* unknown = nullptr;
+    for (const auto& [key, node] : table) {
+      if (std::ranges::find(known, key.str()) != known.end()) continue;
+      if (!unknown || key.source().begin < unknown->source().begin) unknown = &key;
+    }
+    if (unknown)
+      fail(unknown->source(), "unknown key {} in {}{}", toml_string(unknown->str()), where,
+           remedy(unknown->str(), known));
+  }
+
+  const toml::table& table_in(const toml::table& root, std::string_view name) const {
+    const toml::node* node = root.get(name);
+    if (!node) throw Error(ErrorCode::bad_scene, fmt::format("the scene has no [{}]", name), {file_});
+    return *node->as_table();
+  }
+
+  /// Which of several entries a table is, by the word under `selector`.
+  const Entry& choose(const toml::table& table, std::string_view selector, const std::vector<Entry>& entries,
+                      std::string_view where) const {
+    const Names names = names_of(entries);
+    const toml::node* node = table.get(selector);
+    if (!node)
+      fail(table.source(), "missing \"{}\" in {}; it is one of \"{}\"", selector, where,
+           fmt::join(names, "\", \""));
+    const auto* word = node->as_string();
+    if (!word)
+      fail(node->source(), "\"{}\" in {} must be one of \"{}\", not {}", selector, where,
+           fmt::join(names, "\", \""), written(*node));
+    const Entry* entry = schema::Schema::find(entries, word->get());
+    if (!entry)
+      fail(node->source(), "unknown {} {} in {}{}", selector == "do" ? "stage" : selector, written(*node),
+           where, remedy(word->get(), names));
+    return *entry;
+  }
+
+  /// The keys that the choices of an entry leave out of this table. Throws where two sets are mixed or none
+  /// is given that is needed.
+  Names left_out(const toml::table& table, const Entry& entry, std::string_view where) const {
+    Names out;
+    for (const schema::Choice& choice : entry.choices) {
+      const auto needs_nothing = [&](const Names& set) {
+        return std::ranges::all_of(set,
+                                   [&](std::string_view key) { return bool(entry.find(key)->otherwise); });
+      };
+      std::vector<std::string> sets;
+      const Names* chosen = nullptr;
+      std::string_view chosen_by;
+      for (const Names& set : choice) {
+        sets.push_back(fmt::format("\"{}\"", fmt::join(set, "\" and \"")));
+        const auto given =
+            std::ranges::find_if(set, [&](std::string_view key) { return table.contains(key); });
+        if (given == set.end()) continue;
+        if (chosen)
+          fail(table.find(*given)->first.source(),
+               "\"{}\" and \"{}\" in {} exclude each other; give one of them", chosen_by, *given, where);
+        chosen = &set;
+        chosen_by = *given;
+      }
+      if (!chosen) {
+        const auto free = std::ranges::find_if(choice, needs_nothing);
+        if (free == choice.end())
+          fail(table.source(), "{} needs exactly one of {}", where, fmt::join(sets, ", "));
+        chosen = &*free;
+      }
+      for (const Names& set : choice)
+        if (&set != chosen) out.insert(out.end(), set.begin(), set.end());
+    }
+    return out;
+  }
+
+  /// Reads and checks one key.
+  Value read_value(const toml::node& node, const Key& key, std::string_view where) const {
+    const std::optional<Value> value = value_in(node, key.type);
+    if (value && schema::accepts(key, *value)) return *value;
+    if (value && (key.type == Type::unit || key.type == Type::word)) {
+      Names words = key.words;
+      if (key.type == Type::unit)
+        for (const Unit& unit : units()) words.push_back(unit.name);
+      const std::string& word = std::get<std::string>(*value);
+      fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node), remedy(word, words));
+    }
+    fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key),
+         written(node));
+  }
+
+  /// All keys of an entry but its distributions, with defaults filled in.
+  Spec read_keys(const toml::table& table, const Entry& entry, std::string_view selector,
+                 const std::string& where) const {
+    Names known = names_of(entry.keys);
+    if (!selector.empty()) known.push_back(selector);
+    if (&entry != &all_.scene) check_names(table, known, where);
+    const Names absent = left_out(table, entry, where);
+
+    Spec spec{std::string(entry.name), {}, at(table.source())};
+    for (const Key& key : entry.keys) {
+      const auto found = table.find(key.name);
+      const bool given = found != table.end();
+      if (key.type == Type::distribution || std::ranges::find(absent, key.name) != absent.end()) continue;
+      if (!given && !key.otherwise && !key.optional)
+        fail(table.source(), "missing \"{}\" in {}: {}, {}", key.name, where, schema::expectation(key),
+             key.help);
+      if (given)
+        spec.parameters[std::string(key.name)] = {read_value(found->second, key, where),
+                                                  at(found->first.source())};
+      else if (key.otherwise)
+        spec.parameters[std::string(key.name)] = {*key.otherwise, {file_}};
+    }
+    if (entry.rule) entry.rule(spec, where);
+    return spec;
+  }
+
+  void read_container(const toml::table& root, Scene& scene) const {
+    const toml::table& table = table_in(root, "container");
+    const Entry& entry = choose(table, "kind", all_.containers, "[container]");
+    scene.container = read_keys(table, entry, "kind", "[container]");
+    if (entry.name != "mesh") return;
+    if (!root.contains("unit"))
+      fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
+    auto& parameters = scene.container.parameters;
+    parameters.try_emplace("unit", Parameter{scene.unit, {file_}});
+    std::filesystem::path mesh = scene.container.text("file");
+    if (mesh.is_relative()) mesh = (path_.parent_path() / mesh).lexically_normal();
+    parameters["file"].value = mesh.string();
+  }
+
+  void read_spheres(const toml::table& table, Scene& scene) const {
+    const Spec spec = read_keys(table, all_.spheres, {}, "[spheres]");
+    scene.target.where = spec.where;
+    if (spec.has("count")) scene.target.count = spec.integer("count");
+    if (spec.has("packing_fraction")) scene.target.packing_fraction = spec.number("packing_fraction");
+    scene.target.fill = spec.has("fill");
+    if (scene.target.fill && !spec.flag("fill"))
+      fail(table.get("fill")->source(),
+           "\"fill\" in [spheres] can only be true; give \"count\" or \"packing_fraction\" instead");
+    for (const std::string_view key : {"count", "packing_fraction", "fill"})
+      if (spec.has(key)) scene.target.where = spec.location(key);
+
+    scene.sizes_are_diameters = table.contains("diameter");
+    const std::string_view key = scene.sizes_are_diameters ? "diameter" : "radius";
+    scene.sizes = read_distribution(*table.get(key), key);
+  }
+
+  /// A plain length is a constant distribution.
+  Spec read_distribution(const toml::node& node, std::string_view key) const {
+    const toml::table* table = node.as_table();
+    if (!table) {
+      const Value value = read_value(node, *all_.spheres.find(key), "[spheres]");
+      return {"constant", {{"value", {value, at(node.source())}}}, at(node.source())};
+    }
+    const std::string where = fmt::format("{} of [spheres]", key);
+    const Entry& entry = choose(*table, "distribution", all_.distributions, where);
+    if (key == "radius")
+      for (const std::string_view mean : {"d43", "d32"})
+        if (entry.find(mean) && table->contains(mean))
+          fail(table->find(mean)->first.source(),
+               "\"{}\" is a mean diameter; write diameter = {{…}}, not radius", mean);
+    return read_keys(*table, entry, "distribution", where);
+  }
+
+  void read_accuracy(const toml::table& root, Scene& scene) const {
+    const toml::table none;
+    const Spec spec = read_keys(root.contains("accuracy") ? table_in(root, "accuracy") : none, all_.accuracy,
+                                {}, "[accuracy]");
+    scene.walls = spec.text("walls");
+    scene.overlap = spec.number("overlap");
+  }
+
+  void read_stages(const toml::table& root, Scene& scene) const {
+    const toml::node* node = root.get("stage");
+    scene.stages_are_default = !node;
+    if (!node) {
+      for (const std::string_view name : all_.protocol)
+        scene.stages.push_back(read_keys({}, *schema::Schema::find(all_.stages, name), "do", "[[stage]]"));
+      return;
+    }
+    const toml::array* stages = node->as_array();
+    if (!stages || stages->empty() || !stages->is_array_of_tables())
+      fail(node->source(), "\"stage\" must be one table [[stage]] a stage, not {}", written(*node));
+    for (const toml::node& item : *stages) {
+      const toml::table& table = *item.as_table();
+      const Entry& entry = choose(table, "do", all_.stages, "[[stage]]");
+      scene.stages.push_back(read_keys(table, entry, "do", fmt::format("[[stage]] {}", entry.name)));
+    }
+  }
+
+  static constexpr std::array<std::string_view, 4> tables = {"container", "spheres", "accuracy", "stage"};
+
+  const schema::Schema& all_ = schema::schema();
+  std::filesystem::path path_;
+  std::string file_;
+};
+
+}  // namespace
+
+Scene parse_scene(std::string_view toml, const std::filesystem::path& name) {
+  return Reader(name).read(toml);
+}
+
+Scene read_scene(const std::filesystem::path& file) {
+  constexpr std::streamsize largest = 1 << 20;
+  const auto fail = [&](const std::string& why) { throw Error(ErrorCode::bad_scene, why, {file.string()}); };
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) fail("no such scene file");
+  if (std::filesystem::is_directory(status)) fail("this is a folder, not a scene file");
+  std::ifstream in(file, std::ios::binary);
+  if (!in) fail("the scene file cannot be opened for reading");
+  std::string text(largest + 1, '\0');
+  in.read(text.data(), largest + 1);
+  if (in.bad()) fail("the scene file cannot be read");
+  if (in.gcount() > largest) fail("the file is larger than 1 MiB, which no scene is; is it the mesh?");
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return parse_scene(text, file);
+}
+
+}  // namespace bernal

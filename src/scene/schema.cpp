@@ -1,0 +1,340 @@
+#include "scene/schema.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bernal/core/unit.hpp"
+
+namespace bernal::schema {
+namespace {
+
+constexpr double smallest_length = 1e-30;
+constexpr double largest_length = 1e30;
+
+[[noreturn]] void refuse(const Spec& spec, std::string_view key, const std::string& message) {
+  throw Error(ErrorCode::bad_scene, message, spec.location(key));
+}
+
+void min_below_max(const Spec& spec, std::string_view where) {
+  if (spec.has("min") && spec.has("max") && spec.number("min") >= spec.number("max"))
+    refuse(spec, "min",
+           fmt::format("\"min\" in {} must be below \"max\", but {} is not below {}", where,
+                       spec.number("min"), spec.number("max")));
+}
+
+void lognormal_rule(const Spec& spec, std::string_view where) {
+  min_below_max(spec, where);
+  if (spec.has("d43") && spec.number("d43") <= spec.number("d32"))
+    refuse(spec, "d43",
+           fmt::format("\"d43\" in {} must be above \"d32\", but {} is not above {}", where,
+                       spec.number("d43"), spec.number("d32")));
+}
+
+void classes_rule(const Spec& spec, std::string_view where) {
+  std::vector<double> values = spec.numbers("values");
+  if (values.size() != spec.numbers("shares").size())
+    refuse(
+        spec, "shares",
+        fmt::format("\"shares\" in {} must have one number for each of \"values\", but there are {} for {}",
+                    where, spec.numbers("shares").size(), values.size()));
+  std::ranges::sort(values);
+  if (const auto twice = std::ranges::adjacent_find(values); twice != values.end())
+    refuse(spec, "values", fmt::format("\"values\" in {} must differ, but {} is there twice", where, *twice));
+}
+
+Key basis() {
+  return {.name = "basis",
+          .type = Type::word,
+          .help = "what shares and densities count: spheres or their volume",
+          .otherwise = "number",
+          .words = {"number", "volume"}};
+}
+
+Key direction() {
+  return {.name = "direction",
+          .type = Type::direction,
+          .help = "where the spheres are pushed; its length is of no matter",
+          .otherwise = std::vector<double>{0, 0, -1}};
+}
+
+Key attempts() {
+  return {.name = "attempts",
+          .type = Type::integer,
+          .help = "random places tried for one sphere before it counts as not placeable",
+          .otherwise = 100,
+          .range = {1, 1e9}};
+}
+
+Schema make_schema() {
+  return {
+      .scene = {.name = "scene",
+                .help = "what stands at the top",
+                .keys = {{.name = "unit",
+                          .type = Type::unit,
+                          .help = "unit of every length in the scene; required with a mesh",
+                          .otherwise = "m"},
+                         {.name = "seed",
+                          .type = Type::integer,
+                          .help = "one seed gives one packing, bit for bit",
+                          .otherwise = 1,
+                          .range = {0, 0x1p63, false, true}}}},
+
+      .spheres = {.name = "spheres",
+                  .help = "how many spheres there are, and how large",
+                  .keys = {{.name = "count",
+                            .type = Type::integer,
+                            .help = "stop at this many spheres",
+                            .range = {1, 0x1p31 - 1}},
+                           {.name = "packing_fraction",
+                            .type = Type::number,
+                            .help = "stop when the spheres fill this fraction of the container",
+                            .range = {0, 1, true, true}},
+                           {.name = "fill",
+                            .type = Type::flag,
+                            .help = "true: as many spheres as the stages can place",
+                            .otherwise = true},
+                           {.name = "radius", .type = Type::distribution, .help = "lengths are radii"},
+                           {.name = "diameter", .type = Type::distribution, .help = "lengths are diameters"}},
+                  .choices = {{{"count"}, {"packing_fraction"}, {"fill"}}, {{"radius"}, {"diameter"}}}},
+
+      .accuracy =
+          {.name = "accuracy",
+           .help = "how walls are decided and what the result may keep",
+           .keys = {{.name = "walls",
+                     .type = Type::word,
+                     .help = "double, filtered (certified bounds, exact where they cannot decide) or exact",
+                     .otherwise = "filtered",
+                     .words = {"double", "filtered", "exact"}},
+                    {.name = "overlap",
+                     .type = Type::number,
+                     .help = "largest overlap ratio (ri + rj - d) / (ri + rj) that is allowed; 0: none",
+                     .otherwise = 0.0,
+                     .range = {0, 1, false, true}}}},
+
+      .containers =
+          {{.name = "box",
+            .help = "a box along the axes",
+            .keys = {{.name = "size", .type = Type::extents, .help = "its three edges"},
+                     {.name = "corner",
+                      .type = Type::position,
+                      .help = "its lowest corner",
+                      .otherwise = std::vector<double>{0, 0, 0}}}},
+           {.name = "cylinder",
+            .help = "a circular cylinder along any axis",
+            .keys = {{.name = "radius", .type = Type::length, .help = "its radius"},
+                     {.name = "height", .type = Type::length, .help = "its length along the axis"},
+                     {.name = "axis",
+                      .type = Type::direction,
+                      .help = "from the base to the top; its length is of no matter",
+                      .otherwise = std::vector<double>{0, 0, 1}},
+                     {.name = "base",
+                      .type = Type::position,
+                      .help = "the middle of its base",
+                      .otherwise = std::vector<double>{0, 0, 0}}}},
+           {.name = "mesh",
+            .help = "a closed surface from a CAD file",
+            .keys = {{.name = "file", .type = Type::file, .help = "STL, OBJ, PLY, OFF, 3MF, glTF, …"},
+                     {.name = "unit",
+                      .type = Type::unit,
+                      .help = "unit of the file's coordinates; the scene's if absent",
+                      .optional = true}}},
+           {.name = "sphere",
+            .help = "a sphere",
+            .keys = {{.name = "radius", .type = Type::length, .help = "its radius"},
+                     {.name = "center",
+                      .type = Type::position,
+                      .help = "its centre",
+                      .otherwise = std::vector<double>{0, 0, 0}}}}},
+
+      .distributions =
+          {{.name = "constant",
+            .help = "all spheres alike",
+            .keys = {{.name = "value", .type = Type::length, .help = "the size of every sphere"}}},
+           {.name = "classes",
+            .help = "a few sizes",
+            .keys = {{.name = "values", .type = Type::lengths, .help = "the sizes"},
+                     {.name = "shares", .type = Type::shares, .help = "of each size, in any scale"},
+                     basis()},
+            .rule = classes_rule},
+           {.name = "uniform",
+            .help = "every size between two limits equally often",
+            .keys = {{.name = "min", .type = Type::length, .help = "the smallest"},
+                     {.name = "max", .type = Type::length, .help = "the largest"},
+                     basis()},
+            .rule = min_below_max},
+           {.name = "lognormal",
+            .help = "the logarithm of the size is normal",
+            .keys = {{.name = "median", .type = Type::length, .help = "half of the basis lies below"},
+                     {.name = "sigma",
+                      .type = Type::number,
+                      .help = "standard deviation of the logarithm",
+                      .range = {0, 5, true}},
+                     basis(),
+                     {.name = "d43",
+                      .type = Type::length,
+                      .help = "volume-weighted mean diameter <d^4>/<d^3>, before any cut"},
+                     {.name = "d32",
+                      .type = Type::length,
+                      .help = "surface-weighted mean diameter <d^3>/<d^2>, before any cut"},
+                     {.name = "min", .type = Type::length, .help = "cut off below", .optional = true},
+                     {.name = "max", .type = Type::length, .help = "cut off above", .optional = true}},
+            .choices = {{{"median", "sigma", "basis"}, {"d43", "d32"}}},
+            .rule = lognormal_rule}},
+
+      .stages = {{.name = "insert",
+                  .help = "place spheres at random where they overlap nothing",
+                  .keys = {attempts(),
+                           {.name = "packing_fraction",
+                            .type = Type::number,
+                            .help = "where random insertion stops",
+                            .otherwise = 0.30,
+                            .range = {0, 1, true, true}}}},
+                 {.name = "compress",
+                  .help = "move every sphere along a direction until it touches",
+                  .keys = {direction(),
+                           {.name = "tolerance",
+                            .type = Type::number,
+                            .help = "relative fall of the mean height in one iteration that counts as none",
+                            .otherwise = 1e-4,
+                            .range = {0, 1, true, true}},
+                           {.name = "max_iterations",
+                            .type = Type::integer,
+                            .help = "after which it stops unconverged",
+                            .otherwise = 200,
+                            .range = {1, 1e9}},
+                           {.name = "buffer",
+                            .type = Type::number,
+                            .help = "how far neighbour lists reach beyond contact, in mean radii",
+                            .otherwise = 0.7,
+                            .range = {0, 10, true}},
+                           {.name = "tilt",
+                            .type = Type::number,
+                            .help = "how far a sphere's own direction leaves the common one; 0: not at all",
+                            .otherwise = 1.0,
+                            .range = {0, 100}}}},
+                 {.name = "shake",
+                  .help = "move spheres to and fro across the direction, so that arches break",
+                  .keys = {direction(),
+                           {.name = "rounds",
+                            .type = Type::integer,
+                            .help = "how often",
+                            .otherwise = 8,
+                            .range = {1, 1e9}}}},
+                 {.name = "refill",
+                  .help = "insert into the free space and compress again, until it is full",
+                  .keys = {direction(),
+                           attempts(),
+                           {.name = "max_rounds",
+                            .type = Type::integer,
+                            .help = "after which it stops unfilled",
+                            .otherwise = 100,
+                            .range = {1, 1e9}}}}},
+
+      .protocol = {"insert", "compress", "shake", "refill"},
+  };
+}
+
+std::string number_range(const Range& range) {
+  const bool from = std::isfinite(range.min), to = std::isfinite(range.max);
+  const std::string lower = fmt::format("{} {}", range.above_min ? "above" : "of at least", range.min);
+  const std::string upper = fmt::format("{} {}", range.below_max ? "below" : "of at most", range.max);
+  if (from && to) return fmt::format("a number {} and {}", lower, upper);
+  if (from || to) return fmt::format("a number {}", from ? lower : upper);
+  return "a finite number";
+}
+
+bool is_length(double v) { return v >= smallest_length && v <= largest_length; }
+bool is_coordinate(double v) { return std::abs(v) <= largest_length; }
+
+}  // namespace
+
+const Key* Entry::find(std::string_view key) const {
+  const auto found = std::ranges::find(keys, key, &Key::name);
+  return found == keys.end() ? nullptr : &*found;
+}
+
+const Entry* Schema::find(const std::vector<Entry>& entries, std::string_view name) {
+  const auto found = std::ranges::find(entries, name, &Entry::name);
+  return found == entries.end() ? nullptr : &*found;
+}
+
+const Schema& schema() {
+  static const Schema all = make_schema();
+  return all;
+}
+
+std::string expectation(const Key& key) {
+  switch (key.type) {
+    case Type::flag:
+      return "true or false";
+    case Type::integer:
+      return key.range.max > 0x1p53
+                 ? fmt::format("a whole number of at least {}", key.range.min)
+                 : fmt::format("a whole number from {:.0f} to {:.0f}", key.range.min, key.range.max);
+    case Type::number:
+      return number_range(key.range);
+    case Type::length:
+      return "a positive length";
+    case Type::word:
+      return fmt::format("\"{}\"", fmt::join(key.words, "\" or \""));
+    case Type::unit:
+      return "the name of a unit";
+    case Type::file:
+      return "the path of a file";
+    case Type::direction:
+      return "a direction [x, y, z]";
+    case Type::position:
+      return "a point [x, y, z]";
+    case Type::extents:
+      return "three positive lengths [a, b, c]";
+    case Type::lengths:
+      return "an array of positive lengths";
+    case Type::shares:
+      return "an array of positive numbers";
+    case Type::distribution:
+      return "a positive length or a table { distribution = … }";
+  }
+  return {};
+}
+
+bool accepts(const Key& key, const Value& value) {
+  const auto number = [&] { return std::get<double>(value); };
+  const auto numbers = [&]() -> const std::vector<double>& { return std::get<std::vector<double>>(value); };
+  const auto text = [&]() -> const std::string& { return std::get<std::string>(value); };
+  switch (key.type) {
+    case Type::flag:
+      return true;
+    case Type::integer:
+      return key.range.contains(static_cast<double>(std::get<std::int64_t>(value)));
+    case Type::number:
+      return std::isfinite(number()) && key.range.contains(number());
+    case Type::length:
+      return is_length(number());
+    case Type::word:
+      return std::ranges::find(key.words, text()) != key.words.end();
+    case Type::unit:
+      return std::ranges::find(units(), text(), &Unit::name) != units().end();
+    case Type::file:
+      return !text().empty() && text().find('\0') == std::string::npos;
+    case Type::direction: {
+      const auto nonzero = [](double v) { return is_length(std::abs(v)); };
+      return numbers().size() == 3 && std::ranges::all_of(numbers(), is_coordinate) &&
+             std::ranges::any_of(numbers(), nonzero);
+    }
+    case Type::position:
+      return numbers().size() == 3 && std::ranges::all_of(numbers(), is_coordinate);
+    case Type::extents:
+      return numbers().size() == 3 && std::ranges::all_of(numbers(), is_length);
+    case Type::lengths:
+    case Type::shares:
+      return !numbers().empty() && std::ranges::all_of(numbers(), is_length);
+    case Type::distribution:
+      return is_length(number());
+  }
+  return false;
+}
+
+}  // namespace bernal::schema

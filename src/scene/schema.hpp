@@ -1,0 +1,87 @@
+#pragma once
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bernal/scene/scene.hpp"
+
+namespace bernal::schema {
+
+/// What a user may write for a key. Vectors have three components; arrays have at least one.
+enum class Type {
+  flag,          ///< true or false
+  integer,       ///< within Key::range
+  number,        ///< finite, within Key::range
+  length,        ///< positive, in the scene's unit
+  word,          ///< one of Key::words
+  unit,          ///< a name from core/unit.hpp
+  file,          ///< a path, relative to the scene's folder
+  direction,     ///< [x, y, z], not all zero
+  position,      ///< [x, y, z] in the scene's unit
+  extents,       ///< [a, b, c], each a length
+  lengths,       ///< array of lengths
+  shares,        ///< array of positive numbers
+  distribution,  ///< a length, or a table of one of Schema::distributions
+};
+
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool above_min = false;  ///< min itself is excluded
+  bool below_max = false;  ///< max itself is excluded
+
+  bool contains(double v) const {
+    return (above_min ? v > min : v >= min) && (below_max ? v < max : v <= max);
+  }
+};
+
+struct Key {
+  std::string_view name;
+  Type type;
+  std::string_view help;                ///< one line
+  std::optional<Value> otherwise = {};  ///< its value where the scene does not give it
+  bool optional = false;                ///< may be absent and stays so
+  Range range = {};
+  std::vector<std::string_view> words = {};
+};
+
+/// Sets of keys of which exactly one is given, whole; keys of the others stay absent. Where none is given,
+/// the set that needs nothing is meant, if there is one.
+using Choice = std::vector<std::vector<std::string_view>>;
+
+/// A table of the scene: a container, a size distribution, a stage, or one that stands for itself.
+struct Entry {
+  std::string_view name;
+  std::string_view help;
+  std::vector<Key> keys;
+  std::vector<Choice> choices = {};
+  /// What the keys demand of each other; throws Error{bad_scene}. `where` is what errors call the table.
+  void (*rule)(const Spec&, std::string_view where) = nullptr;
+
+  const Key* find(std::string_view key) const;
+};
+
+/// Everything that a scene may say. The reader, its errors, the defaults and the writer all follow this.
+struct Schema {
+  Entry scene;  ///< the keys at the top, before any table
+  Entry spheres;
+  Entry accuracy;
+  std::vector<Entry> containers;
+  std::vector<Entry> distributions;
+  std::vector<Entry> stages;
+  std::vector<std::string_view> protocol;  ///< the stages of a scene that names none
+
+  static const Entry* find(const std::vector<Entry>& entries, std::string_view name);
+};
+const Schema& schema();
+
+/// What a value of this key must be, for people: "a positive length", "a whole number from 1 to 100".
+std::string expectation(const Key&);
+
+/// Whether a value of the right kind is one that the key accepts. Lengths and coordinates beyond 1e±30 are
+/// not: volumes must neither overflow nor vanish.
+bool accepts(const Key&, const Value&);
+
+}  // namespace bernal::schema

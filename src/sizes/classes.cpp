@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "bernal/sizes/size_distribution.hpp"
+#include "sizes/check.hpp"
+
+namespace bernal {
+namespace {
+
+struct Class {
+  double radius;
+  double share;  ///< of the number; all shares add up to 1
+  double up_to;  ///< share of this class and all smaller ones
+};
+
+class Classes final : public SizeDistribution {
+ public:
+  /// Precondition: ascending radii, shares that add up to 1.
+  explicit Classes(std::vector<Class> classes) : classes_(std::move(classes)) {}
+
+  std::string_view name() const override { return "classes"; }
+
+  double quantile(double p) const override {
+    const auto reaches = [](const Class& c, double value) { return c.up_to < value; };
+    const auto found = std::lower_bound(classes_.begin(), classes_.end(), p, reaches);
+    return found == classes_.end() ? max() : found->radius;
+  }
+
+  double cumulative(double radius) const override {
+    const auto above = [](double value, const Class& c) { return value < c.radius; };
+    const auto found = std::upper_bound(classes_.begin(), classes_.end(), radius, above);
+    return found == classes_.begin() ? 0 : std::prev(found)->up_to;
+  }
+
+  double moment(int k) const override {
+    double sum = 0;
+    for (const Class& c : classes_) sum += c.share * std::pow(c.radius, k);
+    return sum;
+  }
+
+  double min() const override { return classes_.front().radius; }
+  double max() const override { return classes_.back().radius; }
+
+ private:
+  std::vector<Class> classes_;
+};
+
+}  // namespace
+
+std::unique_ptr<SizeDistribution> make_classes(std::vector<double> radii, std::vector<double> shares,
+                                               Basis basis) {
+  if (radii.empty() || radii.size() != shares.size())
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("size classes need as many shares as radii, at least one; got {} and {}",
+                            shares.size(), radii.size()));
+  std::vector<Class> classes;
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    require_positive("the radius of a size class", radii[i]);
+    require_positive("the share of a size class", shares[i]);
+    classes.push_back({radii[i], shares[i], 0});
+  }
+  std::ranges::sort(classes, {}, &Class::radius);
+  const auto same = std::ranges::adjacent_find(classes, {}, &Class::radius);
+  if (same != classes.end())
+    throw Error(ErrorCode::bad_argument, fmt::format("two size classes have the radius {}", same->radius));
+
+  // As many spheres as volume over volume of one; relative to the smallest, so that nothing overflows.
+  if (basis == Basis::volume)
+    for (Class& c : classes) c.share *= std::pow(classes.front().radius / c.radius, 3);
+  const double total = std::transform_reduce(classes.begin(), classes.end(), 0.0, std::plus{},
+                                             [](const Class& c) { return c.share; });
+  double up_to = 0;
+  for (Class& c : classes) {
+    c.share /= total;
+    c.up_to = up_to += c.share;
+  }
+  classes.back().up_to = 1;
+  return std::make_unique<Classes>(std::move(classes));
+}
+
+}  // namespace bernal

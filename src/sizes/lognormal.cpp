@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <boost/math/special_functions/erf.hpp>
+
+#include "bernal/sizes/size_distribution.hpp"
+#include "sizes/check.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Probability that a standard normal variable is below z.
+double normal_below(double z) { return 0.5 * boost::math::erfc(-z / std::numbers::sqrt2); }
+
+/// Probability that it lies in [a, b]; without cancellation in either tail.
+double normal_between(double a, double b) {
+  return a > 0 ? normal_below(-a) - normal_below(-b) : normal_below(b) - normal_below(a);
+}
+
+/// z with normal_below(z) = p.
+double normal_quantile(double p) {
+  if (p <= 0) return -infinity;
+  return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * p);
+}
+
+/// ln r normal about `mu` by number, truncated to z in [alpha, beta] for z = (ln r - mu) / sigma.
+///   <r^k> = e^(k mu + k² sigma²/2) P(alpha - k sigma, beta - k sigma) / P(alpha, beta)
+class Lognormal final : public SizeDistribution {
+ public:
+  Lognormal(double mu, double sigma, double min, double max)
+      : mu_(mu),
+        sigma_(sigma),
+        min_(min),
+        max_(max),
+        alpha_(min > 0 ? (std::log(min) - mu) / sigma : -infinity),
+        beta_(max < infinity ? (std::log(max) - mu) / sigma : infinity),
+        mass_(normal_between(alpha_, beta_)) {}
+
+  /// The fraction of the untruncated distribution that is kept.
+  double mass() const { return mass_; }
+
+  std::string_view name() const override { return "lognormal"; }
+
+  double quantile(double p) const override {
+    if (p <= 0) return min_;
+    if (p >= 1) return max_;
+    // From whichever tail is nearer, where probabilities are small and so precise.
+    const double below = normal_below(alpha_) + p * mass_;
+    const double above = normal_below(-beta_) + (1 - p) * mass_;
+    const double z = below < above ? normal_quantile(below) : -normal_quantile(above);
+    return std::clamp(std::exp(mu_ + sigma_ * z), min_, max_);
+  }
+
+  double cumulative(double radius) const override {
+    if (radius <= min_) return 0;
+    if (radius >= max_) return 1;
+    return normal_between(alpha_, (std::log(radius) - mu_) / sigma_) / mass_;
+  }
+
+  double moment(int k) const override {
+    const double shift = k * sigma_;
+    return std::exp(k * mu_ + 0.5 * shift * shift) * normal_between(alpha_ - shift, beta_ - shift) / mass_;
+  }
+
+  double min() const override { return min_; }
+  double max() const override { return max_; }
+
+ private:
+  double mu_;
+  double sigma_;
+  double min_;
+  double max_;
+  double alpha_;
+  double beta_;
+  double mass_;
+};
+
+}  // namespace
+
+std::unique_ptr<SizeDistribution> make_lognormal(double median, double sigma, Basis basis, double min,
+                                                 double max) {
+  require_positive("the median radius", median);
+  require_positive("sigma", sigma);
+  if (!(min >= 0 && min < max))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("the radii are cut to [{}, {}], which is no interval", min, max));
+  // A volume distribution weighs the number density with r³, which keeps sigma and moves the median.
+  const double mu = std::log(median) - (basis == Basis::volume ? 3 * sigma * sigma : 0);
+  auto lognormal = std::make_unique<Lognormal>(mu, sigma, min, max);
+  if (!(lognormal->mass() > 0))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("no radius of this lognormal distribution lies in [{}, {}]", min, max));
+  return lognormal;
+}
+
+std::unique_ptr<SizeDistribution> make_lognormal_of_means(double r43, double r32, double min, double max) {
+  require_positive("the volume-weighted mean radius", r43);
+  require_positive("the surface-weighted mean radius", r32);
+  if (r43 <= r32)
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("the volume-weighted mean {} must exceed the surface-weighted mean {}", r43, r32));
+  const double sigma_squared = std::log(r43 / r32);
+  return make_lognormal(r32 * std::exp(-2.5 * sigma_squared), std::sqrt(sigma_squared), Basis::number, min,
+                        max);
+}
+
+}  // namespace bernal
