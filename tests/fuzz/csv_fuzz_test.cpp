@@ -55,6 +55,7 @@ bool is_a_packing(const testing::Folder& folder, const std::string& text) {
       EXPECT_TRUE(read.spheres.center(i).allFinite());
       EXPECT_TRUE(std::isfinite(read.spheres.r[i]) && read.spheres.r[i] > 0);
     }
+    if (!write_again) return true;
     std::filesystem::remove(file);
     OutputFile again(file);
     write_csv(again, read.spheres, "mm");
@@ -73,12 +74,12 @@ TEST(FuzzCsv, EveryMutationIsAPackingOrAnError) {
   const std::string valid =
       "# unit: mm\nx,y,z,r\n0.1,-2.5,1e-07,0.5\n1e+300,0,-0,5e-324\n3,4,5,6.25\n-7.125,8,9.5,10\n";
   const testing::Folder folder;
-  ASSERT_TRUE(is_a_packing(folder, valid));
+  ASSERT_TRUE(is_a_packing(folder, valid, true));
   constexpr int mutations = 3000;
   int accepted = 0;
   for (int i = 0; i < mutations; ++i) {
     Random random(1, stream(Stream::test, static_cast<std::uint64_t>(i)));
-    accepted += is_a_packing(folder, mutated(valid, random));
+    accepted += is_a_packing(folder, mutated(valid, random), i % 50 == 0);
   }
   // The mutations must reach both sides of the line, or they test nothing.
   EXPECT_GT(accepted, mutations / 50);
