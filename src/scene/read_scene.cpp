@@ -245,7 +245,7 @@ class Reader {
       const std::string& word = std::get<std::string>(*value);
       fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node), remedy(word, words));
     }
-    fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key),
+    fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
          written(node));
   }
 

@@ -1,6 +1,7 @@
 #include "scene/schema.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -80,7 +81,7 @@ Schema make_schema() {
                           .type = Type::integer,
                           .help = "one seed gives one packing, bit for bit",
                           .otherwise = 1,
-                          .range = {0, 0x1p63, false, true}}}},
+                          .range = {0, 0x1p63}}}},
 
       .spheres = {.name = "spheres",
                   .help = "how many spheres there are, and how large",
@@ -246,27 +247,27 @@ std::string number_range(const Range& range) {
   return "a finite number";
 }
 
+/// Whether a number is one that only its size keeps from being a length or a coordinate.
+bool is_absurd(double v) {
+  return std::isfinite(v) && v != 0 && (std::abs(v) < smallest_length || std::abs(v) > largest_length);
+}
+
+bool is_absurd(const Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) return is_absurd(*number);
+  const auto* numbers = std::get_if<std::vector<double>>(&value);
+  return numbers && std::ranges::any_of(*numbers, [](double v) { return is_absurd(v); });
+}
+
 bool is_length(double v) { return v >= smallest_length && v <= largest_length; }
 bool is_coordinate(double v) { return std::abs(v) <= largest_length; }
 
-}  // namespace
-
-const Key* Entry::find(std::string_view key) const {
-  const auto found = std::ranges::find(keys, key, &Key::name);
-  return found == keys.end() ? nullptr : &*found;
+bool has_length(Type type) {
+  constexpr std::array types = {Type::length,  Type::direction, Type::position,    Type::extents,
+                                Type::lengths, Type::shares,    Type::distribution};
+  return std::ranges::find(types, type) != types.end();
 }
 
-const Entry* Schema::find(const std::vector<Entry>& entries, std::string_view name) {
-  const auto found = std::ranges::find(entries, name, &Entry::name);
-  return found == entries.end() ? nullptr : &*found;
-}
-
-const Schema& schema() {
-  static const Schema all = make_schema();
-  return all;
-}
-
-std::string expectation(const Key& key) {
+std::string kind_of_value(const Key& key) {
   switch (key.type) {
     case Type::flag:
       return "true or false";
@@ -298,6 +299,30 @@ std::string expectation(const Key& key) {
       return "a positive length or a table { distribution = … }";
   }
   return {};
+}
+
+}  // namespace
+
+const Key* Entry::find(std::string_view key) const {
+  const auto found = std::ranges::find(keys, key, &Key::name);
+  return found == keys.end() ? nullptr : &*found;
+}
+
+const Entry* Schema::find(const std::vector<Entry>& entries, std::string_view name) {
+  const auto found = std::ranges::find(entries, name, &Entry::name);
+  return found == entries.end() ? nullptr : &*found;
+}
+
+const Schema& schema() {
+  static const Schema all = make_schema();
+  return all;
+}
+
+std::string expectation(const Key& key, const std::optional<Value>& given) {
+  std::string kind = kind_of_value(key);
+  if (given && has_length(key.type) && is_absurd(*given))
+    kind += fmt::format(" from {} to {}", smallest_length, largest_length);
+  return kind;
 }
 
 bool accepts(const Key& key, const Value& value) {
