@@ -1,0 +1,182 @@
+#include "cad/diagnose_mesh.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/orientation.h>
+#include <CGAL/Surface_mesh.h>
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "cad/mesh_topology.hpp"
+#include "cad/self_intersections.hpp"
+
+namespace bernal::cad {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
+
+Bounds<3> bounds_of_vertices(const Mesh& mesh) {
+  Bounds<3> bounds{mesh.vertices.front(), mesh.vertices.front()};
+  for (const Vector<3>& v : mesh.vertices) {
+    bounds.lower = bounds.lower.cwiseMin(v);
+    bounds.upper = bounds.upper.cwiseMax(v);
+  }
+  return bounds;
+}
+
+/// Sum of the signed tetrahedra about the centre of the bounds, where they cancel least.
+double signed_volume(const Mesh& mesh, const Vector<3>& center) {
+  double six_volumes = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vector<3> a = mesh.vertices[t[0]] - center;
+    const Vector<3> b = mesh.vertices[t[1]] - center;
+    const Vector<3> c = mesh.vertices[t[2]] - center;
+    six_volumes += a.dot(b.cross(c));
+  }
+  return six_volumes / 6;
+}
+
+double area_of_mesh(const Mesh& mesh) {
+  double two_areas = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vector<3> ab = mesh.vertices[t[1]] - mesh.vertices[t[0]];
+    const Vector<3> ac = mesh.vertices[t[2]] - mesh.vertices[t[0]];
+    two_areas += ab.cross(ac).norm();
+  }
+  return two_areas / 2;
+}
+
+void turn(Mesh& mesh) {
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+}
+
+/// Turns whole components so that the mesh bounds a volume: outermost ones outwards, those inside them
+/// inwards, and so on. Precondition: closed, consistently oriented, no self-intersections.
+void orient_components(Mesh& mesh) {
+  const MeshTopology topology = topology_of(mesh);
+  SurfaceMesh surface;
+  surface.reserve(static_cast<unsigned>(topology.fans), static_cast<unsigned>(topology.edges),
+                  static_cast<unsigned>(mesh.triangles.size()));
+  std::vector<std::uint32_t> vertex_of_fan(topology.fans);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) vertex_of_fan[topology.fan[t][k]] = mesh.triangles[t][k];
+  for (const std::uint32_t v : vertex_of_fan) {
+    const Vector<3>& p = mesh.vertices[v];
+    surface.add_vertex({p[0], p[1], p[2]});
+  }
+  using Vertex = SurfaceMesh::Vertex_index;
+  for (const auto& fan : topology.fan) surface.add_face(Vertex(fan[0]), Vertex(fan[1]), Vertex(fan[2]));
+
+  CGAL::Polygon_mesh_processing::orient_to_bound_a_volume(surface);
+
+  for (const auto face : surface.faces()) {
+    int k = 0;
+    for (const auto v : CGAL::vertices_around_face(surface.halfedge(face), surface))
+      mesh.triangles[face][k++] = vertex_of_fan[v];
+  }
+}
+
+bool same_orientation(std::array<std::uint32_t, 3> s, const std::array<std::uint32_t, 3>& t) {
+  for (int turns = 0; turns < 3; ++turns) {
+    if (s == t) return true;
+    std::rotate(s.begin(), s.begin() + 1, s.end());
+  }
+  return false;
+}
+
+/// How many of the triangles run against those of `reference`, which are the same otherwise.
+std::size_t count_turned(const Mesh& mesh, const Mesh& reference) {
+  std::size_t turned = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    turned += !same_orientation(mesh.triangles[t], reference.triangles[t]);
+  return turned;
+}
+
+/// Orients the mesh outwards; fills `volume`, `orientation` and what goes with them.
+/// Precondition: closed, no degenerate triangles, no self-intersections.
+void orient(Mesh& mesh, const MeshTopology& topology, MeshReport& report) {
+  const Mesh original = mesh;
+  if (orient_consistently(mesh, topology) == none) {
+    report.orientation = "mixed";
+    report.problems.push_back("one-sided surface: inside and outside are the same");
+    return;
+  }
+  const Vector<3> center = report.bounds.center();
+  if (report.components > 1) {
+    orient_components(mesh);
+  } else if (signed_volume(mesh, center) < 0) {
+    turn(mesh);
+  }
+  report.volume = signed_volume(mesh, center);
+  if (!(report.volume > 0) || !std::isfinite(report.volume)) {
+    report.volume = 0;
+    report.problems.push_back("it encloses no volume that double precision can hold");
+    return;
+  }
+  const std::size_t turned = count_turned(mesh, original);
+  report.orientation = turned == 0 ? "outward" : turned == report.faces ? "inward" : "mixed";
+  if (turned > 0)
+    report.repairs.push_back(fmt::format("turned {} outward", counted(turned, "face", "faces")));
+}
+
+}  // namespace
+
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+MeshReport diagnose_mesh(Triangles& triangles) {
+  Mesh& mesh = triangles.mesh;
+  MeshReport report;
+  const auto repaired = [&](std::uint64_t n, std::string_view verb, std::string_view one,
+                            std::string_view many) {
+    if (n > 0) report.repairs.push_back(fmt::format("{} {}", verb, counted(n, one, many)));
+  };
+  repaired(triangles.welded, "welded", "equal point", "equal points");
+  repaired(triangles.triangulated, "triangulated", "polygon", "polygons");
+  repaired(triangles.collapsed, "dropped", "face without area", "faces without area");
+  repaired(triangles.repeated, "dropped", "repeated face", "repeated faces");
+  report.duplicate_faces = triangles.repeated;
+
+  report.faces = mesh.triangles.size();
+  report.vertices = mesh.vertices.size();
+  if (mesh.triangles.empty()) {
+    report.orientation = "mixed";
+    report.problems.push_back("no faces with an area");
+    return report;
+  }
+  report.bounds = bounds_of_vertices(mesh);
+  report.area = area_of_mesh(mesh);
+
+  const MeshTopology topology = topology_of(mesh);
+  report.open_edges = topology.open_edges;
+  report.non_manifold_edges = topology.non_manifold_edges;
+  report.non_manifold_vertices = topology.non_manifold_vertices;
+  report.misoriented_edges = topology.misoriented_edges;
+  report.components = topology.components;
+  report.closed = topology.closed();
+  report.degenerate_faces = count_degenerate(mesh);
+  report.self_intersections = count_self_intersections(mesh);
+
+  const auto refuse = [&](std::uint64_t n, std::string_view one, std::string_view many) {
+    if (n > 0) report.problems.push_back(counted(n, one, many));
+  };
+  refuse(report.open_edges, "open edge", "open edges");
+  refuse(report.non_manifold_edges, "edge with more than two faces", "edges with more than two faces");
+  refuse(report.degenerate_faces, "degenerate face (its corners lie on a line)",
+         "degenerate faces (their corners lie on a line)");
+  refuse(report.self_intersections, "self-intersecting face pair", "self-intersecting face pairs");
+  if (report.problems.empty()) orient(mesh, topology, report);
+  if (report.orientation.empty()) report.orientation = report.misoriented_edges == 0 ? "consistent" : "mixed";
+  if (report.usable()) {
+    const auto chi = static_cast<std::int64_t>(topology.fans) - static_cast<std::int64_t>(topology.edges) +
+                     static_cast<std::int64_t>(report.faces);
+    report.genus = static_cast<std::int64_t>(report.components) - chi / 2;
+  }
+  return report;
+}
+
+}  // namespace bernal::cad

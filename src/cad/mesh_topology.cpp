@@ -1,0 +1,151 @@
+#include "cad/mesh_topology.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace bernal::cad {
+namespace {
+
+struct EdgeUse {
+  std::uint32_t low, high;  ///< vertices
+  std::uint32_t triangle;
+  std::uint8_t edge;
+  bool upwards;  ///< runs from low to high
+
+  auto key() const { return std::pair(low, high); }
+  bool operator<(const EdgeUse& other) const {
+    return std::tuple(low, high, triangle, edge) <
+           std::tuple(other.low, other.high, other.triangle, other.edge);
+  }
+};
+
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }
+
+  std::uint32_t root(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// The smaller root stays, so that roots come in order of their first member.
+  void join(std::uint32_t i, std::uint32_t j) {
+    const auto [low, high] = std::minmax({root(i), root(j)});
+    parent_[high] = low;
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+std::vector<EdgeUse> edge_uses(const Mesh& mesh) {
+  std::vector<EdgeUse> uses;
+  uses.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      uses.push_back({std::min(a, b), std::max(a, b), t, k, a < b});
+    }
+  }
+  std::sort(uses.begin(), uses.end());
+  return uses;
+}
+
+}  // namespace
+
+MeshTopology topology_of(const Mesh& mesh) {
+  const std::size_t count = mesh.triangles.size();
+  MeshTopology result;
+  result.neighbor.assign(count, {none, none, none});
+  result.component.resize(count);
+  result.fan.resize(count);
+  UnionFind pieces(count), corners(3 * count);
+
+  const std::vector<EdgeUse> uses = edge_uses(mesh);
+  for (auto first = uses.begin(); first != uses.end();) {
+    const auto last =
+        std::find_if(first, uses.end(), [&](const EdgeUse& u) { return u.key() != first->key(); });
+    ++result.edges;
+    if (last - first == 1) {
+      ++result.open_edges;
+    } else if (last - first > 2) {
+      ++result.non_manifold_edges;
+    } else {
+      const EdgeUse &u = first[0], &v = first[1];
+      result.misoriented_edges += u.upwards == v.upwards;
+      result.neighbor[u.triangle][u.edge] = v.triangle;
+      result.neighbor[v.triangle][v.edge] = u.triangle;
+      pieces.join(u.triangle, v.triangle);
+      const auto corner = [](const EdgeUse& use, bool at_low) {
+        return 3 * use.triangle + (use.edge + (use.upwards == at_low ? 0U : 1U)) % 3;
+      };
+      corners.join(corner(u, true), corner(v, true));
+      corners.join(corner(u, false), corner(v, false));
+    }
+    first = last;
+  }
+
+  std::vector<std::uint32_t> number(3 * count, none);
+  std::vector<std::uint32_t> fans_at(mesh.vertices.size(), 0);
+  for (std::uint32_t i = 0; i < 3 * count; ++i) {
+    const std::uint32_t root = corners.root(i);
+    if (root == i) {
+      number[i] = static_cast<std::uint32_t>(result.fans++);
+      ++fans_at[mesh.triangles[i / 3][i % 3]];
+    }
+    result.fan[i / 3][i % 3] = number[root];
+  }
+  result.non_manifold_vertices =
+      static_cast<std::uint64_t>(std::count_if(fans_at.begin(), fans_at.end(), [](auto n) { return n > 1; }));
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const std::uint32_t root = pieces.root(t);
+    result.component[t] = root == t ? result.components++ : result.component[root];
+  }
+  return result;
+}
+
+std::uint32_t orient_consistently(Mesh& mesh, const MeshTopology& topology) {
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  const auto agree = [&](std::uint32_t t, int k, std::uint32_t other) {
+    const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+    const auto& o = mesh.triangles[other];
+    for (int j = 0; j < 3; ++j)
+      if (o[j] == b && o[(j + 1) % 3] == a) return true;
+    return false;
+  };
+
+  enum : std::uint8_t { unseen, kept, turned };
+  std::vector<std::uint8_t> state(count, unseen);
+  std::vector<std::uint32_t> piece;
+  std::uint32_t total = 0;
+  for (std::uint32_t seed = 0; seed < count; ++seed) {
+    if (state[seed] != unseen) continue;
+    state[seed] = kept;
+    piece.assign(1, seed);
+    std::uint32_t turns = 0;
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      const std::uint32_t t = piece[i];
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t other = topology.neighbor[t][k];
+        if (other == none) continue;
+        const std::uint8_t wanted = agree(t, k, other) == (state[t] == kept) ? kept : turned;
+        if (state[other] == unseen) {
+          state[other] = wanted;
+          turns += wanted == turned;
+          piece.push_back(other);
+        } else if (state[other] != wanted) {
+          return none;
+        }
+      }
+    }
+    if (2 * turns > piece.size()) {
+      for (const std::uint32_t t : piece) state[t] = state[t] == kept ? turned : kept;
+      turns = static_cast<std::uint32_t>(piece.size()) - turns;
+    }
+    total += turns;
+  }
+  for (std::uint32_t t = 0; t < count; ++t)
+    if (state[t] == turned) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  return total;
+}
+
+}  // namespace bernal::cad

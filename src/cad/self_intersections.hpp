@@ -1,0 +1,15 @@
+#pragma once
+#include <cstdint>
+
+#include "bernal/domain/shape.hpp"
+
+namespace bernal::cad {
+
+/// Triangles whose corners lie exactly on a line; predicates are exact.
+std::uint64_t count_degenerate(const Mesh& mesh);
+
+/// Pairs of triangles that meet in more than the vertices and edges that they share by index; predicates are
+/// exact, degenerate triangles are left out. Cost: O(T log² T) and the pairs whose boxes overlap.
+std::uint64_t count_self_intersections(const Mesh& mesh);
+
+}  // namespace bernal::cad

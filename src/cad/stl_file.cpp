@@ -1,0 +1,131 @@
+#include "cad/stl_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "bernal/core/error.hpp"
+
+namespace bernal::cad {
+namespace {
+
+constexpr std::size_t binary_header = 84;
+constexpr std::size_t binary_triangle = 50;
+
+/// Walks through the words of a lower-case text STL and stops at the first that does not belong.
+class StlGrammar {
+ public:
+  StlGrammar(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
+
+  void check() {
+    for (std::string_view word = next(); !word.empty(); word = next()) {
+      if (word != "solid") fail("\"solid\"", word);
+      skip_line();
+      check_solid();
+    }
+  }
+
+ private:
+  void check_solid() {
+    for (;;) {
+      const std::string_view word = next();
+      if (word == "endsolid") return skip_line();
+      if (word != "facet") fail("\"facet\" or \"endsolid\"", word);
+      expect("normal");
+      for (int k = 0; k < 3; ++k)
+        if (next().empty()) fail("a number", {});
+      expect("outer");
+      expect("loop");
+      for (int k = 0; k < 3; ++k) {
+        expect("vertex");
+        for (int axis = 0; axis < 3; ++axis) expect_number();
+      }
+      expect("endloop");
+      expect("endfacet");
+    }
+  }
+
+  std::string_view next() {
+    const auto is_space = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
+    while (at_ < text_.size() && is_space(text_[at_])) line_ += text_[at_++] == '\n';
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && !is_space(text_[at_])) ++at_;
+    return text_.substr(begin, at_ - begin);
+  }
+
+  void skip_line() { at_ = std::min(text_.find('\n', at_), text_.size()); }
+
+  void expect(std::string_view wanted) {
+    const std::string_view word = next();
+    if (word != wanted) fail(fmt::format("\"{}\"", wanted), word);
+  }
+
+  void expect_number() {
+    std::string_view word = next();
+    const std::string_view whole = word;
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool parsed = error == std::errc() || error == std::errc::result_out_of_range;
+    if (!parsed || end != word.data() + word.size() || !std::isfinite(value)) fail("a finite number", whole);
+  }
+
+  [[noreturn]] void fail(std::string_view wanted, std::string_view found) {
+    const std::string what = found.empty() ? "the end of the file" : fmt::format("\"{:.40}\"", found);
+    throw Error(ErrorCode::bad_mesh,
+                fmt::format("malformed text STL: expected {}, found {}; export the file again", wanted, what),
+                {file_, line_, 0});
+  }
+
+  std::string_view text_;
+  std::string file_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+};
+
+char lower_without_tab(unsigned char c) { return c == '\t' ? ' ' : static_cast<char>(std::tolower(c)); }
+
+bool begins_as_text(std::string_view content) {
+  const std::string_view head = content.substr(0, 1024);
+  const std::size_t first = head.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos || head.find('\0') != std::string_view::npos) return false;
+  std::string word(head.substr(first, 5));
+  std::transform(word.begin(), word.end(), word.begin(), lower_without_tab);
+  return word == "solid";
+}
+
+}  // namespace
+
+StlFile read_stl_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  StlFile stl{false, std::string(std::istreambuf_iterator<char>(in), {})};
+
+  std::uint32_t triangles = 0;
+  const std::size_t size = stl.content.size();
+  if (size >= binary_header) std::memcpy(&triangles, stl.content.data() + binary_header - 4, 4);
+  const std::size_t promised = binary_header + binary_triangle * std::size_t{triangles};
+  stl.binary = size >= binary_header && size == promised;
+  if (stl.binary) return stl;
+
+  if (!begins_as_text(stl.content)) {
+    const std::string message =
+        size < binary_header
+            ? fmt::format("not an STL file: {} bytes, neither text nor a binary header", size)
+            : fmt::format(
+                  "{} binary STL: its header promises {} triangles, so {} bytes, but it has {}; "
+                  "export the file again",
+                  size < promised ? "truncated" : "malformed", triangles, promised, size);
+    throw Error(ErrorCode::bad_mesh, message, {file.string()});
+  }
+  std::transform(stl.content.begin(), stl.content.end(), stl.content.begin(), lower_without_tab);
+  StlGrammar(stl.content, file.string()).check();
+  return stl;
+}
+
+}  // namespace bernal::cad

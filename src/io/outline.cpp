@@ -1,0 +1,172 @@
+#include "io/outline.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace bernal {
+namespace {
+
+constexpr std::uint32_t rim_points = 180;
+constexpr std::size_t most_edges = 20'000;  // beyond, the shortest add bytes and no information
+constexpr double bend = 30 * std::numbers::pi / 180;
+
+struct Edge {
+  std::uint32_t from, to;  // from < to
+  std::uint32_t triangle;
+};
+
+/// Two unit vectors that complete `axis` to an orthogonal frame.
+std::array<Vector<3>, 2> across(const Vector<3>& axis) {
+  const Vector<3> u = axis.unitOrthogonal();
+  return {u, axis.normalized().cross(u)};
+}
+
+std::vector<Vector<3>> ring(const Vector<3>& center, const Vector<3>& axis, double radius) {
+  const auto [u, v] = across(axis);
+  std::vector<Vector<3>> points;
+  for (std::uint32_t k = 0; k < rim_points; ++k) {
+    const double angle = 2 * std::numbers::pi * k / rim_points;
+    points.push_back(center + radius * (std::cos(angle) * u + std::sin(angle) * v));
+  }
+  return points;
+}
+
+Mesh drawable(const BoxShape& box) {
+  Mesh mesh;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector<3> side(corner & 1, corner >> 1 & 1, corner >> 2);
+    mesh.vertices.push_back(box.corner + side.cwiseProduct(box.size));
+  }
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+Mesh drawable(const CylinderShape& cylinder) {
+  const Vector<3> axis = cylinder.axis.normalized();
+  const Vector<3> top = cylinder.base + cylinder.height * axis;
+  Mesh mesh;
+  mesh.vertices = ring(cylinder.base, axis, cylinder.radius);
+  const std::vector<Vector<3>> upper = ring(top, axis, cylinder.radius);
+  mesh.vertices.insert(mesh.vertices.end(), upper.begin(), upper.end());
+  mesh.vertices.push_back(cylinder.base);
+  mesh.vertices.push_back(top);
+  for (std::uint32_t i = 0; i < rim_points; ++i) {
+    const std::uint32_t j = (i + 1) % rim_points, n = rim_points;
+    mesh.triangles.push_back({i, j, n + i});
+    mesh.triangles.push_back({j, n + j, n + i});
+    mesh.triangles.push_back({2 * n, j, i});
+    mesh.triangles.push_back({2 * n + 1, n + i, n + j});
+  }
+  return mesh;
+}
+
+Mesh drawable(const SphereShape& sphere) {
+  Mesh mesh;
+  mesh.vertices = ring(sphere.center, View::towards_eye(), sphere.radius);
+  mesh.vertices.push_back(sphere.center + sphere.radius * View::towards_eye());
+  mesh.vertices.push_back(sphere.center - sphere.radius * View::towards_eye());
+  for (std::uint32_t i = 0; i < rim_points; ++i) {
+    const std::uint32_t j = (i + 1) % rim_points;
+    mesh.triangles.push_back({i, j, rim_points});
+    mesh.triangles.push_back({j, i, rim_points + 1});
+  }
+  return mesh;
+}
+
+Mesh drawable(const Mesh& mesh) { return mesh; }
+
+Vector<3> normal_of(const Mesh& mesh, std::uint32_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const Vector<3> n = (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+  return n.normalized();
+}
+
+/// The edges worth drawing, once each.
+std::vector<Edge> marked_edges(const Mesh& mesh) {
+  std::vector<Edge> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), t});
+    }
+  }
+  const auto key = [](const Edge& e) { return std::tie(e.from, e.to, e.triangle); };
+  std::sort(sides.begin(), sides.end(), [&](const Edge& a, const Edge& b) { return key(a) < key(b); });
+
+  std::vector<Edge> marked;
+  for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
+    for (j = i; j < sides.size() && sides[j].from == sides[i].from && sides[j].to == sides[i].to; ++j) {
+    }
+    bool draw = j - i != 2;
+    if (!draw) {
+      const Vector<3> n = normal_of(mesh, sides[i].triangle), m = normal_of(mesh, sides[i + 1].triangle);
+      const bool silhouette = n.dot(View::towards_eye()) > 0 != m.dot(View::towards_eye()) > 0;
+      draw = silhouette || n.dot(m) < std::cos(bend);
+    }
+    if (draw) marked.push_back(sides[i]);
+  }
+  if (marked.size() > most_edges) {
+    const auto length = [&](const Edge& e) {
+      return (mesh.vertices[e.to] - mesh.vertices[e.from]).squaredNorm();
+    };
+    std::nth_element(marked.begin(), marked.begin() + most_edges, marked.end(),
+                     [&](const Edge& a, const Edge& b) { return length(a) > length(b); });
+    marked.resize(most_edges);
+  }
+  return marked;
+}
+
+/// Cuts one edge where it goes behind the surface or comes out.
+void split_where_hidden(const CanvasPoint& a, const CanvasPoint& b, const DepthBuffer& surface, double bias,
+                        std::vector<Stroke>& strokes) {
+  const double length = std::hypot(b.x - a.x, b.y - a.y);
+  const int steps = std::max(1, static_cast<int>(std::ceil(length / 2)));
+  const auto at = [&](double t) {
+    return CanvasPoint{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.depth + t * (b.depth - a.depth)};
+  };
+  CanvasPoint start = a;
+  bool hidden = false;
+  for (int k = 0; k <= steps; ++k) {
+    const CanvasPoint middle = at((std::min(k, steps - 1) + 0.5) / steps);
+    const bool now = middle.depth + bias < surface.farthest_depth(middle.x, middle.y);
+    if (k == 0) hidden = now;
+    if (now != hidden || k == steps) {
+      const CanvasPoint end = at(static_cast<double>(k) / steps);
+      strokes.push_back({start, end, hidden});
+      start = end;
+      hidden = now;
+    }
+  }
+}
+
+}  // namespace
+
+Mesh drawable_mesh(const Shape& container) {
+  return std::visit([](const auto& shape) { return drawable(shape); }, container);
+}
+
+std::vector<Stroke> outline_of(const Mesh& mesh, const View& view) {
+  std::vector<CanvasPoint> points;
+  points.reserve(mesh.vertices.size());
+  for (const Vector<3>& vertex : mesh.vertices) points.push_back(view(vertex));
+
+  DepthBuffer surface(view.width(), view.height(), 1);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    surface.draw_triangle(points[a], points[b], points[c], t);
+  }
+  // An edge lies on the surface that must not hide it; the raster knows that surface to about a pixel.
+  const double bias = 3;
+  std::vector<Stroke> strokes;
+  for (const Edge& edge : marked_edges(mesh)) {
+    split_where_hidden(points[edge.from], points[edge.to], surface, bias, strokes);
+  }
+  return strokes;
+}
+
+}  // namespace bernal

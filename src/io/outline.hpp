@@ -1,0 +1,24 @@
+#pragma once
+#include <vector>
+
+#include "bernal/domain/shape.hpp"
+#include "io/view.hpp"
+
+namespace bernal {
+
+/// The container as triangles that are good enough to draw: exact for a box and a mesh, a fine prism for a
+/// cylinder; a sphere becomes two cones base to base, seen along their axis, whose rim is its outline.
+Mesh drawable_mesh(const Shape& container);
+
+/// A straight piece of the outline, wholly visible or wholly hidden behind the container's own surface.
+struct Stroke {
+  CanvasPoint from;
+  CanvasPoint to;
+  bool hidden = false;
+};
+
+/// The lines that let a container be recognised: edges that bend by more than 30 degrees, open edges and the
+/// silhouette. Cost: O(T log T) for T triangles.
+std::vector<Stroke> outline_of(const Mesh& mesh, const View& view);
+
+}  // namespace bernal

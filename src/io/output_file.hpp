@@ -1,0 +1,32 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace bernal {
+
+/// A new file that is written front to back, every write checked. Nothing is certain before `close` has
+/// returned: a full disk may show only there. Throws Error{cannot_write} with the path and the system's
+/// words.
+class OutputFile {
+ public:
+  /// Precondition: the file does not exist.
+  explicit OutputFile(std::filesystem::path path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void append(std::string_view bytes);
+  /// Hands everything to the disk, so that a rename that follows can never reveal a file without its bytes.
+  void close();
+
+ private:
+  void flush();
+  [[noreturn]] void fail(const char* what) const;
+
+  std::filesystem::path path_;
+  std::string buffer_;
+  int descriptor_ = -1;
+};
+
+}  // namespace bernal

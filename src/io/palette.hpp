@@ -1,0 +1,42 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace bernal {
+
+/// A colour, each channel in [0, 1], gamma-encoded (sRGB).
+struct Colour {
+  double red = 0, green = 0, blue = 0;
+
+  std::string text() const {
+    const auto channel = [](double v) {
+      return static_cast<int>(std::lround(255 * std::clamp(v, 0.0, 1.0)));
+    };
+    return fmt::format("#{:02x}{:02x}{:02x}", channel(red), channel(green), channel(blue));
+  }
+};
+
+inline Colour mix(const Colour& a, const Colour& b, double share_of_b) {
+  const auto channel = [&](double u, double v) { return u + share_of_b * (v - u); };
+  return {channel(a.red, b.red), channel(a.green, b.green), channel(a.blue, b.blue)};
+}
+
+/// Colours of sphere sizes, small to large: lightness falls steadily from warm to cool, so that the order can
+/// be read without colour vision too.
+inline Colour size_colour(double t) {
+  constexpr std::array<Colour, 6> stops = {{{0.992, 0.871, 0.612},
+                                            {0.973, 0.659, 0.451},
+                                            {0.918, 0.431, 0.435},
+                                            {0.733, 0.302, 0.529},
+                                            {0.478, 0.255, 0.545},
+                                            {0.231, 0.235, 0.471}}};
+  const double scaled = std::clamp(t, 0.0, 1.0) * (stops.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(scaled), stops.size() - 2);
+  return mix(stops[k], stops[k + 1], scaled - static_cast<double>(k));
+}
+
+}  // namespace bernal

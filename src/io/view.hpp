@@ -1,0 +1,67 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bernal/core/vector.hpp"
+
+namespace bernal {
+
+/// A point as the picture sees it: x to the right, y down, depth towards the eye, all in canvas units.
+struct CanvasPoint {
+  double x = 0;
+  double y = 0;
+  double depth = 0;
+};
+
+/// An orthographic three-quarter view with +z up, scaled so that what it has to show fills the canvas.
+class View {
+ public:
+  /// `corners` are the points that must lie on the canvas; `margin` is left free around them.
+  View(std::span<const Vector<3>> corners, double canvas_size, double margin);
+
+  CanvasPoint operator()(const Vector<3>& p) const;
+  double scale() const { return scale_; }  ///< canvas units per unit of length
+  double width() const { return width_; }
+  double height() const { return height_; }
+
+  /// Unit vector from the scene to the eye.
+  static const Vector<3>& towards_eye();
+
+ private:
+  Vector<3> origin_ = Vector<3>::Zero();
+  double scale_ = 1;
+  double x_ = 0, y_ = 0;
+  double width_ = 0, height_ = 0;
+};
+
+/// What is nearest to the eye at each point of a raster over the canvas.
+class DepthBuffer {
+ public:
+  static constexpr std::uint32_t nothing = UINT32_MAX;
+
+  /// `pitch` is the distance of raster points in canvas units.
+  DepthBuffer(double width, double height, double pitch);
+
+  void draw_ball(const CanvasPoint& center, double radius, std::uint32_t id);
+  void draw_triangle(const CanvasPoint& a, const CanvasPoint& b, const CanvasPoint& c, std::uint32_t id);
+
+  /// Depth at the nearest raster point; minus infinity where nothing was drawn.
+  double depth(double x, double y) const;
+  /// The farthest depth over the 3 x 3 raster points around (x, y).
+  double farthest_depth(double x, double y) const;
+  std::span<const std::uint32_t> ids() const { return ids_; }
+
+ private:
+  template <class DepthAt>
+  void draw(double x0, double x1, double y0, double y1, std::uint32_t id, const DepthAt& depth_at);
+  std::int64_t index(double x, double y) const;
+
+  double pitch_;
+  std::int64_t columns_, rows_;
+  std::vector<float> depths_;
+  std::vector<std::uint32_t> ids_;
+};
+
+}  // namespace bernal

@@ -1,0 +1,271 @@
+#include "stages/bed.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "bernal/core/tolerance.hpp"
+#include "kernels/first_contact.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr std::size_t block_size = 1024;
+
+template <class T>
+void permute(std::vector<T>& values, const std::vector<Bed::Id>& order) {
+  std::vector<T> sorted;
+  sorted.reserve(values.size());
+  for (const Bed::Id i : order) sorted.push_back(values[i]);
+  values.swap(sorted);
+}
+
+/// Concatenates one list a sphere, built in blocks, into `all`, with `first[i]` the start of sphere i's.
+template <class T>
+void concatenate(const std::vector<std::vector<T>>& blocks, std::vector<std::uint32_t>& first,
+                 std::vector<T>& all) {
+  // first[i + 1] holds the length of list i.
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  all.resize(first.back());
+  std::size_t at = 0;
+  for (const auto& block : blocks) {
+    std::copy(block.begin(), block.end(), all.begin() + static_cast<std::ptrdiff_t>(at));
+    at += block.size();
+  }
+}
+
+}  // namespace
+
+Bed::Bed(const Container& container, double r_min, double r_max, std::size_t expected, EffectLog& effects)
+    : container_(container),
+      effects_(effects),
+      skin_(tolerance::skin(r_min, container.resolution())),
+      grid_(container.bounds(), r_min, r_max, expected) {}
+
+double Bed::potential(const Vector<3>& direction) const {
+  double sum = 0, weight = 0;
+  for (const Ball& b : balls_) {
+    const double mass = b.r * b.r * b.r;
+    sum -= mass * direction.dot(b.center);
+    weight += mass;
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+bool Bed::fits(const Vector<3>& c, double r) const {
+  const bool overlaps = grid_.any_near(c, r + skin_, [&](Id j) {
+    const double s = r + balls_[j].r + skin_;
+    return (balls_[j].center - c).squaredNorm() < s * s;
+  });
+  return !overlaps && container_.contains(c, r + skin_);
+}
+
+double Bed::gap_to_neighbors(const Vector<3>& c, double enough, double limit) const {
+  double gap = limit;
+  grid_.any_near(c, limit + skin_, [&](Id j) {
+    const double s = gap + balls_[j].r + skin_;
+    const double d2 = (balls_[j].center - c).squaredNorm();
+    if (d2 < s * s) gap = std::sqrt(d2) - balls_[j].r - skin_;
+    return gap < enough;
+  });
+  return gap;
+}
+
+void Bed::insert(const Vector<3>& c, double r, std::uint32_t tag) {
+  grid_.insert(static_cast<Id>(balls_.size()), c, r);
+  balls_.push_back({c, r});
+  tags_.push_back(tag);
+  far_from_wall_.push_back(0);
+  far_from_wall_at_.push_back(c);
+  sum_of_radii_ += r;
+  sum_of_volumes_ += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+}
+
+void Bed::remove_tags_from(std::uint32_t first) {
+  std::vector<Id> kept;
+  for (Id i = 0; i < balls_.size(); ++i) {
+    if (tags_[i] < first) kept.push_back(i);
+  }
+  reorder(kept);
+}
+
+void Bed::sort_by_height(const Vector<3>& direction) {
+  if (balls_.empty()) return;
+  // Two axes across the direction; within a layer, rows, so that neighbours lie close in memory.
+  const Vector<3> across = direction.unitOrthogonal();
+  const Vector<3> along_row = direction.cross(across);
+  const double layer = 2 * mean_radius();
+  struct Key {
+    double height, row, place;
+    Id id;
+  };
+  std::vector<Key> keys;
+  keys.reserve(balls_.size());
+  for (Id i = 0; i < balls_.size(); ++i) {
+    const Vector<3>& c = balls_[i].center;
+    keys.push_back({std::floor(-direction.dot(c) / layer), std::floor(across.dot(c) / layer), along_row.dot(c), i});
+  }
+  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+    return std::tie(a.height, a.row, a.place, a.id) < std::tie(b.height, b.row, b.place, b.id);
+  });
+  std::vector<Id> order;
+  order.reserve(keys.size());
+  for (const Key& k : keys) order.push_back(k.id);
+  reorder(order);
+}
+
+void Bed::reorder(const std::vector<Id>& order) {
+  permute(balls_, order);
+  permute(tags_, order);
+  permute(far_from_wall_, order);
+  permute(far_from_wall_at_, order);
+  grid_.clear();
+  sum_of_radii_ = sum_of_volumes_ = 0;
+  for (Id i = 0; i < balls_.size(); ++i) {
+    const double r = balls_[i].r;
+    grid_.insert(i, balls_[i].center, r);
+    sum_of_radii_ += r;
+    sum_of_volumes_ += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  }
+}
+
+void Bed::update_grid() {
+  for (Id i = 0; i < balls_.size(); ++i) grid_.move(i, balls_[i].center);
+}
+
+void Bed::enclose(double buffer) {
+  EffectTimer timer(effects_, "neighbour lists");
+  update_grid();
+  buffer_ = buffer;
+  const std::size_t n = balls_.size();
+  const std::size_t blocks = (n + block_size - 1) / block_size;
+  std::vector<std::vector<Id>> near_spheres(blocks);
+  std::vector<std::vector<NearFacet>> near_facets(blocks);
+  std::vector<std::uint64_t> wall_queries(blocks, 0);
+  box_centers_.resize(n);
+  first_neighbor_.assign(n + 1, 0);
+  first_facet_.assign(n + 1, 0);
+
+  oneapi::tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+    std::vector<NearFacet> facets;
+    const auto end = static_cast<Id>(std::min(n, (block + 1) * block_size));
+    for (auto i = static_cast<Id>(block * block_size); i < end; ++i) {
+      const Ball& ball = balls_[i];
+      box_centers_[i] = ball.center;
+
+      const double boxes = ball.r + 2 * buffer + 2 * skin_;
+      const std::size_t before = near_spheres[block].size();
+      grid_.for_each_near(ball.center, boxes, [&](Id j) {
+        const Ball& other = balls_[j];
+        const bool boxes_meet = (other.center - ball.center).cwiseAbs().maxCoeff() <= boxes + other.r;
+        if (j != i && boxes_meet) near_spheres[block].push_back(j);
+      });
+      first_neighbor_[i + 1] = static_cast<std::uint32_t>(near_spheres[block].size() - before);
+
+      // The clearance is 1-Lipschitz: a wall that was far when last asked is still far after a small move.
+      const double reach = ball.r + std::numbers::sqrt3 * buffer + 2 * skin_;
+      if (far_from_wall_[i] - (ball.center - far_from_wall_at_[i]).norm() > reach) continue;
+      const double wide_reach = reach + 2 * buffer;
+      facets.clear();
+      container_.facets_near(ball.center, wide_reach, facets);
+      ++wall_queries[block];
+      far_from_wall_[i] = facets.empty() ? wide_reach : facets.front().distance;
+      far_from_wall_at_[i] = ball.center;
+      for (const NearFacet& f : facets) {
+        if (f.distance > reach) break;
+        near_facets[block].push_back(f);
+        ++first_facet_[i + 1];
+      }
+    }
+  });
+  concatenate(near_spheres, first_neighbor_, neighbors_);
+  concatenate(near_facets, first_facet_, facets_);
+  effects_["walls"].calls += std::accumulate(wall_queries.begin(), wall_queries.end(), std::uint64_t{0});
+}
+
+FreePath Bed::free_path(Id i, const Vector<3>& u, double limit) const {
+  const Ball& ball = balls_[i];
+  FreePath path{limit};
+  for (int k = 0; k < 3; ++k) {
+    const double off = ball.center[k] - box_centers_[i][k];
+    const double room = u[k] > 0 ? (buffer_ - off) : (buffer_ + off);
+    if (room < path.length * std::abs(u[k])) {
+      path.length = std::max(0.0, room / std::abs(u[k]));
+      path.end = FreePath::End::box;
+    }
+  }
+
+  Id blocker = CellGrid<3>::none;
+  for (const Id j : neighbors(i)) {
+    const double free =
+        first_contact<3>(ball.center, u, path.length, balls_[j].center, ball.r + balls_[j].r, skin_);
+    if (free < path.length) {
+      path.length = free;
+      blocker = j;
+    }
+  }
+  if (blocker != CellGrid<3>::none) {
+    path.end = FreePath::End::neighbor;
+    path.normal = (ball.center + path.length * u - balls_[blocker].center).normalized();
+  }
+  return first_facet_[i] == first_facet_[i + 1] ? path : wall_path(i, u, path);
+}
+
+FreePath Bed::wall_path(Id i, const Vector<3>& u, FreePath path) const {
+  const Ball& ball = balls_[i];
+  const double moved = (ball.center - box_centers_[i]).norm();
+  const NearFacet* blocker = nullptr;
+  for (std::uint32_t k = first_facet_[i]; k < first_facet_[i + 1]; ++k) {
+    const NearFacet& near = facets_[k];
+    // Facets stand in the order of their distance from the box's centre: the rest is out of reach.
+    if (near.distance - moved - path.length > ball.r + 2 * skin_) break;
+    const double free = first_contact(near.facet, ball.center, ball.r, u, path.length, skin_);
+    if (free < path.length) {
+      path.length = free;
+      blocker = &near;
+    }
+  }
+  if (blocker != nullptr) {
+    const Vector<3> end = ball.center + path.length * u;
+    path.end = FreePath::End::wall;
+    path.normal = (end - closest_point(blocker->facet, end)).normalized();
+  }
+  return path;
+}
+
+std::size_t Bed::contacts(Id i, const Vector<3>& u, double gap, std::span<Vector<3>> normals) const {
+  const Ball& ball = balls_[i];
+  std::size_t count = 0;
+  for (const Id j : neighbors(i)) {
+    const Vector<3> from_other = ball.center - balls_[j].center;
+    const double touching = ball.r + balls_[j].r + gap;
+    const double squared = from_other.squaredNorm();
+    if (squared > touching * touching || from_other.dot(u) >= 0) continue;
+    if (count == normals.size()) return count;
+    normals[count++] = from_other / std::sqrt(squared);
+  }
+  const double moved = (ball.center - box_centers_[i]).norm();
+  for (std::uint32_t k = first_facet_[i]; k < first_facet_[i + 1]; ++k) {
+    if (facets_[k].distance - moved > ball.r + gap) break;
+    const Vector<3> from_wall = ball.center - closest_point(facets_[k].facet, ball.center);
+    const double squared = from_wall.squaredNorm();
+    if (squared > (ball.r + gap) * (ball.r + gap) || from_wall.dot(u) >= 0) continue;
+    if (count == normals.size()) return count;
+    normals[count++] = from_wall / std::sqrt(squared);
+  }
+  return count;
+}
+
+Spheres<3> Bed::spheres() const {
+  std::vector<Id> order(balls_.size());
+  std::iota(order.begin(), order.end(), Id{0});
+  std::sort(order.begin(), order.end(), [&](Id a, Id b) { return tags_[a] < tags_[b]; });
+  Spheres<3> result;
+  result.reserve(order.size());
+  for (const Id i : order) result.push_back(balls_[i].center, balls_[i].r);
+  return result;
+}
+
+}  // namespace bernal

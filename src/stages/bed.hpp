@@ -1,0 +1,120 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/container.hpp"
+#include "neighbors/cell_grid.hpp"
+#include "stages/effect_log.hpp"
+
+namespace bernal {
+
+/// How far a sphere may move, and what stops it there.
+struct FreePath {
+  enum class End : std::uint8_t { limit, box, neighbor, wall };
+  double length = 0;
+  End end = End::limit;
+  Vector<3> normal = Vector<3>::Zero();  ///< for neighbor and wall: unit, from the obstacle to the sphere
+
+  bool blocked() const { return end == End::neighbor || end == End::wall; }
+};
+
+/// The bed: spheres in their container while they are being packed, in the packer's frame.
+///
+/// Every stage obeys walls and neighbours through the same two calls: `fits` for a sphere that appears,
+/// `free_path` for one that moves. Both keep every gap at or above skin/2 (core/tolerance.hpp), so that
+/// nothing ever overlaps.
+///
+/// Between two calls of `enclose` each sphere may move within its own bounding box, a cube around its place
+/// at the time of the call; neighbours and near walls are those that the boxes allow (Han, Feng & Owen 2005,
+/// section 2.1: the lists of all spheres are built together).
+class Bed {
+ public:
+  using Id = std::uint32_t;
+
+  struct Ball {
+    Vector<3> center;
+    double r;
+  };
+
+  /// Radii to come lie in [r_min, r_max]; `expected` is about how many spheres will come.
+  Bed(const Container& container, double r_min, double r_max, std::size_t expected, EffectLog& effects);
+
+  const Container& container() const { return container_; }
+  std::size_t size() const { return balls_.size(); }
+  const Ball& operator[](Id i) const { return balls_[i]; }
+  double skin() const { return skin_; }
+  double mean_radius() const { return balls_.empty() ? 0 : sum_of_radii_ / static_cast<double>(size()); }
+  double packing_fraction() const { return sum_of_volumes_ / container_.volume(); }
+  /// Mean of the volume-weighted height of the spheres against `direction`: potential energy a volume.
+  double potential(const Vector<3>& direction) const;
+
+  /// Whether a sphere may appear at c: no neighbour and no wall nearer than the skin. O(1) besides the wall.
+  bool fits(const Vector<3>& c, double r) const;
+
+  /// The radius of the largest sphere at c that touches no other, at most `limit`; walls are not asked. Any
+  /// value below `enough` where it is below that.
+  double gap_to_neighbors(const Vector<3>& c, double enough, double limit) const;
+
+  /// Adds a sphere that fits. `tag` is the caller's name for it: its place in the drawn sequence.
+  void insert(const Vector<3>& c, double r, std::uint32_t tag);
+
+  /// Removes all spheres whose tag is `first` or greater.
+  void remove_tags_from(std::uint32_t first);
+
+  /// Puts the spheres in ascending order of height against `direction`, layer by layer, which is the order
+  /// in which sweeps visit them and in which they lie in memory.
+  void sort_by_height(const Vector<3>& direction);
+
+  /// Tells the background grid where the spheres have moved to; `fits` and `gap_to_neighbors` need it after
+  /// spheres have moved.
+  void update_grid();
+
+  /// Gives every sphere a bounding box with `buffer` to move in on each side, and builds the neighbour lists
+  /// and near walls of all spheres together. Parallel; the same lists for any number of threads. O(N).
+  void enclose(double buffer);
+
+  /// How far sphere i may move along the unit vector u, at most `limit`. Precondition: `enclose` was called
+  /// after the last insertion, removal or sort.
+  FreePath free_path(Id i, const Vector<3>& u, double limit) const;
+
+  /// Moves sphere i by a displacement that `free_path` allowed.
+  void advance(Id i, const Vector<3>& displacement) { balls_[i].center += displacement; }
+
+  std::span<const Id> neighbors(Id i) const {
+    return {neighbors_.data() + first_neighbor_[i], first_neighbor_[i + 1] - first_neighbor_[i]};
+  }
+
+  /// Writes into `normals` (unit, from the obstacle to the sphere) the obstacles of sphere i with a gap of at
+  /// most `gap` that oppose a motion along u; at most `normals.size()` of them. Returns how many. A hint at
+  /// which directions are worth a `free_path`; nothing that limits a motion.
+  std::size_t contacts(Id i, const Vector<3>& u, double gap, std::span<Vector<3>> normals) const;
+
+  /// The spheres in the order of their tags.
+  Spheres<3> spheres() const;
+
+ private:
+  void reorder(const std::vector<Id>& order);
+  FreePath wall_path(Id i, const Vector<3>& u, FreePath path) const;
+
+  const Container& container_;
+  EffectLog& effects_;
+  double skin_;
+  std::vector<Ball> balls_;
+  std::vector<std::uint32_t> tags_;
+  CellGrid<3> grid_;
+  double sum_of_radii_ = 0;
+  double sum_of_volumes_ = 0;
+
+  double buffer_ = 0;
+  std::vector<Vector<3>> box_centers_;
+  std::vector<std::uint32_t> first_neighbor_;  // CSR: neighbours of i start here
+  std::vector<Id> neighbors_;
+  std::vector<std::uint32_t> first_facet_;  // CSR: walls near i start here, nearest first
+  std::vector<NearFacet> facets_;
+  std::vector<double> far_from_wall_;  // clearance of the centre is at least this much, less what it moved since
+  std::vector<Vector<3>> far_from_wall_at_;
+};
+
+}  // namespace bernal

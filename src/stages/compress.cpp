@@ -1,0 +1,113 @@
+#include "stages/compress.hpp"
+
+#include "stages/slide.hpp"
+
+namespace bernal {
+namespace {
+
+/// Sweeps along the global direction between two buildings of the lists, at most; fewer once a sweep gains
+/// less than `little` of the first.
+constexpr int global_sweeps = 8;
+constexpr double little = 0.3;
+/// The bed is at rest when an iteration lowers its mean height by less than this, in mean radii. Until then
+/// local directions would only disturb the fall.
+constexpr double at_rest = 0.1;
+/// Sweeps along local directions between two buildings of the lists.
+constexpr int local_sweeps = 10;
+/// A sphere that moves less than this, in radii, rests; one that moves more wakes its neighbours.
+constexpr double resting = 1e-4;
+constexpr double waking = 1e-3;
+
+/// Sweeps along the global direction over the spheres that are awake: those that moved when last visited, or
+/// next to which something moved. A sphere whose surroundings have not changed cannot move.
+class GlobalSweeps {
+ public:
+  explicit GlobalSweeps(Bed& bed, const Vector<3>& direction) : bed_(bed), direction_(direction) { wake_all(); }
+
+  void wake_all() { awake_.assign(bed_.size(), 1); }
+
+  /// Returns the mean fall.
+  void sweep() {
+    for (Bed::Id i = 0; i < bed_.size(); ++i) {
+      if (!awake_[i]) continue;
+      const double moved = slide(bed_, i, direction_, std::numeric_limits<double>::infinity()) / bed_[i].r;
+      awake_[i] = moved > resting;
+      if (moved <= waking) continue;
+      for (const Bed::Id j : bed_.neighbors(i)) awake_[j] = 1;
+    }
+  }
+
+  /// Sweeps until one lowers the potential by little compared with the first.
+  void settle() {
+    double height = bed_.potential(direction_);
+    double first_fall = 0;
+    for (int k = 0; k < global_sweeps; ++k) {
+      sweep();
+      const double now = bed_.potential(direction_);
+      const double fall = height - now;
+      height = now;
+      if (k == 0) first_fall = fall;
+      if (k > 0 && fall < little * first_fall) break;
+    }
+  }
+
+ private:
+  Bed& bed_;
+  Vector<3> direction_;
+  std::vector<char> awake_;
+};
+
+/// The lowest height against `direction` in the container's bounds: where potential energy counts from.
+double floor_of(const Bounds<3>& bounds, const Vector<3>& direction) {
+  double height = 0;
+  for (int k = 0; k < 3; ++k) {
+    height -= direction[k] * (direction[k] > 0 ? bounds.upper[k] : bounds.lower[k]);
+  }
+  return height;
+}
+
+}  // namespace
+
+void sweep_at_random(Bed& bed, const Vector<3>& pull, double tilt, const Vector<3>& across, double limit,
+                     Random& random) {
+  for (Bed::Id i = 0; i < bed.size(); ++i) {
+    Vector<3> u = uniform_direction<3>(random);
+    u -= u.dot(across) * across;
+    u = pull + tilt * u;
+    const double length = u.norm();
+    if (length > 1e-6) slide(bed, i, u / length, limit);
+  }
+}
+
+StageEnd compress(Work& work, const CompressOptions& options) {
+  Bed& bed = work.bed;
+  if (bed.size() == 0) return StageEnd::converged;
+  EffectTimer timer(work.effects, "compression");
+  const double floor = floor_of(bed.container().bounds(), options.direction);
+  const double radius = bed.mean_radius();
+  Random random = work.random(Stream::compress);
+  bed.sort_by_height(options.direction);
+  GlobalSweeps global(bed, options.direction);
+
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    if (work.monitor.stop()) return StageEnd::cancelled;
+    bed.enclose(options.buffer * radius);
+    const double before = bed.potential(options.direction);
+    global.settle();
+    const double settled = bed.potential(options.direction);
+    const bool resting_bed = before - settled < at_rest * radius;
+    if (resting_bed && options.tilt > 0) {
+      for (int k = 0; k < local_sweeps; ++k) {
+        sweep_at_random(bed, options.direction, options.tilt, Vector<3>::Zero(), 2 * radius, random);
+      }
+      global.wake_all();
+      global.settle();
+    }
+    const double after = bed.potential(options.direction);
+    work.milestone("compress");
+    if (resting_bed && before - after < options.tolerance * (before - floor)) return StageEnd::converged;
+  }
+  return StageEnd::hit_limit;
+}
+
+}  // namespace bernal

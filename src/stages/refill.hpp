@@ -1,0 +1,21 @@
+#pragma once
+#include "stages/shake.hpp"
+
+namespace bernal {
+
+struct RefillOptions {
+  int max_rounds = 200;
+  double probes = 20;          ///< random places looked at in a round, for each sphere that the container may hold
+  double patience = 5e-4;      ///< full when a round adds fewer spheres than this share of those there are
+  ShakeOptions shake;          ///< between two rounds; its compression also follows every refilling
+};
+
+/// Refilling (Han, Feng & Owen 2005, section 2): spheres still to come are put wherever the free space holds
+/// them, the bed is compressed and shaken, and so on until the domain is full or the target is reached.
+///
+/// In a round, random places are probed for the largest sphere that each of them holds; then the spheres to
+/// come, in their order, take the first place that is large enough. Cost: O(1) a probe, and that of the
+/// compression.
+StageEnd refill(Work& work, const RefillOptions& options);
+
+}  // namespace bernal

@@ -1,0 +1,48 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "bernal/scene/scene.hpp"
+#include "bernal/sizes/size_distribution.hpp"
+
+namespace bernal {
+
+/// The spheres that are still to come: the drawn sequence of radii, less those that have been placed.
+///
+/// A sphere's tag is its place in the sequence. Stages may place the spheres of a short window out of order,
+/// so that one large sphere does not hold up the rest; what was placed beyond the first missing one is taken
+/// out again at the end. So the result is always the drawn sequence less its tail, and the size distribution
+/// is not biased towards what fits more easily.
+class Supply {
+ public:
+  /// Draws all radii that a volume of `volume` could ever need, in units of `scale` (the packer's frame), by
+  /// the seed's stream of radii. Throws Error{bad_scene} if those are more than 2^31.
+  Supply(const SizeDistribution& radii, double scale, double volume, const Target& target, std::uint64_t seed);
+
+  /// Nothing more is to be placed: the target has been reached.
+  bool exhausted() const { return window_.empty(); }
+  /// Tags that may be placed next, in ascending order.
+  const std::vector<std::uint32_t>& window() const { return window_; }
+  double radius(std::uint32_t tag) const { return radii_[tag]; }
+  /// Takes the k-th of the window.
+  void take(std::size_t k);
+
+  /// All tags below this one have been placed.
+  std::uint32_t first_missing() const;
+  /// How many spheres the target asks for; for `fill` an upper bound.
+  std::size_t wanted() const { return radii_.size(); }
+  double smallest() const { return smallest_; }
+  double largest() const { return largest_; }
+
+ private:
+  void open_window();
+
+  std::vector<double> radii_;
+  std::vector<std::uint32_t> window_;
+  std::uint32_t next_ = 0;
+  std::size_t width_ = 1;
+  double smallest_ = 0;
+  double largest_ = 0;
+};
+
+}  // namespace bernal
