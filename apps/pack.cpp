@@ -45,9 +45,9 @@ void print_result(const Packing& packing, const WrittenPacking& written) {
 int pack(const PackCall& call) {
   const Plan plan = build(read_scene(call.scene));
   check_writable(call.folder);
+  watch_for_interrupts(call.quiet);
   if (!call.quiet) print_plan(plan);
 
-  watch_for_interrupts(call.quiet);
   ProgressBar bar(call.quiet);
   RunOptions options;
   if (call.seed) options.seed = static_cast<std::uint64_t>(*call.seed);

@@ -37,6 +37,9 @@ class Process {
     if (failed != 0) throw std::runtime_error("cannot start " + words.front());
   }
 
+  /// Its standard error so far.
+  std::string said() const { return text_of(err()); }
+
   void signal(int number) const { kill(pid_, number); }
 
   Ended wait() const {
