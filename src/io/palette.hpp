@@ -25,15 +25,15 @@ inline Colour mix(const Colour& a, const Colour& b, double share_of_b) {
   return {channel(a.red, b.red), channel(a.green, b.green), channel(a.blue, b.blue)};
 }
 
-/// Colours of sphere sizes, small to large: lightness falls steadily from warm to cool, so that the order can
-/// be read without colour vision too.
+/// Colours of sphere sizes, small to large: from mint over teal to indigo, with lightness falling all the
+/// way, so that the order can be read without colour vision too.
 inline Colour size_colour(double t) {
-  constexpr std::array<Colour, 6> stops = {{{0.992, 0.871, 0.612},
-                                            {0.973, 0.659, 0.451},
-                                            {0.918, 0.431, 0.435},
-                                            {0.733, 0.302, 0.529},
-                                            {0.478, 0.255, 0.545},
-                                            {0.231, 0.235, 0.471}}};
+  constexpr std::array<Colour, 6> stops = {{{0.871, 0.961, 0.898},
+                                            {0.545, 0.855, 0.698},
+                                            {0.263, 0.733, 0.678},
+                                            {0.204, 0.561, 0.655},
+                                            {0.227, 0.373, 0.624},
+                                            {0.251, 0.227, 0.459}}};
   const double scaled = std::clamp(t, 0.0, 1.0) * (stops.size() - 1);
   const auto k = std::min(static_cast<std::size_t>(scaled), stops.size() - 2);
   return mix(stops[k], stops[k + 1], scaled - static_cast<double>(k));

@@ -22,7 +22,7 @@ const Vector<3> up = eye.cross(right);
 
 const Vector<3>& View::towards_eye() { return eye; }
 
-View::View(std::span<const Vector<3>> corners, double canvas_size, double margin) {
+View::View(std::span<const Vector<3>> corners, double canvas_size, double margin, double narrowest) {
   if (corners.empty()) return;
   origin_ = corners.front();  // keeps the differences below exact for shapes far from zero
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -36,10 +36,10 @@ View::View(std::span<const Vector<3>> corners, double canvas_size, double margin
   }
   const double extent = std::max(rightmost - left, top - bottom);
   if (extent > 0) scale_ = (canvas_size - 2 * margin) / extent;
-  x_ = margin - scale_ * left;
   y_ = margin + scale_ * top;
-  width_ = scale_ * (rightmost - left) + 2 * margin;
+  width_ = std::max(scale_ * (rightmost - left) + 2 * margin, narrowest);
   height_ = scale_ * (top - bottom) + 2 * margin;
+  x_ = 0.5 * (width_ - scale_ * (left + rightmost));
 }
 
 CanvasPoint View::operator()(const Vector<3>& p) const {

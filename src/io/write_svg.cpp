@@ -17,11 +17,12 @@ namespace bernal {
 namespace {
 
 constexpr double canvas_size = 1000;
+constexpr double narrowest_canvas = 480;  // so much the legend needs
 constexpr double margin = 12;
 constexpr double legend_height = 52;
 constexpr double raster_pitch = 0.5;
 constexpr int colour_classes = 9;
-constexpr int shade_classes = 6;
+constexpr int shade_classes = 8;
 constexpr std::uint32_t fewest_visible_points = 2;
 
 /// Maps radii to colour classes, evenly in ln r between the first and the last per cent of the spheres.
@@ -72,39 +73,72 @@ std::vector<Ball> balls_back_to_front(const Spheres<3>& spheres, const View& vie
   return balls;
 }
 
-/// How much of the light from all around is kept from a ball by what stands before it, in [0, 1].
-double occlusion(const Ball& ball, const DepthBuffer& depths) {
-  constexpr int directions = 12;
-  double sum = 0;
-  int count = 0;
-  for (const double reach : {1.3, 2.2, 3.6}) {
-    for (int k = 0; k < directions; ++k) {
-      const double angle = 2 * std::numbers::pi * (k + 0.5) / directions;
-      const double distance = reach * ball.radius;
-      const double around = depths.depth(ball.center.x + distance * std::cos(angle),
-                                         ball.center.y + distance * std::sin(angle));
-      sum += std::clamp((around - ball.center.depth) / (1.6 * distance) - 0.1, 0.0, 1.0);
-      ++count;
-    }
+/// How dark a ball is drawn, in [0, 1]: what stands around it takes light away, and so does a side of the
+/// packing that is turned from the light. Both are read off the depths of what can be seen.
+class Shading {
+ public:
+  Shading(const DepthBuffer& depths, double mean_radius) : depths_(depths), patch_(7 * mean_radius) {}
+
+  double operator()(const Ball& ball) const {
+    return std::clamp(0.7 * occlusion(ball) + 0.85 * (aversion(ball) - 0.15), 0.0, 1.0);
   }
-  return sum / count;
-}
+
+ private:
+  static constexpr int directions = 16;
+
+  double occlusion(const Ball& ball) const {
+    double sum = 0;
+    for (const double reach : {1.3, 2.2, 3.6}) {
+      for (int k = 0; k < directions; ++k) {
+        const double distance = reach * ball.radius;
+        sum += std::clamp(rise(ball, k, distance) / (1.6 * distance) - 0.1, 0.0, 1.0);
+      }
+    }
+    return sum / (3 * directions);
+  }
+
+  /// The patch of the packing around the ball as a tilted plane under a light from the upper left.
+  double aversion(const Ball& ball) const {
+    Vector<3> normal(0, 0, 1);
+    for (int k = 0; k < directions; ++k) {
+      const double slope = std::clamp(rise(ball, k, patch_) / patch_, -1.6, 1.6);
+      normal[0] -= 2 * slope * std::cos(angle(k)) / directions;
+      normal[1] -= 2 * slope * std::sin(angle(k)) / directions;
+    }
+    const Vector<3> light = Vector<3>(-0.5, -0.75, 0.75).normalized();
+    return 0.5 - 0.5 * normal.normalized().dot(light);
+  }
+
+  static double angle(int k) { return 2 * std::numbers::pi * (k + 0.5) / directions; }
+  /// How much nearer to the eye than the ball is what can be seen beside it.
+  double rise(const Ball& ball, int k, double distance) const {
+    return depths_.depth(ball.center.x + distance * std::cos(angle(k)),
+                         ball.center.y + distance * std::sin(angle(k))) -
+           ball.center.depth;
+  }
+
+  const DepthBuffer& depths_;
+  double patch_;
+};
 
 void append_gradients(std::string& out) {
-  const Colour night{0.06, 0.07, 0.16}, day{1, 0.985, 0.95};
+  const Colour day{1, 0.985, 0.95};
+  const auto darker = [](const Colour& c, double by) {  // red goes first: shadows are cool
+    return Colour{c.red * (1 - 0.80 * by), c.green * (1 - 0.84 * by), c.blue * (1 - 0.66 * by)};
+  };
   out += "<defs>\n";
   for (int c = 0; c < colour_classes; ++c) {
     for (int s = 0; s < shade_classes; ++s) {
       const double shade = static_cast<double>(s) / (shade_classes - 1);
-      const Colour base = mix(size_colour((c + 0.5) / colour_classes), night, 0.8 * shade);
+      const Colour base = darker(size_colour((c + 0.5) / colour_classes), shade);
       fmt::format_to(std::back_inserter(out),
                      "<radialGradient id=\"bernal{}{}\" cx=\".5\" cy=\".5\" r=\".5\" fx=\".34\" fy=\".27\">"
                      "<stop offset=\"0\" stop-color=\"{}\"/><stop offset=\".3\" stop-color=\"{}\"/>"
                      "<stop offset=\".75\" stop-color=\"{}\"/><stop offset=\"1\" stop-color=\"{}\"/>"
                      "</radialGradient>\n",
                      static_cast<char>('a' + c), s, mix(base, day, 0.55 - 0.35 * shade).text(),
-                     mix(base, day, 0.16 * (1 - shade)).text(), mix(base, night, 0.14).text(),
-                     mix(base, night, 0.5).text());
+                     mix(base, day, 0.16 * (1 - shade)).text(), darker(base, 0.2).text(),
+                     darker(base, 0.65).text());
     }
   }
   out += "</defs>\n";
@@ -132,10 +166,13 @@ void append_spheres(std::string& out, const Spheres<3>& spheres, const View& vie
   for (const std::uint32_t k : depths.ids()) {
     if (k != DepthBuffer::nothing) ++visible_points[k];
   }
+  const double mean_radius = view.scale() * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) /
+                             static_cast<double>(std::max<std::size_t>(1, spheres.size()));
+  const Shading shading(depths, mean_radius);
   for (std::size_t k = 0; k < balls.size(); ++k) {
     if (visible_points[k] < fewest_visible_points) continue;
     const Ball& ball = balls[k];
-    const int shade = std::min(shade_classes - 1, static_cast<int>(occlusion(ball, depths) * shade_classes));
+    const int shade = std::min(shade_classes - 1, static_cast<int>(shading(ball) * shade_classes));
     fmt::format_to(std::back_inserter(out),
                    "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" fill=\"url(#bernal{}{})\"/>\n",
                    ball.center.x, ball.center.y, ball.radius,
@@ -188,7 +225,7 @@ void append_legend(std::string& out, const View& view, const SizeScale& sizes, s
 
 std::string svg_of(const Spheres<3>& spheres, const Shape& container, std::string_view unit) {
   const Mesh mesh = drawable_mesh(container);
-  const View view(mesh.vertices, canvas_size, margin);
+  const View view(mesh.vertices, canvas_size, margin, narrowest_canvas);
   const SizeScale sizes(spheres.r);
   const std::vector<Stroke> strokes = outline_of(mesh, view);
 

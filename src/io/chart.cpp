@@ -1,0 +1,151 @@
+#include "io/chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "io/html_text.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr double width = 520, height = 260;
+constexpr double left = 62, right = 12, top = 26, bottom = 44;
+
+/// Round numbers that divide an axis into about five parts.
+class Ticks {
+ public:
+  Ticks(double from, double to) {
+    const double raw = (to - from) / 5;
+    const double decade = std::pow(10, std::floor(std::log10(raw)));
+    step_ = decade * (raw > 5 * decade ? 10 : raw > 2 * decade ? 5 : raw > decade ? 2 : 1);
+    for (double k = std::ceil(from / step_ - 1e-9); k * step_ <= to + 1e-9 * step_; ++k) {
+      values_.push_back(k * step_);
+    }
+  }
+  const std::vector<double>& values() const { return values_; }
+  std::string text(double value) const {
+    const int decimals = static_cast<int>(std::ceil(-std::log10(step_) - 1e-9));
+    if (decimals > 5 || std::abs(value) >= 1e6) return fmt::format("{:.3g}", value);
+    return fmt::format("{:.{}f}", value == 0 ? 0.0 : value, std::max(0, decimals));
+  }
+
+ private:
+  double step_;
+  std::vector<double> values_;
+};
+
+/// A plot area with two linear axes; draws itself into SVG text.
+class Chart {
+ public:
+  Chart(double x0, double x1, double y0, double y1) : x0_(x0), x1_(x1), y0_(y0), y1_(y1) {
+    add("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\">", width, height);
+  }
+  double x(double v) const { return left + (width - left - right) * (v - x0_) / (x1_ - x0_); }
+  double y(double v) const { return height - bottom - (height - top - bottom) * (v - y0_) / (y1_ - y0_); }
+
+  template <class... Args>
+  void add(fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
+  }
+
+  void axes(std::string_view x_label, std::string_view y_label) {
+    const Ticks along(x0_, x1_), across(y0_, y1_);
+    for (const double v : across.values()) {
+      add("<path class=\"grid\" d=\"M{} {:.1f}H{}\"/>", left, y(v), width - right);
+      add("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", left - 8, y(v) + 4, across.text(v));
+    }
+    for (const double v : along.values()) {
+      add("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>", x(v), height - bottom + 18,
+          along.text(v));
+    }
+    add("<path class=\"axis\" d=\"M{} {}H{}\"/>", left, height - bottom, width - right);
+    add("<text class=\"label\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
+        (left + width - right) / 2, height - 6, escaped(x_label));
+    add("<text class=\"label\" x=\"{}\" y=\"14\">{}</text>", 4, escaped(y_label));
+  }
+
+  std::string finish() && { return std::move(out_) + "</svg>"; }
+
+ private:
+  double x0_, x1_, y0_, y1_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string size_histogram(std::span<const double> sizes, std::string_view label) {
+  constexpr std::size_t bins = 36;
+  const auto [least, most] = std::ranges::minmax(sizes);
+  std::vector<double> number(bins, 0), volume(bins, 0);
+  double all = 0;
+  for (const double size : sizes) {
+    const double place = (size - least) / (most - least) * bins;
+    const std::size_t bin = std::min(bins - 1, static_cast<std::size_t>(place));
+    const double relative = size / most;
+    number[bin] += 100.0 / static_cast<double>(sizes.size());
+    volume[bin] += relative * relative * relative;
+    all += relative * relative * relative;
+  }
+  for (double& share : volume) share *= 100 / all;
+
+  const double highest = std::max(std::ranges::max(number), std::ranges::max(volume));
+  Chart chart(least, most, 0, 1.05 * highest);
+  chart.axes(label, "per cent of all spheres, in 36 equal steps");
+  const double bar = chart.x(most) / bins - chart.x(least) / bins;
+  std::string line;
+  for (std::size_t k = 0; k < bins; ++k) {
+    const double x = chart.x(least) + bar * static_cast<double>(k);
+    chart.add("<rect class=\"bar\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>", x + 0.5,
+              chart.y(number[k]), bar - 1, chart.y(0) - chart.y(number[k]));
+    fmt::format_to(std::back_inserter(line), "{}{:.1f} {:.1f}H{:.1f}", k == 0 ? 'M' : 'L', x,
+                   chart.y(volume[k]), x + bar);
+  }
+  chart.add("<path class=\"second line\" d=\"{}\"/>", line);
+  return std::move(chart).finish();
+}
+
+std::string history_chart(std::span<const Milestone> history, double Milestone::*value,
+                          std::string_view label) {
+  double least = history.front().*value, most = least, last = 0;
+  for (const Milestone& m : history) {
+    least = std::min(least, m.*value);
+    most = std::max(most, m.*value);
+    last = std::max(last, m.seconds);
+  }
+  const double room = most > least ? 0.08 * (most - least) : std::max(1e-9, 0.1 * std::abs(most));
+  Chart chart(0, last > 0 ? 1.02 * last : 1, least - room, most + room);
+  chart.axes("seconds since the start of the run", label);
+
+  double free_from = 0;  // where the next stage name would not run into the last one
+  std::string_view stage;
+  for (const Milestone& m : history) {
+    if (m.stage == stage) continue;
+    stage = m.stage;
+    const double x = chart.x(m.seconds);
+    chart.add("<path class=\"stage\" d=\"M{:.1f} {}V{}\"/>", x, top, height - bottom);
+    if (x < free_from) continue;
+    const bool at_end = x > width - right - 60;
+    chart.add("<text class=\"stage-name\" x=\"{:.1f}\" y=\"{}\"{}>{}</text>", at_end ? x - 4 : x + 4,
+              height - bottom - 6, at_end ? " text-anchor=\"end\"" : "", escaped(stage));
+    free_from = x + 8 + 7.0 * static_cast<double>(stage.size());
+  }
+  std::string line;
+  for (const Milestone& m : history) {
+    fmt::format_to(std::back_inserter(line), "{}{:.1f} {:.1f}", line.empty() ? 'M' : 'L', chart.x(m.seconds),
+                   chart.y(m.*value));
+  }
+  chart.add("<path class=\"first line\" d=\"{}\"/>", line);
+  if (history.size() <= 200) {
+    for (const Milestone& m : history) {
+      chart.add("<circle class=\"point\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\"/>", chart.x(m.seconds),
+                chart.y(m.*value));
+    }
+  }
+  return std::move(chart).finish();
+}
+
+}  // namespace bernal

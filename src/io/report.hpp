@@ -1,0 +1,29 @@
+#pragma once
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "bernal/measure/measure.hpp"
+#include "bernal/run/packing.hpp"
+#include "bernal/verify/certificate.hpp"
+
+namespace bernal {
+
+/// Everything the reports tell about a packing; made once, read by the writers of JSON and HTML.
+struct Report {
+  const Packing& packing;
+  const Certificate& certificate;
+  const Contacts& contacts;
+  std::string hash;
+};
+
+/// report.json: the keys of the file format, in a fixed order, lengths in the scene's unit. Numbers that are
+/// not finite become null. Which keys there are does not depend on the packing, except for `worst_pair`,
+/// which is null where no two spheres are near.
+std::string json_of(const Report& report);
+
+/// report.html: one page without scripts or outside files. `picture` is the SVG of the packing, `scene` the
+/// scene as TOML.
+std::string html_of(const Report& report, std::string_view picture, std::string_view scene);
+
+}  // namespace bernal

@@ -1,0 +1,89 @@
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "io/report.hpp"
+
+namespace bernal {
+namespace {
+
+using Json = nlohmann::ordered_json;  // writes NaN and infinity as null
+
+Json json_of(const Vector<3>& v) { return Json::array({v[0], v[1], v[2]}); }
+
+Json container_json(const Packing& packing) {
+  const Bounds<3> bounds = bounds_of(packing.container);
+  return {{"kind", kind_of(packing.container)},
+          {"volume", packing.container_volume},
+          {"bounds", {{"lower", json_of(bounds.lower)}, {"upper", json_of(bounds.upper)}}}};
+}
+
+Json certificate_json(const Certificate& c) {
+  const bool any_pair = c.worst_pair[0] != c.worst_pair[1];
+  return {{"statement", c.statement},
+          {"pairs_tested", c.pairs_tested},
+          {"walls_tested", c.walls_tested},
+          {"centers_tested", c.centers_tested},
+          {"decided_double", c.decided_double},
+          {"decided_exact", c.decided_exact},
+          {"overlapping_pairs", c.overlapping_pairs},
+          {"protruding_spheres", c.protruding_spheres},
+          {"worst_pair", any_pair ? Json::array({c.worst_pair[0], c.worst_pair[1]}) : Json()},
+          {"worst_wall", c.worst_wall},
+          {"seconds", c.seconds}};
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024 * static_cast<std::uint64_t>(usage.ru_maxrss);
+}
+
+}  // namespace
+
+std::string json_of(const Report& report) {
+  const Packing& packing = report.packing;
+  const Certificate& certificate = report.certificate;
+  const Contacts& contacts = report.contacts;
+
+  Json effects = Json::array();
+  for (const Effect& e : packing.effects) {
+    effects.push_back({{"name", e.name}, {"calls", e.calls}, {"seconds", e.seconds}});
+  }
+  Json history = Json::array();
+  for (const Milestone& m : packing.history) {
+    history.push_back({{"stage", m.stage},
+                       {"spheres", m.spheres},
+                       {"packing_fraction", m.packing_fraction},
+                       {"potential", m.potential},
+                       {"seconds", m.seconds}});
+  }
+  const Json json = {{"version", packing.version},
+                     {"seed", packing.seed},
+                     {"threads", packing.threads},
+                     {"outcome", name_of(packing.outcome)},
+                     {"reason", packing.reason},
+                     {"n", packing.spheres.size()},
+                     {"dimension", 3},
+                     {"unit", packing.scene.unit},
+                     {"phi", packing.packing_fraction()},
+                     {"coordination", contacts.coordination},
+                     {"contact_gap", contacts.contact_gap},
+                     {"contacts", contacts.pairs},
+                     {"wall_contacts", contacts.walls},
+                     {"rattlers", contacts.rattlers},
+                     {"max_overlap", certificate.max_overlap},
+                     {"min_wall_gap", certificate.min_wall_gap},
+                     {"certified", certificate.certified},
+                     {"certificate", certificate_json(certificate)},
+                     {"container", container_json(packing)},
+                     {"hash", report.hash},
+                     {"effects", effects},
+                     {"history", history},
+                     {"seconds", packing.seconds},
+                     {"peak_memory_bytes", peak_memory_bytes()}};
+  // Names may hold any bytes; a report that is not valid UTF-8 would be worse than a replaced character.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace bernal

@@ -1,0 +1,73 @@
+#include "bernal/io/write_packing.hpp"
+
+#include "bernal/core/error.hpp"
+#include "bernal/io/read_packing.hpp"
+#include "bernal/measure/measure.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "io/output_file.hpp"
+#include "io/report.hpp"
+#include "io/staged_folder.hpp"
+#include "io/write_csv.hpp"
+#include "io/write_svg.hpp"
+#include "io/write_vtp.hpp"
+
+namespace bernal {
+namespace {
+
+void write_text(const std::filesystem::path& path, std::string_view text) {
+  OutputFile file(path);
+  file.append(text);
+  file.close();
+}
+
+/// The scene as it was run: with the seed that was used, which the caller may have given instead of the
+/// scene.
+std::string scene_as_run(const Packing& packing, const std::filesystem::path& folder) {
+  Scene scene = packing.scene;
+  scene.seed = packing.seed;
+  return scene_as_toml(scene, folder);
+}
+
+/// Certifies what stands in the file, not what stood in memory.
+Certificate certify_written(const std::filesystem::path& csv, const Packing& packing) {
+  const SpheresFile written = read_csv(csv);
+  if (written.spheres != packing.spheres || written.unit != packing.scene.unit) {
+    throw Error(ErrorCode::cannot_write, "reads back differently from what was written", {csv.string()});
+  }
+  return certify(written.spheres, packing.container, packing.scene.overlap);
+}
+
+}  // namespace
+
+WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder) {
+  StagedFolder staged(folder);
+  const std::filesystem::path csv = staged.add("spheres.csv");
+  {
+    OutputFile file(csv);
+    write_csv(file, packing.spheres, packing.scene.unit);
+    file.close();
+  }
+  {
+    OutputFile file(staged.add("spheres.vtp"));
+    write_vtp(file, packing.spheres);
+    file.close();
+  }
+  const Certificate certificate = certify_written(csv, packing);
+  const Contacts contacts = measure_contacts(packing);
+  const Report report{packing, certificate, contacts, hash_of(packing.spheres)};
+  const std::string scene = scene_as_run(packing, folder);
+  const std::string picture = svg_of(packing.spheres, packing.container, packing.scene.unit);
+
+  write_text(staged.add("scene.toml"), scene);
+  write_text(staged.add("report.json"), json_of(report));
+  write_text(staged.add("report.html"), html_of(report, picture, scene));
+  write_text(staged.add("packing.svg"), picture);
+  return {staged.publish(), certificate};
+}
+
+void check_writable(const std::filesystem::path& folder) {
+  StagedFolder staged(folder);
+  write_text(staged.add("spheres.csv"), "x,y,z,r\n");
+}
+
+}  // namespace bernal
