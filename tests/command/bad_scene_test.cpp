@@ -54,7 +54,7 @@ TEST(BadScene, SphereLargerThanItsContainer) {
         "kind = \"cylinder\"\nradius = 9\nheight = 1", "kind = \"cylinder\"\nradius = 0.5\nheight = 9"})
     expect_bad_scene(
         folder.write("scene.toml", "[container]\n" + container + "\n[spheres]\ndiameter = 1.001\n"),
-        {"scene.toml", "larger"});
+        {"scene.toml:", "does not fit", "diameter"});
 }
 
 TEST(BadScene, MeshThatIsNotThereOrIsNone) {

@@ -75,7 +75,7 @@ TEST(FuzzScene, EveryMutationIsASceneOrAnError) {
   std::vector<std::string> scenes;
   for (const auto& file : testing::example_scenes()) scenes.push_back(testing::text_of(file));
   ASSERT_FALSE(scenes.empty());
-  constexpr int mutations = 5000;
+  constexpr int mutations = 10'000;
   int accepted = 0;
   for (int i = 0; i < mutations; ++i) {
     Random random(1, stream(Stream::test, i));

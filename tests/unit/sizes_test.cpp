@@ -175,7 +175,7 @@ TEST_P(Sizes, MomentsLieBetweenThePowersOfTheLimits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Sizes, ::testing::ValuesIn(cases()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& tested) { return tested.param.name; });
 
 TEST(SizeMoments, HaveTheirClosedForms) {
   EXPECT_DOUBLE_EQ(make_uniform(1, 2, Basis::number)->moment(1), 1.5);
