@@ -13,7 +13,7 @@ namespace bernal {
 namespace {
 
 constexpr double width = 520, height = 260;
-constexpr double left = 62, right = 12, top = 26, bottom = 44;
+constexpr double left = 62, right = 12, top = 44, bottom = 44;
 
 /// Round numbers that divide an axis into about five parts.
 class Ticks {
@@ -129,9 +129,9 @@ std::string history_chart(std::span<const Milestone> history, double Milestone::
     chart.add("<path class=\"stage\" d=\"M{:.1f} {}V{}\"/>", x, top, height - bottom);
     if (x < free_from) continue;
     const bool at_end = x > width - right - 60;
-    chart.add("<text class=\"stage-name\" x=\"{:.1f}\" y=\"{}\"{}>{}</text>", at_end ? x - 4 : x + 4,
-              height - bottom - 6, at_end ? " text-anchor=\"end\"" : "", escaped(stage));
-    free_from = x + 8 + 7.0 * static_cast<double>(stage.size());
+    chart.add("<text x=\"{:.1f}\" y=\"{}\"{}>{}</text>", x, top - 6, at_end ? " text-anchor=\"end\"" : "",
+              escaped(stage));
+    free_from = x + 10 + 7.0 * static_cast<double>(stage.size());
   }
   std::string line;
   for (const Milestone& m : history) {

@@ -105,7 +105,7 @@ std::vector<Edge> marked_edges(const Mesh& mesh) {
     bool draw = j - i != 2;
     if (!draw) {
       const Vector<3> n = normal_of(mesh, sides[i].triangle), m = normal_of(mesh, sides[i + 1].triangle);
-      const bool silhouette = n.dot(View::towards_eye()) > 0 != m.dot(View::towards_eye()) > 0;
+      const bool silhouette = (n.dot(View::towards_eye()) > 0) != (m.dot(View::towards_eye()) > 0);
       draw = silhouette || n.dot(m) < std::cos(bend);
     }
     if (draw) marked.push_back(sides[i]);

@@ -24,7 +24,7 @@ p { margin:6px 0 12px; max-width:75ch; }
 .statement { border-left:4px solid var(--yes); background:var(--card); padding:12px 16px; border-radius:0 10px 10px 0;
   max-width:none; }
 .statement.failed { border-color:var(--no); }
-.picture svg { display:block; width:100%; max-height:78vh; margin:20px auto; }
+.picture svg { display:block; width:100%; max-height:min(78vh,760px); margin:20px auto; }
 .pair { display:grid; grid-template-columns:repeat(auto-fit,minmax(min(440px,100%),1fr)); gap:28px; align-items:start; }
 .wide { overflow-x:auto; }
 table { border-collapse:collapse; width:100%; font-variant-numeric:tabular-nums; font-size:15px; }

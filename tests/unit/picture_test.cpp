@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "io/outline.hpp"
+#include "io/view.hpp"
+#include "io/write_svg.hpp"
+#include "support/packings.hpp"
+
+namespace bernal {
+namespace {
+
+using testing::scattered;
+
+const BoxShape box{Vector<3>::Zero(), Vector<3>::Constant(10)};
+
+struct Disc {
+  double x, y, r;
+};
+
+/// The spheres of a picture in the order in which they are painted; the key's discs come last and are left
+/// out.
+std::vector<Disc> painted(const std::string& svg) {
+  static const std::regex circle("<circle cx=\"([^\"]+)\" cy=\"([^\"]+)\" r=\"([^\"]+)\"");
+  const std::string spheres = svg.substr(0, svg.find("<g font-family"));
+  std::vector<Disc> discs;
+  for (std::sregex_iterator it(spheres.begin(), spheres.end(), circle), end; it != end; ++it) {
+    discs.push_back({std::stod((*it)[1]), std::stod((*it)[2]), std::stod((*it)[3])});
+  }
+  return discs;
+}
+
+TEST(Picture, WhatIsOnTopIsWhatIsNearest) {
+  // The oracle looks along every line of sight for the nearest surface. Coordinates in the picture are
+  // rounded to 0.1, so lines that pass nearer than that to an edge of any disc do not decide.
+  const Spheres<3> spheres = scattered(600, 0.05, 2, bounds_of(box), 11, true);
+  ASSERT_GT(spheres.size(), 300u);
+  const std::string svg = svg_of(spheres, box, "mm");
+  const std::vector<Disc> discs = painted(svg);
+  const View view(drawable_mesh(box).vertices, 1000, 12, 480);
+  Random random(1, stream(Stream::test));
+  int decided = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double x = random.uniform(0, view.width()), y = random.uniform(0, view.height());
+    double nearest = -std::numeric_limits<double>::infinity();
+    CanvasPoint expected;
+    bool clear = true;
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const CanvasPoint c = view(spheres.center(i));
+      const double r = view.scale() * spheres.r[i], off = std::hypot(x - c.x, y - c.y);
+      clear = clear && std::abs(off - r) > 0.3;
+      if (off >= r) continue;
+      const double depth = c.depth + std::sqrt(r * r - off * off);
+      if (depth > nearest) {
+        nearest = depth;
+        expected = c;
+      }
+    }
+    if (!clear) continue;
+    const auto top = std::find_if(discs.rbegin(), discs.rend(),
+                                  [&](const Disc& d) { return std::hypot(x - d.x, y - d.y) < d.r; });
+    ASSERT_EQ(top == discs.rend(), std::isinf(nearest)) << x << " " << y;
+    if (top == discs.rend()) continue;
+    EXPECT_NEAR(top->x, expected.x, 0.051);
+    EXPECT_NEAR(top->y, expected.y, 0.051);
+    ++decided;
+  }
+  EXPECT_GT(decided, 500);
+}
+
+TEST(Picture, LeavesOutWhatCannotBeSeenAndStaysSmall) {
+  Spheres<3> spheres;
+  for (int i = 0; i < 31 * 31 * 31; ++i) {
+    spheres.push_back({0.5 + i % 31, 0.5 + i / 31 % 31, 0.5 + i / 961}, 0.5);
+  }
+  const std::string svg = svg_of(spheres, BoxShape{Vector<3>::Zero(), Vector<3>::Constant(31)}, "mm");
+  EXPECT_LT(svg.size(), 1'500'000u);
+  const std::size_t drawn = painted(svg).size();
+  // Of a simple cubic block one sees the three faces towards the eye and some way down between the spheres.
+  EXPECT_GE(drawn, 3u * 31 * 31 - 3 * 31 + 1);
+  EXPECT_LT(drawn, 4u * 3 * 31 * 31);
+}
+
+TEST(Picture, OutlinesOfABoxAreItsTwelveEdges) {
+  const Mesh mesh = drawable_mesh(box);
+  const View view(mesh.vertices, 1000, 12, 480);
+  double shown = 0, hidden = 0;
+  for (const Stroke& s : outline_of(mesh, view)) {
+    (s.hidden ? hidden : shown) += std::hypot(s.to.x - s.from.x, s.to.y - s.from.y);
+  }
+  // From above and the side nine edges are seen and three, which meet in the far lower corner, are not. By
+  // parallel projection the edges come in three sets of four of equal length: hidden is a third of shown.
+  EXPECT_NEAR(hidden / shown, 1.0 / 3.0, 0.01);
+}
+
+TEST(Picture, EveryContainerIsClosedAndSeenFromOutside) {
+  for (const Shape& shape :
+       {Shape(box), Shape(CylinderShape{{1, 2, 3}, {1, 1, 2}, 2, 7}), Shape(SphereShape{{5, 5, 5}, 3})}) {
+    const Mesh mesh = drawable_mesh(shape);
+    EXPECT_GT(volume_of(Shape(mesh)), 0) << kind_of(shape);
+    const View view(mesh.vertices, 1000, 12, 480);
+    EXPECT_FALSE(outline_of(mesh, view).empty());
+    for (const Vector<3>& vertex : mesh.vertices) {
+      const CanvasPoint p = view(vertex);
+      EXPECT_GE(p.x, 11.999);
+      EXPECT_LE(p.x, view.width() - 11.999);
+      EXPECT_GE(p.y, 11.999);
+      EXPECT_LE(p.y, view.height() - 11.999);
+    }
+  }
+}
+
+TEST(Picture, DoesNotDependOnTheUnitOrThePlace) {
+  const Spheres<3> spheres = scattered(200, 0.2, 1, bounds_of(box), 3, true);
+  const std::string here = svg_of(spheres, box, "mm");
+  const double scale = 0x1p-40;
+  Spheres<3> moved;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    moved.push_back(scale * spheres.center(i), scale * spheres.r[i]);
+  const std::string there = svg_of(moved, BoxShape{scale * box.corner, scale * box.size}, "mm");
+  EXPECT_EQ(painted(here).size(), painted(there).size());
+  EXPECT_EQ(here.substr(0, here.find("<g font-family")), there.substr(0, there.find("<g font-family")));
+}
+
+}  // namespace
+}  // namespace bernal
