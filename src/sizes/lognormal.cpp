@@ -61,9 +61,13 @@ class Lognormal final : public SizeDistribution {
     return normal_between(alpha_, (std::log(radius) - mu_) / sigma_) / mass_;
   }
 
-  double moment(int k) const override {
+  double moment(int k) const override { return moment_above(k, min_); }
+
+  double moment_above(int k, double radius) const override {
+    if (radius >= max_) return 0;
+    const double from = radius > min_ ? (std::log(radius) - mu_) / sigma_ : alpha_;
     const double shift = k * sigma_;
-    return std::exp(k * mu_ + 0.5 * shift * shift) * normal_between(alpha_ - shift, beta_ - shift) / mass_;
+    return std::exp(k * mu_ + 0.5 * shift * shift) * normal_between(from - shift, beta_ - shift) / mass_;
   }
 
   double min() const override { return min_; }

@@ -40,8 +40,8 @@ Spheres<3> close_packing(double n, double jitter) {
 const Shape cylinder = CylinderShape{.base = {0, 0, 0}, .axis = {0, 0, 1}, .radius = 1, .height = 2};
 const Shape prism = meshes::regular_prism(50, 1, 2);  // 196 triangles
 
-void certificate(benchmark::State& state, const Shape& container, double jitter, Arithmetic arithmetic) {
-  const Spheres<3> s = close_packing(static_cast<double>(state.range(0)), jitter);
+void certificate_of(benchmark::State& state, const Spheres<3>& s, const Shape& container,
+                    Arithmetic arithmetic) {
   Certificate c;
   tbb::task_arena one_thread(1);
   one_thread.execute([&] {
@@ -55,6 +55,35 @@ void certificate(benchmark::State& state, const Shape& container, double jitter,
       benchmark::Counter(static_cast<double>(c.spheres),
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
+
+void certificate(benchmark::State& state, const Shape& container, double jitter, Arithmetic arithmetic) {
+  certificate_of(state, close_packing(static_cast<double>(state.range(0)), jitter), container, arithmetic);
+}
+
+/// A ball-like mesh around the whole, 2 n² triangles.
+Mesh globe(std::uint32_t n, double radius) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i <= n; ++i)
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const double theta = M_PI * i / n, phi = 2 * M_PI * j / n;
+      const double across = i == 0 || i == n ? 0 : std::sin(theta);
+      mesh.vertices.push_back(
+          {radius * across * std::cos(phi), radius * across * std::sin(phi), 1 + radius * std::cos(theta)});
+    }
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const std::uint32_t a = i * n + j, b = i * n + (j + 1) % n, c = a + n, d = b + n;
+      mesh.triangles.push_back({a, c, d});
+      mesh.triangles.push_back({a, d, b});
+    }
+  return mesh;
+}
+
+void triangles(benchmark::State& state) {
+  const auto n = static_cast<std::uint32_t>(std::sqrt(state.range(0) / 2.0));
+  certificate_of(state, close_packing(100'000, 0.01), globe(n, 1.43), Arithmetic::filtered);
+}
+BENCHMARK(triangles)->RangeMultiplier(10)->Range(1000, 1'000'000)->Unit(benchmark::kMillisecond);
 
 void cases(benchmark::internal::Benchmark* b) { b->Arg(34000)->Unit(benchmark::kMillisecond); }
 

@@ -22,6 +22,9 @@ class SizeDistribution {
   virtual double cumulative(double radius) const = 0;
   /// Mean of radius^k, any integer k.
   virtual double moment(int k) const = 0;
+  /// What radii above `radius` >= 0 contribute to moment(k): the integral of r^k over them. Precise in the upper
+  /// tail, where 1 - cumulative is not.
+  virtual double moment_above(int k, double radius) const = 0;
   virtual double min() const = 0;
   /// Infinity where the distribution has an unbounded tail.
   virtual double max() const = 0;
