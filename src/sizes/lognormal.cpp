@@ -108,9 +108,7 @@ std::unique_ptr<SizeDistribution> make_lognormal_of_means(double r43, double r32
     throw Error(
         ErrorCode::bad_argument,
         fmt::format("the volume-weighted mean {} must exceed the surface-weighted mean {}", r43, r32));
-  const double sigma_squared = std::log(r43 / r32);
-  return make_lognormal(r32 * std::exp(-2.5 * sigma_squared), std::sqrt(sigma_squared), Basis::number, min,
-                        max);
+  return make_lognormal(std::sqrt(r43 * r32), std::sqrt(std::log(r43 / r32)), Basis::volume, min, max);
 }
 
 }  // namespace bernal

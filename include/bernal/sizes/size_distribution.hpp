@@ -48,7 +48,7 @@ std::unique_ptr<SizeDistribution> make_uniform(double min, double max, Basis);
 /// [min, max] (0 and infinity for none).
 std::unique_ptr<SizeDistribution> make_lognormal(double median, double sigma, Basis, double min, double max);
 /// The lognormal distribution whose volume-weighted mean <r⁴>/<r³> is `r43` and whose surface-weighted mean
-/// <r³>/<r²> is `r32`, before it is truncated: sigma² = ln(r43 / r32), median by number r32·exp(-5/2 sigma²).
+/// <r³>/<r²> is `r32`, before it is truncated: sigma² = ln(r43 / r32), median by volume √(r43·r32).
 std::unique_ptr<SizeDistribution> make_lognormal_of_means(double r43, double r32, double min, double max);
 
 }  // namespace bernal
