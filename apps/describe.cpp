@@ -24,13 +24,6 @@ std::string shown(const Value& value) {
 
 }  // namespace
 
-std::string grouped(std::uint64_t n) {
-  std::string digits = fmt::format("{}", n);
-  for (std::size_t from_right = 3; from_right < digits.size(); from_right += 4)
-    digits.insert(digits.size() - from_right, 1, ',');
-  return digits;
-}
-
 std::string describe_container(const Plan& plan) {
   const std::string& unit = plan.scene.unit;
   const Vector<3> size = bounds_of(plan.container).size();

@@ -2,10 +2,8 @@
 #include <cstdint>
 #include <string>
 
+#include "bernal/core/text.hpp"
 #include "bernal/run/run.hpp"
-
-/// 28312 as "28,312".
-std::string grouped(std::uint64_t n);
 
 /// "cylinder of 2 x 2 x 2 m, volume 6.28319 m³".
 std::string describe_container(const bernal::Plan& plan);

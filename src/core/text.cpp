@@ -45,4 +45,12 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
   return nearest;
 }
 
+std::string grouped(std::uint64_t n) {
+  std::string digits = std::to_string(n);
+  for (std::size_t from_right = 3; from_right < digits.size(); from_right += 4) {
+    digits.insert(digits.size() - from_right, 1, ',');
+  }
+  return digits;
+}
+
 }  // namespace bernal

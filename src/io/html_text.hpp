@@ -1,7 +1,8 @@
 #pragma once
-#include <cstdint>
 #include <string>
 #include <string_view>
+
+#include "bernal/core/text.hpp"
 
 namespace bernal {
 
@@ -26,13 +27,6 @@ inline std::string escaped(std::string_view text) {
         out += c;
     }
   }
-  return out;
-}
-
-/// 1234567 as 1,234,567.
-inline std::string grouped(std::uint64_t n) {
-  std::string out = std::to_string(n);
-  for (std::size_t place = out.size(); place > 3; place -= 3) out.insert(place - 3, ",");
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/domain/container.hpp"
 #include "run/catalogue.hpp"
 #include "run/fitting.hpp"
@@ -42,14 +43,6 @@ Frame working_frame(const Plan& plan) {
         plan.scene.container.where);
   }
   return frame;
-}
-
-std::string grouped(std::size_t n) {
-  std::string s = std::to_string(n);
-  for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(s.size()) - 3; at > 0; at -= 3) {
-    s.insert(static_cast<std::size_t>(at), ",");
-  }
-  return s;
 }
 
 /// How the last stage's end, and what the scene asked for, make the outcome of the run.

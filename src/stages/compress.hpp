@@ -6,7 +6,7 @@ namespace bernal {
 struct CompressOptions {
   Vector<3> direction = -Vector<3>::UnitZ();  ///< global compression direction, unit
   double tilt = 2;          ///< local directions are direction + tilt·(random unit vector); 0: none
-  double tolerance = 1e-3;  ///< converged when an iteration lowers the potential by less than this share
+  double tolerance = 1e-2;  ///< converged when an iteration lowers the potential by less than this share
   int max_iterations = 400;
   double buffer = 0.5;  ///< room in a sphere's bounding box on each side, in mean radii
 };

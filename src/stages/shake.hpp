@@ -4,7 +4,7 @@
 namespace bernal {
 
 struct ShakeOptions {
-  int rounds = 4;        ///< each: sweeps across the direction, then compression
+  int rounds = 2;        ///< each: sweeps across the direction, then compression
   double amplitude = 2;  ///< longest way of a sphere in one sweep, in mean radii
   CompressOptions compress;
 };

@@ -8,16 +8,12 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "verify/judge_pairs.hpp"
 #include "verify/judge_walls.hpp"
 
 namespace bernal {
 namespace {
-
-/// 27639 as "27,639".
-std::string grouped(std::uint64_t n) {
-  return n < 1000 ? fmt::format("{}", n) : fmt::format("{},{:03}", grouped(n / 1000), n % 1000);
-}
 
 /// "1 sphere", "1,200 spheres".
 std::string counted(std::uint64_t n, std::string_view one, std::string_view many) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <span>
 #include <string_view>
 
@@ -8,5 +9,8 @@ namespace bernal {
 /// neighbour counts one, case does not count), the first of equals; "" when none is near enough to be meant:
 /// more than a third of the letters of the longer word differ.
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates);
+
+/// 28312 as "28,312".
+std::string grouped(std::uint64_t n);
 
 }  // namespace bernal
