@@ -165,7 +165,10 @@ inline Mesh translated(Mesh mesh, const Vector<3>& by) {
   return mesh;
 }
 
-inline Mesh inverted(Mesh mesh) { return mesh; }
+inline Mesh inverted(Mesh mesh) {
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
 
 inline Mesh joined(Mesh mesh, const Mesh& other) {
   const std::uint32_t first = index(mesh.vertices.size());
