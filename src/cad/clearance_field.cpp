@@ -10,16 +10,16 @@ namespace bernal::cad {
 namespace {
 
 constexpr int cubes_along_longest_edge = 32;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double widening = 1e-6;  ///< of a cube's edge
 
 /// Of a point outside the bounds.
-constexpr ClearanceBounds beyond = {-std::numeric_limits<double>::infinity(),
-                                    -std::numeric_limits<double>::denorm_min()};
+constexpr ClearanceBounds beyond = {-infinity, -std::numeric_limits<double>::denorm_min()};
 
 }  // namespace
 
 ClearanceField::ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds)
-    : lower_(bounds.lower), upper_(bounds.upper) {
+    : tree_(tree), lower_(bounds.lower), upper_(bounds.upper) {
   edge_ = bounds.size().maxCoeff() / cubes_along_longest_edge;
   per_edge_ = 1 / edge_;
   for (int k = 0; k < 3; ++k)
@@ -31,12 +31,13 @@ ClearanceField::ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds
   // the result does not depend on the number of threads.
   tbb::parallel_for(0, count_[1] * count_[2], [&](int row) {
     const int y = row % count_[1], z = row / count_[1];
-    double last = std::numeric_limits<double>::infinity();
+    double last = infinity;
     bool inside = false;
     for (int x = 0; x < count_[0]; ++x) {
       const Vector<3> center = center_of(x, y, z);
       const double most = (std::abs(last) + edge_) * (1 + widening);
-      if (x == 0 || std::abs(last) <= edge_ * (1 + widening)) inside = tree.side(center) == Side::inside;
+      if (x == 0 || std::abs(last) <= edge_ * (1 + widening))
+        inside = tree.crossing(center, 0, -infinity) == Crossing::odd;
       const double distance = tree.distance(center, most);
       last = inside ? distance : -distance;
       clearance_[static_cast<std::size_t>(row) * count_[0] + x] = last;
@@ -54,6 +55,25 @@ ClearanceBounds ClearanceField::at(const Vector<3>& p) const {
   const std::size_t row = static_cast<std::size_t>(cell[2]) * count_[1] + cell[1];
   const double clearance = clearance_[row * count_[0] + cell[0]];
   return {clearance - away, clearance + away};
+}
+
+Side ClearanceField::side(const Vector<3>& p) const {
+  const ClearanceBounds here = at(p);
+  if (here.inside()) return Side::inside;
+  if (here.outside()) return Side::outside;
+  for (int step = 1;; ++step) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int sign : {-1, 1}) {
+        Vector<3> end = p;
+        end[axis] += sign * step * edge_;
+        const ClearanceBounds there = at(end);
+        if (!there.inside() && !there.outside()) continue;
+        const Crossing crossing = tree_.crossing(p, axis, end[axis]);
+        if (crossing == Crossing::starts_on_wall) return Side::wall;
+        return there.inside() == (crossing == Crossing::even) ? Side::inside : Side::outside;
+      }
+    }
+  }
 }
 
 }  // namespace bernal::cad

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -6,6 +7,8 @@
 #include "cad/triangle_tree.hpp"
 
 namespace bernal::cad {
+
+enum class Side : std::uint8_t { inside, wall, outside };
 
 /// What is known of a point's clearance without asking the tree.
 struct ClearanceBounds {
@@ -21,18 +24,24 @@ struct ClearanceBounds {
 /// decided by one look.
 ///
 /// The bounds are proven: sides are decided exactly, and they are widened by a millionth of a cube, which is
-/// far more than rounding takes. Cost: building, one bounded nearest search a cube; a look, 5 ns.
+/// far more than rounding takes. Cost: building, one bounded nearest search a cube; a look, 5 ns. The tree
+/// must outlive the field.
 class ClearanceField {
  public:
   ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds);
 
   ClearanceBounds at(const Vector<3>& p) const;
 
+  /// On which side of the wall p is, exactly: walks from p along the axes to the nearest cube whose side is
+  /// known and counts the crossings of the wall on that way, which is short.
+  Side side(const Vector<3>& p) const;
+
  private:
   Vector<3> center_of(int x, int y, int z) const {
     return lower_ + edge_ * (Vector<3>(x, y, z) + Vector<3>::Constant(0.5));
   }
 
+  const TriangleTree& tree_;
   Vector<3> lower_, upper_;
   double edge_ = 0, per_edge_ = 0;
   int count_[3] = {0, 0, 0};

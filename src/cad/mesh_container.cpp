@@ -33,7 +33,7 @@ class MeshContainer final : public Container {
   double clearance_within(const Vector<3>& p, double reach) const override {
     const cad::ClearanceBounds known = field_.at(p);
     if (known.lower >= reach) return reach;
-    const cad::Side side = side_of(p, known);
+    const cad::Side side = field_.side(p);
     if (side == cad::Side::wall) return std::min(0.0, reach);
     if (side == cad::Side::outside) return -tree_.distance(p, -known.lower);
     return tree_.distance(p, std::min(reach, known.upper));
@@ -45,7 +45,7 @@ class MeshContainer final : public Container {
         arithmetic_ == WallArithmetic::exact ? cad::ClearanceBounds{} : field_.at(c);
     if (known.lower >= r && known.inside()) return true;
     if (known.outside() || known.upper < r) return false;
-    return tree_.clears(c, r, arithmetic_) && side_of(c, known) != cad::Side::outside;
+    return tree_.clears(c, r, arithmetic_) && field_.side(c) != cad::Side::outside;
   }
 
   void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
@@ -60,12 +60,6 @@ class MeshContainer final : public Container {
   }
 
  private:
-  cad::Side side_of(const Vector<3>& p, const cad::ClearanceBounds& known) const {
-    if (known.inside()) return cad::Side::inside;
-    if (known.outside()) return cad::Side::outside;
-    return tree_.side(p);
-  }
-
   WallArithmetic arithmetic_;
   Bounds<3> bounds_;
   double volume_;

@@ -19,8 +19,10 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
+/// So many triangles are looked at one by one: that is cheaper than the boxes of the last levels of the tree.
+constexpr std::size_t group = 4;
+
 Kernel::Point_3 to_cgal(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
-Kernel::Point_2 seen_from_above(const Vector<3>& p) { return {p[0], p[1]}; }
 
 /// The tree's leaves own their triangles, so that a query reads them in the order of the tree.
 class Leaf {
@@ -29,14 +31,32 @@ class Leaf {
   using Point = Kernel::Point_3;
   using Datum = Kernel::Triangle_3;
 
-  explicit Leaf(std::vector<WallTriangle>::const_iterator triangle) : triangle_(*triangle) {}
+  explicit Leaf(std::vector<WallTriangle>::const_iterator triangle)
+      : triangle_(*triangle),
+        normal_((triangle->b - triangle->a).cross(triangle->c - triangle->a).normalized()) {}
   const WallTriangle& triangle() const { return triangle_; }
+  const Vector<3>& normal() const { return normal_; }
+
+  /// min u·(p - v) over the vertices v: a lower bound of the distance of p for every unit vector u.
+  double depth_along(const Vector<3>& u, const Vector<3>& p) const {
+    return std::min(std::min(u.dot(p - triangle_.a), u.dot(p - triangle_.b)), u.dot(p - triangle_.c));
+  }
+  /// That bound for the better of both normals and all points between p and p + step. Where the triangle is a
+  /// needle its normal is inaccurate, and the bound still is one.
+  double depth_along_normal(const Vector<3>& p, const Vector<3>& step = Vector<3>::Zero()) const {
+    const double a = normal_.dot(p - triangle_.a), b = normal_.dot(p - triangle_.b),
+                 c = normal_.dot(p - triangle_.c), s = normal_.dot(step);
+    const double above = std::min(std::min(a, b), c) + std::min(s, 0.0);
+    const double below = -std::max(std::max(a, b), c) - std::max(s, 0.0);
+    return std::max(above, below);
+  }
   Id id() const { return triangle_.id; }
   Point reference_point() const { return to_cgal(triangle_.a); }
   Datum datum() const { return {to_cgal(triangle_.a), to_cgal(triangle_.b), to_cgal(triangle_.c)}; }
 
  private:
   WallTriangle triangle_;
+  Vector<3> normal_;
 };
 
 using TreeTraits = CGAL::AABB_traits<Kernel, Leaf>;
@@ -44,9 +64,9 @@ using Tree = CGAL::AABB_tree<TreeTraits>;
 using Node = CGAL::AABB_node<TreeTraits>;
 
 double squared_distance(const Vector<3>& p, const CGAL::Bbox_3& box) {
-  const double x = std::max({box.xmin() - p[0], 0.0, p[0] - box.xmax()});
-  const double y = std::max({box.ymin() - p[1], 0.0, p[1] - box.ymax()});
-  const double z = std::max({box.zmin() - p[2], 0.0, p[2] - box.zmax()});
+  const double x = std::max(std::max(box.xmin() - p[0], p[0] - box.xmax()), 0.0);
+  const double y = std::max(std::max(box.ymin() - p[1], p[1] - box.ymax()), 0.0);
+  const double z = std::max(std::max(box.zmin() - p[2], p[2] - box.zmax()), 0.0);
   return x * x + y * y + z * z;
 }
 
@@ -71,16 +91,28 @@ class NearestTraversal {
     const double squared = squared_distance(p, node.bbox());
     return {squared < squared_bound_, -squared};
   }
+  template <typename Iterator>
+  void traverse_group(const Vector<3>& p, Iterator first, Iterator last) {
+    for (; first != last; ++first) intersection(p, *first);
+  }
   void intersection(const Vector<3>& p, const Leaf& leaf) {
-    const double d = distance(p, leaf.triangle());
+    // Triangles that cannot be nearer, but for a rounding, cost no more than these bounds: on a smooth wall
+    // that is nearly all of those whose boxes reach into the ball.
+    const double enough = bound_ * (1 - 4 * tolerance::roundoff);
+    if (leaf.depth_along(towards_, p) >= enough || leaf.depth_along_normal(p) >= enough) return;
+    const WallTriangle& t = leaf.triangle();
+    const Vector<3> offset = PreparedTriangle(t.a, t.b, t.c).offset(p);
+    const double d = offset.norm();
     if (d >= bound_) return;
     bound_ = d;
     squared_bound_ = d * d;
+    if (d > 0) towards_ = offset / d;
   }
   double bound() const { return bound_; }
 
  private:
   double bound_, squared_bound_;
+  Vector<3> towards_ = Vector<3>::Zero();  ///< from the nearest point so far to p
 };
 
 /// Ends at the first triangle for which `clears(triangle)` is false, among those whose boxes reach into the
@@ -143,7 +175,12 @@ class MoveTraversal {
     const double t = entry(c, node.bbox());
     return {t <= limit_, -t};
   }
+  template <typename Iterator>
+  void traverse_group(const Vector<3>& c, Iterator first, Iterator last) {
+    for (; first != last; ++first) intersection(c, *first);
+  }
   void intersection(const Vector<3>& c, const Leaf& leaf) {
+    if (leaf.depth_along_normal(c, limit_ * direction_) >= r_ + 0.75 * skin_) return;
     const WallTriangle& t = leaf.triangle();
     limit_ = first_contact_with_triangle(c, r_, direction_, limit_, t.a, t.b, t.c, skin_);
   }
@@ -166,43 +203,66 @@ class MoveTraversal {
   Vector<3> direction_, per_direction_;
 };
 
-/// Counts the triangles straight above p' = p + (epsilon², epsilon, 0) for an infinitesimal epsilon > 0,
-/// which no edge and no vertex lies above; sees whether p itself is on a triangle.
-class AboveTraversal {
+/// Counts the triangles that the way from p along an axis crosses, as seen along that axis: not from p itself
+/// but from p' = p + (epsilon², epsilon) in the plane across, for an infinitesimal epsilon > 0, so that no
+/// edge and no vertex is ever hit. Predicates are exact. Sees also whether p itself is on a triangle.
+class CrossingTraversal {
  public:
+  CrossingTraversal(const Vector<3>& p, int axis, double end)
+      : start_(to_cgal(p)),
+        axis_(axis),
+        u_((axis + 1) % 3),
+        v_((axis + 2) % 3),
+        low_(std::min(p[axis], end)),
+        high_(std::max(p[axis], end)),
+        upwards_(end > p[axis]) {
+    Vector<3> far_end = p;
+    far_end[axis] = end;
+    end_ = to_cgal(far_end);
+  }
+
   bool go_further() const { return !on_wall_; }
   bool do_intersect(const Vector<3>& p, const Node& node) const {
     const CGAL::Bbox_3& box = node.bbox();
-    return box.xmin() <= p[0] && p[0] <= box.xmax() && box.ymin() <= p[1] && p[1] <= box.ymax() &&
-           p[2] <= box.zmax();
+    return box.min(u_) <= p[u_] && p[u_] <= box.max(u_) && box.min(v_) <= p[v_] && p[v_] <= box.max(v_) &&
+           box.min(axis_) <= high_ && low_ <= box.max(axis_);
   }
   void intersection(const Vector<3>& p, const Leaf& leaf) {
     const WallTriangle& t = leaf.triangle();
-    const int side = CGAL::orientation(to_cgal(t.a), to_cgal(t.b), to_cgal(t.c), to_cgal(p));
-    if (side == 0 && leaf.datum().has_on(to_cgal(p))) {
+    const Kernel::Point_3 a = to_cgal(t.a), b = to_cgal(t.b), c = to_cgal(t.c);
+    const int start_side = CGAL::orientation(a, b, c, start_);
+    if (start_side == 0 && leaf.datum().has_on(start_)) {
       on_wall_ = true;
       return;
     }
     const int ab = turn(t.a, t.b, p);
     if (ab == 0 || turn(t.b, t.c, p) != ab || turn(t.c, t.a, p) != ab) return;
-    // p' is in the triangle's shadow, which runs counterclockwise if ab > 0: then side < 0 means below.
-    above_ += side * ab < 0;
+    // p' is in the triangle's shadow, which runs counterclockwise if ab > 0.
+    const int end_side =
+        std::isinf(low_) || std::isinf(high_) ? (upwards_ ? ab : -ab) : CGAL::orientation(a, b, c, end_);
+    odd_ ^= start_side != end_side;
   }
-  Side side() const { return on_wall_ ? Side::wall : above_ % 2 == 1 ? Side::inside : Side::outside; }
+  Crossing crossing() const {
+    return on_wall_ ? Crossing::starts_on_wall : odd_ ? Crossing::odd : Crossing::even;
+  }
 
  private:
-  /// The turn a -> b -> p' seen from above: that of p, and where p is in line the terms of its first and
+  Kernel::Point_2 seen(const Vector<3>& p) const { return {p[u_], p[v_]}; }
+
+  /// The turn a -> b -> p' seen along the axis: that of p, and where p is in line the terms of its first and
   /// second order in epsilon. 0 only for an edge that is seen as a point, and then its triangle as a line.
-  static int turn(const Vector<3>& a, const Vector<3>& b, const Vector<3>& p) {
-    if (const int s = CGAL::orientation(seen_from_above(a), seen_from_above(b), seen_from_above(p)); s != 0)
-      return s;
-    if (a[0] != b[0]) return a[0] < b[0] ? 1 : -1;
-    if (a[1] != b[1]) return a[1] < b[1] ? -1 : 1;
+  int turn(const Vector<3>& a, const Vector<3>& b, const Vector<3>& p) const {
+    if (const int s = CGAL::orientation(seen(a), seen(b), seen(p)); s != 0) return s;
+    if (a[u_] != b[u_]) return a[u_] < b[u_] ? 1 : -1;
+    if (a[v_] != b[v_]) return a[v_] < b[v_] ? -1 : 1;
     return 0;
   }
 
-  bool on_wall_ = false;
-  unsigned above_ = 0;
+  Kernel::Point_3 start_, end_;
+  int axis_, u_, v_;
+  double low_, high_;
+  bool upwards_;
+  bool on_wall_ = false, odd_ = false;
 };
 
 }  // namespace
@@ -228,7 +288,7 @@ TriangleTree::TriangleTree(TriangleTree&&) noexcept = default;
 
 double TriangleTree::distance(const Vector<3>& p, double bound) const {
   NearestTraversal traversal(bound);
-  impl_->tree.traversal_with_priority(p, traversal);
+  impl_->tree.traversal_with_priority_and_group_traversal(p, traversal, group);
   return traversal.bound();
 }
 
@@ -261,14 +321,14 @@ void TriangleTree::within(const Vector<3>& c, double reach, std::vector<NearFace
 double TriangleTree::first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit,
                                    double skin) const {
   MoveTraversal traversal(r, direction, limit, skin);
-  impl_->tree.traversal_with_priority(c, traversal);
+  impl_->tree.traversal_with_priority_and_group_traversal(c, traversal, group);
   return traversal.limit();
 }
 
-Side TriangleTree::side(const Vector<3>& p) const {
-  AboveTraversal traversal;
+Crossing TriangleTree::crossing(const Vector<3>& p, int axis, double end) const {
+  CrossingTraversal traversal(p, axis, end);
   impl_->tree.traversal(p, traversal);
-  return traversal.side();
+  return traversal.crossing();
 }
 
 }  // namespace bernal::cad

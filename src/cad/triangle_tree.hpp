@@ -8,7 +8,7 @@
 
 namespace bernal::cad {
 
-enum class Side : std::uint8_t { inside, wall, outside };
+enum class Crossing : std::uint8_t { even, odd, starts_on_wall };
 
 /// The triangles of a closed mesh in a CGAL AABB tree, and the questions a container asks of them. All
 /// queries are const and may run in several threads.
@@ -35,9 +35,10 @@ class TriangleTree {
   double first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit,
                        double skin) const;
 
-  /// On which side of the wall p is, exactly, whatever p: parity of the triangles above p in exact
-  /// predicates, with p moved by infinitesimals so that no edge or vertex is hit.
-  Side side(const Vector<3>& p) const;
+  /// Whether p is on the wall and, if not, whether the way from p along the axis to the coordinate `end`
+  /// crosses the wall an odd number of times, exactly. Its end must not be on the wall; infinity is a good
+  /// end.
+  Crossing crossing(const Vector<3>& p, int axis, double end) const;
 
  private:
   struct Impl;

@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "bernal/core/tolerance.hpp"
 #include "domain/analytic.hpp"
 #include "domain/exact_analytic.hpp"
 #include "domain/nearest_first.hpp"
@@ -34,11 +33,9 @@ class Box final : public Container {
   }
 
   bool contains(const Vector<3>& c, double r) const override {
-    // The clearance is the least of six differences, each rounded once, and the gap one more: both of
-    // relative error u. Outside, a norm of three follows.
-    const double clear = clearance(c);
-    const double error = 8 * tolerance::roundoff * (std::abs(clear) + r);
-    return decide_contains(arithmetic_, clear, r, error, [&] { return contains_exactly(shape_, c, r); });
+    // Inside, the clearance is one difference of doubles. Rounding never carries it across another double, so
+    // it is wrong about r only where it equals r.
+    return decide_contains(arithmetic_, clearance(c), r, 0.0, [&] { return contains_exactly(shape_, c, r); });
   }
 
   void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {

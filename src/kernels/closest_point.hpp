@@ -1,10 +1,6 @@
 #pragma once
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <utility>
 
-#include "bernal/core/tolerance.hpp"
 #include "bernal/core/vector.hpp"
 
 namespace bernal {
@@ -29,14 +25,16 @@ inline Vector<3> offset_from_segment(const Vector<3>& p, const Vector<3>& a, con
 /// A triangle made ready for distance queries that stay accurate on needles, caps and triangles without
 /// area.
 ///
-/// Coordinates are taken along the longest edge (the *base*), from its end nearer to the third vertex (the
-/// *apex*), and along the height over the base: p ~ corner + s·base + t·height. Both s·|base| and
-/// the residual after removing it are accurate to a few roundoffs of the lengths involved, so only the
-/// *direction* of the height suffers when the triangle is thin, by u·|side| / |height| (u the roundoff). A
-/// face candidate that lies inside is therefore on the triangle to rounding, and misses the nearest point
-/// sideways by no more than the smaller of |height| and |p - q|·u·|side| / |height|: in the *distance*
-/// that is at most a roundoff of the lengths, whatever the shape. Where no candidate lies inside, the
-/// nearest of the three edges is taken; no region is ever inferred from signs.
+/// Coordinates are taken along the longest edge (the *base*) and along the height over it: p ~ corner +
+/// s·base
+/// + t·height. Both s·|base| and the residual after removing it are accurate to a few roundoffs u of the
+/// lengths involved; only the *direction* of the height suffers when the triangle is thin, by u·|side| /
+/// |height|. So a face candidate that lies inside is on the triangle to rounding, and misses the nearest
+/// point sideways by no more than the smaller of |height| and |p - q|·u·|side| / |height|. In the distance
+/// that is at most a roundoff of the lengths, whatever the shape; and the plane through the candidate across
+/// p - q still has the whole triangle behind it to rounding, because the error is a tilt along the height,
+/// where the triangle is thin. Where no candidate lies inside, the nearest of the three edges is taken; no
+/// region is ever inferred from signs.
 class PreparedTriangle {
  public:
   PreparedTriangle(const Vector<3>& a, const Vector<3>& b, const Vector<3>& c)
@@ -47,7 +45,6 @@ class PreparedTriangle {
     } else if (ca > ab) {
       corner_ = c, end_ = a, apex_ = b;
     }
-    if ((apex_ - end_).squaredNorm() < (apex_ - corner_).squaredNorm()) std::swap(corner_, end_);
     base_ = end_ - corner_;
     const Vector<3> side = apex_ - corner_;
     per_squared_base_ = inverse(base_.squaredNorm());
@@ -72,16 +69,7 @@ class PreparedTriangle {
     return nearest;
   }
 
-  /// A bound on the error of the direction of `offset(p)`, as a sine, where `distance` is its length:
-  /// rounding of the offset, and what a thin triangle does not know of its own height.
-  double direction_error(double distance) const {
-    const double height = height_.norm();
-    const double side = (apex_ - corner_).norm();
-    const double rounding = 16 * tolerance::roundoff * (distance + 2 * base_.norm());
-    const double sideways =
-        height > 0 ? std::min(height, 16 * tolerance::roundoff * distance * side / height) : 0;
-    return (rounding + sideways) / distance;
-  }
+  double base_length() const { return base_.norm(); }
 
  private:
   static double inverse(double x) { return x > std::numeric_limits<double>::min() ? 1 / x : 0; }

@@ -36,7 +36,7 @@ const Wall& wall(std::int64_t triangles) {
     const auto around =
         static_cast<std::uint32_t>(std::lround(std::sqrt(double(triangles) / 2 * 0.15 / 0.35)));
     const auto along = static_cast<std::uint32_t>(triangles / 2 / around);
-    w.mesh = testing::torus_mesh(0.35, 0.15, along, around, 0.03);
+    w.mesh = test::torus_mesh(0.35, 0.15, along, around, 0.03);
     const double resolution = std::numeric_limits<double>::epsilon();
     w.plain = make_mesh_container(w.mesh, WallArithmetic::plain, resolution);
     w.edge = std::sqrt(area_of(w.mesh) / double(triangles) * 2);

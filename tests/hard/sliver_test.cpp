@@ -95,17 +95,20 @@ TEST_P(Slivers, TheDistanceIsRightToRounding) {
   EXPECT_LE(worst, 4 * tolerance::roundoff);
 }
 
-TEST_P(Slivers, TheDirectionIsRightToItsOwnBound) {
+// What Newton's method for a moving sphere rests on: the plane across the offset has the triangle behind it.
+// An offset wrong by some roundoffs of the lengths turns by that over the distance, and the far corners with
+// it.
+TEST_P(Slivers, TheOffsetSupportsTheTriangle) {
   for_many([&](const Triangle& t, Random& random) {
     const Vector<3> p = random_point(random, t);
-    const PreparedTriangle triangle(t[0], t[1], t[2]);
-    const Vector<3> offset = triangle.offset(p);
+    const Vector<3> offset = PreparedTriangle(t[0], t[1], t[2]).offset(p);
     const double distance = offset.norm();
-    const Point<Real> precise = precise_offset_of(t, p);
-    const Real length = norm(precise);
     if (distance < 1e-14) return;
-    const Real error = norm(Real(1 / length) * precise - Real(1 / Real(distance)) * Point<Real>(offset));
-    EXPECT_LE(static_cast<double>(error), triangle.direction_error(distance)) << "distance " << distance;
+    const Point<Real> n = Real(1 / Real(distance)) * Point<Real>(offset);
+    for (const Vector<3>& v : t) {
+      const double behind = static_cast<double>(dot(n, Point<Real>(p) - Point<Real>(v)) - distance);
+      EXPECT_GE(behind, -8 * tolerance::roundoff * (1 + (p - v).norm()) * (1 + 1 / distance));
+    }
   });
 }
 
@@ -139,6 +142,35 @@ TEST_P(Slivers, AMovingSphereNeverComesNearerThanHalfTheSkin) {
   });
   EXPECT_GT(limited, 500);
   EXPECT_GT(free, 500);
+}
+
+// A small sphere rests and glides, or sinks by next to nothing, over the whole length of the triangle: the
+// slope is known to some roundoffs of length / r, and over a long way that is more than the skin.
+TEST_P(Slivers, ASmallSphereGlidesFar) {
+  int went = 0;
+  for_many([&](const Triangle& t, Random& random) {
+    const double r = std::pow(10, random.uniform(-4, -3)), skin = tolerance::skin(r, 4.5e-16);
+    const PreparedTriangle triangle(t[0], t[1], t[2]);
+    Vector<3> c = t[0] + 1e-3 * uniform_direction<3>(random);
+    for (int k = 0; k < 3; ++k) {
+      const Vector<3> offset = triangle.offset(c);
+      c += (r + random.uniform(0.5, 0.6) * skin - offset.norm()) * offset.normalized();
+    }
+    const Vector<3> normal = triangle.offset(c).normalized();
+    const Vector<3> far = (t[1] - c).norm() > (t[2] - c).norm() ? t[1] : t[2];
+    Vector<3> direction = far - c;
+    direction -= (direction.dot(normal) + random.uniform(0, 2e-12)) * normal;
+    direction.normalize();
+    if (norm(precise_offset_of(t, c)) - r < skin / 2) return;
+    const double answer = first_contact_with_triangle(c, r, direction, 1, t[0], t[1], t[2], skin);
+    went += answer == 1;
+    for (const double way : {least_at(t, c, direction, answer), answer, 0.5 * answer}) {
+      const Point<Real> p = Point<Real>(c) + Real(way) * Point<Real>(direction);
+      ASSERT_GE(static_cast<double>(norm(precise_offset_of(t, p)) - r - Real(skin) / 2), -1e-15)
+          << "after " << way << " of " << answer;
+    }
+  });
+  EXPECT_GT(went, 50);
 }
 
 // What rests on a sliver can leave it.

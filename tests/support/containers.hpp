@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "bernal/cad/mesh_container.hpp"
 #include "bernal/domain/container.hpp"
+#include "support/meshes.hpp"
 #include "support/precise_distance.hpp"
 
 namespace bernal::test {
@@ -35,7 +37,13 @@ inline ContainerUnderTest localized(std::string name, const Shape& scene,
   return {std::move(name), to_local(scene, frame), frame.resolution, std::move(make)};
 }
 
-/// A new container is held to every law by one line here.
+inline std::unique_ptr<Container> mesh_container(const Shape& shape, WallArithmetic arithmetic,
+                                                 double resolution) {
+  return make_mesh_container(std::get<Mesh>(shape), arithmetic, resolution);
+}
+
+/// A new container is held to every law by one line here. Meshes are small, because the oracle looks at every
+/// triangle.
 inline std::vector<ContainerUnderTest> containers_under_test() {
   return {
       localized("Cube", BoxShape{{0, 0, 0}, {1, 1, 1}}),
@@ -45,6 +53,14 @@ inline std::vector<ContainerUnderTest> containers_under_test() {
       localized("FlatCylinderFarAway", CylinderShape{{2e4, 1e4, 0}, {1e-3, 2e-3, 1e-3}, 3, 0.5}),
       localized("Sphere", SphereShape{{0, 0, 0}, 1}),
       localized("SphereFarAway", SphereShape{{-7e3, 123.456, 1e4}, 0.6}),
+      localized("CubeMesh", box_mesh({0, 0, 0}, {1, 1, 1}), mesh_container),
+      localized("PrismMesh", prism_mesh(8, 1, 2), mesh_container),
+      localized("LShapeMeshFarAway", translated(l_shape_mesh(), {1e4, -2e4, 3e4}), mesh_container),
+      localized("IcosphereMesh", icosphere_mesh(1, 1), mesh_container),
+      localized("TorusMesh", torus_mesh(1, 0.4, 12, 6, 0.05), mesh_container),
+      localized("HelixMesh", helix_mesh(24, 4), mesh_container),
+      localized("SphereWithCavityMesh", joined(icosphere_mesh(1, 1), inverted(icosphere_mesh(0.5, 0))),
+                mesh_container),
   };
 }
 

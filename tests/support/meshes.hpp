@@ -13,7 +13,7 @@
 #include "bernal/domain/shape.hpp"
 
 // Meshes to test with, all closed and oriented outwards, and writers that keep every double.
-namespace bernal::testing {
+namespace bernal::test {
 
 inline std::uint32_t index(std::size_t i) { return static_cast<std::uint32_t>(i); }
 
@@ -101,6 +101,24 @@ inline Mesh torus_mesh(double major, double minor, std::uint32_t along, std::uin
       outward, [](double) { return Vector<3>(0, 0, -1); });
 }
 
+/// A tube wound three times around a torus: a closed helix whose turns come near each other, with edges and
+/// corners that are nearest points from inside as well as from outside.
+inline Mesh helix_mesh(std::uint32_t along = 96, std::uint32_t around = 10) {
+  constexpr double turn = 2 * std::numbers::pi;
+  const auto center = [](double u) {
+    const double angle = 3 * turn * u;
+    return Vector<3>((2 + std::cos(turn * u)) * std::cos(angle), (2 + std::cos(turn * u)) * std::sin(angle),
+                     2 * std::sin(turn * u));
+  };
+  const auto ahead = [=](double u) -> Vector<3> {
+    return (center(u + 1e-6) - center(u - 1e-6)).normalized();
+  };
+  const auto first = [=](double u) -> Vector<3> { return ahead(u).cross(Vector<3>::UnitZ()).normalized(); };
+  return closed_tube(
+      along, around, center, [](double, double) { return 0.35; }, first,
+      [=](double u) -> Vector<3> { return ahead(u).cross(first(u)); });
+}
+
 /// An icosahedron, each triangle divided `levels` times into four, on the sphere of the given radius.
 inline Mesh icosphere_mesh(double radius, int levels) {
   const double g = std::numbers::phi;
@@ -148,6 +166,7 @@ inline Mesh translated(Mesh mesh, const Vector<3>& by) {
 }
 
 inline Mesh inverted(Mesh mesh) {
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
 }
 
@@ -211,4 +230,4 @@ inline std::string as_binary_stl(const Mesh& mesh, std::string header = "binary"
   return out;
 }
 
-}  // namespace bernal::testing
+}  // namespace bernal::test
