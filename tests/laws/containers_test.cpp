@@ -115,8 +115,14 @@ TEST_P(ContainerLaws, FirstContactIsWhereSphereTracingStops) {
   for (int i = 0; i < 1000; ++i) {
     const double r = random_radius();
     const Vector<3> c = random_place(r);
-    const Vector<3> u = uniform_direction<3>(random);
-    const double limit = std::pow(10, random.uniform(-2, 1));
+    Vector<3> u = uniform_direction<3>(random);
+    double limit = std::pow(10, random.uniform(-2, 1));
+    if (i % 4 == 0) {  // straight at the wall, over before or after the skin by next to nothing
+      std::vector<WallPoint> walls;
+      container->walls_near(c, infinity, walls);
+      u = -walls.front().inward;
+      limit = std::max(0.0, walls.front().clearance - r + random.uniform(-1.5, 1) * skin(r));
+    }
     const double answer = container->first_contact(c, r, u, limit);
     ASSERT_GE(answer, 0);
     ASSERT_LE(answer, limit);

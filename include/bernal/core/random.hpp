@@ -12,7 +12,7 @@ namespace bernal {
 ///
 /// The sequence is a pure function of `(seed, stream)`; streams are independent of each other, so that what
 /// is drawn is keyed by what it is for and not by which thread draws it. Satisfies
-/// UniformRandomBitGenerator with 64-bit results. Portable: the same bits on every machine. Cost: about 5 ns
+/// UniformRandomBitGenerator with 64-bit results. Portable: the same bits on every machine. Cost: about 6 ns
 /// a number.
 class Random {
  public:
