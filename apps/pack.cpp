@@ -1,8 +1,9 @@
+#include <charconv>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -18,10 +19,12 @@ using namespace bernal;
 
 namespace {
 
+constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 63) - 1;  ///< that a scene can hold
+
 struct PackCall {
   std::filesystem::path scene;
   std::filesystem::path folder;
-  std::optional<std::int64_t> seed;
+  std::optional<std::uint64_t> seed;
   int threads = 0;
   bool quiet = false;
 };
@@ -42,15 +45,25 @@ void print_result(const Packing& packing, const WrittenPacking& written) {
     fmt::print(stderr, "{:<9}  {}\n", i == 0 ? "files" : "", written.files[i].string());
 }
 
+/// CLI11 would take a number that is too large for the largest one.
+std::uint64_t parse_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc{} || end != text.data() + text.size() || seed > largest_seed)
+    throw CLI::ValidationError(
+        "--seed", fmt::format("must be a whole number from 0 to {}, not {}", largest_seed, text));
+  return seed;
+}
+
 int pack(const PackCall& call) {
   const Plan plan = build(read_scene(call.scene));
   check_writable(call.folder);
+  watch_for_interrupts(call.quiet);
   if (!call.quiet) print_plan(plan);
 
-  watch_for_interrupts(call.quiet);
   ProgressBar bar(call.quiet);
   RunOptions options;
-  if (call.seed) options.seed = static_cast<std::uint64_t>(*call.seed);
+  options.seed = call.seed;
   options.threads = call.threads;
   options.monitor.on_progress = [&](const Progress& progress) { bar.show(progress); };
   options.monitor.cancelled = interrupted;
@@ -77,8 +90,10 @@ void add_pack(CLI::App& app, int& status) {
   command->add_option("-o,--output", call->folder, "Folder for the results; made if it does not exist")
       ->required()
       ->type_name("DIR");
-  command->add_option("--seed", call->seed, "Instead of the scene's; one seed gives one packing, bit for bit")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
+  command
+      ->add_option_function<std::string>(
+          "--seed", [call](const std::string& text) { call->seed = parse_seed(text); },
+          "Instead of the scene's; one seed gives one packing, bit for bit")
       ->type_name("N");
   command
       ->add_option("--threads", call->threads, "As many as the machine has if absent; the result is the same")

@@ -4,7 +4,7 @@ add_library(bernal_compile_options INTERFACE)
 target_compile_features(bernal_compile_options INTERFACE cxx_std_20)
 target_compile_options(bernal_compile_options INTERFACE
   -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
-  -ffp-contract=off -fno-fast-math -fno-math-errno)
+  -ffp-contract=off -fno-fast-math -fno-math-errno -fno-trapping-math)
 
 set(BERNAL_SANITIZE "" CACHE STRING "Value of -fsanitize= for every target, empty for none")
 if(BERNAL_SANITIZE)

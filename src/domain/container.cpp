@@ -1,6 +1,6 @@
 #include "bernal/domain/container.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
@@ -40,6 +40,12 @@ Vector<3> inward_normal(const Facet& f, const Vector<3>& q, const Vector<3>& c, 
   return -(f.b - f.a).cross(f.c - f.a).normalized();
 }
 
+void require(bool holds, const char* message) {
+  if (!holds) throw Error(ErrorCode::bad_argument, message);
+}
+
+bool is_length(double x) { return std::isfinite(x) && x > 0; }
+
 }  // namespace
 
 double Container::first_contact(const Vector<3>& c, double r, const Vector<3>& direction,
@@ -70,11 +76,24 @@ void Container::walls_near(const Vector<3>& c, double reach, std::vector<WallPoi
 
 std::unique_ptr<Container> make_analytic_container(const Shape& shape, WallArithmetic arithmetic,
                                                    double resolution) {
-  if (const auto* box = std::get_if<BoxShape>(&shape)) return make_box(*box, arithmetic, resolution);
-  if (const auto* cylinder = std::get_if<CylinderShape>(&shape))
+  if (const auto* box = std::get_if<BoxShape>(&shape)) {
+    require(box->corner.allFinite() && is_length(box->size[0]) && is_length(box->size[1]) &&
+                is_length(box->size[2]),
+            "a box needs three positive edges and a finite corner");
+    return make_box(*box, arithmetic, resolution);
+  }
+  if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+    require(is_length(cylinder->radius) && is_length(cylinder->height) && cylinder->base.allFinite(),
+            "a cylinder needs a positive radius and height and a finite base");
+    require(cylinder->axis.allFinite() && !cylinder->axis.isZero(0),
+            "a cylinder needs an axis that is finite and not zero");
     return make_cylinder(*cylinder, arithmetic, resolution);
-  if (const auto* sphere = std::get_if<SphereShape>(&shape))
+  }
+  if (const auto* sphere = std::get_if<SphereShape>(&shape)) {
+    require(is_length(sphere->radius) && sphere->center.allFinite(),
+            "a sphere needs a positive radius and a finite center");
     return make_sphere(*sphere, arithmetic, resolution);
+  }
   throw Error(ErrorCode::bad_argument, "a mesh is no analytic container: use make_mesh_container");
 }
 

@@ -12,7 +12,7 @@ namespace {
 class Cylinder final : public Container {
  public:
   Cylinder(const CylinderShape& shape, WallArithmetic arithmetic, double resolution)
-      : Container(resolution), shape_(shape), axis_(shape.axis.normalized()), arithmetic_(arithmetic) {
+      : Container(resolution), shape_(shape), axis_(shape.axis.stableNormalized()), arithmetic_(arithmetic) {
     Facet& lateral = facets_[0];
     lateral.kind = Facet::Kind::cylinder;
     lateral.a = shape.base;

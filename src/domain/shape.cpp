@@ -28,7 +28,7 @@ Bounds<3> bounds_of_points(const std::vector<Vector<3>>& points) {
 /// The two discs' bounds: a disc of radius R with the unit normal a has the half extents R·sqrt(1 - a_k²),
 /// written as the sum of the two other squares, which does not cancel.
 Bounds<3> bounds_of_cylinder(const CylinderShape& s) {
-  const Vector<3> axis = s.axis.normalized();
+  const Vector<3> axis = s.axis.stableNormalized();
   const Vector<3> top = s.base + s.height * axis;
   Vector<3> half;
   for (int k = 0; k < 3; ++k) half[k] = s.radius * std::hypot(axis[(k + 1) % 3], axis[(k + 2) % 3]);

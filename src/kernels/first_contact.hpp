@@ -20,24 +20,37 @@ namespace bernal {
 // Invariant: gap >= min(gap(0), skin/2) on the whole way, to a few roundoffs of the distances involved;
 // `skin` is at least a thousand of them.
 
+/// How a point that moves along a unit vector passes another one: nearest after the way `along` (negative: it
+/// has passed already), at a distance whose square is `squared_miss`. The error of the distance is a few
+/// roundoffs of that of the two points at the start, also where they pass close by.
+struct Approach {
+  double along;
+  double squared_miss;
+};
+
+template <int D>
+inline Approach closest_approach(const Vector<D>& to_other, const Vector<D>& direction) {
+  const double along = to_other.dot(direction);
+  return {along, (to_other - along * direction).squaredNorm()};
+}
+
 /// A sphere against a resting one in D dimensions: centres `c` and `other`, gap(t) = |c + t·direction -
-/// other|
-/// - sum_of_radii. The root of the quadratic is taken in the form without cancellation.
-/// Cost: 3 ns; less for a neighbour that is not on the way.
+/// other| - sum_of_radii. The root of the quadratic is taken in the form without cancellation.
+/// Cost: 1.5 ns a neighbour in a list whose limit shrinks, 4 ns where every other one is a hit.
 template <int D>
 inline double first_contact(const Vector<D>& c, const Vector<D>& direction, double limit,
                             const Vector<D>& other, double sum_of_radii, double skin) {
   const Vector<D> to_other = other - c;
-  const double along = to_other.dot(direction);
+  const Approach approach = closest_approach<D>(to_other, direction);
   const double stop = sum_of_radii + skin;
-  if (along <= 0 || along - stop >= limit) return limit;
+  if (approach.along <= 0 || approach.along - stop >= limit) return limit;
   const double ignore = sum_of_radii + 0.5 * skin;
-  const double squared_miss = (to_other - along * direction).squaredNorm();
-  if (squared_miss >= ignore * ignore) return limit;
-  const double t = (to_other.squaredNorm() - stop * stop) / (along + std::sqrt(stop * stop - squared_miss));
+  if (approach.squared_miss >= ignore * ignore) return limit;
+  const double t = (to_other.squaredNorm() - stop * stop) /
+                   (approach.along + std::sqrt(stop * stop - approach.squared_miss));
   if (t >= limit) return limit;
-  const double rest = along - limit;
-  if (rest > 0 && squared_miss + rest * rest >= ignore * ignore) return limit;
+  const double rest = approach.along - limit;
+  if (rest > 0 && approach.squared_miss + rest * rest >= ignore * ignore) return limit;
   return std::max(t, 0.0);
 }
 
@@ -104,7 +117,7 @@ inline double first_contact_inside_sphere(const Vector<3>& c, double r, const Ve
 /// f(t) = distance(c + t·direction, triangle) is convex and 1-Lipschitz, so Newton's method started left of
 /// the first root of f = level never passes it, and f(t) + f'(t)·(limit - t) bounds what is still to come.
 /// The slope is lowered by its own error bound, which keeps both statements true in floating point, also on
-/// slivers. Cost: 40 ns where the triangle does not limit, 25 ns an iteration (three to six) where it does.
+/// slivers. Cost: 45 ns where the triangle does not limit, 0.2 µs where it does (some five iterations).
 inline double first_contact_with_triangle(const Vector<3>& c, double r, const Vector<3>& direction,
                                           double limit, const Vector<3>& a, const Vector<3>& b,
                                           const Vector<3>& corner_c, double skin) {
@@ -113,9 +126,9 @@ inline double first_contact_with_triangle(const Vector<3>& c, double r, const Ve
   const double ignore = r + 0.5 * skin;
   constexpr int most_iterations = 64;
 
-  double t = 0;          // f is known to be at least `ignore` up to here
-  double answer = 0;     // the same, and at least about `stop`
-  bool stopped = false;  // `answer` is final unless the path proves harmless
+  double t = 0;          // f is at least `ignore` up to here
+  double answer = 0;     // the last t of which f was at least `stop`, or 0
+  bool stopped = false;  // f has come down to `stop`; is there more than grazing ahead?
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const Vector<3> p = c + t * direction;
     const Vector<3> offset = triangle.offset(p);

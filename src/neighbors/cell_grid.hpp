@@ -159,7 +159,8 @@ class CellGrid {
   }
   std::size_t index(const Level& level, const std::array<int, D>& at) const {
     std::size_t i = 0;
-    for (int k = D - 1; k >= 0; --k) i = i * static_cast<std::size_t>(level.cells[k]) + static_cast<std::size_t>(at[k]);
+    for (int k = D - 1; k >= 0; --k)
+      i = i * static_cast<std::size_t>(level.cells[k]) + static_cast<std::size_t>(at[k]);
     return level.offset + i;
   }
   std::uint32_t cell_of(const Level& level, const Vector<D>& c) const {

@@ -48,7 +48,7 @@ std::string written(const toml::node& node) {
 
 std::optional<Value> number_in(const toml::node& node) {
   if (!node.is_number()) return std::nullopt;
-  return *node.value<double>();
+  return *node.value<double>() + 0.0;  // -0 is 0
 }
 
 /// The node as the kind of value that a key of this type has; nothing if it is of another kind.
@@ -245,7 +245,7 @@ class Reader {
       const std::string& word = std::get<std::string>(*value);
       fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node), remedy(word, words));
     }
-    fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key),
+    fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
          written(node));
   }
 

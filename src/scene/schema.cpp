@@ -1,18 +1,11 @@
 #include "scene/schema.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include "bernal/core/unit.hpp"
 
 namespace bernal::schema {
 namespace {
-
-constexpr double smallest_length = 1e-30;
-constexpr double largest_length = 1e30;
 
 [[noreturn]] void refuse(const Spec& spec, std::string_view key, const std::string& message) {
   throw Error(ErrorCode::bad_scene, message, spec.location(key));
@@ -53,19 +46,35 @@ Key basis() {
           .words = {"number", "volume"}};
 }
 
-Key direction() {
-  return {.name = "direction",
-          .type = Type::direction,
-          .help = "where the spheres are pushed; its length is of no matter",
-          .otherwise = std::vector<double>{0, 0, -1}};
-}
-
-Key attempts() {
-  return {.name = "attempts",
-          .type = Type::integer,
-          .help = "random places tried for one sphere before it counts as not placeable",
-          .otherwise = 100,
-          .range = {1, 1e9}};
+/// Keys of `compress`, which `shake` and `refill` pass on to the compression that they end with.
+std::vector<Key> with_compression(std::vector<Key> keys) {
+  const Key compression[] = {
+      {.name = "direction",
+       .type = Type::direction,
+       .help = "where the spheres are pushed; its length is of no matter",
+       .otherwise = std::vector<double>{0, 0, -1}},
+      {.name = "tilt",
+       .type = Type::number,
+       .help = "how far a sphere's own direction leaves the common one; 0: not at all",
+       .otherwise = 2.0,
+       .range = {0, 100}},
+      {.name = "tolerance",
+       .type = Type::number,
+       .help = "relative fall of the potential energy in an iteration that counts as none",
+       .otherwise = 1e-3,
+       .range = {0, 1, true, true}},
+      {.name = "max_iterations",
+       .type = Type::integer,
+       .help = "after which it stops unconverged",
+       .otherwise = 400,
+       .range = {1, 1e9}},
+      {.name = "buffer",
+       .type = Type::number,
+       .help = "room in a sphere's bounding box on each side, in mean radii",
+       .otherwise = 0.5,
+       .range = {0.01, 10}}};
+  keys.insert(keys.end(), std::begin(compression), std::end(compression));
+  return keys;
 }
 
 Schema make_schema() {
@@ -80,7 +89,7 @@ Schema make_schema() {
                           .type = Type::integer,
                           .help = "one seed gives one packing, bit for bit",
                           .otherwise = 1,
-                          .range = {0, 0x1p63, false, true}}}},
+                          .range = {0, 0x1p63}}}},
 
       .spheres = {.name = "spheres",
                   .help = "how many spheres there are, and how large",
@@ -186,7 +195,11 @@ Schema make_schema() {
 
       .stages = {{.name = "insert",
                   .help = "place spheres at random where they overlap nothing",
-                  .keys = {attempts(),
+                  .keys = {{.name = "attempts",
+                            .type = Type::integer,
+                            .help = "random places tried for one sphere before it has to wait",
+                            .otherwise = 100,
+                            .range = {1, 1e9}},
                            {.name = "packing_fraction",
                             .type = Type::number,
                             .help = "where random insertion stops",
@@ -194,60 +207,51 @@ Schema make_schema() {
                             .range = {0, 1, true, true}}}},
                  {.name = "compress",
                   .help = "move every sphere along a direction until it touches",
-                  .keys = {direction(),
-                           {.name = "tolerance",
-                            .type = Type::number,
-                            .help = "relative fall of the mean height in one iteration that counts as none",
-                            .otherwise = 1e-4,
-                            .range = {0, 1, true, true}},
-                           {.name = "max_iterations",
-                            .type = Type::integer,
-                            .help = "after which it stops unconverged",
-                            .otherwise = 200,
-                            .range = {1, 1e9}},
-                           {.name = "buffer",
-                            .type = Type::number,
-                            .help = "how far neighbour lists reach beyond contact, in mean radii",
-                            .otherwise = 0.7,
-                            .range = {0, 10, true}},
-                           {.name = "tilt",
-                            .type = Type::number,
-                            .help = "how far a sphere's own direction leaves the common one; 0: not at all",
-                            .otherwise = 1.0,
-                            .range = {0, 100}}}},
+                  .keys = with_compression({})},
                  {.name = "shake",
-                  .help = "move spheres to and fro across the direction, so that arches break",
-                  .keys = {direction(),
-                           {.name = "rounds",
-                            .type = Type::integer,
-                            .help = "how often",
-                            .otherwise = 8,
-                            .range = {1, 1e9}}}},
+                  .help = "move spheres across the direction, so that arches break, and compress again",
+                  .keys = with_compression({{.name = "rounds",
+                                             .type = Type::integer,
+                                             .help = "how often",
+                                             .otherwise = 4,
+                                             .range = {1, 1e9}},
+                                            {.name = "amplitude",
+                                             .type = Type::number,
+                                             .help = "longest way in one sweep, in mean radii",
+                                             .otherwise = 2.0,
+                                             .range = {0, 100, true}}})},
                  {.name = "refill",
-                  .help = "insert into the free space and compress again, until it is full",
-                  .keys = {direction(),
-                           attempts(),
-                           {.name = "max_rounds",
-                            .type = Type::integer,
-                            .help = "after which it stops unfilled",
-                            .otherwise = 100,
-                            .range = {1, 1e9}}}}},
+                  .help = "insert into the free space, compress and shake, until the container is full",
+                  .keys =
+                      with_compression({{.name = "probes",
+                                         .type = Type::number,
+                                         .help = "random places probed in a round, a sphere that may fit in",
+                                         .otherwise = 20.0,
+                                         .range = {0, 1e6, true}},
+                                        {.name = "max_rounds",
+                                         .type = Type::integer,
+                                         .help = "after which it stops unfilled",
+                                         .otherwise = 200,
+                                         .range = {1, 1e9}},
+                                        {.name = "patience",
+                                         .type = Type::number,
+                                         .help = "full when a round adds less than this share",
+                                         .otherwise = 5e-4,
+                                         .range = {0, 1}},
+                                        {.name = "shakes",
+                                         .type = Type::integer,
+                                         .help = "rounds of shaking after each refilling",
+                                         .otherwise = 1,
+                                         .range = {0, 1e9}},
+                                        {.name = "amplitude",
+                                         .type = Type::number,
+                                         .help = "longest way in one sweep of shaking, in mean radii",
+                                         .otherwise = 2.0,
+                                         .range = {0, 100, true}}})}},
 
       .protocol = {"insert", "compress", "shake", "refill"},
   };
 }
-
-std::string number_range(const Range& range) {
-  const bool from = std::isfinite(range.min), to = std::isfinite(range.max);
-  const std::string lower = fmt::format("{} {}", range.above_min ? "above" : "of at least", range.min);
-  const std::string upper = fmt::format("{} {}", range.below_max ? "below" : "of at most", range.max);
-  if (from && to) return fmt::format("a number {} and {}", lower, upper);
-  if (from || to) return fmt::format("a number {}", from ? lower : upper);
-  return "a finite number";
-}
-
-bool is_length(double v) { return v >= smallest_length && v <= largest_length; }
-bool is_coordinate(double v) { return std::abs(v) <= largest_length; }
 
 }  // namespace
 
@@ -264,77 +268,6 @@ const Entry* Schema::find(const std::vector<Entry>& entries, std::string_view na
 const Schema& schema() {
   static const Schema all = make_schema();
   return all;
-}
-
-std::string expectation(const Key& key) {
-  switch (key.type) {
-    case Type::flag:
-      return "true or false";
-    case Type::integer:
-      return key.range.max > 0x1p53
-                 ? fmt::format("a whole number of at least {}", key.range.min)
-                 : fmt::format("a whole number from {:.0f} to {:.0f}", key.range.min, key.range.max);
-    case Type::number:
-      return number_range(key.range);
-    case Type::length:
-      return "a positive length";
-    case Type::word:
-      return fmt::format("\"{}\"", fmt::join(key.words, "\" or \""));
-    case Type::unit:
-      return "the name of a unit";
-    case Type::file:
-      return "the path of a file";
-    case Type::direction:
-      return "a direction [x, y, z]";
-    case Type::position:
-      return "a point [x, y, z]";
-    case Type::extents:
-      return "three positive lengths [a, b, c]";
-    case Type::lengths:
-      return "an array of positive lengths";
-    case Type::shares:
-      return "an array of positive numbers";
-    case Type::distribution:
-      return "a positive length or a table { distribution = … }";
-  }
-  return {};
-}
-
-bool accepts(const Key& key, const Value& value) {
-  const auto number = [&] { return std::get<double>(value); };
-  const auto numbers = [&]() -> const std::vector<double>& { return std::get<std::vector<double>>(value); };
-  const auto text = [&]() -> const std::string& { return std::get<std::string>(value); };
-  switch (key.type) {
-    case Type::flag:
-      return true;
-    case Type::integer:
-      return key.range.contains(static_cast<double>(std::get<std::int64_t>(value)));
-    case Type::number:
-      return std::isfinite(number()) && key.range.contains(number());
-    case Type::length:
-      return is_length(number());
-    case Type::word:
-      return std::ranges::find(key.words, text()) != key.words.end();
-    case Type::unit:
-      return std::ranges::find(units(), text(), &Unit::name) != units().end();
-    case Type::file:
-      return !text().empty() && text().find('\0') == std::string::npos;
-    case Type::direction: {
-      const auto nonzero = [](double v) { return is_length(std::abs(v)); };
-      return numbers().size() == 3 && std::ranges::all_of(numbers(), is_coordinate) &&
-             std::ranges::any_of(numbers(), nonzero);
-    }
-    case Type::position:
-      return numbers().size() == 3 && std::ranges::all_of(numbers(), is_coordinate);
-    case Type::extents:
-      return numbers().size() == 3 && std::ranges::all_of(numbers(), is_length);
-    case Type::lengths:
-    case Type::shares:
-      return !numbers().empty() && std::ranges::all_of(numbers(), is_length);
-    case Type::distribution:
-      return is_length(number());
-  }
-  return false;
 }
 
 }  // namespace bernal::schema

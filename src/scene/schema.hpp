@@ -77,8 +77,9 @@ struct Schema {
 };
 const Schema& schema();
 
-/// What a value of this key must be, for people: "a positive length", "a whole number from 1 to 100".
-std::string expectation(const Key&);
+/// What a value of this key must be, for people: "a positive length", "a whole number from 1 to 100"; with
+/// its limits where only they refuse the one that was `given`.
+std::string expectation(const Key&, const std::optional<Value>& given = {});
 
 /// Whether a value of the right kind is one that the key accepts. Lengths and coordinates beyond 1e±30 are
 /// not: volumes must neither overflow nor vanish.

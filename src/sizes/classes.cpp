@@ -39,6 +39,13 @@ class Classes final : public SizeDistribution {
     return sum;
   }
 
+  double moment_above(int k, double radius) const override {
+    double sum = 0;
+    for (const Class& c : classes_)
+      if (c.radius > radius) sum += c.share * std::pow(c.radius, k);
+    return sum;
+  }
+
   double min() const override { return classes_.front().radius; }
   double max() const override { return classes_.back().radius; }
 

@@ -14,6 +14,7 @@ class Constant final : public SizeDistribution {
   double quantile(double) const override { return radius_; }
   double cumulative(double radius) const override { return radius < radius_ ? 0 : 1; }
   double moment(int k) const override { return std::pow(radius_, k); }
+  double moment_above(int k, double radius) const override { return radius < radius_ ? moment(k) : 0; }
   double min() const override { return radius_; }
   double max() const override { return radius_; }
 

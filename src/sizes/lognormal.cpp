@@ -61,9 +61,13 @@ class Lognormal final : public SizeDistribution {
     return normal_between(alpha_, (std::log(radius) - mu_) / sigma_) / mass_;
   }
 
-  double moment(int k) const override {
+  double moment(int k) const override { return moment_above(k, min_); }
+
+  double moment_above(int k, double radius) const override {
+    if (radius >= max_) return 0;
+    const double from = radius > min_ ? (std::log(radius) - mu_) / sigma_ : alpha_;
     const double shift = k * sigma_;
-    return std::exp(k * mu_ + 0.5 * shift * shift) * normal_between(alpha_ - shift, beta_ - shift) / mass_;
+    return std::exp(k * mu_ + 0.5 * shift * shift) * normal_between(from - shift, beta_ - shift) / mass_;
   }
 
   double min() const override { return min_; }
@@ -104,9 +108,7 @@ std::unique_ptr<SizeDistribution> make_lognormal_of_means(double r43, double r32
     throw Error(
         ErrorCode::bad_argument,
         fmt::format("the volume-weighted mean {} must exceed the surface-weighted mean {}", r43, r32));
-  const double sigma_squared = std::log(r43 / r32);
-  return make_lognormal(r32 * std::exp(-2.5 * sigma_squared), std::sqrt(sigma_squared), Basis::number, min,
-                        max);
+  return make_lognormal(std::sqrt(r43 * r32), std::sqrt(std::log(r43 / r32)), Basis::volume, min, max);
 }
 
 }  // namespace bernal

@@ -9,7 +9,8 @@ namespace {
 
 /// Number density proportional to r^(n-1) on [a, b]: n = 1 is uniform by number, n = -2 is uniform by volume,
 /// because a sphere's volume grows as r³. With l = ln(b / a) and g(n) = (e^(n l) - 1) / n,
-///   F(r) = (e^(n ln(r/a)) - 1) / (e^(n l) - 1),   <r^k> = a^k g(n + k) / g(n).
+///   F(r) = (e^(n ln(r/a)) - 1) / (e^(n l) - 1),   <r^k> = a^k g(n + k) / g(n);
+/// the same with r for a, times (r/a)^n, is what radii above r contribute.
 class Uniform final : public SizeDistribution {
  public:
   Uniform(double a, double b, Basis basis)
@@ -28,12 +29,19 @@ class Uniform final : public SizeDistribution {
     return std::expm1(n_ * std::log1p((r - a_) / a_)) / std::expm1(n_ * l_);
   }
 
-  double moment(int k) const override { return std::pow(a_, k) * integral(n_ + k) / integral(n_); }
+  double moment(int k) const override { return moment_above(k, a_); }
+
+  double moment_above(int k, double radius) const override {
+    const double r = std::clamp(radius, a_, b_);
+    return std::pow(r, k) * std::pow(r / a_, n_) * integral(n_ + k, std::log1p((b_ - r) / r)) /
+           integral(n_, l_);
+  }
+
   double min() const override { return a_; }
   double max() const override { return b_; }
 
  private:
-  double integral(int n) const { return n == 0 ? l_ : std::expm1(n * l_) / n; }
+  static double integral(int n, double l) { return n == 0 ? l : std::expm1(n * l) / n; }
 
   double a_;
   double b_;

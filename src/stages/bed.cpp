@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "bernal/core/tolerance.hpp"
-#include "kernels/first_contact.hpp"
 
 namespace bernal {
 namespace {
@@ -59,7 +58,9 @@ bool Bed::fits(const Vector<3>& c, double r) const {
     const double s = r + balls_[j].r + skin_;
     return (balls_[j].center - c).squaredNorm() < s * s;
   });
-  return !overlaps && container_.contains(c, r + skin_);
+  if (overlaps) return false;
+  ++wall_decisions_;
+  return container_.contains(c, r + skin_);
 }
 
 double Bed::gap_to_neighbors(const Vector<3>& c, double enough, double limit) const {
@@ -105,7 +106,8 @@ void Bed::sort_by_height(const Vector<3>& direction) {
   keys.reserve(balls_.size());
   for (Id i = 0; i < balls_.size(); ++i) {
     const Vector<3>& c = balls_[i].center;
-    keys.push_back({std::floor(-direction.dot(c) / layer), std::floor(across.dot(c) / layer), along_row.dot(c), i});
+    keys.push_back(
+        {std::floor(-direction.dot(c) / layer), std::floor(across.dot(c) / layer), along_row.dot(c), i});
   }
   std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
     return std::tie(a.height, a.row, a.place, a.id) < std::tie(b.height, b.row, b.place, b.id);
@@ -183,79 +185,6 @@ void Bed::enclose(double buffer) {
   concatenate(near_spheres, first_neighbor_, neighbors_);
   concatenate(near_facets, first_facet_, facets_);
   effects_["walls"].calls += std::accumulate(wall_queries.begin(), wall_queries.end(), std::uint64_t{0});
-}
-
-FreePath Bed::free_path(Id i, const Vector<3>& u, double limit) const {
-  const Ball& ball = balls_[i];
-  FreePath path{limit};
-  for (int k = 0; k < 3; ++k) {
-    const double off = ball.center[k] - box_centers_[i][k];
-    const double room = u[k] > 0 ? (buffer_ - off) : (buffer_ + off);
-    if (room < path.length * std::abs(u[k])) {
-      path.length = std::max(0.0, room / std::abs(u[k]));
-      path.end = FreePath::End::box;
-    }
-  }
-
-  Id blocker = CellGrid<3>::none;
-  for (const Id j : neighbors(i)) {
-    const double free =
-        first_contact<3>(ball.center, u, path.length, balls_[j].center, ball.r + balls_[j].r, skin_);
-    if (free < path.length) {
-      path.length = free;
-      blocker = j;
-    }
-  }
-  if (blocker != CellGrid<3>::none) {
-    path.end = FreePath::End::neighbor;
-    path.normal = (ball.center + path.length * u - balls_[blocker].center).normalized();
-  }
-  return first_facet_[i] == first_facet_[i + 1] ? path : wall_path(i, u, path);
-}
-
-FreePath Bed::wall_path(Id i, const Vector<3>& u, FreePath path) const {
-  const Ball& ball = balls_[i];
-  const double moved = (ball.center - box_centers_[i]).norm();
-  const NearFacet* blocker = nullptr;
-  for (std::uint32_t k = first_facet_[i]; k < first_facet_[i + 1]; ++k) {
-    const NearFacet& near = facets_[k];
-    // Facets stand in the order of their distance from the box's centre: the rest is out of reach.
-    if (near.distance - moved - path.length > ball.r + 2 * skin_) break;
-    const double free = first_contact(near.facet, ball.center, ball.r, u, path.length, skin_);
-    if (free < path.length) {
-      path.length = free;
-      blocker = &near;
-    }
-  }
-  if (blocker != nullptr) {
-    const Vector<3> end = ball.center + path.length * u;
-    path.end = FreePath::End::wall;
-    path.normal = (end - closest_point(blocker->facet, end)).normalized();
-  }
-  return path;
-}
-
-std::size_t Bed::contacts(Id i, const Vector<3>& u, double gap, std::span<Vector<3>> normals) const {
-  const Ball& ball = balls_[i];
-  std::size_t count = 0;
-  for (const Id j : neighbors(i)) {
-    const Vector<3> from_other = ball.center - balls_[j].center;
-    const double touching = ball.r + balls_[j].r + gap;
-    const double squared = from_other.squaredNorm();
-    if (squared > touching * touching || from_other.dot(u) >= 0) continue;
-    if (count == normals.size()) return count;
-    normals[count++] = from_other / std::sqrt(squared);
-  }
-  const double moved = (ball.center - box_centers_[i]).norm();
-  for (std::uint32_t k = first_facet_[i]; k < first_facet_[i + 1]; ++k) {
-    if (facets_[k].distance - moved > ball.r + gap) break;
-    const Vector<3> from_wall = ball.center - closest_point(facets_[k].facet, ball.center);
-    const double squared = from_wall.squaredNorm();
-    if (squared > (ball.r + gap) * (ball.r + gap) || from_wall.dot(u) >= 0) continue;
-    if (count == normals.size()) return count;
-    normals[count++] = from_wall / std::sqrt(squared);
-  }
-  return count;
 }
 
 Spheres<3> Bed::spheres() const {

@@ -10,20 +10,10 @@
 
 namespace bernal {
 
-/// How far a sphere may move, and what stops it there.
-struct FreePath {
-  enum class End : std::uint8_t { limit, box, neighbor, wall };
-  double length = 0;
-  End end = End::limit;
-  Vector<3> normal = Vector<3>::Zero();  ///< for neighbor and wall: unit, from the obstacle to the sphere
-
-  bool blocked() const { return end == End::neighbor || end == End::wall; }
-};
-
 /// The bed: spheres in their container while they are being packed, in the packer's frame.
 ///
 /// Every stage obeys walls and neighbours through the same two calls: `fits` for a sphere that appears,
-/// `free_path` for one that moves. Both keep every gap at or above skin/2 (core/tolerance.hpp), so that
+/// `Mover::free_path` for one that moves. Both keep every gap at or above skin/2 (core/tolerance.hpp), so that
 /// nothing ever overlaps.
 ///
 /// Between two calls of `enclose` each sphere may move within its own bounding box, a cube around its place
@@ -75,28 +65,20 @@ class Bed {
   /// and near walls of all spheres together. Parallel; the same lists for any number of threads. O(N).
   void enclose(double buffer);
 
-  /// How far sphere i may move along the unit vector u, at most `limit`. Precondition: `enclose` was called
-  /// after the last insertion, removal or sort.
-  FreePath free_path(Id i, const Vector<3>& u, double limit) const;
-
-  /// Moves sphere i by a displacement that `free_path` allowed.
-  void advance(Id i, const Vector<3>& displacement) { balls_[i].center += displacement; }
-
+  /// The spheres that sphere i may meet within their bounding boxes.
   std::span<const Id> neighbors(Id i) const {
     return {neighbors_.data() + first_neighbor_[i], first_neighbor_[i + 1] - first_neighbor_[i]};
   }
 
-  /// Writes into `normals` (unit, from the obstacle to the sphere) the obstacles of sphere i with a gap of at
-  /// most `gap` that oppose a motion along u; at most `normals.size()` of them. Returns how many. A hint at
-  /// which directions are worth a `free_path`; nothing that limits a motion.
-  std::size_t contacts(Id i, const Vector<3>& u, double gap, std::span<Vector<3>> normals) const;
+  /// How often the wall was asked whether a sphere may appear.
+  std::uint64_t wall_decisions() const { return wall_decisions_; }
 
   /// The spheres in the order of their tags.
   Spheres<3> spheres() const;
 
  private:
+  friend class Mover;
   void reorder(const std::vector<Id>& order);
-  FreePath wall_path(Id i, const Vector<3>& u, FreePath path) const;
 
   const Container& container_;
   EffectLog& effects_;
@@ -106,6 +88,7 @@ class Bed {
   CellGrid<3> grid_;
   double sum_of_radii_ = 0;
   double sum_of_volumes_ = 0;
+  mutable std::uint64_t wall_decisions_ = 0;
 
   double buffer_ = 0;
   std::vector<Vector<3>> box_centers_;
@@ -113,7 +96,8 @@ class Bed {
   std::vector<Id> neighbors_;
   std::vector<std::uint32_t> first_facet_;  // CSR: walls near i start here, nearest first
   std::vector<NearFacet> facets_;
-  std::vector<double> far_from_wall_;  // clearance of the centre is at least this much, less what it moved since
+  std::vector<double>
+      far_from_wall_;  // clearance of the centre is at least this much, less what it moved since
   std::vector<Vector<3>> far_from_wall_at_;
 };
 

@@ -22,7 +22,9 @@ constexpr double waking = 1e-3;
 /// next to which something moved. A sphere whose surroundings have not changed cannot move.
 class GlobalSweeps {
  public:
-  explicit GlobalSweeps(Bed& bed, const Vector<3>& direction) : bed_(bed), direction_(direction) { wake_all(); }
+  explicit GlobalSweeps(Bed& bed, const Vector<3>& direction) : bed_(bed), mover_(bed), direction_(direction) {
+    wake_all();
+  }
 
   void wake_all() { awake_.assign(bed_.size(), 1); }
 
@@ -30,7 +32,7 @@ class GlobalSweeps {
   void sweep() {
     for (Bed::Id i = 0; i < bed_.size(); ++i) {
       if (!awake_[i]) continue;
-      const double moved = slide(bed_, i, direction_, std::numeric_limits<double>::infinity()) / bed_[i].r;
+      const double moved = slide(mover_, i, direction_, std::numeric_limits<double>::infinity()) / bed_[i].r;
       awake_[i] = moved > resting;
       if (moved <= waking) continue;
       for (const Bed::Id j : bed_.neighbors(i)) awake_[j] = 1;
@@ -53,6 +55,7 @@ class GlobalSweeps {
 
  private:
   Bed& bed_;
+  Mover mover_;
   Vector<3> direction_;
   std::vector<char> awake_;
 };
@@ -70,12 +73,13 @@ double floor_of(const Bounds<3>& bounds, const Vector<3>& direction) {
 
 void sweep_at_random(Bed& bed, const Vector<3>& pull, double tilt, const Vector<3>& across, double limit,
                      Random& random) {
+  Mover mover(bed);
   for (Bed::Id i = 0; i < bed.size(); ++i) {
     Vector<3> u = uniform_direction<3>(random);
     u -= u.dot(across) * across;
     u = pull + tilt * u;
     const double length = u.norm();
-    if (length > 1e-6) slide(bed, i, u / length, limit);
+    if (length > 1e-6) slide(mover, i, u / length, limit);
   }
 }
 

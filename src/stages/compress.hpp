@@ -5,10 +5,10 @@ namespace bernal {
 
 struct CompressOptions {
   Vector<3> direction = -Vector<3>::UnitZ();  ///< global compression direction, unit
-  double tilt = 2;            ///< local directions are direction + tilt·(random unit vector); 0: none
-  double tolerance = 1e-3;    ///< converged when an iteration lowers the potential by less than this share
+  double tilt = 2;          ///< local directions are direction + tilt·(random unit vector); 0: none
+  double tolerance = 1e-3;  ///< converged when an iteration lowers the potential by less than this share
   int max_iterations = 400;
-  double buffer = 0.5;        ///< room in a sphere's bounding box on each side, in mean radii
+  double buffer = 0.5;  ///< room in a sphere's bounding box on each side, in mean radii
 };
 
 /// Compression (Han, Feng & Owen 2005, section 2.1). In an iteration all spheres get a bounding box and all

@@ -1,16 +1,24 @@
 #include "stages/insert.hpp"
 
 namespace bernal {
+namespace {
 
-std::size_t insert(Bed& bed, Supply& supply, const InsertOptions& options, Random& random,
-                   const Monitor& monitor) {
+/// A milestone, and a look at whether the user wants to stop, every so many spheres.
+constexpr std::size_t milestone_every = 8192;
+
+}  // namespace
+
+StageEnd insert(Work& work, const InsertOptions& options) {
+  EffectTimer timer(work.effects, "insertion");
+  Bed& bed = work.bed;
+  Supply& supply = work.supply;
+  Random random = work.random(Stream::insert);
   const Bounds<3> bounds = bed.container().bounds();
   // Trials are counted inside the container, of which its bounds are a multiple.
   const double attempts = options.attempts * std::max(1.0, bounds.volume() / bed.container().volume());
-  const std::size_t before = bed.size();
-  std::size_t waiting = 0;  // how many at the head of the window found no place
-  while (!supply.exhausted() && waiting < supply.window().size() &&
-         bed.packing_fraction() < options.packing_fraction && !monitor.stop()) {
+  std::size_t waiting = 0;  // so many at the head of the window found no place
+  while (waiting < supply.window().size() && bed.packing_fraction() < options.packing_fraction) {
+    if (work.monitor.stop()) return StageEnd::cancelled;
     const std::uint32_t tag = supply.window()[waiting];
     const double r = supply.radius(tag);
     bool placed = false;
@@ -22,11 +30,9 @@ std::size_t insert(Bed& bed, Supply& supply, const InsertOptions& options, Rando
       placed = true;
     }
     if (!placed) ++waiting;
-    if (bed.size() % 1024 == 0) {
-      monitor.report({"insert", bed.packing_fraction() / options.packing_fraction});
-    }
+    if (placed && bed.size() % milestone_every == 0) work.milestone("insert");
   }
-  return bed.size() - before;
+  return waiting > 0 && waiting == supply.window().size() ? StageEnd::full : StageEnd::converged;
 }
 
 }  // namespace bernal

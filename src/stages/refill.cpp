@@ -35,8 +35,9 @@ std::size_t fill_free_space(Work& work, double probes_a_sphere) {
   const double mean_volume = 4.0 / 3.0 * std::numbers::pi * std::pow(bed.mean_radius(), 3);
   const double capacity = container.bounds().volume() / mean_volume;
   bed.update_grid();
-  std::vector<Probe> probes = probe_free_space(bed, supply.smallest(), supply.largest(),
-                                               static_cast<std::size_t>(probes_a_sphere * capacity) + 1000, random);
+  std::vector<Probe> probes =
+      probe_free_space(bed, supply.smallest(), supply.largest(),
+                       static_cast<std::size_t>(probes_a_sphere * capacity) + 1000, random);
   const std::size_t before = bed.size();
   std::size_t waiting = 0;
   while (waiting < supply.window().size()) {

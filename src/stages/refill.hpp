@@ -5,9 +5,9 @@ namespace bernal {
 
 struct RefillOptions {
   int max_rounds = 200;
-  double probes = 20;          ///< random places looked at in a round, for each sphere that the container may hold
-  double patience = 5e-4;      ///< full when a round adds fewer spheres than this share of those there are
-  ShakeOptions shake;          ///< between two rounds; its compression also follows every refilling
+  double probes = 20;  ///< random places looked at in a round, for each sphere that the container may hold
+  double patience = 5e-4;  ///< full when a round adds fewer spheres than this share of those there are
+  ShakeOptions shake;      ///< between two rounds; its compression also follows every refilling
 };
 
 /// Refilling (Han, Feng & Owen 2005, section 2): spheres still to come are put wherever the free space holds

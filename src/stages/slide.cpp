@@ -55,22 +55,23 @@ Vector<3> part_left_free(const Vector<3>& wanted, Normals normals) {
 
 }  // namespace
 
-double slide(Bed& bed, Bed::Id i, const Vector<3>& direction, double limit) {
+double slide(Mover& mover, Bed::Id i, const Vector<3>& direction, double limit) {
+  mover.pick(i);
   std::array<Vector<3>, most_contacts> contacts;
-  const Vector<3> start = bed[i].center;
-  std::size_t count = bed.contacts(i, direction, contact_gap * bed[i].r + bed.skin(), contacts);
+  const Vector<3> start = mover.ball().center;
+  std::size_t count = mover.contacts(direction, contact_gap * mover.ball().r + 2 * mover.skin(), contacts);
   for (int leg = 0; leg < most_legs && count < most_contacts; ++leg) {
     const Vector<3> part = part_left_free(direction, Normals(contacts.data(), count));
     const double share = part.norm();
     if (share < least_progress) break;
     const Vector<3> u = part / share;
-    const FreePath path = bed.free_path(i, u, limit);
-    if (path.length > 0) bed.advance(i, path.length * u);
+    const FreePath path = mover.free_path(u, limit);
+    mover.advance(u, path.length);
     limit -= path.length;
     if (!path.blocked() || limit <= 0) break;
     contacts[count++] = path.normal;
   }
-  return (bed[i].center - start).norm();
+  return (mover.ball().center - start).norm();
 }
 
 }  // namespace bernal

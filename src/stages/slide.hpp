@@ -1,5 +1,5 @@
 #pragma once
-#include "stages/bed.hpp"
+#include "stages/mover.hpp"
 
 namespace bernal {
 
@@ -9,6 +9,6 @@ namespace bernal {
 /// one `free_path`, so no gap ever falls below skin/2.
 ///
 /// Returns how far the sphere is from where it was. Cost: one pass over the neighbours, and one more a leg.
-double slide(Bed& bed, Bed::Id i, const Vector<3>& direction, double limit);
+double slide(Mover& mover, Bed::Id i, const Vector<3>& direction, double limit);
 
 }  // namespace bernal

@@ -11,8 +11,8 @@ namespace {
 
 /// No stage packs denser than this, so a `fill` never needs more spheres than make up so much of the volume.
 constexpr double densest = 0.95;
-/// The window's share of the whole sequence: the most that trimming can cost.
-constexpr double window_share = 0.002;
+/// The window's share of the spheres that may come.
+constexpr double window_share = 0.003;
 constexpr double most_spheres = 2147483647.0;
 
 double volume_of_ball(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
@@ -25,30 +25,30 @@ Supply::Supply(const SizeDistribution& radii, double scale, double volume, const
   const double fraction = target.packing_fraction.value_or(densest);
   const double expected = target.count ? static_cast<double>(*target.count) : fraction * volume / mean_volume;
   if (!(expected < most_spheres)) {
-    throw Error(ErrorCode::bad_scene,
-                "the container would hold more than 2^31 spheres of these sizes; use larger ones or ask for a count",
-                target.where);
+    throw Error(
+        ErrorCode::bad_scene,
+        "the container would hold more than 2^31 spheres of these sizes; use larger ones or ask for a count",
+        target.where);
   }
   radii_.reserve(static_cast<std::size_t>(expected * 1.01) + 16);
   Random random(seed, stream(Stream::radii));
   double filled = 0;
-  while (target.count ? radii_.size() < static_cast<std::size_t>(*target.count) : filled < fraction * volume) {
+  while (target.count ? radii_.size() < static_cast<std::size_t>(*target.count)
+                      : filled < fraction * volume) {
     radii_.push_back(radii.sample(random) / scale);
     filled += volume_of_ball(radii_.back());
   }
   const auto [smallest, largest] = std::minmax_element(radii_.begin(), radii_.end());
   smallest_ = *smallest;
   largest_ = *largest;
-  width_ = smallest_ == largest_ ? 1 : std::max<std::size_t>(16, static_cast<std::size_t>(window_share * expected));
+  width_ = smallest_ == largest_
+               ? 1
+               : std::max<std::size_t>(16, static_cast<std::size_t>(window_share * expected));
   open_window();
 }
 
 void Supply::open_window() {
-  while (window_.size() < width_ && next_ < radii_.size()) {
-    // The window never reaches further than its width beyond the first missing sphere.
-    if (!window_.empty() && next_ - window_.front() >= width_) break;
-    window_.push_back(next_++);
-  }
+  while (window_.size() < width_ && next_ < radii_.size()) window_.push_back(next_++);
 }
 
 void Supply::take(std::size_t k) {
@@ -56,6 +56,14 @@ void Supply::take(std::size_t k) {
   open_window();
 }
 
-std::uint32_t Supply::first_missing() const { return window_.empty() ? next_ : window_.front(); }
+std::size_t Supply::passed_over() const {
+  // The window is ascending and ends in spheres that nothing later was placed after.
+  std::size_t untouched = 0;
+  while (untouched < window_.size() &&
+         window_[window_.size() - 1 - untouched] == next_ - 1 - static_cast<std::uint32_t>(untouched)) {
+    ++untouched;
+  }
+  return window_.size() - untouched;
+}
 
 }  // namespace bernal

@@ -9,15 +9,15 @@ namespace bernal {
 
 /// The spheres that are still to come: the drawn sequence of radii, less those that have been placed.
 ///
-/// A sphere's tag is its place in the sequence. Stages may place the spheres of a short window out of order,
-/// so that one large sphere does not hold up the rest; what was placed beyond the first missing one is taken
-/// out again at the end. So the result is always the drawn sequence less its tail, and the size distribution
-/// is not biased towards what fits more easily.
+/// A sphere's tag is its place in the sequence. Stages place the spheres of a short window, in any order, so
+/// that a large one that finds no place does not hold up the rest: at most a window's width of them is ever
+/// passed over. So the sizes are not biased towards what fits more easily.
 class Supply {
  public:
   /// Draws all radii that a volume of `volume` could ever need, in units of `scale` (the packer's frame), by
   /// the seed's stream of radii. Throws Error{bad_scene} if those are more than 2^31.
-  Supply(const SizeDistribution& radii, double scale, double volume, const Target& target, std::uint64_t seed);
+  Supply(const SizeDistribution& radii, double scale, double volume, const Target& target,
+         std::uint64_t seed);
 
   /// Nothing more is to be placed: the target has been reached.
   bool exhausted() const { return window_.empty(); }
@@ -28,7 +28,12 @@ class Supply {
   void take(std::size_t k);
 
   /// All tags below this one have been placed.
-  std::uint32_t first_missing() const;
+  std::uint32_t first_missing() const { return window_.empty() ? next_ : window_.front(); }
+  /// How many spheres were passed over, i.e. are missing although a later one was placed.
+  std::size_t passed_over() const;
+  /// Whether the spheres from `first_missing` on are so few that taking them out again, which makes the
+  /// result exactly the drawn sequence less its tail, costs no more than a window's width.
+  bool trimming_is_cheap() const { return next_ - first_missing() <= 2 * width_; }
   /// How many spheres the target asks for; for `fill` an upper bound.
   std::size_t wanted() const { return radii_.size(); }
   double smallest() const { return smallest_; }
@@ -39,7 +44,7 @@ class Supply {
 
   std::vector<double> radii_;
   std::vector<std::uint32_t> window_;
-  std::uint32_t next_ = 0;
+  std::uint32_t next_ = 0;  // the first tag that was never in the window
   std::size_t width_ = 1;
   double smallest_ = 0;
   double largest_ = 0;

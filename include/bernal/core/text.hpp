@@ -1,12 +1,12 @@
 #pragma once
 #include <span>
-#include <string>
 #include <string_view>
 
 namespace bernal {
 
-/// The candidate nearest to `name` in edit distance, or "" when none is near enough to be meant
-/// (more than a third of the letters differ).
+/// The candidate nearest to `name` in edit distance (a letter inserted, left out, replaced or swapped with its
+/// neighbour counts one, case does not count), the first of equals; "" when none is near enough to be meant:
+/// more than a third of the letters of the longer word differ.
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates);
 
 }  // namespace bernal

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -18,9 +19,9 @@ enum class WallArithmetic {
 
 /// A point of the wall as a sphere's centre sees it.
 struct WallPoint {
-  Vector<3> point;    ///< on the wall
-  Vector<3> inward;   ///< unit normal at `point` towards the centre, or inward where the centre lies on it
-  double clearance;   ///< signed distance from the centre, positive inside
+  Vector<3> point;   ///< on the wall
+  Vector<3> inward;  ///< unit normal at `point` towards the centre, or inward where the centre lies on it
+  double clearance;  ///< signed distance from the centre, positive inside
 };
 
 /// What spheres are packed into: a bounded region of three-dimensional space and its wall.
@@ -39,6 +40,12 @@ class Container {
   /// largest coordinate.
   virtual double clearance(const Vector<3>& p) const = 0;
 
+  /// The smaller of `clearance(p)` and `reach`: the question "is a wall within reach?", which for a mesh
+  /// costs the less the smaller `reach` is.
+  virtual double clearance_within(const Vector<3>& p, double reach) const {
+    return std::min(clearance(p), reach);
+  }
+
   /// Whether the ball of radius r >= 0 around c lies inside, touching allowed; decided as the container's
   /// WallArithmetic promises.
   virtual bool contains(const Vector<3>& c, double r) const = 0;
@@ -48,10 +55,12 @@ class Container {
   virtual void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const = 0;
 
   /// How far a sphere of radius r at c, inside, may move along the unit vector `direction` before its
-  /// clearance falls to the skin (see core/tolerance.hpp), at most `limit`. Never rounded towards the wall: the clearance stays at or above
-  /// r + skin/2 on the whole way if it was so at the start. A sphere that rests on the wall can leave it; one
-  /// that penetrates slightly can move outwards of the wall, never further in: then the answer is 0.
-  double first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const;
+  /// clearance falls to r + skin (see core/tolerance.hpp), at most `limit` >= 0. Never rounded towards the
+  /// wall: the clearance stays at or above r + skin/2 on the whole way if it was so at the start. A sphere
+  /// that rests on the wall can leave it; one that penetrates slightly can move out of the wall, never
+  /// further in: then the answer is 0. A tangent of a round wall leads into it at once, so what slides there
+  /// has to aim along a chord.
+  virtual double first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const;
 
   /// Appends the wall points within `reach` of `c`, one a facet, edge or corner (each once), nearest first.
   void walls_near(const Vector<3>& c, double reach, std::vector<WallPoint>& out) const;
@@ -66,8 +75,8 @@ class Container {
   double resolution_;
 };
 
-/// The container of a box, cylinder or sphere. Throws Error{bad_argument} for a mesh: see
-/// `make_mesh_container` in bernal/cad.
+/// The container of a box, cylinder or sphere. Throws Error{bad_argument} for lengths that are not positive
+/// and finite or an axis without direction, and for a mesh: see `make_mesh_container` in bernal/cad.
 std::unique_ptr<Container> make_analytic_container(const Shape&, WallArithmetic, double resolution);
 
 }  // namespace bernal

@@ -22,6 +22,9 @@ class SizeDistribution {
   virtual double cumulative(double radius) const = 0;
   /// Mean of radius^k, any integer k.
   virtual double moment(int k) const = 0;
+  /// What radii above `radius` >= 0 contribute to moment(k): the integral of r^k over them. Precise in the upper
+  /// tail, where 1 - cumulative is not.
+  virtual double moment_above(int k, double radius) const = 0;
   virtual double min() const = 0;
   /// Infinity where the distribution has an unbounded tail.
   virtual double max() const = 0;
@@ -45,7 +48,7 @@ std::unique_ptr<SizeDistribution> make_uniform(double min, double max, Basis);
 /// [min, max] (0 and infinity for none).
 std::unique_ptr<SizeDistribution> make_lognormal(double median, double sigma, Basis, double min, double max);
 /// The lognormal distribution whose volume-weighted mean <r⁴>/<r³> is `r43` and whose surface-weighted mean
-/// <r³>/<r²> is `r32`, before it is truncated: sigma² = ln(r43 / r32), median by number r32·exp(-5/2 sigma²).
+/// <r³>/<r²> is `r32`, before it is truncated: sigma² = ln(r43 / r32), median by volume √(r43·r32).
 std::unique_ptr<SizeDistribution> make_lognormal_of_means(double r43, double r32, double min, double max);
 
 }  // namespace bernal

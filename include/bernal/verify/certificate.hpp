@@ -16,25 +16,31 @@ enum class Arithmetic {
 /// What was proven about spheres in a container, taking the doubles as written for exact real numbers.
 ///
 /// For every pair of spheres: |ci - cj| >= ri + rj. For every sphere: its ball lies inside the closed
-/// container. Pairs and walls that bounding boxes separate are not counted; every other one is decided
-/// exactly. Touching is allowed.
+/// container. Touching is allowed. Pairs and triangles of a mesh that bounding boxes separate are not
+/// counted; every other one is decided exactly, and so is every sphere against each of the six faces of a
+/// box, the base, the top and the side of a cylinder, or the wall of a sphere.
 struct Certificate {
   bool certified = false;  ///< no overlap, no protrusion, every radius positive and finite
 
   std::uint64_t spheres = 0;
-  std::uint64_t pairs_tested = 0;   ///< near pairs
-  std::uint64_t walls_tested = 0;   ///< near pairs of a sphere and a piece of wall
-  std::uint64_t centers_tested = 0; ///< centres whose side of the wall was decided
-  std::uint64_t decided_double = 0; ///< of the three sums above, by the filter
-  std::uint64_t decided_exact = 0;  ///< of the three sums above, by exact arithmetic
+  std::uint64_t pairs_tested = 0;    ///< near pairs
+  std::uint64_t walls_tested = 0;    ///< near pairs of a sphere and a piece of wall
+  std::uint64_t centers_tested = 0;  ///< centres whose side of a mesh was decided
+  std::uint64_t decided_double = 0;  ///< of the three sums above, by the filter
+  std::uint64_t decided_exact = 0;   ///< of the three sums above, by exact arithmetic
 
   std::uint64_t overlapping_pairs = 0;
   std::uint64_t protruding_spheres = 0;  ///< crossing the wall or outside it
 
-  /// The pair with the largest (ri + rj - d) / (ri + rj), over near pairs; first == second when there is none.
+  /// The pair with the largest (ri + rj - d) / (ri + rj), over near pairs; first == second when there is
+  /// none.
   std::uint64_t worst_pair[2] = {0, 0};
-  double max_overlap = 0;  ///< that ratio in double; <= 0 when nothing overlaps
-  /// The sphere with the smallest (clearance - r) / r, over spheres near a wall, and that ratio in double.
+  /// That ratio in double, with the sign of the exact decision: > 0 if and only if spheres overlap. 0 if no
+  /// pair is near.
+  double max_overlap = 0;
+  /// The sphere with the smallest (clearance - r) / r, over spheres near a wall or outside, and that ratio in
+  /// double, with the sign of the exact decision: < 0 if and only if a sphere protrudes. Outside a box or a
+  /// cylinder the clearance is that from the worst of its faces. 0 if no sphere is near.
   std::uint64_t worst_wall = 0;
   double min_wall_gap = 0;
 
@@ -42,10 +48,16 @@ struct Certificate {
   std::string statement;  ///< one sentence for people
 };
 
-/// Certifies. Shares no neighbour search, kernel or stage with the packer. `allowed_overlap` is the largest
-/// overlap ratio of a pair that still counts as none (0: strict). Uses all threads of the calling arena; the
-/// answer does not depend on their number.
-/// Cost: O(N log N); about 1 µs a sphere.
+/// Certifies. Shares no neighbour search, kernel or stage with the packer. `allowed_overlap` in [0, 1) is the
+/// largest overlap ratio of a pair that still counts as none (0: strict). Uses all threads of the calling
+/// arena; the answer does not depend on their number.
+///
+/// A sphere whose centre is not finite or whose radius is not positive and finite makes the packing not
+/// certified, as the statement says; then nothing else is tested. Throws Error{bad_argument} for columns of
+/// different lengths and absurd measures of a container, Error{bad_mesh} for a mesh with a boundary. That a
+/// mesh does not intersect itself is not checked. Cost: O(N log N + near pairs), about 0.7 µs a sphere at N =
+/// 30,000 and 0.9 at 10,000,000 on one core; a mesh of T triangles adds O(T log T), about 0.5 µs each. Exact
+/// arithmetic throughout is 4 to 12 times slower.
 Certificate certify(const Spheres<3>& spheres, const Shape& container, double allowed_overlap = 0,
                     Arithmetic arithmetic = Arithmetic::filtered);
 

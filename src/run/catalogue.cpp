@@ -1,0 +1,148 @@
+#include "run/catalogue.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bernal/cad/read_mesh.hpp"
+#include "bernal/core/unit.hpp"
+#include "stages/compress.hpp"
+#include "stages/insert.hpp"
+#include "stages/refill.hpp"
+#include "stages/shake.hpp"
+
+namespace bernal {
+namespace {
+
+Vector<3> vector_of(const Spec& spec, std::string_view key) {
+  const std::vector<double>& v = spec.numbers(key);
+  return {v.at(0), v.at(1), v.at(2)};
+}
+
+// ---- containers
+
+Shape make_box(const Scene& scene, std::string&) {
+  return BoxShape{vector_of(scene.container, "corner"), vector_of(scene.container, "size")};
+}
+
+Shape make_cylinder(const Scene& scene, std::string&) {
+  const Spec& c = scene.container;
+  return CylinderShape{vector_of(c, "base"), vector_of(c, "axis"), c.number("radius"), c.number("height")};
+}
+
+Shape make_sphere(const Scene& scene, std::string&) {
+  return SphereShape{vector_of(scene.container, "center"), scene.container.number("radius")};
+}
+
+Shape make_mesh(const Scene& scene, std::string& notes) {
+  const Spec& c = scene.container;
+  const std::string& unit = c.has("unit") ? c.text("unit") : scene.unit;
+  ImportedMesh imported = read_container_mesh(c.text("file"), conversion_factor(unit, scene.unit));
+  notes =
+      fmt::format("{} faces; {}; coordinates are {}", imported.report.faces, imported.report.reader, unit);
+  if (!imported.report.repairs.empty())
+    notes += fmt::format("; {}", fmt::join(imported.report.repairs, ", "));
+  return std::move(imported.mesh);
+}
+
+constexpr ContainerEntry containers[] = {
+    {"box", make_box}, {"cylinder", make_cylinder}, {"sphere", make_sphere}, {"mesh", make_mesh}};
+
+// ---- size distributions
+
+Basis basis_of(const Spec& spec) { return spec.text("basis") == "volume" ? Basis::volume : Basis::number; }
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& v : values) v *= factor;
+  return values;
+}
+
+std::unique_ptr<SizeDistribution> constant_sizes(const Spec& s, double half) {
+  return make_constant(half * s.number("value"));
+}
+
+std::unique_ptr<SizeDistribution> class_sizes(const Spec& s, double half) {
+  return make_classes(scaled(s.numbers("values"), half), s.numbers("shares"), basis_of(s));
+}
+
+std::unique_ptr<SizeDistribution> uniform_sizes(const Spec& s, double half) {
+  return make_uniform(half * s.number("min"), half * s.number("max"), basis_of(s));
+}
+
+std::unique_ptr<SizeDistribution> lognormal_sizes(const Spec& s, double half) {
+  const double min = s.has("min") ? half * s.number("min") : 0;
+  const double max = s.has("max") ? half * s.number("max") : std::numeric_limits<double>::infinity();
+  if (!s.has("d43")) {
+    return make_lognormal(half * s.number("median"), s.number("sigma"), basis_of(s), min, max);
+  }
+  // Farr 2013, eqs. 6 and 13: the two mean diameters fix the median by volume and the width.
+  const double d43 = s.number("d43"), d32 = s.number("d32");
+  const double sigma = std::sqrt(std::log(d43 / d32));
+  return make_lognormal(0.5 * std::sqrt(d43 * d32), sigma, Basis::volume, min, max);
+}
+
+constexpr SizesEntry sizes[] = {{"constant", constant_sizes},
+                                {"classes", class_sizes},
+                                {"uniform", uniform_sizes},
+                                {"lognormal", lognormal_sizes}};
+
+// ---- stages
+
+CompressOptions compress_options(const Spec& s) {
+  return {.direction = vector_of(s, "direction").normalized(),
+          .tilt = s.number("tilt"),
+          .tolerance = s.number("tolerance"),
+          .max_iterations = static_cast<int>(s.integer("max_iterations")),
+          .buffer = s.number("buffer")};
+}
+
+StageEnd run_insert(const Spec& s, Work& work) {
+  return insert(work, {.attempts = static_cast<int>(s.integer("attempts")),
+                       .packing_fraction = s.number("packing_fraction")});
+}
+
+StageEnd run_compress(const Spec& s, Work& work) { return compress(work, compress_options(s)); }
+
+StageEnd run_shake(const Spec& s, Work& work) {
+  return shake(work, {.rounds = static_cast<int>(s.integer("rounds")),
+                      .amplitude = s.number("amplitude"),
+                      .compress = compress_options(s)});
+}
+
+StageEnd run_refill(const Spec& s, Work& work) {
+  return refill(work, {.max_rounds = static_cast<int>(s.integer("max_rounds")),
+                       .probes = s.number("probes"),
+                       .patience = s.number("patience"),
+                       .shake = {.rounds = static_cast<int>(s.integer("shakes")),
+                                 .amplitude = s.number("amplitude"),
+                                 .compress = compress_options(s)}});
+}
+
+const PlanItem insertion[] = {{"insertion", "random places, one sphere after the other", "O(1) a trial"}};
+const PlanItem compression[] = {
+    {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+    {"compression", "to first touch along the global and local directions", "about 1 µs a sphere and sweep"}};
+const PlanItem shaking[] = {
+    {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+    {"shaking", "local directions across the global one", "about 1 µs a sphere and sweep"},
+    {"compression", "after each round", "about 1 µs a sphere and sweep"}};
+const PlanItem refilling[] = {
+    {"refilling", "random probes of the free space", "O(1) a probe"},
+    {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+    {"compression", "after each refilling", "about 1 µs a sphere and sweep"},
+    {"shaking", "after each refilling", "about 1 µs a sphere and sweep"}};
+
+const StageEntry stages[] = {{"insert", run_insert, insertion},
+                             {"compress", run_compress, compression},
+                             {"shake", run_shake, shaking},
+                             {"refill", run_refill, refilling}};
+
+}  // namespace
+
+std::span<const ContainerEntry> container_catalogue() { return containers; }
+std::span<const SizesEntry> sizes_catalogue() { return sizes; }
+std::span<const StageEntry> stage_catalogue() { return stages; }
+
+}  // namespace bernal

@@ -1,0 +1,52 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "bernal/domain/shape.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/scene/scene.hpp"
+#include "bernal/sizes/size_distribution.hpp"
+#include "stages/work.hpp"
+
+namespace bernal {
+
+// Every name that a scene can use, and what makes the thing behind it. A new container, size distribution
+// or stage is one line in one of these tables (and one entry in scene/schema.cpp for its parameters).
+
+struct ContainerEntry {
+  std::string_view name;
+  /// The shape in the scene's unit; an importer says in `notes` what it did to the file.
+  Shape (*make)(const Scene&, std::string& notes);
+};
+
+struct SizesEntry {
+  std::string_view name;
+  /// The distribution of *radii*; `half` is 0.5 where the scene speaks of diameters and 1 where of radii.
+  std::unique_ptr<SizeDistribution> (*make)(const Spec&, double half);
+};
+
+struct StageEntry {
+  std::string_view name;
+  StageEnd (*run)(const Spec&, Work&);
+  /// Effects that it brings with it, for `Plan::items`.
+  std::span<const PlanItem> effects;
+};
+
+std::span<const ContainerEntry> container_catalogue();
+std::span<const SizesEntry> sizes_catalogue();
+std::span<const StageEntry> stage_catalogue();
+
+/// The entry of that name. Throws Error{bad_scene} at the spec's place for an unknown one, which only a scene
+/// made in C++ can contain.
+template <class Entry>
+const Entry& find_entry(std::span<const Entry> catalogue, const Spec& spec) {
+  for (const Entry& entry : catalogue) {
+    if (entry.name == spec.name) return entry;
+  }
+  throw Error(ErrorCode::bad_scene, "nothing is called \"" + spec.name + "\"", spec.where);
+}
+
+}  // namespace bernal

@@ -1,0 +1,39 @@
+#include "run/fitting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace bernal {
+namespace {
+
+struct LargestRadius {
+  double operator()(const BoxShape& b) const { return 0.5 * b.size.minCoeff(); }
+  double operator()(const CylinderShape& c) const { return std::min(c.radius, 0.5 * c.height); }
+  double operator()(const SphereShape& s) const { return s.radius; }
+  double operator()(const Mesh& m) const {
+    const double by_volume = std::cbrt(3 * volume_of(m) / (4 * std::numbers::pi));
+    return std::min(0.5 * bounds_of(m).size().minCoeff(), by_volume);
+  }
+};
+
+}  // namespace
+
+double largest_fitting_radius(const Shape& shape) { return std::visit(LargestRadius{}, shape); }
+
+void require_fitting(const Scene& scene, const Shape& container, double radius) {
+  const double largest = largest_fitting_radius(container);
+  if (radius <= largest) return;
+  const double shown = scene.sizes_are_diameters ? 2 : 1;
+  const char* word = scene.sizes_are_diameters ? "diameter" : "radius";
+  throw Error(
+      ErrorCode::bad_scene,
+      fmt::format("a sphere of {0} {1:.6g} {3} does not fit into the {4}, which takes {0}s up to {2:.6g} "
+                  "{3}: use smaller ones or check the units",
+                  word, shown * radius, shown * largest, scene.unit, kind_of(container)),
+      scene.sizes.where);
+}
+
+}  // namespace bernal

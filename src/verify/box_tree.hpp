@@ -1,0 +1,187 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <tbb/parallel_invoke.h>
+
+#include "bernal/core/vector.hpp"
+
+namespace bernal::verify {
+
+/// A closed axis-aligned box; empty as made.
+struct Box {
+  std::array<double, 3> lower{infinity, infinity, infinity};
+  std::array<double, 3> upper{-infinity, -infinity, -infinity};
+
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  void include(const Box& other) {
+    for (int k = 0; k < 3; ++k) {
+      lower[k] = std::min(lower[k], other.lower[k]);
+      upper[k] = std::max(upper[k], other.upper[k]);
+    }
+  }
+};
+
+/// Whether two boxes have a point in common.
+inline bool touch(const Box& a, const Box& b) {
+  return (a.lower[0] <= b.upper[0]) & (b.lower[0] <= a.upper[0]) & (a.lower[1] <= b.upper[1]) &
+         (b.lower[1] <= a.upper[1]) & (a.lower[2] <= b.upper[2]) & (b.lower[2] <= a.upper[2]);
+}
+
+/// A box that holds the ball of radius r around c, never smaller than that: c ± r is rounded to nearest, off
+/// by half a spacing of doubles at most, and then moved outwards by |c ± r| 2^-52, which is one spacing or
+/// more. (Below 2^-969, where that may be lost, sums of doubles are exact or the spacing is still
+/// representable.)
+inline Box box_of_ball(const Vector<3>& c, double r) {
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    const double lower = c[k] - r, upper = c[k] + r;
+    box.lower[k] = lower - 0x1p-52 * std::abs(lower);
+    box.upper[k] = upper + 0x1p-52 * std::abs(upper);
+  }
+  return box;
+}
+
+/// A bounding-volume hierarchy over items that have `Box box() const` and `double center(int axis) const`
+/// (finite): a complete binary tree, each node split at the median along the longer extent of its centres.
+/// So its depth is log2(N / 8) for any input: clustered, coincident, any ratio of sizes.
+///
+/// Every search is complete with respect to `touch`. The tree does not depend on the number of threads.
+/// Cost: building O(N log N), 40 + 12 bytes a sphere; a search O(log N) and what it finds.
+template <class Item>
+class BoxTree {
+ public:
+  explicit BoxTree(std::vector<Item> items) : items_(std::move(items)) {
+    first_leaf_ = std::bit_ceil(std::max<std::size_t>(1, (items_.size() + leaf_size - 1) / leaf_size));
+    boxes_.resize(2 * first_leaf_);
+    build(root, 0, items_.size());
+  }
+
+  /// The items in the tree's order: neighbours in space are mostly near in it.
+  std::span<const Item> items() const { return items_; }
+
+  const Box& bounds() const { return boxes_[root]; }
+
+  /// Leaves are numbered from 0; together they hold every item once.
+  std::size_t leaves() const { return first_leaf_; }
+  std::span<const Item> leaf(std::size_t l) const {
+    return std::span(items_).subspan(begin_of_leaf(l), begin_of_leaf(l + 1) - begin_of_leaf(l));
+  }
+  const Box& box_of_leaf(std::size_t l) const { return boxes_[first_leaf_ + l]; }
+
+  /// Calls visit(item) for every item whose box touches `query`.
+  template <class Visit>
+  void for_each_touching(const Box& query, Visit visit) const {
+    for_each_leaf_touching(query, root, [&](std::size_t l) {
+      for (const Item& item : leaf(l))
+        if (touch(item.box(), query)) visit(item);
+    });
+  }
+
+  /// Calls visit(m) for every leaf m > l whose box touches that of leaf l.
+  template <class Visit>
+  void for_each_later_leaf_touching(std::size_t l, Visit visit) const {
+    if (l + 1 < leaves()) for_each_leaf_touching(box_of_leaf(l), next(first_leaf_ + l), visit);
+  }
+
+  /// The smallest distance(item) over all items, given that no item is nearer to its query than
+  /// distance_to_box(box) for any box that holds it. Infinity for an empty tree.
+  template <class DistanceToBox, class Distance>
+  double nearest(DistanceToBox distance_to_box, Distance distance) const {
+    double best = Box::infinity;
+    nearest(root, distance_to_box, distance, best);
+    return best;
+  }
+
+ private:
+  static constexpr std::size_t leaf_size = 8;
+  static constexpr std::size_t root = 1;
+
+  // Node n has the children 2n and 2n + 1; the leaves are first_leaf_ and up, and split the items evenly.
+  std::size_t begin_of_leaf(std::size_t l) const {
+    return (items_.size() * l) >> std::countr_zero(first_leaf_);
+  }
+
+  /// The node that follows n and its descendants in depth-first order; the root after the last.
+  static std::size_t next(std::size_t n) { return (n + 1) >> std::countr_zero(n + 1); }
+
+  /// Visits the leaves that touch, from node n on in depth-first order.
+  template <class Visit>
+  void for_each_leaf_touching(const Box& query, std::size_t n, Visit visit) const {
+    do {
+      if (touch(boxes_[n], query)) {
+        if (n < first_leaf_) {
+          n = 2 * n;
+          continue;
+        }
+        visit(n - first_leaf_);
+      }
+      n = next(n);
+    } while (n != root);
+  }
+
+  template <class DistanceToBox, class Distance>
+  void nearest(std::size_t n, DistanceToBox& distance_to_box, Distance& distance, double& best) const {
+    if (!(distance_to_box(boxes_[n]) < best)) return;
+    if (n >= first_leaf_) {
+      for (const Item& item : leaf(n - first_leaf_)) best = std::min(best, distance(item));
+      return;
+    }
+    const bool left_first = distance_to_box(boxes_[2 * n]) <= distance_to_box(boxes_[2 * n + 1]);
+    nearest(2 * n + (left_first ? 0 : 1), distance_to_box, distance, best);
+    nearest(2 * n + (left_first ? 1 : 0), distance_to_box, distance, best);
+  }
+
+  void build(std::size_t n, std::size_t begin, std::size_t end) {
+    if (n >= first_leaf_) {
+      for (std::size_t i = begin; i < end; ++i) boxes_[n].include(items_[i].box());
+      return;
+    }
+    const int level_of_leaves = std::countr_zero(first_leaf_);
+    const int level = std::bit_width(n) - 1;
+    const std::size_t leaf_in_the_middle = (2 * n + 1 - (std::size_t{2} << level))
+                                           << (level_of_leaves - level - 1);
+    const std::size_t middle = begin_of_leaf(leaf_in_the_middle);
+    const int axis = longest_axis(begin, end);
+    const auto less = [axis](const Item& a, const Item& b) { return a.center(axis) < b.center(axis); };
+    std::nth_element(items_.begin() + begin, items_.begin() + middle, items_.begin() + end, less);
+
+    constexpr std::size_t worth_a_task = 4096;
+    const auto left = [&] { build(2 * n, begin, middle); };
+    const auto right = [&] { build(2 * n + 1, middle, end); };
+    if (end - begin > worth_a_task) {
+      tbb::parallel_invoke(left, right);
+    } else {
+      left();
+      right();
+    }
+    boxes_[n].include(boxes_[2 * n]);
+    boxes_[n].include(boxes_[2 * n + 1]);
+  }
+
+  int longest_axis(std::size_t begin, std::size_t end) const {
+    Box centers;
+    for (std::size_t i = begin; i < end; ++i) {
+      std::array<double, 3> c;
+      for (int k = 0; k < 3; ++k) c[k] = items_[i].center(k);
+      centers.include({c, c});
+    }
+    int axis = 0;
+    for (int k = 1; k < 3; ++k)
+      if (centers.upper[k] - centers.lower[k] > centers.upper[axis] - centers.lower[axis]) axis = k;
+    return axis;
+  }
+
+  std::vector<Item> items_;
+  std::vector<Box> boxes_;
+  std::size_t first_leaf_ = 1;
+};
+
+}  // namespace bernal::verify

@@ -1,0 +1,126 @@
+#include "bernal/verify/certificate.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "verify/judge_pairs.hpp"
+#include "verify/judge_walls.hpp"
+
+namespace bernal {
+namespace {
+
+/// 27639 as "27,639".
+std::string grouped(std::uint64_t n) {
+  return n < 1000 ? fmt::format("{}", n) : fmt::format("{},{:03}", grouped(n / 1000), n % 1000);
+}
+
+/// "1 sphere", "1,200 spheres".
+std::string counted(std::uint64_t n, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", grouped(n), n == 1 ? one : many);
+}
+std::string counted_spheres(std::uint64_t n) { return counted(n, "sphere", "spheres"); }
+
+void check_arguments(const Spheres<3>& spheres, double allowed_overlap) {
+  for (const auto& column : spheres.x)
+    if (column.size() != spheres.size())
+      throw Error(ErrorCode::bad_argument, fmt::format("a column of coordinates has {} entries for {} radii",
+                                                       column.size(), spheres.size()));
+  if (!(allowed_overlap >= 0 && allowed_overlap < 1))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("the allowed overlap ratio is {}; it must be in [0, 1)", allowed_overlap));
+}
+
+/// Why there is nothing to prove: the spheres that are none.
+std::optional<std::string> complaint_about(const Spheres<3>& spheres) {
+  std::uint64_t bad = 0, first = 0;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const bool good = spheres.center(i).allFinite() && std::isfinite(spheres.r[i]) && spheres.r[i] > 0;
+    if (!good && bad++ == 0) first = i;
+  }
+  if (bad == 0) return std::nullopt;
+  const Vector<3> c = spheres.center(first);
+  return fmt::format(
+      "Not certified: {} without a finite centre and a positive finite radius (first: sphere {} at {}, {}, "
+      "{} with "
+      "radius {}); nothing else was tested.",
+      counted_spheres(bad), first, c[0], c[1], c[2], spheres.r[first]);
+}
+
+std::vector<verify::Ball> balls_of(const Spheres<3>& spheres) {
+  std::vector<verify::Ball> balls(spheres.size());
+  for (std::size_t i = 0; i < balls.size(); ++i) balls[i] = {spheres.center(i), spheres.r[i], i};
+  return balls;
+}
+
+std::string statement_of(const Certificate& c, double allowed_overlap, bool mesh) {
+  const std::string limit = allowed_overlap > 0 ? fmt::format(" above {}", allowed_overlap) : "";
+  if (c.certified) {
+    if (c.spheres == 0) return "Certified: there are no spheres.";
+    std::string closest;
+    if (c.pairs_tested > 0)
+      closest = c.max_overlap > 0 ? fmt::format("; largest overlap {:.2g}", c.max_overlap)
+                                  : fmt::format("; closest pair gap {:.2g}", 0.0 - c.max_overlap);
+    if (!closest.empty()) closest += " of the sum of radii";
+    return fmt::format(
+        "Certified: {}, {} and {} decided exactly, no overlap{}, no protrusion{}.",
+        counted_spheres(c.spheres), counted(c.pairs_tested, "near pair", "near pairs"),
+        counted(c.walls_tested, mesh ? "near triangle" : "wall", mesh ? "near triangles" : "walls"), limit,
+        closest);
+  }
+  std::string faults;
+  if (c.overlapping_pairs > 0)
+    faults = fmt::format("{}{} (worst {} and {}, overlap ratio {:.2g})",
+                         counted(c.overlapping_pairs, "overlapping pair", "overlapping pairs"), limit,
+                         c.worst_pair[0], c.worst_pair[1], c.max_overlap);
+  if (c.protruding_spheres > 0)
+    faults += fmt::format("{}{} across or outside the wall (worst {}, gap {:.2g} of its radius)",
+                          faults.empty() ? "" : ", ", counted_spheres(c.protruding_spheres), c.worst_wall,
+                          c.min_wall_gap);
+  return fmt::format("Not certified: {}.", faults);
+}
+
+}  // namespace
+
+Certificate certify(const Spheres<3>& spheres, const Shape& container, double allowed_overlap,
+                    Arithmetic arithmetic) {
+  const auto start = std::chrono::steady_clock::now();
+  check_arguments(spheres, allowed_overlap);
+
+  Certificate result;
+  result.spheres = spheres.size();
+  if (auto complaint = complaint_about(spheres)) {
+    result.statement = *std::move(complaint);
+  } else {
+    const verify::BallTree balls(balls_of(spheres));
+    verify::Tally tally = verify::judge_pairs(balls, allowed_overlap, arithmetic);
+    tally += verify::judge_walls(balls, container, arithmetic);
+
+    result.pairs_tested = tally.pairs;
+    result.walls_tested = tally.walls;
+    result.centers_tested = tally.centers;
+    result.decided_double = tally.decided_double;
+    result.decided_exact = tally.decided_exact;
+    result.overlapping_pairs = tally.overlapping;
+    result.protruding_spheres = tally.protruding;
+    if (tally.pairs > 0) {
+      result.worst_pair[0] = tally.worst_pair[0];
+      result.worst_pair[1] = tally.worst_pair[1];
+      result.max_overlap = tally.max_overlap;
+    }
+    if (std::isfinite(tally.min_wall_gap)) {
+      result.worst_wall = tally.worst_wall;
+      result.min_wall_gap = tally.min_wall_gap;
+    }
+    result.certified = tally.overlapping == 0 && tally.protruding == 0;
+    result.statement = statement_of(result, allowed_overlap, std::holds_alternative<Mesh>(container));
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace bernal

@@ -1,0 +1,170 @@
+#include "verify/mesh_wall.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <tbb/parallel_sort.h>
+#include <Eigen/Geometry>
+
+#include "bernal/core/error.hpp"
+
+namespace bernal::verify {
+namespace {
+
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+void check_numbers(const Mesh& mesh) {
+  if (mesh.triangles.empty()) throw Error(ErrorCode::bad_mesh, "the container's mesh has no triangles");
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (!mesh.vertices[v].allFinite())
+      throw Error(ErrorCode::bad_mesh, fmt::format("vertex {} of the container's mesh is not finite", v));
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t])
+      if (v >= mesh.vertices.size())
+        throw Error(ErrorCode::bad_mesh,
+                    fmt::format("triangle {} of the container's mesh names vertex {} of {}", t, v,
+                                mesh.vertices.size()));
+}
+
+/// How many directed edges lack a partner in the opposite direction.
+std::size_t unpaired_edges(const Triangles& triangles) {
+  std::vector<std::uint64_t> up, down;
+  for (const auto& t : triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint64_t a = t[k], b = t[(k + 1) % 3];
+      if (a < b) up.push_back(a << 32 | b);
+      if (b < a) down.push_back(b << 32 | a);
+    }
+  }
+  tbb::parallel_sort(up);
+  tbb::parallel_sort(down);
+  if (up == down) return 0;
+  std::vector<std::uint64_t> unpaired;
+  std::ranges::set_symmetric_difference(up, down, std::back_inserter(unpaired));
+  return unpaired.size();
+}
+
+/// The same triangles with one index for all vertices at the same point.
+Triangles welded(const Mesh& mesh) {
+  const auto& points = mesh.vertices;
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto less = [&](std::uint32_t a, std::uint32_t b) {
+    return std::lexicographical_compare(points[a].begin(), points[a].end(), points[b].begin(),
+                                        points[b].end());
+  };
+  tbb::parallel_sort(order.begin(), order.end(), less);
+  std::vector<std::uint32_t> first(points.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    first[order[i]] = i > 0 && points[order[i - 1]] == points[order[i]] ? first[order[i - 1]] : order[i];
+  Triangles result = mesh.triangles;
+  for (auto& t : result)
+    for (std::uint32_t& v : t) v = first[v];
+  return result;
+}
+
+void check_closed(const Mesh& mesh) {
+  if (unpaired_edges(mesh.triangles) == 0) return;
+  const std::size_t unpaired = unpaired_edges(welded(mesh));
+  if (unpaired > 0)
+    throw Error(
+        ErrorCode::bad_mesh,
+        fmt::format("the container's mesh is not closed and consistently oriented: {} edges have no partner "
+                    "in the opposite direction; repair it first",
+                    unpaired));
+}
+
+double distance_from_segment(const Vector<3>& p, const Vector<3>& a, const Vector<3>& b) {
+  const Vector<3> along = b - a, to_p = p - a;
+  const double squared = along.squaredNorm();
+  const double t = squared > 0 ? std::clamp(to_p.dot(along) / squared, 0.0, 1.0) : 0.0;
+  const Vector<3> rest = to_p - t * along;
+  return std::hypot(rest[0], rest[1], rest[2]);
+}
+
+/// In double, to a few roundoffs of the triangle's size. The least of the three segments and, where p
+/// projects inside, the plane: so a wrong guess of the region does no harm, even on needles.
+double distance_from_triangle(const Vector<3>& p, const Corners& v) {
+  double best = Box::infinity;
+  for (int k = 0; k < 3; ++k) best = std::min(best, distance_from_segment(p, v[k], v[(k + 1) % 3]));
+  const Vector<3> normal = (v[1] - v[0]).cross(v[2] - v[0]);
+  const double length = normal.norm();
+  bool inside = length > 0;
+  for (int k = 0; k < 3 && inside; ++k) inside = normal.cross(v[(k + 1) % 3] - v[k]).dot(p - v[k]) >= 0;
+  return inside ? std::min(best, std::abs(normal.dot(p - v[0])) / length) : best;
+}
+
+double distance_from_box(const Vector<3>& p, const Box& box) {
+  double outside[3];
+  for (int k = 0; k < 3; ++k) outside[k] = std::max({box.lower[k] - p[k], 0.0, p[k] - box.upper[k]});
+  return std::hypot(outside[0], outside[1], outside[2]);
+}
+
+}  // namespace
+
+MeshWall::MeshWall(const Mesh& mesh) : mesh_(mesh), facets_(facets_of(mesh)) {}
+
+std::vector<MeshWall::Facet> MeshWall::facets_of(const Mesh& mesh) {
+  check_numbers(mesh);
+  check_closed(mesh);
+  std::vector<Facet> facets(mesh.triangles.size());
+  for (std::size_t t = 0; t < facets.size(); ++t) {
+    facets[t].triangle = static_cast<std::uint32_t>(t);
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      const Vector<3>& p = mesh.vertices[v];
+      facets[t].extent.include({{p[0], p[1], p[2]}, {p[0], p[1], p[2]}});
+    }
+  }
+  return facets;
+}
+
+Corners MeshWall::corners(const Facet& facet) const {
+  const auto& t = mesh_.triangles[facet.triangle];
+  return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
+}
+
+bool MeshWall::inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) const {
+  bool clear = true;
+  double distance = Box::infinity;
+  facets_.for_each_touching(ball.box(), [&](const Facet& facet) {
+    const Corners corner = corners(facet);
+    ++tally.walls;
+    const Truth clears = decide(arithmetic, tally, [&]<class Number>() {
+      return ball_clears_triangle<Number>(ball.c, ball.r, corner);
+    });
+    clear = clear && clears == Truth::yes;
+    distance = std::min(distance, distance_from_triangle(ball.c, corner));
+  });
+
+  const bool center_is_inside = center_inside(ball, arithmetic, tally);
+  if (!center_is_inside) distance = -distance_from(ball.c);
+  const bool holds = center_is_inside && clear;
+  if (distance < Box::infinity)
+    tally.add_wall_ratio(ball.index, with_sign((distance - ball.r) / ball.r, holds));
+  return holds;
+}
+
+bool MeshWall::center_inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) const {
+  const Vector<3>& p = ball.c;
+  const Box upwards{{p[0], p[1], p[2]}, {p[0], p[1], Box::infinity}};
+  int winding = 0;
+  Tally crossings;
+  facets_.for_each_touching(upwards, [&](const Facet& facet) {
+    const Corners corner = corners(facet);
+    winding += static_cast<int>(
+        decide(arithmetic, crossings, [&]<class Number>() { return crossing_above<Number>(p, corner); }));
+  });
+  ++tally.centers;
+  const bool by_double = arithmetic == Arithmetic::filtered && crossings.decided_exact == 0;
+  ++(by_double ? tally.decided_double : tally.decided_exact);
+  return winding == 1;
+}
+
+double MeshWall::distance_from(const Vector<3>& p) const {
+  return facets_.nearest([&](const Box& box) { return distance_from_box(p, box); },
+                         [&](const Facet& facet) { return distance_from_triangle(p, corners(facet)); });
+}
+
+}  // namespace bernal::verify

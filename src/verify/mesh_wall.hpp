@@ -1,0 +1,43 @@
+#pragma once
+#include <cstdint>
+
+#include "bernal/domain/shape.hpp"
+#include "verify/ball.hpp"
+#include "verify/predicates.hpp"
+#include "verify/tally.hpp"
+
+namespace bernal::verify {
+
+/// The triangles of a mesh as a wall.
+///
+/// Inside is where the winding number is 1. That is well defined because the surface has no boundary: as many
+/// edges run from a to b as from b to a, for any two points, which the constructor checks. That the mesh does
+/// not intersect itself and faces outwards is its precondition (see Mesh).
+class MeshWall {
+ public:
+  /// Keeps a reference to the mesh. Throws Error{bad_mesh} unless it has triangles, only finite vertices,
+  /// valid indices and no boundary.
+  explicit MeshWall(const Mesh& mesh);
+
+  /// Tries the ball against the near triangles and decides the side of its centre; counts both.
+  bool inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) const;
+
+ private:
+  struct Facet {
+    Box extent;
+    std::uint32_t triangle;
+
+    Box box() const { return extent; }
+    double center(int axis) const { return 0.5 * extent.lower[axis] + 0.5 * extent.upper[axis]; }
+  };
+
+  Corners corners(const Facet& facet) const;
+  static std::vector<Facet> facets_of(const Mesh& mesh);
+  bool center_inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) const;
+  double distance_from(const Vector<3>& p) const;
+
+  const Mesh& mesh_;
+  BoxTree<Facet> facets_;
+};
+
+}  // namespace bernal::verify

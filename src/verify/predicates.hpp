@@ -1,0 +1,173 @@
+#pragma once
+#include <array>
+
+#include "bernal/domain/shape.hpp"
+#include "verify/sign.hpp"
+
+// The questions that a certificate answers, each written once and evaluated in any arithmetic `Number` that
+// has +, -, ×, `square` and `sign`: Bounded (a filter) or Exact. Only ring operations and comparisons occur,
+// no division and no root, so Exact answers them about the doubles as written. Radii are positive throughout.
+
+namespace bernal::verify {
+
+template <class Number>
+struct Triple {
+  Number x, y, z;
+};
+
+template <class Number>
+Triple<Number> vector(const Vector<3>& v) {
+  return {Number(v[0]), Number(v[1]), Number(v[2])};
+}
+template <class Number>
+Triple<Number> difference(const Vector<3>& a, const Vector<3>& b) {
+  return {Number(a[0]) - Number(b[0]), Number(a[1]) - Number(b[1]), Number(a[2]) - Number(b[2])};
+}
+template <class Number>
+Number dot(const Triple<Number>& a, const Triple<Number>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class Number>
+Number squared_norm(const Triple<Number>& a) {
+  return square(a.x) + square(a.y) + square(a.z);
+}
+template <class Number>
+Triple<Number> cross(const Triple<Number>& a, const Triple<Number>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// |ci - cj| >= (1 - allowed)(ri + rj), for 0 <= allowed < 1.
+template <class Number>
+Truth spheres_clear(const Vector<3>& ci, double ri, const Vector<3>& cj, double rj, double allowed) {
+  Number reach = Number(ri) + Number(rj);
+  if (allowed != 0) reach = reach * (Number(1) - Number(allowed));
+  return at_least(squared_norm(difference<Number>(ci, cj)), square(reach));
+}
+
+/// c - r >= lower, in one coordinate.
+template <class Number>
+Truth above(double c, double r, double lower) {
+  return at_least(Number(c) - Number(r), Number(lower));
+}
+/// c + r <= upper, in one coordinate.
+template <class Number>
+Truth below(double c, double r, double upper) {
+  return at_least(Number(upper), Number(c) + Number(r));
+}
+
+/// The ball lies in the ball of radius R around `center`: |c - center| <= R - r.
+template <class Number>
+Truth ball_in_ball(const Vector<3>& c, double r, const SphereShape& s) {
+  if (s.radius < r) return Truth::no;
+  return at_least(square(Number(s.radius) - Number(r)), squared_norm(difference<Number>(c, s.center)));
+}
+
+// A cylinder has three pieces of wall. With w = c - base, the axis a of any length and h = w·a, the height of
+// the centre is h / |a| and its distance from the axis |w × a| / |a|; both are compared as squares.
+
+/// h >= r |a|
+template <class Number>
+Truth above_base(const Vector<3>& c, double r, const CylinderShape& s) {
+  const Triple<Number> a = vector<Number>(s.axis);
+  const Number h = dot(difference<Number>(c, s.base), a);
+  return at_least(h, Number(0)) & at_least(square(h), square(Number(r)) * squared_norm(a));
+}
+/// h <= (height - r) |a|
+template <class Number>
+Truth below_top(const Vector<3>& c, double r, const CylinderShape& s) {
+  const Triple<Number> a = vector<Number>(s.axis);
+  const Number h = dot(difference<Number>(c, s.base), a);
+  const Number limit_squared = square(Number(s.height) - Number(r)) * squared_norm(a);
+  const Truth h_not_positive = at_least(Number(0), h);
+  return s.height >= r ? h_not_positive | at_least(limit_squared, square(h))
+                       : h_not_positive & at_least(square(h), limit_squared);
+}
+/// |w × a| <= (R - r) |a|
+template <class Number>
+Truth inside_side(const Vector<3>& c, double r, const CylinderShape& s) {
+  if (s.radius < r) return Truth::no;
+  const Triple<Number> a = vector<Number>(s.axis);
+  const Number limit_squared = square(Number(s.radius) - Number(r)) * squared_norm(a);
+  return at_least(limit_squared, squared_norm(cross(difference<Number>(c, s.base), a)));
+}
+
+using Corners = std::array<Vector<3>, 3>;
+
+/// The distance of p from the triangle is at least r.
+///
+/// A triangle is its three vertices, the three open edges and the open face. An edge matters only where p
+/// projects between its ends, the face only where p projects inside; a vertex always belongs to the triangle,
+/// and so may be asked without a condition. Edges and faces without extent impose nothing.
+template <class Number>
+Truth ball_clears_triangle(const Vector<3>& p, double r, const Corners& corner) {
+  const Number r_squared = square(Number(r));
+  const Triple<Number> to_p[3] = {difference<Number>(p, corner[0]), difference<Number>(p, corner[1]),
+                                  difference<Number>(p, corner[2])};
+  const Triple<Number> edge[3] = {difference<Number>(corner[1], corner[0]),
+                                  difference<Number>(corner[2], corner[1]),
+                                  difference<Number>(corner[0], corner[2])};
+
+  const Triple<Number> normal = cross(edge[0], edge[1]);
+  const Number height_squared = square(dot(normal, to_p[0]));
+  const Number limit_squared = r_squared * squared_norm(normal);
+  // Strictly: a triangle without area has no plane, and 0 > 0 is false.
+  if (more_than(height_squared, limit_squared) == Truth::yes) return Truth::yes;
+
+  Truth clear = Truth::yes;
+  for (int k = 0; k < 3; ++k) clear = clear & at_least(squared_norm(to_p[k]), r_squared);
+  if (clear == Truth::no) return Truth::no;
+
+  for (int k = 0; k < 3; ++k) {
+    const Number along = dot(to_p[k], edge[k]);
+    const Number length_squared = squared_norm(edge[k]);
+    const Truth beyond = at_least(Number(0), along) | at_least(along, length_squared);
+    if (beyond == Truth::yes) continue;
+    clear = clear & (beyond | at_least(squared_norm(cross(to_p[k], edge[k])), r_squared * length_squared));
+  }
+  if (clear == Truth::no) return Truth::no;
+
+  const Truth plane_clear = at_least(height_squared, limit_squared);
+  if (plane_clear == Truth::yes) return clear;
+  Truth beside = Truth::no;
+  for (int k = 0; k < 3; ++k) beside = beside | is_negative(dot(cross(normal, edge[k]), to_p[k]).sign());
+  return clear & (plane_clear | beside);
+}
+
+/// On which side of the line a -> b, seen from above, the point (px + ε, py + ε²) lies for all sufficiently
+/// small ε > 0; positive to the left. Zero only where a and b coincide seen from above: such a line has no
+/// sides. Antisymmetric in a, b, so that a path that crosses an edge leaves one triangle and enters another.
+template <class Number>
+Sign side_seen_from_above(const Vector<3>& a, const Vector<3>& b, const Vector<3>& p) {
+  if (a[0] == b[0] && a[1] == b[1]) return Sign::zero;
+  const auto minus = [](double s, double t) { return Number(s) - Number(t); };
+  const Number area = minus(b[0], a[0]) * minus(p[1], a[1]) - minus(b[1], a[1]) * minus(p[0], a[0]);
+  if (area.sign() != Sign::zero) return area.sign();
+  if (a[1] != b[1]) return a[1] > b[1] ? Sign::positive : Sign::negative;
+  return b[0] > a[0] ? Sign::positive : Sign::negative;
+}
+
+/// How the ray from p upwards (+z) crosses the triangle: `positive` where it leaves through the side from
+/// which the triangle is seen counter-clockwise, `negative` where it enters, `zero` where it misses.
+///
+/// The ray is moved by (ε, ε²) in x and y, so that it meets no edge, no vertex and no vertical triangle. If p
+/// lies on the triangle the answer is `zero`; no ball around such a p clears it anyway.
+template <class Number>
+Sign crossing_above(const Vector<3>& p, const Corners& corner) {
+  const Sign side[3] = {side_seen_from_above<Number>(corner[0], corner[1], p),
+                        side_seen_from_above<Number>(corner[1], corner[2], p),
+                        side_seen_from_above<Number>(corner[2], corner[0], p)};
+  const auto any = [&](Sign s) { return side[0] == s || side[1] == s || side[2] == s; };
+  if (any(Sign::zero) || (any(Sign::positive) && any(Sign::negative))) return Sign::zero;
+  if (any(Sign::unknown)) return Sign::unknown;
+
+  const Sign orientation = side[0];
+  if (corner[0][2] > p[2] && corner[1][2] > p[2] && corner[2][2] > p[2]) return orientation;
+  const Triple<Number> normal =
+      cross(difference<Number>(corner[1], corner[0]), difference<Number>(corner[2], corner[0]));
+  // normal·(p - corner) = normal_z (height of p above the plane), and normal_z has the sign `orientation`.
+  const Sign height = dot(normal, difference<Number>(p, corner[0])).sign();
+  if (height == Sign::unknown) return Sign::unknown;
+  return height == -orientation ? orientation : Sign::zero;
+}
+
+}  // namespace bernal::verify

@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <map>
+#include <thread>
+
+#include "check.hpp"
+#include "support/scenes.hpp"
+
+namespace bernal::testing {
+namespace {
+
+/// Name and text of every file of a folder.
+std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      files[entry.path().lexically_relative(folder).string()] = text_of(entry.path());
+  return files;
+}
+
+void expect_certified(const std::filesystem::path& folder) {
+  const Ended verified = bernal({"verify", folder.string()});
+  EXPECT_EQ(verified.status, 0) << verified.out << verified.err;
+}
+
+TEST(Pack, WritesEveryFileOfTheContract) {
+  const Folder folder;
+  const Ended packed =
+      bernal({"pack", folder.write("scene.toml", small_scene).string(), "-o", (folder / "out").string()});
+  EXPECT_EQ(packed.status, 0) << packed.err;
+  EXPECT_EQ(packed.out, "");
+  const auto files = files_in(folder / "out");
+  std::vector<std::string> names;
+  for (const auto& [name, text] : files) names.push_back(name);
+  EXPECT_EQ(names, (std::vector<std::string>{"packing.svg", "report.html", "report.json", "scene.toml",
+                                             "spheres.csv", "spheres.vtp"}));
+  EXPECT_TRUE(files.at("spheres.csv").starts_with("# unit: mm\nx,y,z,r\n"));
+  EXPECT_EQ(std::ranges::count(files.at("spheres.csv"), '\n'), 302);
+
+  const auto report = report_of(folder / "out");
+  EXPECT_EQ(report["outcome"], "converged");
+  EXPECT_EQ(report["n"], 300);
+  EXPECT_EQ(report["certified"], true);
+  EXPECT_EQ(report["unit"], "mm");
+  EXPECT_LE(report["max_overlap"].get<double>(), 0);
+  expect_certified(folder / "out");
+
+  // What was understood, and where the files are.
+  for (const std::string word : {"box", "mm", "diameter", "300", "spheres.csv"})
+    EXPECT_NE(packed.err.find(word), std::string::npos) << word << "\nis not in:\n" << packed.err;
+}
+
+TEST(Pack, QuietSaysNothing) {
+  const Folder folder;
+  const Ended packed = bernal(
+      {"pack", folder.write("scene.toml", small_scene).string(), "-o", (folder / "out").string(), "--quiet"});
+  EXPECT_EQ(packed.status, 0);
+  EXPECT_EQ(packed.out + packed.err, "");
+}
+
+TEST(Pack, WrittenSceneGivesTheSamePacking) {
+  const Folder folder;
+  const std::string first = (folder / "first").string(), second = (folder / "second").string();
+  ASSERT_EQ(
+      bernal({"pack", folder.write("scene.toml", small_scene).string(), "-o", first, "--seed", "7"}).status,
+      0);
+  ASSERT_EQ(bernal({"pack", first + "/scene.toml", "-o", second}).status, 0);
+  EXPECT_EQ(report_of(first)["seed"], 7);
+  EXPECT_EQ(text_of(first + "/spheres.csv"), text_of(second + "/spheres.csv"));
+  EXPECT_EQ(text_of(first + "/scene.toml"), text_of(second + "/scene.toml"));
+}
+
+TEST(Pack, OneSeedGivesOneHashForAnyNumberOfThreads) {
+  const Folder folder;
+  std::string scene = small_scene;
+  scene.replace(scene.find("count = 300"), 11, "fill = true");
+  const std::string file = folder.write("scene.toml", scene).string();
+  const auto hash = [&](const std::string& name, const std::string& threads, const std::string& seed) {
+    const std::string out = (folder / name).string();
+    EXPECT_EQ(bernal({"pack", file, "-o", out, "--threads", threads, "--seed", seed}).status, 0);
+    return report_of(out)["hash"].get<std::string>();
+  };
+  const std::string one = hash("one", "1", "5");
+  EXPECT_EQ(one, hash("two", "2", "5"));
+  EXPECT_NE(one, hash("other", "1", "6"));
+}
+
+TEST(Pack, CountThatDoesNotFitIsAnOutcome) {
+  const Folder folder;
+  std::string scene = small_scene;
+  scene.replace(scene.find("count = 300"), 11, "count = 3000");
+  const std::string out = (folder / "out").string();
+  const Ended packed = bernal({"pack", folder.write("scene.toml", scene).string(), "-o", out});
+  EXPECT_EQ(packed.status, 3) << packed.err;
+  EXPECT_EQ(report_of(out)["outcome"], "full");
+  EXPECT_EQ(report_of(out)["certified"], true);
+  expect_certified(out);
+}
+
+TEST(Pack, EveryExampleSceneSmall) {
+  for (const auto& file : example_scenes()) {
+    SCOPED_TRACE(file.string());
+    const Folder folder;
+    const auto scene = folder.write("scene.toml", scene_as_toml(small(read_scene(file), 200), folder.path()));
+    const std::string out = (folder / "out").string();
+    const Ended packed = bernal({"pack", scene.string(), "-o", out});
+    EXPECT_EQ(packed.status, 0) << packed.err;
+    EXPECT_EQ(report_of(out)["n"], 200);
+    expect_certified(out);
+  }
+}
+
+TEST(Pack, UnwritableOutputIsRefusedBeforeTheRun) {
+  const Folder folder;
+  const std::string scene = folder.write("scene.toml", small_scene).string();
+  const std::string in_the_way = folder.write("in_the_way", "precious").string();
+  for (const std::string& out :
+       {in_the_way, in_the_way + "/deeper", std::string("/dev/full/x"), std::string("/proc/x")})
+    expect_refused_in_one_line(bernal({"pack", scene, "-o", out}), {out});
+  EXPECT_EQ(text_of(in_the_way), "precious");
+}
+
+TEST(Pack, FullDiskLeavesEarlierOutputUntouched) {
+  const Folder folder;
+  const std::string scene = folder.write("scene.toml", small_scene).string(), out = (folder / "out").string();
+  ASSERT_EQ(bernal({"pack", scene, "-o", out}).status, 0);
+  const auto earlier = files_in(out);
+  // A limit of one block on the size of files stops writing as a full disk does.
+  const Ended full = Process({"/bin/sh", "-c", "ulimit -f 1; exec \"$@\"", "sh", BERNAL_COMMAND, "pack",
+                              scene, "-o", out, "--seed", "2"})
+                         .wait();
+  expect_refused(full, {out});
+  EXPECT_EQ(files_in(out), earlier);
+  expect_certified(out);
+}
+
+TEST(Pack, InterruptLeavesAValidPartialResult) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const Folder folder;
+    const std::string out = (folder / "out").string();
+    const Process pack = start_bernal({"pack", BERNAL_DATA "/scenes/cylinder_han.toml", "-o", out});
+    while (pack.said().find("spheres ") == std::string::npos)  // the plan: from here on it listens
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    pack.signal(signal);
+    const Ended ended = pack.wait();
+    EXPECT_EQ(ended.status, 3) << ended.err;
+    const auto report = report_of(out);
+    EXPECT_EQ(report["outcome"], "cancelled");
+    EXPECT_EQ(report["certified"], true);
+    EXPECT_GT(report["n"], 0);
+    expect_certified(out);
+  }
+}
+
+}  // namespace
+}  // namespace bernal::testing

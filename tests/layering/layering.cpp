@@ -1,0 +1,165 @@
+#include "layering.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <regex>
+#include <stdexcept>
+
+namespace bernal::layering {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What "(types only)" in the table stands for: the headers of plain data.
+const std::set<std::string> type_headers = {"packing.hpp"};
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t`/");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t`/") - first + 1);
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::string part;
+  for (const char c : text + separator) {
+    if (c != separator) {
+      part += c;
+    } else {
+      parts.push_back(trimmed(part));
+      part.clear();
+    }
+  }
+  return parts;
+}
+
+Rule parse_rule(const std::string& text, const std::set<std::string>& all_rooms) {
+  Rule rule;
+  if (text == "nothing") return rule;
+  if (text == "public headers") {
+    rule.public_headers_only = true;
+    return rule;
+  }
+  if (text.starts_with("all but ")) {
+    rule.rooms = all_rooms;
+    for (const std::string& room : split(text.substr(8), ',')) {
+      if (rule.rooms.erase(room) == 0) throw std::runtime_error("src/README.md: no room is called " + room);
+    }
+    return rule;
+  }
+  static const std::regex item(R"(([a-z]+)(?: \(([a-z_.]+) only\))?)");
+  for (const std::string& part : split(text, ',')) {
+    std::smatch match;
+    if (!std::regex_match(part, match, item) || !all_rooms.contains(match[1]))
+      throw std::runtime_error("src/README.md: cannot read \"" + part + "\" in the table of rooms");
+    if (!match[2].matched) {
+      rule.rooms.insert(match[1]);
+    } else if (match[2] == "types") {
+      rule.files[match[1]] = type_headers;
+    } else {
+      rule.files[match[1]].insert(match[2]);
+    }
+  }
+  return rule;
+}
+
+struct Include {
+  int line;
+  bool quoted;
+  std::string path;
+};
+
+std::vector<Include> includes_of(const fs::path& file) {
+  static const std::regex directive(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
+  std::vector<Include> includes;
+  std::ifstream in(file);
+  std::string text;
+  for (int line = 1; std::getline(in, text); ++line) {
+    std::smatch match;
+    if (std::regex_match(text, match, directive)) includes.push_back({line, match[1] == "\"", match[2]});
+  }
+  return includes;
+}
+
+/// Where a file stands, told from its path below the root.
+struct Place {
+  std::string room;
+  bool is_public;  ///< below include/bernal
+  bool is_header;
+};
+
+Place place_of(const fs::path& below_root) {
+  auto part = below_root.begin();
+  const bool is_public = *part == "include";
+  const bool is_app = *part == "apps";
+  std::advance(part, is_public ? 2 : is_app ? 0 : 1);
+  return {part->string(), is_public, below_root.extension() == ".hpp"};
+}
+
+/// Why the include is forbidden, or "".
+std::string objection(const Include& include, const Place& place, const fs::path& folder, const Rule& rule,
+                      const std::map<std::string, Rule>& rules) {
+  const bool reads_cad_library = include.path.starts_with("CGAL/") || include.path.starts_with("assimp/");
+  if (reads_cad_library && (place.room != "cad" || place.is_header))
+    return include.path + ": CGAL and assimp belong to src/cad/*.cpp";
+
+  const bool of_public = include.path.starts_with("bernal/");
+  if (!of_public && !include.quoted) return "";  // the standard library and third parties
+  if (place.room == "apps" && !of_public)
+    return fs::exists(folder / include.path) ? "" : include.path + ": apps see public headers only";
+  if (place.is_public && !of_public) return include.path + ": a public header sees public headers only";
+
+  const std::vector<std::string> parts = split(include.path.substr(of_public ? 7 : 0), '/');
+  if (parts.size() != 2 || !rules.contains(parts[0])) return include.path + ": names no room";
+  const std::string &room = parts[0], &header = parts[1];
+  if (room == place.room || rule.public_headers_only || rule.rooms.contains(room)) return "";
+  const auto some = rule.files.find(room);
+  if (some != rule.files.end() && some->second.contains(header)) return "";
+  return include.path + ": " + place.room + " must not see it";
+}
+
+}  // namespace
+
+std::map<std::string, Rule> read_rules(const fs::path& readme) {
+  std::ifstream in(readme);
+  if (!in) throw std::runtime_error("cannot read " + readme.string());
+  std::map<std::string, std::string> rows;
+  std::set<std::string> rooms;
+  for (std::string text; std::getline(in, text);) {
+    if (!text.starts_with("| `")) continue;
+    const std::vector<std::string> cells = split(text, '|');
+    if (cells.size() != 5) throw std::runtime_error(readme.string() + ": a row without three cells: " + text);
+    rows[cells[1]] = cells[3];
+    rooms.insert(cells[1]);
+  }
+  std::map<std::string, Rule> rules;
+  for (const auto& [room, text] : rows) rules[room] = parse_rule(text, rooms);
+  return rules;
+}
+
+std::vector<std::string> violations(const fs::path& root, const std::map<std::string, Rule>& rules) {
+  std::vector<std::string> found;
+  for (const char* top : {"src", "include", "apps"}) {
+    if (!fs::exists(root / top)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const fs::path& file = entry.path();
+      if (file.extension() != ".hpp" && file.extension() != ".cpp") continue;
+      const fs::path below_root = fs::relative(file, root);
+      const Place place = place_of(below_root);
+      const auto rule = rules.find(place.room);
+      if (rule == rules.end()) {
+        found.push_back(below_root.string() + ":1: no room " + place.room + " in src/README.md");
+        continue;
+      }
+      for (const Include& include : includes_of(file)) {
+        const std::string why = objection(include, place, file.parent_path(), rule->second, rules);
+        if (!why.empty())
+          found.push_back(below_root.string() + ":" + std::to_string(include.line) + ": " + why);
+      }
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace bernal::layering

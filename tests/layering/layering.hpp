@@ -1,0 +1,29 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bernal::layering {
+
+/// What the files of one room may include, besides their own room.
+struct Rule {
+  bool public_headers_only = false;                    ///< apps: bernal/... of any room
+  std::set<std::string> rooms;                         ///< all headers of these rooms
+  std::map<std::string, std::set<std::string>> files;  ///< of these rooms only these files
+};
+
+/// One rule a room, read from the table in src/README.md; its third column says
+/// "nothing", "public headers", "all but A, B" or "A, B (file.hpp only), C (types only)".
+std::map<std::string, Rule> read_rules(const std::filesystem::path& readme);
+
+/// Every include below src/, include/ and apps/ of `root` that the rules forbid, as "file:line: why".
+///
+/// A file may include its own room and what its rule allows; a quoted include names a room; public headers
+/// include public headers only; CGAL and assimp are seen by src/cad/*.cpp alone.
+std::vector<std::string> violations(const std::filesystem::path& root,
+                                    const std::map<std::string, Rule>& rules);
+
+}  // namespace bernal::layering

@@ -1,0 +1,90 @@
+// Fails on an include that the table in src/README.md forbids; and shows, on planted ones, that it would.
+#include "layering.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace bernal::layering {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path source = BERNAL_SOURCE;
+
+TEST(Layering, NoRoomIncludesWhatItsRuleForbids) {
+  const auto rules = read_rules(source / "src/README.md");
+  ASSERT_GT(rules.size(), 10u) << "the table of rooms was not found";
+  for (const std::string& violation : violations(source, rules)) ADD_FAILURE() << violation;
+}
+
+TEST(Layering, TheTableIsReadAsItIsMeant) {
+  const auto rules = read_rules(source / "src/README.md");
+  EXPECT_TRUE(rules.at("core").rooms.empty());
+  EXPECT_TRUE(rules.at("domain").rooms.contains("kernels"));
+  EXPECT_FALSE(rules.at("verify").rooms.contains("domain"));
+  EXPECT_EQ(rules.at("verify").files.at("domain"), std::set<std::string>{"shape.hpp"});
+  EXPECT_EQ(rules.at("stages").files.at("run"), std::set<std::string>{"packing.hpp"});
+  EXPECT_TRUE(rules.at("run").rooms.contains("stages"));
+  EXPECT_FALSE(rules.at("run").rooms.contains("verify"));
+  EXPECT_TRUE(rules.at("apps").public_headers_only);
+}
+
+/// A source tree of one file, under the real rules.
+std::vector<std::string> violations_of(const std::string& file, const std::string& text) {
+  const fs::path root = fs::temp_directory_path() / ("bernal_layering_" + std::to_string(getpid()));
+  fs::create_directories((root / file).parent_path());
+  std::ofstream(root / file) << text << '\n';
+  const auto found = violations(root, read_rules(source / "src/README.md"));
+  fs::remove_all(root);
+  return found;
+}
+
+TEST(Layering, PlantedViolationsAreFound) {
+  const std::pair<const char*, const char*> planted[] = {
+      {"src/core/a.cpp", "#include \"bernal/domain/shape.hpp\""},
+      {"src/core/a.cpp", "#  include <bernal/domain/shape.hpp>"},
+      {"src/kernels/a.hpp", "#include \"bernal/domain/facet.hpp\""},
+      {"src/domain/a.cpp", "#include \"cad/tree.hpp\""},
+      {"src/verify/a.cpp", "#include \"bernal/domain/container.hpp\""},
+      {"src/verify/a.cpp", "#include \"kernels/first_contact.hpp\""},
+      {"src/verify/a.cpp", "#include \"neighbors/cell_grid.hpp\""},
+      {"src/stages/a.cpp", "#include \"bernal/run/run.hpp\""},
+      {"src/run/a.cpp", "#include \"bernal/verify/certificate.hpp\""},
+      {"src/predict/a.cpp", "#include \"bernal/domain/shape.hpp\""},
+      {"src/domain/a.cpp", "#include <CGAL/AABB_tree.h>"},
+      {"src/cad/a.hpp", "#include <assimp/scene.h>"},
+      {"include/bernal/cad/a.hpp", "#include <CGAL/AABB_tree.h>"},
+      {"include/bernal/run/a.hpp", "#include \"stages/bed.hpp\""},
+      {"apps/a.cpp", "#include \"core/philox.hpp\""},
+      {"src/domain/a.cpp", "#include \"box.hpp\""},
+      {"src/domain/a.cpp", "#include \"../core/philox.hpp\""},
+      {"src/attic/a.cpp", ""},
+  };
+  for (const auto& [file, text] : planted)
+    EXPECT_EQ(violations_of(file, text).size(), 1u) << file << ": " << text;
+  EXPECT_EQ(violations_of("src/core/a.cpp", "\n\n#include \"cad/b.hpp\"").front(),
+            "src/core/a.cpp:3: cad/b.hpp: core must not see it");
+}
+
+TEST(Layering, AllowedIncludesAreNotFound) {
+  const std::pair<const char*, const char*> allowed[] = {
+      {"src/core/a.cpp",
+       "#include <vector>\n#include \"bernal/core/error.hpp\"\n#include \"core/philox.hpp\""},
+      {"src/domain/a.cpp",
+       "#include \"kernels/first_contact.hpp\"\n#include <boost/multiprecision/cpp_int.hpp>"},
+      {"src/cad/a.cpp", "#include <CGAL/AABB_tree.h>\n#include <assimp/scene.h>"},
+      {"src/stages/a.cpp", "#include \"bernal/run/packing.hpp\""},
+      {"src/verify/a.cpp", "#include \"bernal/domain/shape.hpp\""},
+      {"src/run/a.cpp", "#include \"stages/bed.hpp\"\n#include \"bernal/cad/read_mesh.hpp\""},
+      {"apps/a.cpp",
+       "#include <CLI/CLI.hpp>\n#include \"bernal/verify/certificate.hpp\"\n#include \"a.cpp\""},
+  };
+  for (const auto& [file, text] : allowed) {
+    for (const std::string& violation : violations_of(file, text)) ADD_FAILURE() << violation;
+  }
+}
+
+}  // namespace
+}  // namespace bernal::layering

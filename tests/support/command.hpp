@@ -1,0 +1,66 @@
+#pragma once
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "support/folder.hpp"
+
+namespace bernal::testing {
+
+/// How a process ended and what it said.
+struct Ended {
+  int status = -1;  ///< exit code; 128 + signal where one killed it
+  std::string out;
+  std::string err;
+};
+
+/// A process with its outputs kept in files, so that no pipe can fill up and block it.
+class Process {
+ public:
+  explicit Process(const std::vector<std::string>& words) {
+    std::vector<char*> argv;
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out().c_str(), O_WRONLY | O_CREAT, 0600);
+    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, err().c_str(), O_WRONLY | O_CREAT, 0600);
+    const int failed = posix_spawnp(&pid_, argv[0], &files, nullptr, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&files);
+    if (failed != 0) throw std::runtime_error("cannot start " + words.front());
+  }
+
+  /// Its standard error so far.
+  std::string said() const { return text_of(err()); }
+
+  void signal(int number) const { kill(pid_, number); }
+
+  Ended wait() const {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), text_of(out()), text_of(err())};
+  }
+
+ private:
+  std::string out() const { return (folder_.path() / "out").string(); }
+  std::string err() const { return (folder_.path() / "err").string(); }
+
+  Folder folder_;
+  pid_t pid_ = -1;
+};
+
+/// The built command with these words after its name.
+inline Process start_bernal(std::vector<std::string> words) {
+  words.insert(words.begin(), BERNAL_COMMAND);
+  return Process(words);
+}
+inline Ended bernal(std::vector<std::string> words) { return start_bernal(std::move(words)).wait(); }
+
+}  // namespace bernal::testing

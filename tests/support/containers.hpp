@@ -1,0 +1,93 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bernal/domain/container.hpp"
+#include "support/precise_distance.hpp"
+
+namespace bernal::test {
+
+/// A container that tests/laws holds to the laws of Container. It stands in local coordinates: its diagonal
+/// is in [1, 2).
+struct ContainerUnderTest {
+  std::string name;
+  Shape shape;
+  double resolution;
+  std::function<std::unique_ptr<Container>(const Shape&, WallArithmetic, double resolution)> make;
+
+  std::unique_ptr<Container> container(WallArithmetic arithmetic = WallArithmetic::filtered) const {
+    return make(shape, arithmetic, resolution);
+  }
+  friend void PrintTo(const ContainerUnderTest& tested, std::ostream* out) { *out << tested.name; }
+};
+
+inline ContainerUnderTest localized(std::string name, const Shape& scene,
+                                    decltype(ContainerUnderTest::make) make = make_analytic_container) {
+  const Frame frame = frame_of(scene);
+  return {std::move(name), to_local(scene, frame), frame.resolution, std::move(make)};
+}
+
+/// A new container is held to every law by one line here.
+inline std::vector<ContainerUnderTest> containers_under_test() {
+  return {
+      localized("Cube", BoxShape{{0, 0, 0}, {1, 1, 1}}),
+      localized("FlatBoxFarAway", BoxShape{{1e4, -3e4, 5e4}, {5, 0.3, 2}}),
+      localized("UprightCylinder", CylinderShape{{0, 0, 0}, {0, 0, 1}, 1, 2}),
+      localized("ObliqueCylinder", CylinderShape{{1, 2, 3}, {1, -2, 0.5}, 0.7, 1.9}),
+      localized("FlatCylinderFarAway", CylinderShape{{2e4, 1e4, 0}, {1e-3, 2e-3, 1e-3}, 3, 0.5}),
+      localized("Sphere", SphereShape{{0, 0, 0}, 1}),
+      localized("SphereFarAway", SphereShape{{-7e3, 123.456, 1e4}, 0.6}),
+  };
+}
+
+/// Signed distance to the wall by the plainest definition, in long double: for a mesh over all its triangles,
+/// the side by the sum of their solid angles.
+inline long double precise_clearance(const Shape& shape, const Vector<3>& point) {
+  using Real = long double;
+  const Point<Real> p(point);
+  if (const auto* box = std::get_if<BoxShape>(&shape)) {
+    const Bounds<3> bounds = bounds_of(*box);
+    Real least = std::numeric_limits<Real>::infinity(), squared_outside = 0;
+    for (int k = 0; k < 3; ++k) {
+      for (const Real depth : {Real(point[k]) - bounds.lower[k], Real(bounds.upper[k]) - point[k]}) {
+        least = std::min(least, depth);
+        if (depth < 0) squared_outside += depth * depth;
+      }
+    }
+    return least >= 0 ? least : -std::sqrt(squared_outside);
+  }
+  if (const auto* sphere = std::get_if<SphereShape>(&shape))
+    return sphere->radius - norm(p - Point<Real>(sphere->center));
+  if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+    const Point<Real> axis(cylinder->axis), w = p - Point<Real>(cylinder->base);
+    const Real along = dot(w, axis) / norm(axis);
+    const Real lateral = cylinder->radius - norm(cross(w, axis)) / norm(axis);
+    const Real axial = std::min(along, cylinder->height - along);
+    const Real least = std::min(lateral, axial);
+    if (least >= 0) return least;
+    return -std::hypot(std::min<Real>(lateral, 0), std::min<Real>(axial, 0));
+  }
+  const Mesh& mesh = std::get<Mesh>(shape);
+  Real squared = std::numeric_limits<Real>::infinity(), solid_angle = 0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Point<Real> a = mesh.vertices[i], b = mesh.vertices[j], c = mesh.vertices[k];
+    const Point<Real> offset = precise_offset(p, a, b, c);
+    squared = std::min(squared, dot(offset, offset));
+    // van Oosterom & Strackee, IEEE Trans. Biomed. Eng. 30 (1983), eq. 8.
+    const Point<Real> u = a - p, v = b - p, w = c - p;
+    const Real nu = norm(u), nv = norm(v), nw = norm(w);
+    solid_angle +=
+        2 * std::atan2(dot(u, cross(v, w)), nu * nv * nw + dot(u, v) * nw + dot(v, w) * nu + dot(w, u) * nv);
+  }
+  return (solid_angle > 2 * std::numbers::pi ? 1 : -1) * std::sqrt(squared);
+}
+
+}  // namespace bernal::test

@@ -1,0 +1,25 @@
+#pragma once
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "bernal/scene/read_scene.hpp"
+
+namespace bernal::testing {
+
+/// Every scene of data/scenes, by name.
+inline std::vector<std::filesystem::path> example_scenes() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(BERNAL_DATA "/scenes"))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+/// The scene with at most `count` spheres: everything of it runs, in a blink.
+inline Scene small(Scene scene, std::int64_t count = 300) {
+  scene.target = {.count = count, .packing_fraction = {}, .fill = false, .where = scene.target.where};
+  return scene;
+}
+
+}  // namespace bernal::testing
