@@ -32,7 +32,7 @@ inline std::string escaped(std::string_view text) {
 /// 1234567 as 1,234,567.
 inline std::string grouped(std::uint64_t n) {
   std::string out = std::to_string(n);
-  for (std::size_t place = out.size(); place > 3; place -= 3) out.insert(place - 3, ",");
+  for (std::size_t place = out.size(); place > 3; place -= 3) out.insert(place - 3, 1, ',');
   return out;
 }
 
