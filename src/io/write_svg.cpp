@@ -169,8 +169,15 @@ void append_spheres(std::string& out, const Spheres<3>& spheres, const View& vie
   const double mean_radius = view.scale() * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) /
                              static_cast<double>(std::max<std::size_t>(1, spheres.size()));
   const Shading shading(depths, mean_radius);
+  // A ball smaller than the raster may be met by none of its points: its centre decides.
+  const auto shows = [&](std::size_t k) {
+    const Ball& ball = balls[k];
+    return visible_points[k] >= fewest_visible_points ||
+           (ball.radius < 2 * raster_pitch &&
+            depths.depth(ball.center.x, ball.center.y) <= ball.center.depth + ball.radius);
+  };
   for (std::size_t k = 0; k < balls.size(); ++k) {
-    if (visible_points[k] < fewest_visible_points) continue;
+    if (!shows(k)) continue;
     const Ball& ball = balls[k];
     const int shade = std::min(shade_classes - 1, static_cast<int>(shading(ball) * shade_classes));
     fmt::format_to(std::back_inserter(out),

@@ -46,8 +46,9 @@ std::string mutated(std::string text, Random& random) {
 }
 
 /// Whatever the bytes: spheres that can be written and read again, or one line that says where they are
-/// wrong.
-bool is_a_packing(const testing::Folder& folder, const std::string& text) {
+/// wrong. Writing waits for the disk, so that not every call does it.
+bool is_a_packing(const testing::Folder& folder, const std::string& text, bool write_again) {
+  std::filesystem::remove(folder / "fuzz.csv");  // file systems wait for the disk when a file is overwritten
   const auto file = folder.write("fuzz.csv", text);
   try {
     const SpheresFile read = read_csv(file);

@@ -86,6 +86,14 @@ TEST(Picture, LeavesOutWhatCannotBeSeenAndStaysSmall) {
   EXPECT_LT(drawn, 4u * 3 * 31 * 31);
 }
 
+TEST(Picture, ShowsASphereHoweverSmall) {
+  Spheres<3> spheres;
+  spheres.push_back({5, 5, 5}, 1e-6);
+  EXPECT_EQ(painted(svg_of(spheres, box, "mm")).size(), 1u);
+  spheres.push_back(spheres.center(0) + 2 * View::towards_eye(), 1);  // and not when one stands before it
+  EXPECT_EQ(painted(svg_of(spheres, box, "mm")).size(), 1u);
+}
+
 TEST(Picture, OutlinesOfABoxAreItsTwelveEdges) {
   const Mesh mesh = drawable_mesh(box);
   const View view(mesh.vertices, 1000, 12, 480);

@@ -1,7 +1,7 @@
-#include <bernal/sizes/size_distribution.hpp>
+#include <bernal/predict/predict.hpp>
 #include <cmath>
 
 int main() {
-  const auto radii = bernal::make_uniform(1, 2, bernal::Basis::number);
-  return std::abs(radii->moment(1) - 1.5) < 1e-12 ? 0 : 1;
+  const double phi = bernal::predict_packing_fraction(*bernal::make_constant(1)).phi;
+  return std::abs(phi - 0.6435) < 1e-3 ? 0 : 1;
 }
