@@ -5,7 +5,6 @@
 #include <CGAL/Surface_mesh.h>
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <tbb/parallel_invoke.h>
@@ -54,7 +55,8 @@ inline Box box_of_ball(const Vector<3>& c, double r) {
 /// So its depth is log2(N / 8) for any input: clustered, coincident, any ratio of sizes.
 ///
 /// Every search is complete with respect to `touch`. The tree does not depend on the number of threads.
-/// Cost: building O(N log N), 40 + 12 bytes a sphere; a search O(log N) and what it finds.
+/// Cost: building O(N log N), 12 to 24 bytes an item beside the item itself; a search O(log N) and what it
+/// finds.
 template <class Item>
 class BoxTree {
  public:
@@ -66,8 +68,6 @@ class BoxTree {
 
   /// The items in the tree's order: neighbours in space are mostly near in it.
   std::span<const Item> items() const { return items_; }
-
-  const Box& bounds() const { return boxes_[root]; }
 
   /// Leaves are numbered from 0; together they hold every item once.
   std::size_t leaves() const { return first_leaf_; }

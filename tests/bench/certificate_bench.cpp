@@ -8,7 +8,7 @@
 
 #include "bernal/core/random.hpp"
 #include "bernal/verify/certificate.hpp"
-#include "support/meshes.hpp"
+#include "support/integer_meshes.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "bernal/core/random.hpp"
-#include "support/meshes.hpp"
+#include "support/integer_meshes.hpp"
 #include "support/packing_oracle.hpp"
 
 namespace bernal {

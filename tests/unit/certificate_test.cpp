@@ -11,7 +11,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
-#include "support/meshes.hpp"
+#include "support/integer_meshes.hpp"
 #include "support/packing_oracle.hpp"
 
 namespace bernal {

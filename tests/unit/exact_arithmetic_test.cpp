@@ -50,7 +50,7 @@ TEST_P(Signs, AreRightOrUnknown) {
   const auto expect_right = [&](const Rational& truth, const Exact& exact, const Bounded& bounded) {
     EXPECT_EQ(static_cast<int>(exact.sign()), sign(truth));
     const Sign guess = bounded.sign();
-    if (guess != Sign::unknown) EXPECT_EQ(static_cast<int>(guess), sign(truth));
+    EXPECT_TRUE(guess == Sign::unknown || static_cast<int>(guess) == sign(truth));
     zeros += sign(truth) == 0 ? 1 : 0;
     unknown += guess == Sign::unknown ? 1 : 0;
     ++total;
@@ -67,7 +67,10 @@ TEST_P(Signs, AreRightOrUnknown) {
   }
   EXPECT_GT(zeros, 0);
   EXPECT_GT(unknown, 0);
-  if (spread < 100) EXPECT_LT(unknown, 0.6 * total);  // a third is singular, a third nearly so
+  // A third is nearly singular and a third singular; far from 1 most products leave the range of double.
+  if (spread < 100) {
+    EXPECT_LT(unknown, 0.6 * total);
+  }
 }
 
 // Small integers tie exactly; 53 bits round; the wide spreads underflow to subnormals and overflow.

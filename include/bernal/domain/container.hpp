@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -39,6 +40,12 @@ class Container {
   /// largest coordinate.
   virtual double clearance(const Vector<3>& p) const = 0;
 
+  /// The smaller of `clearance(p)` and `reach`: the question "is a wall within reach?", which for a mesh
+  /// costs the less the smaller `reach` is.
+  virtual double clearance_within(const Vector<3>& p, double reach) const {
+    return std::min(clearance(p), reach);
+  }
+
   /// Whether the ball of radius r >= 0 around c lies inside, touching allowed; decided as the container's
   /// WallArithmetic promises.
   virtual bool contains(const Vector<3>& c, double r) const = 0;
@@ -53,7 +60,7 @@ class Container {
   /// that rests on the wall can leave it; one that penetrates slightly can move out of the wall, never
   /// further in: then the answer is 0. A tangent of a round wall leads into it at once, so what slides there
   /// has to aim along a chord.
-  double first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const;
+  virtual double first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const;
 
   /// Appends the wall points within `reach` of `c`, one a facet, edge or corner (each once), nearest first.
   void walls_near(const Vector<3>& c, double reach, std::vector<WallPoint>& out) const;

@@ -22,7 +22,7 @@ struct Prediction {
 /// 0.8729 for two sizes of infinite ratio).
 ///
 /// Precondition: a finite second moment; rods >= 2, else Error{bad_argument}. Deterministic.
-/// Cost: O(rods log rods); about 3 µs a rod for lognormal sizes.
+/// Cost: O(rods log rods); 6 ms for 4,000 rods of lognormal sizes, 0.6 ms for two classes.
 /// Source: Farr & Groot, J. Chem. Phys. 131, 244104 (2009); Farr, Powder Technology 245, 28 (2013), section
 /// IV.
 Prediction predict_packing_fraction(const SizeDistribution& sizes, int rods = 4000);

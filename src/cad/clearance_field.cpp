@@ -1,0 +1,59 @@
+#include "cad/clearance_field.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bernal::cad {
+namespace {
+
+constexpr int cubes_along_longest_edge = 32;
+constexpr double widening = 1e-6;  ///< of a cube's edge
+
+/// Of a point outside the bounds.
+constexpr ClearanceBounds beyond = {-std::numeric_limits<double>::infinity(),
+                                    -std::numeric_limits<double>::denorm_min()};
+
+}  // namespace
+
+ClearanceField::ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds)
+    : lower_(bounds.lower), upper_(bounds.upper) {
+  edge_ = bounds.size().maxCoeff() / cubes_along_longest_edge;
+  per_edge_ = 1 / edge_;
+  for (int k = 0; k < 3; ++k)
+    count_[k] =
+        std::clamp(static_cast<int>(std::ceil(bounds.size()[k] * per_edge_)), 1, cubes_along_longest_edge);
+  clearance_.resize(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2]);
+
+  // Along a row each cube bounds the search of the next and mostly knows its side. A row is one task, and so
+  // the result does not depend on the number of threads.
+  tbb::parallel_for(0, count_[1] * count_[2], [&](int row) {
+    const int y = row % count_[1], z = row / count_[1];
+    double last = std::numeric_limits<double>::infinity();
+    bool inside = false;
+    for (int x = 0; x < count_[0]; ++x) {
+      const Vector<3> center = center_of(x, y, z);
+      const double most = (std::abs(last) + edge_) * (1 + widening);
+      if (x == 0 || std::abs(last) <= edge_ * (1 + widening)) inside = tree.side(center) == Side::inside;
+      const double distance = tree.distance(center, most);
+      last = inside ? distance : -distance;
+      clearance_[static_cast<std::size_t>(row) * count_[0] + x] = last;
+    }
+  });
+}
+
+ClearanceBounds ClearanceField::at(const Vector<3>& p) const {
+  int cell[3];
+  for (int k = 0; k < 3; ++k) {
+    if (!(p[k] >= lower_[k] && p[k] <= upper_[k])) return beyond;
+    cell[k] = std::min(static_cast<int>((p[k] - lower_[k]) * per_edge_), count_[k] - 1);
+  }
+  const double away = (p - center_of(cell[0], cell[1], cell[2])).norm() + widening * edge_;
+  const std::size_t row = static_cast<std::size_t>(cell[2]) * count_[1] + cell[1];
+  const double clearance = clearance_[row * count_[0] + cell[0]];
+  return {clearance - away, clearance + away};
+}
+
+}  // namespace bernal::cad

@@ -1,0 +1,85 @@
+#include "bernal/cad/mesh_container.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/tolerance.hpp"
+#include "cad/clearance_field.hpp"
+#include "cad/triangle_tree.hpp"
+
+namespace bernal {
+namespace {
+
+class MeshContainer final : public Container {
+ public:
+  MeshContainer(const Mesh& mesh, WallArithmetic arithmetic, double resolution)
+      : Container(resolution),
+        arithmetic_(arithmetic),
+        bounds_(bounds_of(mesh)),
+        volume_(volume_of(mesh)),
+        tree_(mesh),
+        field_(tree_, bounds_) {}
+
+  std::string_view kind() const override { return "mesh"; }
+  Bounds<3> bounds() const override { return bounds_; }
+  double volume() const override { return volume_; }
+
+  double clearance(const Vector<3>& p) const override {
+    return clearance_within(p, std::numeric_limits<double>::infinity());
+  }
+
+  double clearance_within(const Vector<3>& p, double reach) const override {
+    const cad::ClearanceBounds known = field_.at(p);
+    if (known.lower >= reach) return reach;
+    const cad::Side side = side_of(p, known);
+    if (side == cad::Side::wall) return std::min(0.0, reach);
+    if (side == cad::Side::outside) return -tree_.distance(p, -known.lower);
+    return tree_.distance(p, std::min(reach, known.upper));
+  }
+
+  bool contains(const Vector<3>& c, double r) const override {
+    // Exact arithmetic throughout means that no shortcut is taken either.
+    const cad::ClearanceBounds known =
+        arithmetic_ == WallArithmetic::exact ? cad::ClearanceBounds{} : field_.at(c);
+    if (known.lower >= r && known.inside()) return true;
+    if (known.outside() || known.upper < r) return false;
+    return tree_.clears(c, r, arithmetic_) && side_of(c, known) != cad::Side::outside;
+  }
+
+  void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
+    if (field_.at(c).lower < reach) tree_.within(c, reach, out);
+  }
+
+  double first_contact(const Vector<3>& c, double r, const Vector<3>& direction,
+                       double limit) const override {
+    const double skin = tolerance::skin(r, resolution());
+    if (field_.at(c).lower >= r + skin + limit) return limit;
+    return tree_.first_contact(c, r, direction, limit, skin);
+  }
+
+ private:
+  cad::Side side_of(const Vector<3>& p, const cad::ClearanceBounds& known) const {
+    if (known.inside()) return cad::Side::inside;
+    if (known.outside()) return cad::Side::outside;
+    return tree_.side(p);
+  }
+
+  WallArithmetic arithmetic_;
+  Bounds<3> bounds_;
+  double volume_;
+  cad::TriangleTree tree_;
+  cad::ClearanceField field_;
+};
+
+}  // namespace
+
+std::unique_ptr<Container> make_mesh_container(const Mesh& mesh, WallArithmetic arithmetic,
+                                               double resolution) {
+  if (mesh.triangles.size() < 4)
+    throw Error(ErrorCode::bad_argument, "a mesh container needs a closed mesh; use read_container_mesh");
+  return std::make_unique<MeshContainer>(mesh, arithmetic, resolution);
+}
+
+}  // namespace bernal
