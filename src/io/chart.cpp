@@ -22,8 +22,9 @@ class Ticks {
     const double raw = (to - from) / 5;
     const double decade = std::pow(10, std::floor(std::log10(raw)));
     step_ = decade * (raw > 5 * decade ? 10 : raw > 2 * decade ? 5 : raw > decade ? 2 : 1);
-    for (double k = std::ceil(from / step_ - 1e-9); k * step_ <= to + 1e-9 * step_; ++k) {
-      values_.push_back(k * step_);
+    const double first = std::ceil(from / step_ - 1e-9);
+    for (int k = 0; k < most_ticks && (first + k) * step_ <= to + 1e-9 * step_; ++k) {
+      values_.push_back((first + k) * step_);
     }
   }
   const std::vector<double>& values() const { return values_; }
@@ -34,6 +35,8 @@ class Ticks {
   }
 
  private:
+  static constexpr int most_ticks = 12;  // where the axis is so short that adding a step changes nothing
+
   double step_;
   std::vector<double> values_;
 };
@@ -116,7 +119,9 @@ std::string history_chart(std::span<const Milestone> history, double Milestone::
     most = std::max(most, m.*value);
     last = std::max(last, m.seconds);
   }
-  const double room = most > least ? 0.08 * (most - least) : std::max(1e-9, 0.1 * std::abs(most));
+  // A value that only rounding has moved is drawn as the flat line that it is.
+  double room = std::max({0.08 * (most - least), 1e-3 * std::abs(least), 1e-3 * std::abs(most)});
+  if (!(room > 0)) room = 1;
   Chart chart(0, last > 0 ? 1.02 * last : 1, least - room, most + room);
   chart.axes("seconds since the start of the run", label);
 
@@ -126,8 +131,8 @@ std::string history_chart(std::span<const Milestone> history, double Milestone::
     if (m.stage == stage) continue;
     stage = m.stage;
     const double x = chart.x(m.seconds);
-    chart.add("<path class=\"stage\" d=\"M{:.1f} {}V{}\"/>", x, top, height - bottom);
     if (x < free_from) continue;
+    chart.add("<path class=\"stage\" d=\"M{:.1f} {}V{}\"/>", x, top, height - bottom);
     const bool at_end = x > width - right - 60;
     chart.add("<text x=\"{:.1f}\" y=\"{}\"{}>{}</text>", x, top - 6, at_end ? " text-anchor=\"end\"" : "",
               escaped(stage));

@@ -12,8 +12,8 @@ namespace bernal {
 /// equal.
 std::string size_histogram(std::span<const double> sizes, std::string_view label);
 
-/// A line over the seconds of the run, one point a milestone, as inline SVG. Each stage's first milestone is
-/// named. Precondition: at least two milestones.
+/// A line over the seconds of the run, one point a milestone, as inline SVG. Where a stage begins
+/// its name stands, if there is room for it. Precondition: at least two milestones.
 std::string history_chart(std::span<const Milestone> history, double Milestone::*value,
                           std::string_view label);
 

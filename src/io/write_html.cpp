@@ -176,8 +176,10 @@ void write_contacts(Page& page, const Report& report) {
   page.row("with the wall", grouped(c.walls), "counted once for each face, edge or corner that is touched");
   page.row("coordination", fmt::format("{:.3f}", c.coordination),
            "how many spheres touch a sphere, on average");
-  page.row("rattlers", grouped(c.rattlers),
-           "spheres that fewer than four contacts hold, so that they can move");
+  page.row(
+      "rattlers", grouped(c.rattlers),
+      "spheres that fewer than four contacts hold, taken out one after the other until none is left; where "
+      "nothing is wedged in, as in a bed that was only let settle, that can be nearly all");
   page.raw("</table>\n");
 }
 
@@ -189,9 +191,9 @@ void write_history(Page& page, const Report& report) {
              history_chart(packing.history, &Milestone::potential,
                            fmt::format("mean height of the spheres ({})", packing.scene.unit)));
     page.raw(
-        "<p class=\"dim\">The height is measured against the direction in which the spheres are pushed, from "
-        "the lowest point of the container; it falls as they settle and rises as new ones are put on "
-        "top.</p>\n");
+        "<p class=\"dim\">The height is measured against the direction in which the spheres are pushed; it "
+        "falls as "
+        "they settle and rises as new ones are put on top.</p>\n");
   }
   if (packing.effects.empty()) return;
   page.raw(

@@ -80,7 +80,7 @@ class Shading {
   Shading(const DepthBuffer& depths, double mean_radius) : depths_(depths), patch_(7 * mean_radius) {}
 
   double operator()(const Ball& ball) const {
-    return std::clamp(0.7 * occlusion(ball) + 0.85 * (aversion(ball) - 0.15), 0.0, 1.0);
+    return std::clamp(0.7 * occlusion(ball) + 0.8 * (aversion(ball) - 0.2), 0.0, 1.0);
   }
 
  private:

@@ -347,6 +347,21 @@ TEST(ReportHtml, ManagesWithoutSpheresWithOneAndWithClasses) {
   }
 }
 
+TEST(ReportHtml, DrawsWhatHardlyVaries) {
+  // A history that stands still up to rounding and radii that differ in their last bit: axes of no length.
+  Packing packing = example();
+  for (double& r : packing.spheres.r) r = 0.05;
+  for (std::size_t i = 1; i < 30; ++i) packing.spheres.r[i] = std::nextafter(packing.spheres.r[i - 1], 1);
+  packing.history = {{"insert", 1, 0.3, 1e9, 0},
+                     {"insert", 1, std::nextafter(0.3, 1), 1e9, 0},
+                     {"refill", 1, 0.3, std::nextafter(1e9, 0), 0}};
+  const Folder folder;
+  write_packing(packing, folder.path());
+  const std::string html = text_of(folder / "report.html");
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+  EXPECT_LT(html.size(), 1'000'000u);
+}
+
 // ---- All files together
 
 TEST(WritePacking, WritesTheSixFilesIntoAFolderThatItMakes) {
