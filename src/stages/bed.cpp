@@ -41,6 +41,7 @@ Bed::Bed(const Container& container, double r_min, double r_max, std::size_t exp
     : container_(container),
       effects_(effects),
       skin_(tolerance::skin(r_min, container.resolution())),
+      places_(container),
       grid_(container.bounds(), r_min, r_max, expected) {}
 
 double Bed::potential(const Vector<3>& direction) const {
@@ -63,14 +64,18 @@ bool Bed::fits(const Vector<3>& c, double r) const {
   return container_.contains(c, r + skin_);
 }
 
-double Bed::gap_to_neighbors(const Vector<3>& c, double enough, double limit) const {
+double Bed::room_between_spheres(const Vector<3>& c, double enough, double limit) const {
   double gap = limit;
-  grid_.any_near(c, limit + skin_, [&](Id j) {
-    const double s = gap + balls_[j].r + skin_;
-    const double d2 = (balls_[j].center - c).squaredNorm();
-    if (d2 < s * s) gap = std::sqrt(d2) - balls_[j].r - skin_;
-    return gap < enough;
-  });
+  const auto lower_gap = [&](double reach) {
+    return grid_.any_near(c, reach + skin_, [&](Id j) {
+      const double s = gap + balls_[j].r + skin_;
+      const double squared = (balls_[j].center - c).squaredNorm();
+      if (squared < s * s) gap = std::sqrt(squared) - balls_[j].r - skin_;
+      return gap < enough;
+    });
+  };
+  // Most places are inside some sphere: look near by before looking far around.
+  if (!lower_gap(enough)) lower_gap(gap);
   return gap;
 }
 

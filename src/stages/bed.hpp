@@ -7,6 +7,7 @@
 #include "bernal/domain/container.hpp"
 #include "neighbors/cell_grid.hpp"
 #include "stages/effect_log.hpp"
+#include "stages/places.hpp"
 
 namespace bernal {
 
@@ -32,6 +33,7 @@ class Bed {
   Bed(const Container& container, double r_min, double r_max, std::size_t expected, EffectLog& effects);
 
   const Container& container() const { return container_; }
+  const Places& places() const { return places_; }
   std::size_t size() const { return balls_.size(); }
   const Ball& operator[](Id i) const { return balls_[i]; }
   double skin() const { return skin_; }
@@ -43,9 +45,9 @@ class Bed {
   /// Whether a sphere may appear at c: no neighbour and no wall nearer than the skin. O(1) besides the wall.
   bool fits(const Vector<3>& c, double r) const;
 
-  /// The radius of the largest sphere at c that touches no other, at most `limit`; walls are not asked. Any
-  /// value below `enough` where it is below that.
-  double gap_to_neighbors(const Vector<3>& c, double enough, double limit) const;
+  /// The radius, at most `limit`, of the largest sphere at c that overlaps no other; any value below `enough`
+  /// where it is below that. Walls are not asked.
+  double room_between_spheres(const Vector<3>& c, double enough, double limit) const;
 
   /// Adds a sphere that fits. `tag` is the caller's name for it: its place in the drawn sequence.
   void insert(const Vector<3>& c, double r, std::uint32_t tag);
@@ -57,8 +59,8 @@ class Bed {
   /// in which sweeps visit them and in which they lie in memory.
   void sort_by_height(const Vector<3>& direction);
 
-  /// Tells the background grid where the spheres have moved to; `fits` and `gap_to_neighbors` need it after
-  /// spheres have moved.
+  /// Tells the background grid where the spheres have moved to; `fits` and `room_between_spheres` need it
+  /// after spheres have moved.
   void update_grid();
 
   /// Gives every sphere a bounding box with `buffer` to move in on each side, and builds the neighbour lists
@@ -85,6 +87,7 @@ class Bed {
   double skin_;
   std::vector<Ball> balls_;
   std::vector<std::uint32_t> tags_;
+  Places places_;
   CellGrid<3> grid_;
   double sum_of_radii_ = 0;
   double sum_of_volumes_ = 0;

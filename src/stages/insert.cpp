@@ -13,9 +13,8 @@ StageEnd insert(Work& work, const InsertOptions& options) {
   Bed& bed = work.bed;
   Supply& supply = work.supply;
   Random random = work.random(Stream::insert);
-  const Bounds<3> bounds = bed.container().bounds();
-  // Trials are counted inside the container, of which its bounds are a multiple.
-  const double attempts = options.attempts * std::max(1.0, bounds.volume() / bed.container().volume());
+  // Trials are counted inside the container; places are drawn a little beyond it, too.
+  const double attempts = options.attempts * std::max(1.0, bed.places().volume() / bed.container().volume());
   std::size_t waiting = 0;  // so many at the head of the window found no place
   while (waiting < supply.window().size() && bed.packing_fraction() < options.packing_fraction) {
     if (work.monitor.stop()) return StageEnd::cancelled;
@@ -23,7 +22,7 @@ StageEnd insert(Work& work, const InsertOptions& options) {
     const double r = supply.radius(tag);
     bool placed = false;
     for (double trial = 0; trial < attempts && !placed; ++trial) {
-      const Vector<3> c = uniform_point(random, bounds);
+      const Vector<3> c = bed.places().draw(random);
       if (!bed.fits(c, r)) continue;
       bed.insert(c, r, tag);
       supply.take(waiting);

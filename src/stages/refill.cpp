@@ -6,62 +6,70 @@
 namespace bernal {
 namespace {
 
-/// A random place and the radius of the largest sphere that fits there between neighbours and walls.
+/// A random place, its clearance from the wall, and the radius of the largest sphere that fits there now.
 struct Probe {
   Vector<3> place;
-  double gap;
+  double clearance;
+  double room;
 };
 
-/// Places for a sphere of radius `smallest` or more, in random order.
-std::vector<Probe> probe_free_space(const Bed& bed, double smallest, double largest, std::size_t probes,
-                                    Random& random) {
-  const Bounds<3> bounds = bed.container().bounds();
-  std::vector<Probe> found;
-  for (std::size_t k = 0; k < probes; ++k) {
-    const Vector<3> place = uniform_point(random, bounds);
-    const double gap = bed.gap_to_neighbors(place, smallest, largest);
-    if (gap < smallest || !bed.container().contains(place, smallest)) continue;
-    const double room = std::min(gap, bed.container().clearance(place) - bed.skin());
-    if (room >= smallest) found.push_back({place, room});
+/// More probes would take more memory than the spheres do.
+constexpr double most_probes = 4e6;
+
+/// Places in the container where a sphere of radius `smallest` clears the wall: drawn once a stage, since the
+/// wall stays where it is.
+std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
+  const Bed& bed = work.bed;
+  Random random = work.random(Stream::refill);
+  const double smallest = work.supply.smallest() + bed.skin();
+  const double sphere = 4.0 / 3.0 * std::numbers::pi * std::pow(bed.mean_radius(), 3);
+  const double wanted = 1000 + probes_a_sphere * bed.places().volume() / sphere;
+  std::vector<Probe> probes;
+  for (double k = 0; k < std::min(wanted, most_probes); ++k) {
+    const Vector<3> place = bed.places().draw(random);
+    if (!bed.container().contains(place, smallest)) continue;
+    probes.push_back({place, bed.container().clearance(place) - bed.skin(), 0});
   }
-  return found;
+  return probes;
 }
 
 /// Puts spheres of the window into the free space; returns how many.
-std::size_t fill_free_space(Work& work, double probes_a_sphere) {
+std::size_t fill_free_space(Work& work, std::vector<Probe>& probes) {
   EffectTimer timer(work.effects, "refilling");
   Bed& bed = work.bed;
   Supply& supply = work.supply;
-  Random random = work.random(Stream::refill);
-  const Container& container = bed.container();
-  const double mean_volume = 4.0 / 3.0 * std::numbers::pi * std::pow(bed.mean_radius(), 3);
-  const double capacity = container.bounds().volume() / mean_volume;
+  const double smallest = supply.smallest();
   bed.update_grid();
-  std::vector<Probe> probes =
-      probe_free_space(bed, supply.smallest(), supply.largest(),
-                       static_cast<std::size_t>(probes_a_sphere * capacity) + 1000, random);
+  std::vector<Probe*> open;
+  for (Probe& p : probes) {
+    p.room = bed.room_between_spheres(p.place, smallest, std::min(p.clearance, supply.largest()));
+    if (p.room >= smallest) open.push_back(&p);
+  }
+
   const std::size_t before = bed.size();
-  std::size_t waiting = 0;
+  std::size_t waiting = 0;  // so many at the head of the window found no place
   while (waiting < supply.window().size()) {
     const std::uint32_t tag = supply.window()[waiting];
     const double r = supply.radius(tag);
     bool placed = false;
-    for (std::size_t k = 0; k < probes.size() && !placed;) {
-      if (probes[k].gap < r) {
+    for (std::size_t k = 0; k < open.size() && !placed;) {
+      Probe& probe = *open[k];
+      if (probe.room < r) {
         ++k;
         continue;
       }
-      placed = bed.fits(probes[k].place, r);
+      placed = bed.fits(probe.place, r);
       if (placed) {
-        bed.insert(probes[k].place, r, tag);
+        bed.insert(probe.place, r, tag);
         supply.take(waiting);
+        probe.room = 0;
       } else {
         // A sphere has come near since the place was probed.
-        probes[k].gap = std::min(std::nextafter(r, 0.0), bed.gap_to_neighbors(probes[k].place, 0, r));
+        probe.room = std::min(std::nextafter(r, 0.0), bed.room_between_spheres(probe.place, smallest, r));
       }
-      if (placed || probes[k].gap < supply.smallest()) {
-        probes[k] = probes.back();
-        probes.pop_back();
+      if (probe.room < smallest) {
+        open[k] = open.back();
+        open.pop_back();
       }
     }
     if (!placed) ++waiting;
@@ -72,10 +80,12 @@ std::size_t fill_free_space(Work& work, double probes_a_sphere) {
 }  // namespace
 
 StageEnd refill(Work& work, const RefillOptions& options) {
+  if (work.supply.exhausted()) return StageEnd::converged;
+  std::vector<Probe> probes = draw_probes(work, options.probes);
   for (int round = 0; round < options.max_rounds; ++round) {
     if (work.monitor.stop()) return StageEnd::cancelled;
     if (work.supply.exhausted()) return StageEnd::converged;
-    const std::size_t added = fill_free_space(work, options.probes);
+    const std::size_t added = fill_free_space(work, probes);
     work.milestone("refill");
     const bool full = static_cast<double>(added) <= options.patience * static_cast<double>(work.bed.size());
     if (work.supply.exhausted() && added == 0) return StageEnd::converged;
