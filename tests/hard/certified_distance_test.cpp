@@ -52,7 +52,7 @@ TEST(CertifiedDistance, BoundsAreTightOnGoodTriangles) {
     // Each bound is widened by six roundoffs of the farthest vertex and eight of itself; the guesses add a
     // few.
     const double farthest = std::max({(p - t.a).norm(), (p - t.b).norm(), (p - t.c).norm()});
-    EXPECT_LE(bounds.upper - bounds.lower, tolerance::roundoff * (12 + 4) * (farthest + bounds.upper));
+    EXPECT_LE(bounds.upper - bounds.lower, 20 * tolerance::roundoff * (farthest + bounds.upper));
   }
 }
 
