@@ -15,6 +15,9 @@ namespace {
 
 using tolerance::roundoff;
 
+/// Lengths and weights below this are no guess worth bounding with: their products might underflow.
+constexpr double least_meaning = 1e-140;
+
 using Corners = std::array<Vector<3>, 3>;
 
 /// A lower bound of min_i n·w_i / |n| for exact w_i, n as given and not zero. `farthest` >= |w_i| for all i.
@@ -25,7 +28,7 @@ using Corners = std::array<Vector<3>, 3>;
 /// the first and widening the result by 8u of itself covers them.
 double lower_bound(const Corners& w, const Vector<3>& n, double farthest) {
   const double length = n.norm();
-  if (!(length > 0)) return 0;
+  if (!(length > least_meaning)) return 0;
   const double least = std::min({n.dot(w[0]), n.dot(w[1]), n.dot(w[2])});
   const double bound = least / length - 6 * roundoff * farthest;
   return std::max(0.0, bound * (1 - 8 * roundoff));
@@ -38,7 +41,7 @@ double lower_bound(const Corners& w, const Vector<3>& n, double farthest) {
 /// quotient add a few u of the result.
 double upper_bound(const Corners& w, const Vector<3>& lambda, double farthest) {
   const double sum = lambda[0] + lambda[1] + lambda[2];
-  if (!(sum > 0)) return farthest;
+  if (!(sum > least_meaning)) return farthest;
   const Vector<3> offset = lambda[0] * w[0] + lambda[1] * w[1] + lambda[2] * w[2];
   return (offset.norm() / sum + 6 * roundoff * farthest) * (1 + 8 * roundoff);
 }

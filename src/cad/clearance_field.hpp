@@ -19,7 +19,7 @@ struct ClearanceBounds {
   bool outside() const { return upper < 0; }
 };
 
-/// The clearance at the centres of some thousands of cubes that cover the mesh. Clearance is 1-Lipschitz, so
+/// The clearance at the centres of up to 32³ cubes that cover the mesh. Clearance is 1-Lipschitz, so
 /// each of them bounds it everywhere: most points of a container, and nearly all that insertion tries, are
 /// decided by one look.
 ///

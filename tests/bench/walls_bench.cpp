@@ -12,12 +12,12 @@
 // What a question to a mesh wall costs. The mesh is a rippled torus of extent 1 (tube of diameter 0.3) in
 // triangles of nearly equal size. Each benchmark runs over spheres of three radii:
 //
-//   moderate   some ten triangles within r of a sphere that touches the wall: what a user meshes for
+//   moderate   1.8 edges: some sixty triangles within 1.7 r, what a user meshes for
 //   extent/50  a typical sphere of a packing, whatever the triangles
 //   triangle   the length of a triangle's edge
 //
 // `near` spheres have a clearance of 1 to 1.2 r, `inside` ones stand anywhere they fit. Time per query is the
-// time per iteration.
+// time per iteration; queries come in random order, so that most of the tree is out of the near caches.
 namespace bernal {
 namespace {
 
@@ -47,7 +47,7 @@ const Wall& wall(std::int64_t triangles) {
 double radius_of(const benchmark::State& state, const Wall& w) {
   switch (state.range(1)) {
     case 0:
-      return 1.8 * w.edge;  // pi r² holds ten times the two triangles of a square
+      return 1.8 * w.edge;
     case 1:
       return extent / 50;
     default:
