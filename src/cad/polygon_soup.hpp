@@ -30,6 +30,9 @@ ReadAttempt read_with_assimp(const std::filesystem::path& file);
 /// The same for an STL that stands in memory.
 ReadAttempt read_stl_with_assimp(const std::string& content);
 
+/// ".stl" of "Part.STL".
+std::string extension_of(const std::filesystem::path& file);
+
 /// Whether CGAL reads the doubles of this format: OFF, OBJ, PLY (STL goes through `read_stl_with_cgal`).
 bool cgal_reads(const std::filesystem::path& file);
 ReadAttempt read_with_cgal(const std::filesystem::path& file);

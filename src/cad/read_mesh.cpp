@@ -53,10 +53,18 @@ bool agree(const PolygonSoup& in_float, const PolygonSoup& in_double) {
   throw Error(ErrorCode::bad_mesh, reason, {file.string()});
 }
 
+/// OFF and PLY say in front how much they hold, and CGAL holds them to it; assimp bends indices that are out
+/// of range until they fit.
+bool cgal_is_strict(const std::filesystem::path& file) {
+  const std::string extension = cad::extension_of(file);
+  return extension == ".off" || extension == ".ply";
+}
+
 /// Two readers saw the file: assimp is right about what there is, CGAL keeps the doubles.
 ChosenSoup choose(const std::filesystem::path& file, ReadAttempt assimp, ReadAttempt cgal) {
   if (!assimp.ok() && !cgal.ok())
     refuse(file, fmt::format("cannot be read: {} (assimp), {} (CGAL)", assimp.failure, cgal.failure));
+  if (!cgal.ok() && cgal_is_strict(file)) refuse(file, fmt::format("cannot be read: {}", cgal.failure));
   if (!cgal.ok())
     return {std::move(assimp.soup), fmt::format("assimp, single precision (CGAL: {})", cgal.failure)};
   if (!assimp.ok())
@@ -69,10 +77,7 @@ ChosenSoup choose(const std::filesystem::path& file, ReadAttempt assimp, ReadAtt
 }
 
 ChosenSoup read_soup(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".stl") {
+  if (cad::extension_of(file) == ".stl") {
     const cad::StlFile stl = cad::read_stl_file(file);
     ReadAttempt assimp = cad::read_stl_with_assimp(stl.content);
     if (!stl.binary) return choose(file, std::move(assimp), cad::read_stl_with_cgal(stl.content));

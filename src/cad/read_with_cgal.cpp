@@ -42,14 +42,14 @@ ReadAttempt attempt(const Read& read) {
   return result;
 }
 
+}  // namespace
+
 std::string extension_of(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
 }
-
-}  // namespace
 
 bool cgal_reads(const std::filesystem::path& file) {
   const std::string extension = extension_of(file);

@@ -38,8 +38,10 @@ class Leaf {
   const Vector<3>& normal() const { return normal_; }
 
   /// min u·(p - v) over the vertices v: a lower bound of the distance of p for every unit vector u.
-  double depth_along(const Vector<3>& u, const Vector<3>& p) const {
-    return std::min(std::min(u.dot(p - triangle_.a), u.dot(p - triangle_.b)), u.dot(p - triangle_.c));
+  double depth_along(const Vector<3>& u, const Vector<3>& p,
+                     const Vector<3>& step = Vector<3>::Zero()) const {
+    return std::min(std::min(u.dot(p - triangle_.a), u.dot(p - triangle_.b)), u.dot(p - triangle_.c)) +
+           std::min(u.dot(step), 0.0);
   }
   /// That bound for the better of both normals and all points between p and p + step. Where the triangle is a
   /// needle its normal is inaccurate, and the bound still is one.
@@ -63,11 +65,17 @@ using TreeTraits = CGAL::AABB_traits<Kernel, Leaf>;
 using Tree = CGAL::AABB_tree<TreeTraits>;
 using Node = CGAL::AABB_node<TreeTraits>;
 
+/// p minus the point of the box nearest to it.
+Vector<3> offset(const Vector<3>& p, const CGAL::Bbox_3& box) {
+  const Vector<3> lower(box.xmin(), box.ymin(), box.zmin());
+  const Vector<3> upper(box.xmax(), box.ymax(), box.zmax());
+  return (p - upper).cwiseMax(0.0) - (lower - p).cwiseMax(0.0);
+}
+
 double squared_distance(const Vector<3>& p, const CGAL::Bbox_3& box) {
-  const double x = std::max(std::max(box.xmin() - p[0], p[0] - box.xmax()), 0.0);
-  const double y = std::max(std::max(box.ymin() - p[1], p[1] - box.ymax()), 0.0);
-  const double z = std::max(std::max(box.zmin() - p[2], p[2] - box.zmax()), 0.0);
-  return x * x + y * y + z * z;
+  const Vector<3> lower(box.xmin(), box.ymin(), box.zmin());
+  const Vector<3> upper(box.xmax(), box.ymax(), box.zmax());
+  return (lower - p).cwiseMax(p - upper).cwiseMax(0.0).squaredNorm();
 }
 
 double distance(const Vector<3>& p, const WallTriangle& t) {
@@ -155,19 +163,13 @@ class WithinTraversal {
   std::vector<NearFacet>& out_;
 };
 
-/// A sphere on its way. A box is entered if the way, up to the first contact so far, crosses the box widened
-/// by the sphere's radius and skin. Rounding of that test is far below the half skin by which a triangle may
-/// be ignored.
+/// A sphere on its way. A box is entered if the sphere, widened by its skin, may reach it before the first
+/// contact so far. Rounding of that test is far below the half skin by which a triangle may be ignored.
 class MoveTraversal {
  public:
   using Priority = double;
   MoveTraversal(double r, const Vector<3>& direction, double limit, double skin)
-      : r_(r), skin_(skin), reach_(r + skin), limit_(limit), direction_(direction) {
-    // A component of zero never enters or leaves a slab: a tiny one instead spares the case 0·infinity.
-    for (int k = 0; k < 3; ++k)
-      per_direction_[k] =
-          1 / (std::abs(direction[k]) < 1e-200 ? std::copysign(1e-200, direction[k]) : direction[k]);
-  }
+      : r_(r), skin_(skin), reach_(r + skin), limit_(limit), direction_(direction) {}
 
   bool go_further() const { return limit_ > 0; }
   bool do_intersect(const Vector<3>& c, const Node& node) const { return entry(c, node.bbox()) <= limit_; }
@@ -180,27 +182,33 @@ class MoveTraversal {
     for (; first != last; ++first) intersection(c, *first);
   }
   void intersection(const Vector<3>& c, const Leaf& leaf) {
-    if (leaf.depth_along_normal(c, limit_ * direction_) >= r_ + 0.75 * skin_) return;
+    const double least = r_ + 0.75 * skin_;
+    const Vector<3> step = limit_ * direction_;
+    if (leaf.depth_along_normal(c, step) >= least || leaf.depth_along(towards_, c, step) >= least) return;
     const WallTriangle& t = leaf.triangle();
-    limit_ = first_contact_with_triangle(c, r_, direction_, limit_, t.a, t.b, t.c, skin_);
+    const double limit = first_contact_with_triangle(c, r_, direction_, limit_, t.a, t.b, t.c, skin_);
+    if (limit == limit_) return;
+    limit_ = limit;
+    towards_ = PreparedTriangle(t.a, t.b, t.c).offset(c + limit * direction_).normalized();
   }
   double limit() const { return limit_; }
 
  private:
-  /// How far the centre moves until it enters the widened box; infinity if it never does.
+  /// How far the centre can move, at least, before it comes within reach of the box; infinity if it never
+  /// does. The plane through the box's nearest point, across the offset, has the box behind it: so far the
+  /// plane allows.
   double entry(const Vector<3>& c, const CGAL::Bbox_3& box) const {
-    double enter = 0, leave = limit_;
-    for (int k = 0; k < 3; ++k) {
-      const double t0 = (box.min(k) - reach_ - c[k]) * per_direction_[k];
-      const double t1 = (box.max(k) + reach_ - c[k]) * per_direction_[k];
-      enter = std::max(enter, std::min(t0, t1));
-      leave = std::min(leave, std::max(t0, t1));
-    }
-    return enter <= leave ? enter : std::numeric_limits<double>::infinity();
+    const Vector<3> from_box = offset(c, box);
+    const double squared = from_box.squaredNorm();
+    if (squared <= reach_ * reach_) return 0;
+    const double approach = -from_box.dot(direction_);
+    if (approach <= 0) return std::numeric_limits<double>::infinity();
+    return (squared - reach_ * std::sqrt(squared)) / approach;
   }
 
   double r_, skin_, reach_, limit_;
-  Vector<3> direction_, per_direction_;
+  Vector<3> direction_;
+  Vector<3> towards_ = Vector<3>::Zero();  ///< from the point of the first contact so far to the centre there
 };
 
 /// Counts the triangles that the way from p along an axis crosses, as seen along that axis: not from p itself

@@ -36,7 +36,7 @@ Vector<3> inward_normal(const Facet& f, const Vector<3>& q, const Vector<3>& c, 
     case Facet::Kind::triangle:
       break;
   }
-  if (d > 0) return (c - q) / d;
+  if (d > 0 && c != q) return (c - q).normalized();
   return -(f.b - f.a).cross(f.c - f.a).normalized();
 }
 

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <vector>
 
 #include <fmt/format.h>
+
+#include "bernal/core/random.hpp"
 
 namespace bernal {
 namespace {
@@ -34,6 +38,20 @@ void require_fitting(const Scene& scene, const Shape& container, double radius) 
                   "{3}: use smaller ones or check the units",
                   word, shown * radius, shown * largest, scene.unit, kind_of(container)),
       scene.sizes.where);
+}
+
+double radius_with_hardly_any_room(const Container& container, std::uint64_t seed) {
+  constexpr std::size_t points = 10000;
+  Random random(seed, stream(Stream::room));
+  const Bounds<3> bounds = container.bounds();
+  std::vector<double> clearances;
+  while (clearances.size() < points) {
+    const Vector<3> p = uniform_point(random, bounds);
+    if (container.contains(p, 0)) clearances.push_back(container.clearance(p));
+  }
+  const auto hundredth = clearances.begin() + points / 100;
+  std::nth_element(clearances.begin(), hundredth, clearances.end(), std::greater<>());
+  return *hundredth;
 }
 
 }  // namespace bernal

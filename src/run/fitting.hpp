@@ -1,5 +1,7 @@
 #pragma once
-#include "bernal/domain/shape.hpp"
+#include <cstdint>
+
+#include "bernal/domain/container.hpp"
 #include "bernal/scene/scene.hpp"
 
 namespace bernal {
@@ -10,5 +12,9 @@ double largest_fitting_radius(const Shape& shape);
 
 /// Throws Error{bad_scene} at the scene's sizes, with the remedy, if a sphere of that radius cannot fit.
 void require_fitting(const Scene& scene, const Shape& container, double radius);
+
+/// Where to cut an unbounded tail of sizes: the radius for whose spheres' centres only one hundredth of the
+/// container has room; single larger ones would wait for a place for ever. From 10,000 random points.
+double radius_with_hardly_any_room(const Container& container, std::uint64_t seed);
 
 }  // namespace bernal

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <thread>
 
 #include <fmt/format.h>
@@ -72,6 +73,12 @@ void conclude(Packing& packing, const Supply& supply, StageEnd end) {
                   "the scene find no place for more",
                   packing.packing_fraction(), *target.packing_fraction, n);
   }
+  if (supply.cut_off() > 0) {
+    packing.reason += fmt::format(
+        "; {} draws from the tail of the sizes were discarded because less than a hundredth of "
+        "the container has room for such spheres",
+        grouped(supply.cut_off()));
+  }
   if (const std::size_t passed = supply.passed_over(); passed > 0) {
     packing.reason += fmt::format("; {} larger ones of the drawn sequence were passed over", grouped(passed));
   }
@@ -98,7 +105,10 @@ Packing run(const Plan& plan, const RunOptions& options) {
   const Frame frame = working_frame(plan);
   const std::unique_ptr<Container> container =
       make_container(to_local(plan.container, frame), arithmetic_of(plan.scene), frame.resolution);
-  Supply supply(*plan.radii, frame.scale, container->volume(), plan.scene.target, packing.seed);
+  const double unbounded = std::numeric_limits<double>::infinity();
+  const double cut =
+      plan.radii->max() < unbounded ? unbounded : radius_with_hardly_any_room(*container, packing.seed);
+  Supply supply(*plan.radii, frame.scale, container->volume(), cut, plan.scene.target, packing.seed);
   require_fitting(plan.scene, plan.container, supply.largest() * frame.scale);
 
   EffectLog effects;

@@ -13,8 +13,8 @@ namespace bernal {
 /// The bed: spheres in their container while they are being packed, in the packer's frame.
 ///
 /// Every stage obeys walls and neighbours through the same two calls: `fits` for a sphere that appears,
-/// `Mover::free_path` for one that moves. Both keep every gap at or above skin/2 (core/tolerance.hpp), so that
-/// nothing ever overlaps.
+/// `Mover::free_path` for one that moves. Both keep every gap at or above skin/2 (core/tolerance.hpp), so
+/// that nothing ever overlaps.
 ///
 /// Between two calls of `enclose` each sphere may move within its own bounding box, a cube around its place
 /// at the time of the call; neighbours and near walls are those that the boxes allow (Han, Feng & Owen 2005,

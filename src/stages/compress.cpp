@@ -22,7 +22,8 @@ constexpr double waking = 1e-3;
 /// next to which something moved. A sphere whose surroundings have not changed cannot move.
 class GlobalSweeps {
  public:
-  explicit GlobalSweeps(Bed& bed, const Vector<3>& direction) : bed_(bed), mover_(bed), direction_(direction) {
+  explicit GlobalSweeps(Bed& bed, const Vector<3>& direction)
+      : bed_(bed), mover_(bed), direction_(direction) {
     wake_all();
   }
 

@@ -16,7 +16,8 @@ struct Motion {
 
 /// path[k]: how far a sphere may move until neighbour k is a skin away, infinite where it passes at skin/2 or
 /// more or recedes. The same formula as kernels/first_contact.hpp without its care for rounding.
-[[gnu::always_inline]] inline void paths(const double* __restrict x, const double* __restrict y, const double* __restrict z, const double* __restrict sum,
+[[gnu::always_inline]] inline void paths(const double* __restrict x, const double* __restrict y,
+                                         const double* __restrict z, const double* __restrict sum,
                                          double* __restrict path, std::size_t n, const Motion& m) {
   constexpr double never = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < n; ++k) {
@@ -32,12 +33,13 @@ struct Motion {
 }
 
 // The same arithmetic, compiled for four lanes and for two: the bits do not depend on which one runs.
-[[gnu::target("avx2")]] void paths_avx2(const double* __restrict x, const double* __restrict y, const double* __restrict z, const double* __restrict sum,
+[[gnu::target("avx2")]] void paths_avx2(const double* __restrict x, const double* __restrict y,
+                                        const double* __restrict z, const double* __restrict sum,
                                         double* __restrict path, std::size_t n, const Motion& m) {
   paths(x, y, z, sum, path, n, m);
 }
-void paths_sse2(const double* __restrict x, const double* __restrict y, const double* __restrict z, const double* __restrict sum, double* path,
-                std::size_t n, const Motion& m) {
+void paths_sse2(const double* __restrict x, const double* __restrict y, const double* __restrict z,
+                const double* __restrict sum, double* path, std::size_t n, const Motion& m) {
   paths(x, y, z, sum, path, n, m);
 }
 const auto paths_here = __builtin_cpu_supports("avx2") ? paths_avx2 : paths_sse2;
@@ -81,7 +83,8 @@ void Mover::limit_by_box(const Vector<3>& u, FreePath& path) const {
 }
 
 void Mover::limit_by_neighbors(const Vector<3>& u, FreePath& path) {
-  paths_here(x_.data(), y_.data(), z_.data(), sum_.data(), path_.data(), count_, {u[0], u[1], u[2], bed_.skin()});
+  paths_here(x_.data(), y_.data(), z_.data(), sum_.data(), path_.data(), count_,
+             {u[0], u[1], u[2], bed_.skin()});
   for (;;) {
     std::size_t first = count_;
     double shortest = path.length;

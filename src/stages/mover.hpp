@@ -18,8 +18,8 @@ struct FreePath {
 
 /// Moves the spheres of a bed, one at a time, past their neighbours and walls.
 ///
-/// `pick` gathers what the sphere's bounding box lets it meet into columns, in which `free_path` then looks at
-/// four neighbours at once; the one that limits is decided by the kernel (kernels/first_contact.hpp).
+/// `pick` gathers what the sphere's bounding box lets it meet into columns, in which `free_path` then looks
+/// at four neighbours at once; the one that limits is decided by the kernel (kernels/first_contact.hpp).
 /// Invariant: every gap stays at or above skin/2. Precondition: `Bed::enclose` was called after the last
 /// insertion, removal or sort. One thread a mover. Cost: 3 ns a neighbour for `pick`, 2 for `free_path`.
 class Mover {

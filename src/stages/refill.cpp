@@ -6,7 +6,7 @@
 namespace bernal {
 namespace {
 
-/// A random place and the radius of the largest sphere that fits there among the present ones.
+/// A random place and the radius of the largest sphere that fits there between neighbours and walls.
 struct Probe {
   Vector<3> place;
   double gap;
@@ -20,7 +20,9 @@ std::vector<Probe> probe_free_space(const Bed& bed, double smallest, double larg
   for (std::size_t k = 0; k < probes; ++k) {
     const Vector<3> place = uniform_point(random, bounds);
     const double gap = bed.gap_to_neighbors(place, smallest, largest);
-    if (gap >= smallest && bed.container().contains(place, smallest)) found.push_back({place, gap});
+    if (gap < smallest || !bed.container().contains(place, smallest)) continue;
+    const double room = std::min(gap, bed.container().clearance(place) - bed.skin());
+    if (room >= smallest) found.push_back({place, room});
   }
   return found;
 }
@@ -54,7 +56,7 @@ std::size_t fill_free_space(Work& work, double probes_a_sphere) {
         bed.insert(probes[k].place, r, tag);
         supply.take(waiting);
       } else {
-        // Something has come near since the place was probed, or the wall is near.
+        // A sphere has come near since the place was probed.
         probes[k].gap = std::min(std::nextafter(r, 0.0), bed.gap_to_neighbors(probes[k].place, 0, r));
       }
       if (placed || probes[k].gap < supply.smallest()) {

@@ -12,14 +12,16 @@ namespace {
 /// No stage packs denser than this, so a `fill` never needs more spheres than make up so much of the volume.
 constexpr double densest = 0.95;
 /// The window's share of the spheres that may come.
-constexpr double window_share = 0.003;
+constexpr double window_share = 0.005;
+/// Taking out no more than this share makes the result exactly the drawn sequence less its tail.
+constexpr double trim_share = 0.003;
 constexpr double most_spheres = 2147483647.0;
 
 double volume_of_ball(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
 
 }  // namespace
 
-Supply::Supply(const SizeDistribution& radii, double scale, double volume, const Target& target,
+Supply::Supply(const SizeDistribution& radii, double scale, double volume, double cut, const Target& target,
                std::uint64_t seed) {
   const double mean_volume = 4.0 / 3.0 * std::numbers::pi * radii.moment(3) / (scale * scale * scale);
   const double fraction = target.packing_fraction.value_or(densest);
@@ -35,7 +37,12 @@ Supply::Supply(const SizeDistribution& radii, double scale, double volume, const
   double filled = 0;
   while (target.count ? radii_.size() < static_cast<std::size_t>(*target.count)
                       : filled < fraction * volume) {
-    radii_.push_back(radii.sample(random) / scale);
+    const double r = radii.sample(random) / scale;
+    if (r > cut) {
+      ++cut_off_;
+      continue;
+    }
+    radii_.push_back(r);
     filled += volume_of_ball(radii_.back());
   }
   const auto [smallest, largest] = std::minmax_element(radii_.begin(), radii_.end());
@@ -64,6 +71,12 @@ std::size_t Supply::passed_over() const {
     ++untouched;
   }
   return window_.size() - untouched;
+}
+
+bool Supply::trimming_is_cheap() const {
+  const std::size_t placed = next_ - window_.size();
+  const std::size_t beyond = placed - std::min<std::size_t>(placed, first_missing());
+  return static_cast<double>(beyond) <= trim_share * static_cast<double>(placed);
 }
 
 }  // namespace bernal

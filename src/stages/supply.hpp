@@ -16,7 +16,8 @@ class Supply {
  public:
   /// Draws all radii that a volume of `volume` could ever need, in units of `scale` (the packer's frame), by
   /// the seed's stream of radii. Throws Error{bad_scene} if those are more than 2^31.
-  Supply(const SizeDistribution& radii, double scale, double volume, const Target& target,
+  /// Radii above `cut` are drawn again and counted.
+  Supply(const SizeDistribution& radii, double scale, double volume, double cut, const Target& target,
          std::uint64_t seed);
 
   /// Nothing more is to be placed: the target has been reached.
@@ -31,11 +32,13 @@ class Supply {
   std::uint32_t first_missing() const { return window_.empty() ? next_ : window_.front(); }
   /// How many spheres were passed over, i.e. are missing although a later one was placed.
   std::size_t passed_over() const;
-  /// Whether the spheres from `first_missing` on are so few that taking them out again, which makes the
-  /// result exactly the drawn sequence less its tail, costs no more than a window's width.
-  bool trimming_is_cheap() const { return next_ - first_missing() <= 2 * width_; }
+  /// Whether only a few spheres stand beyond `first_missing`, so that taking them out again, which makes the
+  /// result exactly the drawn sequence less its tail, costs next to nothing.
+  bool trimming_is_cheap() const;
   /// How many spheres the target asks for; for `fill` an upper bound.
   std::size_t wanted() const { return radii_.size(); }
+  /// How many draws were above the cut.
+  std::size_t cut_off() const { return cut_off_; }
   double smallest() const { return smallest_; }
   double largest() const { return largest_; }
 
@@ -46,6 +49,7 @@ class Supply {
   std::vector<std::uint32_t> window_;
   std::uint32_t next_ = 0;  // the first tag that was never in the window
   std::size_t width_ = 1;
+  std::size_t cut_off_ = 0;
   double smallest_ = 0;
   double largest_ = 0;
 };

@@ -58,7 +58,7 @@ inline std::vector<ContainerUnderTest> containers_under_test() {
       localized("LShapeMeshFarAway", translated(l_shape_mesh(), {1e4, -2e4, 3e4}), mesh_container),
       localized("IcosphereMesh", icosphere_mesh(1, 1), mesh_container),
       localized("TorusMesh", torus_mesh(1, 0.4, 12, 6, 0.05), mesh_container),
-      localized("HelixMesh", helix_mesh(24, 4), mesh_container),
+      localized("HelixMesh", helix_mesh(20, 3), mesh_container),
       localized("SphereWithCavityMesh", joined(icosphere_mesh(1, 1), inverted(icosphere_mesh(0.5, 0))),
                 mesh_container),
   };

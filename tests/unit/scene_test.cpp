@@ -89,7 +89,7 @@ walls = "exact"
 overlap = 1e-3
 [[stage]]
 do = "refill"
-attempts = 7
+max_rounds = 7
 [[stage]]
 do = "compress"
 direction = [1, 0.5, -2]
@@ -108,7 +108,7 @@ direction = [1, 0.5, -2]
   EXPECT_EQ(scene.overlap, 1e-3);
   EXPECT_FALSE(scene.stages_are_default);
   ASSERT_EQ(scene.stages.size(), 2u);
-  EXPECT_EQ(scene.stages[0].integer("attempts"), 7);
+  EXPECT_EQ(scene.stages[0].integer("max_rounds"), 7);
   EXPECT_EQ(scene.stages[1].numbers("direction"), (std::vector<double>{1, 0.5, -2}));
   EXPECT_EQ(scene.stages[1].where.line, 15);
 }
