@@ -130,13 +130,11 @@ std::string history_chart(std::span<const Milestone> history, double Milestone::
   for (const Milestone& m : history) {
     if (m.stage == stage) continue;
     stage = m.stage;
-    const double x = chart.x(m.seconds);
-    if (x < free_from) continue;
+    const double x = chart.x(m.seconds), end = x + 10 + 7.0 * static_cast<double>(stage.size());
+    if (x < free_from || end > width) continue;
     chart.add("<path class=\"stage\" d=\"M{:.1f} {}V{}\"/>", x, top, height - bottom);
-    const bool at_end = x > width - right - 60;
-    chart.add("<text x=\"{:.1f}\" y=\"{}\"{}>{}</text>", x, top - 6, at_end ? " text-anchor=\"end\"" : "",
-              escaped(stage));
-    free_from = x + 10 + 7.0 * static_cast<double>(stage.size());
+    chart.add("<text x=\"{:.1f}\" y=\"{}\">{}</text>", x, top - 6, escaped(stage));
+    free_from = end;
   }
   std::string line;
   for (const Milestone& m : history) {

@@ -32,6 +32,7 @@ caption { text-align:left; padding:0 0 6px; }
 th { text-align:left; font-weight:600; color:var(--dim); }
 th,td { padding:6px 14px 6px 0; border-bottom:1px solid var(--rule); vertical-align:top; }
 th:last-child,td:last-child { padding-right:0; }
+td:first-child { white-space:nowrap; }
 .n { text-align:right; white-space:nowrap; }
 .chart { width:100%; height:auto; display:block; }
 .chart text { font:12px system-ui,sans-serif; fill:var(--dim); }

@@ -224,7 +224,7 @@ std::vector<T> appended(const std::string& vtp, const std::string& name, const s
   std::memcpy(&bytes, vtp.data() + block, sizeof bytes);
   std::vector<T> values(bytes / sizeof(T));
   EXPECT_LE(block + sizeof bytes + bytes, vtp.size());
-  std::memcpy(values.data(), vtp.data() + block + sizeof bytes, bytes);
+  if (!values.empty()) std::memcpy(values.data(), vtp.data() + block + sizeof bytes, bytes);
   return values;
 }
 
