@@ -236,7 +236,7 @@ Schema make_schema() {
                                         {.name = "patience",
                                          .type = Type::number,
                                          .help = "full when a round adds less than this share",
-                                         .otherwise = 2e-3,
+                                         .otherwise = 3e-3,
                                          .range = {0, 1}},
                                         {.name = "shakes",
                                          .type = Type::integer,

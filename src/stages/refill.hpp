@@ -6,7 +6,7 @@ namespace bernal {
 struct RefillOptions {
   int max_rounds = 200;
   double probes = 20;  ///< random places looked at in a round, for each sphere that the container may hold
-  double patience = 2e-3;  ///< full when a round adds fewer spheres than this share of those there are
+  double patience = 3e-3;  ///< full when a round adds fewer spheres than this share of those there are
   ShakeOptions shake;      ///< between two rounds; its compression also follows every refilling
 };
 
