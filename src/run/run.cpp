@@ -138,8 +138,8 @@ Packing run(const Plan& plan, const RunOptions& options) {
     packing.spheres.set_center(i, frame.to_scene(packing.spheres.center(i)));
     packing.spheres.r[i] *= frame.scale;
   }
-  effects["walls"].calls += bed.wall_decisions();
   packing.effects = effects.all();
+  packing.effects.push_back(bed.wall_queries());
   conclude(packing, supply, end);
   packing.seconds = seconds();
   return packing;

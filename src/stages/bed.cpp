@@ -60,7 +60,7 @@ bool Bed::fits(const Vector<3>& c, double r) const {
     return (balls_[j].center - c).squaredNorm() < s * s;
   });
   if (overlaps) return false;
-  ++wall_decisions_;
+  const EffectTimer wall_timer(walls_);
   return container_.contains(c, r + skin_);
 }
 
@@ -143,14 +143,14 @@ void Bed::update_grid() {
 }
 
 void Bed::enclose(double buffer) {
-  EffectTimer timer(effects_, "neighbour lists");
+  const EffectTimer timer(effects_["neighbour lists"]);
   update_grid();
   buffer_ = buffer;
   const std::size_t n = balls_.size();
   const std::size_t blocks = (n + block_size - 1) / block_size;
   std::vector<std::vector<Id>> near_spheres(blocks);
   std::vector<std::vector<NearFacet>> near_facets(blocks);
-  std::vector<std::uint64_t> wall_queries(blocks, 0);
+  std::vector<Effect> walls(blocks);
   box_centers_.resize(n);
   first_neighbor_.assign(n + 1, 0);
   first_facet_.assign(n + 1, 0);
@@ -176,8 +176,10 @@ void Bed::enclose(double buffer) {
       if (far_from_wall_[i] - (ball.center - far_from_wall_at_[i]).norm() > reach) continue;
       const double wide_reach = reach + 2 * buffer;
       facets.clear();
-      container_.facets_near(ball.center, wide_reach, facets);
-      ++wall_queries[block];
+      {
+        const EffectTimer wall_timer(walls[block]);
+        container_.facets_near(ball.center, wide_reach, facets);
+      }
       far_from_wall_[i] = facets.empty() ? wide_reach : facets.front().distance;
       far_from_wall_at_[i] = ball.center;
       for (const NearFacet& f : facets) {
@@ -189,7 +191,10 @@ void Bed::enclose(double buffer) {
   });
   concatenate(near_spheres, first_neighbor_, neighbors_);
   concatenate(near_facets, first_facet_, facets_);
-  effects_["walls"].calls += std::accumulate(wall_queries.begin(), wall_queries.end(), std::uint64_t{0});
+  for (const Effect& w : walls) {
+    walls_.calls += w.calls;
+    walls_.seconds += w.seconds;
+  }
 }
 
 Spheres<3> Bed::spheres() const {

@@ -72,8 +72,8 @@ class Bed {
     return {neighbors_.data() + first_neighbor_[i], first_neighbor_[i + 1] - first_neighbor_[i]};
   }
 
-  /// How often the wall was asked whether a sphere may appear.
-  std::uint64_t wall_decisions() const { return wall_decisions_; }
+  /// What asking the container cost: near facets and whether spheres may appear.
+  const Effect& wall_queries() const { return walls_; }
 
   /// The spheres in the order of their tags.
   Spheres<3> spheres() const;
@@ -91,7 +91,7 @@ class Bed {
   CellGrid<3> grid_;
   double sum_of_radii_ = 0;
   double sum_of_volumes_ = 0;
-  mutable std::uint64_t wall_decisions_ = 0;
+  mutable Effect walls_{"walls", 0, 0};  // one thread asks `fits`
 
   double buffer_ = 0;
   std::vector<Vector<3>> box_centers_;

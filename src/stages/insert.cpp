@@ -9,7 +9,7 @@ constexpr std::size_t milestone_every = 8192;
 }  // namespace
 
 StageEnd insert(Work& work, const InsertOptions& options) {
-  EffectTimer timer(work.effects, "insertion");
+  const EffectTimer timer(work.effects["insertion"]);
   Bed& bed = work.bed;
   Supply& supply = work.supply;
   Random random = work.random(Stream::insert);

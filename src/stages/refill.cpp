@@ -19,6 +19,7 @@ constexpr double most_probes = 4e6;
 /// Places in the container where a sphere of radius `smallest` clears the wall: drawn once a stage, since the
 /// wall stays where it is.
 std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
+  const EffectTimer timer(work.effects["refilling"]);
   const Bed& bed = work.bed;
   Random random = work.random(Stream::refill);
   const double smallest = work.supply.smallest() + bed.skin();
@@ -35,7 +36,7 @@ std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
 
 /// Puts spheres of the window into the free space; returns how many.
 std::size_t fill_free_space(Work& work, std::vector<Probe>& probes) {
-  EffectTimer timer(work.effects, "refilling");
+  const EffectTimer timer(work.effects["refilling"]);
   Bed& bed = work.bed;
   Supply& supply = work.supply;
   const double smallest = supply.smallest();

@@ -13,7 +13,7 @@ StageEnd shake(Work& work, const ShakeOptions& options) {
   for (int round = 0; round < options.rounds; ++round) {
     if (work.monitor.stop()) return StageEnd::cancelled;
     {
-      EffectTimer timer(work.effects, "shaking");
+      const EffectTimer timer(work.effects["shaking"]);
       const double radius = bed.mean_radius();
       Random random = work.random(Stream::shake);
       bed.sort_by_height(direction);

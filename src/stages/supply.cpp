@@ -12,9 +12,9 @@ namespace {
 /// No stage packs denser than this, so a `fill` never needs more spheres than make up so much of the volume.
 constexpr double densest = 0.95;
 /// The window's share of the spheres that may come.
-constexpr double window_share = 0.005;
+constexpr double window_share = 0.002;
 /// Taking out no more than this share makes the result exactly the drawn sequence less its tail.
-constexpr double trim_share = 0.003;
+constexpr double trim_share = 0.002;
 constexpr double most_spheres = 2147483647.0;
 
 double volume_of_ball(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
