@@ -1,0 +1,181 @@
+#include "stages/supply.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "bernal/core/error.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+Target count_of(std::int64_t n) {
+  Target target;
+  target.count = n;
+  return target;
+}
+Target fraction_of(double phi) {
+  Target target;
+  target.packing_fraction = phi;
+  return target;
+}
+Target fill() {
+  Target target;
+  target.fill = true;
+  return target;
+}
+
+/// The first n radii that the seed draws, in units of `scale`.
+std::vector<double> drawn(const SizeDistribution& sizes, std::size_t n, std::uint64_t seed,
+                          double scale = 1) {
+  Random random(seed, stream(Stream::radii));
+  std::vector<double> radii;
+  while (radii.size() < n) radii.push_back(sizes.sample(random) / scale);
+  return radii;
+}
+
+std::vector<double> radii_of(const Supply& supply) {
+  std::vector<double> radii;
+  for (std::uint32_t tag = 0; tag < supply.wanted(); ++tag) radii.push_back(supply.radius(tag));
+  return radii;
+}
+
+double volume_of(const std::vector<double>& radii) {
+  double sum = 0;
+  for (const double r : radii) sum += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  return sum;
+}
+
+const std::unique_ptr<SizeDistribution> uniform = make_uniform(0.01, 0.02, Basis::number);
+
+TEST(Supply, OfACountIsThatManyDrawnRadii) {
+  const Supply supply(*uniform, 1, 1, unbounded, count_of(500), 7);
+  EXPECT_EQ(radii_of(supply), drawn(*uniform, 500, 7));
+  const std::vector<double> radii = radii_of(supply);
+  EXPECT_EQ(supply.smallest(), std::ranges::min(radii));
+  EXPECT_EQ(supply.largest(), std::ranges::max(radii));
+}
+
+TEST(Supply, SpeaksThePackersLengths) {
+  const Supply supply(*uniform, 0.25, 1, unbounded, count_of(50), 7);
+  EXPECT_EQ(radii_of(supply), drawn(*uniform, 50, 7, 0.25));
+}
+
+TEST(Supply, OfAPackingFractionIsTheShortestSequenceThatHasIt) {
+  const double volume = 3, scale = 2;
+  const Supply supply(*uniform, scale, volume, unbounded, fraction_of(0.01), 7);
+  std::vector<double> radii = radii_of(supply);
+  EXPECT_EQ(radii, drawn(*uniform, radii.size(), 7, scale));
+  EXPECT_GE(volume_of(radii), 0.01 * volume);
+  radii.pop_back();
+  EXPECT_LT(volume_of(radii), 0.01 * volume);
+}
+
+TEST(Supply, OfAFillIsMoreThanAnyPackingHolds) {
+  const Supply supply(*uniform, 1, 0.1, unbounded, fill(), 7);
+  const std::vector<double> radii = radii_of(supply);
+  EXPECT_EQ(radii, drawn(*uniform, radii.size(), 7));
+  EXPECT_GT(volume_of(radii), 0.9 * 0.1);
+  EXPECT_LT(volume_of(radii), 1.1 * 0.1);
+}
+
+TEST(Supply, DrawsOtherRadiiForAnotherSeed) {
+  const Supply one(*uniform, 1, 1, unbounded, count_of(10), 1),
+      other(*uniform, 1, 1, unbounded, count_of(10), 2);
+  EXPECT_NE(radii_of(one), radii_of(other));
+}
+
+TEST(Supply, DrawsAgainWhatIsAboveTheCutAndCountsIt) {
+  const double cut = 0.018;
+  const Supply supply(*uniform, 1, 1, cut, count_of(500), 7);
+  std::vector<double> expected;
+  std::size_t above = 0;
+  for (const double r : drawn(*uniform, 2000, 7)) {
+    if (expected.size() == 500) break;
+    if (r > cut) {
+      ++above;
+    } else {
+      expected.push_back(r);
+    }
+  }
+  EXPECT_EQ(radii_of(supply), expected);
+  EXPECT_EQ(supply.cut_off(), above);
+  EXPECT_NEAR(static_cast<double>(above), 125, 60);  // a fifth of 625 draws; 60 is six standard deviations
+}
+
+TEST(Supply, RefusesMoreSpheresThanHaveIds) {
+  const auto tiny = make_constant(1e-5);
+  try {
+    const Supply supply(*tiny, 1, 1, unbounded, fill(), 1);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_scene);
+  }
+}
+
+TEST(Supply, EqualSpheresComeOneAfterTheOther) {
+  const auto equal = make_constant(0.01);
+  Supply supply(*equal, 1, 1, unbounded, count_of(3), 1);
+  for (std::uint32_t tag = 0; tag < 3; ++tag) {
+    EXPECT_FALSE(supply.exhausted());
+    EXPECT_EQ(supply.window(), std::vector<std::uint32_t>{tag});
+    EXPECT_EQ(supply.first_missing(), tag);
+    supply.take(0);
+  }
+  EXPECT_TRUE(supply.exhausted());
+  EXPECT_EQ(supply.first_missing(), 3u);
+  EXPECT_EQ(supply.passed_over(), 0u);
+}
+
+/// What was taken and what was not, told by the caller's own book.
+TEST(Supply, OffersAnAscendingWindowOfWhatIsMissing) {
+  constexpr std::size_t n = 2000;
+  Supply supply(*uniform, 1, 1, unbounded, count_of(n), 7);
+  const std::size_t width = supply.window().size();
+  EXPECT_GT(width, 1u);
+  EXPECT_LT(width, n / 20);
+  Random random(1, stream(Stream::test));
+  std::vector<char> taken(n, 0);
+  for (std::size_t count = 0; count < n; ++count) {
+    ASSERT_FALSE(supply.exhausted());
+    const std::vector<std::uint32_t>& window = supply.window();
+    EXPECT_EQ(window.size(), std::min(width, n - count));
+    EXPECT_TRUE(std::ranges::is_sorted(window));
+    for (const std::uint32_t tag : window) EXPECT_FALSE(taken[tag]);
+    const auto missing = static_cast<std::size_t>(std::ranges::find(taken, 0) - taken.begin());
+    EXPECT_EQ(supply.first_missing(), missing);
+
+    std::size_t last = n;
+    while (last > 0 && !taken[last - 1]) --last;
+    const auto passed = static_cast<std::size_t>(
+        std::ranges::count(taken.begin(), taken.begin() + static_cast<std::ptrdiff_t>(last), 0));
+    EXPECT_EQ(supply.passed_over(), passed);
+    EXPECT_LT(supply.passed_over(), width + (count == 0));
+
+    const auto k = static_cast<std::size_t>(random.uniform() * static_cast<double>(window.size()));
+    taken[window[k]] = 1;
+    supply.take(k);
+    if (HasFailure()) return;
+  }
+  EXPECT_TRUE(supply.exhausted());
+  EXPECT_EQ(supply.first_missing(), n);
+}
+
+TEST(Supply, TrimmingIsCheapWhereFewStandBeyondTheFirstMissing) {
+  Supply supply(*uniform, 1, 1, unbounded, count_of(2000), 7);
+  for (int k = 0; k < 1000; ++k) supply.take(0);
+  EXPECT_TRUE(supply.trimming_is_cheap());
+  supply.take(1);  // one of 1,001
+  EXPECT_EQ(supply.passed_over(), 1u);
+  EXPECT_TRUE(supply.trimming_is_cheap());
+  for (int k = 0; k < 500; ++k) supply.take(1);  // a third of all would have to go
+  EXPECT_EQ(supply.passed_over(), 1u);
+  EXPECT_FALSE(supply.trimming_is_cheap());
+}
+
+}  // namespace
+}  // namespace bernal
