@@ -20,8 +20,8 @@ namespace bernal {
 /// The grid stores ids, not coordinates. Invariant: sphere id is in exactly one list, that of the cell
 /// that holds its centre on the level of its radius; centres beyond the bounds count to the border cell.
 ///
-/// Cost: insert, remove, move O(1); a query O(levels + spheres met). Memory: 12 bytes a sphere, 4 a cell.
-/// Source: Zhao, Li & Liu 2007, section 2.4 (one level); Eitz & Lixu 2007 (hierarchical hash grids).
+/// Cost: insert, remove, move O(1); a query O(levels + spheres met). Memory: 16 bytes a sphere, 4 a cell.
+/// Source: Zhao, Li & Liu 2007, figure 7 (one level).
 template <int D>
 class CellGrid {
  public:
