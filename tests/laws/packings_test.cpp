@@ -1,0 +1,271 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+#include <limits>
+#include <set>
+
+#include "bernal/core/random.hpp"
+#include "bernal/measure/measure.hpp"
+#include "bernal/verify/certificate.hpp"
+#include "support/meshes.hpp"
+#include "support/plans.hpp"
+#include "support/scenes.hpp"
+
+// What is true of every packing, whatever its scene. A new container, size distribution or stage is held to
+// these laws by its example in data/scenes, or by one line here.
+namespace bernal {
+namespace {
+
+using testing::plan_of;
+
+struct SceneUnderTest {
+  std::string name;
+  std::function<Plan()> plan;
+
+  friend void PrintTo(const SceneUnderTest& tested, std::ostream* out) { *out << tested.name; }
+};
+
+std::string in_camel_case(const std::string& snake) {
+  std::string name;
+  for (std::size_t i = 0; i < snake.size(); ++i) {
+    if (snake[i] == '_') continue;
+    const bool first = i == 0 || snake[i - 1] == '_';
+    name += first ? static_cast<char>(std::toupper(static_cast<unsigned char>(snake[i]))) : snake[i];
+  }
+  return name;
+}
+
+const std::string box = "[container]\nkind = \"box\"\nsize = [1.0, 1.0, 1.0]\n";
+
+std::vector<SceneUnderTest> scenes_under_test() {
+  std::vector<SceneUnderTest> scenes;
+  for (const auto& file : testing::example_scenes()) {
+    scenes.push_back({in_camel_case(file.stem().string()),
+                      [file] { return build(testing::small(read_scene(file), 500)); }});
+  }
+  const auto add = [&](std::string name, const std::string& toml) {
+    scenes.push_back({std::move(name), [toml] { return plan_of(toml); }});
+  };
+  add("ObliqueCylinderFarAway",
+      "[container]\nkind = \"cylinder\"\nradius = 2.0\nheight = 5.0\naxis = [1.0, 2.0, 3.0]\n"
+      "base = [3000.0, -2000.0, 5000.0]\n[spheres]\nfill = true\nradius = 0.3\n");
+  add("Sphere",
+      "[container]\nkind = \"sphere\"\nradius = 1.0\n[spheres]\nfill = true\n"
+      "radius = { distribution = \"uniform\", min = 0.1, max = 0.2 }\n");
+  add("LognormalInABox", box +
+                             "[spheres]\nfill = true\n"
+                             "radius = { distribution = \"lognormal\", median = 0.06, sigma = 0.4 }\n");
+  add("UphillInABox", box +
+                          "[spheres]\npacking_fraction = 0.4\nradius = 0.07\n[[stage]]\ndo = \"insert\"\n"
+                          "[[stage]]\ndo = \"compress\"\ndirection = [1.0, 1.0, 3.0]\n"
+                          "[[stage]]\ndo = \"refill\"\ndirection = [1.0, 1.0, 3.0]\n");
+  scenes.push_back({"LShapeMesh", [] {
+                      return plan_of("unit = \"m\"\n" + box + "[spheres]\nfill = true\nradius = 0.1\n",
+                                     test::translated(test::l_shape_mesh(), {0, 0, -7}));
+                    }});
+  return scenes;
+}
+
+Packing run_with(const Plan& plan, int threads = 1) {
+  RunOptions options;
+  options.threads = threads;
+  return run(plan, options);
+}
+
+void expect_certified(const Packing& packing) {
+  const Certificate filtered = certify(packing.spheres, packing.container);
+  const Certificate exact = certify(packing.spheres, packing.container, 0, Arithmetic::exact);
+  EXPECT_TRUE(filtered.certified) << filtered.statement;
+  EXPECT_TRUE(exact.certified) << exact.statement;
+  EXPECT_EQ(filtered.pairs_tested, exact.pairs_tested);
+}
+
+class EveryPacking : public ::testing::TestWithParam<SceneUnderTest> {};
+
+INSTANTIATE_TEST_SUITE_P(, EveryPacking, ::testing::ValuesIn(scenes_under_test()),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST_P(EveryPacking, IsCertifiedAndWhatWasAskedFor) {
+  const Plan plan = GetParam().plan();
+  const Packing packing = run_with(plan);
+  expect_certified(packing);
+  EXPECT_FALSE(packing.reason.empty());
+  const Target& target = plan.scene.target;
+  // Every scene here asks for something that its stages can do.
+  EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+  if (target.count) {
+    EXPECT_EQ(packing.spheres.size(), static_cast<std::size_t>(*target.count));
+  } else if (target.packing_fraction) {
+    EXPECT_GE(packing.packing_fraction(), *target.packing_fraction * (1 - 1e-12));
+  } else {
+    // Insertion alone ends at 0.30; compression and refilling bring it well beyond, in any container this
+    // wide.
+    EXPECT_GT(packing.packing_fraction(), 0.35);
+  }
+}
+
+TEST_P(EveryPacking, IsAFunctionOfTheSeedAlone) {
+  const Plan plan = GetParam().plan();
+  const std::string hash = hash_of(run_with(plan, 1).spheres);
+  EXPECT_EQ(hash_of(run_with(plan, 2).spheres), hash);
+  RunOptions other;
+  other.threads = 1;
+  other.seed = plan.scene.seed + 1;
+  const Packing of_other_seed = run(plan, other);
+  EXPECT_NE(hash_of(of_other_seed.spheres), hash);
+  EXPECT_EQ(of_other_seed.seed, plan.scene.seed + 1);
+}
+
+// The packer works in a frame whose scale is a power of two, so such a factor leaves it with the same bits.
+TEST_P(EveryPacking, ScalesBitForBitByPowersOfTwo) {
+  const Packing packing = run_with(GetParam().plan());
+  for (const double factor : {0x1p10, 0x1p-20}) {
+    const Packing scaled = run_with(testing::scaled(GetParam().plan(), factor));
+    ASSERT_EQ(scaled.spheres.size(), packing.spheres.size());
+    for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+      ASSERT_EQ(scaled.spheres.center(i), factor * packing.spheres.center(i)) << i;
+      ASSERT_EQ(scaled.spheres.r[i], factor * packing.spheres.r[i]) << i;
+    }
+  }
+}
+
+TEST_P(EveryPacking, StaysCertifiedAtAnyScaleAndFarAway) {
+  const double size = bounds_of(GetParam().plan().container).diagonal();
+  const Vector<3> far = 1e4 * size * Vector<3>(0.6, -1, 0.3);
+  Plan plans[] = {testing::scaled(GetParam().plan(), 1e-6), testing::scaled(GetParam().plan(), 1e6),
+                  testing::shifted(GetParam().plan(), far)};
+  for (const Plan& plan : plans) {
+    const Packing packing = run_with(plan);
+    EXPECT_GT(packing.spheres.size(), 50u);
+    expect_certified(packing);
+  }
+}
+
+/// The radii are those that the seed draws, in their order and to the last bit, less those that found no
+/// place: no more than the window of stages/supply.hpp holds.
+TEST_P(EveryPacking, HasTheRadiiThatWereDrawn) {
+  const Plan plan = GetParam().plan();
+  const Packing packing = run_with(plan);
+  const double largest = std::ranges::max(packing.spheres.r);
+  const bool cut = std::isinf(plan.radii->max());  // then draws beyond the container's room are not asked for
+  Random random(packing.seed, stream(Stream::radii));
+  std::size_t passed_over = 0;
+  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+    double drawn = plan.radii->sample(random);
+    for (; drawn != packing.spheres.r[i] && passed_over < packing.spheres.size();
+         drawn = plan.radii->sample(random))
+      if (!cut || drawn <= largest) ++passed_over;
+    ASSERT_EQ(drawn, packing.spheres.r[i]) << i;
+  }
+  EXPECT_LE(passed_over, std::max<std::size_t>(16, packing.spheres.size() / 50));
+}
+
+/// Stops the run when it asks for the k-th time.
+Packing cancelled_after(const Plan& plan, std::size_t k) {
+  std::size_t polls = 0;
+  RunOptions options;
+  options.threads = 1;
+  options.monitor.cancelled = [&] { return ++polls > k; };
+  Packing packing = run(plan, options);
+  EXPECT_EQ(polls, k + 1) << "it went on after it was told to stop";
+  return packing;
+}
+
+TEST_P(EveryPacking, ThatIsCancelledIsWholeAsFarAsItGoes) {
+  const Plan plan = GetParam().plan();
+  std::size_t polls = 0;
+  RunOptions options;
+  options.threads = 1;
+  options.monitor.cancelled = [&] {
+    ++polls;
+    return false;
+  };
+  const std::size_t all = run(plan, options).spheres.size();
+  // Before the first sphere, among the first ones, and in the last stage.
+  for (const std::size_t k : {std::size_t{0}, std::size_t{30}, polls - 1}) {
+    const Packing packing = cancelled_after(plan, k);
+    EXPECT_EQ(packing.outcome, Outcome::cancelled);
+    EXPECT_NE(packing.reason.find("stopped"), std::string::npos) << packing.reason;
+    EXPECT_LE(packing.spheres.size(), k <= 30 ? k : all);
+    expect_certified(packing);
+  }
+}
+
+std::set<std::string> effects_of(const Packing& packing) {
+  std::set<std::string> names;
+  for (const Effect& effect : packing.effects) {
+    names.insert(effect.name);
+    EXPECT_GT(effect.calls, 0u) << effect.name;
+  }
+  return names;
+}
+
+const std::string insert_only = "[[stage]]\ndo = \"insert\"\npacking_fraction = 0.2\n";
+
+TEST(Packing, RunsOnlyTheEffectsThatTheSceneCallsFor) {
+  const std::string spheres = "[spheres]\nfill = true\nradius = 0.07\n";
+  EXPECT_EQ(effects_of(run_with(plan_of(box + spheres + insert_only))),
+            (std::set<std::string>{"insertion", "walls"}));
+  const auto compressed =
+      effects_of(run_with(plan_of(box + spheres + insert_only + "[[stage]]\ndo = \"compress\"\n")));
+  EXPECT_EQ(compressed, (std::set<std::string>{"insertion", "walls", "neighbour lists", "compression"}));
+}
+
+TEST(Packing, DoesWhatThePlanSaysAndNothingThatItLeavesOut) {
+  for (const SceneUnderTest& tested : scenes_under_test()) {
+    const Plan plan = tested.plan();
+    std::set<std::string> planned;
+    for (const PlanItem& item : plan.items) planned.insert(item.name);
+    for (const std::string& name : effects_of(run_with(plan))) {
+      EXPECT_TRUE(planned.contains(name)) << tested.name << ": " << name;
+      EXPECT_EQ(std::ranges::count(plan.absent, name), 0) << tested.name << ": " << name;
+    }
+  }
+}
+
+TEST(Packing, ThatReachesItsCountHasConverged) {
+  const Packing packing = run_with(plan_of(box + "[spheres]\ncount = 200\nradius = 0.05\n"));
+  EXPECT_EQ(packing.outcome, Outcome::converged);
+  EXPECT_EQ(packing.spheres.size(), 200u);
+}
+
+TEST(Packing, ThatCannotReachItsCountIsFullAndSaysSo) {
+  // No packing of equal spheres is denser than 0.7405: 0.7405 / (4/3 pi 0.07³) = 515.
+  const Packing packing = run_with(plan_of(box + "[spheres]\ncount = 516\nradius = 0.07\n"));
+  EXPECT_EQ(packing.outcome, Outcome::full);
+  EXPECT_LT(packing.spheres.size(), 516u);
+  EXPECT_GT(packing.packing_fraction(), 0.40);
+  EXPECT_NE(packing.reason.find("516"), std::string::npos) << packing.reason;
+  expect_certified(packing);
+}
+
+TEST(Packing, ThatCannotReachItsPackingFractionIsFull) {
+  const Packing packing = run_with(plan_of(box + "[spheres]\npacking_fraction = 0.74\nradius = 0.07\n"));
+  EXPECT_EQ(packing.outcome, Outcome::full);
+  expect_certified(packing);
+}
+
+TEST(Packing, TellsItsHistoryInOrder) {
+  const Packing packing = run_with(plan_of(box + "[spheres]\nfill = true\nradius = 0.07\n"));
+  ASSERT_FALSE(packing.history.empty());
+  for (std::size_t i = 1; i < packing.history.size(); ++i) {
+    EXPECT_GE(packing.history[i].seconds, packing.history[i - 1].seconds);
+    EXPECT_GE(packing.history[i].spheres, packing.history[i - 1].spheres);
+  }
+  EXPECT_EQ(packing.history.back().spheres, packing.spheres.size());
+  EXPECT_NEAR(packing.history.back().packing_fraction, packing.packing_fraction(), 1e-12);
+}
+
+TEST(Packing, ComesFromTheSceneThatItCarries) {
+  const Plan plan = plan_of(box + "[spheres]\ncount = 100\nradius = 0.05\n");
+  RunOptions options;
+  options.seed = 42;
+  options.threads = 1;
+  const Packing packing = run(plan, options);
+  EXPECT_EQ(hash_of(run_with(build(packing.scene)).spheres), hash_of(packing.spheres));
+}
+
+}  // namespace
+}  // namespace bernal

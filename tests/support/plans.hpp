@@ -1,0 +1,86 @@
+#pragma once
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "bernal/run/run.hpp"
+#include "bernal/scene/read_scene.hpp"
+
+// Plans that no scene file can state: of a given mesh, or of a scene that has been scaled and shifted.
+namespace bernal::testing {
+
+/// A size distribution with every radius multiplied.
+class ScaledSizes : public SizeDistribution {
+ public:
+  ScaledSizes(std::unique_ptr<SizeDistribution> sizes, double factor)
+      : sizes_(std::move(sizes)), factor_(factor) {}
+
+  std::string_view name() const override { return sizes_->name(); }
+  double quantile(double p) const override { return factor_ * sizes_->quantile(p); }
+  double cumulative(double radius) const override { return sizes_->cumulative(radius / factor_); }
+  double moment(int k) const override { return std::pow(factor_, k) * sizes_->moment(k); }
+  double moment_above(int k, double radius) const override {
+    return std::pow(factor_, k) * sizes_->moment_above(k, radius / factor_);
+  }
+  double min() const override { return factor_ * sizes_->min(); }
+  double max() const override { return factor_ * sizes_->max(); }
+
+ private:
+  std::unique_ptr<SizeDistribution> sizes_;
+  double factor_;
+};
+
+inline Shape scaled(Shape shape, double factor) {
+  if (auto* box = std::get_if<BoxShape>(&shape)) {
+    box->corner *= factor;
+    box->size *= factor;
+  } else if (auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+    cylinder->base *= factor;
+    cylinder->radius *= factor;
+    cylinder->height *= factor;
+  } else if (auto* sphere = std::get_if<SphereShape>(&shape)) {
+    sphere->center *= factor;
+    sphere->radius *= factor;
+  } else {
+    for (Vector<3>& v : std::get<Mesh>(shape).vertices) v *= factor;
+  }
+  return shape;
+}
+
+inline Shape shifted(Shape shape, const Vector<3>& by) {
+  if (auto* box = std::get_if<BoxShape>(&shape)) {
+    box->corner += by;
+  } else if (auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+    cylinder->base += by;
+  } else if (auto* sphere = std::get_if<SphereShape>(&shape)) {
+    sphere->center += by;
+  } else {
+    for (Vector<3>& v : std::get<Mesh>(shape).vertices) v += by;
+  }
+  return shape;
+}
+
+inline Plan scaled(Plan plan, double factor) {
+  plan.container = scaled(std::move(plan.container), factor);
+  plan.radii = std::make_unique<ScaledSizes>(std::move(plan.radii), factor);
+  return plan;
+}
+
+inline Plan shifted(Plan plan, const Vector<3>& by) {
+  plan.container = shifted(std::move(plan.container), by);
+  return plan;
+}
+
+/// The plan of a scene in TOML.
+inline Plan plan_of(const std::string& toml) { return build(parse_scene(toml, "test.toml")); }
+
+/// The same with the container replaced.
+inline Plan plan_of(const std::string& toml, Shape container) {
+  Plan plan = plan_of(toml);
+  plan.container = std::move(container);
+  return plan;
+}
+
+}  // namespace bernal::testing
