@@ -51,9 +51,9 @@ void for_threads(benchmark::internal::Benchmark* b) { b->ArgName("threads")->Arg
 BENCHMARK_CAPTURE(pack_han, cylinder, han)->Apply(for_threads);
 BENCHMARK_CAPTURE(pack_han, prism_mesh, han_as_mesh)->Apply(for_threads);
 
-/// What accuracy of the walls costs: 2,000 spheres in a hopper.
+/// What accuracy of the walls costs: 8,000 spheres in a hopper.
 void pack_hopper(benchmark::State& state, const char* walls) {
-  Scene scene = testing::small(read_scene(BERNAL_DATA "/scenes/hopper.toml"), 2000);
+  Scene scene = testing::small(read_scene(BERNAL_DATA "/scenes/hopper.toml"), 8000);
   scene.walls = walls;
   run_whole(state, build(scene), 1);
 }
