@@ -88,8 +88,9 @@ class CellGrid {
     for (Level& level : levels_) level.spheres = 0;
   }
 
-  /// Calls visit(id) for every sphere whose surface may be nearer than `reach` to `c`, i.e. at least for all
-  /// with |c - c_id| < reach + r_id, until visit returns true. Returns whether it did.
+  /// Calls visit(id) until it returns true, for every sphere whose bounding cube, blown up by `reach`, may
+  /// hold c: at least for all with max_k |c - c_id|_k < reach + r_id, which includes all whose surface is
+  /// nearer than `reach`. Returns whether it returned true.
   template <class Visit>
   bool any_near(const Vector<D>& c, double reach, Visit&& visit) const {
     for (const Level& level : levels_) {

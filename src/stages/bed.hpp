@@ -75,6 +75,11 @@ class Bed {
   /// What asking the container cost: near facets and whether spheres may appear.
   const Effect& wall_queries() const { return walls_; }
 
+  /// How many neighbours the lists hold for a sphere, on average.
+  double mean_neighbors() const {
+    return balls_.empty() ? 0 : static_cast<double>(neighbors_.size()) / static_cast<double>(size());
+  }
+
   /// The spheres in the order of their tags.
   Spheres<3> spheres() const;
 

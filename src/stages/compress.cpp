@@ -9,9 +9,14 @@ namespace {
 /// less than `little` of the first.
 constexpr int global_sweeps = 8;
 constexpr double little = 0.3;
-/// The bed is at rest when an iteration lowers its mean height by less than this, in mean radii. Until then
-/// local directions would only disturb the fall.
+/// The bed is at rest when the spheres' mean way along the global direction in an iteration is less than
+/// this, in mean radii. Until then local directions would only disturb the fall. (Potential energy does not
+/// tell: it may be that of a few large spheres, at rest while the small ones still fall.)
 constexpr double at_rest = 0.1;
+/// Where there is little to meet and far to go, bounding boxes double: while the mean way is more than
+/// `moving` of the box and a box holds fewer neighbours than `few_neighbors` on average.
+constexpr double moving = 0.02;
+constexpr double few_neighbors = 20;
 /// Sweeps along local directions between two buildings of the lists.
 constexpr int local_sweeps = 10;
 /// A sphere that moves less than this, in radii, rests; one that moves more wakes its neighbours.
@@ -29,19 +34,20 @@ class GlobalSweeps {
 
   void wake_all() { awake_.assign(bed_.size(), 1); }
 
-  /// Returns the mean fall.
   void sweep() {
     for (Bed::Id i = 0; i < bed_.size(); ++i) {
       if (!awake_[i]) continue;
-      const double moved = slide(mover_, i, direction_, std::numeric_limits<double>::infinity()) / bed_[i].r;
-      awake_[i] = moved > resting;
-      if (moved <= waking) continue;
+      const double way = slide(mover_, i, direction_, std::numeric_limits<double>::infinity());
+      ways_ += way;
+      awake_[i] = way > resting * bed_[i].r;
+      if (way <= waking * bed_[i].r) continue;
       for (const Bed::Id j : bed_.neighbors(i)) awake_[j] = 1;
     }
   }
 
-  /// Sweeps until one lowers the potential by little compared with the first.
-  void settle() {
+  /// Sweeps until one lowers the potential by little compared with the first. Returns the mean way.
+  double settle() {
+    ways_ = 0;
     double height = bed_.potential(direction_);
     double first_fall = 0;
     for (int k = 0; k < global_sweeps; ++k) {
@@ -52,6 +58,7 @@ class GlobalSweeps {
       if (k == 0) first_fall = fall;
       if (k > 0 && fall < little * first_fall) break;
     }
+    return ways_ / static_cast<double>(bed_.size());
   }
 
  private:
@@ -59,6 +66,7 @@ class GlobalSweeps {
   Mover mover_;
   Vector<3> direction_;
   std::vector<char> awake_;
+  double ways_ = 0;  // summed over the spheres since settle began
 };
 
 /// The lowest height against `direction` in the container's bounds: where potential energy counts from.
@@ -94,13 +102,17 @@ StageEnd compress(Work& work, const CompressOptions& options) {
   bed.sort_by_height(options.direction);
   GlobalSweeps global(bed, options.direction);
 
+  double box = options.buffer * radius;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     if (work.monitor.stop()) return StageEnd::cancelled;
-    bed.enclose(options.buffer * radius);
+    bed.enclose(box);
+    global.wake_all();  // the ends of the old boxes held some
     const double before = bed.potential(options.direction);
-    global.settle();
-    const double settled = bed.potential(options.direction);
-    const bool resting_bed = before - settled < at_rest * radius;
+    const double way = global.settle();
+    const bool resting_bed = way < at_rest * radius;
+    const double factor = bed.mean_neighbors() < few_neighbors ? 2 : 0.5;
+    const double least_box = options.buffer * radius;
+    box = way > moving * box ? std::max(least_box, factor * box) : least_box;
     if (resting_bed && options.tilt > 0) {
       for (int k = 0; k < local_sweeps; ++k) {
         sweep_at_random(bed, options.direction, options.tilt, Vector<3>::Zero(), 2 * radius, random);

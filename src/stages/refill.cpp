@@ -15,27 +15,33 @@ struct Probe {
 
 /// More probes would take more memory than the spheres do.
 constexpr double most_probes = 4e6;
+/// Where a sphere's centre has hardly any room, only so many places are tried for each probe that is wanted.
+constexpr double most_trials = 4;
+constexpr double least_trials = 3e5;
 
 /// Places in the container where a sphere of radius `smallest` clears the wall: drawn once a stage, since the
 /// wall stays where it is.
 std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
   const EffectTimer timer(work.effects["refilling"]);
   const Bed& bed = work.bed;
+  const Container& container = bed.container();
   Random random = work.random(Stream::refill);
+  const double radius = bed.size() > 0 ? bed.mean_radius() : work.supply.radius(work.supply.window().front());
   const double smallest = work.supply.smallest() + bed.skin();
-  const double sphere = 4.0 / 3.0 * std::numbers::pi * std::pow(bed.mean_radius(), 3);
-  const double wanted = 1000 + probes_a_sphere * bed.places().volume() / sphere;
+  const double capacity = container.volume() / (4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3));
+  const double wanted = std::min(most_probes, 1000 + probes_a_sphere * capacity);
   std::vector<Probe> probes;
-  for (double k = 0; k < std::min(wanted, most_probes); ++k) {
+  for (double trial = 0; trial < std::max(least_trials, most_trials * wanted); ++trial) {
+    if (static_cast<double>(probes.size()) >= wanted) break;
     const Vector<3> place = bed.places().draw(random);
-    if (!bed.container().contains(place, smallest)) continue;
-    probes.push_back({place, bed.container().clearance(place) - bed.skin(), 0});
+    if (!container.contains(place, smallest)) continue;
+    probes.push_back({place, container.clearance(place) - bed.skin(), 0});
   }
   return probes;
 }
 
-/// Puts spheres of the window into the free space; returns how many.
-std::size_t fill_free_space(Work& work, std::vector<Probe>& probes) {
+/// Puts spheres of the window into the free space.
+void fill_free_space(Work& work, std::vector<Probe>& probes) {
   const EffectTimer timer(work.effects["refilling"]);
   Bed& bed = work.bed;
   Supply& supply = work.supply;
@@ -47,7 +53,6 @@ std::size_t fill_free_space(Work& work, std::vector<Probe>& probes) {
     if (p.room >= smallest) open.push_back(&p);
   }
 
-  const std::size_t before = bed.size();
   std::size_t waiting = 0;  // so many at the head of the window found no place
   while (waiting < supply.window().size()) {
     const std::uint32_t tag = supply.window()[waiting];
@@ -75,7 +80,6 @@ std::size_t fill_free_space(Work& work, std::vector<Probe>& probes) {
     }
     if (!placed) ++waiting;
   }
-  return bed.size() - before;
 }
 
 }  // namespace
@@ -85,13 +89,13 @@ StageEnd refill(Work& work, const RefillOptions& options) {
   std::vector<Probe> probes = draw_probes(work, options.probes);
   for (int round = 0; round < options.max_rounds; ++round) {
     if (work.monitor.stop()) return StageEnd::cancelled;
-    if (work.supply.exhausted()) return StageEnd::converged;
-    const std::size_t added = fill_free_space(work, probes);
+    const double before = work.bed.packing_fraction();
+    fill_free_space(work, probes);
+    const double after = work.bed.packing_fraction();
     work.milestone("refill");
-    const bool full = static_cast<double>(added) <= options.patience * static_cast<double>(work.bed.size());
-    if (work.supply.exhausted() && added == 0) return StageEnd::converged;
     if (compress(work, options.shake.compress) == StageEnd::cancelled) return StageEnd::cancelled;
-    if (full) return work.supply.exhausted() ? StageEnd::converged : StageEnd::full;
+    if (work.supply.exhausted()) return StageEnd::converged;
+    if (after - before <= options.patience * after) return StageEnd::full;
     if (shake(work, options.shake) == StageEnd::cancelled) return StageEnd::cancelled;
   }
   return StageEnd::hit_limit;

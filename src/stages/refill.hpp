@@ -5,8 +5,8 @@ namespace bernal {
 
 struct RefillOptions {
   int max_rounds = 200;
-  double probes = 20;  ///< random places looked at in a round, for each sphere that the container may hold
-  double patience = 3e-3;  ///< full when a round adds fewer spheres than this share of those there are
+  double probes = 15;  ///< random places to look at, for each sphere that would fill the container's volume
+  double patience = 3e-3;  ///< full when a round adds less volume than this share of what is there
   ShakeOptions shake;      ///< between two rounds; its compression also follows every refilling
 };
 
