@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -31,12 +32,13 @@ void require_fitting(const Scene& scene, const Shape& container, double radius) 
   const double largest = largest_fitting_radius(container);
   if (radius <= largest) return;
   const double shown = scene.sizes_are_diameters ? 2 : 1;
-  const char* word = scene.sizes_are_diameters ? "diameter" : "radius";
+  const auto [one, many] =
+      scene.sizes_are_diameters ? std::pair("diameter", "diameters") : std::pair("radius", "radii");
   throw Error(
       ErrorCode::bad_scene,
-      fmt::format("a sphere of {0} {1:.6g} {3} does not fit into the {4}, which takes {0}s up to {2:.6g} "
-                  "{3}: use smaller ones or check the units",
-                  word, shown * radius, shown * largest, scene.unit, kind_of(container)),
+      fmt::format("a sphere of {} {:.6g} {} does not fit into the {}, which takes {} up to {:.6g} {}: use "
+                  "smaller ones or check the units",
+                  one, shown * radius, scene.unit, kind_of(container), many, shown * largest, scene.unit),
       scene.sizes.where);
 }
 
