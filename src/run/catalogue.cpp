@@ -1,6 +1,5 @@
 #include "run/catalogue.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>

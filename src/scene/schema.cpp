@@ -225,7 +225,7 @@ Schema make_schema() {
                   .keys = with_compression(
                       {{.name = "probes",
                         .type = Type::number,
-                        .help = "random places probed in a round, a sphere that may fit in",
+                        .help = "random places to look at, for each sphere that would fill the volume",
                         .otherwise = 15.0,
                         .range = {0, 1e6, true}},
                        {.name = "max_rounds",

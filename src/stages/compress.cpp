@@ -1,5 +1,8 @@
 #include "stages/compress.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "stages/slide.hpp"
 
 namespace bernal {
@@ -27,23 +30,10 @@ constexpr double waking = 1e-3;
 /// next to which something moved. A sphere whose surroundings have not changed cannot move.
 class GlobalSweeps {
  public:
-  explicit GlobalSweeps(Bed& bed, const Vector<3>& direction)
-      : bed_(bed), mover_(bed), direction_(direction) {
-    wake_all();
-  }
+  GlobalSweeps(Bed& bed, const Vector<3>& direction) : bed_(bed), mover_(bed), direction_(direction) {}
 
+  /// To be called after every `Bed::enclose`.
   void wake_all() { awake_.assign(bed_.size(), 1); }
-
-  void sweep() {
-    for (Bed::Id i = 0; i < bed_.size(); ++i) {
-      if (!awake_[i]) continue;
-      const double way = slide(mover_, i, direction_, std::numeric_limits<double>::infinity());
-      ways_ += way;
-      awake_[i] = way > resting * bed_[i].r;
-      if (way <= waking * bed_[i].r) continue;
-      for (const Bed::Id j : bed_.neighbors(i)) awake_[j] = 1;
-    }
-  }
 
   /// Sweeps until one lowers the potential by little compared with the first. Returns the mean way.
   double settle() {
@@ -62,6 +52,17 @@ class GlobalSweeps {
   }
 
  private:
+  void sweep() {
+    for (Bed::Id i = 0; i < bed_.size(); ++i) {
+      if (!awake_[i]) continue;
+      const double way = slide(mover_, i, direction_, std::numeric_limits<double>::infinity());
+      ways_ += way;
+      awake_[i] = way > resting * bed_[i].r;
+      if (way <= waking * bed_[i].r) continue;
+      for (const Bed::Id j : bed_.neighbors(i)) awake_[j] = 1;
+    }
+  }
+
   Bed& bed_;
   Mover mover_;
   Vector<3> direction_;
