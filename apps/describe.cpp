@@ -26,11 +26,12 @@ std::string shown(const Value& value) {
 
 std::string describe_container(const Plan& plan) {
   const std::string& unit = plan.scene.unit;
-  const Vector<3> size = bounds_of(plan.container).size();
-  std::string text(kind_of(plan.container));
+  const Vector<dynamic> size = extent_of(plan.domain);
+  std::string text(kind_of(plan.domain));
   if (plan.scene.container.has("file")) text += fmt::format(" {}", plan.scene.container.text("file"));
-  return fmt::format("{}, {:.6g} x {:.6g} x {:.6g} {}, volume {:.6g} {}³", text, size[0], size[1], size[2],
-                     unit, volume_of(plan.container), unit);
+  if (plan.box_follows) text += ", as large as the packing needs: about";
+  return fmt::format("{}, {:.6g} {}, volume {:.6g} {}^{}", text, fmt::join(size, " x "), unit,
+                     volume_of(plan.domain), unit, size.size());
 }
 
 std::string describe_sizes(const Scene& scene) {

@@ -44,17 +44,22 @@ void print(const Plan& plan) {
 
 nlohmann::ordered_json as_json(const Plan& plan) {
   using nlohmann::ordered_json;
-  const Bounds<3> bounds = bounds_of(plan.container);
   const auto point = [](const Vector<3>& p) { return ordered_json{p[0], p[1], p[2]}; };
+  ordered_json container = {{"kind", kind_of(plan.domain)}, {"volume", volume_of(plan.domain)}};
+  if (const Shape* shape = std::get_if<Shape>(&plan.domain)) {
+    const Bounds<3> bounds = bounds_of(*shape);
+    container["bounds"] = {point(bounds.lower), point(bounds.upper)};
+  } else {
+    const Vector<dynamic> edges = extent_of(plan.domain);
+    container["edges"] = std::vector<double>(edges.begin(), edges.end());
+    container["scalable"] = plan.box_follows;
+  }
+  container["notes"] = plan.container_notes;
   ordered_json items = ordered_json::array();
   for (const PlanItem& item : plan.items)
     items.push_back({{"name", item.name}, {"what", item.what}, {"cost", item.cost}});
   return {{"unit", plan.scene.unit},
-          {"container",
-           {{"kind", kind_of(plan.container)},
-            {"volume", volume_of(plan.container)},
-            {"bounds", {point(bounds.lower), point(bounds.upper)}},
-            {"notes", plan.container_notes}}},
+          {"container", container},
           {"spheres", {{"target", describe_target(plan.scene)}, {"sizes", describe_sizes(plan.scene)}}},
           {"accuracy", {{"walls", plan.scene.walls}, {"overlap", plan.scene.overlap}}},
           {"expected",

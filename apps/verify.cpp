@@ -86,7 +86,7 @@ int verify(const VerifyCall& call) {
   std::optional<tbb::global_control> limit;
   if (call.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
-  const Certificate certificate = certify(read.spheres, shape_of(scene), scene.overlap);
+  const Certificate certificate = certify(read.spheres, domain_of(scene), scene.overlap);
   if (call.json)
     fmt::print("{}\n", as_json(certificate).dump(2));
   else

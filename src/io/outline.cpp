@@ -146,8 +146,10 @@ void split_where_hidden(const CanvasPoint& a, const CanvasPoint& b, const DepthB
 
 }  // namespace
 
-Mesh drawable_mesh(const Shape& container) {
-  return std::visit([](const auto& shape) { return drawable(shape); }, container);
+Mesh drawable_mesh(const Domain& domain) {
+  if (const auto* box = std::get_if<PeriodicBox>(&domain))
+    return drawable(BoxShape{Vector<3>::Zero(), Vector<3>(box->edges)});
+  return std::visit([](const auto& shape) { return drawable(shape); }, std::get<Shape>(domain));
 }
 
 std::vector<Stroke> outline_of(const Mesh& mesh, const View& view) {

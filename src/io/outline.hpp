@@ -1,14 +1,14 @@
 #pragma once
 #include <vector>
 
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 #include "io/view.hpp"
 
 namespace bernal {
 
-/// The container as triangles that are good enough to draw: exact for a box and a mesh, a fine prism for a
+/// The container or periodic box as triangles that are good enough to draw: exact for boxes and a mesh, a fine prism for a
 /// cylinder; a sphere becomes two cones base to base, seen along their axis, whose rim is its outline.
-Mesh drawable_mesh(const Shape& container);
+Mesh drawable_mesh(const Domain& domain);
 
 /// A straight piece of the outline, wholly visible or wholly hidden behind the container's own surface.
 struct Stroke {

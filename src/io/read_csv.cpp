@@ -1,23 +1,24 @@
-#include <array>
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/unit.hpp"
 #include "bernal/io/read_packing.hpp"
+#include "io/write_csv.hpp"
 
 namespace bernal {
 namespace {
 
-constexpr std::string_view header = "x,y,z,r";
 constexpr std::string_view unit_mark = "# unit:";
-constexpr std::array<std::string_view, 4> columns = {"x", "y", "z", "r"};
 
 std::string read_whole(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& why) -> Error {
@@ -109,8 +110,16 @@ double read_number(std::string_view field, std::string_view column, const Lines&
   return value;
 }
 
-std::array<double, 4> read_sphere(const Lines& lines) {
-  std::array<double, 4> values{};
+/// Which dimension has this header.
+int dimension_of_header(const Lines& lines) {
+  for (int dimension = 1; dimension <= max_dimension; ++dimension)
+    if (lines.line() == csv_header(dimension)) return dimension;
+  lines.fail(fmt::format("expected the header {} (or {} and so on), found {}", csv_header(3), csv_header(2),
+                         quoted(lines.line())));
+}
+
+/// One line: the coordinates, then the radius. `columns` are their names.
+void read_sphere(const Lines& lines, const std::vector<std::string>& columns, Spheres<dynamic>& spheres) {
   std::string_view rest = lines.line();
   if (rest.empty()) lines.fail("empty line; one sphere a line is expected");
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -118,13 +127,25 @@ std::array<double, 4> read_sphere(const Lines& lines) {
     const bool last = k + 1 == columns.size();
     if ((comma == std::string_view::npos) != last) {
       const auto fields = 1 + std::count(lines.line().begin(), lines.line().end(), ',');
-      lines.fail(fmt::format("{} fields, expected 4: {}", fields, header));
+      lines.fail(fmt::format("{} fields, expected {}: {}", fields, columns.size(), fmt::join(columns, ",")));
     }
-    values[k] = read_number(rest.substr(0, comma), columns[k], lines);
+    const double value = read_number(rest.substr(0, comma), columns[k], lines);
+    if (last && !(value > 0)) lines.fail(fmt::format("the radius {} is not positive", value));
+    (last ? spheres.r : spheres.x[k]).push_back(value);
     if (!last) rest.remove_prefix(comma + 1);
   }
-  if (!(values[3] > 0)) lines.fail(fmt::format("the radius {} is not positive", values[3]));
-  return values;
+}
+
+std::vector<std::string> split(std::string_view header) {
+  std::vector<std::string> names(1);
+  for (const char c : header) {
+    if (c == ',') {
+      names.emplace_back();
+    } else {
+      names.back() += c;
+    }
+  }
+  return names;
 }
 
 }  // namespace
@@ -132,23 +153,19 @@ std::array<double, 4> read_sphere(const Lines& lines) {
 SpheresFile read_csv(const std::filesystem::path& file) {
   const std::string text = read_whole(file);
   Lines lines(text, file);
-  SpheresFile result;
+  std::string unit;
 
   bool found = lines.next();
   while (found && lines.line().starts_with('#')) {
-    if (lines.line().starts_with(unit_mark)) result.unit = read_unit(lines);
+    if (lines.line().starts_with(unit_mark)) unit = read_unit(lines);
     found = lines.next();
   }
-  if (!found) lines.fail(fmt::format("the header {} is missing", header));
-  if (lines.line() != header) {
-    lines.fail(fmt::format("expected the header {}, found {}", header, quoted(lines.line())));
-  }
+  if (!found) lines.fail(fmt::format("the header {} is missing", csv_header(3)));
+  SpheresFile result{Spheres<dynamic>(dimension_of_header(lines)), std::move(unit)};
+  const std::vector<std::string> columns = split(lines.line());
   result.spheres.reserve(
       static_cast<std::size_t>(std::count(lines.rest().begin(), lines.rest().end(), '\n')));
-  while (lines.next()) {
-    const auto [x, y, z, r] = read_sphere(lines);
-    result.spheres.push_back({x, y, z}, r);
-  }
+  while (lines.next()) read_sphere(lines, columns, result.spheres);
   return result;
 }
 

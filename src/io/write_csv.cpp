@@ -6,15 +6,24 @@
 
 namespace bernal {
 
-void write_csv(OutputFile& file, const Spheres<3>& spheres, std::string_view unit) {
-  file.append("# unit: " + std::string(unit) + "\nx,y,z,r\n");
-  std::array<char, 4 * 32> line;  // the longest shortest double has 24 characters
+std::string csv_header(int dimension) {
+  if (dimension == 3) return "x,y,z,r";
+  std::string header;
+  for (int k = 0; k < dimension; ++k) header += "x" + std::to_string(k) + ",";
+  return header + "r";
+}
+
+void write_csv(OutputFile& file, const Spheres<dynamic>& spheres, std::string_view unit) {
+  file.append("# unit: " + std::string(unit) + "\n" + csv_header(spheres.dimension()) + "\n");
+  std::array<char, (max_dimension + 1) * 32> line;  // the longest shortest double has 24 characters
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     char* end = line.data();
-    for (const double value : {spheres.x[0][i], spheres.x[1][i], spheres.x[2][i], spheres.r[i]}) {
+    const auto add = [&](double value) {
       end = std::to_chars(end, line.data() + line.size(), value).ptr;
       *end++ = ',';
-    }
+    };
+    for (const auto& column : spheres.x) add(column[i]);
+    add(spheres.r[i]);
     end[-1] = '\n';
     file.append({line.data(), static_cast<std::size_t>(end - line.data())});
   }

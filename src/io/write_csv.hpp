@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 #include <string_view>
 
 #include "bernal/core/spheres.hpp"
@@ -6,9 +7,12 @@
 
 namespace bernal {
 
-/// `# unit: mm`, the header `x,y,z,r`, then one sphere a line. Every number is the shortest decimal that
+/// "x,y,z,r" in three dimensions, "x0,x1,…,r" in others.
+std::string csv_header(int dimension);
+
+/// `# unit: mm`, the header, then one sphere a line. Every number is the shortest decimal that
 /// reads back as the same double, so what is certified after reading is what was packed. Cost: about 0.3 µs a
 /// sphere.
-void write_csv(OutputFile& file, const Spheres<3>& spheres, std::string_view unit);
+void write_csv(OutputFile& file, const Spheres<dynamic>& spheres, std::string_view unit);
 
 }  // namespace bernal

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "io/chart.hpp"
 #include "io/html_text.hpp"
@@ -38,6 +39,10 @@ class Page {
  private:
   std::string text_;
 };
+
+std::string_view domain_name(const Domain& domain) {
+  return std::holds_alternative<PeriodicBox>(domain) ? "periodic box" : kind_of(domain);
+}
 
 std::string seconds_text(double seconds) {
   return seconds < 100
@@ -81,11 +86,12 @@ void write_headline(Page& page, const Report& report) {
 void write_scene(Page& page, const Report& report, std::string_view scene) {
   const Packing& packing = report.packing;
   const std::string unit = escaped(packing.scene.unit);
-  const Vector<3> extent = bounds_of(packing.container).size();
-  page.add("<h2>What was asked</h2>\n<p>A {} of volume {:.6g} {}³, {:.4g} × {:.4g} × {:.4g} {} over all",
-           kind_of(packing.container), packing.container_volume, unit, extent[0], extent[1], extent[2], unit);
-  if (const auto* mesh = std::get_if<Mesh>(&packing.container)) {
-    page.add(", with {} triangles", grouped(mesh->triangles.size()));
+  const Vector<dynamic> extent = extent_of(packing.domain);
+  page.add("<h2>What was asked</h2>\n<p>A {} of volume {:.6g} {}³, {:.4g} {} over all",
+           domain_name(packing.domain), packing.volume, unit, fmt::join(extent, " × "), unit);
+  if (const Shape* shape = std::get_if<Shape>(&packing.domain)) {
+    if (const auto* mesh = std::get_if<Mesh>(shape))
+      page.add(", with {} triangles", grouped(mesh->triangles.size()));
   }
   page.add(". Seed {}. Every length is in {}.</p>\n", packing.seed, unit);
   page.add(
@@ -243,7 +249,7 @@ void write_certificate(Page& page, const Report& report) {
 std::string html_of(const Report& report, std::string_view picture, std::string_view scene) {
   const Packing& packing = report.packing;
   std::string title =
-      fmt::format("{} spheres in a {}", grouped(packing.spheres.size()), kind_of(packing.container));
+      fmt::format("{} spheres in a {}", grouped(packing.spheres.size()), domain_name(packing.domain));
   if (packing.scene.container.has("file")) {
     title += ", " + std::filesystem::path(packing.scene.container.text("file")).filename().string();
   }

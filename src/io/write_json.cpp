@@ -11,10 +11,14 @@ using Json = nlohmann::ordered_json;  // writes NaN and infinity as null
 
 Json json_of(const Vector<3>& v) { return Json::array({v[0], v[1], v[2]}); }
 
-Json container_json(const Packing& packing) {
-  const Bounds<3> bounds = bounds_of(packing.container);
-  return {{"kind", kind_of(packing.container)},
-          {"volume", packing.container_volume},
+Json box_json(const PeriodicBox& box) {
+  return {{"edges", std::vector<double>(box.edges.begin(), box.edges.end())}, {"volume", box.edges.prod()}};
+}
+
+Json container_json(const Shape& shape) {
+  const Bounds<3> bounds = bounds_of(shape);
+  return {{"kind", kind_of(shape)},
+          {"volume", volume_of(shape)},
           {"bounds", {{"lower", json_of(bounds.lower)}, {"upper", json_of(bounds.upper)}}}};
 }
 
@@ -46,6 +50,7 @@ std::string json_of(const Report& report) {
   const Certificate& certificate = report.certificate;
   const Contacts& contacts = report.contacts;
 
+  const PeriodicBox* box = std::get_if<PeriodicBox>(&packing.domain);
   Json effects = Json::array();
   for (const Effect& e : packing.effects) {
     effects.push_back({{"name", e.name}, {"calls", e.calls}, {"seconds", e.seconds}});
@@ -56,6 +61,7 @@ std::string json_of(const Report& report) {
                        {"spheres", m.spheres},
                        {"packing_fraction", m.packing_fraction},
                        {"potential", m.potential},
+                       {"max_overlap", m.max_overlap},
                        {"seconds", m.seconds}});
   }
   const Json json = {{"version", packing.version},
@@ -64,7 +70,7 @@ std::string json_of(const Report& report) {
                      {"outcome", name_of(packing.outcome)},
                      {"reason", packing.reason},
                      {"n", packing.spheres.size()},
-                     {"dimension", 3},
+                     {"dimension", packing.spheres.dimension()},
                      {"unit", packing.scene.unit},
                      {"phi", packing.packing_fraction()},
                      {"coordination", contacts.coordination},
@@ -76,7 +82,8 @@ std::string json_of(const Report& report) {
                      {"min_wall_gap", certificate.min_wall_gap},
                      {"certified", certificate.certified},
                      {"certificate", certificate_json(certificate)},
-                     {"container", container_json(packing)},
+                     box ? Json::object_t::value_type("box", box_json(*box))
+                         : Json::object_t::value_type("container", container_json(std::get<Shape>(packing.domain))),
                      {"hash", report.hash},
                      {"effects", effects},
                      {"history", history},

@@ -34,7 +34,7 @@ Certificate certify_written(const std::filesystem::path& csv, const Packing& pac
   if (written.spheres != packing.spheres || written.unit != packing.scene.unit) {
     throw Error(ErrorCode::cannot_write, "reads back differently from what was written", {csv.string()});
   }
-  return certify(written.spheres, packing.container, packing.scene.overlap);
+  return certify(written.spheres, packing.domain, packing.scene.overlap);
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   const Contacts contacts = measure_contacts(packing);
   const Report report{packing, certificate, contacts, hash_of(packing.spheres)};
   const std::string scene = scene_as_run(packing, folder);
-  const std::string picture = svg_of(packing.spheres, packing.container, packing.scene.unit);
+  const std::string picture = svg_of(packing.spheres, packing.domain, packing.scene.unit);
 
   write_text(staged.add("scene.toml"), scene);
   write_text(staged.add("report.json"), json_of(report));

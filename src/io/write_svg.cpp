@@ -62,7 +62,7 @@ struct Ball {
 /// The spheres as balls on the canvas, farthest first. Disjoint balls painted in the order of their centres'
 /// depths hide each other rightly, whatever their sizes: the plane of equal power of two balls separates
 /// them, and the eye's side of it is the side of the nearer centre.
-std::vector<Ball> balls_back_to_front(const Spheres<3>& spheres, const View& view) {
+std::vector<Ball> balls_back_to_front(const Spheres<dynamic>& spheres, const View& view) {
   std::vector<Ball> balls;
   balls.reserve(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
@@ -158,7 +158,7 @@ void append_strokes(std::string& out, const std::vector<Stroke>& strokes, bool h
   out += "\"/>\n";
 }
 
-void append_spheres(std::string& out, const Spheres<3>& spheres, const View& view, const SizeScale& sizes) {
+void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const View& view, const SizeScale& sizes) {
   const std::vector<Ball> balls = balls_back_to_front(spheres, view);
   DepthBuffer depths(view.width(), view.height(), raster_pitch);
   for (std::uint32_t k = 0; k < balls.size(); ++k) depths.draw_ball(balls[k].center, balls[k].radius, k);
@@ -230,8 +230,8 @@ void append_legend(std::string& out, const View& view, const SizeScale& sizes, s
 
 }  // namespace
 
-std::string svg_of(const Spheres<3>& spheres, const Shape& container, std::string_view unit) {
-  const Mesh mesh = drawable_mesh(container);
+std::string svg_of(const Spheres<dynamic>& spheres, const Domain& domain, std::string_view unit) {
+  const Mesh mesh = drawable_mesh(domain);
   const View view(mesh.vertices, canvas_size, margin, narrowest_canvas);
   const SizeScale sizes(spheres.r);
   const std::vector<Stroke> strokes = outline_of(mesh, view);

@@ -20,7 +20,7 @@ void append_raw(OutputFile& file, T value) {
 
 }  // namespace
 
-void write_vtp(OutputFile& file, const Spheres<3>& spheres) {
+void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres) {
   const std::uint64_t n = spheres.size();
   // Each array of the appended data is led by its length in bytes; offsets count from the underscore.
   const std::uint64_t column = sizeof(std::uint64_t) + 8 * n;
@@ -53,7 +53,7 @@ _)",
   for (std::uint64_t i = 0; i < n; ++i) append_raw(file, i);
   append_raw(file, 24 * n);
   for (std::size_t i = 0; i < n; ++i) {
-    for (int k = 0; k < 3; ++k) append_raw(file, spheres.x[k][i]);
+    for (std::size_t k = 0; k < 3; ++k) append_raw(file, k < spheres.x.size() ? spheres.x[k][i] : 0.0);
   }
   append_raw(file, 8 * n);
   for (std::uint64_t i = 0; i < n; ++i) append_raw(file, i);

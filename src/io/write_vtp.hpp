@@ -7,6 +7,6 @@ namespace bernal {
 /// ParaView's PolyData: one vertex cell a sphere, point data `radius` and `id` (the sphere's line in
 /// spheres.csv, counted from 0), all as 64-bit appended raw data. In ParaView: Glyph, type Sphere, radius 1,
 /// scale array `radius`, scale factor 1; or representation Point Gaussian.
-void write_vtp(OutputFile& file, const Spheres<3>& spheres);
+void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres);
 
 }  // namespace bernal

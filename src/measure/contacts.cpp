@@ -23,8 +23,8 @@ struct Local {
 };
 
 Local localised(const Packing& packing) {
-  const Frame frame = frame_of(packing.container);
-  const Shape shape = to_local(packing.container, frame);
+  const Frame frame = frame_of(std::get<Shape>(packing.domain));
+  const Shape shape = to_local(std::get<Shape>(packing.domain), frame);
   Local local;
   local.spheres.reserve(packing.spheres.size());
   for (std::size_t i = 0; i < packing.spheres.size(); ++i) {

@@ -19,10 +19,10 @@ std::uint64_t absorb(std::uint64_t hash, double value) {
 
 }  // namespace
 
-std::string hash_of(const Spheres<3>& spheres) {
+std::string hash_of(const Spheres<dynamic>& spheres) {
   std::uint64_t hash = fnv_offset_basis;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    for (int k = 0; k < 3; ++k) hash = absorb(hash, spheres.x[k][i]);
+    for (const auto& column : spheres.x) hash = absorb(hash, column[i]);
     hash = absorb(hash, spheres.r[i]);
   }
   return fmt::format("{:016x}", hash);

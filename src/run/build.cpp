@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/predict/predict.hpp"
 #include "run/catalogue.hpp"
 #include "run/fitting.hpp"
@@ -18,6 +19,31 @@ constexpr double wall_deficit = 0.33;
 /// Bytes a sphere takes in the packer: its place, its lists of about 30 neighbours, its cell, and the copies
 /// that writing and certifying make.
 constexpr double bytes_a_sphere = 600;
+/// The same for relaxation in a periodic box.
+constexpr double bytes_a_relaxed_sphere = 400;
+
+/// What relaxation reaches of spheres of these sizes: the prediction in three dimensions; in others the
+/// packing fractions of equal spheres, which are not much lower than those of others.
+double close_packing_fraction(const SizeDistribution& radii, int dimension) {
+  constexpr double equal[] = {0.99, 0.84, 0.64, 0.46, 0.31, 0.20, 0.119, 0.069};
+  return dimension == 3 ? predict_packing_fraction(radii).phi : equal[dimension - 1];
+}
+
+/// Throws where a stage cannot work in the scene's domain.
+void require_possible(const Scene& scene) {
+  for (const Spec& stage : scene.stages) {
+    const StageEntry& entry = find_entry(stage_catalogue(), stage);
+    if (scene.is_periodic() ? entry.run_periodic != nullptr : entry.run != nullptr) continue;
+    std::vector<std::string_view> able;
+    for (const StageEntry& other : stage_catalogue())
+      if (scene.is_periodic() ? other.run_periodic != nullptr : other.run != nullptr) able.push_back(other.name);
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("\"{}\" cannot work in a {}; there, the stages are \"{}\"", stage.name,
+                            scene.is_periodic() ? "periodic box" : "container with walls",
+                            fmt::join(able, "\", \"")),
+                stage.where);
+  }
+}
 
 /// The packing fraction that the scene's stages are likely to reach when they may fill the container.
 /// Compression leaves a share of close packing that falls with x = A d / V, for a wall of area A, a volume V
@@ -42,7 +68,7 @@ double expected_packing_fraction(const Scene& scene, const Shape& container, con
 
 }  // namespace
 
-Shape shape_of(const Scene& scene, std::string* notes) {
+Domain domain_of(const Scene& scene, std::string* notes) {
   std::string unused;
   return find_entry(container_catalogue(), scene.container).make(scene, notes ? *notes : unused);
 }
@@ -51,28 +77,60 @@ std::unique_ptr<SizeDistribution> radii_of(const Scene& scene) {
   return find_entry(sizes_catalogue(), scene.sizes).make(scene.sizes, scene.sizes_are_diameters ? 0.5 : 1.0);
 }
 
-Plan build(const Scene& scene) {
-  Plan plan;
-  plan.scene = scene;
-  plan.container = shape_of(scene, &plan.container_notes);
-  plan.radii = radii_of(scene);
+namespace {
 
-  require_fitting(scene, plan.container, plan.radii->min());
-  if (std::isfinite(plan.radii->max())) require_fitting(scene, plan.container, plan.radii->max());
+void expect_in_container(Plan& plan) {
+  const Scene& scene = plan.scene;
+  const Shape& container = std::get<Shape>(plan.domain);
+  require_fitting(scene, container, plan.radii->min());
+  if (std::isfinite(plan.radii->max())) require_fitting(scene, container, plan.radii->max());
 
-  const double mean_volume = 4.0 / 3.0 * std::numbers::pi * plan.radii->moment(3);
-  const double volume = volume_of(plan.container);
-  double attainable = expected_packing_fraction(scene, plan.container, *plan.radii);
+  const double mean_volume = ball_volume(3, 1) * plan.radii->moment(3);
+  const double volume = volume_of(container);
+  double attainable = expected_packing_fraction(scene, container, *plan.radii);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   plan.expected_count = attainable * volume / mean_volume;
   if (scene.target.count)
     plan.expected_count = std::min(plan.expected_count, static_cast<double>(*scene.target.count));
   plan.expected_packing_fraction = plan.expected_count * mean_volume / volume;
   plan.expected_memory_bytes = plan.expected_count * bytes_a_sphere;
+  plan.items.push_back({"walls", fmt::format("{}, {}", kind_of(container), scene.walls),
+                        std::holds_alternative<Mesh>(container) ? "O(log faces) a query" : "O(1) a query"});
+}
 
-  plan.items.push_back(
-      {"walls", fmt::format("{}, {}", kind_of(plan.container), scene.walls),
-       std::holds_alternative<Mesh>(plan.container) ? "O(log faces) a query" : "O(1) a query"});
+void expect_in_periodic_box(Plan& plan) {
+  const Scene& scene = plan.scene;
+  const int dimension = scene.dimension();
+  plan.box_follows = scene.container.flag("scalable");
+  const double mean_volume = ball_volume(dimension, 1) * plan.radii->moment(dimension);
+  double attainable = close_packing_fraction(*plan.radii, dimension);
+  if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
+  if (plan.box_follows) {
+    plan.expected_count = static_cast<double>(*scene.target.count);
+    Vector<dynamic>& edges = std::get<PeriodicBox>(plan.domain).edges;
+    edges *= std::pow(plan.expected_count * mean_volume / attainable, 1.0 / dimension);
+  } else {
+    plan.expected_count = attainable * volume_of(plan.domain) / mean_volume;
+    if (scene.target.count) plan.expected_count = static_cast<double>(*scene.target.count);
+  }
+  plan.expected_packing_fraction = plan.expected_count * mean_volume / volume_of(plan.domain);
+  plan.expected_memory_bytes = plan.expected_count * bytes_a_relaxed_sphere;
+}
+
+}  // namespace
+
+Plan build(const Scene& scene) {
+  Plan plan;
+  plan.scene = scene;
+  require_possible(scene);
+  plan.domain = domain_of(scene, &plan.container_notes);
+  plan.radii = radii_of(scene);
+  if (scene.is_periodic()) {
+    expect_in_periodic_box(plan);
+  } else {
+    expect_in_container(plan);
+  }
+
   for (const Spec& stage : scene.stages) {
     for (const PlanItem& item : find_entry(stage_catalogue(), stage).effects) {
       const auto same = [&](const PlanItem& other) { return other.name == item.name; };

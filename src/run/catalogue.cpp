@@ -1,5 +1,6 @@
 #include "run/catalogue.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "stages/compress.hpp"
 #include "stages/insert.hpp"
 #include "stages/refill.hpp"
+#include "stages/relax.hpp"
 #include "stages/shake.hpp"
 
 namespace bernal {
@@ -22,20 +24,21 @@ Vector<3> vector_of(const Spec& spec, std::string_view key) {
 
 // ---- containers
 
-Shape make_box(const Scene& scene, std::string&) {
-  return BoxShape{vector_of(scene.container, "corner"), vector_of(scene.container, "size")};
+Domain make_box(const Scene& scene, std::string&) {
+  return Shape(BoxShape{vector_of(scene.container, "corner"), vector_of(scene.container, "size")});
 }
 
-Shape make_cylinder(const Scene& scene, std::string&) {
+Domain make_cylinder(const Scene& scene, std::string&) {
   const Spec& c = scene.container;
-  return CylinderShape{vector_of(c, "base"), vector_of(c, "axis"), c.number("radius"), c.number("height")};
+  return Shape(
+      CylinderShape{vector_of(c, "base"), vector_of(c, "axis"), c.number("radius"), c.number("height")});
 }
 
-Shape make_sphere(const Scene& scene, std::string&) {
-  return SphereShape{vector_of(scene.container, "center"), scene.container.number("radius")};
+Domain make_sphere(const Scene& scene, std::string&) {
+  return Shape(SphereShape{vector_of(scene.container, "center"), scene.container.number("radius")});
 }
 
-Shape make_mesh(const Scene& scene, std::string& notes) {
+Domain make_mesh(const Scene& scene, std::string& notes) {
   const Spec& c = scene.container;
   const std::string& unit = c.has("unit") ? c.text("unit") : scene.unit;
   ImportedMesh imported = read_container_mesh(c.text("file"), conversion_factor(unit, scene.unit));
@@ -43,11 +46,23 @@ Shape make_mesh(const Scene& scene, std::string& notes) {
       fmt::format("{} faces; {}; coordinates are {}", imported.report.faces, imported.report.reader, unit);
   if (!imported.report.repairs.empty())
     notes += fmt::format("; {}", fmt::join(imported.report.repairs, ", "));
-  return std::move(imported.mesh);
+  return Shape(std::move(imported.mesh));
 }
 
-constexpr ContainerEntry containers[] = {
-    {"box", make_box}, {"cylinder", make_cylinder}, {"sphere", make_sphere}, {"mesh", make_mesh}};
+/// Of volume 1 where the packing is to decide.
+Domain make_periodic(const Scene& scene, std::string&) {
+  const Spec& c = scene.container;
+  PeriodicBox box{Vector<dynamic>::Constant(scene.dimension(), c.has("edge") ? c.number("edge") : 1.0)};
+  if (c.has("size")) box.edges = Eigen::Map<const Eigen::VectorXd>(c.numbers("size").data(), scene.dimension());
+  if (c.flag("scalable")) box.edges /= std::pow(box.edges.prod(), 1.0 / scene.dimension());
+  return box;
+}
+
+constexpr ContainerEntry containers[] = {{"box", make_box},
+                                         {"cylinder", make_cylinder},
+                                         {"sphere", make_sphere},
+                                         {"mesh", make_mesh},
+                                         {"periodic", make_periodic}};
 
 // ---- size distributions
 
@@ -130,10 +145,23 @@ const PlanItem refilling[] = {
     {"compression", "after each refilling", "about 0.5 µs a sphere and sweep"},
     {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}};
 
-const StageEntry stages[] = {{"insert", run_insert, insertion},
-                             {"compress", run_compress, compression},
-                             {"shake", run_shake, shaking},
-                             {"refill", run_refill, refilling}};
+StageEnd run_relax(const Spec& s, PeriodicWork& work) {
+  return relax(work, {.alpha = s.number("alpha"),
+                      .beta = s.number("beta"),
+                      .phi0 = s.number("phi0"),
+                      .stop = s.number("stop"),
+                      .polish = s.number("polish"),
+                      .reference = s.text("method") == "reference"});
+}
+
+const PlanItem relaxing[] = {
+    {"relaxation", "overlapping spheres push each other apart while the box grows", "O(N log² N)"}};
+
+const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},
+                             {"compress", run_compress, nullptr, compression},
+                             {"shake", run_shake, nullptr, shaking},
+                             {"refill", run_refill, nullptr, refilling},
+                             {"relax", nullptr, run_relax, relaxing}};
 
 }  // namespace
 

@@ -5,10 +5,11 @@
 #include <string>
 #include <string_view>
 
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/scene.hpp"
 #include "bernal/sizes/size_distribution.hpp"
+#include "stages/periodic_work.hpp"
 #include "stages/work.hpp"
 
 namespace bernal {
@@ -18,8 +19,8 @@ namespace bernal {
 
 struct ContainerEntry {
   std::string_view name;
-  /// The shape in the scene's unit; an importer says in `notes` what it did to the file.
-  Shape (*make)(const Scene&, std::string& notes);
+  /// The domain in the scene's unit; an importer says in `notes` what it did to the file.
+  Domain (*make)(const Scene&, std::string& notes);
 };
 
 struct SizesEntry {
@@ -30,7 +31,10 @@ struct SizesEntry {
 
 struct StageEntry {
   std::string_view name;
+  /// In a container; null where it cannot.
   StageEnd (*run)(const Spec&, Work&);
+  /// In a periodic box; null where it cannot.
+  StageEnd (*run_periodic)(const Spec&, PeriodicWork&);
   /// Effects that it brings with it, for `Plan::items`.
   std::span<const PlanItem> effects;
 };

@@ -1,6 +1,6 @@
 #include "bernal/run/packing.hpp"
 
-#include <numbers>
+#include "bernal/core/dimension.hpp"
 
 namespace bernal {
 
@@ -20,8 +20,8 @@ std::string_view name_of(Outcome outcome) {
 
 double Packing::packing_fraction() const {
   double sum = 0;
-  for (const double r : spheres.r) sum += r * r * r;
-  return container_volume > 0 ? 4.0 / 3.0 * std::numbers::pi * sum / container_volume : 0;
+  for (const double r : spheres.r) sum += ball_volume(spheres.dimension(), r);
+  return volume > 0 ? sum / volume : 0;
 }
 
 }  // namespace bernal

@@ -3,96 +3,17 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
-#include <chrono>
-#include <limits>
 #include <thread>
 
-#include <fmt/format.h>
-
-#include "bernal/cad/mesh_container.hpp"
-#include "bernal/core/text.hpp"
-#include "bernal/domain/container.hpp"
-#include "run/catalogue.hpp"
-#include "run/fitting.hpp"
+#include "run/run_in_domain.hpp"
 
 namespace bernal {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-WallArithmetic arithmetic_of(const Scene& scene) {
-  if (scene.walls == "double") return WallArithmetic::plain;
-  return scene.walls == "exact" ? WallArithmetic::exact : WallArithmetic::filtered;
-}
-
-std::unique_ptr<Container> make_container(const Shape& local, WallArithmetic arithmetic, double resolution) {
-  if (const auto* mesh = std::get_if<Mesh>(&local)) return make_mesh_container(*mesh, arithmetic, resolution);
-  return make_analytic_container(local, arithmetic, resolution);
-}
-
-/// The frame in which the packer works. Throws where coordinates are so large that neighbouring spheres could
-/// not be told apart.
-Frame working_frame(const Plan& plan) {
-  Frame frame = frame_of(plan.container);
-  const double smallest = plan.radii->min() > 0 ? plan.radii->min() : plan.radii->quantile(1e-9);
-  if (1e6 * frame.resolution * frame.scale > smallest) {
-    throw Error(
-        ErrorCode::bad_scene,
-        fmt::format("the container is so far from the origin that its coordinates are only good to {:.1g} "
-                    "{}: move it closer or use larger spheres",
-                    frame.resolution * frame.scale, plan.scene.unit),
-        plan.scene.container.where);
-  }
-  return frame;
-}
-
-/// How the last stage's end, and what the scene asked for, make the outcome of the run.
-void conclude(Packing& packing, const Supply& supply, StageEnd end) {
-  const Target& target = packing.scene.target;
-  const auto n = grouped(packing.spheres.size());
-  if (end == StageEnd::cancelled) {
-    packing.outcome = Outcome::cancelled;
-    packing.reason = fmt::format("stopped by the user with {} spheres", n);
-  } else if (!target.fill && supply.exhausted()) {
-    packing.outcome = Outcome::converged;
-    packing.reason = fmt::format("all {} spheres are placed", n);
-  } else if (end == StageEnd::hit_limit) {
-    packing.outcome = Outcome::hit_limit;
-    packing.reason = fmt::format("the last stage reached its limit with {} spheres", n);
-  } else if (target.fill) {
-    packing.outcome = Outcome::converged;
-    packing.reason = fmt::format("the stages of the scene place {} spheres and no more", n);
-  } else {
-    packing.outcome = Outcome::full;
-    packing.reason =
-        target.count
-            ? fmt::format("{} of {} spheres are placed; the stages of the scene find no place for more", n,
-                          grouped(static_cast<std::size_t>(*target.count)))
-            : fmt::format(
-                  "packing fraction {:.4f} of {} is reached with {} spheres; the stages of "
-                  "the scene find no place for more",
-                  packing.packing_fraction(), *target.packing_fraction, n);
-  }
-  if (supply.cut_off() > 0) {
-    packing.reason += fmt::format(
-        "; {} draws from the tail of the sizes were discarded because less than a hundredth of "
-        "the container has room for such spheres",
-        grouped(supply.cut_off()));
-  }
-  if (const std::size_t passed = supply.passed_over(); passed > 0) {
-    packing.reason += fmt::format("; {} larger ones of the drawn sequence were passed over", grouped(passed));
-  }
-}
-
-}  // namespace
 
 Packing run(const Plan& plan, const RunOptions& options) {
-  const Clock::time_point start = Clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-
+  const Stopwatch watch;
   Packing packing;
-  packing.container = plan.container;
-  packing.container_volume = volume_of(plan.container);
+  packing.domain = plan.domain;
+  packing.volume = volume_of(plan.domain);
   packing.scene = plan.scene;
   packing.seed = options.seed.value_or(plan.scene.seed);
   packing.scene.seed = packing.seed;
@@ -101,47 +22,12 @@ Packing run(const Plan& plan, const RunOptions& options) {
   packing.version = BERNAL_VERSION;
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(std::max(1, packing.threads)));
-
-  const Frame frame = working_frame(plan);
-  const std::unique_ptr<Container> container =
-      make_container(to_local(plan.container, frame), arithmetic_of(plan.scene), frame.resolution);
-  const double unbounded = std::numeric_limits<double>::infinity();
-  const double cut =
-      plan.radii->max() < unbounded ? unbounded : radius_with_hardly_any_room(*container, packing.seed);
-  Supply supply(*plan.radii, frame.scale, container->volume(), cut, plan.scene.target, packing.seed);
-  require_fitting(plan.scene, plan.container, supply.largest() * frame.scale);
-
-  EffectLog effects;
-  Bed bed(*container, supply.smallest(), supply.largest(), supply.wanted(), effects);
-  const Vector<3> up = Vector<3>::UnitZ();
-  const auto milestone = [&](std::string_view stage) {
-    const double fraction = bed.packing_fraction();
-    packing.history.push_back({std::string(stage), bed.size(), fraction,
-                               frame.scale * bed.potential(-up) + frame.origin[2], seconds()});
-    const double share = plan.expected_packing_fraction > 0 ? fraction / plan.expected_packing_fraction : 0;
-    options.monitor.report(
-        {stage, std::min(share, 0.99),
-         fmt::format("{} spheres, packing fraction {:.4f}", grouped(bed.size()), fraction)});
-  };
-  Work work{bed, supply, packing.seed, options.monitor, effects, milestone};
-
-  StageEnd end = StageEnd::converged;
-  for (const Spec& stage : plan.scene.stages) {
-    end = find_entry(stage_catalogue(), stage).run(stage, work);
-    milestone(stage.name);
-    if (end == StageEnd::cancelled) break;
+  if (plan.scene.is_periodic()) {
+    run_in_periodic_box(plan, options.monitor, watch, packing);
+  } else {
+    run_in_container(plan, options.monitor, watch, packing);
   }
-  if (supply.passed_over() > 0 && supply.trimming_is_cheap()) bed.remove_tags_from(supply.first_missing());
-
-  packing.spheres = bed.spheres();
-  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
-    packing.spheres.set_center(i, frame.to_scene(packing.spheres.center(i)));
-    packing.spheres.r[i] *= frame.scale;
-  }
-  packing.effects = effects.all();
-  packing.effects.push_back(bed.wall_queries());
-  conclude(packing, supply, end);
-  packing.seconds = seconds();
+  packing.seconds = watch.seconds();
   return packing;
 }
 

@@ -279,6 +279,8 @@ class Reader {
     const toml::table& table = table_in(root, "container");
     const Entry& entry = choose(table, "kind", all_.containers, "[container]");
     scene.container = read_keys(table, entry, "kind", "[container]");
+    if (scene.is_periodic() && !scene.container.has("size") && !scene.container.has("edge"))
+      scene.container.parameters["scalable"].value = true;
     if (entry.name != "mesh") return;
     if (!root.contains("unit"))
       fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
@@ -301,9 +303,26 @@ class Reader {
     for (const std::string_view key : {"count", "packing_fraction", "fill"})
       if (spec.has(key)) scene.target.where = spec.location(key);
 
+    check_target(scene);
+
     scene.sizes_are_diameters = table.contains("diameter");
     const std::string_view key = scene.sizes_are_diameters ? "diameter" : "radius";
     scene.sizes = read_distribution(*table.get(key), key);
+  }
+
+  /// What the target and a periodic box demand of each other.
+  void check_target(const Scene& scene) const {
+    const Target& target = scene.target;
+    const auto fail = [&](const char* message) {
+      throw Error(ErrorCode::bad_scene, message, target.where);
+    };
+    const bool scalable = scene.is_periodic() && scene.container.flag("scalable");
+    if (target.count && target.packing_fraction && !scalable)
+      fail(
+          "\"count\" and \"packing_fraction\" in [spheres] exclude each other; give one of them (both go "
+          "together only in a periodic box without size)");
+    if (scalable && !target.count)
+      fail("a periodic box without size needs a \"count\" in [spheres]; or give it \"size\" or \"edge\"");
   }
 
   /// A plain length is a constant distribution.
@@ -335,7 +354,8 @@ class Reader {
     const toml::node* node = root.get("stage");
     scene.stages_are_default = !node;
     if (!node) {
-      for (const std::string_view name : all_.protocol)
+      for (const std::string_view name :
+           schema::Schema::find(all_.containers, scene.container.name)->protocol)
         scene.stages.push_back(read_keys({}, *schema::Schema::find(all_.stages, name), "do", "[[stage]]"));
       return;
     }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "bernal/core/vector.hpp"
+
 namespace bernal::schema {
 namespace {
 
@@ -77,6 +79,20 @@ std::vector<Key> with_compression(std::vector<Key> keys) {
   return keys;
 }
 
+const std::vector<std::string_view> compression_protocol = {"insert", "compress", "shake", "refill"};
+
+void periodic_rule(const Spec& spec, std::string_view where) {
+  if (spec.has("size") && spec.has("edge"))
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("\"size\" and \"edge\" in {} exclude each other; give one of them", where),
+                spec.location("edge"));
+  if (spec.has("size") && static_cast<std::int64_t>(spec.numbers("size").size()) != spec.integer("dimension"))
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("\"size\" in {} must have one length for each of the {} dimensions, not {}", where,
+                            spec.integer("dimension"), spec.numbers("size").size()),
+                spec.location("size"));
+}
+
 Schema make_schema() {
   return {
       .scene = {.name = "scene",
@@ -96,10 +112,12 @@ Schema make_schema() {
                   .keys = {{.name = "count",
                             .type = Type::integer,
                             .help = "stop at this many spheres",
+                            .optional = true,
                             .range = {1, 0x1p31 - 1}},
                            {.name = "packing_fraction",
                             .type = Type::number,
                             .help = "stop when the spheres fill this fraction of the container",
+                            .optional = true,
                             .range = {0, 1, true, true}},
                            {.name = "fill",
                             .type = Type::flag,
@@ -107,7 +125,7 @@ Schema make_schema() {
                             .otherwise = true},
                            {.name = "radius", .type = Type::distribution, .help = "lengths are radii"},
                            {.name = "diameter", .type = Type::distribution, .help = "lengths are diameters"}},
-                  .choices = {{{"count"}, {"packing_fraction"}, {"fill"}}, {{"radius"}, {"diameter"}}}},
+                  .choices = {{{"count", "packing_fraction"}, {"fill"}}, {{"radius"}, {"diameter"}}}},
 
       .accuracy =
           {.name = "accuracy",
@@ -130,7 +148,8 @@ Schema make_schema() {
                      {.name = "corner",
                       .type = Type::position,
                       .help = "its lowest corner",
-                      .otherwise = std::vector<double>{0, 0, 0}}}},
+                      .otherwise = std::vector<double>{0, 0, 0}}},
+            .protocol = compression_protocol},
            {.name = "cylinder",
             .help = "a circular cylinder along any axis",
             .keys = {{.name = "radius", .type = Type::length, .help = "its radius"},
@@ -142,21 +161,40 @@ Schema make_schema() {
                      {.name = "base",
                       .type = Type::position,
                       .help = "the middle of its base",
-                      .otherwise = std::vector<double>{0, 0, 0}}}},
+                      .otherwise = std::vector<double>{0, 0, 0}}},
+            .protocol = compression_protocol},
            {.name = "mesh",
             .help = "a closed surface from a CAD file",
             .keys = {{.name = "file", .type = Type::file, .help = "STL, OBJ, PLY, OFF, 3MF, glTF, …"},
                      {.name = "unit",
                       .type = Type::unit,
                       .help = "unit of the file's coordinates; the scene's if absent",
-                      .optional = true}}},
+                      .optional = true}},
+            .protocol = compression_protocol},
            {.name = "sphere",
             .help = "a sphere",
             .keys = {{.name = "radius", .type = Type::length, .help = "its radius"},
                      {.name = "center",
                       .type = Type::position,
                       .help = "its centre",
-                      .otherwise = std::vector<double>{0, 0, 0}}}}},
+                      .otherwise = std::vector<double>{0, 0, 0}}},
+            .protocol = compression_protocol},
+           {.name = "periodic",
+            .help = "a box that repeats itself in all directions",
+            .keys = {{.name = "dimension",
+                      .type = Type::integer,
+                      .help = "of space",
+                      .otherwise = 3,
+                      .range = {1, max_dimension}},
+                     {.name = "size", .type = Type::lengths, .help = "its edges", .optional = true},
+                     {.name = "edge", .type = Type::length, .help = "all its edges", .optional = true},
+                     {.name = "scalable",
+                      .type = Type::flag,
+                      .help = "the packing decides how large the box is; size only gives its proportions",
+                      .otherwise = false}},
+            .rule = periodic_rule,
+            .protocol = {"relax"}}},
+
 
       .distributions =
           {{.name = "constant",
@@ -247,9 +285,39 @@ Schema make_schema() {
                         .type = Type::number,
                         .help = "longest way in one sweep of shaking, in mean radii",
                         .otherwise = 2.0,
-                        .range = {0, 100, true}}})}},
-
-      .protocol = {"insert", "compress", "shake", "refill"},
+                        .range = {0, 100, true}}})},
+                 {.name = "relax",
+                  .help = "start with overlaps in a small box; push spheres apart and let the box grow",
+                  .keys = {{.name = "alpha",
+                            .type = Type::number,
+                            .help = "sweeps between two growths of the box, in units of (log10 N)^2",
+                            .otherwise = 17.0,
+                            .range = {0, 1e6, true}},
+                           {.name = "beta",
+                            .type = Type::number,
+                            .help = "the box grows by the largest overlap ratio divided by this",
+                            .otherwise = 30.0,
+                            .range = {1, 1e6}},
+                           {.name = "phi0",
+                            .type = Type::number,
+                            .help = "packing fraction of the overlapping spheres at the start",
+                            .otherwise = 0.86,
+                            .range = {0, 10, true}},
+                           {.name = "stop",
+                            .type = Type::number,
+                            .help = "largest overlap ratio that counts as none; the box then grows by it",
+                            .otherwise = 2e-4,
+                            .range = {1e-12, 0.1}},
+                           {.name = "polish",
+                            .type = Type::number,
+                            .help = "close the gaps and overlaps of all contacts to this ratio; 0: do not",
+                            .otherwise = 0.0,
+                            .range = {0, 1e-4}},
+                           {.name = "method",
+                            .type = Type::word,
+                            .help = "fast, or reference: the published loop as it stands, a hundred times slower",
+                            .otherwise = "fast",
+                            .words = {"fast", "reference"}}}}},
   };
 }
 

@@ -59,6 +59,8 @@ struct Entry {
   std::vector<Choice> choices = {};
   /// What the keys demand of each other; throws Error{bad_scene}. `where` is what errors call the table.
   void (*rule)(const Spec&, std::string_view where) = nullptr;
+  /// Of a container: the stages of a scene that names none.
+  std::vector<std::string_view> protocol = {};
 
   const Key* find(std::string_view key) const;
 };
@@ -71,7 +73,6 @@ struct Schema {
   std::vector<Entry> containers;
   std::vector<Entry> distributions;
   std::vector<Entry> stages;
-  std::vector<std::string_view> protocol;  ///< the stages of a scene that names none
 
   static const Entry* find(const std::vector<Entry>& entries, std::string_view name);
 };

@@ -37,13 +37,14 @@ std::string container_as_toml(Spec container, const std::filesystem::path& folde
 }
 
 std::string spheres_as_toml(const Scene& scene) {
-  std::string target = "fill = true";
-  if (scene.target.count) target = fmt::format("count = {}", *scene.target.count);
+  std::string target;
+  if (scene.target.count) target += fmt::format("count = {}\n", *scene.target.count);
   if (scene.target.packing_fraction)
-    target = fmt::format("packing_fraction = {}", *scene.target.packing_fraction);
+    target += fmt::format("packing_fraction = {}\n", *scene.target.packing_fraction);
+  if (scene.target.fill) target += "fill = true\n";
   std::string sizes = assignments(scene.sizes, entry_of(schema::schema().distributions, scene.sizes), ", ");
   if (sizes.ends_with(", ")) sizes.resize(sizes.size() - 2);
-  return fmt::format("[spheres]\n{}\n{} = {{ distribution = {}, {} }}\n", target,
+  return fmt::format("[spheres]\n{}{} = {{ distribution = {}, {} }}\n", target,
                      scene.sizes_are_diameters ? "diameter" : "radius", toml_string(scene.sizes.name), sizes);
 }
 

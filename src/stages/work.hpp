@@ -5,6 +5,7 @@
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
 #include "stages/bed.hpp"
+#include "stages/stage_end.hpp"
 #include "stages/supply.hpp"
 
 namespace bernal {
@@ -22,14 +23,6 @@ struct Work {
 
   /// A fresh stream of random numbers for one round of a stage.
   Random random(Stream purpose) { return {seed, stream(purpose, streams_used++)}; }
-};
-
-/// Why a stage came to its end.
-enum class StageEnd {
-  converged,  ///< it did what it is for
-  full,       ///< no place was left for the next sphere
-  hit_limit,  ///< its limit on iterations or rounds came first
-  cancelled,
 };
 
 }  // namespace bernal

@@ -21,7 +21,10 @@ std::string counted(std::uint64_t n, std::string_view one, std::string_view many
 }
 std::string counted_spheres(std::uint64_t n) { return counted(n, "sphere", "spheres"); }
 
-void check_arguments(const Spheres<3>& spheres, double allowed_overlap) {
+void check_arguments(const Spheres<dynamic>& spheres, const Domain& domain, double allowed_overlap) {
+  if (spheres.dimension() != dimension_of(domain))
+    throw Error(ErrorCode::bad_argument, fmt::format("the spheres have {} coordinates, the domain has {}",
+                                                     spheres.dimension(), dimension_of(domain)));
   for (const auto& column : spheres.x)
     if (column.size() != spheres.size())
       throw Error(ErrorCode::bad_argument, fmt::format("a column of coordinates has {} entries for {} radii",
@@ -32,14 +35,14 @@ void check_arguments(const Spheres<3>& spheres, double allowed_overlap) {
 }
 
 /// Why there is nothing to prove: the spheres that are none.
-std::optional<std::string> complaint_about(const Spheres<3>& spheres) {
+std::optional<std::string> complaint_about(const Spheres<dynamic>& spheres) {
   std::uint64_t bad = 0, first = 0;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const bool good = spheres.center(i).allFinite() && std::isfinite(spheres.r[i]) && spheres.r[i] > 0;
     if (!good && bad++ == 0) first = i;
   }
   if (bad == 0) return std::nullopt;
-  const Vector<3> c = spheres.center(first);
+  const Vector<dynamic> c = spheres.center(first);
   return fmt::format(
       "Not certified: {} without a finite centre and a positive finite radius (first: sphere {} at {}, {}, "
       "{} with "
@@ -47,10 +50,15 @@ std::optional<std::string> complaint_about(const Spheres<3>& spheres) {
       counted_spheres(bad), first, c[0], c[1], c[2], spheres.r[first]);
 }
 
-std::vector<verify::Ball> balls_of(const Spheres<3>& spheres) {
+std::vector<verify::Ball> balls_of(const Spheres<dynamic>& spheres) {
   std::vector<verify::Ball> balls(spheres.size());
   for (std::size_t i = 0; i < balls.size(); ++i) balls[i] = {spheres.center(i), spheres.r[i], i};
   return balls;
+}
+
+bool is_mesh(const Domain& domain) {
+  const Shape* shape = std::get_if<Shape>(&domain);
+  return shape && std::holds_alternative<Mesh>(*shape);
 }
 
 std::string statement_of(const Certificate& c, double allowed_overlap, bool mesh) {
@@ -82,10 +90,10 @@ std::string statement_of(const Certificate& c, double allowed_overlap, bool mesh
 
 }  // namespace
 
-Certificate certify(const Spheres<3>& spheres, const Shape& container, double allowed_overlap,
+Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, double allowed_overlap,
                     Arithmetic arithmetic) {
   const auto start = std::chrono::steady_clock::now();
-  check_arguments(spheres, allowed_overlap);
+  check_arguments(spheres, domain, allowed_overlap);
 
   Certificate result;
   result.spheres = spheres.size();
@@ -94,7 +102,7 @@ Certificate certify(const Spheres<3>& spheres, const Shape& container, double al
   } else {
     const verify::BallTree balls(balls_of(spheres));
     verify::Tally tally = verify::judge_pairs(balls, allowed_overlap, arithmetic);
-    tally += verify::judge_walls(balls, container, arithmetic);
+    tally += verify::judge_walls(balls, std::get<Shape>(domain), arithmetic);
 
     result.pairs_tested = tally.pairs;
     result.walls_tested = tally.walls;
@@ -113,7 +121,7 @@ Certificate certify(const Spheres<3>& spheres, const Shape& container, double al
       result.min_wall_gap = tally.min_wall_gap;
     }
     result.certified = tally.overlapping == 0 && tally.protruding == 0;
-    result.statement = statement_of(result, allowed_overlap, std::holds_alternative<Mesh>(container));
+    result.statement = statement_of(result, allowed_overlap, is_mesh(domain));
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -21,7 +21,7 @@ Plan han() { return build(read_scene(BERNAL_DATA "/scenes/cylinder_han.toml")); 
 /// The cylinder as a prism of 64 sides.
 Plan han_as_mesh() {
   Plan plan = han();
-  plan.container = test::prism_mesh(64, 1, 2);
+  plan.domain = test::prism_mesh(64, 1, 2);
   return plan;
 }
 
@@ -66,8 +66,8 @@ class SettledBed {
  public:
   explicit SettledBed(const Plan& plan) {
     const Packing packing = run(plan);
-    const Frame frame = frame_of(plan.container);
-    const Shape local = to_local(plan.container, frame);
+    const Frame frame = frame_of(plan.domain);
+    const Shape local = to_local(plan.domain, frame);
     const auto* mesh = std::get_if<Mesh>(&local);
     container_ = mesh ? make_mesh_container(*mesh, WallArithmetic::filtered, frame.resolution)
                       : make_analytic_container(local, WallArithmetic::filtered, frame.resolution);

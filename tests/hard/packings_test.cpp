@@ -16,7 +16,7 @@ Packing certified(const Plan& plan) {
   RunOptions options;
   options.threads = 1;
   Packing packing = run(plan, options);
-  const Certificate certificate = certify(packing.spheres, packing.container);
+  const Certificate certificate = certify(packing.spheres, packing.domain);
   EXPECT_TRUE(certificate.certified) << certificate.statement;
   EXPECT_TRUE(packing.outcome == Outcome::converged || packing.outcome == Outcome::full) << packing.reason;
   return packing;

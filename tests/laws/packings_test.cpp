@@ -75,8 +75,8 @@ Packing run_with(const Plan& plan, int threads = 1) {
 }
 
 void expect_certified(const Packing& packing) {
-  const Certificate filtered = certify(packing.spheres, packing.container);
-  const Certificate exact = certify(packing.spheres, packing.container, 0, Arithmetic::exact);
+  const Certificate filtered = certify(packing.spheres, packing.domain);
+  const Certificate exact = certify(packing.spheres, packing.domain, 0, Arithmetic::exact);
   EXPECT_TRUE(filtered.certified) << filtered.statement;
   EXPECT_TRUE(exact.certified) << exact.statement;
   EXPECT_EQ(filtered.pairs_tested, exact.pairs_tested);
@@ -132,7 +132,7 @@ TEST_P(EveryPacking, ScalesBitForBitByPowersOfTwo) {
 }
 
 TEST_P(EveryPacking, StaysCertifiedAtAnyScaleAndFarAway) {
-  const double size = bounds_of(GetParam().plan().container).diagonal();
+  const double size = extent_of(GetParam().plan().domain).norm();
   const Vector<3> far = 1e4 * size * Vector<3>(0.6, -1, 0.3);
   Plan plans[] = {testing::scaled(GetParam().plan(), 1e-6), testing::scaled(GetParam().plan(), 1e6),
                   testing::shifted(GetParam().plan(), far)};

@@ -36,8 +36,8 @@ inline Spheres<3> scattered(std::size_t n, double r_min, double r_max, const Bou
 inline Packing packing_of(Spheres<3> spheres, const BoxShape& box) {
   Packing packing;
   packing.spheres = std::move(spheres);
-  packing.container = box;
-  packing.container_volume = volume_of(packing.container);
+  packing.domain = box;
+  packing.volume = volume_of(packing.domain);
   packing.scene = parse_scene(
       "unit = \"mm\"\n[container]\nkind = \"box\"\nsize = [10.0, 10.0, 10.0]\n"
       "[spheres]\nfill = true\nradius = { distribution = \"uniform\", min = 0.1, max = 2.0, "

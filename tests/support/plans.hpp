@@ -63,13 +63,19 @@ inline Shape shifted(Shape shape, const Vector<3>& by) {
 }
 
 inline Plan scaled(Plan plan, double factor) {
-  plan.container = scaled(std::move(plan.container), factor);
+  if (auto* box = std::get_if<PeriodicBox>(&plan.domain)) {
+    box->edges *= factor;
+  } else {
+    plan.domain = scaled(std::get<Shape>(std::move(plan.domain)), factor);
+  }
   plan.radii = std::make_unique<ScaledSizes>(std::move(plan.radii), factor);
   return plan;
 }
 
+/// A periodic box has no place.
 inline Plan shifted(Plan plan, const Vector<3>& by) {
-  plan.container = shifted(std::move(plan.container), by);
+  if (std::holds_alternative<Shape>(plan.domain))
+    plan.domain = shifted(std::get<Shape>(std::move(plan.domain)), by);
   return plan;
 }
 
@@ -79,7 +85,7 @@ inline Plan plan_of(const std::string& toml) { return build(parse_scene(toml, "t
 /// The same with the container replaced.
 inline Plan plan_of(const std::string& toml, Shape container) {
   Plan plan = plan_of(toml);
-  plan.container = std::move(container);
+  plan.domain = std::move(container);
   return plan;
 }
 

@@ -16,7 +16,7 @@ Plan example(const char* name) { return build(read_scene(std::string(BERNAL_DATA
 
 Packing certified(const Plan& plan) {
   Packing packing = run(plan);
-  const Certificate certificate = certify(packing.spheres, packing.container);
+  const Certificate certificate = certify(packing.spheres, packing.domain);
   EXPECT_TRUE(certificate.certified) << certificate.statement;
   EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
   ::testing::Test::RecordProperty("spheres", std::to_string(packing.spheres.size()));
@@ -33,7 +33,7 @@ TEST(HanCylinder, EqualSpheresAreAtLeastAsManyAndDense) {
 // A prism of 64 sides has 0.16 % less room than the cylinder around it, and its edges hinder nobody.
 TEST(HanCylinder, AMeshOfItIsPackedAsWell) {
   Plan plan = example("cylinder_han.toml");
-  plan.container = test::prism_mesh(64, 1, 2);
+  plan.domain = test::prism_mesh(64, 1, 2);
   const Packing packing = certified(plan);
   EXPECT_GE(packing.spheres.size(), spheres_of_han);
   EXPECT_GE(packing.packing_fraction(), 0.54);

@@ -4,9 +4,15 @@
 
 namespace bernal {
 
-/// A point or a displacement in D dimensions, in the length unit of its owner.
+/// Dimensions run from 1 to this.
+inline constexpr int max_dimension = 8;
+/// In place of a dimension: only known when the program runs.
+inline constexpr int dynamic = Eigen::Dynamic;
+
+/// A point or a displacement in D dimensions, in the length unit of its owner. `Vector<dynamic>` holds up to
+/// max_dimension components, without an allocation.
 template <int D>
-using Vector = Eigen::Matrix<double, D, 1>;
+using Vector = Eigen::Matrix<double, D, 1, 0, D == dynamic ? max_dimension : D, 1>;
 
 /// Axis-aligned bounds, `lower <= upper` in every component.
 template <int D>

@@ -19,7 +19,7 @@ struct Contacts {
 /// Cost O(N). The packing is in the scene's frame; nothing is changed.
 Contacts measure_contacts(const Packing&, double contact_gap = 0.002);
 
-/// 64-bit FNV-1a of the doubles of all spheres in order, x y z r each, little-endian; 16 hexadecimal digits.
-std::string hash_of(const Spheres<3>&);
+/// 64-bit FNV-1a of the doubles of all spheres in order, the coordinates and r of each, little-endian; 16 hexadecimal digits.
+std::string hash_of(const Spheres<dynamic>&);
 
 }  // namespace bernal

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 #include "bernal/scene/scene.hpp"
 
 namespace bernal {
@@ -31,15 +31,17 @@ struct Milestone {
   std::string stage;
   std::uint64_t spheres = 0;
   double packing_fraction = 0;
-  double potential = 0;  ///< mean height of the spheres along the compression direction, scene units
+  double potential = 0;    ///< mean height of the spheres along the compression direction, scene units
+  double max_overlap = 0;  ///< largest overlap ratio of a pair that a relaxation has left so far
   double seconds = 0;    ///< since the start of the run
 };
 
-/// The result of a run: plain data. Lengths are in the scene's unit and frame.
+/// The result of a run: plain data. Lengths are in the scene's unit and frame. `spheres` has the dimension of
+/// the domain.
 struct Packing {
-  Spheres<3> spheres;
-  Shape container;
-  double container_volume = 0;
+  Spheres<dynamic> spheres;  ///< in a periodic box with centres in [0, edge)
+  Domain domain;
+  double volume = 0;  ///< of the domain
   Scene scene;
   std::uint64_t seed = 1;
   int threads = 1;

@@ -22,7 +22,8 @@ struct PlanItem {
 /// A scene that has been checked as a whole, with everything it names made and nothing else.
 struct Plan {
   Scene scene;
-  Shape container;                          ///< in the scene's unit
+  Domain domain;                            ///< in the scene's unit
+  bool box_follows = false;                 ///< a periodic box whose size is the result: `domain` is a guess
   std::string container_notes;              ///< what the importer did: reader, welding, repairs; may be empty
   std::unique_ptr<SizeDistribution> radii;  ///< in the scene's unit
 
@@ -37,9 +38,10 @@ struct Plan {
 /// larger than the container, a mesh that is no container. Cost: reading the mesh.
 Plan build(const Scene& scene);
 
-/// The container that a scene describes, in the scene's unit: what `build` and the certificate share.
-/// `notes` receives what the importer did. Throws as `build`.
-Shape shape_of(const Scene& scene, std::string* notes = nullptr);
+/// The container or the periodic box that a scene describes, in the scene's unit: what `build` and the
+/// certificate share. `notes` receives what the importer did. A box that follows from the packing comes with
+/// edges that are in proportion only; its volume is 1. Throws as `build`.
+Domain domain_of(const Scene& scene, std::string* notes = nullptr);
 
 /// The size distribution of radii that a scene describes, in the scene's unit. Throws as `build`.
 std::unique_ptr<SizeDistribution> radii_of(const Scene& scene);

@@ -39,7 +39,8 @@ struct Spec {
   Location location(std::string_view key) const;  ///< of the key if it has one, else of the whole
 };
 
-/// Exactly one of these says when there are enough spheres.
+/// Exactly one of these says when there are enough spheres; in a periodic box that is given neither size nor
+/// edge, `count` and `packing_fraction` together say how large it is.
 struct Target {
   std::optional<std::int64_t> count;
   std::optional<double> packing_fraction;
@@ -52,7 +53,7 @@ struct Scene {
   std::filesystem::path file;  ///< empty for a scene made in C++
   std::string unit = "m";
   std::uint64_t seed = 1;
-  Spec container;              ///< box, cylinder, sphere, mesh
+  Spec container;              ///< box, cylinder, sphere, mesh, periodic
   Spec sizes;                  ///< constant, classes, uniform, lognormal; lengths as written
   bool sizes_are_diameters = false;
   Target target;
@@ -60,6 +61,9 @@ struct Scene {
   double overlap = 0;              ///< largest overlap ratio that the result may keep
   std::vector<Spec> stages;        ///< in order; the protocol of the container's kind if the file names none
   bool stages_are_default = false;
+
+  bool is_periodic() const { return container.name == "periodic"; }
+  int dimension() const { return is_periodic() ? static_cast<int>(container.integer("dimension")) : 3; }
 };
 
 }  // namespace bernal

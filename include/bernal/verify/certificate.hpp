@@ -3,7 +3,7 @@
 #include <string>
 
 #include "bernal/core/spheres.hpp"
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal {
 
@@ -58,7 +58,7 @@ struct Certificate {
 /// mesh does not intersect itself is not checked. Cost: O(N log N + near pairs), about 0.7 µs a sphere at N =
 /// 30,000 and 0.9 at 10,000,000 on one core; a mesh of T triangles adds O(T log T), about 0.5 µs each. Exact
 /// arithmetic throughout is 4 to 12 times slower.
-Certificate certify(const Spheres<3>& spheres, const Shape& container, double allowed_overlap = 0,
+Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, double allowed_overlap = 0,
                     Arithmetic arithmetic = Arithmetic::filtered);
 
 }  // namespace bernal

@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bernal/core/dimension.hpp"
+#include "bernal/core/text.hpp"
+#include "run/catalogue.hpp"
+#include "run/run_in_domain.hpp"
+
+namespace bernal {
+namespace {
+
+/// How often a box of given size that is to be filled is tried with another number of spheres.
+constexpr int most_attempts = 6;
+/// What the next attempt leaves free of what the last one reached, so that it fits.
+constexpr double caution = 5e-4;
+constexpr double most_spheres = 2147483647.0;
+
+/// The drawn sequence of radii, in the packer's unit: `count` of them, or as many as fill `volume`.
+std::vector<double> drawn_radii(const SizeDistribution& sizes, std::uint64_t seed, int dimension,
+                                std::optional<std::int64_t> count, double volume) {
+  Random random(seed, stream(Stream::radii));
+  std::vector<double> radii;
+  double filled = 0;
+  while (count ? radii.size() < static_cast<std::size_t>(*count) : filled < volume) {
+    radii.push_back(sizes.sample(random));
+    filled += ball_volume(dimension, radii.back());
+  }
+  return radii;
+}
+
+/// The power of two that takes the scene's lengths to those of the packer.
+double unit_for(const std::vector<double>& radii) {
+  return std::exp2(std::floor(std::log2(std::ranges::max(radii))));
+}
+
+void conclude(Packing& packing, const PeriodicWork& work, StageEnd end, bool fits) {
+  const auto n = grouped(packing.spheres.size());
+  if (end == StageEnd::cancelled) {
+    packing.outcome = Outcome::cancelled;
+    packing.reason = fmt::format("stopped by the user with {} spheres", n);
+  } else if (!fits) {
+    packing.outcome = Outcome::full;
+    packing.reason = fmt::format(
+        "{} spheres need a box {:.4g} times as large by volume as the one asked for; this is the box that they need",
+        n, work.edges.prod() / *work.target_volume);
+  } else if (end == StageEnd::hit_limit) {
+    packing.outcome = Outcome::hit_limit;
+    packing.reason = fmt::format("the last stage reached its limit with {} spheres", n);
+  } else {
+    packing.outcome = Outcome::converged;
+    packing.reason = fmt::format("all {} spheres are placed", n);
+  }
+}
+
+}  // namespace
+
+void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwatch& watch, Packing& packing) {
+  const Scene& scene = plan.scene;
+  const int dimension = scene.dimension();
+  const Target& target = scene.target;
+  const double asked_volume = volume_of(plan.domain);
+  EffectLog effects;
+
+  double fraction = target.packing_fraction.value_or(plan.expected_packing_fraction);
+  for (int attempt = 1;; ++attempt) {
+    std::vector<double> radii =
+        drawn_radii(*plan.radii, packing.seed, dimension, target.count, fraction * asked_volume);
+    if (static_cast<double>(radii.size()) >= most_spheres)
+      throw Error(ErrorCode::bad_scene, "the box would hold more than 2^31 spheres of these sizes", target.where);
+    const double unit = unit_for(radii);
+    double volume_of_spheres = 0;
+    for (double& r : radii) {
+      r /= unit;
+      volume_of_spheres += ball_volume(dimension, r);
+    }
+
+    PeriodicWork work{.spheres = Spheres<dynamic>(dimension),
+                      .edges = std::get<PeriodicBox>(plan.domain).edges / unit,
+                      .allowed_overlap = scene.overlap,
+                      .seed = packing.seed,
+                      .monitor = monitor,
+                      .effects = effects};
+    for (auto& column : work.spheres.x) column.assign(radii.size(), 0);
+    work.spheres.r = std::move(radii);
+    if (!plan.box_follows) work.target_volume = work.edges.prod();
+    if (plan.box_follows && target.packing_fraction)
+      work.target_volume = volume_of_spheres / *target.packing_fraction;
+    work.milestone = [&](std::string_view stage, double done, double max_overlap) {
+      const double phi = volume_of_spheres / work.edges.prod();
+      packing.history.push_back(
+          {std::string(stage), work.spheres.size(), phi, 0, max_overlap, watch.seconds()});
+      monitor.report({stage, done, fmt::format("{} spheres, packing fraction {:.4f}, largest overlap {:.1e}",
+                                               grouped(work.spheres.size()), phi, max_overlap)});
+    };
+
+    StageEnd end = StageEnd::converged;
+    for (const Spec& stage : scene.stages) {
+      end = find_entry(stage_catalogue(), stage).run_periodic(stage, work);
+      if (end == StageEnd::cancelled) break;
+    }
+
+    const bool fits = !work.target_volume || work.edges.prod() <= *work.target_volume * (1 + 1e-12);
+    if (target.fill && !fits && attempt < most_attempts && end != StageEnd::cancelled) {
+      fraction = volume_of_spheres / work.edges.prod() * (1 - caution * attempt);
+      continue;
+    }
+    packing.spheres = std::move(work.spheres);
+    for (auto& column : packing.spheres.x)
+      for (double& x : column) x *= unit;
+    for (double& r : packing.spheres.r) r *= unit;
+    PeriodicBox box{work.edges * unit};
+    packing.domain = box;
+    packing.volume = volume_of(packing.domain);
+    packing.scene.container.parameters["size"].value = std::vector<double>(box.edges.begin(), box.edges.end());
+    packing.scene.container.parameters.erase("edge");
+    packing.effects = effects.all();
+    conclude(packing, work, end, fits);
+    return;
+  }
+}
+
+}  // namespace bernal

@@ -1,0 +1,43 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "bernal/core/monitor.hpp"
+#include "bernal/core/random.hpp"
+#include "bernal/core/spheres.hpp"
+#include "stages/effect_log.hpp"
+#include "stages/stage_end.hpp"
+
+namespace bernal {
+
+/// What the stages of one run in a periodic box share. All spheres are there from the start; stages give them
+/// their places. Lengths are in the packer's unit: the scene's divided by a power of two, so that the largest
+/// radius lies in [1, 2).
+struct PeriodicWork {
+  /// Radii as drawn, which no stage changes. Centres in [0, edge) once `placed`.
+  Spheres<dynamic> spheres;
+  /// Of the box; before the spheres are placed only its proportions mean something.
+  Vector<dynamic> edges;
+  bool placed = false;
+  /// The volume that the box is to end with, where the scene says so.
+  std::optional<double> target_volume;
+  /// Largest overlap ratio that the result may keep; 0 for none.
+  double allowed_overlap = 0;
+
+  const std::uint64_t seed;
+  const Monitor& monitor;
+  EffectLog& effects;
+  /// For the run's history and the progress bar; called at most some hundred times a stage. `fraction` is how
+  /// far the stage has come, in [0, 1].
+  std::function<void(std::string_view stage, double fraction, double max_overlap)> milestone;
+  std::uint64_t streams_used = 0;
+
+  /// A fresh stream of random numbers for one round of a stage.
+  Random random(Stream purpose) { return {seed, stream(purpose, streams_used++)}; }
+  int dimension() const { return spheres.dimension(); }
+};
+
+}  // namespace bernal
