@@ -64,31 +64,32 @@ std::string json_of(const Report& report) {
                        {"max_overlap", m.max_overlap},
                        {"seconds", m.seconds}});
   }
-  const Json json = {{"version", packing.version},
-                     {"seed", packing.seed},
-                     {"threads", packing.threads},
-                     {"outcome", name_of(packing.outcome)},
-                     {"reason", packing.reason},
-                     {"n", packing.spheres.size()},
-                     {"dimension", packing.spheres.dimension()},
-                     {"unit", packing.scene.unit},
-                     {"phi", packing.packing_fraction()},
-                     {"coordination", contacts.coordination},
-                     {"contact_gap", contacts.contact_gap},
-                     {"contacts", contacts.pairs},
-                     {"wall_contacts", contacts.walls},
-                     {"rattlers", contacts.rattlers},
-                     {"max_overlap", certificate.max_overlap},
-                     {"min_wall_gap", certificate.min_wall_gap},
-                     {"certified", certificate.certified},
-                     {"certificate", certificate_json(certificate)},
-                     box ? Json::object_t::value_type("box", box_json(*box))
-                         : Json::object_t::value_type("container", container_json(std::get<Shape>(packing.domain))),
-                     {"hash", report.hash},
-                     {"effects", effects},
-                     {"history", history},
-                     {"seconds", packing.seconds},
-                     {"peak_memory_bytes", peak_memory_bytes()}};
+  const Json json = {
+      {"version", packing.version},
+      {"seed", packing.seed},
+      {"threads", packing.threads},
+      {"outcome", name_of(packing.outcome)},
+      {"reason", packing.reason},
+      {"n", packing.spheres.size()},
+      {"dimension", packing.spheres.dimension()},
+      {"unit", packing.scene.unit},
+      {"phi", packing.packing_fraction()},
+      {"coordination", contacts.coordination},
+      {"contact_gap", contacts.contact_gap},
+      {"contacts", contacts.pairs},
+      {"wall_contacts", contacts.walls},
+      {"rattlers", contacts.rattlers},
+      {"max_overlap", certificate.max_overlap},
+      {"min_wall_gap", certificate.min_wall_gap},
+      {"certified", certificate.certified},
+      {"certificate", certificate_json(certificate)},
+      box ? Json::object_t::value_type("box", box_json(*box))
+          : Json::object_t::value_type("container", container_json(std::get<Shape>(packing.domain))),
+      {"hash", report.hash},
+      {"effects", effects},
+      {"history", history},
+      {"seconds", packing.seconds},
+      {"peak_memory_bytes", peak_memory_bytes()}};
   // Names may hold any bytes; a report that is not valid UTF-8 would be worse than a replaced character.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -158,7 +158,8 @@ void append_strokes(std::string& out, const std::vector<Stroke>& strokes, bool h
   out += "\"/>\n";
 }
 
-void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const View& view, const SizeScale& sizes) {
+void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const View& view,
+                    const SizeScale& sizes) {
   const std::vector<Ball> balls = balls_back_to_front(spheres, view);
   DepthBuffer depths(view.width(), view.height(), raster_pitch);
   for (std::uint32_t k = 0; k < balls.size(); ++k) depths.draw_ball(balls[k].center, balls[k].radius, k);

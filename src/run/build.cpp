@@ -36,12 +36,13 @@ void require_possible(const Scene& scene) {
     if (scene.is_periodic() ? entry.run_periodic != nullptr : entry.run != nullptr) continue;
     std::vector<std::string_view> able;
     for (const StageEntry& other : stage_catalogue())
-      if (scene.is_periodic() ? other.run_periodic != nullptr : other.run != nullptr) able.push_back(other.name);
-    throw Error(ErrorCode::bad_scene,
-                fmt::format("\"{}\" cannot work in a {}; there, the stages are \"{}\"", stage.name,
-                            scene.is_periodic() ? "periodic box" : "container with walls",
-                            fmt::join(able, "\", \"")),
-                stage.where);
+      if (scene.is_periodic() ? other.run_periodic != nullptr : other.run != nullptr)
+        able.push_back(other.name);
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("\"{}\" cannot work in a {}; there, the stages are \"{}\"", stage.name,
+                    scene.is_periodic() ? "periodic box" : "container with walls", fmt::join(able, "\", \"")),
+        stage.where);
   }
 }
 

@@ -53,7 +53,8 @@ Domain make_mesh(const Scene& scene, std::string& notes) {
 Domain make_periodic(const Scene& scene, std::string&) {
   const Spec& c = scene.container;
   PeriodicBox box{Vector<dynamic>::Constant(scene.dimension(), c.has("edge") ? c.number("edge") : 1.0)};
-  if (c.has("size")) box.edges = Eigen::Map<const Eigen::VectorXd>(c.numbers("size").data(), scene.dimension());
+  if (c.has("size"))
+    box.edges = Eigen::Map<const Eigen::VectorXd>(c.numbers("size").data(), scene.dimension());
   if (c.flag("scalable")) box.edges /= std::pow(box.edges.prod(), 1.0 / scene.dimension());
   return box;
 }
@@ -134,7 +135,8 @@ StageEnd run_refill(const Spec& s, Work& work) {
 const PlanItem insertion[] = {{"insertion", "random places, one sphere after the other", "O(1) a trial"}};
 const PlanItem compression[] = {
     {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
-    {"compression", "to first touch along the global and local directions", "about 0.5 µs a sphere and sweep"}};
+    {"compression", "to first touch along the global and local directions",
+     "about 0.5 µs a sphere and sweep"}};
 const PlanItem shaking[] = {
     {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
     {"shaking", "local directions across the global one", "about 0.5 µs a sphere and sweep"},

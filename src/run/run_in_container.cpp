@@ -99,9 +99,8 @@ void run_in_container(const Plan& plan, const Monitor& monitor, const Stopwatch&
     packing.history.push_back({std::string(stage), bed.size(), fraction,
                                frame.scale * bed.potential(-up) + frame.origin[2], 0, watch.seconds()});
     const double share = plan.expected_packing_fraction > 0 ? fraction / plan.expected_packing_fraction : 0;
-    monitor.report(
-        {stage, std::min(share, 0.99),
-         fmt::format("{} spheres, packing fraction {:.4f}", grouped(bed.size()), fraction)});
+    monitor.report({stage, std::min(share, 0.99),
+                    fmt::format("{} spheres, packing fraction {:.4f}", grouped(bed.size()), fraction)});
   };
   Work work{bed, supply, packing.seed, monitor, effects, milestone};
 

@@ -43,7 +43,8 @@ void conclude(Packing& packing, const PeriodicWork& work, StageEnd end, bool fit
   } else if (!fits) {
     packing.outcome = Outcome::full;
     packing.reason = fmt::format(
-        "{} spheres need a box {:.4g} times as large by volume as the one asked for; this is the box that they need",
+        "{} spheres need a box {:.4g} times as large by volume as the one asked for; this is the box that "
+        "they need",
         n, work.edges.prod() / *work.target_volume);
   } else if (end == StageEnd::hit_limit) {
     packing.outcome = Outcome::hit_limit;
@@ -68,7 +69,8 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
     std::vector<double> radii =
         drawn_radii(*plan.radii, packing.seed, dimension, target.count, fraction * asked_volume);
     if (static_cast<double>(radii.size()) >= most_spheres)
-      throw Error(ErrorCode::bad_scene, "the box would hold more than 2^31 spheres of these sizes", target.where);
+      throw Error(ErrorCode::bad_scene, "the box would hold more than 2^31 spheres of these sizes",
+                  target.where);
     const double unit = unit_for(radii);
     double volume_of_spheres = 0;
     for (double& r : radii) {
@@ -91,8 +93,9 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
       const double phi = volume_of_spheres / work.edges.prod();
       packing.history.push_back(
           {std::string(stage), work.spheres.size(), phi, 0, max_overlap, watch.seconds()});
-      monitor.report({stage, done, fmt::format("{} spheres, packing fraction {:.4f}, largest overlap {:.1e}",
-                                               grouped(work.spheres.size()), phi, max_overlap)});
+      monitor.report({stage, done,
+                      fmt::format("{} spheres, packing fraction {:.4f}, largest overlap {:.1e}",
+                                  grouped(work.spheres.size()), phi, max_overlap)});
     };
 
     StageEnd end = StageEnd::converged;
@@ -113,7 +116,8 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
     PeriodicBox box{work.edges * unit};
     packing.domain = box;
     packing.volume = volume_of(packing.domain);
-    packing.scene.container.parameters["size"].value = std::vector<double>(box.edges.begin(), box.edges.end());
+    packing.scene.container.parameters["size"].value =
+        std::vector<double>(box.edges.begin(), box.edges.end());
     packing.scene.container.parameters.erase("edge");
     packing.effects = effects.all();
     conclude(packing, work, end, fits);

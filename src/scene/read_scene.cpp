@@ -208,28 +208,34 @@ class Reader {
         return std::ranges::all_of(set,
                                    [&](std::string_view key) { return bool(entry.find(key)->otherwise); });
       };
+      const auto holds = [](const Names& set, std::string_view key) {
+        return std::ranges::find(set, key) != set.end();
+      };
+      Names given;
       std::vector<std::string> sets;
-      const Names* chosen = nullptr;
-      std::string_view chosen_by;
       for (const Names& set : choice) {
-        sets.push_back(fmt::format("\"{}\"", fmt::join(set, "\" and \"")));
-        const auto given =
-            std::ranges::find_if(set, [&](std::string_view key) { return table.contains(key); });
-        if (given == set.end()) continue;
-        if (chosen)
-          fail(table.find(*given)->first.source(),
-               "\"{}\" and \"{}\" in {} exclude each other; give one of them", chosen_by, *given, where);
-        chosen = &set;
-        chosen_by = *given;
+        if (!set.empty()) sets.push_back(fmt::format("\"{}\"", fmt::join(set, "\" and \"")));
+        for (const std::string_view key : set)
+          if (table.contains(key) && !holds(given, key)) given.push_back(key);
       }
-      if (!chosen) {
-        const auto free = std::ranges::find_if(choice, needs_nothing);
-        if (free == choice.end())
-          fail(table.source(), "{} needs exactly one of {}", where, fmt::join(sets, ", "));
-        chosen = &*free;
+      const auto chosen = std::ranges::find_if(choice, [&](const Names& set) {
+        return given.empty()
+                   ? needs_nothing(set)
+                   : std::ranges::all_of(given, [&](std::string_view key) { return holds(set, key); });
+      });
+      if (chosen == choice.end() && given.empty())
+        fail(table.source(), "{} needs exactly one of {}", where, fmt::join(sets, ", "));
+      if (chosen == choice.end()) {
+        const auto first =
+            std::ranges::find_if(choice, [&](const Names& set) { return holds(set, given[0]); });
+        const auto other =
+            std::ranges::find_if(given, [&](std::string_view key) { return !holds(*first, key); });
+        fail(table.find(*other)->first.source(),
+             "\"{}\" and \"{}\" in {} exclude each other; give one of them", given[0], *other, where);
       }
       for (const Names& set : choice)
-        if (&set != chosen) out.insert(out.end(), set.begin(), set.end());
+        for (const std::string_view key : set)
+          if (!holds(*chosen, key)) out.push_back(key);
     }
     return out;
   }
@@ -301,7 +307,7 @@ class Reader {
       fail(table.get("fill")->source(),
            "\"fill\" in [spheres] can only be true; give \"count\" or \"packing_fraction\" instead");
     for (const std::string_view key : {"count", "packing_fraction", "fill"})
-      if (spec.has(key)) scene.target.where = spec.location(key);
+      if (spec.has(key) && spec.location(key).line > 0) scene.target.where = spec.location(key);
 
     check_target(scene);
 
@@ -313,9 +319,7 @@ class Reader {
   /// What the target and a periodic box demand of each other.
   void check_target(const Scene& scene) const {
     const Target& target = scene.target;
-    const auto fail = [&](const char* message) {
-      throw Error(ErrorCode::bad_scene, message, target.where);
-    };
+    const auto fail = [&](const char* message) { throw Error(ErrorCode::bad_scene, message, target.where); };
     const bool scalable = scene.is_periodic() && scene.container.flag("scalable");
     if (target.count && target.packing_fraction && !scalable)
       fail(

@@ -82,15 +82,11 @@ std::vector<Key> with_compression(std::vector<Key> keys) {
 const std::vector<std::string_view> compression_protocol = {"insert", "compress", "shake", "refill"};
 
 void periodic_rule(const Spec& spec, std::string_view where) {
-  if (spec.has("size") && spec.has("edge"))
-    throw Error(ErrorCode::bad_scene,
-                fmt::format("\"size\" and \"edge\" in {} exclude each other; give one of them", where),
-                spec.location("edge"));
-  if (spec.has("size") && static_cast<std::int64_t>(spec.numbers("size").size()) != spec.integer("dimension"))
-    throw Error(ErrorCode::bad_scene,
-                fmt::format("\"size\" in {} must have one length for each of the {} dimensions, not {}", where,
-                            spec.integer("dimension"), spec.numbers("size").size()),
-                spec.location("size"));
+  const std::int64_t dimension = spec.integer("dimension");
+  if (spec.has("size") && static_cast<std::int64_t>(spec.numbers("size").size()) != dimension)
+    refuse(spec, "size",
+           fmt::format("\"size\" in {} must have a length for each of {} dimensions, but it has {}", where,
+                       dimension, spec.numbers("size").size()));
 }
 
 Schema make_schema() {
@@ -112,12 +108,10 @@ Schema make_schema() {
                   .keys = {{.name = "count",
                             .type = Type::integer,
                             .help = "stop at this many spheres",
-                            .optional = true,
                             .range = {1, 0x1p31 - 1}},
                            {.name = "packing_fraction",
                             .type = Type::number,
                             .help = "stop when the spheres fill this fraction of the container",
-                            .optional = true,
                             .range = {0, 1, true, true}},
                            {.name = "fill",
                             .type = Type::flag,
@@ -125,7 +119,8 @@ Schema make_schema() {
                             .otherwise = true},
                            {.name = "radius", .type = Type::distribution, .help = "lengths are radii"},
                            {.name = "diameter", .type = Type::distribution, .help = "lengths are diameters"}},
-                  .choices = {{{"count", "packing_fraction"}, {"fill"}}, {{"radius"}, {"diameter"}}}},
+                  .choices = {{{"count"}, {"packing_fraction"}, {"fill"}, {"count", "packing_fraction"}},
+                              {{"radius"}, {"diameter"}}}},
 
       .accuracy =
           {.name = "accuracy",
@@ -186,15 +181,15 @@ Schema make_schema() {
                       .help = "of space",
                       .otherwise = 3,
                       .range = {1, max_dimension}},
-                     {.name = "size", .type = Type::lengths, .help = "its edges", .optional = true},
-                     {.name = "edge", .type = Type::length, .help = "all its edges", .optional = true},
+                     {.name = "size", .type = Type::lengths, .help = "its edges"},
+                     {.name = "edge", .type = Type::length, .help = "all its edges"},
                      {.name = "scalable",
                       .type = Type::flag,
                       .help = "the packing decides how large the box is; size only gives its proportions",
                       .otherwise = false}},
+            .choices = {{{"size"}, {"edge"}, {}}},
             .rule = periodic_rule,
             .protocol = {"relax"}}},
-
 
       .distributions =
           {{.name = "constant",
@@ -297,7 +292,7 @@ Schema make_schema() {
                             .type = Type::number,
                             .help = "the box grows by the largest overlap ratio divided by this",
                             .otherwise = 30.0,
-                            .range = {1, 1e6}},
+                            .range = {0.01, 1e6}},
                            {.name = "phi0",
                             .type = Type::number,
                             .help = "packing fraction of the overlapping spheres at the start",
@@ -307,15 +302,16 @@ Schema make_schema() {
                             .type = Type::number,
                             .help = "largest overlap ratio that counts as none; the box then grows by it",
                             .otherwise = 2e-4,
-                            .range = {1e-12, 0.1}},
+                            .range = {1e-12, 0.5}},
                            {.name = "polish",
                             .type = Type::number,
                             .help = "close the gaps and overlaps of all contacts to this ratio; 0: do not",
                             .otherwise = 0.0,
-                            .range = {0, 1e-4}},
+                            .range = {0, 0.5}},
                            {.name = "method",
                             .type = Type::word,
-                            .help = "fast, or reference: the published loop as it stands, a hundred times slower",
+                            .help =
+                                "fast, or reference: the published loop as it stands, a hundred times slower",
                             .otherwise = "fast",
                             .words = {"fast", "reference"}}}}},
   };

@@ -47,8 +47,8 @@ struct Key {
   std::vector<std::string_view> words = {};
 };
 
-/// Sets of keys of which exactly one is given, whole; keys of the others stay absent. Where none is given,
-/// the set that needs nothing is meant, if there is one.
+/// Sets of keys of which exactly one is given, whole: the first that holds all that are given; other keys stay
+/// absent. Where none is given, the first set that needs nothing is meant, if there is one.
 using Choice = std::vector<std::vector<std::string_view>>;
 
 /// A table of the scene: a container, a size distribution, a stage, or one that stands for itself.

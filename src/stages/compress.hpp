@@ -18,11 +18,10 @@ struct CompressOptions {
 /// in which every sphere moves along a *local* direction of its own, drawn at random about the global one.
 /// Converged when the potential energy along the direction has stopped falling.
 ///
-/// What is ours in it: sliding along contacts, which along the global direction alone fills Han's cylinder to a
-/// packing fraction of 0.527 and with local directions to 0.58; the sleeping of spheres whose surroundings have
-/// not changed; and the skin.
-/// Cost: about 0.5 µs a sphere and sweep; an iteration makes up to 8 sweeps along the global direction, over
-/// the spheres that are awake, and 10 along local directions.
+/// What is ours in it: sliding along contacts, which along the global direction alone fills Han's cylinder to
+/// a packing fraction of 0.527 and with local directions to 0.58; the sleeping of spheres whose surroundings
+/// have not changed; and the skin. Cost: about 0.5 µs a sphere and sweep; an iteration makes up to 8 sweeps
+/// along the global direction, over the spheres that are awake, and 10 along local directions.
 StageEnd compress(Work& work, const CompressOptions& options);
 
 /// One sweep: every sphere slides along a random direction of its own, normalised

@@ -14,9 +14,9 @@ struct RelaxOptions {
 
 /// Relaxation in a periodic box (Zhao, Li & Liu 2007): spheres start at random places in a box so small that
 /// they overlap. Where spheres overlap, each is moved to the mean of the places at which it would just touch
-/// one of them (equations 3 and 4; a sweep). After T = alpha (log10 N)² sweeps the box grows, L <- L (1 + molr /
-/// beta), molr being the largest overlap ratio (ri + rj - d) / (ri + rj) of a pair; it ends when molr < stop.
-/// Then the box grows by the last overlap, exactly: the result has none.
+/// one of them (equations 3 and 4; a sweep). After T = alpha (log10 N)² sweeps the box grows, L <- L (1 +
+/// molr / beta), molr being the largest overlap ratio (ri + rj - d) / (ri + rj) of a pair; it ends when molr
+/// < stop. Then the box grows by the last overlap, exactly: the result has none.
 ///
 /// phi0 decides how dense the result becomes: 0.86 for random close packing, 0.60 to 0.65 for random loose
 /// packing. A target volume that is larger than the result is met by moving all spheres apart in proportion;

@@ -160,9 +160,12 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
        3,
        {"ba\\u000Asis"}},
       {with_container("kind = \"cylindre\""), 3, {"unknown kind \"cylindre\"", "\"cylinder\"?"}},
-      {with_container("kind = \"periodic\""), 3, {"unknown kind \"periodic\"", "known: \"box\""}},
+      {with_container("kind = \"plane\""), 3, {"unknown kind \"plane\"", "known: \"box\""}},
+      {with_container("kind = \"periodic\""), 4, {"needs a \"count\"", "\"size\""}},
+      {with_container("kind = \"periodic\"\nsize = [1.0, 2.0]"), 4, {"\"size\"", "3 dimensions", "has 2"}},
+      {with_container("kind = \"periodic\"\nsize = [1, 2, 3]\nedge = 2"), 5, {"exclude each other"}},
       {with_container(box + "size = [1, 1, 1]\nradius = 1"), 5, {"unknown key \"radius\" in [container]"}},
-      {with_stage("do = \"relax\""), 5, {"unknown stage \"relax\"", "\"insert\""}},
+      {with_stage("do = \"squeeze\""), 5, {"unknown stage \"squeeze\"", "\"insert\""}},
       {with_stage("do = \"shake\"\nround = 3"), 6, {"[[stage]] shake", "did you mean \"rounds\"?"}},
       {with_spheres("radius = { distribution = \"log-normal\", median = 1 }"),
        3,
@@ -298,7 +301,9 @@ std::string sample(const Key& key, int choice) {
     case Type::flag:
       return "true";
     case Type::integer:
-      return choice == 0 ? "3" : fmt::format("{}", static_cast<std::int64_t>(key.range.min));
+      return choice == 0 || key.name == "dimension"
+                 ? "3"
+                 : fmt::format("{}", static_cast<std::int64_t>(key.range.min));
     case Type::number:
       return choice == 0 ? "0.1" : "0.30000000000000004";
     case Type::length:  // keys come in the order min, max and d43, d32
@@ -345,7 +350,9 @@ void for_every_entry(Visit visit) {
   for (std::size_t n = 0; n < 3; ++n) {
     for (const Entry& e : all.containers)
       visit(e, keys_of(e, n), [&](const std::vector<std::string>& lines) {
-        return with_container(fmt::format("kind = \"{}\"\n", e.name) + joined(lines, "\n"));
+        return fmt::format(
+            "unit = \"mm\"\n[container]\nkind = \"{}\"\n{}\n[spheres]\ncount = 5\nradius = 1\n", e.name,
+            joined(lines, "\n"));
       });
     for (const Entry& e : all.distributions)
       visit(e, keys_of(e, n), [&](const std::vector<std::string>& lines) {

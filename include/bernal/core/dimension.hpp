@@ -10,7 +10,8 @@
 
 namespace bernal {
 
-/// Volume of the ball of radius r in `dimension` dimensions: π^(D/2) r^D / Γ(D/2 + 1). Error: a few roundoffs.
+/// Volume of the ball of radius r in `dimension` dimensions: π^(D/2) r^D / Γ(D/2 + 1). Error: a few
+/// roundoffs.
 inline double ball_volume(int dimension, double r) {
   if (dimension == 3) return 4.0 / 3.0 * std::numbers::pi * r * r * r;
   const double half = 0.5 * dimension;

@@ -15,11 +15,11 @@ struct Location {
 };
 
 enum class ErrorCode {
-  bad_scene,      ///< the scene file: syntax, unknown name, wrong type, absurd value
-  bad_mesh,       ///< a CAD file that cannot be read or cannot be a container
-  bad_packing,    ///< spheres that were written by someone and cannot be read back
-  bad_argument,   ///< a library call or a command line outside its precondition
-  cannot_write,   ///< the file system refused
+  bad_scene,     ///< the scene file: syntax, unknown name, wrong type, absurd value
+  bad_mesh,      ///< a CAD file that cannot be read or cannot be a container
+  bad_packing,   ///< spheres that were written by someone and cannot be read back
+  bad_argument,  ///< a library call or a command line outside its precondition
+  cannot_write,  ///< the file system refused
 };
 
 /// Bad input, in one line that names the remedy. `what()` is "file:line: message".

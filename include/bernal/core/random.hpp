@@ -43,7 +43,16 @@ class Random {
 };
 
 /// The streams of one run. `stream(purpose, index)` keys the numbers of one purpose by a 56-bit index.
-enum class Stream : std::uint64_t { radii = 1, insert = 2, compress = 3, shake = 4, refill = 5, room = 6, relax = 7, test = 255 };
+enum class Stream : std::uint64_t {
+  radii = 1,
+  insert = 2,
+  compress = 3,
+  shake = 4,
+  refill = 5,
+  room = 6,
+  relax = 7,
+  test = 255
+};
 constexpr std::uint64_t stream(Stream purpose, std::uint64_t index = 0) {
   return (static_cast<std::uint64_t>(purpose) << 56) | (index & ((std::uint64_t{1} << 56) - 1));
 }

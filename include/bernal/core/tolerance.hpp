@@ -23,10 +23,10 @@ inline double skin(double radius, double resolution) {
 }
 
 /// Relative growth of a periodic box that outweighs the rounding of its coordinates: after centres and edges
-/// have been multiplied by a common factor, a distance d of two centres is off by at most three roundings of a
-/// coordinate on each axis of each centre and of the edge, 18 roundoffs of the longest edge in three dimensions
-/// and 48 in eight. Twice that, of the smallest sum of radii. `slenderness` is the longest edge over the
-/// smallest radius.
+/// have been multiplied by a common factor, a distance d of two centres is off by at most three roundings of
+/// a coordinate on each axis of each centre and of the edge, 18 roundoffs of the longest edge in three
+/// dimensions and 48 in eight. Twice that, of the smallest sum of radii. `slenderness` is the longest edge
+/// over the smallest radius.
 inline double growth(double slenderness) { return 48 * roundoff * slenderness; }
 
 }  // namespace bernal::tolerance

@@ -5,8 +5,8 @@
 
 namespace bernal {
 
-/// The box [0, edges[k]) on every axis k, repeated without end in all directions. It has no wall; spheres have
-/// images in every box, and a sphere may be its own neighbour.
+/// The box [0, edges[k]) on every axis k, repeated without end in all directions. It has no wall; spheres
+/// have images in every box, and a sphere may be its own neighbour.
 struct PeriodicBox {
   Vector<dynamic> edges;
 
