@@ -153,7 +153,8 @@ StageEnd run_relax(const Spec& s, PeriodicWork& work) {
                       .phi0 = s.number("phi0"),
                       .stop = s.number("stop"),
                       .polish = s.number("polish"),
-                      .reference = s.text("method") == "reference"});
+                      .reference = s.text("method") == "reference",
+                      .settle = s.flag("settle")});
 }
 
 const PlanItem relaxing[] = {
