@@ -41,10 +41,11 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
              packing.spheres.dimension() + 1);
   fmt::print("backbone          {} spheres, {} contacts, coordination {:.4f}\n", grouped(c.backbone),
              grouped(c.backbone_pairs), c.backbone_coordination);
-  if (c.isostatic)
-    fmt::print("isostatic         {} contacts would just hold the backbone; {:+.3f} %\n",
-               grouped(*c.isostatic),
-               100 * (static_cast<double>(c.backbone_pairs) / static_cast<double>(*c.isostatic) - 1));
+  if (c.isostatic) {
+    const double ratio = static_cast<double>(c.backbone_pairs) / static_cast<double>(*c.isostatic);
+    fmt::print("isostatic         {} contacts would just hold the backbone; there are {:.3g} % {}\n",
+               grouped(*c.isostatic), 100 * std::abs(ratio - 1), ratio < 1 ? "fewer" : "more");
+  }
 
   fmt::print("\n{:>8} {:>12} {:>13} {:>10} {:>18} {:>13}\n", "gap", "contacts", "coordination", "rattlers",
              "backbone contacts", "of isostatic");
@@ -59,8 +60,7 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
 
 /// g(r) as columns of blocks; what is higher than the chart is cut.
 void print_chart(const RadialDistribution& radial) {
-  constexpr int columns = 75, rows = 8;
-  constexpr double highest = 3;
+  constexpr int columns = 75, highest = 3, rows_a_unit = 3, rows = highest * rows_a_unit;
   static const char* const blocks[] = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
   std::vector<double> heights;
   const std::size_t bins = radial.g.size();
@@ -69,13 +69,14 @@ void print_chart(const RadialDistribution& radial) {
     const std::size_t end = std::max(first + 1, bins * (static_cast<std::size_t>(k) + 1) / columns);
     double sum = 0;
     for (std::size_t bin = first; bin < end; ++bin) sum += radial.g[bin];
-    heights.push_back(sum / static_cast<double>(end - first) / highest * rows * 8);
+    heights.push_back(8 * rows_a_unit * sum / static_cast<double>(end - first));
   }
   for (int row = rows - 1; row >= 0; --row) {
     std::string line;
     for (const double height : heights)
       line += blocks[static_cast<int>(std::clamp(std::round(height - 8 * row), 0.0, 8.0))];
-    fmt::print("{:>4} {}\n", row == rows - 1 ? fmt::format("{:g}", highest) : row == 0 ? "0" : "", line);
+    const bool marked = (row + 1) % rows_a_unit == 0;
+    fmt::print("{:>4} {}\n", marked ? fmt::format("{}", (row + 1) / rows_a_unit) : "", line);
   }
   const double reach = radial.bin_width * static_cast<double>(bins) / radial.mean_diameter;
   fmt::print("     0{:>{}}\n", fmt::format("{:.3g} diameters", reach), columns - 1);
