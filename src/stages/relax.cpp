@@ -5,6 +5,7 @@
 
 #include "bernal/core/dimension.hpp"
 #include "stages/free_of_overlap.hpp"
+#include "stages/relax_fast.hpp"
 #include "stages/relax_reference.hpp"
 #include "stages/resize_box.hpp"
 
@@ -82,11 +83,20 @@ void finish(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work) {
 }
 
 template <int D>
+StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
+  if constexpr (D <= 3) {
+    if (!options.reference && fast_path_exists<D>(spheres, edges))
+      return relax_fast<D>(spheres, edges, work, options);
+  }
+  return relax_by_the_book<D>(spheres, edges, work, options);
+}
+
+template <int D>
 StageEnd relax_in(PeriodicWork& work, const RelaxOptions& options) {
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
   prepare<D>(spheres, edges, work, options);
-  const StageEnd end = relax_by_the_book<D>(spheres, edges, work, options);
+  const StageEnd end = push_apart<D>(spheres, edges, work, options);
   finish<D>(spheres, edges, work);
   work.spheres = std::move(spheres);
   work.edges = edges;
@@ -95,6 +105,11 @@ StageEnd relax_in(PeriodicWork& work, const RelaxOptions& options) {
 }
 
 }  // namespace
+
+int sweeps_a_cycle(double alpha, std::size_t spheres) {
+  const double decades = std::log10(static_cast<double>(spheres));
+  return std::max(1, static_cast<int>(std::lround(alpha * decades * decades)));
+}
 
 StageEnd relax(PeriodicWork& work, const RelaxOptions& options) {
   EffectTimer timer(work.effects["relaxation"]);

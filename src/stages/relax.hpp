@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+
 #include "stages/periodic_work.hpp"
 
 namespace bernal {
@@ -12,6 +14,9 @@ struct RelaxOptions {
   bool reference = false;
   bool settle = false;
 };
+
+/// T = alpha (log10 N)², rounded, at least 1 (equation 6).
+int sweeps_a_cycle(double alpha, std::size_t spheres);
 
 /// Relaxation in a periodic box (Zhao, Li & Liu 2007): spheres start at random places in a box so small that
 /// they overlap. Where spheres overlap, each is moved to the mean of the places at which it would just touch
