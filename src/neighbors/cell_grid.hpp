@@ -7,18 +7,21 @@
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
+#include "bernal/domain/boundary.hpp"
 
 namespace bernal {
 
-/// A background grid with doubly linked lists, hierarchical in the radius.
+/// A background grid with doubly linked lists, hierarchical in the radius, of bounds or of a periodic box.
 ///
-/// Level l holds the spheres with radii in (R_l / 2, R_l], R_l = r_max / 2^l, in cubic cells of edge 2 R_l,
-/// so that a query looks at a bounded number of cells of each level however widely the radii differ. Levels
-/// without spheres cost nothing. A level never has more than about `cells_per_sphere` cells for each expected
-/// sphere: where the domain is large and sparse its cells grow instead.
+/// Level l holds the spheres with radii in (R_l / 2, R_l], R_l = r_max / 2^l, in cells of edge 2 R_l, so that
+/// a query looks at a bounded number of cells of each level however widely the radii differ. Levels without
+/// spheres cost nothing. A level never has more than about `cells_per_sphere` cells for each expected sphere:
+/// where the domain is large and sparse its cells grow instead. In a periodic box the cells divide each edge
+/// evenly, and are the longer for it.
 ///
 /// The grid stores ids, not coordinates. Invariant: sphere id is in exactly one list, that of the cell
-/// that holds its centre on the level of its radius; centres beyond the bounds count to the border cell.
+/// that holds its centre on the level of its radius. Centres beyond bounds count to the border cell; in a
+/// periodic box every image of a centre is in the same cell.
 ///
 /// Cost: insert, remove, move O(1); a query O(levels + spheres met). Memory: 16 bytes a sphere, 4 a cell.
 /// Source: Zhao, Li & Liu 2007, figure 7 (one level).
@@ -30,33 +33,19 @@ class CellGrid {
 
   /// Radii to come lie in [r_min, r_max], 0 < r_min; `expected` is about how many spheres will come.
   CellGrid(const Bounds<D>& bounds, double r_min, double r_max, std::size_t expected)
-      : bounds_(bounds), r_max_(r_max) {
-    const double max_cells = std::max(64.0, cells_per_sphere * static_cast<double>(expected));
-    double largest = r_max;
-    std::size_t offset = 0;
-    for (;;) {
-      Level level;
-      level.largest_radius = largest;
-      level.edge = 2 * largest;
-      for (;;) {
-        double cells = 1;
-        for (int k = 0; k < D; ++k) cells *= std::floor(bounds.size()[k] / level.edge) + 1;
-        if (cells <= max_cells) break;
-        level.edge *= 1.25;
-      }
-      level.inverse_edge = 1 / level.edge;
-      level.offset = offset;
-      std::size_t cells = 1;
-      for (int k = 0; k < D; ++k) {
-        level.cells[k] = static_cast<int>(std::floor(bounds.size()[k] / level.edge)) + 1;
-        cells *= static_cast<std::size_t>(level.cells[k]);
-      }
-      offset += cells;
-      levels_.push_back(level);
-      if (largest / 2 < r_min || levels_.size() == max_levels) break;
-      largest /= 2;
+      : CellGrid(bounds, r_min, r_max, expected, false) {}
+  /// Of the box [0, edges[k]) that is periodic on every axis k: all edges are above 0.
+  CellGrid(const Boundary<D>& box, double r_min, double r_max, std::size_t expected)
+      : CellGrid({Vector<D>::Zero(), box.edges}, r_min, r_max, expected, true) {}
+
+  /// The periodic box and all centres have been multiplied by the same factor on each axis; the box has these
+  /// edges now. Spheres stay in their cells. Radii have not changed: what a query finds is what is near in
+  /// the new box. Cost: O(levels).
+  void rescale(const Vector<D>& edges) {
+    bounds_.upper = edges;
+    for (Level& level : levels_) {
+      for (int k = 0; k < D; ++k) level.inverse_edge[k] = level.cells[k] / edges[k];
     }
-    heads_.assign(offset, none);
   }
 
   /// Precondition: `id` is not in the grid, r in [r_min, r_max].
@@ -90,26 +79,31 @@ class CellGrid {
 
   /// Calls visit(id) until it returns true, for every sphere whose bounding cube, blown up by `reach`, may
   /// hold c: at least for all with max_k |c - c_id|_k < reach + r_id, which includes all whose surface is
-  /// nearer than `reach`. Returns whether it returned true.
+  /// nearer than `reach`. In a periodic box that means any image of the sphere; none is visited twice.
+  /// Returns whether it returned true.
   template <class Visit>
   bool any_near(const Vector<D>& c, double reach, Visit&& visit) const {
     for (const Level& level : levels_) {
       if (level.spheres == 0) continue;
       const double half = reach + level.largest_radius;
-      std::array<int, D> first, last, at;
+      std::array<Range, D> range;
+      std::array<int, D> at, step{};
       for (int k = 0; k < D; ++k) {
-        first[k] = coordinate(level, k, c[k] - half);
-        last[k] = coordinate(level, k, c[k] + half);
+        range[k] = periodic_ ? cells_around(level, k, c[k], half) : cells_between(level, k, c[k], half);
+        at[k] = range[k].first;
       }
-      at = first;
       for (;;) {
         for (Id id = heads_[index(level, at)]; id != none; id = links_[id].next) {
           if (visit(id)) return true;
         }
         int k = 0;
-        while (k < D && ++at[k] > last[k]) {
-          at[k] = first[k];
-          ++k;
+        for (; k < D; ++k) {
+          if (++step[k] < range[k].count) {
+            if (++at[k] == level.cells[k]) at[k] = 0;
+            break;
+          }
+          step[k] = 0;
+          at[k] = range[k].first;
         }
         if (k == D) break;
       }
@@ -132,14 +126,20 @@ class CellGrid {
  private:
   static constexpr double cells_per_sphere = 4;
   static constexpr std::size_t max_levels = 40;
+  /// Of an edge: how far a centre may have drifted from its cell by the rounding of some hundred thousand
+  /// rescalings.
+  static constexpr double drift = 1e-10;
 
   struct Level {
     double largest_radius = 0;
-    double edge = 0;
-    double inverse_edge = 0;
+    Vector<D> inverse_edge = Vector<D>::Zero();
     std::array<int, D> cells{};
     std::size_t offset = 0;   // of its first cell in heads_
     std::size_t spheres = 0;  // how many it holds
+  };
+  /// `count` cells of one axis from `first` on, going round where the box is periodic.
+  struct Range {
+    int first, count;
   };
   struct Link {
     Id next = none;
@@ -148,15 +148,69 @@ class CellGrid {
     std::uint8_t level = 0;
   };
 
+  CellGrid(const Bounds<D>& bounds, double r_min, double r_max, std::size_t expected, bool periodic)
+      : bounds_(bounds), periodic_(periodic), r_max_(r_max) {
+    const double max_cells = std::max(64.0, cells_per_sphere * static_cast<double>(expected));
+    std::size_t offset = 0;
+    for (double largest = r_max;; largest /= 2) {
+      levels_.push_back(make_level(largest, max_cells, offset));
+      if (largest / 2 < r_min || levels_.size() == max_levels) break;
+    }
+    heads_.assign(offset, none);
+  }
+
+  /// Appends its cells behind `offset`, and moves that.
+  Level make_level(double largest_radius, double max_cells, std::size_t& offset) const {
+    const Vector<D> size = bounds_.size();
+    double edge = 2 * largest_radius;
+    // A border cell of bounds holds what is left of an edge; a periodic box has whole cells only.
+    const auto cells_along = [&](int k) {
+      const double whole = std::floor(size[k] / edge);
+      return periodic_ ? std::max(1.0, whole) : whole + 1;
+    };
+    const auto all_cells = [&] {
+      double cells = 1;
+      for (int k = 0; k < D; ++k) cells *= cells_along(k);
+      return cells;
+    };
+    while (all_cells() > max_cells) edge *= 1.25;
+
+    Level level;
+    level.largest_radius = largest_radius;
+    level.offset = offset;
+    std::size_t cells = 1;
+    for (int k = 0; k < D; ++k) {
+      level.cells[k] = static_cast<int>(cells_along(k));
+      level.inverse_edge[k] = periodic_ ? level.cells[k] / size[k] : 1 / edge;
+      cells *= static_cast<std::size_t>(level.cells[k]);
+    }
+    offset += cells;
+    return level;
+  }
+
   std::size_t level_of(double r) const {
     std::size_t l = 0;
     for (double largest = r_max_ / 2; r <= largest && l + 1 < levels_.size(); largest /= 2) ++l;
     return l;
   }
   int coordinate(const Level& level, int k, double x) const {
-    const double cell = (x - bounds_.lower[k]) * level.inverse_edge;
+    double cell = (x - bounds_.lower[k]) * level.inverse_edge[k];
+    const double cells = level.cells[k];
+    if (periodic_) cell = std::floor(cell) - cells * std::floor(std::floor(cell) / cells);
     if (!(cell > 0)) return 0;
-    return cell < level.cells[k] ? static_cast<int>(cell) : level.cells[k] - 1;
+    return cell < cells ? static_cast<int>(cell) : level.cells[k] - 1;
+  }
+  Range cells_between(const Level& level, int k, double x, double half) const {
+    const int first = coordinate(level, k, x - half);
+    return {first, coordinate(level, k, x + half) - first + 1};
+  }
+  Range cells_around(const Level& level, int k, double x, double half) const {
+    half += drift * bounds_.upper[k];
+    const double first = std::floor((x - half) * level.inverse_edge[k]);
+    const double count = std::floor((x + half) * level.inverse_edge[k]) - first + 1;
+    if (!(count < level.cells[k])) return {0, level.cells[k]};
+    const double cells = level.cells[k];
+    return {static_cast<int>(first - cells * std::floor(first / cells)), static_cast<int>(count)};
   }
   std::size_t index(const Level& level, const std::array<int, D>& at) const {
     std::size_t i = 0;
@@ -182,6 +236,7 @@ class CellGrid {
   }
 
   Bounds<D> bounds_;
+  bool periodic_;
   double r_max_;
   std::vector<Level> levels_;
   std::vector<Id> heads_;

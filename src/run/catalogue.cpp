@@ -153,10 +153,12 @@ StageEnd run_relax(const Spec& s, PeriodicWork& work) {
                       .phi0 = s.number("phi0"),
                       .stop = s.number("stop"),
                       .polish = s.number("polish"),
-                      .reference = s.text("method") == "reference"});
+                      .reference = s.text("method") == "reference",
+                      .settle = s.flag("settle")});
 }
 
 const PlanItem relaxing[] = {
+    {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
     {"relaxation", "overlapping spheres push each other apart while the box grows", "O(N log² N)"}};
 
 const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},

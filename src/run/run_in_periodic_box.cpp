@@ -13,8 +13,11 @@ namespace {
 
 /// How often a box of given size that is to be filled is tried with another number of spheres.
 constexpr int most_attempts = 6;
-/// What the next attempt leaves free of what the last one reached, so that it fits.
+/// What the second attempt leaves free of the packing fraction that the first one reached, so that it fits;
+/// every further attempt leaves twice as much.
 constexpr double caution = 5e-4;
+/// A first attempt that leaves more than this of the volume free was too small.
+constexpr double too_much_room = 5e-3;
 constexpr double most_spheres = 2147483647.0;
 
 /// The drawn sequence of radii, in the packer's unit: `count` of them, or as many as fill `volume`.
@@ -35,6 +38,15 @@ double unit_for(const std::vector<double>& radii) {
   return std::exp2(std::floor(std::log2(std::ranges::max(radii))));
 }
 
+/// The edges that the scene asks for, if it does, in the packer's unit; `edges` are the plan's.
+std::optional<Vector<dynamic>> asked_edges(const Plan& plan, double volume_of_spheres,
+                                           const Vector<dynamic>& edges) {
+  if (!plan.box_follows) return edges;
+  const std::optional<double> phi = plan.scene.target.packing_fraction;
+  if (!phi) return std::nullopt;
+  return edges * std::pow(volume_of_spheres / *phi / edges.prod(), 1.0 / static_cast<double>(edges.size()));
+}
+
 void conclude(Packing& packing, const PeriodicWork& work, StageEnd end, bool fits) {
   const auto n = grouped(packing.spheres.size());
   if (end == StageEnd::cancelled) {
@@ -45,7 +57,7 @@ void conclude(Packing& packing, const PeriodicWork& work, StageEnd end, bool fit
     packing.reason = fmt::format(
         "{} spheres need a box {:.4g} times as large by volume as the one asked for; this is the box that "
         "they need",
-        n, work.edges.prod() / *work.target_volume);
+        n, work.edges.prod() / work.target_edges->prod());
   } else if (end == StageEnd::hit_limit) {
     packing.outcome = Outcome::hit_limit;
     packing.reason = fmt::format("the last stage reached its limit with {} spheres", n);
@@ -86,9 +98,7 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
                       .effects = effects};
     for (auto& column : work.spheres.x) column.assign(radii.size(), 0);
     work.spheres.r = std::move(radii);
-    if (!plan.box_follows) work.target_volume = work.edges.prod();
-    if (plan.box_follows && target.packing_fraction)
-      work.target_volume = volume_of_spheres / *target.packing_fraction;
+    work.target_edges = asked_edges(plan, volume_of_spheres, work.edges);
     work.milestone = [&](std::string_view stage, double done, double max_overlap) {
       const double phi = volume_of_spheres / work.edges.prod();
       packing.history.push_back(
@@ -104,9 +114,10 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
       if (end == StageEnd::cancelled) break;
     }
 
-    const bool fits = !work.target_volume || work.edges.prod() <= *work.target_volume * (1 + 1e-12);
-    if (target.fill && !fits && attempt < most_attempts && end != StageEnd::cancelled) {
-      fraction = volume_of_spheres / work.edges.prod() * (1 - caution * attempt);
+    const bool fits = !work.target_edges || work.edges == *work.target_edges;
+    const bool roomy = attempt == 1 && fits && work.needed_volume < (1 - too_much_room) * work.edges.prod();
+    if (target.fill && (!fits || roomy) && attempt < most_attempts && end != StageEnd::cancelled) {
+      fraction = volume_of_spheres / work.needed_volume * (1 - std::ldexp(caution, attempt - 1));
       continue;
     }
     packing.spheres = std::move(work.spheres);

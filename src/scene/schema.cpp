@@ -313,7 +313,11 @@ Schema make_schema() {
                             .help =
                                 "fast, or reference: the published loop as it stands, a hundred times slower",
                             .otherwise = "fast",
-                            .words = {"fast", "reference"}}}}},
+                            .words = {"fast", "reference"}},
+                           {.name = "settle",
+                            .type = Type::flag,
+                            .help = "reference: what touches nothing moves to touch its nearest neighbour",
+                            .otherwise = false}}}},
   };
 }
 

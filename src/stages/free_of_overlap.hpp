@@ -1,28 +1,57 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "bernal/domain/boundary.hpp"
+#include "neighbors/cell_grid.hpp"
 
 namespace bernal {
 
-/// The smallest factor, to rounding on the safe side, by which a periodic box and its centres have to grow so
-/// that no two spheres overlap, nor a sphere its own image: the largest (ri + rj) / d over all pairs. Below 1
+/// The smallest factor, to rounding, by which a periodic box and its centres have to grow so that no two
+/// spheres overlap, nor a sphere its own image: the largest (ri + rj) / d over all pairs of images. Below 1
 /// where there is room to shrink. Infinite where two centres coincide.
+///
+/// Only pairs that could raise the factor found so far are looked at; spheres come in the order of falling
+/// radii, so that none has to look far for a larger one. Precondition: there are spheres.
+/// Cost: O(N) where the spheres are about in contact, O(N log N) where they are thinly spread.
 template <int D>
-double factor_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edges) {
+double contact_factor(const Spheres<D>& spheres, const Vector<D>& edges) {
   const Boundary<D> boundary{edges};
-  double factor = 0;
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    factor = std::max(factor, 2 * spheres.r[i] / edges.minCoeff());
-    for (std::size_t j = i + 1; j < spheres.size(); ++j) {
-      const double d = boundary.minimum_image(spheres.center(i) - spheres.center(j)).norm();
-      factor = std::max(factor, (spheres.r[i] + spheres.r[j]) / d);
-    }
+  const auto [smallest, largest] = std::ranges::minmax(spheres.r);
+  std::vector<std::uint32_t> order(spheres.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::stable_sort(order, [&](auto i, auto j) { return spheres.r[i] > spheres.r[j]; });
+
+  CellGrid<D> grid(boundary, smallest, largest, spheres.size());
+  double factor = 2 * largest / edges.minCoeff();
+  for (const std::uint32_t i : order) {
+    const Vector<D> c = spheres.center(i);
+    const double r = spheres.r[i];
+    // d < (r + rj) / factor, less rj, for the rj up to the largest that makes it the most.
+    const double reach = r / factor + largest * std::max(0.0, 1 / factor - 1);
+    grid.for_each_near(c, reach, [&](std::uint32_t j) {
+      const double d = boundary.minimum_image(c - spheres.center(j)).norm();
+      factor = std::max(factor, (r + spheres.r[j]) / d);
+    });
+    grid.insert(i, c, r);
   }
+  return factor;
+}
+
+/// The edges, in the proportions of these, of about the smallest box in which the spheres certainly do not
+/// overlap, whatever the rounding, after `resize_box`; with `allowed` > 0, in which no overlap ratio is
+/// larger than that, but no smaller than the box at hand unless it has room to spare. Infinite or NaN where
+/// two centres coincide. Cost: as `contact_factor`.
+template <int D>
+Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edges, double allowed = 0) {
+  const double touching = contact_factor(spheres, edges);
+  const double factor = std::clamp(1.0, touching * (1 - allowed), touching);
   const double smallest = *std::ranges::min_element(spheres.r);
-  return factor * (1 + tolerance::growth(edges.maxCoeff() / smallest));
+  return edges * (factor * (1 + tolerance::growth(factor * edges.maxCoeff() / smallest)));
 }
 
 }  // namespace bernal

@@ -22,8 +22,10 @@ struct PeriodicWork {
   /// Of the box; before the spheres are placed only its proportions mean something.
   Vector<dynamic> edges;
   bool placed = false;
-  /// The volume that the box is to end with, where the scene says so.
-  std::optional<double> target_volume;
+  /// Those that the box is to end with, where the scene says so.
+  std::optional<Vector<dynamic>> target_edges = {};
+  /// Volume of the box that the spheres needed, before it grew to the one that was asked for.
+  double needed_volume = 0;
   /// Largest overlap ratio that the result may keep; 0 for none.
   double allowed_overlap = 0;
 
@@ -32,7 +34,7 @@ struct PeriodicWork {
   EffectLog& effects;
   /// For the run's history and the progress bar; called at most some hundred times a stage. `fraction` is how
   /// far the stage has come, in [0, 1].
-  std::function<void(std::string_view stage, double fraction, double max_overlap)> milestone;
+  std::function<void(std::string_view stage, double fraction, double max_overlap)> milestone = {};
   std::uint64_t streams_used = 0;
 
   /// A fresh stream of random numbers for one round of a stage.

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+
 #include "stages/periodic_work.hpp"
 
 namespace bernal {
@@ -10,7 +12,11 @@ struct RelaxOptions {
   double stop = 2e-4;
   double polish = 0;
   bool reference = false;
+  bool settle = false;
 };
+
+/// T = alpha (log10 N)², rounded, at least 1 (equation 6).
+int sweeps_a_cycle(double alpha, std::size_t spheres);
 
 /// Relaxation in a periodic box (Zhao, Li & Liu 2007): spheres start at random places in a box so small that
 /// they overlap. Where spheres overlap, each is moved to the mean of the places at which it would just touch
@@ -19,8 +25,9 @@ struct RelaxOptions {
 /// < stop. Then the box grows by the last overlap, exactly: the result has none.
 ///
 /// phi0 decides how dense the result becomes: 0.86 for random close packing, 0.60 to 0.65 for random loose
-/// packing. A target volume that is larger than the result is met by moving all spheres apart in proportion;
-/// where it is much larger the spheres are relaxed in that volume instead.
+/// packing. A box that is asked for and larger than the result is met by moving all spheres apart in
+/// proportion; where it is much larger, or larger than phi0 makes it, the spheres are relaxed in that box
+/// instead. Spheres that have places already keep them, relative to the box.
 ///
 /// Cost: about alpha (log10 N)² ln(1/stop) sweeps. Cancelled, it leaves the spheres free of overlap in a box
 /// that is larger than it need be.

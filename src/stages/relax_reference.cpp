@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "bernal/core/dimension.hpp"
 #include "bernal/domain/boundary.hpp"
-#include "stages/free_of_overlap.hpp"
+#include "neighbors/cell_grid.hpp"
+#include "stages/resize_box.hpp"
 
 namespace bernal {
 namespace {
@@ -13,79 +14,133 @@ namespace {
 template <int D>
 class Loop {
  public:
-  Loop(Spheres<D> spheres, const Vector<D>& edges, Random random)
-      : spheres_(std::move(spheres)), boundary_{edges} {
-    const Bounds<D> bounds{Vector<D>::Zero(), edges};
-    for (std::size_t i = 0; i < spheres_.size(); ++i) spheres_.set_center(i, uniform_point(random, bounds));
+  Loop(Spheres<D>& spheres, Vector<D>& edges, bool settle, Random random)
+      : spheres_(spheres),
+        edges_(edges),
+        settle_(settle),
+        random_(random),
+        boundary_{edges},
+        r_max_(std::ranges::max(spheres.r)),
+        grid_(boundary_, std::ranges::min(spheres.r), r_max_, spheres.size()) {
+    for (std::size_t i = 0; i < spheres.size(); ++i)
+      grid_.insert(static_cast<Id>(i), spheres.center(i), spheres.r[i]);
   }
 
-  /// One cycle: every sphere once. Returns the largest overlap ratio that was met.
+  /// Every sphere once. Returns the largest overlap ratio that was met.
   double sweep() {
     double largest = 0;
-    for (std::size_t i = 0; i < spheres_.size(); ++i) largest = std::max(largest, push(i));
+    for (Id i = 0; i < spheres_.size(); ++i) {
+      const double overlap = push(i);
+      largest = std::max(largest, overlap);
+      if (settle_ && overlap == 0) settle(i);
+    }
     return largest;
   }
 
   void grow(double factor) {
-    boundary_.edges *= factor;
-    for (auto& column : spheres_.x)
-      for (double& x : column) x *= factor;
+    resize_box<D>(spheres_, edges_, edges_ * factor);
+    boundary_.edges = edges_;
+    grid_.rescale(edges_);
   }
 
-  const Spheres<D>& spheres() const { return spheres_; }
-  const Vector<D>& edges() const { return boundary_.edges; }
-
  private:
-  double push(std::size_t i) {
+  using Id = typename CellGrid<D>::Id;
+
+  /// Moves sphere i to the mean of the places where it would touch one of those that it overlaps. Returns the
+  /// largest of its overlap ratios, before.
+  double push(Id i) {
     const Vector<D> c = spheres_.center(i);
     Vector<D> sum = Vector<D>::Zero();
     int overlapping = 0;
     double largest = 0;
-    for (std::size_t j = 0; j < spheres_.size(); ++j) {
-      if (j == i) continue;
-      const Vector<D> away = boundary_.minimum_image(c - spheres_.center(j));
-      const double reach = spheres_.r[i] + spheres_.r[j], d = away.norm();
-      if (!(d < reach)) continue;
-      if (d > 0) sum += away * (reach / d - 1);
-      ++overlapping;
-      largest = std::max(largest, 1 - d / reach);
-    }
-    if (overlapping > 0) spheres_.set_center(i, boundary_.wrap(c + sum / overlapping));
+    grid_.for_each_near(c, spheres_.r[i], [&](Id j) {
+      if (j == i) return;  // its own images are at least its diameter away
+      const double reach = spheres_.r[i] + spheres_.r[j];
+      for_each_image(c - spheres_.center(j), reach, [&](const Vector<D>& away) {
+        const double squared = away.squaredNorm();
+        if (!(squared < reach * reach)) return;
+        const double d = std::sqrt(squared);
+        sum += d > 0 ? Vector<D>(away * (reach / d - 1)) : Vector<D>(reach * uniform_direction<D>(random_));
+        ++overlapping;
+        largest = std::max(largest, 1 - d / reach);
+      });
+    });
+    if (overlapping > 0) move(i, c + sum / overlapping);
     return largest;
   }
 
-  Spheres<D> spheres_;
+  /// Moves sphere i, which overlaps nothing, towards the one across the smallest gap until they touch. As all
+  /// other gaps are wider, it overlaps nothing then either.
+  void settle(Id i) {
+    const Vector<D> c = spheres_.center(i);
+    const double farthest = edges_.norm();
+    double gap = std::numeric_limits<double>::infinity();
+    Vector<D> towards = Vector<D>::Zero();
+    for (double within = r_max_; !(gap <= within) && within < 2 * farthest; within *= 2) {
+      grid_.for_each_near(c, spheres_.r[i] + within, [&](Id j) {
+        if (j == i) return;
+        const Vector<D> way = boundary_.minimum_image(spheres_.center(j) - c);
+        const double d = way.norm();
+        if (!(d - spheres_.r[i] - spheres_.r[j] < gap)) return;
+        gap = d - spheres_.r[i] - spheres_.r[j];
+        towards = way / d;
+      });
+    }
+    if (std::isfinite(gap)) move(i, c + gap * towards);
+  }
+
+  void move(Id i, const Vector<D>& c) {
+    const Vector<D> wrapped = boundary_.wrap(c);
+    spheres_.set_center(i, wrapped);
+    grid_.move(i, wrapped);
+  }
+
+  /// Of a displacement, the images that may be shorter than `reach`: the shortest alone where the box is
+  /// wide.
+  template <class Visit>
+  void for_each_image(const Vector<D>& displacement, double reach, Visit&& visit) const {
+    if (2 * reach <= edges_.minCoeff()) {
+      visit(boundary_.minimum_image(displacement));
+    } else {
+      boundary_.for_each_image(displacement, reach, visit);
+    }
+  }
+
+  Spheres<D>& spheres_;
+  Vector<D>& edges_;
+  bool settle_;
+  Random random_;
   Boundary<D> boundary_;
+  double r_max_;
+  CellGrid<D> grid_;
 };
 
 }  // namespace
 
 template <int D>
-StageEnd relax_by_the_book(PeriodicWork& work, const RelaxOptions& options) {
-  Loop<D> loop(work.spheres.in<D>(), work.edges, work.random(Stream::relax));
-  const double decades = std::log10(static_cast<double>(work.spheres.size()));
-  const int cycles = std::max(1, static_cast<int>(std::lround(options.alpha * decades * decades)));
-  StageEnd end = StageEnd::converged;
+StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work,
+                           const RelaxOptions& options) {
+  Loop<D> loop(spheres, edges, options.settle, work.random(Stream::relax));
+  const int sweeps = sweeps_a_cycle(options.alpha, spheres.size());
+  double reported = 0;
   for (;;) {
     double molr = 0;
-    for (int cycle = 0; cycle < cycles; ++cycle) molr = loop.sweep();
-    if (molr < options.stop) break;
-    loop.grow(1 + molr / options.beta);
-    work.edges = loop.edges();
-    work.milestone("relax", std::min(0.99, std::log(molr) / std::log(options.stop)), molr);
-    if (work.monitor.stop()) {
-      end = StageEnd::cancelled;
-      break;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      if (work.monitor.stop()) return StageEnd::cancelled;
+      molr = loop.sweep();
     }
+    if (molr < options.stop) return StageEnd::converged;
+    loop.grow(1 + molr / options.beta);
+    const double done = std::log(molr) / std::log(options.stop);
+    if (done < reported) continue;
+    reported = done + 0.005;
+    work.edges = edges;
+    work.milestone("relax", std::clamp(done, 0.0, 0.99), molr);
   }
-  loop.grow(factor_free_of_overlap(loop.spheres(), loop.edges()));
-  work.edges = loop.edges();
-  work.spheres = loop.spheres();
-  work.placed = true;
-  return end;
 }
 
-#define BERNAL_INSTANTIATE(D) template StageEnd relax_by_the_book<D>(PeriodicWork&, const RelaxOptions&);
+#define BERNAL_INSTANTIATE(D) \
+  template StageEnd relax_by_the_book<D>(Spheres<D>&, Vector<D>&, PeriodicWork&, const RelaxOptions&);
 BERNAL_INSTANTIATE(1)
 BERNAL_INSTANTIATE(2)
 BERNAL_INSTANTIATE(3)

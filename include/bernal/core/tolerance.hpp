@@ -22,11 +22,15 @@ inline double skin(double radius, double resolution) {
   return std::max(relative_skin * radius, 1e3 * resolution);
 }
 
-/// Relative growth of a periodic box that outweighs the rounding of its coordinates: after centres and edges
-/// have been multiplied by a common factor, a distance d of two centres is off by at most three roundings of
-/// a coordinate on each axis of each centre and of the edge, 18 roundoffs of the longest edge in three
-/// dimensions and 48 in eight. Twice that, of the smallest sum of radii. `slenderness` is the longest edge
-/// over the smallest radius.
-inline double growth(double slenderness) { return 48 * roundoff * slenderness; }
+/// Relative growth of a periodic box of D <= 8 dimensions that outweighs the rounding of its coordinates,
+/// when it grows by the largest s / d of a pair, s being the sum of radii and d the distance, and then has
+/// the longest edge L; `slenderness` is L over the smallest radius.
+///
+/// In roundoffs, on each axis: the two centres are off by at most 2 L each after `resize_box`, the edge
+/// between images by L, and the difference of which d was found by L. All axes together: 6 sqrt(D) L <= 17 L.
+/// Squares, sum, root, quotient and product add D/2 + 6 <= 10 relative to s. Relative to s, which is at least
+/// twice the smallest radius r, and with L >= 2 r: 17 L / 2 r + 10 <= 13.5 L / r. This is a little more than
+/// twice that.
+inline double growth(double slenderness) { return 32 * roundoff * slenderness; }
 
 }  // namespace bernal::tolerance

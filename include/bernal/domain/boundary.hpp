@@ -14,7 +14,7 @@ struct Boundary {
   /// The image of p with every periodic component in [0, edge).
   Vector<D> wrap(Vector<D> p) const {
     for (int k = 0; k < p.size(); ++k) {
-      if (!(edges[k] > 0)) continue;
+      if (!(edges[k] > 0) || (p[k] >= 0 && p[k] < edges[k])) continue;
       p[k] -= edges[k] * std::floor(p[k] / edges[k]);
       if (!(p[k] < edges[k])) p[k] = 0;  // a tiny negative number rounds to the edge itself
     }
@@ -23,9 +23,28 @@ struct Boundary {
   /// The shortest of all images of a displacement, to rounding; each component in [-edge/2, edge/2].
   Vector<D> minimum_image(Vector<D> d) const {
     for (int k = 0; k < d.size(); ++k) {
-      if (edges[k] > 0) d[k] -= edges[k] * std::nearbyint(d[k] / edges[k]);
+      if (std::abs(d[k]) > 0.5 * edges[k] && edges[k] > 0) d[k] -= edges[k] * std::nearbyint(d[k] / edges[k]);
     }
     return d;
+  }
+  /// Calls visit(image) for every image of the displacement d whose components are all below `reach`, and
+  /// perhaps for some on that limit. Precondition: every axis is periodic.
+  /// Cost: the product over the axes of 2 reach / edge, rounded up.
+  template <class Visit>
+  void for_each_image(const Vector<D>& d, double reach, Visit&& visit) const {
+    Vector<D> lowest = d;
+    for (int k = 0; k < d.size(); ++k) lowest[k] -= edges[k] * std::floor((d[k] + reach) / edges[k]);
+    if (!(lowest.maxCoeff() <= reach)) return;
+    for (Vector<D> image = lowest;;) {
+      visit(image);
+      int k = 0;
+      for (; k < d.size(); ++k) {
+        image[k] += edges[k];
+        if (image[k] <= reach) break;
+        image[k] = lowest[k];
+      }
+      if (k == d.size()) return;
+    }
   }
 };
 
