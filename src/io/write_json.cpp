@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bernal/io/certificate_json.hpp"
 #include "io/report.hpp"
 
 namespace bernal {
@@ -22,21 +23,6 @@ Json container_json(const Shape& shape) {
           {"bounds", {{"lower", json_of(bounds.lower)}, {"upper", json_of(bounds.upper)}}}};
 }
 
-Json certificate_json(const Certificate& c) {
-  const bool any_pair = c.worst_pair[0] != c.worst_pair[1];
-  return {{"statement", c.statement},
-          {"pairs_tested", c.pairs_tested},
-          {"walls_tested", c.walls_tested},
-          {"centers_tested", c.centers_tested},
-          {"decided_double", c.decided_double},
-          {"decided_exact", c.decided_exact},
-          {"overlapping_pairs", c.overlapping_pairs},
-          {"protruding_spheres", c.protruding_spheres},
-          {"worst_pair", any_pair ? Json::array({c.worst_pair[0], c.worst_pair[1]}) : Json()},
-          {"worst_wall", c.worst_wall},
-          {"seconds", c.seconds}};
-}
-
 std::uint64_t peak_memory_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -48,6 +34,7 @@ std::uint64_t peak_memory_bytes() {
 std::string json_of(const Report& report) {
   const Packing& packing = report.packing;
   const Certificate& certificate = report.certificate;
+  const Json of_certificate = Json::parse(json_of(certificate));
   const Contacts& contacts = report.contacts;
 
   const PeriodicBox* box = std::get_if<PeriodicBox>(&packing.domain);
@@ -80,9 +67,9 @@ std::string json_of(const Report& report) {
       {"wall_contacts", contacts.walls},
       {"rattlers", contacts.rattlers},
       {"max_overlap", certificate.max_overlap},
-      {"min_wall_gap", certificate.min_wall_gap},
+      {"min_wall_gap", of_certificate["min_wall_gap"]},
       {"certified", certificate.certified},
-      {"certificate", certificate_json(certificate)},
+      {"certificate", of_certificate},
       box ? Json::object_t::value_type("box", box_json(*box))
           : Json::object_t::value_type("container", container_json(std::get<Shape>(packing.domain))),
       {"hash", report.hash},
