@@ -1,119 +1,103 @@
-#include <algorithm>
-#include <vector>
+#include "bernal/measure/contacts.hpp"
 
-#include "bernal/cad/mesh_container.hpp"
-#include "bernal/domain/container.hpp"
-#include "bernal/measure/measure.hpp"
-#include "neighbors/cell_grid.hpp"
+#include <algorithm>
+
+#include "measure/touching.hpp"
 
 namespace bernal {
 namespace {
 
-constexpr int contacts_that_hold = 4;
-
-struct Touching {
-  std::uint32_t first, second;
-};
-
-/// Spheres and wall in the container's own frame, where rounding errors are as small as they can be: far from
-/// the origin the scene's coordinates would lose the digits that tell a contact from a gap.
-struct Local {
-  Spheres<3> spheres;
-  std::unique_ptr<Container> container;
-};
-
-Local localised(const Packing& packing) {
-  const Frame frame = frame_of(std::get<Shape>(packing.domain));
-  const Shape shape = to_local(std::get<Shape>(packing.domain), frame);
-  Local local;
-  local.spheres.reserve(packing.spheres.size());
-  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
-    local.spheres.push_back(frame.to_local(packing.spheres.center(i)), packing.spheres.r[i] / frame.scale);
-  }
-  const Mesh* mesh = std::get_if<Mesh>(&shape);
-  local.container = mesh ? make_mesh_container(*mesh, WallArithmetic::plain, frame.resolution)
-                         : make_analytic_container(shape, WallArithmetic::plain, frame.resolution);
-  return local;
-}
-
-std::vector<Touching> touching_pairs(const Spheres<3>& spheres, const Bounds<3>& bounds, double contact_gap) {
-  const auto [least, most] = std::ranges::minmax(spheres.r);
-  CellGrid<3> grid(bounds, least, most, spheres.size());
-  std::vector<Touching> pairs;
-  // Each pair is met when its second sphere, the smaller one, comes: it need not reach far for the larger.
-  std::vector<std::uint32_t> order(spheres.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::ranges::stable_sort(order,
-                           [&](std::uint32_t i, std::uint32_t j) { return spheres.r[i] > spheres.r[j]; });
-  for (const std::uint32_t i : order) {
-    const Vector<3> c = spheres.center(i);
-    const double r = spheres.r[i];
-    // d < (1 + gap)(r + r_j) with r_j up to the largest.
-    const double reach = r + contact_gap * (r + most);
-    grid.for_each_near(c, reach, [&](std::uint32_t j) {
-      if ((spheres.center(j) - c).norm() - (r + spheres.r[j]) < contact_gap * (r + spheres.r[j])) {
-        pairs.push_back({i, j});
-      }
-    });
-    grid.insert(i, c, r);
-  }
-  return pairs;
-}
-
-std::vector<int> wall_contacts(const Local& local, double contact_gap) {
-  std::vector<int> counts;
-  std::vector<WallPoint> points;
-  for (std::size_t i = 0; i < local.spheres.size(); ++i) {
-    const double reach = (1 + contact_gap) * local.spheres.r[i];
-    points.clear();
-    local.container->walls_near(local.spheres.center(i), reach, points);
-    counts.push_back(static_cast<int>(
-        std::ranges::count_if(points, [&](const WallPoint& p) { return p.clearance < reach; })));
-  }
-  return counts;
-}
-
-/// Takes out spheres that too few contacts hold, until every one that is left is held; returns how many.
-std::uint64_t count_rattlers(std::vector<int> held, const std::vector<Touching>& pairs) {
-  std::vector<std::size_t> start(held.size() + 1, 0);  // of each sphere's neighbours in one flat list
-  for (const auto& [i, j] : pairs) {
-    ++start[i];
-    ++start[j];
-  }
-  for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
-  std::vector<std::uint32_t> neighbours(2 * pairs.size());
-  for (const auto& [i, j] : pairs) {
-    neighbours[--start[i]] = j;
-    neighbours[--start[j]] = i;
-  }
-  std::vector<std::uint32_t> loose;
-  for (std::uint32_t i = 0; i < held.size(); ++i) {
-    held[i] += static_cast<int>(start[i + 1] - start[i]);
-    if (held[i] < contacts_that_hold) loose.push_back(i);
-  }
-  for (std::size_t k = 0; k < loose.size(); ++k) {
-    for (std::size_t n = start[loose[k]]; n < start[loose[k] + 1]; ++n) {
-      if (held[neighbours[n]]-- == contacts_that_hold) loose.push_back(neighbours[n]);
+/// Who touches whom, both ways, in one flat list.
+class Neighbours {
+ public:
+  Neighbours(std::size_t spheres, const std::vector<NearPair>& pairs) : start_(spheres + 1, 0) {
+    const auto holds = [](const NearPair& pair) { return pair.first != pair.second; };
+    for (const NearPair& pair : pairs) {
+      if (!holds(pair)) continue;
+      ++start_[pair.first];
+      ++start_[pair.second];
+    }
+    for (std::size_t k = 1; k < start_.size(); ++k) start_[k] += start_[k - 1];
+    list_.resize(start_.back());
+    for (const NearPair& pair : pairs) {
+      if (!holds(pair)) continue;
+      list_[--start_[pair.first]] = pair.second;
+      list_[--start_[pair.second]] = pair.first;
     }
   }
-  return loose.size();
+  std::span<const std::uint32_t> of(std::size_t i) const {
+    return {list_.data() + start_[i], list_.data() + start_[i + 1]};
+  }
+
+ private:
+  std::vector<std::size_t> start_;
+  std::vector<std::uint32_t> list_;
+};
+
+/// Which spheres are no rattlers. `held` starts as the number of walls that each touches.
+std::vector<bool> backbone_of(int dimension, std::vector<int> held, const std::vector<NearPair>& pairs) {
+  const int needed = dimension + 1;
+  const Neighbours neighbours(held.size(), pairs);
+  std::vector<std::uint32_t> loose;
+  for (std::uint32_t i = 0; i < held.size(); ++i) {
+    held[i] += static_cast<int>(neighbours.of(i).size());
+    if (held[i] < needed) loose.push_back(i);
+  }
+  std::vector<bool> backbone(held.size(), true);
+  for (std::size_t k = 0; k < loose.size(); ++k) {
+    backbone[loose[k]] = false;
+    for (const std::uint32_t j : neighbours.of(loose[k]))
+      if (held[j]-- == needed) loose.push_back(j);
+  }
+  return backbone;
+}
+
+Contacts count(const Packing& packing, const std::vector<NearPair>& pairs, const std::vector<NearWall>& walls,
+               double contact_gap) {
+  const int dimension = packing.spheres.dimension();
+  const auto n = static_cast<double>(packing.spheres.size());
+  std::vector<int> held(packing.spheres.size(), 0);
+  for (const NearWall& wall : walls) ++held[wall.sphere];
+  const std::vector<bool> backbone = backbone_of(dimension, held, pairs);
+
+  Contacts contacts;
+  contacts.contact_gap = contact_gap;
+  contacts.pairs = pairs.size();
+  contacts.walls = walls.size();
+  contacts.coordination = n > 0 ? 2.0 * static_cast<double>(pairs.size()) / n : 0;
+  contacts.backbone = static_cast<std::uint64_t>(std::ranges::count(backbone, true));
+  contacts.rattlers = packing.spheres.size() - contacts.backbone;
+  for (const NearPair& pair : pairs) contacts.backbone_pairs += backbone[pair.first] && backbone[pair.second];
+  for (const NearWall& wall : walls) contacts.backbone_walls += backbone[wall.sphere];
+  if (contacts.backbone == 0) return contacts;
+  contacts.backbone_coordination =
+      2.0 * static_cast<double>(contacts.backbone_pairs) / static_cast<double>(contacts.backbone);
+  if (std::holds_alternative<PeriodicBox>(packing.domain))
+    contacts.isostatic = static_cast<std::uint64_t>(dimension) * (contacts.backbone - 1) + 1;
+  return contacts;
 }
 
 }  // namespace
 
 Contacts measure_contacts(const Packing& packing, double contact_gap) {
-  Contacts contacts{.contact_gap = contact_gap};
-  if (packing.spheres.empty()) return contacts;
-  const Local local = localised(packing);
-  const std::vector<Touching> pairs = touching_pairs(local.spheres, local.container->bounds(), contact_gap);
-  const std::vector<int> walls = wall_contacts(local, contact_gap);
+  return measure_contacts(packing, {&contact_gap, 1}).front();
+}
 
-  contacts.pairs = pairs.size();
-  for (const int count : walls) contacts.walls += static_cast<std::uint64_t>(count);
-  contacts.coordination =
-      2.0 * static_cast<double>(pairs.size()) / static_cast<double>(packing.spheres.size());
-  contacts.rattlers = count_rattlers(walls, pairs);
-  return contacts;
+std::vector<Contacts> measure_contacts(const Packing& packing, std::span<const double> contact_gaps) {
+  if (contact_gaps.empty()) return {};
+  const double widest = std::ranges::max(contact_gaps);
+  const std::vector<NearPair> pairs = near_pairs(packing, widest);
+  const std::vector<NearWall> walls = near_walls(packing, widest);
+  std::vector<Contacts> all;
+  for (const double gap : contact_gaps) {
+    const auto touches = [gap](const auto& near) { return near.gap < gap; };
+    std::vector<NearPair> touching_pairs;
+    std::vector<NearWall> touching_walls;
+    std::ranges::copy_if(pairs, std::back_inserter(touching_pairs), touches);
+    std::ranges::copy_if(walls, std::back_inserter(touching_walls), touches);
+    all.push_back(count(packing, touching_pairs, touching_walls, gap));
+  }
+  return all;
 }
 
 }  // namespace bernal

@@ -158,6 +158,7 @@ StageEnd run_relax(const Spec& s, PeriodicWork& work) {
 }
 
 const PlanItem relaxing[] = {
+    {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
     {"relaxation", "overlapping spheres push each other apart while the box grows", "O(N log² N)"}};
 
 const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},

@@ -5,6 +5,7 @@
 
 #include "bernal/core/dimension.hpp"
 #include "stages/free_of_overlap.hpp"
+#include "stages/relax_fast.hpp"
 #include "stages/relax_reference.hpp"
 #include "stages/resize_box.hpp"
 
@@ -95,6 +96,16 @@ bool fits(const Spheres<D>& spheres, const Vector<D>& edges, const Vector<D>& ta
   return (target.array() >= edges.array() * (1 + rounding)).all();
 }
 
+/// On a line, where a sphere has two contacts, the steps of the fast path are too long to converge.
+template <int D>
+StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
+  if constexpr (D == 2 || D == 3) {
+    if (!options.reference && fast_path_exists<D>(spheres, edges))
+      return relax_fast<D>(spheres, edges, work, options);
+  }
+  return relax_by_the_book<D>(spheres, edges, work, options);
+}
+
 template <int D>
 StageEnd relax_in(PeriodicWork& work, const RelaxOptions& options) {
   Spheres<D> spheres = work.spheres.in<D>();
@@ -105,7 +116,8 @@ StageEnd relax_in(PeriodicWork& work, const RelaxOptions& options) {
   const int most_starts = is_loose(work) ? most_starts_in_a_loose_box : 1;
   StageEnd end = StageEnd::converged;
   for (int starts = 1;; ++starts) {
-    end = relax_by_the_book<D>(spheres, edges, work, options);
+    work.edges = edges;
+    end = push_apart<D>(spheres, edges, work, options);
     free_of_overlap<D>(spheres, edges, work);
     if (end != StageEnd::converged || starts == most_starts || fits<D>(spheres, edges, *work.target_edges))
       break;
@@ -122,6 +134,11 @@ StageEnd relax_in(PeriodicWork& work, const RelaxOptions& options) {
 }
 
 }  // namespace
+
+int sweeps_a_cycle(double alpha, std::size_t spheres) {
+  const double decades = std::log10(static_cast<double>(spheres));
+  return std::max(1, static_cast<int>(std::lround(alpha * decades * decades)));
+}
 
 StageEnd relax(PeriodicWork& work, const RelaxOptions& options) {
   EffectTimer timer(work.effects["relaxation"]);

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <optional>
 
 #include "stages/periodic_work.hpp"
@@ -8,12 +9,16 @@ namespace bernal {
 struct RelaxOptions {
   double alpha = 17;
   double beta = 30;
-  std::optional<double> phi0 = {};  ///< absent: 0.86 in three dimensions, as far above close packing in others
+  std::optional<double> phi0 =
+      {};  ///< absent: 0.86 in three dimensions, as far above close packing in others
   double stop = 2e-4;
   double polish = 0;
   bool reference = false;
   bool settle = false;
 };
+
+/// T = alpha (log10 N)², rounded, at least 1 (equation 6).
+int sweeps_a_cycle(double alpha, std::size_t spheres);
 
 /// Relaxation in a periodic box (Zhao, Li & Liu 2007): spheres start at random places in a box so small that
 /// they overlap. Where spheres overlap, each is moved to the mean of the places at which it would just touch

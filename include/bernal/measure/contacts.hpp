@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bernal/run/packing.hpp"
+
+namespace bernal {
+
+/// What touches what. A *contact* is a pair (or a sphere and a wall) whose gap is below `contact_gap`:
+/// gap ratio = (d - ri - rj) / (ri + rj) for a pair, (clearance - r) / r for a wall. In a periodic box every
+/// image of a pair that touches is a contact, and a sphere may touch its own image.
+///
+/// *Rattlers* are spheres that fewer than D + 1 contacts hold, taken out one after the other until every one
+/// that is left is held; a sphere is not held by its own image. What is left is the *backbone*.
+struct Contacts {
+  double contact_gap = 0.002;
+  std::uint64_t pairs = 0;  ///< sphere-sphere contacts
+  std::uint64_t walls = 0;  ///< sphere-wall contacts, one a facet, edge or corner
+  std::uint64_t rattlers = 0;
+  double coordination = 0;  ///< mean number of sphere contacts of a sphere: 2 pairs / N
+
+  std::uint64_t backbone = 0;        ///< spheres that are no rattlers
+  std::uint64_t backbone_pairs = 0;  ///< contacts among them
+  std::uint64_t backbone_walls = 0;
+  double backbone_coordination = 0;  ///< 2 backbone_pairs / backbone
+  /// Contacts that just hold the backbone of a frictionless packing in a periodic box: D (backbone - 1)
+  /// displacements and the size of the box, D (backbone - 1) + 1. Absent in a container, where it depends on
+  /// what the walls and the weight do, and where there is no backbone.
+  std::optional<std::uint64_t> isostatic;
+};
+
+/// Cost O(N) for a given spread of gaps, about 0.5 µs a sphere and contact in a periodic box. The packing is
+/// in the scene's frame; nothing is changed. Any dimension, any size ratio, and boxes as small as one sphere.
+Contacts measure_contacts(const Packing&, double contact_gap = 0.002);
+
+/// The same for every one of the gaps, in their order, at the cost of the largest.
+std::vector<Contacts> measure_contacts(const Packing&, std::span<const double> contact_gaps);
+
+}  // namespace bernal

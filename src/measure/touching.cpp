@@ -1,0 +1,143 @@
+#include "measure/touching.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <span>
+
+#include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/dimension.hpp"
+#include "bernal/domain/container.hpp"
+#include "neighbors/point_grid.hpp"
+
+namespace bernal {
+namespace {
+
+/// Spheres whose radii differ by at most a factor of two, so that one grid serves them all.
+template <int D>
+struct Level {
+  double largest = 0;
+  std::vector<std::uint32_t> members;
+  std::unique_ptr<PointGrid<D>> grid;
+};
+
+/// By size, largest first; levels without spheres are left out.
+template <int D>
+std::vector<Level<D>> levels_of(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
+  constexpr std::size_t most_levels = 1100;  // from the largest double to the smallest
+  const double largest = std::ranges::max(spheres.r);
+  std::vector<Level<D>> by_octave(most_levels);
+  for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+    const double octave = std::floor(std::log2(largest / spheres.r[i]));
+    Level<D>& level = by_octave[std::min(most_levels - 1, static_cast<std::size_t>(octave))];
+    level.largest = std::max(level.largest, spheres.r[i]);
+    level.members.push_back(i);
+  }
+  std::erase_if(by_octave, [](const Level<D>& level) { return level.members.empty(); });
+  for (Level<D>& level : by_octave) {
+    level.grid = std::make_unique<PointGrid<D>>(spheres, level.members, boundary,
+                                                2 * (1 + widest_gap) * level.largest);
+  }
+  return by_octave;
+}
+
+/// Of a pair and its mirror image, seen from the other end, exactly one is counted.
+template <int D>
+bool counts(std::uint32_t i, std::uint32_t j, const Vector<D>& d) {
+  if (i != j) return i < j;
+  for (int k = 0; k < D; ++k)
+    if (d[k] != 0) return d[k] > 0;
+  return false;
+}
+
+/// The pairs of sphere i, at `c`, with spheres of its own level and of larger ones: each pair is met from its
+/// smaller end, which need not look far.
+template <int D>
+void append_pairs(const Spheres<D>& spheres, std::span<const Level<D>> levels, std::uint32_t i,
+                  const Vector<D>& c, double widest_gap, std::vector<NearPair>& out) {
+  const double r = spheres.r[i];
+  for (const Level<D>& level : levels) {
+    const bool own = &level == &levels.back();
+    const double reach = (1 + widest_gap) * (r + level.largest);
+    level.grid->for_each_near(c, reach, [&](std::uint32_t j, const Vector<D>& d) {
+      if (own && !counts<D>(i, j, d)) return;
+      const double squared = d.squaredNorm();
+      if (!(squared < reach * reach)) return;
+      const double sum = r + spheres.r[j], gap = (std::sqrt(squared) - sum) / sum;
+      if (gap < widest_gap) out.push_back({i, j, gap});
+    });
+  }
+}
+
+template <int D>
+std::vector<NearPair> pairs_among(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
+  constexpr std::size_t chunk = 4096;
+  const std::vector<Level<D>> levels = levels_of(spheres, boundary, widest_gap);
+  std::vector<NearPair> pairs;
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    const PointGrid<D>& grid = *levels[l].grid;
+    const std::size_t n = grid.ids().size();
+    std::vector<std::vector<NearPair>> found((n + chunk - 1) / chunk);
+    oneapi::tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t part) {
+      for (std::size_t place = part * chunk; place < std::min(n, (part + 1) * chunk); ++place) {
+        append_pairs<D>(spheres, std::span(levels).first(l + 1), grid.ids()[place], grid.point(place),
+                        widest_gap, found[part]);
+      }
+    });
+    for (const std::vector<NearPair>& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
+  }
+  return pairs;
+}
+
+/// Spheres and wall in the container's own frame, where rounding errors are as small as they can be: far from
+/// the origin the scene's coordinates would lose the digits that tell a contact from a gap.
+Spheres<3> localised(const Spheres<dynamic>& spheres, const Frame& frame) {
+  Spheres<3> local;
+  local.reserve(spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    local.push_back(frame.to_local(spheres.center(i)), spheres.r[i] / frame.scale);
+  }
+  return local;
+}
+
+std::unique_ptr<Container> localised(const Shape& scene_shape, const Frame& frame) {
+  const Shape shape = to_local(scene_shape, frame);
+  const Mesh* mesh = std::get_if<Mesh>(&shape);
+  return mesh ? make_mesh_container(*mesh, WallArithmetic::plain, frame.resolution)
+              : make_analytic_container(shape, WallArithmetic::plain, frame.resolution);
+}
+
+}  // namespace
+
+std::vector<NearPair> near_pairs(const Packing& packing, double widest_gap) {
+  if (packing.spheres.empty()) return {};
+  if (const Shape* shape = std::get_if<Shape>(&packing.domain))
+    return pairs_among<3>(localised(packing.spheres, frame_of(*shape)), {}, widest_gap);
+  return with_dimension(packing.spheres.dimension(), EveryDimension{}, [&](auto dimension) {
+    constexpr int D = dimension;
+    return pairs_among<D>(packing.spheres.in<D>(), {std::get<PeriodicBox>(packing.domain).edges}, widest_gap);
+  });
+}
+
+std::vector<NearWall> near_walls(const Packing& packing, double widest_gap) {
+  const Shape* shape = std::get_if<Shape>(&packing.domain);
+  if (!shape || packing.spheres.empty()) return {};
+  const Frame frame = frame_of(*shape);
+  const std::unique_ptr<Container> container = localised(*shape, frame);
+  const Spheres<3> spheres = localised(packing.spheres, frame);
+  std::vector<NearWall> near;
+  std::vector<WallPoint> points;
+  for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+    const double r = spheres.r[i], reach = (1 + widest_gap) * r;
+    points.clear();
+    container->walls_near(spheres.center(i), reach, points);
+    for (const WallPoint& p : points)
+      if (p.clearance < reach) near.push_back({i, (p.clearance - r) / r});
+  }
+  return near;
+}
+
+}  // namespace bernal

@@ -1,0 +1,27 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "bernal/run/packing.hpp"
+
+namespace bernal {
+
+/// Two spheres, or a sphere and an image of another one or of itself.
+struct NearPair {
+  std::uint32_t first, second;
+  double gap;  ///< (d - ri - rj) / (ri + rj)
+};
+
+/// A sphere and a facet, edge or corner of the wall.
+struct NearWall {
+  std::uint32_t sphere;
+  double gap;  ///< (clearance - r) / r
+};
+
+/// Everything whose gap ratio is below `widest_gap`, each once, in an order that does not depend on the
+/// number of threads. Cost: O(N + pairs).
+std::vector<NearPair> near_pairs(const Packing&, double widest_gap);
+/// Nothing in a periodic box.
+std::vector<NearWall> near_walls(const Packing&, double widest_gap);
+
+}  // namespace bernal
