@@ -15,7 +15,6 @@ constexpr std::uint32_t nobody = 0xFFFFFFFF;
 constexpr SoftSphere gap = {{0, 0, 0}, std::numeric_limits<float>::quiet_NaN()};
 /// The share of the spheres, the largest, that is swept alone if the others are smaller.
 constexpr double share_of_large = 0.01;
-constexpr std::size_t most_levels = 24;
 /// Where no more than this share of the spheres is smaller than a level, they join it: a level costs a search
 /// for every sphere.
 constexpr double share_of_level = 0.6;
@@ -73,7 +72,8 @@ class FoundNeighbors {
 
 }  // namespace
 
-SoftLists::SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels)
+SoftLists::SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels,
+                     std::size_t max_levels)
     : kernels_(kernels), skin_(skin) {
   std::vector<float> ascending = radii;
   const auto nth = ascending.begin() + static_cast<std::ptrdiff_t>((1 - share_of_large) *
@@ -88,7 +88,7 @@ SoftLists::SoftLists(const std::vector<float>& radii, float skin, const SoftKern
     const auto smaller = std::ranges::count_if(radii, [r](float other) { return other <= r; });
     return static_cast<double>(smaller) > share_of_level * static_cast<double>(radii.size());
   };
-  for (float r = most / 2; worth_a_level(r) && level_count_ < most_levels; r /= 2) ++level_count_;
+  for (float r = most / 2; worth_a_level(r) && level_count_ < max_levels; r /= 2) ++level_count_;
 }
 
 void SoftLists::sort_into_cells(const std::vector<SoftSphere>& compact, const std::array<double, 3>& edges) {
