@@ -34,7 +34,7 @@ std::uint64_t peak_memory_bytes() {
 std::string json_of(const Report& report) {
   const Packing& packing = report.packing;
   const Certificate& certificate = report.certificate;
-  const Json of_certificate = Json::parse(json_of(certificate));
+  const Json of_certificate = Json::parse(certificate_as_json(certificate));
   const Contacts& contacts = report.contacts;
 
   const PeriodicBox* box = std::get_if<PeriodicBox>(&packing.domain);
