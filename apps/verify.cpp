@@ -89,7 +89,7 @@ int verify(const VerifyCall& call) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
   const Certificate certificate = certify(read.spheres, domain, scene.overlap);
   if (call.json)
-    fmt::print("{}\n", json_of(certificate));
+    fmt::print("{}\n", certificate_as_json(certificate));
   else
     print(certificate, scene);
   return certificate.certified ? exit_code::done : exit_code::no;

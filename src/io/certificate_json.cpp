@@ -4,7 +4,7 @@
 
 namespace bernal {
 
-std::string json_of(const Certificate& c) {
+std::string certificate_as_json(const Certificate& c) {
   using Json = nlohmann::ordered_json;  // writes NaN and infinity as null
   const Json json = {{"certified", c.certified},
                      {"statement", c.statement},

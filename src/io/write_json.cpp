@@ -27,7 +27,7 @@ std::uint64_t peak_memory_bytes() {
 std::string json_of(const Report& report) {
   const Packing& packing = report.packing;
   const Certificate& certificate = report.certificate;
-  const Json of_certificate = Json::parse(json_of(certificate));
+  const Json of_certificate = Json::parse(certificate_as_json(certificate));
 
   Json effects = Json::array();
   for (const Effect& e : packing.effects) {

@@ -1,6 +1,5 @@
 #include "run/catalogue.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -49,13 +48,12 @@ Domain make_mesh(const Scene& scene, std::string& notes) {
   return Shape(std::move(imported.mesh));
 }
 
-/// Of volume 1 where the packing is to decide.
+/// The unit cube where the scene gives no size.
 Domain make_periodic(const Scene& scene, std::string&) {
   const Spec& c = scene.container;
   PeriodicBox box{Vector<dynamic>::Constant(scene.dimension(), c.has("edge") ? c.number("edge") : 1.0)};
   if (c.has("size"))
     box.edges = Eigen::Map<const Eigen::VectorXd>(c.numbers("size").data(), scene.dimension());
-  if (c.flag("scalable")) box.edges /= std::pow(box.edges.prod(), 1.0 / scene.dimension());
   return box;
 }
 

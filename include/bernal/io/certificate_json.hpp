@@ -9,6 +9,6 @@ namespace bernal {
 /// `certificate` in report.json. Its keys are the members of Certificate. `worst_pair` is null where no two
 /// spheres are near, twice the same index for a sphere and its own image; `worst_wall` and `min_wall_gap` are
 /// null where no sphere is near a wall. Numbers that are not finite become null.
-std::string json_of(const Certificate&);
+std::string certificate_as_json(const Certificate&);
 
 }  // namespace bernal
