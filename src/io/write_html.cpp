@@ -173,7 +173,7 @@ void write_sizes(Page& page, const Report& report) {
 }
 
 void write_contacts(Page& page, const Report& report) {
-  const Contacts& c = report.contacts;
+  const Contacts& c = report.measured.contacts;
   page.add(
       "<h2>Contacts</h2>\n<p>Two spheres count as touching when the gap between them is below {:g} times the "
       "sum of their radii; a sphere and the wall when it is below {:g} of the radius.</p>\n<table>\n",
@@ -216,6 +216,7 @@ void write_history(Page& page, const Report& report) {
 
 void write_certificate(Page& page, const Report& report) {
   const Certificate& c = report.certificate;
+  const bool walls = std::holds_alternative<Shape>(report.packing.domain);
   page.raw(
       "<h2>The certificate</h2>\n<p>After writing, <code>spheres.csv</code> was read back, and every "
       "question of "
@@ -225,20 +226,21 @@ void write_certificate(Page& page, const Report& report) {
       "the answer, in exact arithmetic everywhere else. Touching is allowed.</p>\n<div "
       "class=\"wide\"><table>\n");
   page.row("pairs of spheres", grouped(c.pairs_tested), "near enough to need a decision");
-  page.row("spheres and pieces of wall", grouped(c.walls_tested), "near enough to need a decision");
-  page.row("centres", grouped(c.centers_tested), "whose side of the wall was decided");
+  if (walls) {
+    page.row("spheres and pieces of wall", grouped(c.walls_tested), "near enough to need a decision");
+    page.row("centres", grouped(c.centers_tested), "whose side of the wall was decided");
+  }
   page.row("decided in ordinary arithmetic", grouped(c.decided_double), "with a proven error bound");
   page.row("decided in exact arithmetic", grouped(c.decided_exact), "where the bound was not enough");
   page.row("overlapping pairs", grouped(c.overlapping_pairs), "");
-  page.row("spheres that stick out", grouped(c.protruding_spheres), "");
-  if (c.worst_pair[0] != c.worst_pair[1]) {
+  if (walls) page.row("spheres that stick out", grouped(c.protruding_spheres), "");
+  if (c.worst_pair) {
     page.row("closest pair", fmt::format("{:.3g}", -c.max_overlap),
-             fmt::format("its gap over the sum of its radii; spheres {} and {}, counted from 0",
-                         c.worst_pair[0], c.worst_pair[1]));
+             fmt::format("its gap over the sum of its radii; spheres {}, counted from 0", worst_pair_text(c)));
   }
-  if (c.walls_tested > 0) {
+  if (c.worst_wall) {
     page.row("closest to the wall", fmt::format("{:.3g}", c.min_wall_gap),
-             fmt::format("gap over radius; sphere {}, counted from 0", c.worst_wall));
+             fmt::format("gap over radius; sphere {}, counted from 0", *c.worst_wall));
   }
   page.row("time", seconds_text(c.seconds), "");
   page.raw("</table></div>\n<p class=\"dim\">To repeat it: <code>bernal verify</code> on this folder.</p>\n");

@@ -8,8 +8,11 @@
 namespace bernal {
 namespace {
 
-/// From 5.5 on contacts get lost; 3 costs 0.004 of packing fraction.
-constexpr float omega = 5;
+/// Over-relaxation. At six contacts a sweep stops being stable at 6; nearer to that it agitates the spheres,
+/// which finds denser packings while they are crowded, and loses contacts when they come to rest. 3 instead
+/// of 5 costs 0.004 of packing fraction.
+constexpr float omega_crowded = 5.4f, omega_settling = 5;
+constexpr double crowded = 0.06;
 /// Where the overlap falls linearly with the growth of the box. Earlier, prediction costs contacts.
 constexpr double predictable = 3e-3;
 constexpr double share_of_prediction = 0.9;
@@ -57,12 +60,13 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, c
   const double stop = std::max({share_of_stop * options.stop, work.allowed_overlap, least_overlap});
   Growth growth(options.beta);
   StageEnd end = StageEnd::converged;
-  for (;;) {
+  for (double molr = 1;;) {
+    const float omega = molr > crowded ? omega_crowded : omega_settling;
     for (int k = 1; k < sweeps && end == StageEnd::converged; ++k) {
       packing.sweep(omega);
       if (work.monitor.stop()) end = StageEnd::cancelled;
     }
-    const double molr = packing.sweep_and_measure(omega);
+    molr = packing.sweep_and_measure(omega);
     if (end == StageEnd::cancelled || molr < stop) break;
     const double factor = 1 + growth.next(molr);
     packing.grow(factor);

@@ -7,7 +7,7 @@
 
 #include "bernal/core/dimension.hpp"
 #include "stages/relax.hpp"
-#include "support/periodic_oracle.hpp"
+#include "support/nearest_images.hpp"
 #include "support/plans.hpp"
 
 // Relaxation where there are few spheres, small boxes, bad starts or extreme sizes: it ends by itself, and

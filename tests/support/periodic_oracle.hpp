@@ -1,97 +1,76 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
+#include <optional>
+#include <vector>
 
-#include <boost/multiprecision/cpp_int.hpp>
+#include "bernal/domain/domain.hpp"
+#include "support/packing_oracle.hpp"
 
-#include "bernal/core/random.hpp"
-#include "bernal/core/spheres.hpp"
-#include "bernal/core/vector.hpp"
-
-// What is true of spheres in a periodic box: all pairs, the nearest image of each, rational arithmetic.
+// What is true of a packing in a periodic box, from the definition: all pairs, all images, rational numbers.
 
 namespace bernal::oracle {
 
-/// Squared distance from the nearest image of centre j to centre i; for j = i from the nearest image that is
-/// not the sphere itself. Exact.
-template <int D>
-boost::multiprecision::cpp_rational squared_image_distance(const Spheres<D>& s, const Vector<D>& edges,
-                                                           std::size_t i, std::size_t j) {
-  using Rational = boost::multiprecision::cpp_rational;
-  if (i == j) {
-    const Rational edge(edges.minCoeff());
-    return edge * edge;
+/// Every n edge + d that can be the nearest to zero, and some more: n runs from -m to m with m edges > |d|.
+inline std::vector<Rational> images(double a, double b, double edge) {
+  const Rational d = Rational(a) - Rational(b), period(edge);
+  std::vector<Rational> all{d};
+  for (Rational n = 1; n == 1 || (n - 1) * period <= abs(d); n += 1) {
+    all.push_back(d + n * period);
+    all.push_back(d - n * period);
   }
-  Rational sum = 0;
-  for (std::size_t k = 0; k < D; ++k) {
-    const Rational edge(edges[static_cast<int>(k)]);
-    Rational d = abs(Rational(s.x[k][i]) - Rational(s.x[k][j]));
-    d = std::min(d, Rational(abs(d - edge)));  // both lie in [0, edge)
-    sum += d * d;
-  }
-  return sum;
+  return all;
 }
 
-/// Pairs that overlap, a sphere and its own image among them; exact. Precondition: centres in [0, edges).
-template <int D>
-std::uint64_t overlapping_pairs(const Spheres<D>& s, const Vector<D>& edges) {
-  std::uint64_t count = 0;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    for (std::size_t j = i; j < s.size(); ++j) {
-      const boost::multiprecision::cpp_rational reach =
-          boost::multiprecision::cpp_rational(s.r[i]) + boost::multiprecision::cpp_rational(s.r[j]);
-      // Double precision is enough for most.
-      double squared = 0;
-      for (std::size_t k = 0; k < D && i != j; ++k) {
-        const double d = std::remainder(s.x[k][i] - s.x[k][j], edges[static_cast<int>(k)]);
-        squared += d * d;
-      }
-      const double sum = s.r[i] + s.r[j];
-      if (squared > 1.001 * sum * sum) continue;
-      count += squared_image_distance(s, edges, i, j) < reach * reach ? 1 : 0;
+/// The least squared distance over all image vectors; of a sphere from itself, over all but the one to
+/// itself.
+inline Rational least_squared_distance(const Spheres<dynamic>& s, std::size_t i, std::size_t j,
+                                       const Vector<dynamic>& edges) {
+  std::vector<std::vector<Rational>> offsets;
+  for (int k = 0; k < s.dimension(); ++k) offsets.push_back(images(s.x[k][i], s.x[k][j], edges[k]));
+  std::optional<Rational> least;
+  const auto try_all = [&](const auto& self, std::size_t axis, const Rational& so_far) -> void {
+    if (axis == offsets.size()) {
+      if (i == j && so_far == 0) return;
+      if (!least || so_far < *least) least = so_far;
+      return;
     }
-  }
-  return count;
+    for (const Rational& offset : offsets[axis]) self(self, axis + 1, so_far + offset * offset);
+  };
+  try_all(try_all, 0, 0);
+  return *least;
 }
 
-/// The largest (ri + rj) / d, from all pairs.
-template <int D>
-double contact_factor(const Spheres<D>& s, const Vector<D>& edges) {
-  double factor = 0;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    factor = std::max(factor, 2 * s.r[i] / edges.minCoeff());
-    for (std::size_t j = i + 1; j < s.size(); ++j) {
-      double squared = 0;
-      for (std::size_t k = 0; k < D; ++k) {
-        const double d = std::remainder(s.x[k][i] - s.x[k][j], edges[static_cast<int>(k)]);
-        squared += d * d;
-      }
-      factor = std::max(factor, (s.r[i] + s.r[j]) / std::sqrt(squared));
-    }
+/// On every axis some images of the two balls have coordinates in common, or miss that by `margin` times the
+/// largest number; of a ball with itself, on an axis with another image than the ball.
+inline bool images_touch(const Spheres<dynamic>& s, std::size_t i, std::size_t j,
+                         const Vector<dynamic>& edges, double margin = 0) {
+  const Rational reach = Rational(s.r[i]) + Rational(s.r[j]);
+  if (i == j) return reach >= Rational(edges.minCoeff());
+  for (int k = 0; k < s.dimension(); ++k) {
+    const Rational a(s.x[k][i]), b(s.x[k][j]);
+    const Rational size = std::max(abs(a), abs(b)) + reach + Rational(edges[k]);
+    const auto near = [&](const Rational& d) { return abs(d) <= reach + Rational(margin) * size; };
+    if (std::ranges::none_of(images(s.x[k][i], s.x[k][j], edges[k]), near)) return false;
   }
-  return factor;
-}
-
-template <int D>
-bool centers_in_box(const Spheres<D>& s, const Vector<D>& edges) {
-  for (std::size_t k = 0; k < D; ++k)
-    for (const double x : s.x[k])
-      if (!(x >= 0 && x < edges[static_cast<int>(k)])) return false;
   return true;
 }
 
-/// `n` spheres anywhere in the box, as many in every octave of radii.
-template <int D>
-Spheres<D> anywhere(std::size_t n, double r_min, double r_max, const Vector<D>& edges, std::uint64_t seed) {
-  Random random(seed, stream(Stream::test));
-  Spheres<D> spheres;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double r = std::clamp(r_min * std::pow(r_max / r_min, random.uniform()), r_min, r_max);
-    spheres.push_back(uniform_point(random, Bounds<D>{Vector<D>::Zero(), edges}), r);
-  }
-  return spheres;
+inline Verdict judge(const Spheres<dynamic>& s, const PeriodicBox& box, double allowed = 0) {
+  Verdict v;
+  v.max_overlap = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < s.size(); ++i)
+    for (std::size_t j = i; j < s.size(); ++j) {
+      const Rational squared = least_squared_distance(s, i, j, box.edges);
+      const Rational sum = Rational(s.r[i]) + Rational(s.r[j]), reach = (1 - Rational(allowed)) * sum;
+      v.overlapping += squared < reach * reach ? 1 : 0;
+      const bool near = images_touch(s, i, j, box.edges);
+      v.near_at_least += near ? 1 : 0;
+      v.near_at_most += near || images_touch(s, i, j, box.edges, 0x1p-50) ? 1 : 0;
+      const double ratio = std::sqrt(Rational(squared / (sum * sum)).convert_to<double>());
+      if (near) v.max_overlap = std::max(v.max_overlap, 1 - ratio);
+    }
+  return v;
 }
 
 }  // namespace bernal::oracle

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "stages/resize_box.hpp"
-#include "support/periodic_oracle.hpp"
+#include "support/nearest_images.hpp"
 
 // How far a box must grow: against all pairs, and proved with rational numbers.
 namespace bernal {

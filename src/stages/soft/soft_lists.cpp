@@ -1,10 +1,12 @@
 #include "stages/soft/soft_lists.hpp"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 namespace bernal {
 namespace {
@@ -14,6 +16,9 @@ constexpr SoftSphere gap = {{0, 0, 0}, std::numeric_limits<float>::quiet_NaN()};
 /// The share of the spheres, the largest, that is swept alone if the others are smaller.
 constexpr double share_of_large = 0.01;
 constexpr std::size_t most_levels = 24;
+/// Where no more than this share of the spheres is smaller than a level, they join it: a level costs a search
+/// for every sphere.
+constexpr double share_of_level = 0.6;
 /// Cells for each sphere of a level, at most.
 constexpr double cells_per_sphere = 2;
 constexpr std::size_t pencils_per_chain = 32;
@@ -52,6 +57,20 @@ struct Pencil {
   std::uint32_t next, end;
 };
 
+/// Room for the neighbours of the spheres of a group, as many as there may be: memory that is never touched
+/// costs nothing.
+class FoundNeighbors {
+ public:
+  explicit FoundNeighbors(std::size_t most) : most_(most + lanes) {
+    for (auto& lane : of_lane_) lane.reset(new std::uint32_t[most_]);
+  }
+  std::uint32_t* of_lane(std::size_t l) { return of_lane_[l].get(); }
+
+ private:
+  std::size_t most_;
+  std::array<std::unique_ptr<std::uint32_t[]>, lanes> of_lane_;
+};
+
 }  // namespace
 
 SoftLists::SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels)
@@ -65,7 +84,11 @@ SoftLists::SoftLists(const std::vector<float>& radii, float skin, const SoftKern
   largest_ = most;
   equal_ = least == most;
   level_count_ = 1;
-  for (float r = most / 2; r >= least && level_count_ < most_levels; r /= 2) ++level_count_;
+  const auto worth_a_level = [&](float r) {
+    const auto smaller = std::ranges::count_if(radii, [r](float other) { return other <= r; });
+    return static_cast<double>(smaller) > share_of_level * static_cast<double>(radii.size());
+  };
+  for (float r = most / 2; worth_a_level(r) && level_count_ < most_levels; r /= 2) ++level_count_;
 }
 
 void SoftLists::sort_into_cells(const std::vector<SoftSphere>& compact, const std::array<double, 3>& edges) {
@@ -185,8 +208,9 @@ void SoftLists::find_neighbors(const std::vector<SoftSphere>& spheres, const std
   groups_.resize(groups);
   rows_.resize((groups + groups_per_block - 1) / groups_per_block);
 
+  tbb::enumerable_thread_specific<FoundNeighbors> of_thread([&] { return FoundNeighbors(sorted_.size()); });
   tbb::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t block) {
-    thread_local std::vector<std::uint32_t> found[lanes];
+    FoundNeighbors& found = of_thread.local();
     const std::size_t first = block * groups_per_block, last = std::min(groups, first + groups_per_block);
     std::vector<std::uint32_t>& rows = rows_[block];
     rows.clear();
@@ -196,10 +220,9 @@ void SoftLists::find_neighbors(const std::vector<SoftSphere>& spheres, const std
       for (std::size_t l = 0; l < lanes; ++l) {
         const SoftSphere& me = spheres[g * lanes + l];
         if (!(me.r > 0)) continue;
-        found[l].resize(sorted_.size() + lanes);
         const auto self = static_cast<std::uint32_t>(g * lanes + l);
         count[l] =
-            static_cast<std::size_t>(kernels_.search(task, me, self, found[l].data()) - found[l].data());
+            static_cast<std::size_t>(kernels_.search(task, me, self, found.of_lane(l)) - found.of_lane(l));
       }
       const std::size_t most = *std::ranges::max_element(count);
       begin[g - first] = rows.size();
@@ -207,7 +230,7 @@ void SoftLists::find_neighbors(const std::vector<SoftSphere>& spheres, const std
       rows.resize(rows.size() + most * lanes, filler);
       std::uint32_t* row = rows.data() + begin[g - first];
       for (std::size_t l = 0; l < lanes; ++l)
-        for (std::size_t k = 0; k < count[l]; ++k) row[k * lanes + l] = found[l][k];
+        for (std::size_t k = 0; k < count[l]; ++k) row[k * lanes + l] = found.of_lane(l)[k];
     }
     for (std::size_t g = first; g < last; ++g) groups_[g].first = rows.data() + begin[g - first];
   });
