@@ -131,14 +131,13 @@ void write_certificate(Page& page, const Report& report) {
   page.row("decided in exact arithmetic", grouped(c.decided_exact), "where the bound was not enough");
   page.row("overlapping pairs", grouped(c.overlapping_pairs), "");
   if (walls) page.row("spheres that stick out", grouped(c.protruding_spheres), "");
-  if (c.worst_pair[0] != c.worst_pair[1]) {
+  if (c.worst_pair) {
     page.row("closest pair", fmt::format("{:.3g}", -c.max_overlap),
-             fmt::format("its gap over the sum of its radii; spheres {} and {}, counted from 0",
-                         c.worst_pair[0], c.worst_pair[1]));
+             fmt::format("its gap over the sum of its radii; spheres {}, counted from 0", worst_pair_text(c)));
   }
-  if (c.walls_tested > 0) {
+  if (c.worst_wall) {
     page.row("closest to the wall", fmt::format("{:.3g}", c.min_wall_gap),
-             fmt::format("gap over radius; sphere {}, counted from 0", c.worst_wall));
+             fmt::format("gap over radius; sphere {}, counted from 0", *c.worst_wall));
   }
   page.row("time", seconds_text(c.seconds), "");
   page.raw("</table></div>\n<p class=\"dim\">To repeat it: <code>bernal verify</code> on this folder.</p>\n");

@@ -1,25 +1,11 @@
 #include <sys/resource.h>
 
+#include "bernal/io/certificate_json.hpp"
 #include "io/json.hpp"
 #include "io/report.hpp"
 
 namespace bernal {
 namespace {
-
-Json certificate_json(const Certificate& c) {
-  const bool any_pair = c.worst_pair[0] != c.worst_pair[1];
-  return {{"statement", c.statement},
-          {"pairs_tested", c.pairs_tested},
-          {"walls_tested", c.walls_tested},
-          {"centers_tested", c.centers_tested},
-          {"decided_double", c.decided_double},
-          {"decided_exact", c.decided_exact},
-          {"overlapping_pairs", c.overlapping_pairs},
-          {"protruding_spheres", c.protruding_spheres},
-          {"worst_pair", any_pair ? Json::array({c.worst_pair[0], c.worst_pair[1]}) : Json()},
-          {"worst_wall", c.worst_wall},
-          {"seconds", c.seconds}};
-}
 
 /// The figures; the tables are in the answer of `bernal measure`.
 Json sizes_json(const Measurements& measured) {
@@ -41,6 +27,7 @@ std::uint64_t peak_memory_bytes() {
 std::string json_of(const Report& report) {
   const Packing& packing = report.packing;
   const Certificate& certificate = report.certificate;
+  const Json of_certificate = Json::parse(certificate_as_json(certificate));
 
   Json effects = Json::array();
   for (const Effect& e : packing.effects) {
@@ -67,9 +54,9 @@ std::string json_of(const Report& report) {
   json.update(contacts_json(report.measured.contacts));
   json.update({{"sizes", sizes_json(report.measured)},
                {"max_overlap", certificate.max_overlap},
-               {"min_wall_gap", certificate.min_wall_gap},
+               {"min_wall_gap", of_certificate["min_wall_gap"]},
                {"certified", certificate.certified},
-               {"certificate", certificate_json(certificate)},
+               {"certificate", of_certificate},
                domain_json(packing.domain),
                {"hash", report.hash},
                {"effects", effects},

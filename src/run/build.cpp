@@ -99,6 +99,17 @@ void expect_in_container(Plan& plan) {
                         std::holds_alternative<Mesh>(container) ? "O(log faces) a query" : "O(1) a query"});
 }
 
+/// What a size means that only gives the proportions of a box: each edge over the longest, to 40 bits. So all
+/// sizes in proportion make the same plan, and the one that a run wrote down, rounded, makes that run again.
+Vector<dynamic> proportions_of(const Vector<dynamic>& edges) {
+  const auto rounded = [](double share) {
+    int exponent = 0;
+    const double mantissa = std::frexp(share, &exponent);
+    return std::ldexp(std::round(std::ldexp(mantissa, 40)), exponent - 40);
+  };
+  return (edges / edges.maxCoeff()).unaryExpr(rounded);
+}
+
 void expect_in_periodic_box(Plan& plan) {
   const Scene& scene = plan.scene;
   const int dimension = scene.dimension();
@@ -109,7 +120,8 @@ void expect_in_periodic_box(Plan& plan) {
   if (plan.box_follows) {
     plan.expected_count = static_cast<double>(*scene.target.count);
     Vector<dynamic>& edges = std::get<PeriodicBox>(plan.domain).edges;
-    edges *= std::pow(plan.expected_count * mean_volume / attainable, 1.0 / dimension);
+    edges = proportions_of(edges);
+    edges *= std::pow(plan.expected_count * mean_volume / attainable / edges.prod(), 1.0 / dimension);
   } else {
     plan.expected_count = attainable * volume_of(plan.domain) / mean_volume;
     if (scene.target.count) plan.expected_count = static_cast<double>(*scene.target.count);

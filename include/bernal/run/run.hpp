@@ -39,8 +39,9 @@ struct Plan {
 Plan build(const Scene& scene);
 
 /// The container or the periodic box that a scene describes, in the scene's unit: what `build` and the
-/// certificate share. `notes` receives what the importer did. A box that follows from the packing comes with
-/// edges that are in proportion only; its volume is 1. Throws as `build`.
+/// certificate share. `notes` receives what the importer did. The size of a periodic box is taken as it stands,
+/// even where the packing is to decide how large it becomes and only its proportions matter to `build`; without
+/// a size it is the unit cube. Throws as `build`.
 Domain domain_of(const Scene& scene, std::string* notes = nullptr);
 
 /// The size distribution of radii that a scene describes, in the scene's unit. Throws as `build`.
