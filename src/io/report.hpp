@@ -13,7 +13,8 @@ namespace bernal {
 struct Report {
   const Packing& packing;
   const Certificate& certificate;
-  const Contacts& contacts;
+  const Measurements& measured;
+  const SizeDistribution* asked;  ///< of radii; null where it cannot be made again
   std::string hash;
 };
 

@@ -173,7 +173,7 @@ void write_sizes(Page& page, const Report& report) {
 }
 
 void write_contacts(Page& page, const Report& report) {
-  const Contacts& c = report.contacts;
+  const Contacts& c = report.measured.contacts;
   page.add(
       "<h2>Contacts</h2>\n<p>Two spheres count as touching when the gap between them is below {:g} times the "
       "sum of their radii; a sphere and the wall when it is below {:g} of the radius.</p>\n<table>\n",

@@ -403,8 +403,8 @@ TEST(ReportJson, WritesWhatIsNotFiniteAsNullAndNoPairAsNull) {
   Certificate certificate;
   certificate.min_wall_gap = std::numeric_limits<double>::infinity();
   certificate.max_overlap = std::numeric_limits<double>::quiet_NaN();
-  const Contacts contacts;
-  const auto json = nlohmann::json::parse(json_of(Report{packing, certificate, contacts, "0"}));
+  const Measurements measured;
+  const auto json = nlohmann::json::parse(json_of(Report{packing, certificate, measured, nullptr, "0"}));
   EXPECT_TRUE(json.at("min_wall_gap").is_null());
   EXPECT_TRUE(json.at("max_overlap").is_null());
   EXPECT_TRUE(json.at("certificate").at("worst_pair").is_null());
