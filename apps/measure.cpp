@@ -50,7 +50,7 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
   fmt::print("\n{:>8} {:>12} {:>13} {:>10} {:>18} {:>13}\n", "gap", "contacts", "coordination", "rattlers",
              "backbone contacts", "of isostatic");
   for (const Contacts& at : measured.by_gap) {
-    fmt::print("{:>8g} {:>12} {:>13.4f} {:>10} {:>18} {:>13}\n", at.contact_gap, grouped(at.pairs),
+    fmt::print("{:>8.0e} {:>12} {:>13.4f} {:>10} {:>18} {:>13}\n", at.contact_gap, grouped(at.pairs),
                at.coordination, grouped(at.rattlers), grouped(at.backbone_pairs),
                at.isostatic ? fmt::format("{:.4f}", static_cast<double>(at.backbone_pairs) /
                                                         static_cast<double>(*at.isostatic))

@@ -18,7 +18,7 @@ namespace bernal {
 namespace {
 
 /// Enough for a curve that is smooth to the eye; `bernal measure` takes more.
-constexpr double distances_for_a_report = 4e6;
+constexpr double distances_for_a_report = 2e6;
 
 void write_text(const std::filesystem::path& path, std::string_view text) {
   OutputFile file(path);
@@ -77,7 +77,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   write_text(staged.add("scene.toml"), scene);
   write_text(staged.add("report.json"), json_of(report));
   write_text(staged.add("report.html"), html_of(report, picture, scene));
-  write_text(staged.add("packing.svg"), picture);
+  if (!picture.empty()) write_text(staged.add("packing.svg"), picture);
   return {staged.publish(), certificate};
 }
 
