@@ -35,34 +35,6 @@ std::filesystem::path scene_file(const VerifyCall& call) {
               {call.target.string()});
 }
 
-SpheresFile read_spheres(const std::filesystem::path& file, const Scene& scene) {
-  SpheresFile read = read_csv(file);
-  if (!read.unit.empty() && read.unit != scene.unit)
-    throw Error(ErrorCode::bad_packing,
-                fmt::format("the spheres are in {}, but the scene is in {}; both must have one unit",
-                            read.unit, scene.unit),
-                {file.string()});
-  if (read.spheres.dimension() != scene.dimension())
-    throw Error(
-        ErrorCode::bad_packing,
-        fmt::format(
-            "the spheres have {} coordinates, but the scene has {} dimensions; is it another scene's?",
-            read.spheres.dimension(), scene.dimension()),
-        {file.string()});
-  return read;
-}
-
-/// What the spheres are to be certified in. A periodic box that the packing decides is known only afterwards.
-Domain packed_domain(const Scene& scene) {
-  if (scene.is_periodic() && !scene.container.has("size") && !scene.container.has("edge"))
-    throw Error(
-        ErrorCode::bad_scene,
-        "does not say how large the periodic box is; give its \"size\", as the scene.toml that bernal "
-        "pack writes beside the spheres does",
-        scene.container.where);
-  return domain_of(scene);
-}
-
 void print(const Certificate& c, const Scene& scene) {
   fmt::print("certified  {}\n", c.certified ? "yes" : "NO");
   fmt::print("spheres    {}, in {}\n", grouped(c.spheres), scene.unit);
@@ -79,17 +51,17 @@ void print(const Certificate& c, const Scene& scene) {
 
 int verify(const VerifyCall& call) {
   const Scene scene = read_scene(scene_file(call));
-  const Domain domain = packed_domain(scene);
+  const Domain domain = packed_domain_of(scene);
   const std::filesystem::path file =
       std::filesystem::is_directory(call.target) ? call.target / "spheres.csv" : call.target;
-  const SpheresFile read = read_spheres(file, scene);
+  const Spheres<dynamic> spheres = read_csv_of(scene, file);
 
   std::optional<tbb::global_control> limit;
   if (call.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
-  const Certificate certificate = certify(read.spheres, domain, scene.overlap);
+  const Certificate certificate = certify(spheres, domain, scene.overlap);
   if (call.json)
-    fmt::print("{}\n", certificate_as_json(certificate));
+    fmt::print("{}", certificate_as_json(certificate));
   else
     print(certificate, scene);
   return certificate.certified ? exit_code::done : exit_code::no;

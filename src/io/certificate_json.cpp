@@ -1,11 +1,10 @@
 #include "bernal/io/certificate_json.hpp"
 
-#include <nlohmann/json.hpp>
+#include "io/json.hpp"
 
 namespace bernal {
 
 std::string certificate_as_json(const Certificate& c) {
-  using Json = nlohmann::ordered_json;  // writes NaN and infinity as null
   const Json json = {{"certified", c.certified},
                      {"statement", c.statement},
                      {"spheres", c.spheres},
@@ -16,12 +15,12 @@ std::string certificate_as_json(const Certificate& c) {
                      {"decided_exact", c.decided_exact},
                      {"overlapping_pairs", c.overlapping_pairs},
                      {"protruding_spheres", c.protruding_spheres},
-                     {"worst_pair", c.worst_pair ? Json(*c.worst_pair) : Json()},
+                     {"worst_pair", or_null(c.worst_pair)},
                      {"max_overlap", c.max_overlap},
-                     {"worst_wall", c.worst_wall ? Json(*c.worst_wall) : Json()},
+                     {"worst_wall", or_null(c.worst_wall)},
                      {"min_wall_gap", c.worst_wall ? Json(c.min_wall_gap) : Json()},
                      {"seconds", c.seconds}};
-  return json.dump(2);
+  return text_of(json);
 }
 
 }  // namespace bernal

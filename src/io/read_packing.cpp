@@ -8,6 +8,23 @@
 
 namespace bernal {
 
+Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file) {
+  SpheresFile read = read_csv(file);
+  if (!read.unit.empty() && read.unit != scene.unit)
+    throw Error(ErrorCode::bad_packing,
+                fmt::format("the spheres are in {}, but the scene is in {}; both must have one unit",
+                            read.unit, scene.unit),
+                {file.string()});
+  if (read.spheres.dimension() != scene.dimension())
+    throw Error(
+        ErrorCode::bad_packing,
+        fmt::format("the spheres have {} coordinates, but the scene has {} dimensions; is it the scene "
+                    "of another packing?",
+                    read.spheres.dimension(), scene.dimension()),
+        {file.string()});
+  return std::move(read).spheres;
+}
+
 Packing read_packing(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder)) {
     throw Error(ErrorCode::bad_packing, "is no folder; give the one that bernal pack wrote",
@@ -15,22 +32,8 @@ Packing read_packing(const std::filesystem::path& folder) {
   }
   Packing packing;
   packing.scene = read_scene(folder / "scene.toml");
-  const std::filesystem::path csv = folder / "spheres.csv";
-  SpheresFile read = read_csv(csv);
-  if (!read.unit.empty() && read.unit != packing.scene.unit) {
-    throw Error(ErrorCode::bad_packing,
-                fmt::format("the spheres are in {}, but the scene is in {}; both must have one unit",
-                            read.unit, packing.scene.unit),
-                {csv.string()});
-  }
-  if (read.spheres.dimension() != packing.scene.dimension()) {
-    throw Error(ErrorCode::bad_packing,
-                fmt::format("the spheres have {} dimensions, but the scene has {}; both must have as many",
-                            read.spheres.dimension(), packing.scene.dimension()),
-                {csv.string()});
-  }
-  packing.spheres = std::move(read.spheres);
-  packing.domain = domain_of(packing.scene);
+  packing.domain = packed_domain_of(packing.scene);
+  packing.spheres = read_csv_of(packing.scene, folder / "spheres.csv");
   packing.volume = volume_of(packing.domain);
   packing.seed = packing.scene.seed;
   return packing;

@@ -74,6 +74,16 @@ Domain domain_of(const Scene& scene, std::string* notes) {
   return find_entry(container_catalogue(), scene.container).make(scene, notes ? *notes : unused);
 }
 
+Domain packed_domain_of(const Scene& scene) {
+  if (scene.is_periodic() && !scene.container.has("size") && !scene.container.has("edge"))
+    throw Error(
+        ErrorCode::bad_scene,
+        "does not say how large the periodic box is; give its \"size\", as the scene.toml that bernal "
+        "pack writes beside the spheres does",
+        scene.container.where);
+  return domain_of(scene);
+}
+
 std::unique_ptr<SizeDistribution> radii_of(const Scene& scene) {
   return find_entry(sizes_catalogue(), scene.sizes).make(scene.sizes, scene.sizes_are_diameters ? 0.5 : 1.0);
 }

@@ -96,10 +96,9 @@ bool fits(const Spheres<D>& spheres, const Vector<D>& edges, const Vector<D>& ta
   return (target.array() >= edges.array() * (1 + rounding)).all();
 }
 
-/// On a line, where a sphere has two contacts, the steps of the fast path are too long to converge.
 template <int D>
 StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
-  if constexpr (D == 2 || D == 3) {
+  if constexpr (D <= 3) {
     if (!options.reference && fast_path_exists<D>(spheres, edges))
       return relax_fast<D>(spheres, edges, work, options);
   }

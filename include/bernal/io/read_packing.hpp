@@ -17,10 +17,13 @@ struct SpheresFile {
 /// truncated last line.
 SpheresFile read_csv(const std::filesystem::path& file);
 
+/// The spheres of a file that are to lie in the scene's domain. Throws as `read_csv`, and Error{bad_packing}
+/// where their unit or dimension is not the scene's.
+Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file);
+
 /// What stands in scene.toml and spheres.csv of a folder that `write_packing` made, or that has files of that
 /// form. How the run went is not among it: effects, history, seconds and version are empty. Throws as
-/// `read_scene`, `domain_of` and `read_csv` do, and Error{bad_packing} where unit or dimension of the spheres
-/// are not those of the scene.
+/// `read_scene`, `packed_domain_of` and `read_csv_of` do.
 Packing read_packing(const std::filesystem::path& folder);
 
 }  // namespace bernal

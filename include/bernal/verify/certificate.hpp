@@ -67,9 +67,10 @@ struct Certificate {
 /// different lengths, spheres that have not the dimension of the domain and absurd measures of a container or
 /// a box, Error{bad_mesh} for a mesh with a boundary. That a mesh does not intersect itself is not checked.
 ///
-/// Cost: O(N log N + near pairs), about 0.7 µs a sphere at N = 30,000 and 0.9 at 10,000,000 on one core; a
-/// mesh of T triangles adds O(T log T), about 0.5 µs each. Exact arithmetic throughout is 4 to 12 times
-/// slower. In high dimensions most pairs are near ones, and the cost is that of all pairs.
+/// Cost: O(N log N + near pairs), about 0.7 µs a sphere at N = 30,000 and 0.9 at 10,000,000 on one core, a
+/// quarter more in a periodic box; a mesh of T triangles adds O(T log T), about 0.5 µs each. Exact arithmetic
+/// throughout is 4 to 12 times slower. In high dimensions most pairs are near ones, and the cost is that of
+/// all pairs.
 Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, double allowed_overlap = 0,
                     Arithmetic arithmetic = Arithmetic::filtered);
 

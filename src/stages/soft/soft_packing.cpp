@@ -82,6 +82,7 @@ void SoftPacking::sweep(float omega) {
 }
 
 double SoftPacking::sweep_and_measure(float omega) {
+  patience_ = 0;  // what is measured is measured on lists that are known to be good
   keep_lists_valid();
   const SweepTask work = task(omega);
   std::vector<float> largest(spheres_.size() / lanes + 1, 0.0f);
@@ -126,7 +127,8 @@ void SoftPacking::keep_lists_valid() {
   const double limit = worn * lists_.skin();
   double moved = 0;
   if (builds_ > 0) moved = largest_move();
-  const double speed = std::max((moved - moved_) / std::max(1, sweeps_), 1e-9);
+  // Nothing is known before the first sweep, when the spheres are at their fastest.
+  const double speed = builds_ == 0 ? limit : std::max((moved - moved_) / std::max(1, sweeps_), 1e-9);
   if (builds_ == 0 || moved > limit) {
     lists_.build(spheres_, ids_, edges_);
     built_at_ = spheres_;
