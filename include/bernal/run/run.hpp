@@ -8,6 +8,7 @@
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/run/packing.hpp"
+#include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
@@ -45,6 +46,9 @@ Domain domain_of(const Scene& scene, std::string* notes = nullptr);
 
 /// The size distribution of radii that a scene describes, in the scene's unit. Throws as `build`.
 std::unique_ptr<SizeDistribution> radii_of(const Scene& scene);
+
+/// How the scene takes radii from it.
+Draw draw_of(const Scene& scene);
 
 struct RunOptions {
   std::optional<std::uint64_t> seed;  ///< the scene's own if absent
