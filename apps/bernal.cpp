@@ -18,6 +18,7 @@ constexpr const char* description =
 constexpr const char* examples = R"(Examples:
   bernal pack data/scenes/cylinder_han.toml -o out   fill a cylinder; results in out/
   bernal verify out                                  certify what stands in the files, from scratch
+  bernal measure out                                 contacts, rattlers, g(r), sizes against those asked for
   bernal inspect part.stl --unit mm                  can this CAD file be a container?
   bernal explain data/scenes/hopper.toml             what would run, and what it would cost
 
@@ -43,6 +44,7 @@ int main(int argc, char** argv) {
   add_verify(app, status);
   add_inspect(app, status);
   add_explain(app, status);
+  add_measure(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version

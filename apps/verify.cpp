@@ -5,9 +5,10 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-#include <nlohmann/json.hpp>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/io/certificate_json.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -34,44 +35,15 @@ std::filesystem::path scene_file(const VerifyCall& call) {
               {call.target.string()});
 }
 
-SpheresFile read_spheres(const std::filesystem::path& file, const Scene& scene) {
-  SpheresFile read = read_csv(file);
-  if (!read.unit.empty() && read.unit != scene.unit)
-    throw Error(ErrorCode::bad_packing,
-                fmt::format("the spheres are in {}, but the scene is in {}; both must have one unit",
-                            read.unit, scene.unit),
-                {file.string()});
-  return read;
-}
-
-nlohmann::ordered_json as_json(const Certificate& c) {
-  return {{"certified", c.certified},
-          {"spheres", c.spheres},
-          {"pairs_tested", c.pairs_tested},
-          {"walls_tested", c.walls_tested},
-          {"centers_tested", c.centers_tested},
-          {"decided_double", c.decided_double},
-          {"decided_exact", c.decided_exact},
-          {"overlapping_pairs", c.overlapping_pairs},
-          {"protruding_spheres", c.protruding_spheres},
-          {"worst_pair", {c.worst_pair[0], c.worst_pair[1]}},
-          {"max_overlap", c.max_overlap},
-          {"worst_wall", c.worst_wall},
-          {"min_wall_gap", c.min_wall_gap},
-          {"seconds", c.seconds},
-          {"statement", c.statement}};
-}
-
-void print(const Certificate& c, const std::string& unit) {
+void print(const Certificate& c, const Scene& scene) {
   fmt::print("certified  {}\n", c.certified ? "yes" : "NO");
-  fmt::print("spheres    {}, in {}\n", grouped(c.spheres), unit);
+  fmt::print("spheres    {}, in {}\n", grouped(c.spheres), scene.unit);
   fmt::print("pairs      {} near, {} overlapping", grouped(c.pairs_tested), grouped(c.overlapping_pairs));
-  if (c.worst_pair[0] != c.worst_pair[1])
-    fmt::print("; worst: {} and {}, overlap ratio {:.3g}", c.worst_pair[0], c.worst_pair[1], c.max_overlap);
-  fmt::print("\nwalls      {} near, {} spheres protruding", grouped(c.walls_tested),
-             grouped(c.protruding_spheres));
-  if (c.walls_tested > 0)
-    fmt::print("; worst: sphere {}, gap {:.3g} of its radius", c.worst_wall, c.min_wall_gap);
+  if (c.worst_pair) fmt::print("; worst: {}, overlap ratio {:.3g}", worst_pair_text(c), c.max_overlap);
+  if (!scene.is_periodic())
+    fmt::print("\nwalls      {} near, {} spheres protruding", grouped(c.walls_tested),
+               grouped(c.protruding_spheres));
+  if (c.worst_wall) fmt::print("; worst: sphere {}, gap {:.3g} of its radius", *c.worst_wall, c.min_wall_gap);
   fmt::print("\ndecided    {} in double with a proven bound, {} in exact arithmetic, in {:.3f} s\n",
              grouped(c.decided_double), grouped(c.decided_exact), c.seconds);
   fmt::print("{}\n", c.statement);
@@ -79,18 +51,19 @@ void print(const Certificate& c, const std::string& unit) {
 
 int verify(const VerifyCall& call) {
   const Scene scene = read_scene(scene_file(call));
+  const Domain domain = packed_domain_of(scene);
   const std::filesystem::path file =
       std::filesystem::is_directory(call.target) ? call.target / "spheres.csv" : call.target;
-  const SpheresFile read = read_spheres(file, scene);
+  const Spheres<dynamic> spheres = read_csv_of(scene, file);
 
   std::optional<tbb::global_control> limit;
   if (call.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
-  const Certificate certificate = certify(read.spheres, domain_of(scene), scene.overlap);
+  const Certificate certificate = certify(spheres, domain, scene.overlap);
   if (call.json)
-    fmt::print("{}\n", as_json(certificate).dump(2));
+    fmt::print("{}", certificate_as_json(certificate));
   else
-    print(certificate, scene.unit);
+    print(certificate, scene);
   return certificate.certified ? exit_code::done : exit_code::no;
 }
 

@@ -18,10 +18,13 @@ constexpr double left = 62, right = 12, top = 44, bottom = 44;
 /// Round numbers that divide an axis into about five parts.
 class Ticks {
  public:
-  Ticks(double from, double to) {
+  Ticks(double from, double to, double least_step = 0) {
     const double raw = (to - from) / 5;
     const double decade = std::pow(10, std::floor(std::log10(raw)));
-    step_ = decade * (raw > 5 * decade ? 10 : raw > 2 * decade ? 5 : raw > decade ? 2 : 1);
+    step_ = std::max(least_step, decade * (raw > 5 * decade   ? 10
+                                           : raw > 2 * decade ? 5
+                                           : raw > decade     ? 2
+                                                              : 1));
     const double first = std::ceil(from / step_ - 1e-9);
     for (int k = 0; k < most_ticks && (first + k) * step_ <= to + 1e-9 * step_; ++k) {
       values_.push_back((first + k) * step_);
@@ -55,11 +58,13 @@ class Chart {
     fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
   }
 
-  void axes(std::string_view x_label, std::string_view y_label) {
-    const Ticks along(x0_, x1_), across(y0_, y1_);
+  /// `decades`: y is a decimal logarithm.
+  void axes(std::string_view x_label, std::string_view y_label, bool decades = false) {
+    const Ticks along(x0_, x1_), across(y0_, y1_, decades ? 1 : 0);
     for (const double v : across.values()) {
       add("<path class=\"grid\" d=\"M{} {:.1f}H{}\"/>", left, y(v), width - right);
-      add("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", left - 8, y(v) + 4, across.text(v));
+      add("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", left - 8, y(v) + 4,
+          decades ? fmt::format("1e{:.0f}", v) : across.text(v));
     }
     for (const double v : along.values()) {
       add("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>", x(v), height - bottom + 18,
@@ -78,56 +83,17 @@ class Chart {
   std::string out_;
 };
 
-}  // namespace
+/// A point of a history, and the stage that it belongs to.
+struct Moment {
+  double seconds, value;
+  std::string_view stage;
+};
 
-std::string size_histogram(std::span<const double> sizes, std::string_view label) {
-  constexpr std::size_t bins = 36;
-  const auto [least, most] = std::ranges::minmax(sizes);
-  std::vector<double> number(bins, 0), volume(bins, 0);
-  double all = 0;
-  for (const double size : sizes) {
-    const double place = (size - least) / (most - least) * bins;
-    const std::size_t bin = std::min(bins - 1, static_cast<std::size_t>(place));
-    const double relative = size / most;
-    number[bin] += 100.0 / static_cast<double>(sizes.size());
-    volume[bin] += relative * relative * relative;
-    all += relative * relative * relative;
-  }
-  for (double& share : volume) share *= 100 / all;
-
-  const double highest = std::max(std::ranges::max(number), std::ranges::max(volume));
-  Chart chart(least, most, 0, 1.05 * highest);
-  chart.axes(label, "per cent of all spheres, in 36 equal steps");
-  const double bar = chart.x(most) / bins - chart.x(least) / bins;
-  std::string line;
-  for (std::size_t k = 0; k < bins; ++k) {
-    const double x = chart.x(least) + bar * static_cast<double>(k);
-    chart.add("<rect class=\"bar\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>", x + 0.5,
-              chart.y(number[k]), bar - 1, chart.y(0) - chart.y(number[k]));
-    fmt::format_to(std::back_inserter(line), "{}{:.1f} {:.1f}H{:.1f}", k == 0 ? 'M' : 'L', x,
-                   chart.y(volume[k]), x + bar);
-  }
-  chart.add("<path class=\"second line\" d=\"{}\"/>", line);
-  return std::move(chart).finish();
-}
-
-std::string history_chart(std::span<const Milestone> history, double Milestone::*value,
-                          std::string_view label) {
-  double least = history.front().*value, most = least, last = 0;
-  for (const Milestone& m : history) {
-    least = std::min(least, m.*value);
-    most = std::max(most, m.*value);
-    last = std::max(last, m.seconds);
-  }
-  // A value that only rounding has moved is drawn as the flat line that it is.
-  double room = std::max({0.08 * (most - least), 1e-3 * std::abs(least), 1e-3 * std::abs(most)});
-  if (!(room > 0)) room = 1;
-  Chart chart(0, last > 0 ? 1.02 * last : 1, least - room, most + room);
-  chart.axes("seconds since the start of the run", label);
-
+/// Names the stages where they begin.
+void add_stages(Chart& chart, const std::vector<Moment>& history) {
   double free_from = 0;  // where the next stage name would not run into the last one
   std::string_view stage;
-  for (const Milestone& m : history) {
+  for (const Moment& m : history) {
     if (m.stage == stage) continue;
     stage = m.stage;
     const double x = chart.x(m.seconds), end = x + 10 + 7.0 * static_cast<double>(stage.size());
@@ -136,19 +102,121 @@ std::string history_chart(std::span<const Milestone> history, double Milestone::
     chart.add("<text x=\"{:.1f}\" y=\"{}\">{}</text>", x, top - 6, escaped(stage));
     free_from = end;
   }
+}
+
+std::string chart_of(const std::vector<Moment>& history, double y0, double y1, std::string_view label,
+                     bool decades) {
+  const double last = std::ranges::max(history, {}, &Moment::seconds).seconds;
+  Chart chart(0, last > 0 ? 1.02 * last : 1, y0, y1);
+  chart.axes("seconds since the start of the run", label, decades);
+  add_stages(chart, history);
   std::string line;
-  for (const Milestone& m : history) {
+  for (const Moment& m : history) {
     fmt::format_to(std::back_inserter(line), "{}{:.1f} {:.1f}", line.empty() ? 'M' : 'L', chart.x(m.seconds),
-                   chart.y(m.*value));
+                   chart.y(m.value));
   }
   chart.add("<path class=\"first line\" d=\"{}\"/>", line);
   if (history.size() <= 200) {
-    for (const Milestone& m : history) {
+    for (const Moment& m : history) {
       chart.add("<circle class=\"point\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\"/>", chart.x(m.seconds),
-                chart.y(m.*value));
+                chart.y(m.value));
     }
   }
   return std::move(chart).finish();
+}
+
+}  // namespace
+
+std::string size_histogram(const SizeHistogram& histogram) {
+  constexpr std::size_t bins = 36;
+  const std::span<const double> sizes = histogram.sizes;
+  const auto [least, most] = std::ranges::minmax(sizes);
+  const double step = (most - least) / bins;
+  std::vector<double> number(bins, 0), volume(bins, 0), asked(bins, 0);
+  double all = 0;
+  for (const double size : sizes) {
+    const std::size_t bin =
+        std::min(bins - 1, static_cast<std::size_t>((size - least) / (most - least) * bins));
+    const double part = std::pow(size / most, histogram.dimension);
+    number[bin] += 100.0 / static_cast<double>(sizes.size());
+    volume[bin] += part;
+    all += part;
+  }
+  for (double& share : volume) share *= 100 / all;
+  if (histogram.asked) {
+    for (std::size_t k = 0; k < bins; ++k) {
+      const double from = least + step * static_cast<double>(k);
+      asked[k] = 100 * (histogram.asked(from + step) - histogram.asked(from));
+    }
+  }
+
+  const double highest =
+      std::max({std::ranges::max(number), std::ranges::max(volume), std::ranges::max(asked)});
+  Chart chart(least, most, 0, 1.05 * highest);
+  chart.axes(histogram.label, "per cent of all spheres, in 36 equal steps");
+  const double bar = chart.x(most) / bins - chart.x(least) / bins;
+  std::string by_volume, by_asked;
+  for (std::size_t k = 0; k < bins; ++k) {
+    const double x = chart.x(least) + bar * static_cast<double>(k);
+    chart.add("<rect class=\"bar\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>", x + 0.5,
+              chart.y(number[k]), bar - 1, chart.y(0) - chart.y(number[k]));
+    fmt::format_to(std::back_inserter(by_volume), "{}{:.1f} {:.1f}H{:.1f}", k == 0 ? 'M' : 'L', x,
+                   chart.y(volume[k]), x + bar);
+    fmt::format_to(std::back_inserter(by_asked), "{}{:.1f} {:.1f}H{:.1f}", k == 0 ? 'M' : 'L', x,
+                   chart.y(asked[k]), x + bar);
+  }
+  chart.add("<path class=\"second line\" d=\"{}\"/>", by_volume);
+  if (histogram.asked) chart.add("<path class=\"asked line\" d=\"{}\"/>", by_asked);
+  return std::move(chart).finish();
+}
+
+std::string radial_chart(const RadialDistribution& radial) {
+  // The contact peak of equal spheres is as high as the bins are narrow; what follows is what there is to
+  // see.
+  constexpr double fewest = 3;
+  double highest = fewest;
+  const auto diameters = [&](std::size_t k) { return radial.r[k] / radial.mean_diameter; };
+  for (std::size_t k = 0; k < radial.g.size(); ++k)
+    if (diameters(k) > 1.2) highest = std::max(highest, 1.1 * radial.g[k]);
+  Chart chart(0, radial.bin_width * static_cast<double>(radial.g.size()) / radial.mean_diameter, 0, highest);
+  chart.axes("distance of the centres (mean diameters)", "g(r)");
+  const auto point = [&](std::string& path, std::size_t k, double g) {
+    fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L',
+                   chart.x(diameters(k)), chart.y(std::clamp(g, 0.0, highest)));
+  };
+  std::string line, band;
+  for (std::size_t k = 0; k < radial.g.size(); ++k) {
+    point(line, k, radial.g[k]);
+    point(band, k, radial.g[k] + (radial.g[k] > 0 ? radial.error[k] : 0));
+  }
+  for (std::size_t k = radial.g.size(); k-- > 0;) point(band, k, radial.g[k] - radial.error[k]);
+  chart.add("<path class=\"band\" d=\"{}Z\"/><path class=\"first line\" d=\"{}\"/>", band, line);
+  return std::move(chart).finish();
+}
+
+std::string history_chart(std::span<const Milestone> history, double Milestone::*value,
+                          std::string_view label) {
+  std::vector<Moment> moments;
+  double least = history.front().*value, most = least;
+  for (const Milestone& m : history) {
+    moments.push_back({m.seconds, m.*value, m.stage});
+    least = std::min(least, m.*value);
+    most = std::max(most, m.*value);
+  }
+  // A value that only rounding has moved is drawn as the flat line that it is.
+  double room = std::max({0.08 * (most - least), 1e-3 * std::abs(least), 1e-3 * std::abs(most)});
+  if (!(room > 0)) room = 1;
+  return chart_of(moments, least - room, most + room, label, false);
+}
+
+std::string overlap_chart(std::span<const Milestone> history) {
+  std::vector<Moment> moments;
+  for (const Milestone& m : history)
+    if (m.max_overlap > 0) moments.push_back({m.seconds, std::log10(m.max_overlap), m.stage});
+  if (moments.size() < 2) return {};
+  const auto [least, most] = std::ranges::minmax(moments, {}, &Moment::value);
+  const double from = std::floor(least.value), to = std::max(from + 1, std::ceil(most.value));
+  return chart_of(moments, from, to, "largest overlap, of the sum of the radii", true);
 }
 
 }  // namespace bernal

@@ -1,20 +1,34 @@
 #pragma once
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "bernal/measure/radial_distribution.hpp"
 #include "bernal/run/packing.hpp"
 
 namespace bernal {
 
-/// Bars: the share of the number and of the volume of spheres in equal bins of `sizes`, as inline SVG.
-/// `sizes` are radii or diameters; `label` names the axis with its unit. Precondition: not empty, not all
-/// equal.
-std::string size_histogram(std::span<const double> sizes, std::string_view label);
+struct SizeHistogram {
+  std::span<const double> sizes;        ///< radii or diameters; not empty, not all equal
+  int dimension = 3;                    ///< a sphere's volume is in proportion to size^dimension
+  std::string label;                    ///< of the axis, with its unit
+  std::function<double(double)> asked;  ///< cumulative share by number at a size; may be empty
+};
+
+/// Bars: the share of the number and of the volume of the spheres in equal bins, and the share of the number
+/// that was asked for, as inline SVG.
+std::string size_histogram(const SizeHistogram&);
+
+/// g over r in mean diameters, with the band of its error; what is higher than the axis is cut.
+std::string radial_chart(const RadialDistribution&);
 
 /// A line over the seconds of the run, one point a milestone, as inline SVG. Where a stage begins
 /// its name stands, if there is room for it. Precondition: at least two milestones.
 std::string history_chart(std::span<const Milestone> history, double Milestone::*value,
                           std::string_view label);
+
+/// The same for the largest overlap, in decades; empty where fewer than two milestones have any.
+std::string overlap_chart(std::span<const Milestone> history);
 
 }  // namespace bernal

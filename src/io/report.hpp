@@ -13,16 +13,17 @@ namespace bernal {
 struct Report {
   const Packing& packing;
   const Certificate& certificate;
-  const Contacts& contacts;
+  const Measurements& measured;
+  const SizeDistribution* asked;  ///< of radii; null where it cannot be made again
   std::string hash;
 };
 
 /// report.json: the keys of the file format, in a fixed order, lengths in the scene's unit. Numbers that are
-/// not finite become null. Which keys there are does not depend on the packing, except for `worst_pair`,
-/// which is null where no two spheres are near.
+/// not finite become null. Which keys there are does not depend on the packing, except that there is either
+/// `container` or, for a periodic one, `box`; `min_wall_gap` is null where no sphere is near a wall.
 std::string json_of(const Report& report);
 
-/// report.html: one page without scripts or outside files. `picture` is the SVG of the packing, `scene` the
+/// report.html: one page without scripts or outside files. `picture` is the SVG of the packing or empty, `scene` the
 /// scene as TOML.
 std::string html_of(const Report& report, std::string_view picture, std::string_view scene);
 

@@ -43,9 +43,12 @@ td:first-child { white-space:nowrap; }
 .chart .bar { fill:var(--first); opacity:.75; }
 .chart .line { fill:none; stroke-width:2; stroke-linejoin:round; }
 .chart .first { stroke:var(--first); } .chart .second { stroke:var(--second); }
+.chart .asked { stroke:var(--ink); stroke-width:1.5; stroke-dasharray:3 3; }
+.chart .band { fill:var(--first); opacity:.25; }
 .chart .point { fill:var(--first); }
 .key i { display:inline-block; width:14px; height:10px; margin:0 6px 0 14px; border-radius:2px; }
 .key i:first-child { margin-left:0; }
+.key .dashed { height:0; border-top:2px dashed var(--ink); border-radius:0; vertical-align:middle; }
 pre { background:var(--card); border-radius:10px; padding:14px 16px; overflow-x:auto; font:14px/1.45 ui-monospace,monospace; }
 summary { cursor:pointer; color:var(--dim); margin:8px 0; }
 code { font:.92em ui-monospace,monospace; overflow-wrap:anywhere; }

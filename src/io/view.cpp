@@ -12,6 +12,7 @@ namespace {
 constexpr double elevation = 24 * std::numbers::pi / 180;
 constexpr double azimuth = -62 * std::numbers::pi / 180;
 constexpr float far_away = -std::numeric_limits<float>::infinity();
+constexpr std::int64_t tile = 8;  // raster points
 
 const Vector<3> eye(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                     std::sin(elevation));
@@ -52,55 +53,95 @@ DepthBuffer::DepthBuffer(double width, double height, double pitch)
       columns_(static_cast<std::int64_t>(std::ceil(width / pitch)) + 1),
       rows_(static_cast<std::int64_t>(std::ceil(height / pitch)) + 1),
       depths_(static_cast<std::size_t>(columns_ * rows_), far_away),
-      ids_(depths_.size(), nothing) {}
+      ids_(depths_.size(), nothing),
+      tile_columns_((columns_ + tile - 1) / tile),
+      farthest_in_tile_(static_cast<std::size_t>(tile_columns_ * ((rows_ + tile - 1) / tile)), far_away) {}
 
-/// `depth_at` answers minus infinity off the thing that is drawn.
+DepthBuffer::Range DepthBuffer::range(double from, double to, std::int64_t count) const {
+  const double last = static_cast<double>(count - 1);
+  return {static_cast<std::int64_t>(std::ceil(std::clamp(from / pitch_, 0.0, last + 1))),
+          static_cast<std::int64_t>(std::floor(std::clamp(to / pitch_, -1.0, last)))};
+}
+
 template <class DepthAt>
-void DepthBuffer::draw(double x0, double x1, double y0, double y1, std::uint32_t id,
-                       const DepthAt& depth_at) {
-  const auto first = [&](double v) {
-    return std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(v / pitch_)));
-  };
-  const auto last = [&](double v, std::int64_t count) {
-    return std::min<std::int64_t>(count - 1, static_cast<std::int64_t>(std::floor(v / pitch_)));
-  };
-  const std::int64_t column_end = last(x1, columns_), row_end = last(y1, rows_);
-  for (std::int64_t row = first(y0); row <= row_end; ++row) {
-    for (std::int64_t column = first(x0); column <= column_end; ++column) {
-      const auto depth = static_cast<float>(
-          depth_at(static_cast<double>(column) * pitch_, static_cast<double>(row) * pitch_));
-      const auto k = static_cast<std::size_t>(row * columns_ + column);
-      if (depth > depths_[k]) {
-        depths_[k] = depth;
-        ids_[k] = id;
-      }
-    }
+void DepthBuffer::draw_row(std::int64_t row, Range columns, std::uint32_t id, const DepthAt& depth_at) {
+  float* const depths = depths_.data() + row * columns_;
+  std::uint32_t* const ids = ids_.data() + row * columns_;
+  for (std::int64_t k = columns.first; k <= columns.last; ++k) {
+    const float depth = depth_at(static_cast<float>(k));
+    if (depth <= depths[k]) continue;
+    depths[k] = depth;
+    ids[k] = id;
   }
 }
 
 void DepthBuffer::draw_ball(const CanvasPoint& center, double radius, std::uint32_t id) {
-  draw(center.x - radius, center.x + radius, center.y - radius, center.y + radius, id,
-       [&](double x, double y) {
-         const double dx = x - center.x, dy = y - center.y;
-         const double squared = radius * radius - dx * dx - dy * dy;
-         return squared >= 0 ? center.depth + std::sqrt(squared) : double{far_away};
-       });
+  const Range rows = range(center.y - radius, center.y + radius, rows_);
+  const Range columns = range(center.x - radius, center.x + radius, columns_);
+  const auto pitch = static_cast<float>(pitch_), x = static_cast<float>(center.x / pitch_),
+             z = static_cast<float>(center.depth);
+  for (std::int64_t row = rows.first; row <= rows.last; ++row) {
+    const double dy = static_cast<double>(row) * pitch_ - center.y;
+    const double squared = std::max(0.0, radius * radius - dy * dy), half = std::sqrt(squared);
+    const auto left = static_cast<float>(squared);
+    draw_row(row, range(center.x - half, center.x + half, columns_), id, [=](float column) {
+      const float dx = (column - x) * pitch;
+      return z + std::sqrt(std::max(0.0f, left - dx * dx));
+    });
+  }
+  refresh_tiles(columns, rows);
+}
+
+bool DepthBuffer::hides_ball(const CanvasPoint& center, double radius) const {
+  const Range rows = range(center.y - radius, center.y + radius, rows_);
+  const Range columns = range(center.x - radius, center.x + radius, columns_);
+  if (rows.first > rows.last || columns.first > columns.last) return false;  // between the raster points
+  const auto nearest = static_cast<float>(center.depth + radius);
+  for (std::int64_t row = rows.first / tile; row <= rows.last / tile; ++row) {
+    for (std::int64_t column = columns.first / tile; column <= columns.last / tile; ++column) {
+      if (farthest_in_tile_[static_cast<std::size_t>(row * tile_columns_ + column)] <= nearest) return false;
+    }
+  }
+  return true;
+}
+
+void DepthBuffer::refresh_tiles(Range columns, Range rows) {
+  if (rows.first > rows.last || columns.first > columns.last) return;
+  for (std::int64_t i = rows.first / tile; i <= rows.last / tile; ++i) {
+    for (std::int64_t j = columns.first / tile; j <= columns.last / tile; ++j) {
+      float farthest = std::numeric_limits<float>::infinity();
+      for (std::int64_t row = i * tile; row < std::min(rows_, (i + 1) * tile); ++row) {
+        const float* const depths = depths_.data() + row * columns_;
+        for (std::int64_t k = j * tile; k < std::min(columns_, (j + 1) * tile); ++k)
+          farthest = std::min(farthest, depths[k]);
+      }
+      farthest_in_tile_[static_cast<std::size_t>(i * tile_columns_ + j)] = farthest;
+    }
+  }
 }
 
 void DepthBuffer::draw_triangle(const CanvasPoint& a, const CanvasPoint& b, const CanvasPoint& c,
                                 std::uint32_t id) {
-  const auto twice_area = [](const CanvasPoint& p, const CanvasPoint& q, double x, double y) {
-    return (q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x);
-  };
-  const double area = twice_area(a, b, c.x, c.y);
+  const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   if (area == 0) return;
-  const auto [x0, x1] = std::minmax({a.x, b.x, c.x});
   const auto [y0, y1] = std::minmax({a.y, b.y, c.y});
-  draw(x0, x1, y0, y1, id, [&](double x, double y) {
-    const double u = twice_area(b, c, x, y) / area, v = twice_area(c, a, x, y) / area, w = 1 - u - v;
-    if (u < 0 || v < 0 || w < 0) return double{far_away};
-    return u * a.depth + v * b.depth + w * c.depth;
-  });
+  const double slope_x = ((b.depth - a.depth) * (c.y - a.y) - (c.depth - a.depth) * (b.y - a.y)) / area;
+  const double slope_y = ((c.depth - a.depth) * (b.x - a.x) - (b.depth - a.depth) * (c.x - a.x)) / area;
+  const Range rows = range(y0, y1, rows_);
+  for (std::int64_t row = rows.first; row <= rows.last; ++row) {
+    const double y = static_cast<double>(row) * pitch_;
+    double from = std::numeric_limits<double>::infinity(), to = -from;
+    for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
+      if (p.y == q.y || std::min(p.y, q.y) > y || std::max(p.y, q.y) < y) continue;
+      const double x = p.x + (q.x - p.x) * ((y - p.y) / (q.y - p.y));
+      from = std::min(from, x);
+      to = std::max(to, x);
+    }
+    if (!(from <= to)) continue;
+    const auto start = static_cast<float>(a.depth - slope_x * a.x + slope_y * (y - a.y)),
+               step = static_cast<float>(slope_x * pitch_);
+    draw_row(row, range(from, to, columns_), id, [=](float column) { return start + step * column; });
+  }
 }
 
 std::int64_t DepthBuffer::index(double x, double y) const {

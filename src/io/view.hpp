@@ -37,7 +37,7 @@ class View {
   double width_ = 0, height_ = 0;
 };
 
-/// What is nearest to the eye at each point of a raster over the canvas.
+/// What is nearest to the eye at each point of a raster over the canvas. Depths are kept in float.
 class DepthBuffer {
  public:
   static constexpr std::uint32_t nothing = UINT32_MAX;
@@ -48,6 +48,11 @@ class DepthBuffer {
   void draw_ball(const CanvasPoint& center, double radius, std::uint32_t id);
   void draw_triangle(const CanvasPoint& a, const CanvasPoint& b, const CanvasPoint& c, std::uint32_t id);
 
+  /// Whether something nearer than all of the ball is drawn at every raster point that it could reach. True
+  /// only if so, and not always then: it looks at tiles. Drawn from front to back, most balls need no more
+  /// than this.
+  bool hides_ball(const CanvasPoint& center, double radius) const;
+
   /// Depth at the nearest raster point; minus infinity where nothing was drawn.
   double depth(double x, double y) const;
   /// The farthest depth over the 3 x 3 raster points around (x, y).
@@ -55,14 +60,22 @@ class DepthBuffer {
   std::span<const std::uint32_t> ids() const { return ids_; }
 
  private:
+  /// Raster points, both ends included; empty where the first is beyond the last.
+  struct Range {
+    std::int64_t first, last;
+  };
+  Range range(double from, double to, std::int64_t count) const;
   template <class DepthAt>
-  void draw(double x0, double x1, double y0, double y1, std::uint32_t id, const DepthAt& depth_at);
+  void draw_row(std::int64_t row, Range columns, std::uint32_t id, const DepthAt& depth_at);
+  void refresh_tiles(Range columns, Range rows);
   std::int64_t index(double x, double y) const;
 
   double pitch_;
   std::int64_t columns_, rows_;
   std::vector<float> depths_;
   std::vector<std::uint32_t> ids_;
+  std::int64_t tile_columns_;
+  std::vector<float> farthest_in_tile_;
 };
 
 }  // namespace bernal

@@ -1,40 +1,19 @@
 #include <sys/resource.h>
 
-#include <nlohmann/json.hpp>
-
+#include "bernal/io/certificate_json.hpp"
+#include "io/json.hpp"
 #include "io/report.hpp"
 
 namespace bernal {
 namespace {
 
-using Json = nlohmann::ordered_json;  // writes NaN and infinity as null
-
-Json json_of(const Vector<3>& v) { return Json::array({v[0], v[1], v[2]}); }
-
-Json box_json(const PeriodicBox& box) {
-  return {{"edges", std::vector<double>(box.edges.begin(), box.edges.end())}, {"volume", box.edges.prod()}};
-}
-
-Json container_json(const Shape& shape) {
-  const Bounds<3> bounds = bounds_of(shape);
-  return {{"kind", kind_of(shape)},
-          {"volume", volume_of(shape)},
-          {"bounds", {{"lower", json_of(bounds.lower)}, {"upper", json_of(bounds.upper)}}}};
-}
-
-Json certificate_json(const Certificate& c) {
-  const bool any_pair = c.worst_pair[0] != c.worst_pair[1];
-  return {{"statement", c.statement},
-          {"pairs_tested", c.pairs_tested},
-          {"walls_tested", c.walls_tested},
-          {"centers_tested", c.centers_tested},
-          {"decided_double", c.decided_double},
-          {"decided_exact", c.decided_exact},
-          {"overlapping_pairs", c.overlapping_pairs},
-          {"protruding_spheres", c.protruding_spheres},
-          {"worst_pair", any_pair ? Json::array({c.worst_pair[0], c.worst_pair[1]}) : Json()},
-          {"worst_wall", c.worst_wall},
-          {"seconds", c.seconds}};
+/// The figures; the tables are in the answer of `bernal measure`.
+Json sizes_json(const Measurements& measured) {
+  if (!measured.sizes) return {};
+  return {{"ks_statistic", measured.sizes->ks_statistic},
+          {"ks_p_value", or_null(measured.sizes->ks_p_value)},
+          {"chi_squared_p_value", or_null(measured.sizes->chi_squared_p_value)},
+          {"mean_volume_ratio", measured.sizes->volume_ratio}};
 }
 
 std::uint64_t peak_memory_bytes() {
@@ -48,9 +27,8 @@ std::uint64_t peak_memory_bytes() {
 std::string json_of(const Report& report) {
   const Packing& packing = report.packing;
   const Certificate& certificate = report.certificate;
-  const Contacts& contacts = report.contacts;
+  const Json of_certificate = Json::parse(certificate_as_json(certificate));
 
-  const PeriodicBox* box = std::get_if<PeriodicBox>(&packing.domain);
   Json effects = Json::array();
   for (const Effect& e : packing.effects) {
     effects.push_back({{"name", e.name}, {"calls", e.calls}, {"seconds", e.seconds}});
@@ -64,34 +42,28 @@ std::string json_of(const Report& report) {
                        {"max_overlap", m.max_overlap},
                        {"seconds", m.seconds}});
   }
-  const Json json = {
-      {"version", packing.version},
-      {"seed", packing.seed},
-      {"threads", packing.threads},
-      {"outcome", name_of(packing.outcome)},
-      {"reason", packing.reason},
-      {"n", packing.spheres.size()},
-      {"dimension", packing.spheres.dimension()},
-      {"unit", packing.scene.unit},
-      {"phi", packing.packing_fraction()},
-      {"coordination", contacts.coordination},
-      {"contact_gap", contacts.contact_gap},
-      {"contacts", contacts.pairs},
-      {"wall_contacts", contacts.walls},
-      {"rattlers", contacts.rattlers},
-      {"max_overlap", certificate.max_overlap},
-      {"min_wall_gap", certificate.min_wall_gap},
-      {"certified", certificate.certified},
-      {"certificate", certificate_json(certificate)},
-      box ? Json::object_t::value_type("box", box_json(*box))
-          : Json::object_t::value_type("container", container_json(std::get<Shape>(packing.domain))),
-      {"hash", report.hash},
-      {"effects", effects},
-      {"history", history},
-      {"seconds", packing.seconds},
-      {"peak_memory_bytes", peak_memory_bytes()}};
-  // Names may hold any bytes; a report that is not valid UTF-8 would be worse than a replaced character.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  Json json = {{"version", packing.version},
+               {"seed", packing.seed},
+               {"threads", packing.threads},
+               {"outcome", name_of(packing.outcome)},
+               {"reason", packing.reason},
+               {"n", packing.spheres.size()},
+               {"dimension", packing.spheres.dimension()},
+               {"unit", packing.scene.unit},
+               {"phi", packing.packing_fraction()}};
+  json.update(contacts_json(report.measured.contacts));
+  json.update({{"sizes", sizes_json(report.measured)},
+               {"max_overlap", certificate.max_overlap},
+               {"min_wall_gap", of_certificate["min_wall_gap"]},
+               {"certified", certificate.certified},
+               {"certificate", of_certificate},
+               domain_json(packing.domain),
+               {"hash", report.hash},
+               {"effects", effects},
+               {"history", history},
+               {"seconds", packing.seconds},
+               {"peak_memory_bytes", peak_memory_bytes()}});
+  return text_of(json);
 }
 
 }  // namespace bernal

@@ -1,8 +1,11 @@
 #include "bernal/io/write_packing.hpp"
 
+#include <memory>
+
 #include "bernal/core/error.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "io/output_file.hpp"
 #include "io/report.hpp"
@@ -13,6 +16,9 @@
 
 namespace bernal {
 namespace {
+
+/// Enough for a curve that is smooth to the eye; `bernal measure` takes more.
+constexpr double distances_for_a_report = 2e6;
 
 void write_text(const std::filesystem::path& path, std::string_view text) {
   OutputFile file(path);
@@ -37,6 +43,15 @@ Certificate certify_written(const std::filesystem::path& csv, const Packing& pac
   return certify(written.spheres, packing.domain, packing.scene.overlap);
 }
 
+/// A result is not lost because what it is compared with has gone, the file of a table for instance.
+std::unique_ptr<SizeDistribution> asked_sizes(const Scene& scene) {
+  try {
+    return radii_of(scene);
+  } catch (const Error&) {
+    return nullptr;
+  }
+}
+
 }  // namespace
 
 WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder) {
@@ -53,15 +68,16 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
     file.close();
   }
   const Certificate certificate = certify_written(csv, packing);
-  const Contacts contacts = measure_contacts(packing);
-  const Report report{packing, certificate, contacts, hash_of(packing.spheres)};
+  const std::unique_ptr<SizeDistribution> asked = asked_sizes(packing.scene);
+  const Measurements measured = measure(packing, asked.get(), {.radial = {.work = distances_for_a_report}});
+  const Report report{packing, certificate, measured, asked.get(), hash_of(packing.spheres)};
   const std::string scene = scene_as_run(packing, folder);
   const std::string picture = svg_of(packing.spheres, packing.domain, packing.scene.unit);
 
   write_text(staged.add("scene.toml"), scene);
   write_text(staged.add("report.json"), json_of(report));
   write_text(staged.add("report.html"), html_of(report, picture, scene));
-  write_text(staged.add("packing.svg"), picture);
+  if (!picture.empty()) write_text(staged.add("packing.svg"), picture);
   return {staged.publish(), certificate};
 }
 

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "io/disc_svg.hpp"
+#include "io/legend.hpp"
 #include "io/outline.hpp"
 #include "io/palette.hpp"
 #include "io/view.hpp"
@@ -16,42 +18,10 @@
 namespace bernal {
 namespace {
 
-constexpr double canvas_size = 1000;
-constexpr double narrowest_canvas = 480;  // so much the legend needs
-constexpr double margin = 12;
-constexpr double legend_height = 52;
-constexpr double raster_pitch = 0.5;
-constexpr int colour_classes = 9;
+constexpr double finest_raster = 0.5, coarsest_raster = 1;
+constexpr double raster_points_a_radius = 8;
 constexpr int shade_classes = 8;
 constexpr std::uint32_t fewest_visible_points = 2;
-
-/// Maps radii to colour classes, evenly in ln r between the first and the last per cent of the spheres.
-class SizeScale {
- public:
-  explicit SizeScale(std::vector<double> radii) {
-    if (radii.empty()) return;
-    std::sort(radii.begin(), radii.end());
-    const auto at = [&](double share) {
-      return radii[static_cast<std::size_t>(share * static_cast<double>(radii.size() - 1))];
-    };
-    smallest_ = at(0.01);
-    largest_ = at(0.99);
-    equal_ = !(largest_ > 1.001 * smallest_);
-  }
-  bool equal() const { return equal_; }
-  double smallest() const { return smallest_; }
-  double largest() const { return largest_; }
-
-  int colour_class(double radius) const {
-    if (equal_) return colour_classes / 2;
-    const double t = std::log(radius / smallest_) / std::log(largest_ / smallest_);
-    return std::clamp(static_cast<int>(t * colour_classes), 0, colour_classes - 1);
-  }
-
- private:
-  double smallest_ = 1, largest_ = 1;
-  bool equal_ = true;
-};
 
 struct Ball {
   CanvasPoint center;
@@ -59,17 +29,33 @@ struct Ball {
   std::uint32_t sphere;
 };
 
-/// The spheres as balls on the canvas, farthest first. Disjoint balls painted in the order of their centres'
-/// depths hide each other rightly, whatever their sizes: the plane of equal power of two balls separates
-/// them, and the eye's side of it is the side of the nearer centre.
-std::vector<Ball> balls_back_to_front(const Spheres<dynamic>& spheres, const View& view) {
-  std::vector<Ball> balls;
-  balls.reserve(spheres.size());
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    balls.push_back({view(spheres.center(i)), view.scale() * spheres.r[i], static_cast<std::uint32_t>(i)});
+/// The ids of the spheres, nearest centre first. Disjoint balls painted from the other end hide each other
+/// rightly, whatever their sizes: the plane of equal power of two balls separates them, and the eye's side
+/// of it is the side of the nearer centre.
+std::vector<std::uint32_t> front_to_back(const Spheres<dynamic>& spheres) {
+  std::vector<std::pair<double, std::uint32_t>> order;
+  order.reserve(spheres.size());
+  for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+    const Vector<3> c(spheres.x[0][i], spheres.x[1][i], spheres.x[2][i]);
+    order.emplace_back(-c.dot(View::towards_eye()), i);
   }
-  std::stable_sort(balls.begin(), balls.end(),
-                   [](const Ball& a, const Ball& b) { return a.center.depth < b.center.depth; });
+  std::sort(order.begin(), order.end());
+  std::vector<std::uint32_t> ids;
+  ids.reserve(order.size());
+  for (const auto& [depth, id] : order) ids.push_back(id);
+  return ids;
+}
+
+/// Draws the spheres and answers those that may be seen, nearest first; the k-th of them has the id k in the
+/// buffer.
+std::vector<Ball> draw(const Spheres<dynamic>& spheres, const View& view, DepthBuffer& depths) {
+  std::vector<Ball> balls;
+  for (const std::uint32_t i : front_to_back(spheres)) {
+    const Ball ball{view(spheres.center(i)), view.scale() * spheres.r[i], i};
+    if (depths.hides_ball(ball.center, ball.radius)) continue;
+    depths.draw_ball(ball.center, ball.radius, static_cast<std::uint32_t>(balls.size()));
+    balls.push_back(ball);
+  }
   return balls;
 }
 
@@ -160,24 +146,24 @@ void append_strokes(std::string& out, const std::vector<Stroke>& strokes, bool h
 
 void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const View& view,
                     const SizeScale& sizes) {
-  const std::vector<Ball> balls = balls_back_to_front(spheres, view);
-  DepthBuffer depths(view.width(), view.height(), raster_pitch);
-  for (std::uint32_t k = 0; k < balls.size(); ++k) depths.draw_ball(balls[k].center, balls[k].radius, k);
+  const double mean_radius = view.scale() * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) /
+                             static_cast<double>(std::max<std::size_t>(1, spheres.size()));
+  const double pitch = std::clamp(mean_radius / raster_points_a_radius, finest_raster, coarsest_raster);
+  DepthBuffer depths(view.width(), view.height(), pitch);
+  const std::vector<Ball> balls = draw(spheres, view, depths);
   std::vector<std::uint32_t> visible_points(balls.size(), 0);
   for (const std::uint32_t k : depths.ids()) {
     if (k != DepthBuffer::nothing) ++visible_points[k];
   }
-  const double mean_radius = view.scale() * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) /
-                             static_cast<double>(std::max<std::size_t>(1, spheres.size()));
   const Shading shading(depths, mean_radius);
   // A ball smaller than the raster may be met by none of its points: its centre decides.
   const auto shows = [&](std::size_t k) {
     const Ball& ball = balls[k];
     return visible_points[k] >= fewest_visible_points ||
-           (ball.radius < 2 * raster_pitch &&
+           (ball.radius < 2 * pitch &&
             depths.depth(ball.center.x, ball.center.y) <= ball.center.depth + ball.radius);
   };
-  for (std::size_t k = 0; k < balls.size(); ++k) {
+  for (std::size_t k = balls.size(); k-- > 0;) {
     if (!shows(k)) continue;
     const Ball& ball = balls[k];
     const int shade = std::min(shade_classes - 1, static_cast<int>(shading(ball) * shade_classes));
@@ -188,66 +174,45 @@ void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const Vie
   }
 }
 
-/// The largest 1, 2 or 5 times a power of ten that is at most `length`.
-double round_length(double length) {
-  const double decade = std::pow(10, std::floor(std::log10(length)));
-  for (const double step : {5.0, 2.0}) {
-    if (step * decade <= length) return step * decade;
-  }
-  return decade;
+/// What has to fit on the canvas: the domain, and for a periodic box the spheres that stick out of it.
+std::vector<Vector<3>> corners_of(const Mesh& mesh, const Domain& domain, const Spheres<dynamic>& spheres) {
+  if (!std::holds_alternative<PeriodicBox>(domain) || spheres.empty()) return mesh.vertices;
+  const Vector<3> edges(extent_of(domain)), out = Vector<3>::Constant(std::ranges::max(spheres.r));
+  std::vector<Vector<3>> corners;
+  for (const Vector<3>& v : mesh.vertices)
+    corners.push_back((v.array() > 0.5 * edges.array()).select(v + out, v - out));
+  return corners;
 }
 
-void append_legend(std::string& out, const View& view, const SizeScale& sizes, std::string_view unit,
-                   bool any) {
-  const double y = view.height() + legend_height / 2;
-  const double length = round_length(0.2 * view.width() / view.scale());
-  const double bar = length * view.scale();
-  fmt::format_to(std::back_inserter(out),
-                 "<g font-family=\"system-ui,sans-serif\" font-size=\"17\" fill=\"#8590a0\">\n"
-                 "<path d=\"M{0} {1}v10h{2:.1f}v-10\" fill=\"none\" stroke=\"#8590a0\" stroke-width=\"1.6\"/>"
-                 "<text x=\"{3:.1f}\" y=\"{4}\">{5:g} {6}</text>\n",
-                 margin, y - 5, bar, margin + bar + 10, y + 6, length, unit);
-  if (any && sizes.equal()) {
-    fmt::format_to(std::back_inserter(out),
-                   "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {:.3g} {}</text>\n",
-                   view.width() - margin, y + 6, sizes.smallest(), unit);
-  } else if (any) {
-    constexpr double step = 17;
-    const double end = view.width() - margin - 100;
-    fmt::format_to(std::back_inserter(out), "<text x=\"{:.1f}\" y=\"{}\">{:.3g} {}</text>\n", end + 8, y + 6,
-                   sizes.largest(), unit);
-    for (int c = 0; c < colour_classes; ++c) {
-      fmt::format_to(std::back_inserter(out),
-                     "<circle cx=\"{:.1f}\" cy=\"{}\" r=\"{:.1f}\" fill=\"url(#bernal{}0)\"/>\n",
-                     end - step * (colour_classes - c - 0.5), y, 4.0 + 4.0 * c / (colour_classes - 1),
-                     static_cast<char>('a' + c));
-    }
-    fmt::format_to(std::back_inserter(out),
-                   "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {:.3g}</text>\n",
-                   end - step * colour_classes - 8, y + 6, sizes.smallest());
-  }
-  out += "</g>\n";
+std::string solid_svg(const Spheres<dynamic>& spheres, const Domain& domain, std::string_view unit) {
+  const Mesh mesh = drawable_mesh(domain);
+  const View view(corners_of(mesh, domain, spheres), canvas_size, canvas_margin, narrowest_canvas);
+  const SizeScale sizes(spheres.r);
+  const std::vector<Stroke> strokes = outline_of(mesh, view);
+  const bool periodic = std::holds_alternative<PeriodicBox>(domain);  // spheres stick out and hide its edges
+
+  std::string out = svg_head(view.width(), view.height(), spheres.size());
+  append_gradients(out);
+  append_strokes(out, strokes, true, 0.5, 1);
+  append_spheres(out, spheres, view, sizes);
+  append_strokes(out, strokes, false, periodic ? 0.95 : 0.55, periodic ? 1.8 : 1.2);
+  append_legend(out, {view.width(), view.height(), view.scale()}, sizes, unit,
+                [](int colour) { return fmt::format("url(#bernal{}0)", static_cast<char>('a' + colour)); });
+  out += "</svg>\n";
+  return out;
 }
 
 }  // namespace
 
 std::string svg_of(const Spheres<dynamic>& spheres, const Domain& domain, std::string_view unit) {
-  const Mesh mesh = drawable_mesh(domain);
-  const View view(mesh.vertices, canvas_size, margin, narrowest_canvas);
-  const SizeScale sizes(spheres.r);
-  const std::vector<Stroke> strokes = outline_of(mesh, view);
-
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" role=\"img\" "
-      "aria-label=\"{2} spheres in their container\">\n",
-      view.width(), view.height() + legend_height, spheres.size());
-  append_gradients(out);
-  append_strokes(out, strokes, true, 0.5, 1);
-  append_spheres(out, spheres, view, sizes);
-  append_strokes(out, strokes, false, 0.55, 1.2);
-  append_legend(out, view, sizes, unit, !spheres.empty());
-  out += "</svg>\n";
-  return out;
+  switch (spheres.dimension()) {
+    case 2:
+      return disc_svg(spheres, std::get<PeriodicBox>(domain), unit);
+    case 3:
+      return solid_svg(spheres, domain, unit);
+    default:
+      return {};
+  }
 }
 
 }  // namespace bernal

@@ -23,42 +23,54 @@ void append_raw(OutputFile& file, T value) {
 void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres) {
   const std::uint64_t n = spheres.size();
   // Each array of the appended data is led by its length in bytes; offsets count from the underscore.
-  const std::uint64_t column = sizeof(std::uint64_t) + 8 * n;
-  const std::uint64_t radius = 0, id = column, points = 2 * column, connectivity = points + column + 16 * n,
-                      offsets = connectivity + column;
+  std::uint64_t offset = 0;
+  const auto data_array = [&](std::string_view type, std::string_view name, std::uint64_t components = 1) {
+    const std::string tag = fmt::format(
+        "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
+        "offset=\"{}\"/>\n",
+        type, name, components, offset);
+    offset += sizeof(std::uint64_t) + 8 * components * n;
+    return tag;
+  };
+  const std::size_t dimension = spheres.x.size();
+  std::string point_data = data_array("Float64", "radius");
+  point_data += data_array("Int64", "id");
+  for (std::size_t k = 3; k < dimension; ++k) point_data += data_array("Float64", fmt::format("x{}", k));
+  const std::string points = data_array("Float64", "Points", 3);
+  const std::string connectivity = data_array("Int64", "connectivity"),
+                    offsets = data_array("Int64", "offsets");
   file.append(fmt::format(R"(<?xml version="1.0"?>
 <VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
   <PolyData>
     <Piece NumberOfPoints="{0}" NumberOfVerts="{0}" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">
       <PointData Scalars="radius">
-        <DataArray type="Float64" Name="radius" format="appended" offset="{1}"/>
-        <DataArray type="Int64" Name="id" format="appended" offset="{2}"/>
-      </PointData>
+{1}      </PointData>
       <Points>
-        <DataArray type="Float64" Name="Points" NumberOfComponents="3" format="appended" offset="{3}"/>
-      </Points>
+{2}      </Points>
       <Verts>
-        <DataArray type="Int64" Name="connectivity" format="appended" offset="{4}"/>
-        <DataArray type="Int64" Name="offsets" format="appended" offset="{5}"/>
-      </Verts>
+{3}{4}      </Verts>
     </Piece>
   </PolyData>
   <AppendedData encoding="raw">
 _)",
-                          n, radius, id, points, connectivity, offsets));
+                          n, point_data, points, connectivity, offsets));
 
-  append_raw(file, 8 * n);
-  for (const double r : spheres.r) append_raw(file, r);
-  append_raw(file, 8 * n);
-  for (std::uint64_t i = 0; i < n; ++i) append_raw(file, i);
+  const auto append_column = [&](const std::vector<double>& column) {
+    append_raw(file, 8 * n);
+    for (const double value : column) append_raw(file, value);
+  };
+  const auto append_counted_from = [&](std::uint64_t first) {
+    append_raw(file, 8 * n);
+    for (std::uint64_t i = first; i < first + n; ++i) append_raw(file, i);
+  };
+  append_column(spheres.r);
+  append_counted_from(0);
+  for (std::size_t k = 3; k < dimension; ++k) append_column(spheres.x[k]);
   append_raw(file, 24 * n);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) append_raw(file, k < spheres.x.size() ? spheres.x[k][i] : 0.0);
-  }
-  append_raw(file, 8 * n);
-  for (std::uint64_t i = 0; i < n; ++i) append_raw(file, i);
-  append_raw(file, 8 * n);
-  for (std::uint64_t i = 1; i <= n; ++i) append_raw(file, i);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < 3; ++k) append_raw(file, k < dimension ? spheres.x[k][i] : 0.0);
+  append_counted_from(0);
+  append_counted_from(1);
 
   file.append("\n  </AppendedData>\n</VTKFile>\n");
 }

@@ -74,6 +74,16 @@ Domain domain_of(const Scene& scene, std::string* notes) {
   return find_entry(container_catalogue(), scene.container).make(scene, notes ? *notes : unused);
 }
 
+Domain packed_domain_of(const Scene& scene) {
+  if (scene.is_periodic() && !scene.container.has("size") && !scene.container.has("edge"))
+    throw Error(
+        ErrorCode::bad_scene,
+        "does not say how large the periodic box is; give its \"size\", as the scene.toml that bernal "
+        "pack writes beside the spheres does",
+        scene.container.where);
+  return domain_of(scene);
+}
+
 std::unique_ptr<SizeDistribution> radii_of(const Scene& scene) {
   const SizesEntry& entry = find_entry(sizes_catalogue(), scene.sizes);
   try {
@@ -107,6 +117,17 @@ void expect_in_container(Plan& plan) {
                         std::holds_alternative<Mesh>(container) ? "O(log faces) a query" : "O(1) a query"});
 }
 
+/// What a size means that only gives the proportions of a box: each edge over the longest, to 40 bits. So all
+/// sizes in proportion make the same plan, and the one that a run wrote down, rounded, makes that run again.
+Vector<dynamic> proportions_of(const Vector<dynamic>& edges) {
+  const auto rounded = [](double share) {
+    int exponent = 0;
+    const double mantissa = std::frexp(share, &exponent);
+    return std::ldexp(std::round(std::ldexp(mantissa, 40)), exponent - 40);
+  };
+  return (edges / edges.maxCoeff()).unaryExpr(rounded);
+}
+
 void expect_in_periodic_box(Plan& plan) {
   const Scene& scene = plan.scene;
   const int dimension = scene.dimension();
@@ -117,7 +138,8 @@ void expect_in_periodic_box(Plan& plan) {
   if (plan.box_follows) {
     plan.expected_count = static_cast<double>(*scene.target.count);
     Vector<dynamic>& edges = std::get<PeriodicBox>(plan.domain).edges;
-    edges *= std::pow(plan.expected_count * mean_volume / attainable, 1.0 / dimension);
+    edges = proportions_of(edges);
+    edges *= std::pow(plan.expected_count * mean_volume / attainable / edges.prod(), 1.0 / dimension);
   } else {
     plan.expected_count = attainable * volume_of(plan.domain) / mean_volume;
     if (scene.target.count) plan.expected_count = static_cast<double>(*scene.target.count);

@@ -1,7 +1,5 @@
 #include "run/catalogue.hpp"
 
-#include <cmath>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -48,13 +46,12 @@ Domain make_mesh(const Scene& scene, std::string& notes) {
   return Shape(std::move(imported.mesh));
 }
 
-/// Of volume 1 where the packing is to decide.
+/// The unit cube where the scene gives no size.
 Domain make_periodic(const Scene& scene, std::string&) {
   const Spec& c = scene.container;
   PeriodicBox box{Vector<dynamic>::Constant(scene.dimension(), c.has("edge") ? c.number("edge") : 1.0)};
   if (c.has("size"))
     box.edges = Eigen::Map<const Eigen::VectorXd>(c.numbers("size").data(), scene.dimension());
-  if (c.flag("scalable")) box.edges /= std::pow(box.edges.prod(), 1.0 / scene.dimension());
   return box;
 }
 
@@ -114,7 +111,7 @@ const PlanItem refilling[] = {
 StageEnd run_relax(const Spec& s, PeriodicWork& work) {
   return relax(work, {.alpha = s.number("alpha"),
                       .beta = s.number("beta"),
-                      .phi0 = s.number("phi0"),
+                      .phi0 = s.has("phi0") ? std::optional(s.number("phi0")) : std::nullopt,
                       .stop = s.number("stop"),
                       .polish = s.number("polish"),
                       .reference = s.text("method") == "reference",
@@ -122,6 +119,7 @@ StageEnd run_relax(const Spec& s, PeriodicWork& work) {
 }
 
 const PlanItem relaxing[] = {
+    {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
     {"relaxation", "overlapping spheres push each other apart while the box grows", "O(N log² N)"}};
 
 const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},

@@ -232,8 +232,9 @@ Schema make_schema() {
                             .range = {0.01, 1e6}},
                            {.name = "phi0",
                             .type = Type::number,
-                            .help = "packing fraction of the overlapping spheres at the start",
-                            .otherwise = 0.86,
+                            .help = "packing fraction of the overlapping spheres at the start; if absent 0.86, "
+                                    "in other than three dimensions 1.34 of random close packing",
+                            .optional = true,
                             .range = {0, 10, true}},
                            {.name = "stop",
                             .type = Type::number,

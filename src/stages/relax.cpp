@@ -5,18 +5,23 @@
 
 #include "bernal/core/dimension.hpp"
 #include "stages/free_of_overlap.hpp"
+#include "stages/relax_fast.hpp"
 #include "stages/relax_reference.hpp"
 #include "stages/resize_box.hpp"
 
 namespace bernal {
 namespace {
 
-/// 0.9 of random close packing of equal spheres, by dimension: up to here any spheres find places free of
-/// overlap in a given box.
-constexpr double loose[] = {0.89, 0.756, 0.576, 0.414, 0.279, 0.18, 0.107, 0.062};
-/// How much smaller than the edges that are asked for those of such a start are: the box grows while it
-/// relaxes.
-constexpr double room_to_grow = 0.01;
+/// Random close packing of equal spheres, by dimension.
+constexpr double close_packing[] = {1, 0.84, 0.64, 0.46, 0.31, 0.20, 0.119, 0.069};
+/// The paper's phi0, and in other than three dimensions what is as far above close packing.
+constexpr double usual_phi0[] = {1.34, 1.13, 0.86, 0.62, 0.42, 0.27, 0.16, 0.093};
+/// Up to this share of it spheres of any sizes find places free of overlap in a given box; they start in one
+/// that is smaller by volume, as it may grow while they relax, and again from where they ended if it grew too
+/// far.
+constexpr double loose = 0.9;
+constexpr double room_to_grow = 0.03;
+constexpr int most_starts_in_a_loose_box = 20;
 /// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
 constexpr double jitter = 1e-6;
 
@@ -26,14 +31,22 @@ double volume_of_spheres(const PeriodicWork& work) {
   return sum;
 }
 
+bool is_loose(const PeriodicWork& work) {
+  return work.target_edges &&
+         volume_of_spheres(work) < loose * close_packing[work.dimension() - 1] * work.target_edges->prod();
+}
+
 /// Those of phi0, or about those that are asked for; never so small that a sphere overlaps its own image.
-Vector<dynamic> edges_to_start_from(const PeriodicWork& work, double phi0) {
-  const double filled = volume_of_spheres(work);
-  Vector<dynamic> edges = work.edges * std::pow(filled / phi0 / work.edges.prod(), 1.0 / work.dimension());
+Vector<dynamic> edges_to_start_from(const PeriodicWork& work, std::optional<double> phi0) {
+  const int dimension = work.dimension();
+  const double phi = phi0.value_or(usual_phi0[dimension - 1]);
+  const auto with_volume = [&](double volume) -> Vector<dynamic> {
+    return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
+  };
+  Vector<dynamic> edges = with_volume(volume_of_spheres(work) / phi);
   if (work.target_edges) {
     const double asked = work.target_edges->prod();
-    const bool is_loose = filled < loose[work.dimension() - 1] * asked;
-    if (is_loose || edges.prod() > asked) edges = *work.target_edges * (1 - room_to_grow);
+    if (is_loose(work) || edges.prod() > asked) edges = with_volume((1 - room_to_grow) * asked);
   }
   const double needed = 2 * std::ranges::max(work.spheres.r) / edges.minCoeff();
   return needed > 1 ? Vector<dynamic>(edges * (needed * (1 + 4 * tolerance::roundoff))) : edges;
@@ -52,10 +65,10 @@ void shake(Spheres<D>& spheres, const Vector<D>& edges, double length, Random ra
     spheres.set_center(i, boundary.wrap(spheres.center(i) + length * uniform_direction<D>(random)));
 }
 
-/// Spheres and box as the methods want them: overlapping.
+/// Places for spheres that have none. Those of others are moved by nothing that matters, so that a lattice or
+/// a line of spheres does not last for ever.
 template <int D>
-void prepare(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
-  const Vector<D> start = edges_to_start_from(work, options.phi0);
+void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, PeriodicWork& work) {
   if (work.placed) {
     resize_box<D>(spheres, edges, start);
     shake<D>(spheres, edges, jitter * std::ranges::max(spheres.r), work.random(Stream::relax));
@@ -65,29 +78,54 @@ void prepare(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const Re
   }
 }
 
-/// Grows the box until nothing overlaps more than is allowed, and further to the edges that are asked for.
+/// Grows the box, or shrinks it, until nothing overlaps more than is allowed.
 template <int D>
-void finish(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work) {
+void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work) {
   Vector<D> free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap);
   while (!free.allFinite()) {  // cancelled while centres coincide
     shake<D>(spheres, edges, 1e-3 * std::ranges::max(spheres.r), work.random(Stream::relax));
     free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap);
   }
   resize_box<D>(spheres, edges, free);
-  work.needed_volume = edges.prod();
-  if (!work.target_edges) return;
-  const Vector<D> target = *work.target_edges;
+}
+
+/// The edges that are asked for have room for the box at hand, and for the rounding of moving to them.
+template <int D>
+bool fits(const Spheres<D>& spheres, const Vector<D>& edges, const Vector<D>& target) {
   const double rounding = tolerance::growth(target.maxCoeff() / std::ranges::min(spheres.r));
-  if ((target.array() >= edges.array() * (1 + rounding)).all()) resize_box<D>(spheres, edges, target);
+  return (target.array() >= edges.array() * (1 + rounding)).all();
+}
+
+template <int D>
+StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
+  if constexpr (D <= 3) {
+    if (!options.reference && fast_path_exists<D>(spheres, edges))
+      return relax_fast<D>(spheres, edges, work, options);
+  }
+  return relax_by_the_book<D>(spheres, edges, work, options);
 }
 
 template <int D>
 StageEnd relax_in(PeriodicWork& work, const RelaxOptions& options) {
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
-  prepare<D>(spheres, edges, work, options);
-  const StageEnd end = relax_by_the_book<D>(spheres, edges, work, options);
-  finish<D>(spheres, edges, work);
+  const Vector<D> start = edges_to_start_from(work, options.phi0);
+  place<D>(spheres, edges, start, work);
+
+  const int most_starts = is_loose(work) ? most_starts_in_a_loose_box : 1;
+  StageEnd end = StageEnd::converged;
+  for (int starts = 1;; ++starts) {
+    work.edges = edges;
+    end = push_apart<D>(spheres, edges, work, options);
+    free_of_overlap<D>(spheres, edges, work);
+    if (end != StageEnd::converged || starts == most_starts || fits<D>(spheres, edges, *work.target_edges))
+      break;
+    resize_box<D>(spheres, edges, start);
+  }
+
+  work.needed_volume = edges.prod();
+  if (work.target_edges && fits<D>(spheres, edges, *work.target_edges))
+    resize_box<D>(spheres, edges, *work.target_edges);
   work.spheres = std::move(spheres);
   work.edges = edges;
   work.placed = true;
@@ -95,6 +133,11 @@ StageEnd relax_in(PeriodicWork& work, const RelaxOptions& options) {
 }
 
 }  // namespace
+
+int sweeps_a_cycle(double alpha, std::size_t spheres) {
+  const double decades = std::log10(static_cast<double>(spheres));
+  return std::max(1, static_cast<int>(std::lround(alpha * decades * decades)));
+}
 
 StageEnd relax(PeriodicWork& work, const RelaxOptions& options) {
   EffectTimer timer(work.effects["relaxation"]);

@@ -115,11 +115,6 @@ class Loop {
   CellGrid<D> grid_;
 };
 
-int sweeps_a_cycle(double alpha, std::size_t spheres) {
-  const double decades = std::log10(static_cast<double>(spheres));
-  return std::max(1, static_cast<int>(std::lround(alpha * decades * decades)));
-}
-
 }  // namespace
 
 template <int D>

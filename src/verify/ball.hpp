@@ -7,15 +7,17 @@
 namespace bernal::verify {
 
 /// A sphere of the packing and its place there.
+template <int D>
 struct Ball {
-  Vector<3> c;
+  Vector<D> c;
   double r;
   std::uint64_t index;
 
-  Box box() const { return box_of_ball(c, r); }
+  Box<D> box() const { return box_of_ball<D>(c, r); }
   double center(int axis) const { return c[axis]; }
 };
 
-using BallTree = BoxTree<Ball>;
+template <int D>
+using BallTree = BoxTree<Ball<D>, D>;
 
 }  // namespace bernal::verify

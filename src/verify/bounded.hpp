@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 
 #include "bernal/core/tolerance.hpp"
@@ -48,6 +49,11 @@ class Bounded {
   friend Bounded square(const Bounded& a) {
     const double value = a.value_ * a.value_;
     return {value, (2 * std::abs(a.value_) + a.error_) * a.error_ + u * value + tiny};
+  }
+  /// |x| and min(x, y) move by no more than their arguments do. Precondition: no overflow so far.
+  friend Bounded magnitude(const Bounded& a) { return {std::abs(a.value_), a.error_}; }
+  friend Bounded smaller(const Bounded& a, const Bounded& b) {
+    return {std::min(a.value_, b.value_), std::max(a.error_, b.error_)};
   }
 
  private:

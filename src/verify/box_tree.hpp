@@ -16,48 +16,62 @@
 namespace bernal::verify {
 
 /// A closed axis-aligned box; empty as made.
+template <int D>
 struct Box {
-  std::array<double, 3> lower{infinity, infinity, infinity};
-  std::array<double, 3> upper{-infinity, -infinity, -infinity};
+  std::array<double, D> lower = filled_with(infinity);
+  std::array<double, D> upper = filled_with(-infinity);
 
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   void include(const Box& other) {
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < D; ++k) {
       lower[k] = std::min(lower[k], other.lower[k]);
       upper[k] = std::max(upper[k], other.upper[k]);
     }
   }
+
+ private:
+  static constexpr std::array<double, D> filled_with(double value) {
+    std::array<double, D> all{};
+    all.fill(value);
+    return all;
+  }
 };
 
 /// Whether two boxes have a point in common.
-inline bool touch(const Box& a, const Box& b) {
-  return (a.lower[0] <= b.upper[0]) & (b.lower[0] <= a.upper[0]) & (a.lower[1] <= b.upper[1]) &
-         (b.lower[1] <= a.upper[1]) & (a.lower[2] <= b.upper[2]) & (b.lower[2] <= a.upper[2]);
+template <int D>
+bool touch(const Box<D>& a, const Box<D>& b) {
+  bool all = true;
+  for (int k = 0; k < D; ++k) all &= (a.lower[k] <= b.upper[k]) & (b.lower[k] <= a.upper[k]);
+  return all;
 }
 
-/// A box that holds the ball of radius r around c, never smaller than that: c ± r is rounded to nearest, off
-/// by half a spacing of doubles at most, and then moved outwards by |c ± r| 2^-52, which is one spacing or
-/// more. (Below 2^-969, where that may be lost, sums of doubles are exact or the spacing is still
-/// representable.)
-inline Box box_of_ball(const Vector<3>& c, double r) {
-  Box box;
-  for (int k = 0; k < 3; ++k) {
-    const double lower = c[k] - r, upper = c[k] + r;
-    box.lower[k] = lower - 0x1p-52 * std::abs(lower);
-    box.upper[k] = upper + 0x1p-52 * std::abs(upper);
+/// Bounds of a sum or difference of two doubles of which the nearest double is known: that is off by half a
+/// spacing of doubles at most, and |sum| 2^-52 is one spacing or more. (Below 2^-969, where that may be lost,
+/// sums of doubles are exact or the spacing is still representable.)
+inline double rounded_down(double sum) { return sum - 0x1p-52 * std::abs(sum); }
+inline double rounded_up(double sum) { return sum + 0x1p-52 * std::abs(sum); }
+
+/// A box that holds the ball of radius r around c, never smaller than that.
+template <int D>
+Box<D> box_of_ball(const Vector<D>& c, double r) {
+  Box<D> box;
+  for (int k = 0; k < D; ++k) {
+    box.lower[k] = rounded_down(c[k] - r);
+    box.upper[k] = rounded_up(c[k] + r);
   }
   return box;
 }
 
-/// A bounding-volume hierarchy over items that have `Box box() const` and `double center(int axis) const`
+/// A bounding-volume hierarchy over items that have `Box<D> box() const` and `double center(int axis) const`
 /// (finite): a complete binary tree, each node split at the median along the longer extent of its centres.
 /// So its depth is log2(N / 8) for any input: clustered, coincident, any ratio of sizes.
 ///
-/// Every search is complete with respect to `touch`. The tree does not depend on the number of threads.
-/// Cost: building O(N log N), 12 to 24 bytes an item beside the item itself; a search O(log N) and what it
-/// finds.
-template <class Item>
+/// A search is for whatever `touch(const Box<D>&, const Query&)` says, which must hold for a box that holds
+/// another one for which it holds; every search is complete with respect to it. The tree does not depend on
+/// the number of threads. Cost: building O(N log N), 4 D to 8 D bytes an item beside the item itself; a
+/// search O(log N) and what it finds, in few dimensions.
+template <class Item, int D>
 class BoxTree {
  public:
   explicit BoxTree(std::vector<Item> items) : items_(std::move(items)) {
@@ -74,28 +88,28 @@ class BoxTree {
   std::span<const Item> leaf(std::size_t l) const {
     return std::span(items_).subspan(begin_of_leaf(l), begin_of_leaf(l + 1) - begin_of_leaf(l));
   }
-  const Box& box_of_leaf(std::size_t l) const { return boxes_[first_leaf_ + l]; }
+  const Box<D>& box_of_leaf(std::size_t l) const { return boxes_[first_leaf_ + l]; }
 
   /// Calls visit(item) for every item whose box touches `query`.
-  template <class Visit>
-  void for_each_touching(const Box& query, Visit visit) const {
+  template <class Query, class Visit>
+  void for_each_touching(const Query& query, Visit visit) const {
     for_each_leaf_touching(query, root, [&](std::size_t l) {
       for (const Item& item : leaf(l))
         if (touch(item.box(), query)) visit(item);
     });
   }
 
-  /// Calls visit(m) for every leaf m > l whose box touches that of leaf l.
-  template <class Visit>
-  void for_each_later_leaf_touching(std::size_t l, Visit visit) const {
-    if (l + 1 < leaves()) for_each_leaf_touching(box_of_leaf(l), next(first_leaf_ + l), visit);
+  /// Calls visit(m) for every leaf m > l whose box touches the query.
+  template <class Query, class Visit>
+  void for_each_leaf_touching_after(std::size_t l, const Query& query, Visit visit) const {
+    if (l + 1 < leaves()) for_each_leaf_touching(query, next(first_leaf_ + l), visit);
   }
 
   /// The smallest distance(item) over all items, given that no item is nearer to its query than
   /// distance_to_box(box) for any box that holds it. Infinity for an empty tree.
   template <class DistanceToBox, class Distance>
   double nearest(DistanceToBox distance_to_box, Distance distance) const {
-    double best = Box::infinity;
+    double best = Box<D>::infinity;
     nearest(root, distance_to_box, distance, best);
     return best;
   }
@@ -113,8 +127,8 @@ class BoxTree {
   static std::size_t next(std::size_t n) { return (n + 1) >> std::countr_zero(n + 1); }
 
   /// Visits the leaves that touch, from node n on in depth-first order.
-  template <class Visit>
-  void for_each_leaf_touching(const Box& query, std::size_t n, Visit visit) const {
+  template <class Query, class Visit>
+  void for_each_leaf_touching(const Query& query, std::size_t n, Visit visit) const {
     do {
       if (touch(boxes_[n], query)) {
         if (n < first_leaf_) {
@@ -167,20 +181,20 @@ class BoxTree {
   }
 
   int longest_axis(std::size_t begin, std::size_t end) const {
-    Box centers;
+    Box<D> centers;
     for (std::size_t i = begin; i < end; ++i) {
-      std::array<double, 3> c;
-      for (int k = 0; k < 3; ++k) c[k] = items_[i].center(k);
+      std::array<double, D> c;
+      for (int k = 0; k < D; ++k) c[k] = items_[i].center(k);
       centers.include({c, c});
     }
     int axis = 0;
-    for (int k = 1; k < 3; ++k)
+    for (int k = 1; k < D; ++k)
       if (centers.upper[k] - centers.lower[k] > centers.upper[axis] - centers.lower[axis]) axis = k;
     return axis;
   }
 
   std::vector<Item> items_;
-  std::vector<Box> boxes_;
+  std::vector<Box<D>> boxes_;
   std::size_t first_leaf_ = 1;
 };
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
@@ -44,51 +45,70 @@ std::optional<std::string> complaint_about(const Spheres<dynamic>& spheres) {
   if (bad == 0) return std::nullopt;
   const Vector<dynamic> c = spheres.center(first);
   return fmt::format(
-      "Not certified: {} without a finite centre and a positive finite radius (first: sphere {} at {}, {}, "
-      "{} with "
+      "Not certified: {} without a finite centre and a positive finite radius (first: sphere {} at {} with "
       "radius {}); nothing else was tested.",
-      counted_spheres(bad), first, c[0], c[1], c[2], spheres.r[first]);
+      counted_spheres(bad), first, fmt::join(c, ", "), spheres.r[first]);
 }
 
-std::vector<verify::Ball> balls_of(const Spheres<dynamic>& spheres) {
-  std::vector<verify::Ball> balls(spheres.size());
+std::vector<verify::Ball<3>> balls_of(const Spheres<dynamic>& spheres) {
+  std::vector<verify::Ball<3>> balls(spheres.size());
   for (std::size_t i = 0; i < balls.size(); ++i) balls[i] = {spheres.center(i), spheres.r[i], i};
   return balls;
 }
 
-bool is_mesh(const Domain& domain) {
-  const Shape* shape = std::get_if<Shape>(&domain);
-  return shape && std::holds_alternative<Mesh>(*shape);
+verify::Tally judge(const Spheres<dynamic>& spheres, const Domain& domain, double allowed_overlap,
+                    Arithmetic arithmetic) {
+  if (const auto* box = std::get_if<PeriodicBox>(&domain))
+    return verify::judge_pairs(spheres, *box, allowed_overlap, arithmetic);
+  const verify::BallTree<3> balls(balls_of(spheres));
+  verify::Tally tally = verify::judge_pairs(balls, allowed_overlap, arithmetic);
+  return tally += verify::judge_walls(balls, std::get<Shape>(domain), arithmetic);
 }
 
-std::string statement_of(const Certificate& c, double allowed_overlap, bool mesh) {
+/// "1,200 spheres, 7,000 near pairs and 7,200 walls decided exactly, no overlap, no protrusion"
+std::string what_was_decided(const Certificate& c, const Domain& domain, const std::string& limit) {
+  const std::string pairs = counted(c.pairs_tested, "near pair", "near pairs");
+  const Shape* shape = std::get_if<Shape>(&domain);
+  if (!shape)
+    return fmt::format("{} in a periodic box, {} decided exactly, no overlap{}", counted_spheres(c.spheres),
+                       pairs, limit);
+  const bool mesh = std::holds_alternative<Mesh>(*shape);
+  return fmt::format(
+      "{}, {} and {} decided exactly, no overlap{}, no protrusion", counted_spheres(c.spheres), pairs,
+      counted(c.walls_tested, mesh ? "near triangle" : "wall", mesh ? "near triangles" : "walls"), limit);
+}
+
+std::string statement_of(const Certificate& c, double allowed_overlap, const Domain& domain) {
   const std::string limit = allowed_overlap > 0 ? fmt::format(" above {}", allowed_overlap) : "";
   if (c.certified) {
     if (c.spheres == 0) return "Certified: there are no spheres.";
     std::string closest;
-    if (c.pairs_tested > 0)
+    if (c.worst_pair)
       closest = c.max_overlap > 0 ? fmt::format("; largest overlap {:.2g}", c.max_overlap)
                                   : fmt::format("; closest pair gap {:.2g}", 0.0 - c.max_overlap);
     if (!closest.empty()) closest += " of the sum of radii";
-    return fmt::format(
-        "Certified: {}, {} and {} decided exactly, no overlap{}, no protrusion{}.",
-        counted_spheres(c.spheres), counted(c.pairs_tested, "near pair", "near pairs"),
-        counted(c.walls_tested, mesh ? "near triangle" : "wall", mesh ? "near triangles" : "walls"), limit,
-        closest);
+    return fmt::format("Certified: {}{}.", what_was_decided(c, domain, limit), closest);
   }
   std::string faults;
   if (c.overlapping_pairs > 0)
-    faults = fmt::format("{}{} (worst {} and {}, overlap ratio {:.2g})",
+    faults = fmt::format("{}{} (worst {}, overlap ratio {:.2g})",
                          counted(c.overlapping_pairs, "overlapping pair", "overlapping pairs"), limit,
-                         c.worst_pair[0], c.worst_pair[1], c.max_overlap);
+                         worst_pair_text(c), c.max_overlap);
   if (c.protruding_spheres > 0)
     faults += fmt::format("{}{} across or outside the wall (worst {}, gap {:.2g} of its radius)",
-                          faults.empty() ? "" : ", ", counted_spheres(c.protruding_spheres), c.worst_wall,
+                          faults.empty() ? "" : ", ", counted_spheres(c.protruding_spheres), *c.worst_wall,
                           c.min_wall_gap);
   return fmt::format("Not certified: {}.", faults);
 }
 
 }  // namespace
+
+std::string worst_pair_text(const Certificate& c) {
+  if (!c.worst_pair) return "none";
+  const auto [first, second] = *c.worst_pair;
+  return first == second ? fmt::format("{} and its own image", first)
+                         : fmt::format("{} and {}", first, second);
+}
 
 Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, double allowed_overlap,
                     Arithmetic arithmetic) {
@@ -100,10 +120,7 @@ Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, doubl
   if (auto complaint = complaint_about(spheres)) {
     result.statement = *std::move(complaint);
   } else {
-    const verify::BallTree balls(balls_of(spheres));
-    verify::Tally tally = verify::judge_pairs(balls, allowed_overlap, arithmetic);
-    tally += verify::judge_walls(balls, std::get<Shape>(domain), arithmetic);
-
+    const verify::Tally tally = judge(spheres, domain, allowed_overlap, arithmetic);
     result.pairs_tested = tally.pairs;
     result.walls_tested = tally.walls;
     result.centers_tested = tally.centers;
@@ -112,8 +129,7 @@ Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, doubl
     result.overlapping_pairs = tally.overlapping;
     result.protruding_spheres = tally.protruding;
     if (tally.pairs > 0) {
-      result.worst_pair[0] = tally.worst_pair[0];
-      result.worst_pair[1] = tally.worst_pair[1];
+      result.worst_pair = {tally.worst_pair[0], tally.worst_pair[1]};
       result.max_overlap = tally.max_overlap;
     }
     if (std::isfinite(tally.min_wall_gap)) {
@@ -121,7 +137,7 @@ Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, doubl
       result.min_wall_gap = tally.min_wall_gap;
     }
     result.certified = tally.overlapping == 0 && tally.protruding == 0;
-    result.statement = statement_of(result, allowed_overlap, is_mesh(domain));
+    result.statement = statement_of(result, allowed_overlap, domain);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

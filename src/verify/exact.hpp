@@ -39,6 +39,8 @@ class Exact {
     return {a.mantissa_ * b.mantissa_, a.exponent_ + b.exponent_};
   }
   friend Exact square(const Exact& a) { return a * a; }
+  friend Exact magnitude(const Exact& a) { return a.sign() == Sign::negative ? Exact(0) - a : a; }
+  friend Exact smaller(const Exact& a, const Exact& b) { return (b - a).sign() == Sign::negative ? b : a; }
 
  private:
   using Integer = boost::multiprecision::number<

@@ -24,7 +24,7 @@ bool positive(double x) { return std::isfinite(x) && x > 0; }
 /// Tries one ball against the pieces of wall of a container that has few.
 class PieceJudge {
  public:
-  PieceJudge(const Ball& ball, Arithmetic arithmetic, Tally& tally)
+  PieceJudge(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally)
       : ball_(ball), arithmetic_(arithmetic), tally_(tally) {}
 
   /// `clearance` is the signed distance of the centre from the piece, in double.
@@ -39,7 +39,7 @@ class PieceJudge {
   bool inside() const { return inside_; }
 
  private:
-  const Ball& ball_;
+  const Ball<3>& ball_;
   Arithmetic arithmetic_;
   Tally& tally_;
   bool inside_ = true;
@@ -52,7 +52,7 @@ class BoxWall {
             "a box needs a finite corner and a positive finite size");
   }
 
-  bool inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) const {
+  bool inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
     PieceJudge judge(ball, arithmetic, tally);
     for (int k = 0; k < 3; ++k) {
       const double c = ball.c[k], r = ball.r, lower = lower_[k], upper = upper_[k];
@@ -74,7 +74,7 @@ class SphereWall {
             "a sphere needs a finite centre and a positive finite radius");
   }
 
-  bool inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) const {
+  bool inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
     const Vector<3> d = ball.c - sphere_.center;
     PieceJudge judge(ball, arithmetic, tally);
     judge.piece(sphere_.radius - std::hypot(d[0], d[1], d[2]),
@@ -96,7 +96,7 @@ class CylinderWall {
     unit_axis_ = cylinder.axis.stableNormalized();
   }
 
-  bool inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) const {
+  bool inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
     const Vector<3> w = ball.c - cylinder_.base;
     const Vector<3> across = w.cross(unit_axis_);
     const double height = w.dot(unit_axis_);
@@ -115,7 +115,7 @@ class CylinderWall {
 };
 
 template <class Wall>
-Tally judge_all(const BallTree& balls, const Wall& wall, Arithmetic arithmetic) {
+Tally judge_all(const BallTree<3>& balls, const Wall& wall, Arithmetic arithmetic) {
   const auto all = balls.items();
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, all.size(), 64), Tally{},
@@ -128,7 +128,7 @@ Tally judge_all(const BallTree& balls, const Wall& wall, Arithmetic arithmetic) 
 }
 
 struct JudgeShape {
-  const BallTree& balls;
+  const BallTree<3>& balls;
   Arithmetic arithmetic;
 
   Tally operator()(const BoxShape& s) const { return judge_all(balls, BoxWall(s), arithmetic); }
@@ -139,7 +139,7 @@ struct JudgeShape {
 
 }  // namespace
 
-Tally judge_walls(const BallTree& balls, const Shape& container, Arithmetic arithmetic) {
+Tally judge_walls(const BallTree<3>& balls, const Shape& container, Arithmetic arithmetic) {
   return std::visit(JudgeShape{balls, arithmetic}, container);
 }
 

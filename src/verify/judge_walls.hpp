@@ -10,6 +10,6 @@ namespace bernal::verify {
 /// against each. Of a mesh the triangles whose boxes touch the ball's are tried, and the side of its centre
 /// is decided. Throws Error{bad_mesh} for a mesh that encloses nothing and Error{bad_argument} for absurd
 /// measures. Cost: O(N), for a mesh of T triangles O(T log T + N log T + near pieces).
-Tally judge_walls(const BallTree& balls, const Shape& container, Arithmetic arithmetic);
+Tally judge_walls(const BallTree<3>& balls, const Shape& container, Arithmetic arithmetic);
 
 }  // namespace bernal::verify

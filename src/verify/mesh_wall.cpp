@@ -87,7 +87,7 @@ double distance_from_segment(const Vector<3>& p, const Vector<3>& a, const Vecto
 /// In double, to a few roundoffs of the triangle's size. The least of the three segments and, where p
 /// projects inside, the plane: so a wrong guess of the region does no harm, even on needles.
 double distance_from_triangle(const Vector<3>& p, const Corners& v) {
-  double best = Box::infinity;
+  double best = Box<3>::infinity;
   for (int k = 0; k < 3; ++k) best = std::min(best, distance_from_segment(p, v[k], v[(k + 1) % 3]));
   const Vector<3> normal = (v[1] - v[0]).cross(v[2] - v[0]);
   const double length = normal.norm();
@@ -96,7 +96,7 @@ double distance_from_triangle(const Vector<3>& p, const Corners& v) {
   return inside ? std::min(best, std::abs(normal.dot(p - v[0])) / length) : best;
 }
 
-double distance_from_box(const Vector<3>& p, const Box& box) {
+double distance_from_box(const Vector<3>& p, const Box<3>& box) {
   double outside[3];
   for (int k = 0; k < 3; ++k) outside[k] = std::max({box.lower[k] - p[k], 0.0, p[k] - box.upper[k]});
   return std::hypot(outside[0], outside[1], outside[2]);
@@ -125,9 +125,9 @@ Corners MeshWall::corners(const Facet& facet) const {
   return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
 }
 
-bool MeshWall::inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) const {
+bool MeshWall::inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
   bool clear = true;
-  double distance = Box::infinity;
+  double distance = Box<3>::infinity;
   facets_.for_each_touching(ball.box(), [&](const Facet& facet) {
     const Corners corner = corners(facet);
     ++tally.walls;
@@ -141,14 +141,14 @@ bool MeshWall::inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) con
   const bool center_is_inside = center_inside(ball, arithmetic, tally);
   if (!center_is_inside) distance = -distance_from(ball.c);
   const bool holds = center_is_inside && clear;
-  if (distance < Box::infinity)
+  if (distance < Box<3>::infinity)
     tally.add_wall_ratio(ball.index, with_sign((distance - ball.r) / ball.r, holds));
   return holds;
 }
 
-bool MeshWall::center_inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) const {
+bool MeshWall::center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
   const Vector<3>& p = ball.c;
-  const Box upwards{{p[0], p[1], p[2]}, {p[0], p[1], Box::infinity}};
+  const Box<3> upwards{{p[0], p[1], p[2]}, {p[0], p[1], Box<3>::infinity}};
   int winding = 0;
   Tally crossings;
   facets_.for_each_touching(upwards, [&](const Facet& facet) {
@@ -163,7 +163,7 @@ bool MeshWall::center_inside(const Ball& ball, Arithmetic arithmetic, Tally& tal
 }
 
 double MeshWall::distance_from(const Vector<3>& p) const {
-  return facets_.nearest([&](const Box& box) { return distance_from_box(p, box); },
+  return facets_.nearest([&](const Box<3>& box) { return distance_from_box(p, box); },
                          [&](const Facet& facet) { return distance_from_triangle(p, corners(facet)); });
 }
 

@@ -20,24 +20,24 @@ class MeshWall {
   explicit MeshWall(const Mesh& mesh);
 
   /// Tries the ball against the near triangles and decides the side of its centre; counts both.
-  bool inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) const;
+  bool inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const;
 
  private:
   struct Facet {
-    Box extent;
+    Box<3> extent;
     std::uint32_t triangle;
 
-    Box box() const { return extent; }
+    Box<3> box() const { return extent; }
     double center(int axis) const { return 0.5 * extent.lower[axis] + 0.5 * extent.upper[axis]; }
   };
 
   Corners corners(const Facet& facet) const;
   static std::vector<Facet> facets_of(const Mesh& mesh);
-  bool center_inside(const Ball& ball, Arithmetic arithmetic, Tally& tally) const;
+  bool center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const;
   double distance_from(const Vector<3>& p) const;
 
   const Mesh& mesh_;
-  BoxTree<Facet> facets_;
+  BoxTree<Facet, 3> facets_;
 };
 
 }  // namespace bernal::verify

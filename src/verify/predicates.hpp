@@ -1,12 +1,15 @@
 #pragma once
 #include <array>
+#include <utility>
 
 #include "bernal/domain/shape.hpp"
+#include "verify/ball.hpp"
 #include "verify/sign.hpp"
 
 // The questions that a certificate answers, each written once and evaluated in any arithmetic `Number` that
-// has +, -, ×, `square` and `sign`: Bounded (a filter) or Exact. Only ring operations and comparisons occur,
-// no division and no root, so Exact answers them about the doubles as written. Radii are positive throughout.
+// has +, -, ×, `square`, `magnitude`, `smaller` and `sign`: Bounded (a filter) or Exact. Only ring operations
+// and comparisons occur, no division and no root, so Exact answers them about the doubles as written. Radii
+// are positive throughout.
 
 namespace bernal::verify {
 
@@ -36,12 +39,31 @@ Triple<Number> cross(const Triple<Number>& a, const Triple<Number>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// |ci - cj| >= (1 - allowed)(ri + rj), for 0 <= allowed < 1.
+/// (1 - allowed)(ri + rj), for 0 <= allowed < 1.
 template <class Number>
-Truth spheres_clear(const Vector<3>& ci, double ri, const Vector<3>& cj, double rj, double allowed) {
-  Number reach = Number(ri) + Number(rj);
-  if (allowed != 0) reach = reach * (Number(1) - Number(allowed));
-  return at_least(squared_norm(difference<Number>(ci, cj)), square(reach));
+Number least_distance(double ri, double rj, double allowed) {
+  if (allowed == 0) return Number(ri) + Number(rj);
+  return (Number(ri) + Number(rj)) * (Number(1) - Number(allowed));
+}
+
+template <class Number, int D, class Space>
+Number squared_distance(const Space& space, const Ball<D>& a, const Ball<D>& b) {
+  return [&]<int... k>(std::integer_sequence<int, k...>) {
+    return (... + square(space.template offset<Number>(k, a.c[k], b.c[k])));
+  }
+  (std::make_integer_sequence<int, D>());
+}
+
+/// |ci - cj| >= (1 - allowed)(ri + rj) in an OpenSpace or, for the nearest images, a PeriodicSpace.
+template <class Number, int D, class Space>
+Truth balls_clear(const Space& space, const Ball<D>& a, const Ball<D>& b, double allowed) {
+  return at_least(squared_distance<Number>(space, a, b), square(least_distance<Number>(a.r, b.r, allowed)));
+}
+
+/// The ball keeps its distance from its own images along an axis with that edge.
+template <class Number>
+Truth own_images_clear(double r, double edge, double allowed) {
+  return at_least(Number(edge), least_distance<Number>(r, r, allowed));
 }
 
 /// c - r >= lower, in one coordinate.

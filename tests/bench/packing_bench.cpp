@@ -66,8 +66,9 @@ class SettledBed {
  public:
   explicit SettledBed(const Plan& plan) {
     const Packing packing = run(plan);
-    const Frame frame = frame_of(plan.domain);
-    const Shape local = to_local(plan.domain, frame);
+    const auto& shape = std::get<Shape>(plan.domain);
+    const Frame frame = frame_of(shape);
+    const Shape local = to_local(shape, frame);
     const auto* mesh = std::get_if<Mesh>(&local);
     container_ = mesh ? make_mesh_container(*mesh, WallArithmetic::filtered, frame.resolution)
                       : make_analytic_container(local, WallArithmetic::filtered, frame.resolution);

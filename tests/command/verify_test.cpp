@@ -84,5 +84,102 @@ TEST_F(Verify, BadFilesAreNotAVerdict) {
   expect_refused_in_one_line(with(touching), {"scene.toml"});
 }
 
+// ---- Periodic boxes
+
+/// Packed once a dimension: 60 spheres in a box that follows from them.
+std::string packed(int dimension, const Folder& folder) {
+  const std::string scene = folder
+                                .write("periodic.toml", fmt::format(R"(unit = "mm"
+[container]
+kind = "periodic"
+dimension = {}
+[spheres]
+count = 60
+radius = {{ distribution = "uniform", min = 0.5, max = 1.0 }}
+[[stage]]
+do = "relax"
+alpha = 1
+)",
+                                                                    dimension))
+                                .string();
+  const std::string out = (folder / "out").string();
+  const Ended ended = bernal({"pack", scene, "-o", out, "--quiet"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  return out;
+}
+
+class VerifyPeriodic : public ::testing::TestWithParam<int> {
+ protected:
+  Folder folder;
+  std::string out = packed(GetParam(), folder);
+  std::string csv = out + "/spheres.csv", scene = out + "/scene.toml";
+};
+
+INSTANTIATE_TEST_SUITE_P(Dimensions, VerifyPeriodic, ::testing::Values(2, 3, 4),
+                         [](const auto& test) { return fmt::format("D{}", test.param); });
+
+TEST_P(VerifyPeriodic, CertifiesWhatWasPacked) {
+  const Ended of_folder = bernal({"verify", out});
+  EXPECT_EQ(of_folder.status, 0) << of_folder.out << of_folder.err;
+  EXPECT_NE(of_folder.out.find("60 spheres in a periodic box"), std::string::npos) << of_folder.out;
+  EXPECT_EQ(of_folder.out.find("walls"), std::string::npos) << of_folder.out;
+  EXPECT_EQ(bernal({"verify", csv, "--scene", scene}).status, 0);
+
+  const auto json = nlohmann::json::parse(bernal({"verify", out, "--json"}).out);
+  const auto report = report_of(out);
+  EXPECT_EQ(json["certified"], true);
+  EXPECT_EQ(report["certified"], true);
+  EXPECT_TRUE(json["worst_wall"].is_null());
+  EXPECT_EQ(report["dimension"], GetParam());
+  EXPECT_EQ(report["box"]["edges"].size(), static_cast<std::size_t>(GetParam()));
+  // The report's certificate is the same object, but for the time that it took.
+  for (const auto& [key, value] : json.items()) {
+    if (key != "seconds") {
+      EXPECT_EQ(report["certificate"][key], value) << key;
+    }
+  }
+}
+
+TEST_P(VerifyPeriodic, FindsASphereThatWasPutAcrossTheFace) {
+  // The last line becomes an image of the first sphere on the other side of the box.
+  const auto edges = report_of(out)["box"]["edges"].get<std::vector<double>>();
+  std::string text = text_of(csv);
+  std::vector<std::string> lines;
+  for (std::size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
+    lines.push_back(text.substr(at, end - at));
+  const std::size_t comma = lines[2].find(',');
+  lines.back() = fmt::format("{}{}", std::stod(lines[2]) - edges[0], lines[2].substr(comma));
+  text.clear();
+  for (const std::string& line : lines) text += line + "\n";
+  const std::string tampered = folder.write("tampered.csv", text).string();
+  const Ended ended = bernal({"verify", tampered, "--scene", scene});
+  EXPECT_EQ(ended.status, 1) << ended.out << ended.err;
+  EXPECT_NE(ended.out.find("worst: 0 and 59, overlap ratio 1"), std::string::npos) << ended.out;
+}
+
+TEST_P(VerifyPeriodic, WantsTheDimensionAndTheBoxOfTheScene) {
+  const char* other = GetParam() == 3 ? "x0,x1,r\n1,1,1\n" : "x,y,z,r\n1,1,1,1\n";
+  const std::string file = folder.write("other.csv", other).string();
+  expect_refused_in_one_line(
+      bernal({"verify", file, "--scene", scene}),
+      {"other.csv", "coordinates", fmt::format("the scene has {} dimensions", GetParam())});
+  // The scene that was packed does not say how large the box became; that which was written does.
+  expect_refused_in_one_line(bernal({"verify", csv, "--scene", (folder / "periodic.toml").string()}),
+                             {"periodic.toml:2", "\"size\""});
+}
+
+TEST_F(Verify, AContainerHasThreeDimensions) {
+  expect_refused_in_one_line(with("x0,x1,r\n1,1,1\n"), {"spheres.csv", "2 coordinates", "3 dimensions"});
+}
+
+TEST_F(Verify, ASphereMayTouchItsOwnImageAndNoMore) {
+  folder.write("scene.toml", "[container]\nkind = \"periodic\"\nsize = [2, 5, 7]\n[spheres]\nradius = 1\n");
+  EXPECT_EQ(with("x,y,z,r\n1,1,1,1\n").status, 0);
+  const Ended ended = with("x,y,z,r\n1,1,1,1.25\n");
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_NE(ended.out.find("1 overlapping; worst: 0 and its own image, overlap ratio 0.2"), std::string::npos)
+      << ended.out;
+}
+
 }  // namespace
 }  // namespace bernal::testing

@@ -78,8 +78,8 @@ TEST(HardCertificate, OneUlpDecidesFarFromTheOrigin) {
     s.x[0][2] = std::nextafter(s.x[0][2], 1e300);
     const Certificate c = expect_truth(s, box);
     EXPECT_EQ(c.overlapping_pairs, 1u);
-    EXPECT_EQ(c.worst_pair[0], 2u);
-    EXPECT_EQ(c.worst_pair[1], 3u);
+    EXPECT_EQ(c.worst_pair->at(0), 2u);
+    EXPECT_EQ(c.worst_pair->at(1), 3u);
   }
 }
 
@@ -112,8 +112,8 @@ TEST(HardCertificate, AllCoincident) {
   EXPECT_EQ(c.pairs_tested, 999u * 1000 / 2);
   EXPECT_EQ(c.overlapping_pairs, c.pairs_tested);
   EXPECT_EQ(c.max_overlap, 1);
-  EXPECT_EQ(c.worst_pair[0], 0u);
-  EXPECT_EQ(c.worst_pair[1], 1u);
+  EXPECT_EQ(c.worst_pair->at(0), 0u);
+  EXPECT_EQ(c.worst_pair->at(1), 1u);
 }
 
 TEST(HardCertificate, DustAroundABoulder) {

@@ -39,6 +39,13 @@ std::string in_camel_case(const std::string& snake) {
 
 const std::string box = "[container]\nkind = \"box\"\nsize = [1.0, 1.0, 1.0]\n";
 
+/// Short relaxations of few spheres: laws do not ask for density.
+const std::string relax = "[[stage]]\ndo = \"relax\"\nalpha = 1\n";
+const std::string unequal_edges =
+    "[container]\nkind = \"periodic\"\nsize = [2.0, 1.0, 0.7]\nscalable = true\n"
+    "[spheres]\ncount = 100\nradius = 0.3\n" +
+    relax;
+
 std::vector<SceneUnderTest> scenes_under_test() {
   std::vector<SceneUnderTest> scenes;
   for (const auto& file : testing::example_scenes()) {
@@ -61,6 +68,18 @@ std::vector<SceneUnderTest> scenes_under_test() {
                           "[spheres]\npacking_fraction = 0.4\nradius = 0.07\n[[stage]]\ndo = \"insert\"\n"
                           "[[stage]]\ndo = \"compress\"\ndirection = [1.0, 1.0, 3.0]\n"
                           "[[stage]]\ndo = \"refill\"\ndirection = [1.0, 1.0, 3.0]\n");
+  const std::string periodic = "[container]\nkind = \"periodic\"\n";
+  add("PeriodicBox", periodic +
+                         "[spheres]\ncount = 120\n"
+                         "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n" +
+                         relax);
+  add("PeriodicPlane", periodic +
+                           "dimension = 2\n[spheres]\ncount = 150\n"
+                           "radius = { distribution = \"uniform\", min = 1.0, max = 2.0 }\n" +
+                           relax);
+  add("PeriodicUnequalEdges", unequal_edges);
+  add("PeriodicBoxOfGivenSize",
+      periodic + "size = [1.0, 1.2, 0.9]\n[spheres]\npacking_fraction = 0.55\nradius = 0.09\n" + relax);
   scenes.push_back({"LShapeMesh", [] {
                       return plan_of("unit = \"m\"\n" + box + "[spheres]\nfill = true\nradius = 0.1\n",
                                      test::translated(test::l_shape_mesh(), {0, 0, -7}));
@@ -128,6 +147,7 @@ TEST_P(EveryPacking, ScalesBitForBitByPowersOfTwo) {
       ASSERT_EQ(scaled.spheres.center(i), factor * packing.spheres.center(i)) << i;
       ASSERT_EQ(scaled.spheres.r[i], factor * packing.spheres.r[i]) << i;
     }
+    EXPECT_EQ(extent_of(scaled.domain), factor * extent_of(packing.domain));
   }
 }
 
@@ -143,8 +163,8 @@ TEST_P(EveryPacking, StaysCertifiedAtAnyScaleAndFarAway) {
   }
 }
 
-/// The radii are those that the seed draws, in their order and to the last bit, less those that found no
-/// place: no more than the window of stages/supply.hpp holds.
+/// The radii are those that the seed draws, in their order and to the last bit; in a container less those
+/// that found no place: no more than the window of stages/supply.hpp holds.
 TEST_P(EveryPacking, HasTheRadiiThatWereDrawn) {
   const Plan plan = GetParam().plan();
   const Packing packing = run_with(plan);
@@ -158,7 +178,8 @@ TEST_P(EveryPacking, HasTheRadiiThatWereDrawn) {
       if (!cut || drawn <= largest) ++passed_over;
     ASSERT_EQ(drawn, packing.spheres.r[i]) << i;
   }
-  EXPECT_LE(passed_over, std::max<std::size_t>(16, packing.spheres.size() / 50));
+  const bool periodic = plan.scene.is_periodic();
+  EXPECT_LE(passed_over, periodic ? 0 : std::max<std::size_t>(16, packing.spheres.size() / 50));
 }
 
 /// Stops the run when it asks for the k-th time.
@@ -182,12 +203,18 @@ TEST_P(EveryPacking, ThatIsCancelledIsWholeAsFarAsItGoes) {
     return false;
   };
   const std::size_t all = run(plan, options).spheres.size();
-  // Before the first sphere, among the first ones, and in the last stage.
-  for (const std::size_t k : {std::size_t{0}, std::size_t{30}, polls - 1}) {
+  // Before the first sphere, among the first ones, and in the last stage. In a periodic box all spheres are
+  // there from the start, and the box becomes as large as it must.
+  const bool periodic = plan.scene.is_periodic();
+  for (const std::size_t k : {std::size_t{0}, std::min<std::size_t>(30, polls / 2), polls - 1}) {
     const Packing packing = cancelled_after(plan, k);
     EXPECT_EQ(packing.outcome, Outcome::cancelled);
     EXPECT_NE(packing.reason.find("stopped"), std::string::npos) << packing.reason;
-    EXPECT_LE(packing.spheres.size(), k <= 30 ? k : all);
+    if (periodic) {
+      EXPECT_EQ(packing.spheres.size(), all);
+    } else {
+      EXPECT_LE(packing.spheres.size(), k <= 30 ? k : all);
+    }
     expect_certified(packing);
   }
 }
@@ -210,6 +237,9 @@ TEST(Packing, RunsOnlyTheEffectsThatTheSceneCallsFor) {
   const auto compressed =
       effects_of(run_with(plan_of(box + spheres + insert_only + "[[stage]]\ndo = \"compress\"\n")));
   EXPECT_EQ(compressed, (std::set<std::string>{"insertion", "walls", "neighbour lists", "compression"}));
+  const auto relaxed = effects_of(run_with(plan_of(unequal_edges)));
+  EXPECT_TRUE(relaxed.contains("relaxation"));
+  EXPECT_FALSE(relaxed.contains("walls") || relaxed.contains("insertion") || relaxed.contains("compression"));
 }
 
 TEST(Packing, DoesWhatThePlanSaysAndNothingThatItLeavesOut) {
@@ -258,12 +288,43 @@ TEST(Packing, TellsItsHistoryInOrder) {
 }
 
 TEST(Packing, ComesFromTheSceneThatItCarries) {
-  const Plan plan = plan_of(box + "[spheres]\ncount = 100\nradius = 0.05\n");
-  RunOptions options;
-  options.seed = 42;
-  options.threads = 1;
-  const Packing packing = run(plan, options);
-  EXPECT_EQ(hash_of(run_with(build(packing.scene)).spheres), hash_of(packing.spheres));
+  // A box that followed from the packing carries its size, rounded.
+  for (const std::string& toml : {box + "[spheres]\ncount = 100\nradius = 0.05\n", unequal_edges}) {
+    const Plan plan = plan_of(toml);
+    RunOptions options;
+    options.seed = 42;
+    options.threads = 1;
+    const Packing packing = run(plan, options);
+    const Packing again = run_with(build(packing.scene));
+    EXPECT_EQ(hash_of(again.spheres), hash_of(packing.spheres));
+    EXPECT_EQ(extent_of(domain_of(packing.scene)), extent_of(packing.domain));
+    EXPECT_EQ(extent_of(again.domain), extent_of(packing.domain));
+  }
+}
+
+TEST(Packing, TakesOnlyProportionsFromABoxThatFollowsFromIt) {
+  const auto hash_with = [](const std::string& size) {
+    std::string toml = unequal_edges;
+    toml.replace(toml.find("[2.0, 1.0, 0.7]"), 15, size);
+    const Packing packing = run_with(plan_of(toml));
+    const Vector<dynamic> edges = extent_of(packing.domain);
+    EXPECT_NEAR(edges[1] / edges[0], 0.5, 1e-11);
+    EXPECT_NEAR(edges[2] / edges[0], 0.35, 1e-11);
+    return hash_of(packing.spheres);
+  };
+  const std::string hash = hash_with("[2.0, 1.0, 0.7]");
+  for (const char* size : {"[1.0, 0.5, 0.35]", "[6e9, 3e9, 2.1e9]", "[0.02, 0.01, 0.007]"})
+    EXPECT_EQ(hash_with(size), hash) << size;
+}
+
+TEST(Packing, ThatNeedsALargerBoxIsFullAndStillWhole) {
+  // Denser than any packing of equal spheres in a box of that size.
+  const Packing packing = run_with(plan_of(
+      "[container]\nkind = \"periodic\"\nedge = 1.0\n[spheres]\npacking_fraction = 0.75\nradius = 0.1\n" +
+      relax));
+  EXPECT_EQ(packing.outcome, Outcome::full);
+  EXPECT_GT(packing.volume, 1);
+  expect_certified(packing);
 }
 
 }  // namespace

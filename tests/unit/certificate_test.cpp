@@ -33,8 +33,7 @@ void expect_same_verdict(const Certificate& a, const Certificate& b) {
   EXPECT_EQ(a.centers_tested, b.centers_tested);
   EXPECT_EQ(a.overlapping_pairs, b.overlapping_pairs);
   EXPECT_EQ(a.protruding_spheres, b.protruding_spheres);
-  EXPECT_EQ(a.worst_pair[0], b.worst_pair[0]);
-  EXPECT_EQ(a.worst_pair[1], b.worst_pair[1]);
+  EXPECT_EQ(a.worst_pair, b.worst_pair);
   EXPECT_EQ(a.max_overlap, b.max_overlap);
   EXPECT_EQ(a.worst_wall, b.worst_wall);
   EXPECT_EQ(a.min_wall_gap, b.min_wall_gap);
@@ -58,9 +57,11 @@ Certificate expect_truth(const Spheres<3>& s, const Shape& shape, double allowed
   EXPECT_GE(filtered.pairs_tested, truth.near_at_least);
   EXPECT_LE(filtered.pairs_tested, truth.near_at_most);
   EXPECT_EQ(filtered.min_wall_gap<0, truth.protruding> 0);
-  if (filtered.pairs_tested > 0) {
-    EXPECT_NE(filtered.worst_pair[0], filtered.worst_pair[1]);
-    EXPECT_EQ(filtered.max_overlap > 0, oracle::overlap(s, filtered.worst_pair[0], filtered.worst_pair[1]));
+  EXPECT_EQ(filtered.worst_pair.has_value(), filtered.pairs_tested > 0);
+  if (filtered.worst_pair) {
+    const auto [first, second] = *filtered.worst_pair;
+    EXPECT_LT(first, second);
+    EXPECT_EQ(filtered.max_overlap > 0, oracle::overlap(s, first, second));
   }
   return filtered;
 }
@@ -89,7 +90,7 @@ TEST(Certificate, AllowsTouchingAndNothingMore) {
   const Certificate broken = expect_truth(swollen, box);
   EXPECT_EQ(broken.overlapping_pairs, 3u);
   EXPECT_EQ(broken.protruding_spheres, 1u);
-  EXPECT_EQ(broken.worst_pair[0], 0u);
+  EXPECT_EQ(broken.worst_pair->at(0), 0u);
   EXPECT_EQ(broken.worst_wall, 0u);
 
   box.size[2] = std::nextafter(6.0, 0.0);
@@ -180,6 +181,9 @@ TEST(Certificate, RefusesContainersThatAreNone) {
   EXPECT_THROW(certify(one, lost), Error);
   EXPECT_THROW(certify(one, BoxShape{}, -1e-3), Error);
   EXPECT_THROW(certify(one, BoxShape{}, nan), Error);
+  // A container has three dimensions.
+  EXPECT_THROW(certify(Spheres<2>(), BoxShape{}), Error);
+  EXPECT_THROW(certify(Spheres<4>(), SphereShape{}), Error);
 }
 
 TEST(Certificate, WeldsATriangleSoup) {

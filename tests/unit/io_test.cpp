@@ -11,7 +11,10 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "bernal/core/error.hpp"
+#include "bernal/io/certificate_json.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "io/output_file.hpp"
@@ -126,6 +129,49 @@ TEST(Csv, IsTheTextThatTheFormatPromises) {
             "# unit: mm\nx,y,z,r\n0.1,-2,1e-07,0.5\n");
 }
 
+/// Some spheres of any dimension.
+Spheres<dynamic> example_in(int dimension, std::size_t n = 50) {
+  Random random(1, stream(Stream::test));
+  Spheres<dynamic> spheres(dimension);
+  for (std::size_t i = 0; i < n; ++i) {
+    Vector<dynamic> c(dimension);
+    for (double& x : c) x = random.uniform(-1, 1);
+    spheres.push_back(c, random.uniform(0.1, 1));
+  }
+  return spheres;
+}
+
+TEST(Csv, ComesBackInEveryDimension) {
+  const Folder folder;
+  for (int dimension = 1; dimension <= max_dimension; ++dimension) {
+    const Spheres<dynamic> spheres = example_in(dimension);
+    const auto file = written(folder, std::to_string(dimension) + ".csv",
+                              [&](OutputFile& out) { write_csv(out, spheres, "mm"); });
+    EXPECT_EQ(read_csv(file).spheres, spheres) << dimension;
+    EXPECT_TRUE(read_csv(folder.write("empty.csv", csv_header(dimension) + "\n")).spheres.empty());
+  }
+  EXPECT_EQ(csv_header(1), "x0,r");
+  EXPECT_EQ(csv_header(2), "x0,x1,r");
+  EXPECT_EQ(csv_header(3), "x,y,z,r");
+  EXPECT_EQ(csv_header(5), "x0,x1,x2,x3,x4,r");
+}
+
+TEST(Csv, DoesNotCareWhereItsBlocksEnd) {
+  // Lines of ever other lengths, in a file that is read in many blocks; the last ones much shorter.
+  const Folder folder;
+  std::string text = "x0,r\n";
+  Spheres<dynamic> spheres(1);
+  const auto add = [&](const std::string& x, double value) {
+    text += x + ",2\n";
+    spheres.push_back(Vector<dynamic>::Constant(1, value), 2);
+  };
+  for (int i = 0; i < 3000; ++i) add(fmt::format("0.{:0<{}}1e{}", "", i % 1009, i % 1009), 0.1);
+  for (int i = 0; i < 3000; ++i)
+    add("0." + std::string(static_cast<std::size_t>(i % 1009), '0') + "1e" + std::to_string(i % 1009), 0.1);
+  for (int i = 0; i < 300'000; ++i) add("7", 7);
+  EXPECT_EQ(read_csv(folder.write("s.csv", text)).spheres, spheres);
+}
+
 TEST(Csv, ReadsWhatOthersWrite) {
   const Folder folder;
   const SpheresFile windows =
@@ -155,9 +201,14 @@ TEST(Csv, SaysWhereAndWhatIsWrong) {
       {"# unit: mm\n", 1, "header x,y,z,r is missing"},
       {"# unit: mm", 1, "cut off"},
       {"# unit: parsec\nx,y,z,r\n", 1, "unknown unit \"parsec\"; use one of"},
-      {"1,2,3,4\n", 1, "expected the header x,y,z,r, found \"1,2,3,4\""},
+      {"1,2,3,4\n", 1, "expected the header x,y,z,r (or x0,x1,r and so on), found \"1,2,3,4\""},
       {"x,y,z,radius\n", 1, "found \"x,y,z,radius\""},
-      {"x0,x1,r\n1,2,3\n", 1, "found \"x0,x1,r\""},
+      {"x0,x1,x2,r\n1,2,3,4\n", 1, "found \"x0,x1,x2,r\""},
+      {"x,y,r\n1,2,3\n", 1, "found \"x,y,r\""},
+      {"x0,x1,x2,x3,x4,x5,x6,x7,x8,r\n", 1, "found \"x0,x1,x2,x3,x4,x5,x6,x7,x8,r\""},
+      {"r\n1\n", 1, "found \"r\""},
+      {"x0,x1,r\n1,2,3,4\n", 2, "4 fields, expected 3: x0,x1,r"},
+      {"x0,x1,r\n1,y,3\n", 2, "x1 = \"y\" is not a number"},
       {"\xff\xfex\n", 1, "found \"\\xff\\xfex\""},
       {head + "1,2,3\n", 3, "3 fields, expected 4"},
       {head + "1,2,3,4,5\n", 3, "5 fields, expected 4"},
@@ -182,6 +233,7 @@ TEST(Csv, SaysWhereAndWhatIsWrong) {
       {head + "1,2,3,nan\n", 3, "r = \"nan\" is not finite"},
       {head + std::string("1,2,3,4\0\n", 9), 3, "r = \"4\\x00\" is not a number"},
       {head + std::string(1000, '7') + "\n", 3, "1 fields, expected 4"},
+      {head + "1,2,3,4\n" + std::string(1'000'000, '7') + "\n", 4, "1 fields, expected 4"},
       {head + "1,2,3,4\r5\n", 3, "r = \"4\\x0d5\" is not a number"},
   };
   const Folder folder;
@@ -261,7 +313,50 @@ TEST(Vtp, ReadsBack) {
   }
 }
 
+TEST(Vtp, HasTheCoordinatesBeyondTheThirdAsPointData) {
+  const Folder folder;
+  for (int dimension = 1; dimension <= max_dimension; ++dimension) {
+    const Spheres<dynamic> spheres = example_in(dimension);
+    const std::string vtp = text_of(written(folder, std::to_string(dimension) + ".vtp",
+                                            [&](OutputFile& file) { write_vtp(file, spheres); }));
+    EXPECT_EQ(appended<double>(vtp, "radius", "Float64"), spheres.r);
+    const auto points = appended<double>(vtp, "Points", "Float64");
+    ASSERT_EQ(points.size(), 3 * spheres.size());
+    for (std::size_t i = 0; i < spheres.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_EQ(points[3 * i + k], k < spheres.x.size() ? spheres.x[k][i] : 0.0);
+    for (std::size_t k = 3; k < max_dimension; ++k) {
+      const std::string name = fmt::format("x{}", k);
+      EXPECT_EQ(vtp.find("Name=\"" + name + "\"") != std::string::npos, k < spheres.x.size());
+      if (k < spheres.x.size()) {
+        EXPECT_EQ(appended<double>(vtp, name, "Float64"), spheres.x[k]);
+      }
+    }
+    EXPECT_EQ(appended<std::int64_t>(vtp, "offsets", "Int64").size(), spheres.size());
+    EXPECT_TRUE(vtp.ends_with("\n  </AppendedData>\n</VTKFile>\n"));
+  }
+}
+
 // ---- report.json and report.html
+
+TEST(CertificateJson, HasNullWhereThereIsNothing) {
+  const auto json = nlohmann::json::parse(certificate_as_json(Certificate{}));
+  EXPECT_EQ(json.at("certified"), false);
+  EXPECT_TRUE(json.at("worst_pair").is_null());
+  EXPECT_TRUE(json.at("worst_wall").is_null());
+  EXPECT_TRUE(json.at("min_wall_gap").is_null());
+
+  Certificate own;
+  own.worst_pair = {4, 4};
+  own.max_overlap = 0.5;
+  own.worst_wall = 0;
+  own.min_wall_gap = -0.25;
+  const auto full = nlohmann::json::parse(certificate_as_json(own));
+  EXPECT_EQ(full.at("worst_pair"), (std::vector<int>{4, 4}));
+  EXPECT_EQ(full.at("max_overlap"), 0.5);
+  EXPECT_EQ(full.at("worst_wall"), 0);
+  EXPECT_EQ(full.at("min_wall_gap"), -0.25);
+}
 
 TEST(ReportJson, HasEveryKeyOfTheFormatWithTheRightType) {
   const Folder folder;
@@ -308,8 +403,8 @@ TEST(ReportJson, WritesWhatIsNotFiniteAsNullAndNoPairAsNull) {
   Certificate certificate;
   certificate.min_wall_gap = std::numeric_limits<double>::infinity();
   certificate.max_overlap = std::numeric_limits<double>::quiet_NaN();
-  const Contacts contacts;
-  const auto json = nlohmann::json::parse(json_of(Report{packing, certificate, contacts, "0"}));
+  const Measurements measured;
+  const auto json = nlohmann::json::parse(json_of(Report{packing, certificate, measured, nullptr, "0"}));
   EXPECT_TRUE(json.at("min_wall_gap").is_null());
   EXPECT_TRUE(json.at("max_overlap").is_null());
   EXPECT_TRUE(json.at("certificate").at("worst_pair").is_null());

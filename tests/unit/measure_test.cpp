@@ -136,7 +136,7 @@ TEST(Contacts, DoNotDependOnWhereTheSceneStandsOrItsUnit) {
 }
 
 TEST(Hash, IsPinnedAndSeesEveryBitAndTheOrder) {
-  EXPECT_EQ(hash_of({}), "cbf29ce484222325");  // FNV-1a of nothing
+  EXPECT_EQ(hash_of(Spheres<3>{}), "cbf29ce484222325");  // FNV-1a of nothing
   Spheres<3> spheres;
   spheres.push_back({1, 2, 3}, 0.5);
   spheres.push_back({-1, 0.1, 1e-300}, 2);

@@ -135,5 +135,59 @@ TEST(Picture, DoesNotDependOnTheUnitOrThePlace) {
   EXPECT_EQ(here.substr(0, here.find("<g font-family")), there.substr(0, there.find("<g font-family")));
 }
 
+TEST(Picture, ShowsDiscsAndTheImagesThatReachIntoTheBox) {
+  // In the middle; across one side, so twice; in a corner, so four times. What crosses the frame is drawn
+  // once more, faintly, beyond it.
+  Spheres<2> discs;
+  discs.push_back({5, 5}, 1);
+  discs.push_back({0.5, 5}, 1);
+  discs.push_back({9.9, 9.9}, 1);
+  const PeriodicBox square{Vector<2>(10, 10)};
+  const std::string svg = svg_of(discs, square, "mm");
+  EXPECT_EQ(painted(svg).size(), 1u + 2 + 4 + 2 + 4);
+  const std::string clipped = svg.substr(svg.find("clip-path="));
+  EXPECT_EQ(painted(clipped).size(), 1u + 2 + 4);
+  // Up is up: the second axis points against the canvas.
+  Spheres<2> low;
+  low.push_back({5, 2}, 1);
+  EXPECT_GT(painted(svg_of(low, square, "mm")).front().y, painted(svg).front().y);
+}
+
+TEST(Picture, OfVeryManyDiscsShowsAPart) {
+  Spheres<2> discs;
+  for (int i = 0; i < 400 * 400; ++i) discs.push_back({i % 400 + 0.5, i / 400 + 0.5}, 0.5);
+  const std::string svg = svg_of(discs, PeriodicBox{Vector<2>(400, 400)}, "mm");
+  EXPECT_LT(svg.size(), 2'000'000u);
+  EXPECT_NE(svg.find("a corner of the box"), std::string::npos);
+}
+
+TEST(Picture, ThereIsNoneOfOtherDimensions) {
+  EXPECT_EQ(svg_of(Spheres<1>{}, PeriodicBox{Vector<1>(1)}, "mm"), "");
+  EXPECT_EQ(svg_of(Spheres<4>{}, PeriodicBox{Vector<4>(1, 1, 1, 1)}, "mm"), "");
+}
+
+TEST(Picture, OfAPeriodicBoxHoldsWhatSticksOut) {
+  Spheres<3> spheres;
+  for (int corner = 0; corner < 8; ++corner)
+    spheres.push_back(Vector<3>(corner & 1, corner >> 1 & 1, corner >> 2) * 9.99, 2);
+  const std::string svg = svg_of(spheres, PeriodicBox{Vector<3>(10, 10, 10)}, "mm");
+  for (const Disc& d : painted(svg)) {
+    EXPECT_GE(d.x - d.r, 0);
+    EXPECT_LE(d.x + d.r, 1000);
+    EXPECT_GE(d.y - d.r, 0);
+    EXPECT_LE(d.y + d.r, 1000);
+  }
+}
+
+TEST(DepthBuffer, HidesABallOnlyBehindWhatCoversAllOfIt) {
+  DepthBuffer buffer(100, 100, 0.5);
+  EXPECT_FALSE(buffer.hides_ball({50, 50, 0}, 10));
+  buffer.draw_ball({50, 50, 0}, 30, 0);
+  EXPECT_TRUE(buffer.hides_ball({50, 50, -20}, 10));
+  EXPECT_FALSE(buffer.hides_ball({50, 50, 25}, 10));    // sticks out towards the eye
+  EXPECT_FALSE(buffer.hides_ball({75, 50, -20}, 10));   // and sideways
+  EXPECT_FALSE(buffer.hides_ball({-50, 50, -20}, 10));  // off the canvas there is nothing to hide behind
+}
+
 }  // namespace
 }  // namespace bernal

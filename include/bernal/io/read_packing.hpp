@@ -3,6 +3,7 @@
 #include <string>
 
 #include "bernal/core/spheres.hpp"
+#include "bernal/run/packing.hpp"
 
 namespace bernal {
 
@@ -11,8 +12,18 @@ struct SpheresFile {
   std::string unit;  ///< of the "# unit: mm" line, "" if there is none
 };
 
-/// Reads `x,y,z,r` lines (`x0,x1,…,r` in other dimensions than three). Throws Error{bad_packing} with file, line and what is wrong: header, number of
-/// fields, text that is no number, not finite, radius not positive, truncated last line.
+/// Reads `x,y,z,r` lines (`x0,x1,…,r` in other dimensions than three). Throws Error{bad_packing} with file,
+/// line and what is wrong: header, number of fields, text that is no number, not finite, radius not positive,
+/// truncated last line.
 SpheresFile read_csv(const std::filesystem::path& file);
+
+/// The spheres of a file that are to lie in the scene's domain. Throws as `read_csv`, and Error{bad_packing}
+/// where their unit or dimension is not the scene's.
+Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file);
+
+/// What stands in scene.toml and spheres.csv of a folder that `write_packing` made, or that has files of that
+/// form. How the run went is not among it: effects, history, seconds and version are empty. Throws as
+/// `read_scene`, `packed_domain_of` and `read_csv_of` do.
+Packing read_packing(const std::filesystem::path& folder);
 
 }  // namespace bernal

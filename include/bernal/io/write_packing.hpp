@@ -12,8 +12,8 @@ struct WrittenPacking {
   Certificate certificate;                   ///< of spheres.csv as it was written and read back
 };
 
-/// Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html and packing.svg into `folder`, which
-/// is made if it does not exist.
+/// Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html and, in two and three dimensions,
+/// packing.svg into `folder`, which is made if it does not exist.
 ///
 /// Everything is written whole under temporary names, spheres.csv is read back and certified against the
 /// packing's container, and only then are the files renamed: a failure throws Error{cannot_write} and leaves

@@ -31,8 +31,8 @@ struct Contacts {
   std::optional<std::uint64_t> isostatic;
 };
 
-/// Cost O(N) for a given spread of gaps, about 0.5 µs a sphere and contact in a periodic box. The packing is
-/// in the scene's frame; nothing is changed. Any dimension, any size ratio, and boxes as small as one sphere.
+/// Cost O(N): about 1 µs a sphere in a periodic box of three dimensions. The packing is in the scene's frame;
+/// nothing is changed. Any dimension, any size ratio, and boxes as small as one sphere.
 Contacts measure_contacts(const Packing&, double contact_gap = 0.002);
 
 /// The same for every one of the gaps, in their order, at the cost of the largest.

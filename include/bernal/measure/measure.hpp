@@ -1,11 +1,34 @@
 #pragma once
-#include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "bernal/measure/contacts.hpp"
+#include "bernal/measure/radial_distribution.hpp"
+#include "bernal/measure/size_comparison.hpp"
 #include "bernal/run/packing.hpp"
+#include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
+
+/// What can be said of a packing from its spheres alone.
+struct Measurements {
+  double packing_fraction = 0;
+  Contacts contacts;             ///< at MeasureOptions::contact_gap
+  std::vector<Contacts> by_gap;  ///< at the others, in their order
+  std::optional<RadialDistribution> radial;
+  std::optional<SizeComparison> sizes;
+};
+
+struct MeasureOptions {
+  double contact_gap = 0.002;
+  std::vector<double> gaps = {1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
+  RadialOptions radial;
+};
+
+/// `asked` is the distribution of radii that the packing is held against; null for none. Cost: that of the
+/// parts.
+Measurements measure(const Packing&, const SizeDistribution* asked, const MeasureOptions& = {});
 
 /// 64-bit FNV-1a of the doubles of all spheres in order, the coordinates and r of each, little-endian; 16
 /// hexadecimal digits.

@@ -15,9 +15,9 @@ namespace bernal {
 
 /// One line of `bernal explain`: something that would run, and what it costs.
 struct PlanItem {
-  std::string name;   ///< "walls", "neighbour lists", "compress", …
-  std::string what;   ///< one phrase
-  std::string cost;   ///< "O(N)", "O(N log T)", …
+  std::string name;  ///< "walls", "neighbour lists", "compress", …
+  std::string what;  ///< one phrase
+  std::string cost;  ///< "O(N)", "O(N log T)", …
 };
 
 /// A scene that has been checked as a whole, with everything it names made and nothing else.
@@ -40,9 +40,14 @@ struct Plan {
 Plan build(const Scene& scene);
 
 /// The container or the periodic box that a scene describes, in the scene's unit: what `build` and the
-/// certificate share. `notes` receives what the importer did. A box that follows from the packing comes with
-/// edges that are in proportion only; its volume is 1. Throws as `build`.
+/// certificate share. `notes` receives what the importer did. The size of a periodic box is taken as it
+/// stands, even where the packing is to decide how large it becomes and only its proportions matter to
+/// `build`; without a size it is the unit cube. Throws as `build`.
 Domain domain_of(const Scene& scene, std::string* notes = nullptr);
+
+/// The same for a packing that is there: throws Error{bad_scene} where the scene leaves it to the packing how
+/// large the periodic box becomes and does not say how large it became.
+Domain packed_domain_of(const Scene& scene);
 
 /// The size distribution of radii that a scene describes, in the scene's unit. Throws as `build`.
 std::unique_ptr<SizeDistribution> radii_of(const Scene& scene);

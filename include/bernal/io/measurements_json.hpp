@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+
+#include "bernal/measure/measure.hpp"
+#include "bernal/run/packing.hpp"
+
+namespace bernal {
+
+/// Measurements as one JSON object: what `bernal measure --json` prints. Lengths are in the scene's unit,
+/// radii are radii. What there is not is null: `g_r` in a container, p-values that would mean nothing.
+std::string measurements_as_json(const Packing&, const Measurements&);
+
+}  // namespace bernal

@@ -1,0 +1,46 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bernal {
+
+// What all pictures of packings share: the canvas, the colours of sizes, the line below.
+
+inline constexpr double canvas_size = 1000;
+inline constexpr double narrowest_canvas = 480;  ///< so much the legend needs
+inline constexpr double canvas_margin = 12;
+inline constexpr double legend_height = 52;
+inline constexpr int colour_classes = 9;
+
+/// Maps radii to colour classes, evenly in ln r between the first and the last per cent of the spheres.
+class SizeScale {
+ public:
+  explicit SizeScale(std::vector<double> radii);
+
+  bool empty() const { return empty_; }
+  bool equal() const { return equal_; }
+  double smallest() const { return smallest_; }
+  double largest() const { return largest_; }
+  int colour_class(double radius) const;
+
+ private:
+  double smallest_ = 1, largest_ = 1;
+  bool empty_ = true;
+  bool equal_ = true;
+};
+
+struct Canvas {
+  double width, height;  ///< without the legend, which stands below
+  double scale;          ///< canvas units per unit of length
+};
+
+/// The opening tag, with room for the legend.
+std::string svg_head(double width, double height, std::size_t spheres);
+
+/// A scale bar and the key of the sizes; `fill` paints a colour class.
+void append_legend(std::string& out, const Canvas& canvas, const SizeScale& sizes, std::string_view unit,
+                   const std::function<std::string(int)>& fill);
+
+}  // namespace bernal

@@ -1,0 +1,42 @@
+#include "bernal/io/read_packing.hpp"
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/scene/read_scene.hpp"
+
+namespace bernal {
+
+Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file) {
+  SpheresFile read = read_csv(file);
+  if (!read.unit.empty() && read.unit != scene.unit)
+    throw Error(ErrorCode::bad_packing,
+                fmt::format("the spheres are in {}, but the scene is in {}; both must have one unit",
+                            read.unit, scene.unit),
+                {file.string()});
+  if (read.spheres.dimension() != scene.dimension())
+    throw Error(
+        ErrorCode::bad_packing,
+        fmt::format("the spheres have {} coordinates, but the scene has {} dimensions; is it the scene "
+                    "of another packing?",
+                    read.spheres.dimension(), scene.dimension()),
+        {file.string()});
+  return std::move(read).spheres;
+}
+
+Packing read_packing(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) {
+    throw Error(ErrorCode::bad_packing, "is no folder; give the one that bernal pack wrote",
+                {folder.string()});
+  }
+  Packing packing;
+  packing.scene = read_scene(folder / "scene.toml");
+  packing.domain = packed_domain_of(packing.scene);
+  packing.spheres = read_csv_of(packing.scene, folder / "spheres.csv");
+  packing.volume = volume_of(packing.domain);
+  packing.seed = packing.scene.seed;
+  return packing;
+}
+
+}  // namespace bernal

@@ -1,0 +1,179 @@
+#include "bernal/measure/radial_distribution.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "bernal/core/dimension.hpp"
+#include "neighbors/point_grid.hpp"
+
+namespace bernal {
+namespace {
+
+/// How far below a bin a distance may lie and still count in it, in bins: a contact that was rounded.
+constexpr double slack = 1e-6;
+constexpr std::size_t fewest_references = 100;
+constexpr std::size_t chunk = 256;  // references
+
+/// The bins out to a distance, and what is found in them.
+class Histogram {
+ public:
+  Histogram(std::size_t bins, double width) : counts_(bins, 0), width_(width) {}
+
+  double reach() const { return width_ * static_cast<double>(counts_.size()); }
+  void add(double squared_distance) {
+    const auto bin = static_cast<std::size_t>(std::sqrt(squared_distance) / width_ + slack);
+    if (bin < counts_.size()) ++counts_[bin];
+  }
+  void add(const Histogram& other) {
+    for (std::size_t k = 0; k < counts_.size(); ++k) counts_[k] += other.counts_[k];
+  }
+  const std::vector<std::uint64_t>& counts() const { return counts_; }
+
+ private:
+  std::vector<std::uint64_t> counts_;
+  double width_;
+};
+
+/// The centres, and for each of them those within reach, which is at most half of every edge, so that a point
+/// is met once at most.
+template <int D>
+class Surroundings {
+ public:
+  Surroundings(const Spheres<D>& spheres, const Boundary<D>& boundary, double reach)
+      : boundary_(boundary),
+        reach_(reach),
+        grid_(spheres, all(spheres.size()), boundary, cell_edge(spheres.size())) {
+    double in_cells = static_cast<double>(spheres.size());
+    for (int k = 0; k < D; ++k) in_cells *= (2 * reach + 2 * cell_edge(spheres.size())) / boundary.edges[k];
+    by_cells_ = in_cells < static_cast<double>(spheres.size());
+    cost_ = std::min(in_cells, static_cast<double>(spheres.size()));
+  }
+
+  /// Distances that have to be computed for one centre, about.
+  double cost() const { return cost_; }
+
+  void count(std::size_t place, Histogram& out) const {
+    const double squared_reach = reach_ * reach_;
+    const Vector<D> c = grid_.point(place);
+    const std::uint32_t self = grid_.ids()[place];
+    const auto visit = [&](std::uint32_t id, const Vector<D>& d) {
+      const double squared = d.squaredNorm();
+      if (squared < squared_reach && id != self) out.add(squared);
+    };
+    if (by_cells_) {
+      grid_.for_each_near(c, reach_, visit);
+    } else {
+      for (std::size_t p = 0; p < grid_.ids().size(); ++p)
+        visit(grid_.ids()[p], boundary_.minimum_image(grid_.point(p) - c));
+    }
+  }
+
+ private:
+  static std::vector<std::uint32_t> all(std::size_t n) {
+    std::vector<std::uint32_t> ids(n);
+    std::iota(ids.begin(), ids.end(), 0u);
+    return ids;
+  }
+  /// A quarter of the reach, but not so small that cells stand empty.
+  double cell_edge(std::size_t n) const {
+    return std::max(reach_ / 4, std::pow(boundary_.edges.prod() / static_cast<double>(n), 1.0 / D));
+  }
+
+  Boundary<D> boundary_;
+  double reach_;
+  PointGrid<D> grid_;
+  bool by_cells_ = false;
+  double cost_ = 0;
+};
+
+/// Looks from as many centres as the work allows, evenly spread over the grid's order and so over the box.
+template <int D>
+Histogram count_distances(const Spheres<D>& spheres, const Boundary<D>& boundary, const Histogram& empty,
+                          double work, std::uint64_t& references) {
+  const std::size_t n = spheres.size();
+  const Surroundings<D> surroundings(spheres, boundary, empty.reach());
+  const double affordable =
+      std::clamp(work / surroundings.cost(), 1.0 * fewest_references, static_cast<double>(n));
+  const std::size_t looked_from = std::min(n, static_cast<std::size_t>(affordable));
+  std::vector<Histogram> parts((looked_from + chunk - 1) / chunk, empty);
+  oneapi::tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    for (std::size_t k = part * chunk; k < std::min(looked_from, (part + 1) * chunk); ++k)
+      surroundings.count((2 * k + 1) * n / (2 * looked_from), parts[part]);
+  });
+  Histogram sum = empty;
+  for (const Histogram& part : parts) sum.add(part);
+  references = looked_from;
+  return sum;
+}
+
+double shell_volume(int dimension, double from, double to) {
+  return ball_volume(dimension, to) - ball_volume(dimension, from);
+}
+
+/// Of the n·references directed distances as many are counted from both ends as chance has it.
+void normalise(const std::vector<std::uint64_t>& counts, const Packing& packing, RadialDistribution& radial) {
+  const auto n = static_cast<double>(packing.spheres.size());
+  const auto references = static_cast<double>(radial.references);
+  const double density = (n - 1) / volume_of(packing.domain);
+  const double distinct = 1 - 0.5 * references / n;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    const double from = static_cast<double>(k) * radial.bin_width, to = from + radial.bin_width;
+    const double expected = references * density * shell_volume(packing.spheres.dimension(), from, to);
+    const auto count = static_cast<double>(counts[k]);
+    radial.r.push_back(0.5 * (from + to));
+    radial.g.push_back(count / expected);
+    radial.error.push_back(std::sqrt(std::max(1.0, count / distinct)) / expected);
+  }
+}
+
+void find_peaks(RadialDistribution& radial) {
+  if (radial.radius_spread > RadialDistribution::most_spread) return;
+  for (const auto& [from, to] : {std::pair{0.9, 1.2}, std::pair{1.6, 1.85}, std::pair{1.9, 2.1}}) {
+    const auto bin = [&, width = radial.bin_width](double diameters) {
+      return std::min(radial.g.size(),
+                      static_cast<std::size_t>(std::lround(diameters * radial.mean_diameter / width)));
+    };
+    const std::size_t first = bin(from), end = bin(to);
+    if (end == radial.g.size() || first == 0) continue;
+    const auto k =
+        static_cast<std::size_t>(std::max_element(radial.g.begin() + static_cast<std::ptrdiff_t>(first),
+                                                  radial.g.begin() + static_cast<std::ptrdiff_t>(end)) -
+                                 radial.g.begin());
+    if (radial.g[k] > radial.g[k - 1] && radial.g[k] > radial.g[k + 1])
+      radial.peaks.push_back({radial.r[k], radial.g[k], radial.error[k]});
+  }
+}
+
+}  // namespace
+
+std::optional<RadialDistribution> radial_distribution(const Packing& packing, const RadialOptions& options) {
+  const PeriodicBox* box = std::get_if<PeriodicBox>(&packing.domain);
+  const std::vector<double>& radii = packing.spheres.r;
+  if (!box || radii.size() < 2) return {};
+  const auto n = static_cast<double>(radii.size());
+  const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / n;
+  double squares = 0;
+  for (const double r : radii) squares += (r / mean - 1) * (r / mean - 1);
+
+  RadialDistribution radial;
+  radial.mean_diameter = 2 * mean;
+  radial.radius_spread = std::sqrt(squares / n);
+  radial.bin_width = options.bin * radial.mean_diameter;
+  const double reach = std::min(options.reach * radial.mean_diameter, 0.5 * box->edges.minCoeff());
+  const double bins = std::floor(reach / radial.bin_width + slack);
+  if (!(bins >= 1)) return {};
+  const Histogram empty(static_cast<std::size_t>(bins), radial.bin_width);
+  Histogram found = empty;
+  with_dimension(packing.spheres.dimension(), EveryDimension{}, [&](auto dimension) {
+    constexpr int D = dimension;
+    found = count_distances<D>(packing.spheres.in<D>(), {box->edges}, empty, options.work, radial.references);
+  });
+  normalise(found.counts(), packing, radial);
+  find_peaks(radial);
+  return radial;
+}
+
+}  // namespace bernal

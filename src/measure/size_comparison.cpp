@@ -1,0 +1,120 @@
+#include "bernal/measure/size_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <boost/math/special_functions/gamma.hpp>
+
+namespace bernal {
+namespace {
+
+/// Radii nearer than this, relatively, are one size: both distributions are compared just below and just
+/// above.
+constexpr double same = 1e-12;
+/// A share that a single size must have to be an atom of the distribution: far more than the density of the
+/// narrowest continuous one puts between `same` below and `same` above.
+constexpr double atom = 1e-6;
+constexpr double fewest_expected = 5;
+constexpr std::size_t most_classes = 1000;
+
+double below(const SizeDistribution& asked, double radius) { return asked.cumulative(radius * (1 - same)); }
+double up_to(const SizeDistribution& asked, double radius) { return asked.cumulative(radius * (1 + same)); }
+
+/// 1 - K(lambda) for Kolmogorov's distribution K, from whichever of its two series converges at once.
+double kolmogorov_above(double lambda) {
+  if (lambda <= 0) return 1;
+  if (lambda < 1.18) {
+    const double y = std::exp(-std::numbers::pi * std::numbers::pi / (8 * lambda * lambda));
+    const double scale = std::sqrt(2 * std::numbers::pi) / lambda;
+    return 1 - scale * (y + std::pow(y, 9) + std::pow(y, 25) + std::pow(y, 49));
+  }
+  const double x = std::exp(-2 * lambda * lambda);
+  return 2 * (x - std::pow(x, 4) + std::pow(x, 9));
+}
+
+void compare_cumulative(const std::vector<double>& sorted, const SizeDistribution& asked,
+                        SizeComparison& result) {
+  const auto n = static_cast<double>(sorted.size());
+  bool continuous = true;
+  for (std::size_t i = 0, j = 0; i < sorted.size(); i = j) {
+    while (j < sorted.size() && sorted[j] <= sorted[i] * (1 + same)) ++j;
+    const double from = below(asked, sorted[i]), to = up_to(asked, sorted[j - 1]);
+    result.ks_statistic = std::max({result.ks_statistic, std::abs(static_cast<double>(i) / n - from),
+                                    std::abs(static_cast<double>(j) / n - to)});
+    continuous = continuous && to - from < atom;
+  }
+  if (continuous) {
+    const double root = std::sqrt(n);
+    result.ks_p_value = kolmogorov_above((root + 0.12 + 0.11 / root) * result.ks_statistic);
+  }
+}
+
+/// The sizes of a distribution that has no others, ascending, with their shares; nothing for any other.
+std::vector<SizeComparison::Class> classes_of(const SizeDistribution& asked) {
+  std::vector<SizeComparison::Class> classes;
+  for (double reached = 0; reached < 1 - atom;) {
+    const double radius = asked.quantile(reached + 0.5 * atom);
+    const double share = up_to(asked, radius) - below(asked, radius);
+    if (share < atom || classes.size() == most_classes) return {};
+    classes.push_back({radius, share, 0});
+    reached = up_to(asked, radius);
+  }
+  return classes;
+}
+
+void compare_classes(const std::vector<double>& sorted, const SizeDistribution& asked,
+                     SizeComparison& result) {
+  result.classes = classes_of(asked);
+  bool enough = result.classes.size() > 1;
+  for (SizeComparison::Class& c : result.classes) {
+    const auto first = std::ranges::lower_bound(sorted, c.radius * (1 - same));
+    const auto last = std::ranges::upper_bound(sorted, c.radius * (1 + same));
+    c.count = static_cast<std::uint64_t>(last - first);
+    const double expected = c.asked_share * static_cast<double>(sorted.size());
+    enough = enough && expected >= fewest_expected;
+    result.chi_squared += std::pow(static_cast<double>(c.count) - expected, 2) / expected;
+  }
+  if (enough) {
+    const double half_freedom = 0.5 * static_cast<double>(result.classes.size() - 1);
+    result.chi_squared_p_value = boost::math::gamma_q(half_freedom, 0.5 * result.chi_squared);
+  }
+}
+
+void compare_means(const std::vector<double>& sorted, const SizeDistribution& asked, int dimension,
+                   SizeComparison& result) {
+  const auto n = static_cast<double>(sorted.size());
+  double sum = 0, sum_of_volumes = 0;
+  for (const double r : sorted) {
+    sum += r;
+    sum_of_volumes += std::pow(r, dimension);
+  }
+  const double asked_volume = asked.moment(dimension);
+  result.mean_radius = sum / n;
+  result.asked_mean_radius = asked.moment(1);
+  result.volume_ratio = sum_of_volumes / n / asked_volume;
+  const double variance = asked.moment(2 * dimension) / (asked_volume * asked_volume) - 1;
+  result.volume_ratio_error = std::sqrt(std::max(0.0, variance) / n);
+}
+
+/// The smallest radius at or below which the share of the spheres lies.
+double quantile(const std::vector<double>& sorted, double share) {
+  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
+  return sorted[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
+}
+
+}  // namespace
+
+SizeComparison compare_sizes(std::span<const double> radii, const SizeDistribution& asked, int dimension) {
+  std::vector<double> sorted(radii.begin(), radii.end());
+  std::ranges::sort(sorted);
+  SizeComparison result;
+  compare_cumulative(sorted, asked, result);
+  compare_classes(sorted, asked, result);
+  compare_means(sorted, asked, dimension, result);
+  for (const double share : {0.0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 1.0})
+    result.quantiles.push_back({share, quantile(sorted, share), asked.quantile(share)});
+  return result;
+}
+
+}  // namespace bernal

@@ -1,0 +1,74 @@
+#include "stages/soft/soft_kernels.hpp"
+
+#include <immintrin.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#define BERNAL_INLINE inline __attribute__((always_inline))
+#define BERNAL_INLINE_LAMBDA __attribute__((always_inline))
+
+// The types of the wider instruction sets never cross a call that is not inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+// GCC 12 takes the "undefined" operands in its own avx512 headers for uninitialised variables.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
+
+namespace bernal {
+namespace {
+
+/// For each byte the positions of its set bits, one a byte, the lowest first.
+struct SetBitsOfByte {
+  std::uint64_t positions[256] = {};
+  constexpr SetBitsOfByte() {
+    for (unsigned byte = 0; byte < 256; ++byte) {
+      int n = 0;
+      for (unsigned bit = 0; bit < 8; ++bit)
+        if (byte >> bit & 1) positions[byte] |= std::uint64_t{bit} << (8 * n++);
+    }
+  }
+};
+constexpr SetBitsOfByte set_bits_of_byte;
+
+namespace sse2 {
+#include "stages/soft/soft_kernels_body.hpp"
+}
+
+#pragma GCC push_options
+#pragma GCC target("avx2,popcnt")
+#define BERNAL_AVX2
+namespace avx2 {
+#include "stages/soft/soft_kernels_body.hpp"
+}
+#undef BERNAL_AVX2
+#pragma GCC pop_options
+
+#pragma GCC push_options
+#pragma GCC target("avx2,popcnt,avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")
+#define BERNAL_AVX512
+namespace avx512 {
+#include "stages/soft/soft_kernels_body.hpp"
+}
+#undef BERNAL_AVX512
+#pragma GCC pop_options
+
+std::vector<SoftKernels> runnable_kernels() {
+  std::vector<SoftKernels> kernels;
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw"))
+    kernels.push_back({"AVX-512", avx512::only_sweep, avx512::sweep<true>, avx512::search});
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt"))
+    kernels.push_back({"AVX2", avx2::only_sweep, avx2::sweep<true>, avx2::search});
+  kernels.push_back({"SSE2", sse2::only_sweep, sse2::sweep<true>, sse2::search});
+  return kernels;
+}
+
+}  // namespace
+
+std::span<const SoftKernels> soft_kernels() {
+  static const std::vector<SoftKernels> kernels = runnable_kernels();
+  return kernels;
+}
+
+}  // namespace bernal

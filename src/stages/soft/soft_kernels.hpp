@@ -1,0 +1,63 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "stages/soft/soft_sphere.hpp"
+
+namespace bernal {
+
+/// The neighbours of `lanes` spheres: `rows` rows of one place for each of them.
+struct NeighborRows {
+  const std::uint32_t* first;
+  std::uint32_t rows;
+};
+
+/// What a sweep works on. Sphere g * lanes + l is lane l of group g.
+struct SweepTask {
+  SoftSphere* spheres;
+  const NeighborRows* groups;
+  std::array<float, 3> scale;  ///< edge / 2^32 on each axis
+  float omega;  ///< over-relaxation: the step is min(omega / contacts, 1) times the sum of overlaps
+};
+
+/// One level of the background grid: spheres with radii in (largest / 2, largest], sorted by cell.
+struct SoftLevel {
+  float largest;
+  std::array<int, 3> cells;
+  std::size_t first_cell;  ///< in `SearchTask::start`
+  std::size_t spheres;
+};
+
+struct SearchTask {
+  std::array<double, 3> edges;
+  std::array<float, 3> scale;
+  float skin;  ///< spheres are neighbours where the gap between them is below twice this
+  std::span<const SoftLevel> levels;
+  const std::uint32_t* start;   ///< of each cell in `sorted`; one more than there are cells
+  const SoftSphere* sorted;     ///< by level and cell; followed by `lanes` more that are read but not used
+  const std::uint32_t* places;  ///< of the sorted spheres in the sweep order; padded as they are
+};
+
+/// The inner loops of the fast relaxation, compiled for several instruction sets. All do the same operations
+/// on the same numbers in the same order, one correctly rounded operation at a time: the same bits.
+struct SoftKernels {
+  std::string_view name;
+
+  /// Moves the groups [begin, end) one after the other: each sphere by min(omega / n, 1) Σ (ri + rj - d) u
+  /// over its n overlapping neighbours, u being the unit vector away from the neighbour (Zhao, Li & Liu 2007,
+  /// equations 3 and 4, for omega = 1). Precondition: no two spheres of a group are neighbours.
+  /// Cost: about 1 ns a neighbour.
+  void (*sweep)(const SweepTask&, std::size_t begin, std::size_t end);
+  /// The same; returns the largest overlap ratio (ri + rj - d) / (ri + rj) that was met.
+  float (*sweep_and_measure)(const SweepTask&, std::size_t begin, std::size_t end);
+  /// Writes the places of all neighbours of a sphere but itself, `self`, to `out` and returns their end; up
+  /// to `lanes` more entries are scribbled over. Cost: about 10 ns a row of three cells.
+  std::uint32_t* (*search)(const SearchTask&, const SoftSphere&, std::uint32_t self, std::uint32_t* out);
+};
+
+/// Those that this processor can run, the fastest first; the last is for every x86-64.
+std::span<const SoftKernels> soft_kernels();
+
+}  // namespace bernal

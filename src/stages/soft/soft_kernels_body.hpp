@@ -1,0 +1,254 @@
+// The loops of SoftKernels in the instruction set that soft_kernels.cpp selects before it includes this file,
+// once for each and in a namespace of its own (hence no include guard). `width` numbers are worked on at
+// once; what depends on the instruction set stands in the first half, the loops in the second.
+
+#if defined(BERNAL_AVX512)
+constexpr int width = 16;
+#elif defined(BERNAL_AVX2)
+constexpr int width = 8;
+#else
+constexpr int width = 4;
+#endif
+
+using Floats = float __attribute__((vector_size(4 * width)));
+using Ints = int __attribute__((vector_size(4 * width)));
+using UnalignedInts = int __attribute__((vector_size(4 * width), aligned(4)));
+
+/// `width` spheres, one column a coordinate.
+struct Columns {
+  Ints x, y, z;
+  Floats r;
+};
+
+#if defined(BERNAL_AVX512)
+
+/// Spheres *at(0), …, *at(width - 1): four rows of four a register, transposed.
+template <class At>
+BERNAL_INLINE Columns load(At at) {
+  const auto four = [&](int k) BERNAL_INLINE_LAMBDA {
+    __m512i v = _mm512_castsi128_si512(_mm_load_si128(reinterpret_cast<const __m128i*>(at(k))));
+    v = _mm512_inserti32x4(v, _mm_load_si128(reinterpret_cast<const __m128i*>(at(k + 4))), 1);
+    v = _mm512_inserti32x4(v, _mm_load_si128(reinterpret_cast<const __m128i*>(at(k + 8))), 2);
+    return _mm512_inserti32x4(v, _mm_load_si128(reinterpret_cast<const __m128i*>(at(k + 12))), 3);
+  };
+  const __m512i a = four(0), b = four(1), c = four(2), d = four(3);
+  const __m512i ab_low = _mm512_unpacklo_epi32(a, b), ab_high = _mm512_unpackhi_epi32(a, b);
+  const __m512i cd_low = _mm512_unpacklo_epi32(c, d), cd_high = _mm512_unpackhi_epi32(c, d);
+  return {Ints(_mm512_unpacklo_epi64(ab_low, cd_low)), Ints(_mm512_unpackhi_epi64(ab_low, cd_low)),
+          Ints(_mm512_unpacklo_epi64(ab_high, cd_high)), Floats(_mm512_unpackhi_epi64(ab_high, cd_high))};
+}
+
+BERNAL_INLINE void store(SoftSphere* to, const Columns& s) {
+  const __m512i xy_low = _mm512_unpacklo_epi32(__m512i(s.x), __m512i(s.y)),
+                xy_high = _mm512_unpackhi_epi32(__m512i(s.x), __m512i(s.y)),
+                zr_low = _mm512_unpacklo_epi32(__m512i(s.z), __m512i(s.r)),
+                zr_high = _mm512_unpackhi_epi32(__m512i(s.z), __m512i(s.r));
+  const __m512i rows[4] = {_mm512_unpacklo_epi64(xy_low, zr_low), _mm512_unpackhi_epi64(xy_low, zr_low),
+                           _mm512_unpacklo_epi64(xy_high, zr_high), _mm512_unpackhi_epi64(xy_high, zr_high)};
+  for (int k = 0; k < 4; ++k) {
+    _mm_store_si128(reinterpret_cast<__m128i*>(to + k), _mm512_castsi512_si128(rows[k]));
+    _mm_store_si128(reinterpret_cast<__m128i*>(to + k + 4), _mm512_extracti32x4_epi32(rows[k], 1));
+    _mm_store_si128(reinterpret_cast<__m128i*>(to + k + 8), _mm512_extracti32x4_epi32(rows[k], 2));
+    _mm_store_si128(reinterpret_cast<__m128i*>(to + k + 12), _mm512_extracti32x4_epi32(rows[k], 3));
+  }
+}
+
+BERNAL_INLINE Floats root(Floats v) { return Floats(_mm512_sqrt_ps(__m512(v))); }
+BERNAL_INLINE Floats to_floats(Ints v) { return Floats(_mm512_cvtepi32_ps(__m512i(v))); }
+BERNAL_INLINE Ints to_ints(Floats v) { return Ints(_mm512_cvtps_epi32(__m512(v))); }
+BERNAL_INLINE unsigned mask_of(Ints v) { return _mm512_movepi32_mask(__m512i(v)); }
+
+/// Writes those of `width` numbers whose bit of the mask is set, and scribbles behind them.
+BERNAL_INLINE std::uint32_t* append(std::uint32_t* out, const std::uint32_t* from, unsigned mask) {
+  _mm512_storeu_si512(out,
+                      _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), _mm512_loadu_si512(from)));
+  return out + __builtin_popcount(mask);
+}
+
+#elif defined(BERNAL_AVX2)
+
+template <class At>
+BERNAL_INLINE Columns load(At at) {
+  const auto two = [&](int k) BERNAL_INLINE_LAMBDA {
+    const __m256i v = _mm256_castsi128_si256(_mm_load_si128(reinterpret_cast<const __m128i*>(at(k))));
+    return _mm256_inserti128_si256(v, _mm_load_si128(reinterpret_cast<const __m128i*>(at(k + 4))), 1);
+  };
+  const __m256i a = two(0), b = two(1), c = two(2), d = two(3);
+  const __m256i ab_low = _mm256_unpacklo_epi32(a, b), ab_high = _mm256_unpackhi_epi32(a, b);
+  const __m256i cd_low = _mm256_unpacklo_epi32(c, d), cd_high = _mm256_unpackhi_epi32(c, d);
+  return {Ints(_mm256_unpacklo_epi64(ab_low, cd_low)), Ints(_mm256_unpackhi_epi64(ab_low, cd_low)),
+          Ints(_mm256_unpacklo_epi64(ab_high, cd_high)), Floats(_mm256_unpackhi_epi64(ab_high, cd_high))};
+}
+
+BERNAL_INLINE void store(SoftSphere* to, const Columns& s) {
+  const __m256i xy_low = _mm256_unpacklo_epi32(__m256i(s.x), __m256i(s.y)),
+                xy_high = _mm256_unpackhi_epi32(__m256i(s.x), __m256i(s.y)),
+                zr_low = _mm256_unpacklo_epi32(__m256i(s.z), __m256i(s.r)),
+                zr_high = _mm256_unpackhi_epi32(__m256i(s.z), __m256i(s.r));
+  const __m256i rows[4] = {_mm256_unpacklo_epi64(xy_low, zr_low), _mm256_unpackhi_epi64(xy_low, zr_low),
+                           _mm256_unpacklo_epi64(xy_high, zr_high), _mm256_unpackhi_epi64(xy_high, zr_high)};
+  for (int k = 0; k < 4; ++k) {
+    _mm_store_si128(reinterpret_cast<__m128i*>(to + k), _mm256_castsi256_si128(rows[k]));
+    _mm_store_si128(reinterpret_cast<__m128i*>(to + k + 4), _mm256_extracti128_si256(rows[k], 1));
+  }
+}
+
+BERNAL_INLINE Floats root(Floats v) { return Floats(_mm256_sqrt_ps(__m256(v))); }
+BERNAL_INLINE Floats to_floats(Ints v) { return Floats(_mm256_cvtepi32_ps(__m256i(v))); }
+BERNAL_INLINE Ints to_ints(Floats v) { return Ints(_mm256_cvtps_epi32(__m256(v))); }
+BERNAL_INLINE unsigned mask_of(Ints v) { return static_cast<unsigned>(_mm256_movemask_ps(__m256(v))); }
+
+BERNAL_INLINE std::uint32_t* append(std::uint32_t* out, const std::uint32_t* from, unsigned mask) {
+  const __m256i order = _mm256_cvtepu8_epi32(
+      _mm_loadl_epi64(reinterpret_cast<const __m128i*>(&set_bits_of_byte.positions[mask])));
+  const __m256i numbers = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_permutevar8x32_epi32(numbers, order));
+  return out + __builtin_popcount(mask);
+}
+
+#else
+
+template <class At>
+BERNAL_INLINE Columns load(At at) {
+  const auto one = [&](int k) BERNAL_INLINE_LAMBDA {
+    return _mm_load_si128(reinterpret_cast<const __m128i*>(at(k)));
+  };
+  const __m128i a = one(0), b = one(1), c = one(2), d = one(3);
+  const __m128i ab_low = _mm_unpacklo_epi32(a, b), ab_high = _mm_unpackhi_epi32(a, b);
+  const __m128i cd_low = _mm_unpacklo_epi32(c, d), cd_high = _mm_unpackhi_epi32(c, d);
+  return {Ints(_mm_unpacklo_epi64(ab_low, cd_low)), Ints(_mm_unpackhi_epi64(ab_low, cd_low)),
+          Ints(_mm_unpacklo_epi64(ab_high, cd_high)), Floats(_mm_unpackhi_epi64(ab_high, cd_high))};
+}
+
+BERNAL_INLINE void store(SoftSphere* to, const Columns& s) {
+  const __m128i xy_low = _mm_unpacklo_epi32(__m128i(s.x), __m128i(s.y)),
+                xy_high = _mm_unpackhi_epi32(__m128i(s.x), __m128i(s.y)),
+                zr_low = _mm_unpacklo_epi32(__m128i(s.z), __m128i(s.r)),
+                zr_high = _mm_unpackhi_epi32(__m128i(s.z), __m128i(s.r));
+  const __m128i rows[4] = {_mm_unpacklo_epi64(xy_low, zr_low), _mm_unpackhi_epi64(xy_low, zr_low),
+                           _mm_unpacklo_epi64(xy_high, zr_high), _mm_unpackhi_epi64(xy_high, zr_high)};
+  for (int k = 0; k < 4; ++k) _mm_store_si128(reinterpret_cast<__m128i*>(to + k), rows[k]);
+}
+
+BERNAL_INLINE Floats root(Floats v) { return Floats(_mm_sqrt_ps(__m128(v))); }
+BERNAL_INLINE Floats to_floats(Ints v) { return Floats(_mm_cvtepi32_ps(__m128i(v))); }
+BERNAL_INLINE Ints to_ints(Floats v) { return Ints(_mm_cvtps_epi32(__m128(v))); }
+BERNAL_INLINE unsigned mask_of(Ints v) { return static_cast<unsigned>(_mm_movemask_ps(__m128(v))); }
+
+BERNAL_INLINE std::uint32_t* append(std::uint32_t* out, const std::uint32_t* from, unsigned mask) {
+  for (int l = 0; l < width; ++l) {
+    *out = from[l];
+    out += mask >> l & 1;
+  }
+  return out;
+}
+
+#endif
+
+BERNAL_INLINE Floats all(float value) { return Floats{} + value; }
+/// The values where the condition (0 or -1) holds, 0 elsewhere.
+BERNAL_INLINE Floats where(Ints condition, Floats values) { return Floats(Ints(values) & condition); }
+
+template <bool measure>
+float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
+  const Floats scale_x = all(task.scale[0]), scale_y = all(task.scale[1]), scale_z = all(task.scale[2]);
+  const Floats inverse_x = 1 / scale_x, inverse_y = 1 / scale_y, inverse_z = 1 / scale_z;
+  Floats worst{};
+  for (std::size_t g = begin; g < end; ++g) {
+    const std::uint32_t* const rows = task.groups[g].first;
+    const std::uint32_t* const rows_end = rows + lanes * task.groups[g].rows;
+    for (std::size_t first = 0; first < lanes; first += width) {
+      SoftSphere* const mine = task.spheres + lanes * g + first;
+      const Columns me = load([&](int k) BERNAL_INLINE_LAMBDA { return mine + k; });
+      Floats sum_x{}, sum_y{}, sum_z{}, contacts{};
+      for (const std::uint32_t* places = rows + first; places < rows_end; places += lanes) {
+        const Columns it = load([&](int k) BERNAL_INLINE_LAMBDA { return task.spheres + places[k]; });
+        const Floats dx = to_floats(me.x - it.x) * scale_x;
+        const Floats dy = to_floats(me.y - it.y) * scale_y;
+        const Floats dz = to_floats(me.z - it.z) * scale_z;
+        const Floats reach = me.r + it.r;
+        const Floats d = root((dx * dx + dy * dy) + dz * dz);
+        const Ints overlap = (d < reach) & (d > 0.0f);
+        const Floats push = where(overlap, reach / d - 1.0f);
+        sum_x += push * dx;
+        sum_y += push * dy;
+        sum_z += push * dz;
+        contacts -= to_floats(overlap);
+        if constexpr (measure) {
+          const Floats ratio = where(overlap, (reach - d) / reach);
+          worst = ratio > worst ? ratio : worst;
+        }
+      }
+      Floats step = task.omega / contacts;
+      step = step < 1.0f ? step : all(1);  // without contacts it is infinite, and the sums are 0
+      store(mine, {me.x + to_ints(sum_x * step * inverse_x), me.y + to_ints(sum_y * step * inverse_y),
+                   me.z + to_ints(sum_z * step * inverse_z), me.r});
+    }
+  }
+  float largest = 0;
+  for (int l = 0; l < width; ++l) largest = worst[l] > largest ? worst[l] : largest;
+  return largest;
+}
+
+inline void only_sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
+  sweep<false>(task, begin, end);
+}
+
+/// The cells of a level, on one axis, that a cube around a point may meet: `count` of them from `first` on,
+/// going round.
+struct Cells {
+  int first, count;
+};
+
+inline Cells cells_near(std::int32_t x, double reach, int cells) {
+  const double at = static_cast<std::uint32_t>(x) * 0x1p-32 * cells;
+  const double first = std::floor(at - reach), last = std::floor(at + reach);
+  if (last - first + 1 >= cells) return {0, cells};
+  return {static_cast<int>(first) + (first < 0 ? cells : 0), static_cast<int>(last - first) + 1};
+}
+
+inline std::uint32_t* search(const SearchTask& task, const SoftSphere& me, std::uint32_t self,
+                             std::uint32_t* out) {
+  const Floats scale_x = all(task.scale[0]), scale_y = all(task.scale[1]), scale_z = all(task.scale[2]);
+  const float blown_up = me.r + 2 * task.skin;
+  Ints lane;
+  for (int l = 0; l < width; ++l) lane[l] = l;
+
+  const auto search_run = [&](std::size_t first_cell, std::size_t end_cell) BERNAL_INLINE_LAMBDA {
+    const std::uint32_t end = task.start[end_cell];
+    for (std::uint32_t p = task.start[first_cell]; p < end; p += lanes) {
+      for (std::uint32_t q = p; q < p + lanes; q += width) {  // a fixed number: no branch to mispredict
+        const Columns it = load([&](int k) BERNAL_INLINE_LAMBDA { return task.sorted + q + k; });
+        const Floats dx = to_floats(me.x[0] - it.x) * scale_x;
+        const Floats dy = to_floats(me.x[1] - it.y) * scale_y;
+        const Floats dz = to_floats(me.x[2] - it.z) * scale_z;
+        const Floats reach = it.r + blown_up;
+        const Ints places = *reinterpret_cast<const UnalignedInts*>(task.places + q);
+        const Ints near = ((dx * dx + dy * dy) + dz * dz < reach * reach) &
+                          (lane < static_cast<int>(end) - static_cast<int>(q)) &
+                          (places != static_cast<int>(self));
+        out = append(out, task.places + q, mask_of(near));
+      }
+    }
+  };
+
+  for (const SoftLevel& level : task.levels) {
+    if (level.spheres == 0) continue;
+    Cells near[3];
+    for (int k = 0; k < 3; ++k)
+      near[k] =
+          cells_near(me.x[k], (blown_up + level.largest) / task.edges[k] * level.cells[k], level.cells[k]);
+    for (int a = 0; a < near[2].count; ++a) {
+      const int z = (near[2].first + a) % level.cells[2];
+      for (int b = 0; b < near[1].count; ++b) {
+        const int y = (near[1].first + b) % level.cells[1];
+        const std::size_t row =
+            level.first_cell + (static_cast<std::size_t>(z) * level.cells[1] + y) * level.cells[0];
+        const int beyond = near[0].first + near[0].count - level.cells[0];  // goes round the box
+        search_run(row + near[0].first, row + near[0].first + near[0].count - std::max(0, beyond));
+        if (beyond > 0) search_run(row, row + beyond);
+      }
+    }
+  }
+  return out;
+}

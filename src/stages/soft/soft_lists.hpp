@@ -1,0 +1,73 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "stages/soft/soft_kernels.hpp"
+#include "stages/soft/soft_sphere.hpp"
+
+namespace bernal {
+
+/// Groups [first, last) that have to be swept one after the other, while other chains may be swept at the
+/// same time.
+struct Chain {
+  std::size_t first, last;
+};
+
+/// In what order spheres are swept, and what each may meet until it has moved by the skin.
+///
+/// The box is cut into pencils along the first axis, at least as wide as two neighbours can be apart, and
+/// every second pencil on each of the other axes is given the same colour. Spheres of different pencils of
+/// one colour are never neighbours. So a group takes its spheres from as many pencils of a colour, a chain is
+/// a sequence of groups from the same pencils, and the chains of a colour are independent of each other.
+/// Within a pencil spheres of similar radii come together, so that the lists in a group are of similar
+/// length; among these the order is along the axis. The few largest spheres, for whose sake pencils would
+/// have to be too wide, are swept alone, after the others.
+///
+/// All this is a function of the places and radii alone, the same for any number of threads.
+class SoftLists {
+ public:
+  static constexpr std::size_t most_levels = 24;
+
+  /// `radii` are all that there will be; `skin` is in the same unit. The background grid has up to
+  /// `max_levels` levels, at most `most_levels`.
+  SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels,
+            std::size_t max_levels = most_levels);
+
+  /// Sorts the spheres anew and finds their neighbours. `spheres` and `ids` are in sweep order, with gaps
+  /// where the radius is NaN, before and after; the sphere behind the last group is such a gap. Precondition:
+  /// every edge is at least 4 (largest radius + skin), so that no two images of a sphere are neighbours of
+  /// one. Parallel. Cost: about 0.2 µs a sphere on one core.
+  void build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& ids,
+             const std::array<double, 3>& edges);
+
+  /// By colour.
+  const std::vector<std::vector<Chain>>& phases() const { return phases_; }
+  const NeighborRows* groups() const { return groups_.data(); }
+  float skin() const { return skin_; }
+
+ private:
+  using Place = std::uint32_t;
+
+  void sort_into_cells(const std::vector<SoftSphere>& compact, const std::array<double, 3>& edges);
+  std::vector<Place> sweep_order(const std::vector<SoftSphere>& compact, const std::array<double, 3>& edges);
+  void find_neighbors(const std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges);
+
+  const SoftKernels& kernels_;
+  float skin_;
+  float largest_;  // radius
+  float large_;    // spheres with larger radii are swept alone
+  bool equal_;     // radii
+  std::size_t level_count_;
+
+  std::vector<SoftLevel> levels_;
+  std::vector<std::uint32_t> start_;  // of each cell of all levels
+  std::vector<std::uint32_t> slot_;   // of each sphere in sorted_
+  std::vector<SoftSphere> sorted_;
+  std::vector<Place> places_;  // of sorted_ in the sweep order
+  std::vector<std::vector<Chain>> phases_;
+  std::vector<NeighborRows> groups_;
+  std::vector<std::vector<std::uint32_t>> rows_;  // a block for some hundred groups
+};
+
+}  // namespace bernal

@@ -1,0 +1,160 @@
+#include "stages/soft/soft_packing.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace bernal {
+namespace {
+
+/// In mean radii. Larger ones make lists that last longer and are longer; from 0.3 to 0.5 it makes no
+/// difference.
+constexpr double relative_skin = 0.4;
+/// Lists are built anew when a sphere has moved by so much of the skin.
+constexpr double worn = 0.9;
+constexpr int longest_patience = 16;
+/// With fewer spheres a second thread does not pay.
+constexpr std::size_t worth_threads = 20000;
+
+double skin_for(const std::vector<double>& radii) {
+  return relative_skin * std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
+}
+
+std::vector<float> as_floats(const std::vector<double>& values) { return {values.begin(), values.end()}; }
+
+std::int32_t to_fixed(double x, double edge) {
+  const double share = x / edge;
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(
+      static_cast<std::int64_t>(std::llround((share - std::floor(share)) * 0x1p32))));
+}
+
+}  // namespace
+
+template <int D>
+SoftPacking::SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels)
+    : kernels_(kernels),
+      count_(spheres.size()),
+      dimension_(D),
+      lists_(as_floats(spheres.r), static_cast<float>(skin_for(spheres.r)), kernels),
+      spheres_(spheres.size(), SoftSphere{}),
+      ids_(spheres.size()) {
+  edges_.fill(smallest_edge(spheres.r));  // of axes that are not there: all coordinates are 0
+  for (int k = 0; k < D; ++k) edges_[static_cast<std::size_t>(k)] = edges[k];
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    for (std::size_t k = 0; k < D; ++k)
+      spheres_[i].x[k] = to_fixed(spheres.x[k][i], edges[static_cast<int>(k)]);
+    spheres_[i].r = static_cast<float>(spheres.r[i]);
+    ids_[i] = static_cast<std::uint32_t>(i);
+  }
+}
+
+double SoftPacking::smallest_edge(const std::vector<double>& radii) {
+  return 4.001 * (std::ranges::max(radii) + skin_for(radii));
+}
+
+SweepTask SoftPacking::task(float omega) {
+  SweepTask task{spheres_.data(), lists_.groups(), {}, omega};
+  for (std::size_t k = 0; k < 3; ++k) task.scale[k] = static_cast<float>(edges_[k] * 0x1p-32);
+  return task;
+}
+
+template <class Sweep>
+void SoftPacking::for_each_chain(const Sweep& sweep) const {
+  for (const std::vector<Chain>& chains : lists_.phases()) {
+    if (count_ < worth_threads || chains.size() == 1) {
+      for (std::size_t c = 0; c < chains.size(); ++c) sweep(chains[c]);
+    } else {
+      tbb::parallel_for(std::size_t{0}, chains.size(), [&](std::size_t c) { sweep(chains[c]); });
+    }
+  }
+}
+
+void SoftPacking::sweep(float omega) {
+  keep_lists_valid();
+  const SweepTask work = task(omega);
+  for_each_chain([&](const Chain& chain) { kernels_.sweep(work, chain.first, chain.last); });
+  ++sweeps_;
+}
+
+double SoftPacking::sweep_and_measure(float omega) {
+  patience_ = 0;  // what is measured is measured on lists that are known to be good
+  keep_lists_valid();
+  const SweepTask work = task(omega);
+  std::vector<float> largest(spheres_.size() / lanes + 1, 0.0f);
+  for_each_chain([&](const Chain& chain) {
+    largest[chain.first] = kernels_.sweep_and_measure(work, chain.first, chain.last);
+  });
+  ++sweeps_;
+  return *std::ranges::max_element(largest);
+}
+
+void SoftPacking::grow(double factor) {
+  for (int k = 0; k < dimension_; ++k) edges_[static_cast<std::size_t>(k)] *= factor;
+}
+
+double SoftPacking::largest_move() const {
+  std::array<float, 3> scale;
+  for (std::size_t k = 0; k < 3; ++k) scale[k] = static_cast<float>(edges_[k] * 0x1p-32);
+  const auto largest_square = [&](std::size_t begin, std::size_t end, float largest) {
+    for (std::size_t p = begin; p < end; ++p) {
+      float square = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto moved = static_cast<std::int32_t>(static_cast<std::uint32_t>(spheres_[p].x[k]) -
+                                                     static_cast<std::uint32_t>(built_at_[p].x[k]));
+        const float d = static_cast<float>(moved) * scale[k];
+        square += d * d;
+      }
+      largest = square > largest ? square : largest;
+    }
+    return largest;
+  };
+  if (count_ < worth_threads) return std::sqrt(largest_square(0, spheres_.size(), 0));
+  return std::sqrt(tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, spheres_.size(), 4096), 0.0f,
+      [&](const auto& range, float largest) { return largest_square(range.begin(), range.end(), largest); },
+      [](float a, float b) { return std::max(a, b); }));
+}
+
+/// Looks at what has moved only as often as the speed of the last sweeps suggests. A pair that is missed for
+/// a sweep overlaps for so much longer, no more.
+void SoftPacking::keep_lists_valid() {
+  if (builds_ > 0 && sweeps_ < patience_) return;
+  const double limit = worn * lists_.skin();
+  double moved = 0;
+  if (builds_ > 0) moved = largest_move();
+  // Nothing is known before the first sweep, when the spheres are at their fastest.
+  const double speed = builds_ == 0 ? limit : std::max((moved - moved_) / std::max(1, sweeps_), 1e-9);
+  if (builds_ == 0 || moved > limit) {
+    lists_.build(spheres_, ids_, edges_);
+    built_at_ = spheres_;
+    ++builds_;
+    moved = 0;
+  }
+  moved_ = moved;
+  sweeps_ = 0;
+  patience_ = static_cast<int>(std::clamp(0.5 * (limit - moved) / speed, 1.0, double{longest_patience}));
+}
+
+template <int D>
+void SoftPacking::write_to(Spheres<D>& spheres, Vector<D>& edges) const {
+  for (int k = 0; k < D; ++k) edges[k] = edges_[static_cast<std::size_t>(k)];
+  for (std::size_t p = 0; p < spheres_.size(); ++p) {
+    if (!(spheres_[p].r > 0)) continue;
+    for (std::size_t k = 0; k < D; ++k)
+      spheres.x[k][ids_[p]] = static_cast<std::uint32_t>(spheres_[p].x[k]) * (edges_[k] * 0x1p-32);
+  }
+}
+
+#define BERNAL_INSTANTIATE(D)                                                                 \
+  template SoftPacking::SoftPacking(const Spheres<D>&, const Vector<D>&, const SoftKernels&); \
+  template void SoftPacking::write_to(Spheres<D>&, Vector<D>&) const;
+BERNAL_INSTANTIATE(1)
+BERNAL_INSTANTIATE(2)
+BERNAL_INSTANTIATE(3)
+
+}  // namespace bernal

@@ -1,0 +1,98 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include "verify/ball.hpp"
+#include "verify/predicates.hpp"
+#include "verify/space.hpp"
+#include "verify/tally.hpp"
+
+namespace bernal::verify {
+
+/// Tries the pairs of balls of a tree in an OpenSpace or a PeriodicSpace.
+template <int D, class Space>
+class PairJudge {
+ public:
+  PairJudge(const BallTree<D>& balls, const Space& space, double allowed, Arithmetic arithmetic)
+      : balls_(balls), space_(space), allowed_(allowed), arithmetic_(arithmetic) {}
+
+  Tally judge_all() const {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, balls_.leaves(), 16), Tally{},
+        [&](const tbb::blocked_range<std::size_t>& range, Tally tally) {
+          for (std::size_t l = range.begin(); l < range.end(); ++l) judge_leaf(l, tally);
+          return tally;
+        },
+        [](Tally a, const Tally& b) { return a += b; });
+  }
+
+ private:
+  /// Every near pair within a leaf, and of it with a later leaf.
+  void judge_leaf(std::size_t l, Tally& tally) const {
+    const auto mine = balls_.leaf(l);
+    for (std::size_t i = 0; i < mine.size(); ++i) {
+      if constexpr (Space::repeats) judge_own_images(mine[i], tally);
+      judge_near(mine[i], mine.subspan(i + 1), tally);
+    }
+    balls_.for_each_leaf_touching_after(l, space_.reach_of(balls_.box_of_leaf(l)), [&](std::size_t m) {
+      const auto reach = space_.reach_of(balls_.box_of_leaf(m));
+      for (const Ball<D>& ball : mine)
+        if (touch(ball.box(), reach)) judge_near(ball, balls_.leaf(m), tally);
+    });
+  }
+
+  void judge_near(const Ball<D>& ball, std::span<const Ball<D>> others, Tally& tally) const {
+    const auto reach = space_.reach_of(ball.box());
+    for (const Ball<D>& other : others)
+      if (touch(other.box(), reach))
+        ball.index < other.index ? judge(ball, other, tally) : judge(other, ball, tally);
+  }
+
+  void judge(const Ball<D>& a, const Ball<D>& b, Tally& tally) const {
+    const double reach = a.r + b.r;
+    record(a.index, b.index, (distance(a, b) - reach) / reach, tally,
+           [&]<class Number>(double allowed) { return balls_clear<Number>(space_, a, b, allowed); });
+  }
+
+  /// A ball and its nearest images, an edge away.
+  void judge_own_images(const Ball<D>& ball, Tally& tally) const {
+    const double edge = space_.edges.minCoeff(), diameter = 2 * ball.r;
+    if (diameter < edge) return;
+    record(ball.index, ball.index, (edge - diameter) / diameter, tally,
+           [&]<class Number>(double allowed) { return own_images_clear<Number>(ball.r, edge, allowed); });
+  }
+
+  /// Decides one near pair. `gap` is its gap over its sum of radii, in double.
+  template <class Predicate>
+  void record(std::uint64_t first, std::uint64_t second, double gap, Tally& tally,
+              const Predicate& clear) const {
+    const auto holds = [&](double allowed, Tally& counts) {
+      return decide(arithmetic_, counts,
+                    [&]<class Number>() { return clear.template operator()<Number>(allowed); }) == Truth::yes;
+    };
+    ++tally.pairs;
+    const bool as_allowed = holds(allowed_, tally);
+    if (!as_allowed) ++tally.overlapping;
+    Tally only_for_the_sign;
+    const bool strictly = allowed_ == 0 ? as_allowed : holds(0, only_for_the_sign);
+    tally.add_pair_ratio(first, second, 0.0 - with_sign(gap, strictly));
+  }
+
+  double distance(const Ball<D>& a, const Ball<D>& b) const {
+    Vector<D> d;
+    for (int k = 0; k < D; ++k) d[k] = space_.template offset<double>(k, a.c[k], b.c[k]);
+    const double squared = d.squaredNorm();
+    return squared > 0x1p-900 && squared < 0x1p900 ? std::sqrt(squared) : d.stableNorm();
+  }
+
+  const BallTree<D>& balls_;
+  const Space& space_;
+  double allowed_;
+  Arithmetic arithmetic_;
+};
+
+}  // namespace bernal::verify

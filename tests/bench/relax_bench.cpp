@@ -1,0 +1,149 @@
+#include <benchmark/benchmark.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <cmath>
+
+#include "bernal/run/run.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "stages/soft/soft_packing.hpp"
+
+// What relaxation costs: a sweep and a list of the fast path, by instruction set, sizes and threads, on
+// spheres that are nearly at rest at random close packing.
+namespace bernal {
+namespace {
+
+constexpr float omega = 5;
+
+Scene scene_of(const std::string& sizes, std::int64_t count, const std::string& stage) {
+  return parse_scene("[container]\nkind = \"periodic\"\n[spheres]\ncount = " + std::to_string(count) +
+                         "\nradius = " + sizes + "\n[[stage]]\ndo = \"relax\"\n" + stage,
+                     "bench.toml");
+}
+
+const std::string equal = "1.0";
+const std::string two_sizes = "{ distribution = \"classes\", values = [1.0, 0.5], shares = [1, 1] }";
+const std::string lognormal = "{ distribution = \"lognormal\", median = 1.0, sigma = 0.3 }";
+/// Small spheres are a fifth of the volume and all but fifty of the number.
+const std::string one_to_twenty =
+    "{ distribution = \"classes\", values = [20.0, 1.0], shares = [80, 20], basis = \"volume\" }";
+
+struct Crowd {
+  Spheres<3> spheres;
+  Vector<3> edges;
+};
+
+/// Spheres pushed apart until the largest overlaps are some per cent.
+Crowd crowd(const std::string& sizes, std::int64_t count) {
+  RunOptions options;
+  options.threads = 1;
+  const Packing packing = run(build(scene_of(sizes, count, "alpha = 0.2\nstop = 0.02")), options);
+  return {packing.spheres.in<3>(), 0.99 * std::get<PeriodicBox>(packing.domain).edges};
+}
+
+void per_sphere(benchmark::State& state, std::size_t spheres) {
+  state.counters["ns_per_sphere"] =
+      benchmark::Counter(static_cast<double>(spheres) * 1e-9,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void sweep(benchmark::State& state, const std::string& sizes) {
+  const auto kernel = static_cast<std::size_t>(state.range(1));
+  const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
+                                            static_cast<std::size_t>(state.range(2)));
+  if (kernel >= soft_kernels().size()) {
+    state.SkipWithError("not on this processor");
+    return;
+  }
+  const Crowd start = crowd(sizes, state.range(0));
+  SoftPacking packing(start.spheres, start.edges, soft_kernels()[kernel]);
+  packing.sweep(omega);
+  for (auto _ : state) packing.sweep(omega);
+  state.SetLabel(std::string(soft_kernels()[kernel].name));
+  per_sphere(state, start.spheres.size());
+}
+void kernels_and_sizes(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"spheres", "kernel", "threads"})->UseRealTime();
+  for (const std::int64_t kernel : {0, 1, 2}) b->Args({10000, kernel, 1});
+  b->Args({100000, 0, 1})->Args({100000, 0, 2})->Args({1000000, 0, 1})->Args({1000000, 0, 2});
+}
+BENCHMARK_CAPTURE(sweep, equal, equal)->Apply(kernels_and_sizes);
+BENCHMARK_CAPTURE(sweep, two_sizes, two_sizes)
+    ->ArgNames({"spheres", "kernel", "threads"})
+    ->Args({10000, 0, 1});
+BENCHMARK_CAPTURE(sweep, lognormal, lognormal)
+    ->ArgNames({"spheres", "kernel", "threads"})
+    ->Args({10000, 0, 1});
+
+/// From scratch: sorting the spheres and finding their neighbours. `levels` 1: a single background grid.
+void build_lists(benchmark::State& state, const std::string& sizes) {
+  const Crowd start = crowd(sizes, state.range(0));
+  const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
+                                            static_cast<std::size_t>(state.range(2)));
+  std::vector<SoftSphere> spheres;
+  std::vector<std::uint32_t> ids;
+  std::array<double, 3> edges;
+  for (int k = 0; k < 3; ++k) edges[static_cast<std::size_t>(k)] = start.edges[k];
+  double mean = 0;
+  for (std::size_t i = 0; i < start.spheres.size(); ++i) {
+    SoftSphere s{};
+    for (std::size_t k = 0; k < 3; ++k)
+      s.x[k] = static_cast<std::int32_t>(
+          static_cast<std::uint32_t>(std::fmod(start.spheres.x[k][i] / edges[k], 1.0) * 4294967295.0));
+    s.r = static_cast<float>(start.spheres.r[i]);
+    mean += s.r / static_cast<double>(start.spheres.size());
+    spheres.push_back(s);
+    ids.push_back(static_cast<std::uint32_t>(i));
+  }
+  const std::vector<float> radii(start.spheres.r.begin(), start.spheres.r.end());
+  SoftLists lists(radii, static_cast<float>(0.4 * mean), soft_kernels().front(),
+                  static_cast<std::size_t>(state.range(1)));
+  for (auto _ : state) lists.build(spheres, ids, edges);
+  per_sphere(state, start.spheres.size());
+}
+void one_level_and_many(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"spheres", "levels", "threads"})->Unit(benchmark::kMillisecond);
+}
+BENCHMARK_CAPTURE(build_lists, equal, equal)
+    ->Apply(one_level_and_many)
+    ->UseRealTime()
+    ->Args({10000, 24, 1})
+    ->Args({100000, 24, 1})
+    ->Args({100000, 24, 2});
+BENCHMARK_CAPTURE(build_lists, lognormal, lognormal)
+    ->Apply(one_level_and_many)
+    ->Args({10000, 24, 1})
+    ->Args({10000, 1, 1});
+BENCHMARK_CAPTURE(build_lists, one_to_twenty, one_to_twenty)
+    ->Apply(one_level_and_many)
+    ->Args({100000, 24, 1})
+    ->Args({100000, 1, 1});
+
+/// Whole runs, without writing: the schedule from quick to thorough, and the published loop for comparison.
+void relax(benchmark::State& state, const std::string& sizes, const char* method) {
+  const std::string stage = "alpha = " + std::to_string(state.range(1)) + "\nmethod = \"" + method + "\"\n";
+  const Plan plan = build(scene_of(sizes, state.range(0), stage));
+  RunOptions options;
+  options.threads = static_cast<int>(state.range(2));
+  Packing packing;
+  for (auto _ : state) packing = run(plan, options);
+  state.counters["packing_fraction"] = packing.packing_fraction();
+}
+void once(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"spheres", "alpha", "threads"})
+      ->Iterations(1)
+      ->MeasureProcessCPUTime()
+      ->UseRealTime()
+      ->Unit(benchmark::kSecond);
+}
+BENCHMARK_CAPTURE(relax, equal, equal, "fast")
+    ->Apply(once)
+    ->Args({10000, 2, 1})
+    ->Args({10000, 5, 1})
+    ->Args({10000, 17, 1})
+    ->Args({100000, 2, 1})
+    ->Args({100000, 2, 2});
+BENCHMARK_CAPTURE(relax, equal_by_the_book, equal, "reference")->Apply(once)->Args({10000, 17, 1});
+BENCHMARK_CAPTURE(relax, one_to_twenty, one_to_twenty, "fast")->Apply(once)->Args({100000, 2, 1});
+
+}  // namespace
+}  // namespace bernal

@@ -1,0 +1,91 @@
+#include "check.hpp"
+
+namespace bernal::testing {
+namespace {
+
+constexpr const char* scene = R"(unit = "mm"
+[container]
+kind = "periodic"
+dimension = 2
+size = [4, 2]
+[spheres]
+count = 2
+diameter = 2
+)";
+
+/// A square lattice of touching discs.
+constexpr const char* discs = "# unit: mm\nx0,x1,r\n1,1,1\n3,1,1\n";
+
+class Measure : public ::testing::Test {
+ protected:
+  Folder folder;
+
+  Ended with(const std::string& csv, std::vector<std::string> words = {}) {
+    folder.write("scene.toml", scene);
+    folder.write("spheres.csv", csv);
+    words.insert(words.begin(), {"measure", folder.path().string()});
+    return bernal(std::move(words));
+  }
+};
+
+TEST_F(Measure, TellsWhatStandsInTheFiles) {
+  const Ended ended = with(discs);
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.err, "");
+  for (const std::string part :
+       {"spheres           2, in a periodic box of 4 x 2 mm", "packing fraction  0.785398",
+        "coordination      4.0000", "contacts          4 pairs", "diameter in mm"})
+    EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\nis not in\n" << ended.out;
+}
+
+TEST_F(Measure, JsonIsOneObjectAndNothingElse) {
+  const Ended json = with(discs, {"--json", "--gap", "0.01", "--threads", "1"});
+  EXPECT_EQ(json.status, 0);
+  EXPECT_EQ(json.err, "");
+  const auto measured = nlohmann::json::parse(json.out);
+  EXPECT_EQ(measured["n"], 2);
+  EXPECT_EQ(measured["dimension"], 2);
+  EXPECT_EQ(measured["contacts"], 4);
+  EXPECT_EQ(measured["coordination"], 4);
+  EXPECT_EQ(measured["contact_gap"], 0.01);
+  EXPECT_EQ(measured["box"]["edges"], (std::vector<double>{4, 2}));
+  EXPECT_EQ(measured["by_gap"].size(), 9u);
+  EXPECT_EQ(measured["g_r"]["mean_diameter"], 2);
+  EXPECT_EQ(measured["g_r"]["g"].size(), measured["g_r"]["error"].size());
+  EXPECT_EQ(measured["sizes"]["ks_statistic"], 0);
+  EXPECT_TRUE(measured["sizes"]["ks_p_value"].is_null());
+}
+
+TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
+  const std::string box = folder.write("box.toml", small_scene).string(), out = (folder / "out").string();
+  ASSERT_EQ(bernal({"pack", box, "-o", out, "--quiet"}).status, 0);
+  const Ended text = bernal({"measure", out});
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("with the wall"), std::string::npos) << text.out;
+  const auto measured = nlohmann::json::parse(bernal({"measure", out, "--json"}).out);
+  const auto report = report_of(out);
+  for (const char* key :
+       {"n", "phi", "coordination", "contacts", "wall_contacts", "rattlers", "backbone", "hash"})
+    EXPECT_EQ(measured.at(key), report.at(key)) << key;
+  EXPECT_TRUE(measured.at("g_r").is_null());
+  EXPECT_TRUE(measured.at("backbone").at("isostatic_contacts").is_null());
+}
+
+TEST_F(Measure, BadInputIsOneLine) {
+  expect_refused_in_one_line(with("# unit: m\nx0,x1,r\n1,1,1\n"), {"spheres.csv", "in m,", "in mm"});
+  expect_refused_in_one_line(with("x,y,z,r\n1,1,1,1\n"), {"spheres.csv", "3 dimensions", "has 2"});
+  expect_refused_in_one_line(with("x0,x1,r\n1,1\n"), {"spheres.csv:2"});
+  expect_refused_in_one_line(with("x0,x1,r\n1,nan,1\n"), {"spheres.csv:2"});
+  expect_refused_in_one_line(with(""), {"spheres.csv"});
+  expect_refused_in_one_line(with(discs, {"--gap", "-1"}), {"--gap"});
+  expect_refused_in_one_line(with(discs, {"--gap", "wide"}), {"--gap"});
+  std::filesystem::remove(folder / "spheres.csv");
+  expect_refused_in_one_line(bernal({"measure", folder.path().string()}), {"spheres.csv"});
+  std::filesystem::remove(folder / "scene.toml");
+  expect_refused_in_one_line(bernal({"measure", folder.path().string()}), {"scene.toml"});
+  expect_refused_in_one_line(bernal({"measure", (folder / "none").string()}), {"none", "folder"});
+  expect_refused_in_one_line(bernal({"measure"}), {"DIR"});
+}
+
+}  // namespace
+}  // namespace bernal::testing

@@ -1,0 +1,65 @@
+#pragma once
+#include <initializer_list>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "bernal/verify/certificate.hpp"
+#include "support/periodic_oracle.hpp"
+
+namespace bernal::testing {
+
+inline PeriodicBox periodic_box(std::initializer_list<double> edges) {
+  PeriodicBox box{Vector<dynamic>(static_cast<int>(edges.size()))};
+  std::ranges::copy(edges, box.edges.begin());
+  return box;
+}
+
+/// Spheres of their coordinates and, last, their radius.
+inline Spheres<dynamic> rows(std::initializer_list<std::vector<double>> rows) {
+  const auto dimension = static_cast<int>(rows.begin()->size()) - 1;
+  Spheres<dynamic> spheres(dimension);
+  for (const auto& row : rows)
+    spheres.push_back(Eigen::Map<const Eigen::VectorXd>(row.data(), dimension), row.back());
+  return spheres;
+}
+
+inline void expect_same_verdict(const Certificate& a, const Certificate& b) {
+  EXPECT_EQ(a.certified, b.certified);
+  EXPECT_EQ(a.pairs_tested, b.pairs_tested);
+  EXPECT_EQ(a.overlapping_pairs, b.overlapping_pairs);
+  EXPECT_EQ(a.worst_pair, b.worst_pair);
+  EXPECT_EQ(a.max_overlap, b.max_overlap);
+  EXPECT_EQ(a.statement, b.statement);
+}
+
+/// Whatever the packing, the certificate says what the oracle says, in both arithmetics. Without the oracle
+/// (centres too many boxes away for it) only that both arithmetics agree.
+inline Certificate expect_truth(const Spheres<dynamic>& s, const PeriodicBox& box, double allowed = 0,
+                                bool with_oracle = true) {
+  const Certificate filtered = certify(s, box, allowed, Arithmetic::filtered);
+  const Certificate exact = certify(s, box, allowed, Arithmetic::exact);
+  expect_same_verdict(filtered, exact);
+  EXPECT_EQ(exact.decided_double, 0u);
+  for (const Certificate& c : {filtered, exact}) {
+    EXPECT_EQ(c.decided_double + c.decided_exact, c.pairs_tested);
+    EXPECT_EQ(c.walls_tested + c.centers_tested + c.protruding_spheres, 0u);
+    EXPECT_EQ(c.worst_pair.has_value(), c.pairs_tested > 0);
+    EXPECT_FALSE(c.worst_wall.has_value());
+    EXPECT_EQ(c.certified, c.overlapping_pairs == 0);
+  }
+  if (!with_oracle) return filtered;
+  const oracle::Verdict truth = oracle::judge(s, box, allowed);
+  EXPECT_EQ(filtered.overlapping_pairs, truth.overlapping);
+  EXPECT_GE(filtered.pairs_tested, truth.near_at_least);
+  EXPECT_LE(filtered.pairs_tested, truth.near_at_most);
+  if (truth.near_at_least > 0) {
+    EXPECT_NEAR(filtered.max_overlap, truth.max_overlap, 1e-13);
+  }
+  if (allowed == 0) {
+    EXPECT_EQ(filtered.max_overlap > 0, truth.overlapping > 0);
+  }
+  return filtered;
+}
+
+}  // namespace bernal::testing

@@ -1,0 +1,154 @@
+#include "stages/free_of_overlap.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <type_traits>
+
+#include "stages/resize_box.hpp"
+#include "support/nearest_images.hpp"
+
+// How far a box must grow: against all pairs, and proved with rational numbers.
+namespace bernal {
+namespace {
+
+template <class Dimension>
+class FreeOfOverlap : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 1>, std::integral_constant<int, 2>,
+                                    std::integral_constant<int, 3>, std::integral_constant<int, 4>,
+                                    std::integral_constant<int, 8>>;
+TYPED_TEST_SUITE(FreeOfOverlap, Dimensions);
+
+/// The factor is that of all pairs, to rounding, and the box that follows is free of overlap.
+template <int D>
+void expect_free(Spheres<D> spheres, Vector<D> edges) {
+  const double factor = contact_factor(spheres, edges);
+  EXPECT_NEAR(factor, oracle::contact_factor(spheres, edges), 1e-13 * factor);
+  const Vector<D> free = edges_free_of_overlap(spheres, edges);
+  // No larger than it need be: the growth for rounding is relative to the smallest sphere.
+  const double smallest = std::ranges::min(spheres.r);
+  EXPECT_LE((free.cwiseQuotient(edges) / factor).maxCoeff(), 1 + 1e-14 * free.maxCoeff() / smallest);
+  resize_box<D>(spheres, edges, free);
+  EXPECT_TRUE(oracle::centers_in_box(spheres, edges));
+  EXPECT_EQ(oracle::overlapping_pairs(spheres, edges), 0u);
+}
+
+TYPED_TEST(FreeOfOverlap, EqualSpheres) {
+  constexpr int D = TypeParam::value;
+  const Vector<D> edges = Vector<D>::Constant(3);
+  expect_free<D>(oracle::anywhere<D>(100, 0.1, 0.1, edges, 1), edges);
+}
+
+TYPED_TEST(FreeOfOverlap, SpheresOfWidelyDifferentSizes) {
+  constexpr int D = TypeParam::value;
+  const Vector<D> edges = Vector<D>::Constant(7);
+  for (std::uint64_t seed = 1; seed <= 5; ++seed)
+    expect_free<D>(oracle::anywhere<D>(100, 1e-3, 1, edges, seed), edges);
+}
+
+TYPED_TEST(FreeOfOverlap, SpheresFarApart) {
+  constexpr int D = TypeParam::value;
+  const Vector<D> edges = Vector<D>::Constant(7);
+  expect_free<D>(oracle::anywhere<D>(100, 1e-6, 1e-5, edges, 1), edges);
+  expect_free<D>(oracle::anywhere<D>(2, 1e-6, 1e-3, edges, 1), edges);
+}
+
+TYPED_TEST(FreeOfOverlap, FewSpheresInABoxNotMuchLarger) {
+  constexpr int D = TypeParam::value;
+  const Vector<D> edges = Vector<D>::Constant(2.5);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    expect_free<D>(oracle::anywhere<D>(1, 1, 1, edges, seed), edges);
+    expect_free<D>(oracle::anywhere<D>(2, 0.5, 1, edges, seed), edges);
+    expect_free<D>(oracle::anywhere<D>(5, 0.5, 1, edges, seed), edges);
+  }
+}
+
+TYPED_TEST(FreeOfOverlap, UnequalEdges) {
+  constexpr int D = TypeParam::value;
+  Vector<D> edges = Vector<D>::Constant(2.5);
+  edges[D - 1] = 40;
+  expect_free<D>(oracle::anywhere<D>(50, 0.1, 1, edges, 1), edges);
+}
+
+// The growth is by 1e5: rounding counts in the coordinates of the grown box.
+TYPED_TEST(FreeOfOverlap, SpheresAlmostAtOnePlace) {
+  constexpr int D = TypeParam::value;
+  const Vector<D> edges = Vector<D>::Constant(10);
+  Spheres<D> spheres = oracle::anywhere<D>(10, 0.5, 1, edges, 1);
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    spheres.set_center(i, Vector<D>::Constant(5) + 1e-6 * spheres.center(i));
+  expect_free<D>(spheres, edges);
+}
+
+TYPED_TEST(FreeOfOverlap, AcrossTheFacesOfTheBox) {
+  constexpr int D = TypeParam::value;
+  const Vector<D> edges = Vector<D>::Constant(10);
+  Spheres<D> spheres;
+  spheres.push_back(Vector<D>::Constant(0.1), 1);
+  spheres.push_back(Vector<D>::Constant(9.9), 1);
+  EXPECT_NEAR(contact_factor(spheres, edges), 2 / (0.2 * std::sqrt(D)), 1e-12);
+  expect_free<D>(spheres, edges);
+}
+
+TYPED_TEST(FreeOfOverlap, NoBoxIsLargeEnoughForCoincidentCentres) {
+  constexpr int D = TypeParam::value;
+  const Vector<D> edges = Vector<D>::Constant(10);
+  Spheres<D> spheres = oracle::anywhere<D>(10, 0.5, 1, edges, 1);
+  spheres.set_center(3, spheres.center(7));
+  EXPECT_EQ(contact_factor(spheres, edges), std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(edges_free_of_overlap(spheres, edges).allFinite());
+}
+
+TEST(AllowedOverlap, IsLeft) {
+  const Vector<3> edges = Vector<3>::Constant(10);
+  Spheres<3> spheres;
+  spheres.push_back({1, 1, 1}, 1);
+  spheres.push_back({2.9, 1, 1}, 1);  // overlap ratio 0.05
+  const auto growth = [&](double allowed) { return edges_free_of_overlap(spheres, edges, allowed)[0] / 10; };
+  EXPECT_NEAR(growth(0), 1 / 0.95, 1e-12);
+  EXPECT_NEAR(growth(0.03), 0.97 / 0.95, 1e-12);
+  EXPECT_NEAR(growth(0.05), 1, 1e-12);
+  EXPECT_NEAR(growth(0.20), 1, 1e-12);  // it is not pressed together
+  spheres.set_center(1, {5, 1, 1});
+  EXPECT_NEAR(growth(0), 0.5, 1e-12);
+  EXPECT_NEAR(growth(0.20), 0.5, 1e-12);
+}
+
+TEST(ResizeBox, KeepsCentresInTheBox) {
+  const Vector<3> edges{1.0, 2.0, 3.0}, larger{1.1, 2.2, 3.3};
+  Spheres<3> spheres;
+  spheres.push_back({std::nextafter(1.0, 0.0), std::nextafter(2.0, 0.0), std::nextafter(3.0, 0.0)}, 0.1);
+  spheres.push_back({0, 1, 1.5}, 0.1);
+  Vector<3> box = edges;
+  resize_box<3>(spheres, box, larger);
+  EXPECT_EQ(box, larger);
+  EXPECT_TRUE(oracle::centers_in_box(spheres, box));
+  EXPECT_LE((spheres.center(1) - Vector<3>(0, 1.1, 1.65)).norm(), 1e-15);
+}
+
+// Of displacements a tenth apart, every image within reach, and none twice.
+TEST(Boundary, VisitsAllImagesWithinReach) {
+  const Boundary<2> boundary{{1.0, 2.5}};
+  for (const double reach : {0.3, 0.5, 1.0, 3.2}) {
+    for (int a = -10; a <= 10; ++a) {
+      for (int b = -25; b <= 25; ++b) {
+        const Vector<2> d{a / 10.0 + 0.01, b / 10.0 + 0.01};
+        int expected = 0, visited = 0;
+        for (int m = -8; m <= 8; ++m)
+          for (int n = -8; n <= 8; ++n)
+            expected += std::max(std::abs(d[0] + m), std::abs(d[1] + 2.5 * n)) < reach ? 1 : 0;
+        boundary.for_each_image(d, reach, [&](const Vector<2>& image) {
+          EXPECT_LE(image.cwiseAbs().maxCoeff(), reach + 1e-12);
+          const double turns = (image[0] - d[0]) / 1.0, other_turns = (image[1] - d[1]) / 2.5;
+          EXPECT_NEAR(turns, std::round(turns), 1e-12);
+          EXPECT_NEAR(other_turns, std::round(other_turns), 1e-12);
+          ++visited;
+        });
+        EXPECT_EQ(visited, expected) << d.transpose() << " within " << reach;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bernal

@@ -1,0 +1,184 @@
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "bernal/core/random.hpp"
+#include "bernal/domain/boundary.hpp"
+#include "stages/soft/soft_packing.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr float omega = 5;
+
+/// `n` spheres at random in a box of the given proportions that they fill, overlaps counted twice, to `phi`.
+template <int D>
+struct Crowd {
+  Spheres<D> spheres;
+  Vector<D> edges;
+
+  Crowd(std::size_t n, double phi, Vector<D> proportions, double r_min, double r_max) : edges(proportions) {
+    Random random(7, stream(Stream::test));
+    double volume = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double r = r_min * std::pow(r_max / r_min, random.uniform());
+      spheres.push_back(Vector<D>::Zero(), r);
+      volume += std::pow(2 * r, D) * (D == 3 ? 0.5236 : D == 2 ? 0.7854 : 1.0);
+    }
+    edges *= std::pow(volume / phi / edges.prod(), 1.0 / D);
+    for (std::size_t i = 0; i < n; ++i)
+      spheres.set_center(i, uniform_point(random, Bounds<D>{Vector<D>::Zero(), edges}));
+  }
+};
+
+Crowd<3> equal_crowd(std::size_t n) { return {n, 0.8, {1, 1, 1}, 1, 1}; }
+Crowd<3> mixed_crowd(std::size_t n) { return {n, 0.8, {1, 2, 1.5}, 0.2, 1.5}; }
+
+template <int D>
+Spheres<D> after_sweeps(const Crowd<D>& crowd, const SoftKernels& kernels, int sweeps) {
+  SoftPacking packing(crowd.spheres, crowd.edges, kernels);
+  for (int k = 0; k < sweeps; ++k) packing.sweep(omega);
+  Spheres<D> spheres = crowd.spheres;
+  Vector<D> edges;
+  packing.write_to(spheres, edges);
+  return spheres;
+}
+
+TEST(SoftKernels, EndWithTheOneForEveryProcessor) {
+  ASSERT_FALSE(soft_kernels().empty());
+  EXPECT_EQ(soft_kernels().back().name, "SSE2");
+}
+
+TEST(SoftKernels, GiveTheSameBitsInEveryInstructionSet) {
+  for (const SoftKernels& kernels : soft_kernels()) {
+    SCOPED_TRACE(kernels.name);
+    for (const Crowd<3>& crowd : {equal_crowd(3000), mixed_crowd(3000)})
+      EXPECT_EQ(after_sweeps(crowd, kernels, 60), after_sweeps(crowd, soft_kernels().back(), 60));
+  }
+}
+
+TEST(SoftPacking, IsTheSameForAnyNumberOfThreads) {
+  const Crowd<3> crowd = mixed_crowd(30000);
+  const auto with_threads = [&](std::size_t n) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
+    return after_sweeps(crowd, soft_kernels().front(), 20);
+  };
+  EXPECT_EQ(with_threads(1), with_threads(4));
+}
+
+/// All pairs, in double.
+template <int D>
+double largest_overlap(const Spheres<D>& spheres, const Vector<D>& edges) {
+  const Boundary<D> boundary{edges};
+  double largest = 0;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const double d = boundary.minimum_image(spheres.center(i) - spheres.center(j)).norm();
+      largest = std::max(largest, 1 - d / (spheres.r[i] + spheres.r[j]));
+    }
+  return largest;
+}
+
+TEST(SoftPacking, MeasuresTheLargestOverlap) {
+  // A sweep measures each sphere when its turn comes; with a step of nothing that is the state itself.
+  for (const Crowd<3>& crowd : {equal_crowd(800), mixed_crowd(800)}) {
+    SoftPacking packing(crowd.spheres, crowd.edges, soft_kernels().front());
+    EXPECT_NEAR(packing.sweep_and_measure(0), largest_overlap(crowd.spheres, crowd.edges), 2e-6);
+  }
+  const Crowd<2> plane(500, 0.9, {1, 3}, 0.5, 1);
+  SoftPacking packing(plane.spheres, plane.edges, soft_kernels().front());
+  EXPECT_NEAR(packing.sweep_and_measure(0), largest_overlap(plane.spheres, plane.edges), 2e-6);
+}
+
+TEST(SoftPacking, MovesASphereByTheMeanOfItsOverlaps) {
+  // Two that overlap by 0.5: each in turn moves by the whole overlap, so that after one sweep they touch.
+  Spheres<3> pair;
+  pair.push_back({1, 10, 10}, 1);
+  pair.push_back({19.5, 10, 10}, 1);  // across the face of the box
+  Vector<3> edges(20, 20, 20);
+  SoftPacking packing(pair, edges, soft_kernels().front());
+  EXPECT_NEAR(packing.sweep_and_measure(1), 0.25, 1e-6);
+  packing.write_to(pair, edges);
+  const Vector<3> way = Boundary<3>{edges}.minimum_image(pair.center(1) - pair.center(0));
+  EXPECT_NEAR(way.norm(), 2, 1e-6);
+  EXPECT_NEAR(way[0], -2, 1e-6);
+}
+
+TEST(SoftPacking, KeepsItsPlacesWhenTheBoxGrows) {
+  const Crowd<3> crowd = equal_crowd(200);
+  SoftPacking packing(crowd.spheres, crowd.edges, soft_kernels().front());
+  packing.grow(1.5);
+  Spheres<3> spheres = crowd.spheres;
+  Vector<3> edges;
+  packing.write_to(spheres, edges);
+  EXPECT_TRUE(edges.isApprox(1.5 * crowd.edges, 1e-14));
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    EXPECT_LT((spheres.center(i) - 1.5 * crowd.spheres.center(i)).norm(), 1e-8 * edges.norm());
+}
+
+/// Builds lists from scratch and reads them back as pairs of the original numbers.
+std::multiset<std::pair<std::uint32_t, std::uint32_t>> listed_pairs(const Crowd<3>& crowd, float skin,
+                                                                    const SoftKernels& kernels) {
+  std::vector<SoftSphere> spheres;
+  std::vector<std::uint32_t> ids;
+  std::vector<float> radii;
+  std::array<double, 3> edges;
+  for (int k = 0; k < 3; ++k) edges[static_cast<std::size_t>(k)] = crowd.edges[k];
+  for (std::size_t i = 0; i < crowd.spheres.size(); ++i) {
+    SoftSphere s{};
+    for (std::size_t k = 0; k < 3; ++k)
+      s.x[k] = static_cast<std::int32_t>(
+          static_cast<std::uint32_t>(crowd.spheres.x[k][i] / edges[k] * 4294967295.0));
+    s.r = static_cast<float>(crowd.spheres.r[i]);
+    spheres.push_back(s);
+    ids.push_back(static_cast<std::uint32_t>(i));
+    radii.push_back(s.r);
+  }
+  SoftLists lists(radii, skin, kernels);
+  lists.build(spheres, ids, edges);
+  std::multiset<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::size_t g = 0; g + 1 < spheres.size() / lanes + 1; ++g) {
+    std::set<std::uint32_t> group;
+    for (std::size_t l = 0; l < lanes; ++l) group.insert(ids[g * lanes + l]);
+    const NeighborRows& rows = lists.groups()[g];
+    for (std::size_t e = 0; e < lanes * rows.rows; ++e) {
+      const std::uint32_t i = ids[g * lanes + e % lanes], j = ids[rows.first[e]];
+      if (j == 0xFFFFFFFF) continue;
+      EXPECT_FALSE(group.contains(j)) << "neighbours are moved together";
+      pairs.insert({i, j});
+    }
+  }
+  return pairs;
+}
+
+TEST(SoftLists, HoldEveryNeighbourOnce) {
+  for (const Crowd<3>& crowd : {equal_crowd(600), mixed_crowd(600), mixed_crowd(80)}) {
+    const double skin = 0.3;
+    const Boundary<3> boundary{crowd.edges};
+    for (const SoftKernels& kernels : soft_kernels()) {
+      SCOPED_TRACE(kernels.name);
+      const auto listed = listed_pairs(crowd, static_cast<float>(skin), kernels);
+      std::size_t surely = 0;
+      for (std::uint32_t i = 0; i < crowd.spheres.size(); ++i) {
+        for (std::uint32_t j = 0; j < crowd.spheres.size(); ++j) {
+          if (i == j) continue;
+          const double d = boundary.minimum_image(crowd.spheres.center(i) - crowd.spheres.center(j)).norm();
+          const double gap = d - crowd.spheres.r[i] - crowd.spheres.r[j];
+          const std::size_t count = listed.count({i, j});
+          EXPECT_LE(count, 1u);
+          if (gap < 2 * skin - 1e-5) {
+            EXPECT_EQ(count, 1u) << i << " " << j;
+            ++surely;
+          }
+        }
+      }
+      EXPECT_LE(listed.size(), surely + 20);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bernal
