@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stages/soft/soft_packing.hpp"
+#include "soft/soft_packing.hpp"
 
 namespace bernal {
 namespace {

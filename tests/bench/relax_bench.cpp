@@ -5,7 +5,7 @@
 
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "stages/soft/soft_packing.hpp"
+#include "soft/soft_packing.hpp"
 
 // What relaxation costs: a sweep and a list of the fast path, by instruction set, sizes and threads, on
 // spheres that are nearly at rest at random close packing.

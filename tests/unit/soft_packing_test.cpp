@@ -7,7 +7,7 @@
 
 #include "bernal/core/random.hpp"
 #include "bernal/domain/boundary.hpp"
-#include "stages/soft/soft_packing.hpp"
+#include "soft/soft_packing.hpp"
 
 namespace bernal {
 namespace {

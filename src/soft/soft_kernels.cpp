@@ -1,4 +1,4 @@
-#include "stages/soft/soft_kernels.hpp"
+#include "soft/soft_kernels.hpp"
 
 #include <immintrin.h>
 
@@ -32,14 +32,14 @@ struct SetBitsOfByte {
 constexpr SetBitsOfByte set_bits_of_byte;
 
 namespace sse2 {
-#include "stages/soft/soft_kernels_body.hpp"
+#include "soft/soft_kernels_body.hpp"
 }
 
 #pragma GCC push_options
 #pragma GCC target("avx2,popcnt")
 #define BERNAL_AVX2
 namespace avx2 {
-#include "stages/soft/soft_kernels_body.hpp"
+#include "soft/soft_kernels_body.hpp"
 }
 #undef BERNAL_AVX2
 #pragma GCC pop_options
@@ -48,7 +48,7 @@ namespace avx2 {
 #pragma GCC target("avx2,popcnt,avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")
 #define BERNAL_AVX512
 namespace avx512 {
-#include "stages/soft/soft_kernels_body.hpp"
+#include "soft/soft_kernels_body.hpp"
 }
 #undef BERNAL_AVX512
 #pragma GCC pop_options

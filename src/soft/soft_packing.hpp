@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
-#include "stages/soft/soft_lists.hpp"
+#include "soft/soft_lists.hpp"
 
 namespace bernal {
 

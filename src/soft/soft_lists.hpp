@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "stages/soft/soft_kernels.hpp"
-#include "stages/soft/soft_sphere.hpp"
+#include "soft/soft_kernels.hpp"
+#include "soft/soft_sphere.hpp"
 
 namespace bernal {
 

@@ -1,4 +1,4 @@
-#include "stages/soft/soft_packing.hpp"
+#include "soft/soft_packing.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

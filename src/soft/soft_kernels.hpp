@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "stages/soft/soft_sphere.hpp"
+#include "soft/soft_sphere.hpp"
 
 namespace bernal {
 

@@ -1,4 +1,4 @@
-#include "stages/soft/soft_lists.hpp"
+#include "soft/soft_lists.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
