@@ -16,12 +16,11 @@ Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& fi
                             read.unit, scene.unit),
                 {file.string()});
   if (read.spheres.dimension() != scene.dimension())
-    throw Error(
-        ErrorCode::bad_packing,
-        fmt::format("the spheres have {} coordinates, but the scene has {} dimensions; is it the scene "
-                    "of another packing?",
-                    read.spheres.dimension(), scene.dimension()),
-        {file.string()});
+    throw Error(ErrorCode::bad_packing,
+                fmt::format("the spheres have {} dimensions, but the scene has {}; is it the scene "
+                            "of another packing?",
+                            read.spheres.dimension(), scene.dimension()),
+                {file.string()});
   return std::move(read).spheres;
 }
 

@@ -117,13 +117,13 @@ void expect_in_container(Plan& plan) {
                         std::holds_alternative<Mesh>(container) ? "O(log faces) a query" : "O(1) a query"});
 }
 
-/// What a size means that only gives the proportions of a box: each edge over the longest, to 40 bits. So all
+/// What a size means that only gives the proportions of a box: each edge over the longest, to 44 bits. So all
 /// sizes in proportion make the same plan, and the one that a run wrote down, rounded, makes that run again.
 Vector<dynamic> proportions_of(const Vector<dynamic>& edges) {
   const auto rounded = [](double share) {
     int exponent = 0;
     const double mantissa = std::frexp(share, &exponent);
-    return std::ldexp(std::round(std::ldexp(mantissa, 40)), exponent - 40);
+    return std::ldexp(std::round(std::ldexp(mantissa, 44)), exponent - 44);
   };
   return (edges / edges.maxCoeff()).unaryExpr(rounded);
 }

@@ -160,16 +160,15 @@ TEST_P(VerifyPeriodic, FindsASphereThatWasPutAcrossTheFace) {
 TEST_P(VerifyPeriodic, WantsTheDimensionAndTheBoxOfTheScene) {
   const char* other = GetParam() == 3 ? "x0,x1,r\n1,1,1\n" : "x,y,z,r\n1,1,1,1\n";
   const std::string file = folder.write("other.csv", other).string();
-  expect_refused_in_one_line(
-      bernal({"verify", file, "--scene", scene}),
-      {"other.csv", "coordinates", fmt::format("the scene has {} dimensions", GetParam())});
+  expect_refused_in_one_line(bernal({"verify", file, "--scene", scene}),
+                             {"other.csv", "dimensions", fmt::format("the scene has {};", GetParam())});
   // The scene that was packed does not say how large the box became; that which was written does.
   expect_refused_in_one_line(bernal({"verify", csv, "--scene", (folder / "periodic.toml").string()}),
                              {"periodic.toml:2", "\"size\""});
 }
 
 TEST_F(Verify, AContainerHasThreeDimensions) {
-  expect_refused_in_one_line(with("x0,x1,r\n1,1,1\n"), {"spheres.csv", "2 coordinates", "3 dimensions"});
+  expect_refused_in_one_line(with("x0,x1,r\n1,1,1\n"), {"spheres.csv", "2 dimensions", "the scene has 3"});
 }
 
 TEST_F(Verify, ASphereMayTouchItsOwnImageAndNoMore) {

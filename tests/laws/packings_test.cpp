@@ -114,6 +114,10 @@ TEST_P(EveryPacking, IsCertifiedAndWhatWasAskedFor) {
   const Target& target = plan.scene.target;
   // Every scene here asks for something that its stages can do.
   EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+  // The box is to follow from the packing, not the other way round.
+  if (plan.box_follows) {
+    EXPECT_GT(packing.packing_fraction(), 0.5);
+  }
   if (target.count) {
     EXPECT_EQ(packing.spheres.size(), static_cast<std::size_t>(*target.count));
   } else if (target.packing_fraction) {

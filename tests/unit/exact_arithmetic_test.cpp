@@ -1,5 +1,6 @@
 // The certificate's two number types against rational arithmetic: Exact is always right, Bounded is right or
 // silent, and silent only near zero.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +17,8 @@ namespace {
 using Rational = boost::multiprecision::cpp_rational;
 
 Rational square(const Rational& x) { return x * x; }
+Rational magnitude(const Rational& x) { return abs(x); }
+Rational smaller(const Rational& a, const Rational& b) { return a < b ? a : b; }
 int sign(const Rational& x) { return x.sign(); }
 
 /// x with about `digits` significant bits and any exponent in [-spread, spread].
@@ -40,6 +43,13 @@ Number high_degree(const double* v) {
   const Number a = determinant<Number>(v), b = sphere<Number>(v);
   return square(a) * b - square(b) * a * Number(v[0]);
 }
+/// The distance to the nearest of two images, less what it is in double.
+template <class Number>
+Number image_distance(const double* v) {
+  const double d = std::abs(v[0] - v[1]), edge = d + std::abs(v[2]);
+  const Number direct = magnitude(Number(v[0]) - Number(v[1]));
+  return smaller(direct, Number(edge) - direct) - Number(std::min(d, edge - d));
+}
 
 class Signs : public testing::TestWithParam<std::pair<int, int>> {};
 
@@ -63,6 +73,7 @@ TEST_P(Signs, AreRightOrUnknown) {
     if (trial % 3 == 1) v[4] = v[0], v[5] = v[2];                           // singular
     expect_right(determinant<Rational>(v), determinant<Exact>(v), determinant<Bounded>(v));
     expect_right(sphere<Rational>(v), sphere<Exact>(v), sphere<Bounded>(v));
+    expect_right(image_distance<Rational>(v), image_distance<Exact>(v), image_distance<Bounded>(v));
     expect_right(high_degree<Rational>(v), high_degree<Exact>(v), high_degree<Bounded>(v));
   }
   EXPECT_GT(zeros, 0);
