@@ -16,10 +16,23 @@ std::string shown(const Value& value) {
     std::string operator()(double v) const { return fmt::format("{}", v); }
     std::string operator()(const std::string& v) const { return v; }
     std::string operator()(const std::vector<double>& v) const {
-      return fmt::format("[{}]", fmt::join(v, ", "));
+      constexpr std::size_t most = 8;
+      if (v.size() <= most) return fmt::format("[{}]", fmt::join(v, ", "));
+      return fmt::format("[{}, … {} numbers … {}]", fmt::join(v.begin(), v.begin() + 3, ", "), v.size() - 4,
+                         v.back());
     }
   } show;
   return std::visit(show, value);
+}
+
+std::string shown(const Spec& sizes) {
+  std::string text = sizes.name;
+  for (const auto& [key, parameter] : sizes.parameters)
+    text += fmt::format(", {} {}", key, shown(parameter.value));
+  if (sizes.parts.empty()) return text;
+  std::vector<std::string> parts;
+  for (const Spec& part : sizes.parts) parts.push_back(fmt::format("({})", shown(part)));
+  return text + fmt::format(", of {}", fmt::join(parts, " and "));
 }
 
 }  // namespace
@@ -35,11 +48,8 @@ std::string describe_container(const Plan& plan) {
 }
 
 std::string describe_sizes(const Scene& scene) {
-  std::string text = fmt::format("{} in {}: {}", scene.sizes_are_diameters ? "diameter" : "radius",
-                                 scene.unit, scene.sizes.name);
-  for (const auto& [key, parameter] : scene.sizes.parameters)
-    text += fmt::format(", {} {}", key, shown(parameter.value));
-  return text;
+  return fmt::format("{} in {}: {}{}", scene.sizes_are_diameters ? "diameter" : "radius", scene.unit,
+                     shown(scene.sizes), scene.draw == "random" ? "" : "; drawn by " + scene.draw);
 }
 
 std::string describe_target(const Scene& scene) {

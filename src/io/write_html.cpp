@@ -132,8 +132,9 @@ void write_certificate(Page& page, const Report& report) {
   page.row("overlapping pairs", grouped(c.overlapping_pairs), "");
   if (walls) page.row("spheres that stick out", grouped(c.protruding_spheres), "");
   if (c.worst_pair) {
-    page.row("closest pair", fmt::format("{:.3g}", -c.max_overlap),
-             fmt::format("its gap over the sum of its radii; spheres {}, counted from 0", worst_pair_text(c)));
+    page.row(
+        "closest pair", fmt::format("{:.3g}", -c.max_overlap),
+        fmt::format("its gap over the sum of its radii; spheres {}, counted from 0", worst_pair_text(c)));
   }
   if (c.worst_wall) {
     page.row("closest to the wall", fmt::format("{:.3g}", c.min_wall_gap),

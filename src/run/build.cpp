@@ -85,8 +85,16 @@ Domain packed_domain_of(const Scene& scene) {
 }
 
 std::unique_ptr<SizeDistribution> radii_of(const Scene& scene) {
-  return find_entry(sizes_catalogue(), scene.sizes).make(scene.sizes, scene.sizes_are_diameters ? 0.5 : 1.0);
+  const SizesEntry& entry = find_entry(sizes_catalogue(), scene.sizes);
+  try {
+    return entry.make(scene.sizes, scene.sizes_are_diameters ? 0.5 : 1.0);
+  } catch (const Error& error) {  // what only the numbers together show
+    if (error.code() != ErrorCode::bad_argument) throw;
+    throw Error(ErrorCode::bad_scene, error.what(), scene.sizes.where);
+  }
 }
+
+Draw draw_of(const Scene& scene) { return scene.draw == "quantiles" ? Draw::quantiles : Draw::random; }
 
 namespace {
 

@@ -1,7 +1,5 @@
 #include "run/catalogue.hpp"
 
-#include <limits>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -62,41 +60,6 @@ constexpr ContainerEntry containers[] = {{"box", make_box},
                                          {"sphere", make_sphere},
                                          {"mesh", make_mesh},
                                          {"periodic", make_periodic}};
-
-// ---- size distributions
-
-Basis basis_of(const Spec& spec) { return spec.text("basis") == "volume" ? Basis::volume : Basis::number; }
-
-std::vector<double> scaled(std::vector<double> values, double factor) {
-  for (double& v : values) v *= factor;
-  return values;
-}
-
-std::unique_ptr<SizeDistribution> constant_sizes(const Spec& s, double half) {
-  return make_constant(half * s.number("value"));
-}
-
-std::unique_ptr<SizeDistribution> class_sizes(const Spec& s, double half) {
-  return make_classes(scaled(s.numbers("values"), half), s.numbers("shares"), basis_of(s));
-}
-
-std::unique_ptr<SizeDistribution> uniform_sizes(const Spec& s, double half) {
-  return make_uniform(half * s.number("min"), half * s.number("max"), basis_of(s));
-}
-
-std::unique_ptr<SizeDistribution> lognormal_sizes(const Spec& s, double half) {
-  const double min = s.has("min") ? half * s.number("min") : 0;
-  const double max = s.has("max") ? half * s.number("max") : std::numeric_limits<double>::infinity();
-  if (!s.has("d43")) {
-    return make_lognormal(half * s.number("median"), s.number("sigma"), basis_of(s), min, max);
-  }
-  return make_lognormal_of_means(0.5 * s.number("d43"), 0.5 * s.number("d32"), min, max);
-}
-
-constexpr SizesEntry sizes[] = {{"constant", constant_sizes},
-                                {"classes", class_sizes},
-                                {"uniform", uniform_sizes},
-                                {"lognormal", lognormal_sizes}};
 
 // ---- stages
 
@@ -168,7 +131,6 @@ const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},
 }  // namespace
 
 std::span<const ContainerEntry> container_catalogue() { return containers; }
-std::span<const SizesEntry> sizes_catalogue() { return sizes; }
 std::span<const StageEntry> stage_catalogue() { return stages; }
 
 }  // namespace bernal

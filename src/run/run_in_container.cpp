@@ -88,7 +88,8 @@ void run_in_container(const Plan& plan, const Monitor& monitor, const Stopwatch&
   const double unbounded = std::numeric_limits<double>::infinity();
   const double cut =
       plan.radii->max() < unbounded ? unbounded : radius_with_hardly_any_room(*container, packing.seed);
-  Supply supply(*plan.radii, frame.scale, container->volume(), cut, plan.scene.target, packing.seed);
+  Supply supply(*plan.radii, frame.scale, container->volume(), cut, plan.scene.target, packing.seed,
+                draw_of(plan.scene));
   require_fitting(plan.scene, shape, supply.largest() * frame.scale);
 
   EffectLog effects;

@@ -21,13 +21,12 @@ constexpr double too_much_room = 5e-3;
 constexpr double most_spheres = 2147483647.0;
 
 /// The drawn sequence of radii, in the packer's unit: `count` of them, or as many as fill `volume`.
-std::vector<double> drawn_radii(const SizeDistribution& sizes, std::uint64_t seed, int dimension,
-                                std::optional<std::int64_t> count, double volume) {
-  Random random(seed, stream(Stream::radii));
+std::vector<double> drawn_radii(RadiusSequence sequence, int dimension, std::optional<std::int64_t> count,
+                                double volume) {
   std::vector<double> radii;
   double filled = 0;
   while (count ? radii.size() < static_cast<std::size_t>(*count) : filled < volume) {
-    radii.push_back(sizes.sample(random));
+    radii.push_back(sequence.next());
     filled += ball_volume(dimension, radii.back());
   }
   return radii;
@@ -78,8 +77,8 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
 
   double fraction = target.packing_fraction.value_or(plan.expected_packing_fraction);
   for (int attempt = 1;; ++attempt) {
-    std::vector<double> radii =
-        drawn_radii(*plan.radii, packing.seed, dimension, target.count, fraction * asked_volume);
+    std::vector<double> radii = drawn_radii({*plan.radii, packing.seed, draw_of(scene)}, dimension,
+                                            target.count, fraction * asked_volume);
     if (static_cast<double>(radii.size()) >= most_spheres)
       throw Error(ErrorCode::bad_scene, "the box would hold more than 2^31 spheres of these sizes",
                   target.where);

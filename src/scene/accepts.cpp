@@ -38,8 +38,8 @@ bool is_length(double v) { return v >= smallest_length && v <= largest_length; }
 bool is_coordinate(double v) { return std::abs(v) <= largest_length; }
 
 bool has_length(Type type) {
-  constexpr std::array types = {Type::length,  Type::direction, Type::position,    Type::extents,
-                                Type::lengths, Type::shares,    Type::distribution};
+  constexpr std::array types = {Type::length,  Type::direction, Type::position, Type::extents,
+                                Type::lengths, Type::shares,    Type::amounts,  Type::distribution};
   return std::ranges::find(types, type) != types.end();
 }
 
@@ -71,8 +71,12 @@ std::string kind_of_value(const Key& key) {
       return "an array of positive lengths";
     case Type::shares:
       return "an array of positive numbers";
+    case Type::amounts:
+      return "an array of numbers of at least 0";
     case Type::distribution:
       return "a positive length or a table { distribution = … }";
+    case Type::parts:
+      return "an array of lengths and tables { distribution = … }";
   }
   return {};
 }
@@ -117,8 +121,14 @@ bool accepts(const Key& key, const Value& value) {
     case Type::lengths:
     case Type::shares:
       return !numbers().empty() && std::ranges::all_of(numbers(), is_length);
+    case Type::amounts: {
+      const auto amount = [](double v) { return v == 0 || is_length(v); };
+      return !numbers().empty() && std::ranges::all_of(numbers(), amount);
+    }
     case Type::distribution:
       return is_length(number());
+    case Type::parts:
+      return false;  // a table of its own, not a value
   }
   return false;
 }

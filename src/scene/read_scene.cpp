@@ -10,8 +10,10 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/core/unit.hpp"
+#include "scene/read_columns.hpp"
 #include "scene/schema.hpp"
 #include "scene/toml_text.hpp"
+#include "scene/toml_values.hpp"
 
 namespace bernal {
 namespace {
@@ -20,73 +22,6 @@ using schema::Entry;
 using schema::Key;
 using schema::Type;
 using Names = std::vector<std::string_view>;
-
-/// What the user wrote, short enough for an error of one line.
-std::string written(const toml::node& node) {
-  constexpr std::size_t longest = 60;
-  if (const auto* text = node.as_string()) {
-    std::string_view shown = text->get();
-    if (shown.size() <= longest) return toml_string(shown);
-    shown = shown.substr(0, longest);
-    while (!shown.empty() && (shown.back() & 0xC0) == 0x80) shown.remove_suffix(1);  // whole UTF-8 characters
-    return toml_string(shown.substr(0, shown.size() - 1)) + "…";
-  }
-  if (const auto* number = node.as_floating_point()) return toml_text(number->get());
-  if (const auto* number = node.as_integer()) return toml_text(number->get());
-  if (const auto* flag = node.as_boolean()) return toml_text(flag->get());
-  if (node.is_table()) return "a table";
-  if (const auto* array = node.as_array()) {
-    std::vector<std::string> items;
-    for (const toml::node& item : *array) {
-      if (items.size() == 6 || item.is_array()) return fmt::format("an array of {} values", array->size());
-      items.push_back(written(item));
-    }
-    return fmt::format("[{}]", fmt::join(items, ", "));
-  }
-  return "a date or time";
-}
-
-std::optional<Value> number_in(const toml::node& node) {
-  if (!node.is_number()) return std::nullopt;
-  return *node.value<double>() + 0.0;  // -0 is 0
-}
-
-/// The node as the kind of value that a key of this type has; nothing if it is of another kind.
-std::optional<Value> value_in(const toml::node& node, Type type) {
-  switch (type) {
-    case Type::flag:
-      if (const auto* flag = node.as_boolean()) return flag->get();
-      return std::nullopt;
-    case Type::integer:
-      if (const auto* number = node.as_integer()) return number->get();
-      return std::nullopt;
-    case Type::number:
-    case Type::length:
-    case Type::distribution:
-      return number_in(node);
-    case Type::word:
-    case Type::unit:
-    case Type::file:
-      if (const auto* text = node.as_string()) return text->get();
-      return std::nullopt;
-    case Type::direction:
-    case Type::position:
-    case Type::extents:
-    case Type::lengths:
-    case Type::shares: {
-      const toml::array* array = node.as_array();
-      if (!array) return std::nullopt;
-      std::vector<double> numbers;
-      for (const toml::node& item : *array) {
-        const std::optional<Value> number = number_in(item);
-        if (!number) return std::nullopt;
-        numbers.push_back(std::get<double>(*number));
-      }
-      return numbers;
-    }
-  }
-  return std::nullopt;
-}
 
 Names names_of(const std::vector<Entry>& entries) {
   Names names;
@@ -255,7 +190,7 @@ class Reader {
          written(node));
   }
 
-  /// All keys of an entry but its distributions, with defaults filled in.
+  /// All keys of an entry but its radius or diameter, with defaults filled in.
   Spec read_keys(const toml::table& table, const Entry& entry, std::string_view selector,
                  const std::string& where) const {
     Names known = names_of(entry.keys);
@@ -271,14 +206,32 @@ class Reader {
       if (!given && !key.otherwise && !key.optional)
         fail(table.source(), "missing \"{}\" in {}: {}, {}", key.name, where, schema::expectation(key),
              key.help);
-      if (given)
+      if (key.type == Type::parts)
+        spec.parts = read_parts(found->second, key, where);
+      else if (given)
         spec.parameters[std::string(key.name)] = {read_value(found->second, key, where),
                                                   at(found->first.source())};
       else if (key.otherwise)
         spec.parameters[std::string(key.name)] = {*key.otherwise, {file_}};
     }
+    if (!entry.columns.empty() && spec.has("file")) take_columns(spec, entry, where);
     if (entry.rule) entry.rule(spec, where);
     return spec;
+  }
+
+  /// Puts what stands in the spec's file in its place, so that the scene is whole without the file.
+  void take_columns(Spec& spec, const Entry& entry, const std::string& where) const {
+    const Location at_file = spec.location("file");
+    const std::array keys = {entry.find(entry.columns.at(0)), entry.find(entry.columns.at(1))};
+    try {
+      const auto columns = read_columns(path_.parent_path() / spec.text("file"), keys);
+      for (std::size_t k = 0; k < keys.size(); ++k)
+        spec.parameters[std::string(keys[k]->name)] = {columns[k], at_file};
+    } catch (const Error& error) {
+      if (!error.location().file.empty()) throw;
+      throw Error(error.code(), fmt::format("\"file\" in {}: {}", where, error.what()), at_file);
+    }
+    spec.parameters.erase("file");
   }
 
   void read_container(const toml::table& root, Scene& scene) const {
@@ -313,7 +266,9 @@ class Reader {
 
     scene.sizes_are_diameters = table.contains("diameter");
     const std::string_view key = scene.sizes_are_diameters ? "diameter" : "radius";
-    scene.sizes = read_distribution(*table.get(key), key);
+    scene.sizes = read_distribution(*table.get(key), *all_.spheres.find(key), "[spheres]");
+    if (!scene.sizes_are_diameters) refuse_diameters(scene.sizes);
+    scene.draw = spec.text("draw");
   }
 
   /// What the target and a periodic box demand of each other.
@@ -329,21 +284,37 @@ class Reader {
       fail("a periodic box without size needs a \"count\" in [spheres]; or give it \"size\" or \"edge\"");
   }
 
-  /// A plain length is a constant distribution.
-  Spec read_distribution(const toml::node& node, std::string_view key) const {
+  /// A plain length, whose key says what it must be, is a constant distribution.
+  Spec read_distribution(const toml::node& node, const Key& key, const std::string& where) const {
     const toml::table* table = node.as_table();
-    if (!table) {
-      const Value value = read_value(node, *all_.spheres.find(key), "[spheres]");
-      return {"constant", {{"value", {value, at(node.source())}}}, at(node.source())};
+    if (!table)
+      return {"constant", {{"value", {read_value(node, key, where), at(node.source())}}}, at(node.source())};
+    const std::string named = fmt::format("{} of {}", key.name, where);
+    return read_keys(*table, choose(*table, "distribution", all_.distributions, named), "distribution",
+                     named);
+  }
+
+  std::vector<Spec> read_parts(const toml::node& node, const Key& key, const std::string& where) const {
+    const toml::array* array = node.as_array();
+    if (!array || array->empty())
+      fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key),
+           written(node));
+    std::vector<Spec> parts;
+    for (const toml::node& item : *array) {
+      const std::string name = fmt::format("part {}", parts.size() + 1);
+      parts.push_back(read_distribution(item, {.name = name, .type = Type::distribution, .help = {}}, where));
     }
-    const std::string where = fmt::format("{} of [spheres]", key);
-    const Entry& entry = choose(*table, "distribution", all_.distributions, where);
-    if (key == "radius")
-      for (const std::string_view mean : {"d43", "d32"})
-        if (entry.find(mean) && table->contains(mean))
-          fail(table->find(mean)->first.source(),
-               "\"{}\" is a mean diameter; write diameter = {{…}}, not radius", mean);
-    return read_keys(*table, entry, "distribution", where);
+    return parts;
+  }
+
+  /// A size that is a diameter by its name cannot be a radius.
+  void refuse_diameters(const Spec& sizes) const {
+    for (const Key& key : schema::Schema::find(all_.distributions, sizes.name)->keys)
+      if (key.is_diameter && sizes.has(key.name))
+        throw Error(ErrorCode::bad_scene,
+                    fmt::format("\"{}\" is a diameter; write diameter = {{…}}, not radius", key.name),
+                    sizes.location(key.name));
+    for (const Spec& part : sizes.parts) refuse_diameters(part);
   }
 
   void read_accuracy(const toml::table& root, Scene& scene) const {

@@ -13,41 +13,6 @@ namespace {
   throw Error(ErrorCode::bad_scene, message, spec.location(key));
 }
 
-void min_below_max(const Spec& spec, std::string_view where) {
-  if (spec.has("min") && spec.has("max") && spec.number("min") >= spec.number("max"))
-    refuse(spec, "min",
-           fmt::format("\"min\" in {} must be below \"max\", but {} is not below {}", where,
-                       spec.number("min"), spec.number("max")));
-}
-
-void lognormal_rule(const Spec& spec, std::string_view where) {
-  min_below_max(spec, where);
-  if (spec.has("d43") && spec.number("d43") <= spec.number("d32"))
-    refuse(spec, "d43",
-           fmt::format("\"d43\" in {} must be above \"d32\", but {} is not above {}", where,
-                       spec.number("d43"), spec.number("d32")));
-}
-
-void classes_rule(const Spec& spec, std::string_view where) {
-  std::vector<double> values = spec.numbers("values");
-  if (values.size() != spec.numbers("shares").size())
-    refuse(
-        spec, "shares",
-        fmt::format("\"shares\" in {} must have one number for each of \"values\", but there are {} for {}",
-                    where, spec.numbers("shares").size(), values.size()));
-  std::ranges::sort(values);
-  if (const auto twice = std::ranges::adjacent_find(values); twice != values.end())
-    refuse(spec, "values", fmt::format("\"values\" in {} must differ, but {} is there twice", where, *twice));
-}
-
-Key basis() {
-  return {.name = "basis",
-          .type = Type::word,
-          .help = "what shares and densities count: spheres or their volume",
-          .otherwise = "number",
-          .words = {"number", "volume"}};
-}
-
 /// Keys of `compress`, which `shake` and `refill` pass on to the compression that they end with.
 std::vector<Key> with_compression(std::vector<Key> keys) {
   const Key compression[] = {
@@ -118,7 +83,12 @@ Schema make_schema() {
                             .help = "true: as many spheres as the stages can place",
                             .otherwise = true},
                            {.name = "radius", .type = Type::distribution, .help = "lengths are radii"},
-                           {.name = "diameter", .type = Type::distribution, .help = "lengths are diameters"}},
+                           {.name = "diameter", .type = Type::distribution, .help = "lengths are diameters"},
+                           {.name = "draw",
+                            .type = Type::word,
+                            .help = "sizes at random, or quantiles: evenly over the distribution",
+                            .otherwise = "random",
+                            .words = {"random", "quantiles"}}},
                   .choices = {{{"count"}, {"packing_fraction"}, {"fill"}, {"count", "packing_fraction"}},
                               {{"radius"}, {"diameter"}}}},
 
@@ -191,40 +161,7 @@ Schema make_schema() {
             .rule = periodic_rule,
             .protocol = {"relax"}}},
 
-      .distributions =
-          {{.name = "constant",
-            .help = "all spheres alike",
-            .keys = {{.name = "value", .type = Type::length, .help = "the size of every sphere"}}},
-           {.name = "classes",
-            .help = "a few sizes",
-            .keys = {{.name = "values", .type = Type::lengths, .help = "the sizes"},
-                     {.name = "shares", .type = Type::shares, .help = "of each size, in any scale"},
-                     basis()},
-            .rule = classes_rule},
-           {.name = "uniform",
-            .help = "every size between two limits equally often",
-            .keys = {{.name = "min", .type = Type::length, .help = "the smallest"},
-                     {.name = "max", .type = Type::length, .help = "the largest"},
-                     basis()},
-            .rule = min_below_max},
-           {.name = "lognormal",
-            .help = "the logarithm of the size is normal",
-            .keys = {{.name = "median", .type = Type::length, .help = "half of the basis lies below"},
-                     {.name = "sigma",
-                      .type = Type::number,
-                      .help = "standard deviation of the logarithm",
-                      .range = {0, 5, true}},
-                     basis(),
-                     {.name = "d43",
-                      .type = Type::length,
-                      .help = "volume-weighted mean diameter <d^4>/<d^3>, before any cut"},
-                     {.name = "d32",
-                      .type = Type::length,
-                      .help = "surface-weighted mean diameter <d^3>/<d^2>, before any cut"},
-                     {.name = "min", .type = Type::length, .help = "cut off below", .optional = true},
-                     {.name = "max", .type = Type::length, .help = "cut off above", .optional = true}},
-            .choices = {{{"median", "sigma", "basis"}, {"d43", "d32"}}},
-            .rule = lognormal_rule}},
+      .distributions = size_distributions(),
 
       .stages = {{.name = "insert",
                   .help = "place spheres at random where they overlap nothing",

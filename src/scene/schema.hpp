@@ -23,7 +23,9 @@ enum class Type {
   extents,       ///< [a, b, c], each a length
   lengths,       ///< array of lengths
   shares,        ///< array of positive numbers
+  amounts,       ///< array of numbers of at least 0
   distribution,  ///< a length, or a table of one of Schema::distributions
+  parts,         ///< array of distributions
 };
 
 struct Range {
@@ -45,10 +47,11 @@ struct Key {
   bool optional = false;                ///< may be absent and stays so
   Range range = {};
   std::vector<std::string_view> words = {};
+  bool is_diameter = false;  ///< a size that is a diameter by its name
 };
 
-/// Sets of keys of which exactly one is given, whole: the first that holds all that are given; other keys stay
-/// absent. Where none is given, the first set that needs nothing is meant, if there is one.
+/// Sets of keys of which exactly one is given, whole: the first that holds all that are given; other keys
+/// stay absent. Where none is given, the first set that needs nothing is meant, if there is one.
 using Choice = std::vector<std::vector<std::string_view>>;
 
 /// A table of the scene: a container, a size distribution, a stage, or one that stands for itself.
@@ -61,6 +64,8 @@ struct Entry {
   void (*rule)(const Spec&, std::string_view where) = nullptr;
   /// Of a container: the stages of a scene that names none.
   std::vector<std::string_view> protocol = {};
+  /// Of a distribution that may stand in a "file": the keys that the file's columns are.
+  std::vector<std::string_view> columns = {};
 
   const Key* find(std::string_view key) const;
 };
@@ -77,6 +82,9 @@ struct Schema {
   static const Entry* find(const std::vector<Entry>& entries, std::string_view name);
 };
 const Schema& schema();
+
+/// The part of the schema that schema_distributions.cpp holds.
+std::vector<Entry> size_distributions();
 
 /// What a value of this key must be, for people: "a positive length", "a whole number from 1 to 100"; with
 /// its limits where only they refuse the one that was `given`.

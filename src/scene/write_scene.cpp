@@ -1,6 +1,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bernal/scene/read_scene.hpp"
 #include "scene/schema.hpp"
@@ -17,13 +18,28 @@ const Entry& entry_of(const std::vector<Entry>& entries, const Spec& spec) {
   throw Error(ErrorCode::bad_argument, fmt::format("no scene can name \"{}\"", spec.name), spec.where);
 }
 
+std::string distribution_as_toml(const Spec&);
+
 /// `key = value` for every parameter that the spec has, in the order of the schema, each followed by `end`.
 std::string assignments(const Spec& spec, const Entry& entry, std::string_view end) {
   std::string out;
-  for (const schema::Key& key : entry.keys)
+  for (const schema::Key& key : entry.keys) {
+    if (key.type == schema::Type::parts) {
+      std::vector<std::string> parts;
+      for (const Spec& part : spec.parts) parts.push_back(distribution_as_toml(part));
+      out += fmt::format("{} = [{}]{}", key.name, fmt::join(parts, ", "), end);
+    }
     if (const auto found = spec.parameters.find(key.name); found != spec.parameters.end())
       out += fmt::format("{} = {}{}", key.name, toml_text(found->second.value), end);
+  }
   return out;
+}
+
+/// An inline table.
+std::string distribution_as_toml(const Spec& spec) {
+  std::string keys = assignments(spec, entry_of(schema::schema().distributions, spec), ", ");
+  if (keys.ends_with(", ")) keys.resize(keys.size() - 2);
+  return fmt::format("{{ distribution = {}, {} }}", toml_string(spec.name), keys);
 }
 
 std::string container_as_toml(Spec container, const std::filesystem::path& folder) {
@@ -42,10 +58,9 @@ std::string spheres_as_toml(const Scene& scene) {
   if (scene.target.packing_fraction)
     target += fmt::format("packing_fraction = {}\n", *scene.target.packing_fraction);
   if (scene.target.fill) target += "fill = true\n";
-  std::string sizes = assignments(scene.sizes, entry_of(schema::schema().distributions, scene.sizes), ", ");
-  if (sizes.ends_with(", ")) sizes.resize(sizes.size() - 2);
-  return fmt::format("[spheres]\n{}{} = {{ distribution = {}, {} }}\n", target,
-                     scene.sizes_are_diameters ? "diameter" : "radius", toml_string(scene.sizes.name), sizes);
+  return fmt::format("[spheres]\n{}{} = {}\ndraw = {}\n", target,
+                     scene.sizes_are_diameters ? "diameter" : "radius", distribution_as_toml(scene.sizes),
+                     toml_string(scene.draw));
 }
 
 }  // namespace

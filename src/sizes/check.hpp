@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -8,10 +10,28 @@
 
 namespace bernal {
 
-/// Throws Error{bad_argument} unless `value` is positive and finite.
+// Each throws Error{bad_argument}.
+
+/// Unless `value` is positive and finite.
 inline void require_positive(std::string_view what, double value) {
   if (std::isfinite(value) && value > 0) return;
   throw Error(ErrorCode::bad_argument, fmt::format("{} must be positive and finite, not {}", what, value));
+}
+
+/// Unless 0 < min < max < infinity.
+inline void require_interval(double min, double max) {
+  if (min > 0 && min < max && std::isfinite(max)) return;
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("the radii are cut to [{}, {}], which is no interval above 0", min, max));
+}
+
+/// Unless `radii` are positive, finite and ascending.
+inline void require_ascending(std::string_view what, std::span<const double> radii) {
+  for (const double r : radii) require_positive(what, r);
+  const auto falls = std::ranges::adjacent_find(radii, std::greater_equal<>());
+  if (falls != radii.end())
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("{} must ascend, but {} stands before {}", what, falls[0], falls[1]));
 }
 
 }  // namespace bernal

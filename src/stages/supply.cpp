@@ -22,7 +22,7 @@ double volume_of_ball(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * 
 }  // namespace
 
 Supply::Supply(const SizeDistribution& radii, double scale, double volume, double cut, const Target& target,
-               std::uint64_t seed) {
+               std::uint64_t seed, Draw draw) {
   const double mean_volume = 4.0 / 3.0 * std::numbers::pi * radii.moment(3) / (scale * scale * scale);
   const double fraction = target.packing_fraction.value_or(densest);
   const double expected = target.count ? static_cast<double>(*target.count) : fraction * volume / mean_volume;
@@ -33,11 +33,11 @@ Supply::Supply(const SizeDistribution& radii, double scale, double volume, doubl
         target.where);
   }
   radii_.reserve(static_cast<std::size_t>(expected * 1.01) + 16);
-  Random random(seed, stream(Stream::radii));
+  RadiusSequence sequence(radii, seed, draw);
   double filled = 0;
   while (target.count ? radii_.size() < static_cast<std::size_t>(*target.count)
                       : filled < fraction * volume) {
-    const double r = radii.sample(random) / scale;
+    const double r = sequence.next() / scale;
     if (r > cut) {
       ++cut_off_;
       continue;

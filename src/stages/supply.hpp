@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bernal/scene/scene.hpp"
+#include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
@@ -18,7 +19,7 @@ class Supply {
   /// the seed's stream of radii. Throws Error{bad_scene} if those are more than 2^31.
   /// Radii above `cut` are drawn again and counted.
   Supply(const SizeDistribution& radii, double scale, double volume, double cut, const Target& target,
-         std::uint64_t seed);
+         std::uint64_t seed, Draw draw = Draw::random);
 
   /// Nothing more is to be placed: the target has been reached.
   bool exhausted() const { return window_.empty(); }

@@ -170,12 +170,11 @@ TEST_P(EveryPacking, HasTheRadiiThatWereDrawn) {
   const Packing packing = run_with(plan);
   const double largest = std::ranges::max(packing.spheres.r);
   const bool cut = std::isinf(plan.radii->max());  // then draws beyond the container's room are not asked for
-  Random random(packing.seed, stream(Stream::radii));
+  RadiusSequence sequence(*plan.radii, packing.seed, draw_of(plan.scene));
   std::size_t passed_over = 0;
   for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
-    double drawn = plan.radii->sample(random);
-    for (; drawn != packing.spheres.r[i] && passed_over < packing.spheres.size();
-         drawn = plan.radii->sample(random))
+    double drawn = sequence.next();
+    for (; drawn != packing.spheres.r[i] && passed_over < packing.spheres.size(); drawn = sequence.next())
       if (!cut || drawn <= largest) ++passed_over;
     ASSERT_EQ(drawn, packing.spheres.r[i]) << i;
   }

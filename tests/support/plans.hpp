@@ -24,6 +24,7 @@ class ScaledSizes : public SizeDistribution {
   double moment_above(int k, double radius) const override {
     return std::pow(factor_, k) * sizes_->moment_above(k, radius / factor_);
   }
+  double radius_at(double u) const override { return factor_ * sizes_->radius_at(u); }
   double min() const override { return factor_ * sizes_->min(); }
   double max() const override { return factor_ * sizes_->max(); }
 

@@ -34,6 +34,8 @@ void expect_equal(const Spec& a, const Spec& b) {
     // A double that is whole is written as 1 and read back as 1.0.
     EXPECT_EQ(parameter.value, b.parameters.find(key)->second.value) << a.name << " " << key;
   }
+  ASSERT_EQ(a.parts.size(), b.parts.size());
+  for (std::size_t i = 0; i < a.parts.size(); ++i) expect_equal(a.parts[i], b.parts[i]);
 }
 
 void expect_equal(const Scene& a, const Scene& b) {
@@ -42,6 +44,7 @@ void expect_equal(const Scene& a, const Scene& b) {
   expect_equal(a.container, b.container);
   expect_equal(a.sizes, b.sizes);
   EXPECT_EQ(a.sizes_are_diameters, b.sizes_are_diameters);
+  EXPECT_EQ(a.draw, b.draw);
   EXPECT_EQ(a.target.count, b.target.count);
   EXPECT_EQ(a.target.packing_fraction, b.target.packing_fraction);
   EXPECT_EQ(a.target.fill, b.target.fill);
@@ -119,6 +122,80 @@ TEST(Scene, MeanDiametersNeedNoBasis) {
   EXPECT_EQ(scene.sizes.number("d43"), 2);
   EXPECT_FALSE(scene.sizes.has("median"));
   EXPECT_FALSE(scene.sizes.has("basis"));
+}
+
+TEST(Scene, AMixtureHasPartsOfAnyKind) {
+  const Scene scene = parse_scene(with_spheres(R"(draw = "quantiles"
+[spheres.diameter]
+distribution = "mixture"
+shares = [1, 2, 3]
+basis = "volume"
+of = [
+  1.5,
+  { distribution = "fuller", max = 8, min = 1 },
+  { distribution = "mixture", shares = [1], of = [{ distribution = "normal", mean = 1, sd = 0.1 }] },
+])"),
+                                  "s.toml");
+  EXPECT_EQ(scene.draw, "quantiles");
+  EXPECT_EQ(scene.sizes.numbers("shares"), (std::vector<double>{1, 2, 3}));
+  ASSERT_EQ(scene.sizes.parts.size(), 3u);
+  EXPECT_EQ(scene.sizes.parts[0].name, "constant");
+  EXPECT_EQ(scene.sizes.parts[0].number("value"), 1.5);
+  EXPECT_EQ(scene.sizes.parts[1].number("exponent"), 0.5);
+  EXPECT_EQ(scene.sizes.parts[2].parts.at(0).number("sd"), 0.1);
+  EXPECT_EQ(scene.sizes.parts[2].parts.at(0).text("basis"), "number");
+  expect_equal(scene, parse_scene(scene_as_toml(scene), "s.toml"));
+}
+
+TEST(Scene, TakesTheColumnsOfAFileForItsOwn) {
+  const testing::Folder folder;
+  std::filesystem::create_directories(folder / "lab");
+  folder.write("lab/sieve.csv",
+               "\xEF\xBB\xBFopening,passing  # mm, %\r\n\r\n# by hand\r\n0.5, 100\r\n"
+               "0.063;0\r\n .125\t3e1 # wet\r\n");
+  const Scene scene = read_scene(folder.write(
+      "scene.toml", with_spheres("diameter = { distribution = \"sieve\", file = \"lab/sieve.csv\" }")));
+  EXPECT_EQ(scene.sizes.numbers("sizes"), (std::vector<double>{0.5, 0.063, 0.125}));
+  EXPECT_EQ(scene.sizes.numbers("passing"), (std::vector<double>{100, 0, 30}));
+  EXPECT_FALSE(scene.sizes.has("file"));
+  expect_equal(scene, parse_scene(scene_as_toml(scene), "elsewhere.toml"));
+}
+
+TEST(Scene, SaysWhatIsWrongInAFileOfColumns) {
+  const testing::Folder folder;
+  const auto refusal = [&](const std::string& content) -> std::string {
+    if (!content.empty()) folder.write("t.csv", content);
+    try {
+      read_scene(folder.write("scene.toml",
+                              with_spheres("radius = { distribution = \"table\", file = \"t.csv\" }")));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_scene);
+      return error.what();
+    }
+    return "accepted";
+  };
+  const auto expect = [&](const std::string& content, const std::vector<std::string>& words) {
+    const std::string what = refusal(content);
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    for (const std::string& word : words)
+      EXPECT_NE(what.find(word), std::string::npos) << word << "\nis not in: " << what;
+  };
+  expect("", {"scene.toml:3", "\"file\" in radius of [spheres]", "no file", "t.csv"});
+  expect("#\n", {"t.csv: ", "no line has two numbers, x and density"});
+  expect("x, density\nsize, share\n", {"t.csv:2", "two numbers", "\"size, share\""});
+  expect("1, 2\nx, y\n", {"t.csv:2"});
+  expect("1\n", {"t.csv:1", "two numbers"});
+  expect("1, 2, 3\n", {"t.csv:1"});
+  expect("1,5;2\n", {"t.csv:1", "decimal points"});
+  expect("1, 2\n\n3, nan\n", {"t.csv:3"});
+  expect("1, 2\n3, -1\n", {"t.csv:2", "\"density\"", "at least 0, not -1"});
+  expect("1, 2\n0, 1\n", {"t.csv:2", "\"x\"", "positive lengths, not 0"});
+  expect(std::string(2000, 'x'), {"t.csv:1", "too long"});
+  expect("1, 2\n", {"scene.toml:3", "\"x\"", "two sizes"});
+  expect("1, 2\n1, 3\n", {"scene.toml:3", "1 is there twice"});
+  std::string long_table;
+  for (int i = 1; i < 5000; ++i) long_table += fmt::format("{},1\n", i);
+  expect(long_table, {"t.csv:4097", "4096"});
 }
 
 TEST(Scene, GettersRefuseWhatIsNotThere) {
@@ -237,7 +314,51 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
        {"1 is not above 2"}},
       {with_spheres("radius = { distribution = \"lognormal\", d43 = 2, d32 = 1 }"),
        3,
-       {"mean diameter", "diameter = {"}},
+       {"\"d43\" is a diameter", "diameter = {"}},
+      {with_spheres("radius = { distribution = \"rosin_rammler\", d63 = 1, n = 1, min = 0.1 }"),
+       3,
+       {"\"d63\" is a diameter", "diameter = {"}},
+      {with_spheres("diameter = { distribution = \"rosin_rammler\", d63 = 1, n = 1 }"),
+       3,
+       {"\"min\"", "fines"}},
+      {with_spheres("diameter = { distribution = \"fuller\", max = 1 }"), 3, {"missing \"min\"", "fines"}},
+      {with_spheres("diameter = { distribution = \"fuller\", max = 1, min = 2 }"), 3, {"2 is not below 1"}},
+      {with_spheres("radius = { distribution = \"table\" }"), 3, {"\"x\" and \"density\"", "\"file\""}},
+      {with_spheres("radius = { distribution = \"table\", x = [1, 2], density = [1] }"), 3, {"1 for 2"}},
+      {with_spheres("radius = { distribution = \"table\", x = [1], density = [1] }"), 3, {"two sizes"}},
+      {with_spheres("radius = { distribution = \"table\", x = [1, 2], density = [0, 0] }"),
+       3,
+       {"\"density\"", "0"}},
+      {with_spheres("radius = { distribution = \"table\", x = [1, 2], density = [1, -1] }"),
+       3,
+       {"\"density\"", "at least 0, not [1, -1]"}},
+      {with_spheres("radius = { distribution = \"sieve\", sizes = [1, 2], passing = [4, 100] }"),
+       3,
+       {"begin at 0", "4 passes the finest sieve, 1"}},
+      {with_spheres("radius = { distribution = \"sieve\", sizes = [1, 2], passing = [0, 97] }"),
+       3,
+       {"100", "97 passes the coarsest sieve, 2"}},
+      {with_spheres("radius = { distribution = \"sieve\", sizes = [1, 2, 3], passing = [0, 60, 40] }"),
+       3,
+       {"60 passes 2 and only 40 passes 3", "retains?"}},
+      {with_spheres("radius = { distribution = \"mixture\", of = [], shares = [1] }"),
+       3,
+       {"\"of\"", "array"}},
+      {with_spheres("radius = { distribution = \"mixture\", of = [1, 2], shares = [1] }"),
+       3,
+       {"\"shares\" in radius of [spheres]", "1 for 2"}},
+      {with_spheres("radius = { distribution = \"mixture\", of = [1, -2], shares = [1, 1] }"),
+       3,
+       {"\"part 2\" in radius of [spheres]", "positive length", "not -2"}},
+      {with_spheres("radius = { distribution = \"mixture\", shares = [1], of = [\n{ distribution = "
+                    "\"uniform\", min = 1 }] }"),
+       4,
+       {"missing \"max\" in part 1 of radius of [spheres]"}},
+      {with_spheres("radius = { distribution = \"mixture\", shares = [1], of = [\n{ distribution = "
+                    "\"lognormal\", d43 = 2, d32 = 1 }] }"),
+       4,
+       {"\"d43\" is a diameter"}},
+      {with_spheres("radius = 1\ndraw = \"quantile\""), 4, {"\"draw\"", "did you mean \"quantiles\"?"}},
       {with_spheres("radius = 1\n[accuracy]\noverlap = -1e-9"), 5, {"\"overlap\"", "at least 0"}},
       {with_spheres("radius = 1\n[accuracy]\nwalls = \"exakt\""),
        5,
@@ -295,6 +416,13 @@ TEST(BadScene, FileIsNamed) {
   EXPECT_NE(refusal(large).find("larger than 1 MiB"), std::string::npos);
 }
 
+/// A file that any distribution accepts whose columns may stand in one.
+std::string file_of_columns() {
+  static const testing::Folder folder;
+  static const auto file = folder.write("columns.csv", "1, 0\n2, 50\n3, 100\n");
+  return fmt::format("\"{}\"", file.string());
+}
+
 /// TOML that a key accepts.
 std::string sample(const Key& key, int choice) {
   switch (key.type) {
@@ -323,10 +451,19 @@ std::string sample(const Key& key, int choice) {
       return "[1, 2, 0.3]";
     case Type::shares:
       return "[30, 70, 1e3]";
+    case Type::amounts:  // of the sizes 1, 2, 0.3: a sieve's passing may not fall
+      return "[25.5, 100, 0]";
+    case Type::parts:
+      return choice == 0 ? "[1, { distribution = \"fuller\", max = 2, min = 0.1 }, 3]"
+                         : "[1, 2, { distribution = \"mixture\", of = [1, 2], shares = [1, 2] }]";
     case Type::distribution:
       return "1";
   }
   return "";
+}
+
+std::string sample_of(const Entry& entry, const Key& key, int choice) {
+  return key.type == Type::file && !entry.columns.empty() ? file_of_columns() : sample(key, choice);
 }
 
 /// All keys of an entry that go with the n-th set of its choices.
@@ -379,7 +516,8 @@ TEST(SchemaLaw, EveryKeyIsReadAndSurvivesBeingWritten) {
   for_every_entry([&](const Entry& entry, const std::vector<Key>& keys, const auto& scene_with) {
     for (const int choice : {0, 1}) {
       std::vector<std::string> lines;
-      for (const Key& key : keys) lines.push_back(fmt::format("{} = {}", key.name, sample(key, choice)));
+      for (const Key& key : keys)
+        lines.push_back(fmt::format("{} = {}", key.name, sample_of(entry, key, choice)));
       SCOPED_TRACE(scene_with(lines));
       const Scene scene = parse_scene(scene_with(lines), "s.toml");
       EXPECT_FALSE(entry.help.empty());
@@ -393,11 +531,12 @@ TEST(SchemaLaw, EveryKeyIsReadAndSurvivesBeingWritten) {
 }
 
 TEST(SchemaLaw, EveryKeyRefusesAWrongTypeByName) {
-  for_every_entry([&](const Entry&, const std::vector<Key>& keys, const auto& scene_with) {
+  for_every_entry([&](const Entry& entry, const std::vector<Key>& keys, const auto& scene_with) {
     for (const Key& wrong : keys) {
       std::vector<std::string> lines;
       for (const Key& key : keys)
-        lines.push_back(fmt::format("{} = {}", key.name, &key == &wrong ? "1979-05-27" : sample(key, 0)));
+        lines.push_back(
+            fmt::format("{} = {}", key.name, &key == &wrong ? "1979-05-27" : sample_of(entry, key, 0)));
       SCOPED_TRACE(scene_with(lines));
       try {
         parse_scene(scene_with(lines), "s.toml");

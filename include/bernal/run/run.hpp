@@ -8,6 +8,7 @@
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/run/packing.hpp"
+#include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
@@ -50,6 +51,9 @@ Domain packed_domain_of(const Scene& scene);
 
 /// The size distribution of radii that a scene describes, in the scene's unit. Throws as `build`.
 std::unique_ptr<SizeDistribution> radii_of(const Scene& scene);
+
+/// How the scene takes radii from it.
+Draw draw_of(const Scene& scene);
 
 struct RunOptions {
   std::optional<std::uint64_t> seed;  ///< the scene's own if absent

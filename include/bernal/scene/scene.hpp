@@ -29,6 +29,7 @@ struct Spec {
   std::string name;
   std::map<std::string, Parameter, std::less<>> parameters;
   Location where;
+  std::vector<Spec> parts = {};  ///< of a mixture: what it is made of
 
   bool has(std::string_view key) const { return parameters.find(key) != parameters.end(); }
   double number(std::string_view key) const;  ///< double or integer
@@ -53,9 +54,10 @@ struct Scene {
   std::filesystem::path file;  ///< empty for a scene made in C++
   std::string unit = "m";
   std::uint64_t seed = 1;
-  Spec container;              ///< box, cylinder, sphere, mesh, periodic
-  Spec sizes;                  ///< constant, classes, uniform, lognormal; lengths as written
+  Spec container;  ///< box, cylinder, sphere, mesh, periodic
+  Spec sizes;      ///< constant, classes, uniform, …; lengths as written
   bool sizes_are_diameters = false;
+  std::string draw = "random";  ///< random | quantiles
   Target target;
   std::string walls = "filtered";  ///< double | filtered | exact
   double overlap = 0;              ///< largest overlap ratio that the result may keep

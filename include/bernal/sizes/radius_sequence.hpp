@@ -1,0 +1,38 @@
+#pragma once
+#include <cstdint>
+
+#include "bernal/core/random.hpp"
+#include "bernal/sizes/size_distribution.hpp"
+
+namespace bernal {
+
+/// How the radii of a packing are taken from their distribution.
+enum class Draw {
+  random,     ///< each for itself
+  quantiles,  ///< evenly spread over the distribution, however many there are
+};
+
+/// The radii of a packing, one after the other, without end: a function of distribution, seed and `Draw`.
+///
+/// `quantiles` takes the k-th radius at u_k = frac(u_0 + k/φ), φ the golden ratio and u_0 the seed's: the
+/// first N of them are as even as N points can be, for every N. So the share of spheres up to any radius, and
+/// the mean of r³ where r is bounded, are those of the distribution up to O(log N / N); random draws leave
+/// O(1/√N). Their order is not random: neighbours in the sequence differ. The distribution must outlive the
+/// sequence.
+class RadiusSequence {
+ public:
+  RadiusSequence(const SizeDistribution& sizes, std::uint64_t seed, Draw draw)
+      : sizes_(sizes), random_(seed, stream(Stream::radii)), even_(draw == Draw::quantiles) {
+    if (even_) next_ = random_();
+  }
+
+  double next();
+
+ private:
+  const SizeDistribution& sizes_;
+  Random random_;
+  bool even_;
+  std::uint64_t next_ = 0;  ///< u_k in units of 2^-64
+};
+
+}  // namespace bernal

@@ -1,0 +1,35 @@
+#include <cmath>
+#include <limits>
+
+#include "bernal/sizes/size_distribution.hpp"
+#include "sizes/check.hpp"
+#include "sizes/density.hpp"
+
+namespace bernal {
+namespace {
+
+/// Of the volume, what lies above the upper cut where the user names none.
+constexpr double volume_above = 1e-3;
+
+}  // namespace
+
+std::unique_ptr<SizeDistribution> make_rosin_rammler(double r63, double n, double min, double max) {
+  require_positive("the radius below which 63 % of the volume lies", r63);
+  require_positive("the exponent n", n);
+  if (max == std::numeric_limits<double>::infinity()) max = r63 * std::pow(-std::log(volume_above), 1 / n);
+  require_interval(min, max);
+  // Volume density n x^(n-1) e^(-x^n) with x = r / r63, over r³; scaled to 1 at the cut that is nearer to
+  // r63, or there, so that it neither vanishes nor overflows.
+  const double scale = std::clamp(r63, min, max);
+  const double power_at_scale = std::pow(scale / r63, n);
+  const auto density = [=](double r) {
+    const double s = r / scale, power = std::pow(s, n);
+    return power / (s * cube(s)) * std::exp(power_at_scale * (1 - power));
+  };
+  std::vector<double> breaks = {min};
+  if (r63 > min && r63 < max) breaks.push_back(r63);
+  breaks.push_back(max);
+  return make_from_density("rosin_rammler", density, breaks);
+}
+
+}  // namespace bernal
