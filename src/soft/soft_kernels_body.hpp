@@ -145,6 +145,11 @@ BERNAL_INLINE std::uint32_t* append(std::uint32_t* out, const std::uint32_t* fro
 
 #endif
 
+// Coordinates wrap round on purpose, which signed integers may not.
+using Unsigned = unsigned __attribute__((vector_size(4 * width)));
+BERNAL_INLINE Ints wrapped_sum(Ints a, Ints b) { return Ints(Unsigned(a) + Unsigned(b)); }
+BERNAL_INLINE Ints wrapped_difference(Ints a, Ints b) { return Ints(Unsigned(a) - Unsigned(b)); }
+
 BERNAL_INLINE Floats all(float value) { return Floats{} + value; }
 /// The values where the condition (0 or -1) holds, 0 elsewhere.
 BERNAL_INLINE Floats where(Ints condition, Floats values) { return Floats(Ints(values) & condition); }
@@ -163,9 +168,9 @@ float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
       Floats sum_x{}, sum_y{}, sum_z{}, contacts{};
       for (const std::uint32_t* places = rows + first; places < rows_end; places += lanes) {
         const Columns it = load([&](int k) BERNAL_INLINE_LAMBDA { return task.spheres + places[k]; });
-        const Floats dx = to_floats(me.x - it.x) * scale_x;
-        const Floats dy = to_floats(me.y - it.y) * scale_y;
-        const Floats dz = to_floats(me.z - it.z) * scale_z;
+        const Floats dx = to_floats(wrapped_difference(me.x, it.x)) * scale_x;
+        const Floats dy = to_floats(wrapped_difference(me.y, it.y)) * scale_y;
+        const Floats dz = to_floats(wrapped_difference(me.z, it.z)) * scale_z;
         const Floats reach = me.r + it.r;
         const Floats d = root((dx * dx + dy * dy) + dz * dz);
         const Ints overlap = (d < reach) & (d > 0.0f);
@@ -181,8 +186,9 @@ float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
       }
       Floats step = task.omega / contacts;
       step = step < 1.0f ? step : all(1);  // without contacts it is infinite, and the sums are 0
-      store(mine, {me.x + to_ints(sum_x * step * inverse_x), me.y + to_ints(sum_y * step * inverse_y),
-                   me.z + to_ints(sum_z * step * inverse_z), me.r});
+      store(mine, {wrapped_sum(me.x, to_ints(sum_x * step * inverse_x)),
+                   wrapped_sum(me.y, to_ints(sum_y * step * inverse_y)),
+                   wrapped_sum(me.z, to_ints(sum_z * step * inverse_z)), me.r});
     }
   }
   float largest = 0;
@@ -219,9 +225,9 @@ inline std::uint32_t* search(const SearchTask& task, const SoftSphere& me, std::
     for (std::uint32_t p = task.start[first_cell]; p < end; p += lanes) {
       for (std::uint32_t q = p; q < p + lanes; q += width) {  // a fixed number: no branch to mispredict
         const Columns it = load([&](int k) BERNAL_INLINE_LAMBDA { return task.sorted + q + k; });
-        const Floats dx = to_floats(me.x[0] - it.x) * scale_x;
-        const Floats dy = to_floats(me.x[1] - it.y) * scale_y;
-        const Floats dz = to_floats(me.x[2] - it.z) * scale_z;
+        const Floats dx = to_floats(wrapped_difference(Ints{} + me.x[0], it.x)) * scale_x;
+        const Floats dy = to_floats(wrapped_difference(Ints{} + me.x[1], it.y)) * scale_y;
+        const Floats dz = to_floats(wrapped_difference(Ints{} + me.x[2], it.z)) * scale_z;
         const Floats reach = it.r + blown_up;
         const Ints places = *reinterpret_cast<const UnalignedInts*>(task.places + q);
         const Ints near = ((dx * dx + dy * dy) + dz * dz < reach * reach) &

@@ -59,7 +59,8 @@ template <int D>
 StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
   SoftPacking packing(spheres, edges, soft_kernels().front());
   const int sweeps = sweeps_a_cycle(options.alpha, spheres.size());
-  const double stop = std::max({share_of_stop * options.stop, work.allowed_overlap, least_overlap});
+  const double stop =
+      std::max({share_of_stop * options.stop, std::min(work.allowed_overlap, options.stop), least_overlap});
   Growth growth(options.beta);
   StageEnd end = StageEnd::converged;
   for (double molr = 1;;) {
