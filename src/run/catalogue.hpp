@@ -15,7 +15,7 @@
 namespace bernal {
 
 // Every name that a scene can use, and what makes the thing behind it. A new container, size distribution
-// or stage is one line in one of these tables (and one entry in scene/schema.cpp for its parameters).
+// or stage is one line in one of these tables (and one entry in the schema of scene/ for its parameters).
 
 struct ContainerEntry {
   std::string_view name;

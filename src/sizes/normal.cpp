@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bernal/sizes/size_distribution.hpp"
 #include "sizes/check.hpp"
@@ -23,9 +24,9 @@ std::unique_ptr<SizeDistribution> make_normal(double mean, double deviation, Bas
   if (min <= 0)
     throw Error(
         ErrorCode::bad_argument,
-        fmt::format("a normal distribution with a standard deviation of {:.3g} means reaches zero; cut "
-                    "it off with \"min\"",
-                    deviation / mean));
+        fmt::format("{} standard deviations below its mean this normal distribution reaches zero; cut it "
+                    "off with \"min\"",
+                    nothing_beyond));
   require_interval(min, max);
   constexpr double seen = nothing_beyond + 2;
   if (min > mean + seen * deviation || max < mean - seen * deviation)

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,7 +17,14 @@ constexpr double volume_above = 1e-3;
 std::unique_ptr<SizeDistribution> make_rosin_rammler(double r63, double n, double min, double max) {
   require_positive("the radius below which 63 % of the volume lies", r63);
   require_positive("the exponent n", n);
-  if (max == std::numeric_limits<double>::infinity()) max = r63 * std::pow(-std::log(volume_above), 1 / n);
+  if (max == std::numeric_limits<double>::infinity()) {
+    max = r63 * std::pow(-std::log(volume_above), 1 / n);
+    if (min >= max)
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("no more than {} % of the volume of this Rosin-Rammler distribution lies above "
+                              "\"min\"; lower it, or give \"max\" too",
+                              100 * volume_above));
+  }
   require_interval(min, max);
   // Volume density n x^(n-1) e^(-x^n) with x = r / r63, over r³; scaled to 1 at the cut that is nearer to
   // r63, or there, so that it neither vanishes nor overflows.
