@@ -111,7 +111,7 @@ const PlanItem refilling[] = {
 StageEnd run_relax(const Spec& s, PeriodicWork& work) {
   return relax(work, {.alpha = s.number("alpha"),
                       .beta = s.number("beta"),
-                      .phi0 = s.has("phi0") ? std::optional(s.number("phi0")) : std::nullopt,
+                      .phi0 = s.number("phi0"),
                       .stop = s.number("stop"),
                       .polish = s.number("polish"),
                       .reference = s.text("method") == "reference",

@@ -331,7 +331,7 @@ class Reader {
     if (!node) {
       for (const std::string_view name :
            schema::Schema::find(all_.containers, scene.container.name)->protocol)
-        scene.stages.push_back(read_keys({}, *schema::Schema::find(all_.stages, name), "do", "[[stage]]"));
+        scene.stages.push_back(read_stage({}, *schema::Schema::find(all_.stages, name), "[[stage]]", scene));
       return;
     }
     const toml::array* stages = node->as_array();
@@ -340,8 +340,15 @@ class Reader {
     for (const toml::node& item : *stages) {
       const toml::table& table = *item.as_table();
       const Entry& entry = choose(table, "do", all_.stages, "[[stage]]");
-      scene.stages.push_back(read_keys(table, entry, "do", fmt::format("[[stage]] {}", entry.name)));
+      scene.stages.push_back(read_stage(table, entry, fmt::format("[[stage]] {}", entry.name), scene));
     }
+  }
+
+  Spec read_stage(const toml::table& table, const Entry& entry, const std::string& where,
+                  const Scene& scene) const {
+    Spec stage = read_keys(table, entry, "do", where);
+    if (entry.complete) entry.complete(stage, scene);
+    return stage;
   }
 
   static constexpr std::array<std::string_view, 4> tables = {"container", "spheres", "accuracy", "stage"};

@@ -62,6 +62,8 @@ struct Entry {
   std::vector<Choice> choices = {};
   /// What the keys demand of each other; throws Error{bad_scene}. `where` is what errors call the table.
   void (*rule)(const Spec&, std::string_view where) = nullptr;
+  /// Fills in what depends on the rest of the scene, where the user did not.
+  void (*complete)(Spec&, const Scene&) = nullptr;
   /// Of a container: the stages of a scene that names none.
   std::vector<std::string_view> protocol = {};
   /// Of a distribution that may stand in a "file": the keys that the file's columns are.

@@ -14,8 +14,6 @@ namespace {
 
 /// Random close packing of equal spheres, by dimension.
 constexpr double close_packing[] = {1, 0.84, 0.64, 0.46, 0.31, 0.20, 0.119, 0.069};
-/// The paper's phi0, and in other than three dimensions what is as far above close packing.
-constexpr double usual_phi0[] = {1.34, 1.13, 0.86, 0.62, 0.42, 0.27, 0.16, 0.093};
 /// Up to this share of it spheres of any sizes find places free of overlap in a given box; they start in one
 /// that is smaller by volume, as it may grow while they relax, and again from where they ended if it grew too
 /// far.
@@ -37,13 +35,12 @@ bool is_loose(const PeriodicWork& work) {
 }
 
 /// Those of phi0, or about those that are asked for; never so small that a sphere overlaps its own image.
-Vector<dynamic> edges_to_start_from(const PeriodicWork& work, std::optional<double> phi0) {
+Vector<dynamic> edges_to_start_from(const PeriodicWork& work, double phi0) {
   const int dimension = work.dimension();
-  const double phi = phi0.value_or(usual_phi0[dimension - 1]);
   const auto with_volume = [&](double volume) -> Vector<dynamic> {
     return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
   };
-  Vector<dynamic> edges = with_volume(volume_of_spheres(work) / phi);
+  Vector<dynamic> edges = with_volume(volume_of_spheres(work) / phi0);
   if (work.target_edges) {
     const double asked = work.target_edges->prod();
     if (is_loose(work) || edges.prod() > asked) edges = with_volume((1 - room_to_grow) * asked);

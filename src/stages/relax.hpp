@@ -1,6 +1,5 @@
 #pragma once
 #include <cstddef>
-#include <optional>
 
 #include "stages/periodic_work.hpp"
 
@@ -9,8 +8,7 @@ namespace bernal {
 struct RelaxOptions {
   double alpha = 17;
   double beta = 30;
-  std::optional<double> phi0 =
-      {};  ///< absent: 0.86 in three dimensions, as far above close packing in others
+  double phi0 = 0.86;
   double stop = 2e-4;
   double polish = 0;
   bool reference = false;
