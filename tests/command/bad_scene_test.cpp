@@ -99,6 +99,21 @@ TEST(Explain, PrintsTheProtocolOfASceneThatNamesNone) {
   EXPECT_FALSE(plan["items"].empty());
 }
 
+TEST(Explain, SaysWhatAMixtureIsMadeOf) {
+  const Folder folder;
+  std::string text = small_scene;
+  const std::string before = "diameter = 1";
+  text.replace(text.find(before), before.size(),
+               "draw = \"quantiles\"\ndiameter = { distribution = \"mixture\", shares = [1, 3], "
+               "of = [1, { distribution = \"fuller\", min = 1, max = 2 }] }");
+  const Ended ended = bernal({"explain", folder.write("scene.toml", text).string()});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_NE(ended.out.find("diameter in mm: mixture, basis number, shares [1, 3], of (constant, value 1) and "
+                           "(fuller, exponent 0.5, max 2, min 1); drawn by quantiles"),
+            std::string::npos)
+      << ended.out;
+}
+
 TEST(Explain, EveryExampleScene) {
   for (const auto& scene : example_scenes()) {
     const Ended text = bernal({"explain", scene.string()});

@@ -89,6 +89,12 @@ TEST(Supply, DrawsOtherRadiiForAnotherSeed) {
   EXPECT_NE(radii_of(one), radii_of(other));
 }
 
+TEST(Supply, DrawsByQuantilesWhereToldTo) {
+  const Supply supply(*uniform, 0.25, 1, unbounded, count_of(50), 7, Draw::quantiles);
+  RadiusSequence sequence(*uniform, 7, Draw::quantiles);
+  for (const double r : radii_of(supply)) EXPECT_EQ(r, sequence.next() / 0.25);
+}
+
 TEST(Supply, DrawsAgainWhatIsAboveTheCutAndCountsIt) {
   const double cut = 0.018;
   const Supply supply(*uniform, 1, 1, cut, count_of(500), 7);
