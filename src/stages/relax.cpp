@@ -5,6 +5,7 @@
 
 #include "bernal/core/dimension.hpp"
 #include "stages/free_of_overlap.hpp"
+#include "stages/polish.hpp"
 #include "stages/relax_fast.hpp"
 #include "stages/relax_reference.hpp"
 #include "stages/resize_box.hpp"
@@ -118,6 +119,11 @@ StageEnd relax_in(PeriodicWork& work, const RelaxOptions& options) {
     if (end != StageEnd::converged || starts == most_starts || fits<D>(spheres, edges, *work.target_edges))
       break;
     resize_box<D>(spheres, edges, start);
+  }
+
+  if (options.polish > 0 && end == StageEnd::converged && !is_loose(work)) {
+    end = polish<D>(spheres, edges, options.polish, work).end;
+    free_of_overlap<D>(spheres, edges, work);
   }
 
   work.needed_volume = edges.prod();
