@@ -19,6 +19,8 @@ constexpr double crowded = 0.06;
 constexpr double predictable = 3e-3;
 constexpr double share_of_prediction = 0.9;
 constexpr double longest_predicted = 1.0 / 6;
+/// From so many spheres on more sweeps a growth are not needed for the packing fraction to stay what it is.
+constexpr std::size_t enough = 10000;
 /// What is left of `stop`: a few more growths are cheap, and the packing fraction that the exact growth of
 /// the box at the end takes away is three times the overlap that is left.
 constexpr double share_of_stop = 0.05;
@@ -58,7 +60,7 @@ bool fast_path_exists(const Spheres<D>& spheres, const Vector<D>& edges) {
 template <int D>
 StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
   SoftPacking packing(spheres, edges, soft_kernels().front());
-  const int sweeps = sweeps_a_cycle(options.alpha, spheres.size());
+  const int sweeps = sweeps_a_cycle(options.alpha, std::min(spheres.size(), enough));
   const double stop =
       std::max({share_of_stop * options.stop, std::min(work.allowed_overlap, options.stop), least_overlap});
   Growth growth(options.beta);
