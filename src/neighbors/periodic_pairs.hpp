@@ -12,8 +12,8 @@
 
 namespace bernal {
 
-/// Every pair of spheres in a periodic box whose surfaces are near each other, each once, and each image of a pair
-/// for itself: two spheres of a small box may meet in several places, and a sphere may meet itself.
+/// Every pair of spheres in a periodic box whose surfaces are near each other, each once, and each image of a
+/// pair for itself: two spheres of a small box may meet in several places, and a sphere may meet itself.
 ///
 /// Pair p stands for the displacement x[first] - x[second] - image ∘ edges, where image is a vector of whole
 /// numbers. As long as no centre is wrapped that stays true while the spheres move and the box grows.
@@ -25,9 +25,9 @@ class PeriodicPairs {
     std::uint32_t image;  // in images()
   };
 
-  /// Finds the pairs with d < (1 + wide) (ri + rj) + skin. Sphere i has its centre at centers[D i … D i + D - 1],
-  /// anywhere, and radius[i] > 0. Pairs come in the order of their first spheres. Cost: O(N) for spheres that do
-  /// not overlap much, however their radii differ.
+  /// Finds the pairs with d < (1 + wide) (ri + rj) + skin. Sphere i has its centre at centers[D i … D i + D -
+  /// 1], anywhere, and radius[i] > 0. Pairs come in the order of their first spheres. Cost: O(N) for spheres
+  /// that do not overlap much, however their radii differ.
   void find(const double* centers, const std::vector<double>& radius, const Vector<D>& edges, double wide,
             double skin);
 
@@ -45,7 +45,8 @@ class PeriodicPairs {
   using Center = Eigen::Map<const Vector<D>>;
 
   /// Adds the pairs of i and j over all images nearer than `limit`.
-  void add(std::uint32_t i, std::uint32_t j, const Vector<D>& difference, const Vector<D>& edges, double limit);
+  void add(std::uint32_t i, std::uint32_t j, const Vector<D>& difference, const Vector<D>& edges,
+           double limit);
   std::uint32_t number_of(const Vector<D>& image);
   void order_by_first(std::size_t spheres);
 
@@ -82,8 +83,8 @@ void PeriodicPairs<D>::find(const double* centers, const std::vector<double>& ra
 }
 
 template <int D>
-void PeriodicPairs<D>::add(std::uint32_t i, std::uint32_t j, const Vector<D>& difference, const Vector<D>& edges,
-                           double limit) {
+void PeriodicPairs<D>::add(std::uint32_t i, std::uint32_t j, const Vector<D>& difference,
+                           const Vector<D>& edges, double limit) {
   // On each axis the images that alone would be near enough; mostly one.
   std::array<int, D> first, last;
   for (int k = 0; k < D; ++k) {

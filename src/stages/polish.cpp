@@ -12,8 +12,8 @@ namespace bernal {
 namespace {
 
 constexpr double fall_of_pressure = 0.1;
-/// Mean overlap ratio at the first level: at least the first, so that a network comes to bear the load; at most
-/// the second.
+/// Mean overlap ratio at the first level: at least the first, so that a network comes to bear the load; at
+/// most the second.
 constexpr double gentlest_start = 1e-4, hardest_start = 0.1;
 constexpr std::size_t solved_closely = 3000;
 constexpr double close_balance = 1e-5, loose_balance = 1e-3;
@@ -74,8 +74,8 @@ class Polish {
   }
 
   /// Where the contacts suffice: holds them and takes their overlaps to half the tolerance; those beyond the
-  /// isostatic number are let go, each time the one that would be the first to pull. Returns whether that gave a
-  /// packing under pressure everywhere; else all is as it was, at `overlap`.
+  /// isostatic number are let go, each time the one that would be the first to pull. Returns whether that
+  /// gave a packing under pressure everywhere; else all is as it was, at `overlap`.
   bool close_contacts(double overlap) {
     count_contacts();
     if (excess() < 0 || excess() > most_let_go) return false;
@@ -115,15 +115,16 @@ class Polish {
     imbalance_ = imbalance;
   }
 
-  /// Of the same contacts at two levels of pressure: which one's force, linear in between, is the first to vanish;
-  /// -1 if none does.
+  /// Of the same contacts at two levels of pressure: which one's force, linear in between, is the first to
+  /// vanish; -1 if none does.
   static std::ptrdiff_t first_to_pull(const std::vector<typename SoftSpheres<D>::Contact>& high,
                                       const std::vector<typename SoftSpheres<D>::Contact>& low) {
     std::ptrdiff_t first = -1;
     double least = 0;
     for (std::size_t c = 0; c < low.size(); ++c) {
       if (low[c].tension > 0) continue;
-      const double remaining = low[c].tension / high[c].tension;  // 0 or less: the smaller, the earlier it was 0
+      const double remaining =
+          low[c].tension / high[c].tension;  // 0 or less: the smaller, the earlier it was 0
       if (first < 0 || remaining < least) {
         first = static_cast<std::ptrdiff_t>(c);
         least = remaining;
@@ -143,7 +144,8 @@ class Polish {
     const double overlap = level.overlap;
     soft_.set_level(overlap, level.smoothing);
     const double noise = resolution() / overlap;
-    TrustRegion<SoftSpheres<D>> region(soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap), level.forcing);
+    TrustRegion<SoftSpheres<D>> region(soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap),
+                                       level.forcing);
     for (int step = 0; step < most_steps_a_level; ++step) {
       imbalance_ = region.gradient_length() / std::sqrt(2 * soft_.elastic_energy());
       if (imbalance_ < std::max(level.balance, 4 * noise)) break;
@@ -156,7 +158,8 @@ class Polish {
     }
     reached_.products += region.products();
     if (work_.milestone)
-      work_.milestone("polish", std::min(0.99, std::log(overlap / start_) / std::log(0.1 * tolerance_ / start_)),
+      work_.milestone("polish",
+                      std::min(0.99, std::log(overlap / start_) / std::log(0.1 * tolerance_ / start_)),
                       soft_.largest_overlap());
     return true;
   }

@@ -16,8 +16,8 @@ constexpr double skin = 0.3;
 /// Where the smoothed force is cut off: gap in units of the smoothing, and as a ratio at most.
 constexpr double cutoff = 30;
 constexpr double widest = 0.1;
-/// Of a sphere's block of the preconditioner: what is added in all directions, in stiffnesses of a contact with a
-/// sphere of its size.
+/// Of a sphere's block of the preconditioner: what is added in all directions, in stiffnesses of a contact
+/// with a sphere of its size.
 constexpr double least_stiffness = 1;
 
 /// Spheres in the order of cells that hold about one each, so that what touches lies close in memory.
@@ -29,7 +29,8 @@ std::vector<std::uint32_t> spatial_order(const Spheres<D>& spheres, const Vector
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const Vector<D> c = box.wrap(spheres.center(i));
     for (int k = 0; k < D; ++k)
-      cell[i] = cell[i] * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(c[k] / edges[k] * cells);
+      cell[i] =
+          cell[i] * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(c[k] / edges[k] * cells);
   }
   std::vector<std::uint32_t> order(spheres.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -87,17 +88,17 @@ double SoftSpheres<D>::width() const {
   return std::min(cutoff * smoothing_, widest);
 }
 
-/// Whether every pair that feels each other is among the pairs: what was d apart when they were found is at least
-/// scale · d - 2 · way apart now.
+/// Whether every pair that feels each other is among the pairs: what was d apart when they were found is at
+/// least scale · d - 2 · way apart now.
 template <int D>
 bool SoftSpheres<D>::pairs_are_complete() const {
   if (held_) return true;
   const double scale = state_.edges[0] / at_finding_.edges[0];
   double squared = 0;
   for (Eigen::Index i = 0; i < state_.centers.size(); i += D)
-    squared = std::max(squared, (state_.centers.template segment<D>(i) -
-                                 scale * at_finding_.centers.template segment<D>(i))
-                                    .squaredNorm());
+    squared = std::max(
+        squared, (state_.centers.template segment<D>(i) - scale * at_finding_.centers.template segment<D>(i))
+                     .squaredNorm());
   const double slack = scale * (1 + width_at_finding_) - (1 + width());
   const double s = 2 * (slack < 0 ? largest_radius_ : least_radius_);
   return 2 * std::sqrt(squared) <= scale * skin * least_radius_ + slack * s;
@@ -170,7 +171,8 @@ void SoftSpheres<D>::meet(std::uint32_t first, std::uint32_t second, const Vecto
     const double range = width() * s, most = smoothed(overlap, t), least = smoothed(-range, t);
     x = most - least;
     contact.stiffness = k * most * most / (most * most + t * t);
-    now_.energy += k * (0.5 * (most * most - least * least) + t * t * std::log(most / least) - least * (overlap + range));
+    now_.energy += k * (0.5 * (most * most - least * least) + t * t * std::log(most / least) -
+                        least * (overlap + range));
   } else {
     now_.energy += 0.5 * k * x * x;
   }

@@ -14,24 +14,24 @@ namespace bernal {
 /// Soft spheres in a periodic box under pressure: a function of all centres and of the size of the box whose
 /// minimum, as the pressure goes to zero, is a jammed packing of hard spheres.
 ///
-/// Spheres whose centres are d apart and whose radii add up to s overlap by o = s - d. They repel each other with
-/// the force f = k x, where x >= max(0, o) is the smoothed overlap
+/// Spheres whose centres are d apart and whose radii add up to s overlap by o = s - d. They repel each other
+/// with the force f = k x, where x >= max(0, o) is the smoothed overlap
 ///   x (x - o) = (t s)²,   that is   x = (o + sqrt(o² + 4 t² s²)) / 2:
-/// a spring where they overlap by more than t s, a hard wall's force (proportional to 1 / gap) where they do not
-/// touch; cut off where the gap is 30 t s (or s/10). With smoothing t = 0 it is the plain spring x = max(0, o).
-/// The stiffness is k = s^(D - 2), as of a material with one modulus for small and large spheres: in equilibrium
-/// all overlap ratios o / s are of one order, however much the sizes differ.
+/// a spring where they overlap by more than t s, a hard wall's force (proportional to 1 / gap) where they do
+/// not touch; cut off where the gap is 30 t s (or s/10). With smoothing t = 0 it is the plain spring x =
+/// max(0, o). The stiffness is k = s^(D - 2), as of a material with one modulus for small and large spheres:
+/// in equilibrium all overlap ratios o / s are of one order, however much the sizes differ.
 ///
 /// The box may dilate by a factor 1 + e, all centres with it, against the load p = D · pressure · volume:
 ///   H(u, e) = sum over pairs of the work of f + p ln(1 + e),   r -> (1 + e)(r + u).
-/// In equilibrium p is the sum of f d over all contacts. A motion v has D N + 1 components, u of each sphere and
-/// then e. The second variation of H is the sum over contacts of
+/// In equilibrium p is the sum of f d over all contacts. A motion v has D N + 1 components, u of each sphere
+/// and then e. The second variation of H is the sum over contacts of
 ///   f'(o) (n·w + e d)² - (f / d) |w - n (n·w)|²,   w = ui - uj,
 /// less p e² and less a term that vanishes in equilibrium.
 ///
-/// Sources: O'Hern, Silbert, Liu & Nagel, Phys. Rev. E 68, 011306 (2003), the potential and the way to jamming;
-/// Dagois-Bohy, Tighe, Simon, Henkes & van Hecke, Phys. Rev. Lett. 109, 095703 (2012), the box as an unknown;
-/// Chen & Mangasarian, Comput. Optim. Appl. 5, 97 (1996), the smoothing.
+/// Sources: O'Hern, Silbert, Liu & Nagel, Phys. Rev. E 68, 011306 (2003), the potential and the way to
+/// jamming; Dagois-Bohy, Tighe, Simon, Henkes & van Hecke, Phys. Rev. Lett. 109, 095703 (2012), the box as an
+/// unknown; Chen & Mangasarian, Comput. Optim. Appl. 5, 97 (1996), the smoothing.
 template <int D>
 class SoftSpheres {
  public:
@@ -46,15 +46,15 @@ class SoftSpheres {
   /// Precondition: at least one sphere. Centres may be anywhere.
   SoftSpheres(const Spheres<D>& spheres, const Vector<D>& edges);
 
-  /// The load is set so that spheres held by 2 D contacts each have the mean overlap ratio `overlap`, roughly;
-  /// the smoothing is a ratio too. Evaluates.
+  /// The load is set so that spheres held by 2 D contacts each have the mean overlap ratio `overlap`,
+  /// roughly; the smoothing is a ratio too. Evaluates.
   void set_level(double overlap, double smoothing);
 
   /// In the metric of the preconditioner: of a motion of all spheres by `ratio` of their diameters.
   double length_of(double ratio) const { return ratio * std::sqrt(load_per_overlap_); }
 
-  /// From now on only the present overlaps of spheres i with bears[i] count, as springs that pull as well as push:
-  /// the equations of equilibrium become smooth. Until `release`. Precondition: smoothing 0.
+  /// From now on only the present overlaps of spheres i with bears[i] count, as springs that pull as well as
+  /// push: the equations of equilibrium become smooth. Until `release`. Precondition: smoothing 0.
   void hold(const std::vector<char>& bears);
   /// Of the held ones. To be followed by set_level.
   void let_go(std::size_t contact) { pairs_.erase(contact); }
@@ -79,15 +79,15 @@ class SoftSpheres {
 
   /// out = Hessian · v.
   void hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& out) const;
-  /// Block Jacobi of the present state, a D x D block for each sphere: positive definite. It also is the metric of
-  /// lengths of motions: none is free, not even that of a sphere that touches nothing.
+  /// Block Jacobi of the present state, a D x D block for each sphere: positive definite. It also is the
+  /// metric of lengths of motions: none is free, not even that of a sphere that touches nothing.
   void factor_preconditioner();
   void precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const;
 
   /// Moves all and dilates the box. Returns the change of H.
   double move(const Eigen::VectorXd& motion);
-  /// Takes the last move back. Precondition: there was one since the last set_level, and it has not been taken
-  /// back.
+  /// Takes the last move back. Precondition: there was one since the last set_level, and it has not been
+  /// taken back.
   void take_back();
 
   /// Sets the centres, wrapped into the box.

@@ -9,20 +9,24 @@
 namespace bernal {
 
 /// Minimises a function of many variables by Newton steps within a trust region. `System` has gradient(),
-/// hessian_times(v, out), factor_preconditioner(), precondition(v, out) with a positive definite preconditioner M,
-/// move(v), which returns by how much the function changed, and take_back(); the function's Hessian may be
-/// indefinite and jump. Lengths are sqrt(v·Mv); a gradient's is sqrt(g·M⁻¹g).
+/// hessian_times(v, out), factor_preconditioner(), precondition(v, out) with a positive definite
+/// preconditioner M, move(v), which returns by how much the function changed, and take_back(); the function's
+/// Hessian may be indefinite and jump. Lengths are sqrt(v·Mv); a gradient's is sqrt(g·M⁻¹g).
 ///
 /// A step minimises g·v + v·Hv/2 by conjugate gradients until they meet the border of the region or negative
-/// curvature. What the iteration had at a quarter and a sixteenth of the region's radius is kept, so that a step
-/// that turns out too long costs no new iteration.
-/// Source: Steihaug, SIAM J. Numer. Anal. 20, 626 (1983); Conn, Gould & Toint, Trust-Region Methods (2000), 7.5.
+/// curvature. What the iteration had at a quarter and a sixteenth of the region's radius is kept, so that a
+/// step that turns out too long costs no new iteration. Source: Steihaug, SIAM J. Numer. Anal. 20, 626
+/// (1983); Conn, Gould & Toint, Trust-Region Methods (2000), 7.5.
 template <class System>
 class TrustRegion {
  public:
   /// The equations of a step are solved to `forcing`, relative to the gradient.
   TrustRegion(System& system, double radius, double forcing)
-      : system_(system), radius_(radius), forcing_(forcing), z_(system.unknowns()), h_(Eigen::VectorXd::Zero(system.unknowns())) {}
+      : system_(system),
+        radius_(radius),
+        forcing_(forcing),
+        z_(system.unknowns()),
+        h_(Eigen::VectorXd::Zero(system.unknowns())) {}
 
   /// Length of the gradient.
   double gradient_length() {
@@ -32,8 +36,8 @@ class TrustRegion {
   }
 
   /// One step. Call gradient_length() before each. A change of the function below `resolution` may be
-  /// lost in its rounding: it is taken from the slopes at both ends. Returns whether something moved; else the region has
-  /// become smaller.
+  /// lost in its rounding: it is taken from the slopes at both ends. Returns whether something moved; else
+  /// the region has become smaller.
   bool step(double resolution) {
     propose();
     while (!proposals_.empty()) {
