@@ -73,7 +73,7 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
 
 TEST_F(Measure, BadInputIsOneLine) {
   expect_refused_in_one_line(with("# unit: m\nx0,x1,r\n1,1,1\n"), {"spheres.csv", "in m,", "in mm"});
-  expect_refused_in_one_line(with("x,y,z,r\n1,1,1,1\n"), {"spheres.csv", "3 coordinates", "2 dimensions"});
+  expect_refused_in_one_line(with("x,y,z,r\n1,1,1,1\n"), {"spheres.csv", "3 dimensions", "has 2"});
   expect_refused_in_one_line(with("x0,x1,r\n1,1\n"), {"spheres.csv:2"});
   expect_refused_in_one_line(with("x0,x1,r\n1,nan,1\n"), {"spheres.csv:2"});
   expect_refused_in_one_line(with(""), {"spheres.csv"});
