@@ -54,6 +54,9 @@ double expected_packing_fraction(const Scene& scene, const Shape& container, con
   const auto runs = [&](std::string_view name) {
     return std::ranges::any_of(scene.stages, [&](const Spec& s) { return s.name == name; });
   };
+  const double mean_diameter = 2 * radii.moment(3) / radii.moment(2);
+  const double wall = area_of(container) * mean_diameter / volume_of(container);
+  if (runs("relax")) return predict_packing_fraction(radii).phi * std::max(0.1, 0.985 - 0.20 * wall);
   if (!runs("refill")) {
     double fraction = 0;
     for (const Spec& s : scene.stages) {
@@ -61,8 +64,6 @@ double expected_packing_fraction(const Scene& scene, const Shape& container, con
     }
     return fraction;
   }
-  const double mean_diameter = 2 * radii.moment(3) / radii.moment(2);
-  const double wall = area_of(container) * mean_diameter / volume_of(container);
   return share_of_close_packing * predict_packing_fraction(radii).phi *
          std::max(0.1, 1 - wall_deficit * wall);
 }

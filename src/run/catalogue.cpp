@@ -9,6 +9,7 @@
 #include "stages/insert.hpp"
 #include "stages/refill.hpp"
 #include "stages/relax.hpp"
+#include "stages/relax_in_container.hpp"
 #include "stages/shake.hpp"
 
 namespace bernal {
@@ -108,6 +109,12 @@ const PlanItem refilling[] = {
     {"compression", "after each refilling", "about 0.5 µs a sphere and sweep"},
     {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}};
 
+StageEnd run_relax_in_container(const Spec& s, Work& work) {
+  return relax_in_container(work, {.patience = s.number("patience"),
+                                   .sweeps = s.number("sweeps"),
+                                   .seconds = s.number("seconds")});
+}
+
 StageEnd run_relax(const Spec& s, PeriodicWork& work) {
   return relax(work, {.alpha = s.number("alpha"),
                       .beta = s.number("beta"),
@@ -120,13 +127,13 @@ StageEnd run_relax(const Spec& s, PeriodicWork& work) {
 
 const PlanItem relaxing[] = {
     {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
-    {"relaxation", "overlapping spheres push each other apart while the box grows", "O(N log² N)"}};
+    {"relaxation", "overlapping spheres push each other apart", "O(N) a sweep"}};
 
 const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},
                              {"compress", run_compress, nullptr, compression},
                              {"shake", run_shake, nullptr, shaking},
                              {"refill", run_refill, nullptr, refilling},
-                             {"relax", nullptr, run_relax, relaxing}};
+                             {"relax", run_relax_in_container, run_relax, relaxing}};
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #include "run/run_in_domain.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -47,13 +48,13 @@ void conclude(Packing& packing, const Supply& supply, StageEnd end) {
   if (end == StageEnd::cancelled) {
     packing.outcome = Outcome::cancelled;
     packing.reason = fmt::format("stopped by the user with {} spheres", n);
-  } else if (!target.fill && supply.exhausted()) {
+  } else if (!target.is_open() && supply.exhausted()) {
     packing.outcome = Outcome::converged;
     packing.reason = fmt::format("all {} spheres are placed", n);
   } else if (end == StageEnd::hit_limit) {
     packing.outcome = Outcome::hit_limit;
     packing.reason = fmt::format("the last stage reached its limit with {} spheres", n);
-  } else if (target.fill) {
+  } else if (target.is_open()) {
     packing.outcome = Outcome::converged;
     packing.reason = fmt::format("the stages of the scene place {} spheres and no more", n);
   } else {
@@ -103,7 +104,17 @@ void run_in_container(const Plan& plan, const Monitor& monitor, const Stopwatch&
     monitor.report({stage, std::min(share, 0.99),
                     fmt::format("{} spheres, packing fraction {:.4f}", grouped(bed.size()), fraction)});
   };
-  Work work{bed, supply, packing.seed, monitor, effects, milestone};
+  const auto crowd_milestone = [&](std::string_view stage, std::size_t spheres, double volume,
+                                   double max_overlap) {
+    const double fraction = volume / container->volume();
+    packing.history.push_back({std::string(stage), spheres, fraction, 0, max_overlap, watch.seconds()});
+    monitor.report({stage, std::clamp(std::log(max_overlap) / std::log(1e-4), 0.0, 0.99),
+                    fmt::format("{} spheres, packing fraction {:.4f}, largest overlap {:.1e}",
+                                grouped(spheres), fraction, max_overlap)});
+  };
+  Work work{bed,       supply,          packing.seed,      monitor,
+            effects,   milestone,       crowd_milestone,   plan.scene.target,
+            plan.expected_packing_fraction};
 
   StageEnd end = StageEnd::converged;
   for (const Spec& stage : plan.scene.stages) {

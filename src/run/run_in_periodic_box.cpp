@@ -115,7 +115,7 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
 
     const bool fits = !work.target_edges || work.edges == *work.target_edges;
     const bool roomy = attempt == 1 && fits && work.needed_volume < (1 - too_much_room) * work.edges.prod();
-    if (target.fill && (!fits || roomy) && attempt < most_attempts && end != StageEnd::cancelled) {
+    if (target.is_open() && (!fits || roomy) && attempt < most_attempts && end != StageEnd::cancelled) {
       fraction = volume_of_spheres / work.needed_volume * (1 - std::ldexp(caution, attempt - 1));
       continue;
     }

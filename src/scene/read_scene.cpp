@@ -58,6 +58,7 @@ class Reader {
     read_spheres(table_in(root, "spheres"), scene);
     read_accuracy(root, scene);
     read_stages(root, scene);
+    if (scene.draw.empty()) scene.draw = default_draw(scene);
     return scene;
   }
 
@@ -268,7 +269,7 @@ class Reader {
     const std::string_view key = scene.sizes_are_diameters ? "diameter" : "radius";
     scene.sizes = read_distribution(*table.get(key), *all_.spheres.find(key), "[spheres]");
     if (!scene.sizes_are_diameters) refuse_diameters(scene.sizes);
-    scene.draw = spec.text("draw");
+    scene.draw = spec.has("draw") ? spec.text("draw") : "";
   }
 
   /// What the target and a periodic box demand of each other.
@@ -331,7 +332,7 @@ class Reader {
     if (!node) {
       for (const std::string_view name :
            schema::Schema::find(all_.containers, scene.container.name)->protocol)
-        scene.stages.push_back(read_stage({}, *schema::Schema::find(all_.stages, name), "[[stage]]", scene));
+        scene.stages.push_back(read_stage({}, *schema::Schema::find(all_.stages_for(scene), name), "[[stage]]", scene));
       return;
     }
     const toml::array* stages = node->as_array();
@@ -339,9 +340,15 @@ class Reader {
       fail(node->source(), "\"stage\" must be one table [[stage]] a stage, not {}", written(*node));
     for (const toml::node& item : *stages) {
       const toml::table& table = *item.as_table();
-      const Entry& entry = choose(table, "do", all_.stages, "[[stage]]");
+      const Entry& entry = choose(table, "do", all_.stages_for(scene), "[[stage]]");
       scene.stages.push_back(read_stage(table, entry, fmt::format("[[stage]] {}", entry.name), scene));
     }
+  }
+
+  /// Relaxation in a container keeps the sizes exactly as they are drawn: then these may as well be exact.
+  static std::string default_draw(const Scene& scene) {
+    const bool relaxes = std::ranges::find(scene.stages, "relax", &Spec::name) != scene.stages.end();
+    return relaxes && !scene.is_periodic() ? "quantiles" : "random";
   }
 
   Spec read_stage(const toml::table& table, const Entry& entry, const std::string& where,

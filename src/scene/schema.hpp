@@ -79,14 +79,19 @@ struct Schema {
   Entry accuracy;
   std::vector<Entry> containers;
   std::vector<Entry> distributions;
-  std::vector<Entry> stages;
+  /// Those that can work there first: a name may have another meaning in the other domain.
+  std::vector<Entry> stages_in_containers, stages_in_periodic_boxes;
 
+  const std::vector<Entry>& stages_for(const Scene& of) const {
+    return of.is_periodic() ? stages_in_periodic_boxes : stages_in_containers;
+  }
   static const Entry* find(const std::vector<Entry>& entries, std::string_view name);
 };
 const Schema& schema();
 
-/// The part of the schema that schema_distributions.cpp holds.
+/// The parts of the schema that schema_distributions.cpp and schema_stages.cpp hold.
 std::vector<Entry> size_distributions();
+std::vector<Entry> stages(bool in_container);
 
 /// What a value of this key must be, for people: "a positive length", "a whole number from 1 to 100"; with
 /// its limits where only they refuse the one that was `given`.

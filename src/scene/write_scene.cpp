@@ -69,7 +69,7 @@ std::string stages_as_toml(const Scene& scene) {
   std::string out;
   for (const Spec& stage : scene.stages)
     out += fmt::format("{}[[stage]]\ndo = {}\n{}", out.empty() ? "" : "\n", toml_string(stage.name),
-                       assignments(stage, entry_of(schema::schema().stages, stage), "\n"));
+                       assignments(stage, entry_of(schema::schema().stages_for(scene), stage), "\n"));
   return out;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "soft/soft_walls.hpp"
+
 #define BERNAL_INLINE inline __attribute__((always_inline))
 #define BERNAL_INLINE_LAMBDA __attribute__((always_inline))
 

@@ -8,6 +8,8 @@
 
 namespace bernal {
 
+class SoftWalls;
+
 /// The neighbours of `lanes` spheres: `rows` rows of one place for each of them.
 struct NeighborRows {
   const std::uint32_t* first;
@@ -20,6 +22,8 @@ struct SweepTask {
   const NeighborRows* groups;
   std::array<float, 3> scale;  ///< edge / 2^32 on each axis
   float omega;  ///< over-relaxation: the step is min(omega / contacts, 1) times the sum of overlaps
+  const SoftWalls* walls;  ///< of a container; null in a periodic box
+  float* stress;  ///< receives, of each sphere, the sum of its squared overlap ratios when these are measured
 };
 
 /// One level of the background grid: spheres with radii in (largest / 2, largest], sorted by cell.
@@ -47,10 +51,10 @@ struct SoftKernels {
 
   /// Moves the groups [begin, end) one after the other: each sphere by min(omega / n, 1) Σ (ri + rj - d) u
   /// over its n overlapping neighbours, u being the unit vector away from the neighbour (Zhao, Li & Liu 2007,
-  /// equations 3 and 4, for omega = 1). Precondition: no two spheres of a group are neighbours.
+  /// equations 3 and 4, for omega = 1). A wall counts as a neighbour. Precondition: no two spheres of a group are neighbours.
   /// Cost: about 1 ns a neighbour.
   void (*sweep)(const SweepTask&, std::size_t begin, std::size_t end);
-  /// The same; returns the largest overlap ratio (ri + rj - d) / (ri + rj) that was met.
+  /// The same; returns the largest overlap ratio (ri + rj - d) / (ri + rj) that was met, and fills `stress`.
   float (*sweep_and_measure)(const SweepTask&, std::size_t begin, std::size_t end);
   /// Writes the places of all neighbours of a sphere but itself, `self`, to `out` and returns their end; up
   /// to `lanes` more entries are scribbled over. Cost: about 10 ns a row of three cells.

@@ -12,7 +12,8 @@ constexpr int width = 4;
 
 using Floats = float __attribute__((vector_size(4 * width)));
 using Ints = int __attribute__((vector_size(4 * width)));
-using UnalignedInts = int __attribute__((vector_size(4 * width), aligned(4)));
+using UnalignedFloats = float __attribute__((vector_size(4 * width), aligned(4), may_alias));
+using UnalignedInts = int __attribute__((vector_size(4 * width), aligned(4), may_alias));
 
 /// `width` spheres, one column a coordinate.
 struct Columns {
@@ -154,18 +155,37 @@ BERNAL_INLINE Floats all(float value) { return Floats{} + value; }
 /// The values where the condition (0 or -1) holds, 0 elsewhere.
 BERNAL_INLINE Floats where(Ints condition, Floats values) { return Floats(Ints(values) & condition); }
 
+/// `width` numbers of an array of `lanes`.
+BERNAL_INLINE Floats numbers_at(const std::array<float, lanes>& of, std::size_t first) {
+  return *reinterpret_cast<const UnalignedFloats*>(of.data() + first);
+}
+
 template <bool measure>
 float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
   const Floats scale_x = all(task.scale[0]), scale_y = all(task.scale[1]), scale_z = all(task.scale[2]);
   const Floats inverse_x = 1 / scale_x, inverse_y = 1 / scale_y, inverse_z = 1 / scale_z;
   Floats worst{};
+  WallPush at_wall;
   for (std::size_t g = begin; g < end; ++g) {
+    const bool near_wall = task.walls && task.walls->near(g);
+    if (near_wall) task.walls->push(g, task.spheres + lanes * g, at_wall);
     const std::uint32_t* const rows = task.groups[g].first;
     const std::uint32_t* const rows_end = rows + lanes * task.groups[g].rows;
     for (std::size_t first = 0; first < lanes; first += width) {
       SoftSphere* const mine = task.spheres + lanes * g + first;
       const Columns me = load([&](int k) BERNAL_INLINE_LAMBDA { return mine + k; });
-      Floats sum_x{}, sum_y{}, sum_z{}, contacts{};
+      Floats sum_x{}, sum_y{}, sum_z{}, contacts{}, squares{};
+      if (near_wall) {
+        sum_x = numbers_at(at_wall.x, first);
+        sum_y = numbers_at(at_wall.y, first);
+        sum_z = numbers_at(at_wall.z, first);
+        contacts = numbers_at(at_wall.contacts, first);
+        if constexpr (measure) {
+          squares = numbers_at(at_wall.squares, first);
+          const Floats ratio = numbers_at(at_wall.worst, first);
+          worst = ratio > worst ? ratio : worst;
+        }
+      }
       for (const std::uint32_t* places = rows + first; places < rows_end; places += lanes) {
         const Columns it = load([&](int k) BERNAL_INLINE_LAMBDA { return task.spheres + places[k]; });
         const Floats dx = to_floats(wrapped_difference(me.x, it.x)) * scale_x;
@@ -182,6 +202,7 @@ float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
         if constexpr (measure) {
           const Floats ratio = where(overlap, (reach - d) / reach);
           worst = ratio > worst ? ratio : worst;
+          squares += ratio * ratio;
         }
       }
       Floats step = task.omega / contacts;
@@ -189,7 +210,10 @@ float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
       store(mine, {wrapped_sum(me.x, to_ints(sum_x * step * inverse_x)),
                    wrapped_sum(me.y, to_ints(sum_y * step * inverse_y)),
                    wrapped_sum(me.z, to_ints(sum_z * step * inverse_z)), me.r});
+      if constexpr (measure)
+        *reinterpret_cast<UnalignedFloats*>(task.stress + lanes * g + first) = squares;
     }
+    if (near_wall) task.walls->guard(g, at_wall, task.spheres + lanes * g);
   }
   float largest = 0;
   for (int l = 0; l < width; ++l) largest = worst[l] > largest ? worst[l] : largest;

@@ -15,8 +15,6 @@ namespace {
 /// In mean radii. Larger ones make lists that last longer and are longer; from 0.3 to 0.5 it makes no
 /// difference.
 constexpr double relative_skin = 0.4;
-/// Lists are built anew when a sphere has moved by so much of the skin.
-constexpr double worn = 0.9;
 constexpr int longest_patience = 16;
 /// With fewer spheres a second thread does not pay.
 constexpr std::size_t worth_threads = 20000;
@@ -25,7 +23,12 @@ double skin_for(const std::vector<double>& radii) {
   return relative_skin * std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
 }
 
-std::vector<float> as_floats(const std::vector<double>& values) { return {values.begin(), values.end()}; }
+std::vector<float> as_floats(const std::vector<double>& values, double factor = 1) {
+  std::vector<float> floats;
+  floats.reserve(values.size());
+  for (const double v : values) floats.push_back(static_cast<float>(factor * v));
+  return floats;
+}
 
 std::int32_t to_fixed(double x, double edge) {
   const double share = x / edge;
@@ -53,12 +56,37 @@ SoftPacking::SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, cons
   }
 }
 
+SoftPacking::SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels)
+    : kernels_(kernels),
+      count_(spheres.size()),
+      dimension_(3),
+      lists_(as_floats(spheres.r, most_swelling), static_cast<float>(skin_for(spheres.r)), kernels),
+      spheres_(spheres.size(), SoftSphere{}),
+      ids_(spheres.size()),
+      radii_(as_floats(spheres.r)) {
+  // Centres stay inside the bounds, so that images are a margin of this width apart.
+  const double margin = most_swelling * smallest_edge(spheres.r);
+  const Bounds<3> bounds = container.bounds();
+  corner_ = bounds.lower - Vector<3>::Constant(0.5 * margin);
+  Vector<3> unit;
+  for (int k = 0; k < 3; ++k) {
+    edges_[static_cast<std::size_t>(k)] = bounds.size()[k] + margin;
+    unit[k] = edges_[static_cast<std::size_t>(k)] * 0x1p-32;
+  }
+  walls_ = std::make_unique<SoftWalls>(container, corner_, unit, spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    set_place(spheres_[i], spheres.center(i));
+    spheres_[i].r = radii_[i];
+    ids_[i] = static_cast<std::uint32_t>(i);
+  }
+}
+
 double SoftPacking::smallest_edge(const std::vector<double>& radii) {
   return 4.001 * (std::ranges::max(radii) + skin_for(radii));
 }
 
 SweepTask SoftPacking::task(float omega) {
-  SweepTask task{spheres_.data(), lists_.groups(), {}, omega};
+  SweepTask task{spheres_.data(), lists_.groups(), {}, omega, walls_.get(), nullptr};
   for (std::size_t k = 0; k < 3; ++k) task.scale[k] = static_cast<float>(edges_[k] * 0x1p-32);
   return task;
 }
@@ -84,7 +112,9 @@ void SoftPacking::sweep(float omega) {
 double SoftPacking::sweep_and_measure(float omega) {
   patience_ = 0;  // what is measured is measured on lists that are known to be good
   keep_lists_valid();
-  const SweepTask work = task(omega);
+  stress_.assign(spheres_.size(), 0);
+  SweepTask work = task(omega);
+  work.stress = stress_.data();
   std::vector<float> largest(spheres_.size() / lanes + 1, 0.0f);
   for_each_chain([&](const Chain& chain) {
     largest[chain.first] = kernels_.sweep_and_measure(work, chain.first, chain.last);
@@ -95,6 +125,37 @@ double SoftPacking::sweep_and_measure(float omega) {
 
 void SoftPacking::grow(double factor) {
   for (int k = 0; k < dimension_; ++k) edges_[static_cast<std::size_t>(k)] *= factor;
+}
+
+void SoftPacking::swell(double factor) {
+  for (std::size_t p = 0; p < spheres_.size(); ++p)
+    if (spheres_[p].r > 0) spheres_[p].r = static_cast<float>(factor) * radii_[ids_[p]];
+  stale_ = true;
+}
+
+void SoftPacking::put(const std::vector<Move>& moves) {
+  std::vector<std::size_t> place_of(count_);
+  for (std::size_t p = 0; p < spheres_.size(); ++p)
+    if (spheres_[p].r > 0) place_of[ids_[p]] = p;
+  for (const Move& move : moves) {
+    const std::size_t p = place_of[move.id];
+    set_place(spheres_[p], move.to);
+    if (builds_ > 0) built_at_[p] = spheres_[p];
+    walls_->forget(move.id);
+  }
+  stale_ = true;
+}
+
+void SoftPacking::set_place(SoftSphere& sphere, const Vector<3>& center) const {
+  for (std::size_t k = 0; k < 3; ++k)
+    sphere.x[k] = to_fixed(center[static_cast<int>(k)] - corner_[static_cast<int>(k)], edges_[k]);
+}
+
+std::vector<float> SoftPacking::stress() const {
+  std::vector<float> of_sphere(count_);
+  for (std::size_t p = 0; p < stress_.size(); ++p)
+    if (spheres_[p].r > 0) of_sphere[ids_[p]] = stress_[p];
+  return of_sphere;
 }
 
 double SoftPacking::largest_move() const {
@@ -123,16 +184,19 @@ double SoftPacking::largest_move() const {
 /// Looks at what has moved only as often as the speed of the last sweeps suggests. A pair that is missed for
 /// a sweep overlaps for so much longer, no more.
 void SoftPacking::keep_lists_valid() {
-  if (builds_ > 0 && sweeps_ < patience_) return;
-  const double limit = worn * lists_.skin();
+  if (!stale_ && sweeps_ < patience_) return;
+  const double limit = wear_ * lists_.skin();
   double moved = 0;
   if (builds_ > 0) moved = largest_move();
   // Nothing is known before the first sweep, when the spheres are at their fastest.
-  const double speed = builds_ == 0 ? limit : std::max((moved - moved_) / std::max(1, sweeps_), 1e-9);
-  if (builds_ == 0 || moved > limit) {
+  const double speed = stale_ ? limit : std::max((moved - moved_) / std::max(1, sweeps_), 1e-9);
+  if (stale_ || moved > limit) {
+    if (walls_ && builds_ > 0) walls_->stop_strays(spheres_, built_at_, ids_);
     lists_.build(spheres_, ids_, edges_);
+    if (walls_) walls_->build(spheres_, ids_, lists_.skin());
     built_at_ = spheres_;
     ++builds_;
+    stale_ = false;
     moved = 0;
   }
   moved_ = moved;
@@ -147,6 +211,15 @@ void SoftPacking::write_to(Spheres<D>& spheres, Vector<D>& edges) const {
     if (!(spheres_[p].r > 0)) continue;
     for (std::size_t k = 0; k < D; ++k)
       spheres.x[k][ids_[p]] = static_cast<std::uint32_t>(spheres_[p].x[k]) * (edges_[k] * 0x1p-32);
+  }
+}
+
+void SoftPacking::write_to(Spheres<3>& spheres) const {
+  for (std::size_t p = 0; p < spheres_.size(); ++p) {
+    if (!(spheres_[p].r > 0)) continue;
+    for (std::size_t k = 0; k < 3; ++k)
+      spheres.x[k][ids_[p]] = corner_[static_cast<int>(k)] +
+                              static_cast<std::uint32_t>(spheres_[p].x[k]) * (edges_[k] * 0x1p-32);
   }
 }
 

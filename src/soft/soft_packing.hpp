@@ -1,43 +1,75 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
+#include "bernal/domain/container.hpp"
 #include "soft/soft_lists.hpp"
+#include "soft/soft_walls.hpp"
 
 namespace bernal {
 
-/// Overlapping spheres in a periodic box of one, two or three dimensions that push each other apart: the
-/// state of the fast relaxation. In single precision and fixed point: overlap ratios are good to about 1e-6.
+/// Overlapping spheres that push each other apart, in a periodic box of one, two or three dimensions or in a
+/// container: the state of the fast relaxation. In single precision and fixed point: overlap ratios are good
+/// to about 1e-6.
+///
+/// In a container the box is the container's bounds and so much more that no sphere meets an image.
 class SoftPacking {
  public:
+  /// How much larger than given the radii may become in a container.
+  static constexpr double most_swelling = 1.05;
+
   /// Centres in [0, edge). Precondition: every edge is at least `smallest_edge` of the radii, and will be.
   template <int D>
   SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels);
 
+  /// Precondition: all centres are inside the container, which outlives this.
+  SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels);
+
   /// The least edge that this way of finding neighbours allows.
   static double smallest_edge(const std::vector<double>& radii);
+
+  /// Lists are built anew when a sphere has moved by `wear` skins. Above 1, neighbours may be missed until
+  /// then: of no matter while all spheres overlap many others. 0.9 where nothing is said.
+  void wear_lists(double wear) { wear_ = wear; }
 
   /// Every sphere is moved once, by min(omega / n, 1) times the sum of its n overlaps. Parallel where there
   /// are many spheres; the same bits for any number of threads.
   void sweep(float omega);
   /// The same; returns the largest overlap ratio that was met.
   double sweep_and_measure(float omega);
+  /// Of each sphere the sum of its squared overlap ratios, as the last measuring sweep met them.
+  std::vector<float> stress() const;
 
   /// The box and the distances grow; the radii do not.
   void grow(double factor);
+  /// The radii become `factor` times those that were given, in a container.
+  void swell(double factor);
+  /// A sphere and where it is put.
+  struct Move {
+    std::uint32_t id;
+    Vector<3> to;
+  };
+  /// Puts spheres elsewhere in the container. Cost: O(N).
+  void put(const std::vector<Move>& moves);
 
   template <int D>
   void write_to(Spheres<D>& spheres, Vector<D>& edges) const;
+  /// Centres, in a container.
+  void write_to(Spheres<3>& spheres) const;
 
   /// How often lists were built.
   std::uint64_t builds() const { return builds_; }
+  /// How often the container was asked about its wall.
+  std::uint64_t wall_queries() const { return walls_ ? walls_->queries() : 0; }
 
  private:
   template <class Sweep>
   void for_each_chain(const Sweep& sweep) const;
   SweepTask task(float omega);
+  void set_place(SoftSphere& sphere, const Vector<3>& center) const;
   void keep_lists_valid();
   double largest_move() const;
 
@@ -45,12 +77,18 @@ class SoftPacking {
   std::size_t count_;
   int dimension_;
   std::array<double, 3> edges_;
+  Vector<3> corner_ = Vector<3>::Zero();
   SoftLists lists_;
+  std::unique_ptr<SoftWalls> walls_;  // null in a periodic box
   std::vector<SoftSphere> spheres_;  // in sweep order
   std::vector<std::uint32_t> ids_;
+  std::vector<float> stress_;
+  std::vector<float> radii_;          // as given, by id; of spheres in a container
+  bool stale_ = true;  // the lists
   std::vector<SoftSphere> built_at_;  // where they were when the lists were built
   std::uint64_t builds_ = 0;
   double moved_ = 0;  // largest move since then, when it was last looked at
+  double wear_ = 0.9;
   int sweeps_ = 0;    // since it was last looked at
   int patience_ = 0;  // sweeps until it is looked at again
 };

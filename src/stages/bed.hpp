@@ -36,6 +36,7 @@ class Bed {
   const Places& places() const { return places_; }
   std::size_t size() const { return balls_.size(); }
   const Ball& operator[](Id i) const { return balls_[i]; }
+  std::uint32_t tag(Id i) const { return tags_[i]; }
   double skin() const { return skin_; }
   double mean_radius() const { return balls_.empty() ? 0 : sum_of_radii_ / static_cast<double>(size()); }
   double packing_fraction() const { return sum_of_volumes_ / container_.volume(); }

@@ -15,6 +15,9 @@ namespace {
 /// Newton step is D / n times the sum of the overlaps, and these are 1.8 and 1.67 of it.
 constexpr float omega_crowded = 5.4f, omega_settling = 5;
 constexpr double crowded = 0.06;
+/// How far spheres move before lists are built anew, in skins. While they are crowded some missed neighbours
+/// do no harm, and a fifth of the time is saved.
+constexpr double wear_crowded = 1.6, wear_settling = 0.9;
 /// Where the overlap falls linearly with the growth of the box. Earlier, prediction costs contacts.
 constexpr double predictable = 3e-3;
 constexpr double share_of_prediction = 0.9;
@@ -66,6 +69,7 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, c
   Growth growth(options.beta);
   StageEnd end = StageEnd::converged;
   for (double molr = 1;;) {
+    packing.wear_lists(molr > crowded ? wear_crowded : wear_settling);
     const float omega = (molr > crowded ? omega_crowded : omega_settling) * D / 3;
     for (int k = 1; k < sweeps && end == StageEnd::converged; ++k) {
       packing.sweep(omega);

@@ -63,6 +63,14 @@ void Supply::take(std::size_t k) {
   open_window();
 }
 
+void Supply::set_placed(const std::vector<bool>& placed) {
+  window_.clear();
+  next_ = static_cast<std::uint32_t>(placed.size());
+  for (std::uint32_t tag = 0; tag < next_; ++tag)
+    if (!placed[tag]) window_.push_back(tag);
+  open_window();
+}
+
 std::size_t Supply::passed_over() const {
   // The window is ascending and ends in spheres that nothing later was placed after.
   std::size_t untouched = 0;

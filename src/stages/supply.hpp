@@ -29,6 +29,9 @@ class Supply {
   /// Takes the k-th of the window.
   void take(std::size_t k);
 
+  /// Of the first `placed.size()` tags those that are set have been placed, and no others.
+  void set_placed(const std::vector<bool>& placed);
+
   /// All tags below this one have been placed.
   std::uint32_t first_missing() const { return window_.empty() ? next_ : window_.front(); }
   /// How many spheres were passed over, i.e. are missing although a later one was placed.

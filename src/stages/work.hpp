@@ -19,6 +19,13 @@ struct Work {
   EffectLog& effects;
   /// Called after every round of a stage, for the run's history and the progress bar.
   std::function<void(std::string_view stage)> milestone;
+  /// The same while spheres still overlap and are not in the bed: their number, volume and largest overlap
+  /// ratio.
+  std::function<void(std::string_view stage, std::size_t spheres, double volume, double max_overlap)>
+      crowd_milestone;
+  const Target& target;
+  /// The packing fraction that the plan expects.
+  const double attainable;
   std::uint64_t streams_used = 0;
 
   /// A fresh stream of random numbers for one round of a stage.

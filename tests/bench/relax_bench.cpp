@@ -2,6 +2,9 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <cmath>
+#include <ctime>
+#include <string>
+#include <utility>
 
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -137,13 +140,57 @@ void once(benchmark::internal::Benchmark* b) {
 }
 BENCHMARK_CAPTURE(relax, equal, equal, "fast")
     ->Apply(once)
-    ->Args({10000, 2, 1})
     ->Args({10000, 5, 1})
     ->Args({10000, 17, 1})
     ->Args({100000, 2, 1})
     ->Args({100000, 2, 2});
-BENCHMARK_CAPTURE(relax, equal_by_the_book, equal, "reference")->Apply(once)->Args({10000, 17, 1});
 BENCHMARK_CAPTURE(relax, one_to_twenty, one_to_twenty, "fast")->Apply(once)->Args({100000, 2, 1});
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Processor time of one run on one thread, and what it reached.
+std::pair<double, double> timed(const std::string& sizes, std::int64_t count, const std::string& stage) {
+  const Plan plan = build(scene_of(sizes, count, stage));
+  RunOptions options;
+  options.threads = 1;
+  const double start = processor_seconds();
+  const Packing packing = run(plan, options);
+  return {processor_seconds() - start, packing.packing_fraction()};
+}
+
+/// How time grows with the number of spheres: time ~ N^exponent, from one size to the next and over all.
+void relax_growth(benchmark::State& state) {
+  for (auto _ : state) {
+    double first = 0, last = 0;
+    for (std::int64_t decade = 3, count = 1000; decade <= 6; ++decade, count *= 10) {
+      const auto [seconds, fraction] = timed(equal, count, "alpha = 2");
+      const std::string name = "1e" + std::to_string(decade);
+      state.counters[name + "_s"] = seconds;
+      state.counters[name + "_packing_fraction"] = fraction;
+      if (decade == 3)
+        first = seconds;
+      else
+        state.counters[name + "_exponent"] = std::log10(seconds / last);
+      last = seconds;
+    }
+    state.counters["exponent"] = std::log10(last / first) / 3;
+  }
+}
+BENCHMARK(relax_growth)->Iterations(1)->MeasureProcessCPUTime()->Unit(benchmark::kSecond);
+
+/// The published loop with the published parameters over the fast path where it packs as densely.
+void relax_fast_against_reference(benchmark::State& state) {
+  for (auto _ : state) {
+    const auto [fast, dense] = timed(equal, 10000, "alpha = 2");
+    const auto [reference, as_published] = timed(equal, 10000, "alpha = 17\nmethod = \"reference\"");
+    state.counters["fast_s"] = fast;
+    state.counters["fast_packing_fraction"] = dense;
+    state.counters["reference_s"] = reference;
+    state.counters["reference_packing_fraction"] = as_published;
+    state.counters["ratio"] = reference / fast;
+  }
+}
+BENCHMARK(relax_fast_against_reference)->Iterations(1)->MeasureProcessCPUTime()->Unit(benchmark::kSecond);
 
 }  // namespace
 }  // namespace bernal

@@ -36,6 +36,10 @@ struct Spheres {
     for (auto& column : x) column.reserve(n);
     r.reserve(n);
   }
+  void resize(std::size_t n) {
+    for (auto& column : x) column.resize(n);
+    r.resize(n);
+  }
   bool operator==(const Spheres&) const = default;
 };
 

@@ -40,13 +40,17 @@ struct Spec {
   Location location(std::string_view key) const;  ///< of the key if it has one, else of the whole
 };
 
-/// Exactly one of these says when there are enough spheres; in a periodic box that is given neither size nor
-/// edge, `count` and `packing_fraction` together say how large it is.
+/// At most one of these says when there are enough spheres; in a periodic box that is given neither size nor
+/// edge, `count` and `packing_fraction` together say how large it is. Where nothing is said the stages place
+/// what they can, or for relaxation in a container what the plan expects.
 struct Target {
   std::optional<std::int64_t> count;
   std::optional<double> packing_fraction;
-  bool fill = false;  ///< as many as the stages can place
+  bool fill = false;  ///< as many as the stages can place, at any price
   Location where;
+
+  /// Whether it is left to the stages how many spheres there are.
+  bool is_open() const { return !count && !packing_fraction; }
 };
 
 /// A packing problem as the user states it: plain data, no behaviour. Lengths are in `unit`.

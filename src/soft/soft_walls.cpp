@@ -1,0 +1,205 @@
+#include "soft/soft_walls.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bernal {
+namespace {
+
+/// Cosine of 25°: pushes that agree so well come from one smooth patch.
+constexpr double one_patch = 0.9;
+constexpr std::size_t most_contacts = 32;
+/// A centre keeps this share of its distance from a facet when it moves towards it.
+constexpr double kept = 0.1;
+/// A centre nearer to a facet than so many units of the coordinates does not approach it at all.
+constexpr double units_kept = 64;
+/// How far from the wall a sphere is told apart from one that is farther, in skins.
+constexpr double far_reach = 3;
+constexpr std::size_t groups_per_block = 64;
+
+/// p minus the nearest point of the facet; for a facet of an analytic container p is on its inner side.
+Vector<3> offset(const std::variant<Facet, PreparedTriangle>& piece, const Vector<3>& p) {
+  if (const auto* triangle = std::get_if<PreparedTriangle>(&piece)) return triangle->offset(p);
+  return p - closest_point(std::get<Facet>(piece), p);
+}
+
+/// A lower bound of the distance from the facet after a straight move by `move` from p, whose offset is
+/// `from`: concave along the way for the curved walls, whose inside is convex; for a triangle the distance
+/// from the plane through its nearest point, which has all of it behind.
+double distance_after(const std::variant<Facet, PreparedTriangle>& piece, const Vector<3>& p,
+                      const Vector<3>& from, double distance_before, const Vector<3>& move) {
+  if (const auto* facet = std::get_if<Facet>(&piece)) return distance(*facet, p + move);
+  return distance_before + move.dot(from) / distance_before;
+}
+
+/// In units of the coordinates.
+std::int32_t steps_between(const SoftSphere& from, const SoftSphere& to, int k) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(to.x[k]) - static_cast<std::uint32_t>(from.x[k]));
+}
+
+/// Takes back all but a share of the way.
+void shorten(SoftSphere& to, const SoftSphere& from, double share) {
+  for (int k = 0; k < 3; ++k) {
+    const auto steps = static_cast<std::int32_t>(share * steps_between(from, to, k));
+    to.x[k] = static_cast<std::int32_t>(static_cast<std::uint32_t>(from.x[k]) + static_cast<std::uint32_t>(steps));
+  }
+}
+
+struct Contact {
+  Vector<3> normal;
+  double depth;
+};
+
+}  // namespace
+
+SoftWalls::SoftWalls(const Container& container, const Vector<3>& corner, const Vector<3>& unit,
+                     std::size_t spheres)
+    : container_(container), corner_(corner), unit_(unit), resolution_(unit.maxCoeff()), views_(spheres) {}
+
+Vector<3> SoftWalls::place(const SoftSphere& s) const {
+  Vector<3> p;
+  for (int k = 0; k < 3; ++k) p[k] = corner_[k] + unit_[k] * static_cast<std::uint32_t>(s.x[k]);
+  return p;
+}
+
+void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<SoftSphere>& built_at,
+                            const std::vector<std::uint32_t>& ids) const {
+  std::vector<bool> near(spheres.size(), false);
+  for (std::size_t g = 0; g + 1 < first_.size(); ++g)
+    for (std::uint32_t n = first_[g]; n < first_[g + 1]; ++n) near[g * lanes + near_[n].lane] = true;
+  for (std::size_t p = 0; p < spheres.size(); ++p) {
+    if (!(spheres[p].r > 0) || near[p]) continue;
+    const Vector<3> from = place(built_at[p]), way = place(spheres[p]) - from;
+    const double length = way.norm();
+    const View& view = views_[ids[p]];
+    if (length < view.clearance - (from - view.at).norm()) continue;
+    ++queries_;
+    const double free = container_.first_contact(from, 0, way / length, length);
+    if (free < length) shorten(spheres[p], built_at[p], (1 - kept) * free / length);
+  }
+}
+
+/// Whether a wall is nearer to the centre than r + skin; the view then knows all that is.
+bool SoftWalls::look(const Vector<3>& at, double r, double skin, View& view) const {
+  const double near = r + skin, moved = (at - view.at).norm();
+  if (view.clearance - moved >= near) return false;
+  if (view.reach - moved >= near) return view.pieces.front().distance - moved < near;
+  ++queries_;
+  view.at = at;
+  view.pieces.clear();
+  view.reach = 0;
+  view.clearance = container_.clearance_within(at, near + far_reach * skin);
+  if (view.clearance >= near) return false;
+  std::vector<NearFacet> facets;
+  view.reach = near + skin;
+  container_.facets_near(at, view.reach, facets);
+  view.pieces.reserve(facets.size());
+  for (const NearFacet& f : facets) {
+    if (f.facet.kind == Facet::Kind::triangle)
+      view.pieces.push_back({f.distance, PreparedTriangle(f.facet.a, f.facet.b, f.facet.c)});
+    else
+      view.pieces.push_back({f.distance, f.facet});
+  }
+  return !view.pieces.empty();
+}
+
+void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<std::uint32_t>& ids,
+                      float skin) {
+  skin_ = skin;
+  const std::size_t groups = spheres.size() / lanes;
+  std::vector<std::uint16_t> near_lanes(groups, 0);
+  tbb::parallel_for(std::size_t{0}, (groups + groups_per_block - 1) / groups_per_block, [&](std::size_t b) {
+    for (std::size_t g = b * groups_per_block; g < std::min(groups, (b + 1) * groups_per_block); ++g) {
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const SoftSphere& s = spheres[g * lanes + l];
+        if (s.r > 0 && look(place(s), s.r, skin, views_[ids[g * lanes + l]]))
+          near_lanes[g] = static_cast<std::uint16_t>(near_lanes[g] | 1u << l);
+      }
+    }
+  });
+  first_.assign(1, 0);
+  near_.clear();
+  for (std::size_t g = 0; g < groups; ++g) {
+    for (std::uint32_t l = 0; l < lanes; ++l)
+      if (near_lanes[g] >> l & 1) near_.push_back({l, ids[g * lanes + l]});
+    first_.push_back(static_cast<std::uint32_t>(near_.size()));
+  }
+}
+
+void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out) const {
+  out = {};
+  std::copy(spheres, spheres + lanes, out.before.begin());
+  for (std::uint32_t n = first_[group]; n < first_[group + 1]; ++n) {
+    const auto [l, id] = near_[n];
+    const View& view = views_[id];
+    const Vector<3> c = place(spheres[l]);
+    const double r = spheres[l].r, moved = (c - view.at).norm();
+    double free = view.reach - moved;
+    std::array<Contact, most_contacts> contacts;
+    std::size_t count = 0;
+    for (const Piece& piece : view.pieces) {
+      if (piece.distance - moved >= r) {
+        free = std::min(free, piece.distance - moved);
+        break;
+      }
+      const Vector<3> away = offset(piece.facet, c);
+      const double d = away.norm();
+      free = std::min(free, d);
+      if (d < r && d > 0 && count < most_contacts) contacts[count++] = {away / d, r - d};
+    }
+    out.free[l] = free;
+    std::sort(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(count),
+              [](const Contact& a, const Contact& b) { return a.depth > b.depth; });
+    std::size_t taken = 0;
+    Vector<3> sum = Vector<3>::Zero();
+    for (std::size_t k = 0; k < count; ++k) {
+      const Contact contact = contacts[k];
+      const auto agrees = [&](const Contact& other) { return other.normal.dot(contact.normal) > one_patch; };
+      if (std::any_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(taken), agrees)) continue;
+      contacts[taken++] = contact;
+      sum += contact.depth * contact.normal;
+      const double ratio = contact.depth / r;
+      out.squares[l] += static_cast<float>(ratio * ratio);
+      out.worst[l] = std::max(out.worst[l], static_cast<float>(ratio));
+    }
+    out.x[l] = static_cast<float>(sum[0]);
+    out.y[l] = static_cast<float>(sum[1]);
+    out.z[l] = static_cast<float>(sum[2]);
+    out.contacts[l] = static_cast<float>(taken);
+  }
+}
+
+void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spheres) const {
+  for (std::uint32_t n = first_[group]; n < first_[group + 1]; ++n) {
+    const auto [l, id] = near_[n];
+    SoftSphere& now = spheres[l];
+    const SoftSphere& before = push.before[l];
+    Vector<3> move;
+    for (int k = 0; k < 3; ++k) move[k] = unit_[k] * steps_between(before, now, k);
+    const double length = move.norm();
+    if (length <= (1 - kept) * push.free[l]) continue;
+    const View& view = views_[id];
+    const Vector<3> c = place(before);
+    const double moved = (c - view.at).norm();
+    // What the view does not show may begin at its reach.
+    double share = std::min(1.0, (1 - kept) * std::max(0.0, view.reach - moved) / length);
+    for (const Piece& piece : view.pieces) {
+      if (piece.distance - moved > length) break;
+      const Vector<3> away = offset(piece.facet, c);
+      const double d = away.norm();
+      if (!(d > 0)) {
+        share = 0;
+        break;
+      }
+      const double after = distance_after(piece.facet, c, away, d, move);
+      if (after >= kept * d && after >= units_kept * resolution_) continue;
+      if (after >= d) continue;
+      share = std::min(share, d <= units_kept * resolution_ ? 0.0 : (1 - kept) * d / (d - after));
+    }
+    if (share < 1) shorten(now, before, share);
+  }
+}
+
+}  // namespace bernal

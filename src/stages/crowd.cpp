@@ -1,0 +1,145 @@
+#include "stages/crowd.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "stages/holes.hpp"
+
+namespace bernal {
+namespace {
+
+/// Over-relaxation, as in relax_fast.cpp: nearer to what is stable while spheres are crowded.
+constexpr float omega_crowded = 5.4f, omega_settling = 5;
+constexpr double crowded = 0.06;
+constexpr double wear_crowded = 1.6, wear_settling = 0.9;
+/// Of the margin, what single precision leaves to rely on.
+constexpr double share_of_margin = 0.97;
+/// After so many sweeps it is looked at how far things are.
+constexpr int sweeps_a_look = 25;
+/// Stuck: the strain keeps more than this share of itself between so many looks in a row.
+constexpr double hardly_freer = 0.93;
+constexpr int patience = 2;
+constexpr double burst_swelling = 1.02;
+constexpr int burst_sweeps = 50;
+/// Random places that are looked at for each sphere to find holes.
+constexpr double probes_a_sphere = 2;
+
+}  // namespace
+
+Crowd::Crowd(const Container& container, const Places& places, Spheres<3> spheres)
+    : container_(container), places_(places), spheres_(std::move(spheres)) {
+  prepare();
+}
+
+void Crowd::prepare() {
+  if (packing_) {
+    list_builds_ += packing_->builds();
+    wall_queries_ += packing_->wall_queries();
+  }
+  packing_ = std::make_unique<SoftPacking>(spheres_, container_, soft_kernels().front());
+  packing_->swell(1 + margin);
+}
+
+void Crowd::measure() {
+  packing_->wear_lists(wear_settling);
+  largest_overlap_ = packing_->sweep_and_measure(omega_settling);
+  ++sweeps_;
+  double sum = 0;
+  for (const float s : packing_->stress()) sum += s;
+  strain_ = std::sqrt(sum / static_cast<double>(size()));
+}
+
+Crowd::Rest Crowd::settle(const Monitor& monitor, const std::function<void()>& milestone) {
+  int slow = 0;
+  double last_strain = 1e300;
+  for (;;) {
+    for (int k = 1; k < sweeps_a_look; ++k) {
+      packing_->wear_lists(largest_overlap_ > crowded ? wear_crowded : wear_settling);
+      packing_->sweep(largest_overlap_ > crowded ? omega_crowded : omega_settling);
+      ++sweeps_;
+      if (monitor.stop()) return Rest::cancelled;
+    }
+    measure();
+    milestone();
+    if (largest_overlap_ < share_of_margin * margin) {
+      packing_->write_to(spheres_);
+      return Rest::free;
+    }
+    slow = strain_ > hardly_freer * last_strain ? slow + 1 : 0;
+    if (slow == patience) return Rest::stuck;
+    last_strain = strain_;
+  }
+}
+
+void Crowd::burst() {
+  packing_->swell((1 + margin) * burst_swelling);
+  for (int k = 0; k < burst_sweeps; ++k) packing_->sweep(omega_settling);
+  sweeps_ += burst_sweeps;
+  packing_->swell(1 + margin);
+}
+
+std::vector<std::uint32_t> Crowd::most_squeezed(std::size_t count) const {
+  const std::vector<float> stress = packing_->stress();
+  std::vector<std::uint32_t> ids(stress.size());
+  std::iota(ids.begin(), ids.end(), 0u);
+  count = std::min(count, ids.size());
+  std::ranges::partial_sort(ids, ids.begin() + static_cast<std::ptrdiff_t>(count), [&](auto a, auto b) {
+    return stress[a] != stress[b] ? stress[a] > stress[b] : a < b;
+  });
+  ids.resize(count);
+  return ids;
+}
+
+void Crowd::relocate(double share, Random& random) {
+  const auto count = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(size())));
+  std::vector<std::uint32_t> ids = most_squeezed(count);
+  packing_->write_to(spheres_);
+  const auto probes = static_cast<std::size_t>(1000 + probes_a_sphere * static_cast<double>(size()));
+  const std::vector<Hole> holes = emptiest_holes(container_, places_, spheres_, probes, count, random);
+  std::ranges::stable_sort(ids, std::greater<>(), [&](std::uint32_t i) { return spheres_.r[i]; });
+  std::vector<SoftPacking::Move> moves;
+  for (std::size_t k = 0; k < std::min(ids.size(), holes.size()); ++k) {
+    spheres_.set_center(ids[k], holes[k].place);
+    moves.push_back({ids[k], holes[k].place});
+  }
+  packing_->put(moves);
+}
+
+void Crowd::drop_last(std::size_t count) {
+  count = std::min(count, size() - 1);
+  packing_->write_to(spheres_);
+  const auto kept = static_cast<std::uint32_t>(size() - count);
+  std::vector<bool> squeezed(size(), false);
+  for (const std::uint32_t i : most_squeezed(count)) squeezed[i] = true;
+  std::uint32_t goes = kept;  // the next that goes and whose own place is not squeezed
+  for (std::uint32_t i = 0; i < kept; ++i) {
+    if (!squeezed[i]) continue;
+    while (squeezed[goes]) ++goes;
+    spheres_.set_center(i, spheres_.center(goes++));
+  }
+  spheres_.resize(kept);
+  prepare();
+}
+
+void Crowd::add(std::span<const double> radii, Random& random) {
+  packing_->write_to(spheres_);
+  const auto probes = static_cast<std::size_t>(1000 + probes_a_sphere * static_cast<double>(size()));
+  const std::vector<Hole> holes =
+      emptiest_holes(container_, places_, spheres_, probes, radii.size(), random);
+  std::vector<double> ordered(radii.begin(), radii.end());
+  std::vector<std::size_t> order(radii.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return radii[i]; });
+  std::vector<Vector<3>> place(radii.size(), holes.front().place);
+  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = holes[k % holes.size()].place;
+  for (std::size_t i = 0; i < radii.size(); ++i) spheres_.push_back(place[i], radii[i]);
+  prepare();
+}
+
+void Crowd::restore(Spheres<3> spheres) {
+  spheres_ = std::move(spheres);
+  prepare();
+}
+
+}  // namespace bernal

@@ -1,0 +1,176 @@
+#include "stages/relax_in_container.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "stages/crowd.hpp"
+
+namespace bernal {
+namespace {
+
+/// The share of the spheres that is put elsewhere at a time.
+constexpr double relocated = 0.002;
+/// What is taken out, in root mean squared overlap ratios times spheres.
+constexpr double taken_out = 1.5;
+/// Strain above which stirring is of little use.
+constexpr double hopeless = 5e-3;
+constexpr double patience_when_hopeless = 2;
+/// What is pushed in at a time, first and at last.
+constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
+/// Tries to find a place where a sphere clears the wall.
+constexpr int tries = 100;
+
+double volume_of_ball(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
+
+class Relaxation {
+ public:
+  Relaxation(Work& work, const RelaxInContainerOptions& options)
+      : work_(work),
+        options_(options),
+        random_(work.random(Stream::relax)),
+        crowd_(work.bed.container(), work.bed.places(), spheres_to_start_from()) {}
+
+  StageEnd run() {
+    bool free = relax();
+    while (!free && !over_) {
+      const double count = taken_out * crowd_.strain() * static_cast<double>(crowd_.size());
+      if (crowd_.size() <= 1) break;
+      crowd_.drop_last(std::max<std::size_t>(1, static_cast<std::size_t>(count)));
+      short_of_target_ = true;
+      free = relax();
+    }
+    if (free && work_.target.fill && !over_) push_in();
+    hand_over();
+    if (cancelled_) return StageEnd::cancelled;
+    if (over_ && !free) return StageEnd::hit_limit;
+    return short_of_target_ ? StageEnd::full : StageEnd::converged;
+  }
+
+ private:
+  /// The first of the drawn sequence, those in the bed where they are and the others at random.
+  Spheres<3> spheres_to_start_from() {
+    const Bed& bed = work_.bed;
+    const Supply& supply = work_.supply;
+    std::size_t count = supply.wanted();
+    if (!work_.target.count && !work_.target.packing_fraction) {
+      double volume = 0;
+      for (count = 0; count < supply.wanted(); ++count) {
+        volume += volume_of_ball(supply.radius(static_cast<std::uint32_t>(count)));
+        if (volume > work_.attainable * bed.container().volume()) break;
+      }
+    }
+    for (Bed::Id i = 0; i < bed.size(); ++i) count = std::max<std::size_t>(count, bed.tag(i) + 1);
+    Spheres<3> spheres;
+    for (std::uint32_t tag = 0; tag < count; ++tag) {
+      const double r = supply.radius(tag);
+      spheres.push_back(Vector<3>::Zero(), r);
+    }
+    std::vector<bool> placed(count, false);
+    for (Bed::Id i = 0; i < bed.size(); ++i) {
+      spheres.set_center(bed.tag(i), bed[i].center);
+      placed[bed.tag(i)] = true;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      if (!placed[i]) spheres.set_center(i, place_for(spheres.r[i]));
+    return spheres;
+  }
+
+  /// A random place at which a sphere clears the wall, if there is any to be found, else the best.
+  Vector<3> place_for(double r) {
+    const Container& container = work_.bed.container();
+    Vector<3> best = Vector<3>::Zero();
+    double most = 0;
+    for (int k = 0; k < tries || !(most > 0); ++k) {
+      const Vector<3> p = work_.bed.places().draw(random_);
+      const double clearance = container.clearance_within(p, r);
+      if (clearance > most) {
+        most = clearance;
+        best = p;
+      }
+      if (clearance >= r) break;
+    }
+    return best;
+  }
+
+  /// Settles and stirs. Returns whether the spheres came free of overlap.
+  bool relax() {
+    for (double failures = 0;; ++failures) {
+      const Crowd::Rest rest = crowd_.settle(work_.monitor, [this] { report(); });
+      if (rest == Crowd::Rest::free) return true;
+      cancelled_ = rest == Crowd::Rest::cancelled;
+      over_ = over_ || cancelled_ || static_cast<double>(crowd_.sweeps()) > options_.sweeps ||
+              (options_.seconds > 0 && seconds() > options_.seconds);
+      if (over_) return false;
+      if (failures >= (crowd_.strain() > hopeless ? patience_when_hopeless : options_.patience)) return false;
+      if (static_cast<int>(failures) % 2 == 0)
+        crowd_.burst();
+      else
+        crowd_.relocate(relocated, random_);
+    }
+  }
+
+  /// More and more of the sequence, until even a few find no room.
+  void push_in() {
+    const Supply& supply = work_.supply;
+    double share = pushed_in;
+    while (share >= least_pushed_in && !over_) {
+      const Spheres<3> before = crowd_.spheres();
+      const std::size_t n = before.size();
+      const auto more = std::min(supply.wanted() - n, static_cast<std::size_t>(std::ceil(share * static_cast<double>(n))));
+      if (more == 0) return;
+      std::vector<double> radii;
+      for (std::size_t k = 0; k < more; ++k) radii.push_back(supply.radius(static_cast<std::uint32_t>(n + k)));
+      crowd_.add(radii, random_);
+      crowd_.burst();
+      if (relax()) continue;
+      crowd_.restore(before);
+      if (more == 1) return;
+      share /= 2;
+    }
+  }
+
+  void report() {
+    double volume = 0;
+    for (const double r : crowd_.spheres().r) volume += volume_of_ball(r);
+    work_.crowd_milestone("relax", crowd_.size(), volume, crowd_.largest_overlap());
+  }
+
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+  /// Into the bed, in the order of the sequence.
+  void hand_over() {
+    Bed& bed = work_.bed;
+    bed.remove_tags_from(0);
+    const Spheres<3>& spheres = crowd_.spheres();
+    std::vector<bool> placed(spheres.size(), false);
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      placed[i] = bed.fits(spheres.center(i), spheres.r[i]);
+      if (placed[i]) bed.insert(spheres.center(i), spheres.r[i], static_cast<std::uint32_t>(i));
+    }
+    work_.supply.set_placed(placed);
+    work_.effects["neighbour lists"].calls += crowd_.list_builds();
+    work_.effects["walls"].calls += crowd_.wall_queries();
+  }
+
+  Work& work_;
+  const RelaxInContainerOptions options_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Random random_;
+  Crowd crowd_;
+  bool short_of_target_ = false;
+  bool over_ = false;  // there is no more time, or no more patience of the user
+  bool cancelled_ = false;
+};
+
+}  // namespace
+
+StageEnd relax_in_container(Work& work, const RelaxInContainerOptions& options) {
+  const EffectTimer timer(work.effects["relaxation"]);
+  return Relaxation(work, options).run();
+}
+
+}  // namespace bernal
