@@ -5,29 +5,18 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/dimension.hpp"
-#include "bernal/predict/predict.hpp"
 #include "run/catalogue.hpp"
+#include "run/estimate.hpp"
 #include "run/fitting.hpp"
 
 namespace bernal {
 namespace {
 
-/// What compression reaches of the random close packing fraction of the same sizes, away from walls, and by
-/// how much a wall lowers it: measured, see `expected_packing_fraction`.
-constexpr double share_of_close_packing = 0.966;
-constexpr double wall_deficit = 0.33;
 /// Bytes a sphere takes in the packer: its place, its lists of about 30 neighbours, its cell, and the copies
 /// that writing and certifying make.
 constexpr double bytes_a_sphere = 600;
 /// The same for relaxation in a periodic box.
 constexpr double bytes_a_relaxed_sphere = 400;
-
-/// What relaxation reaches of spheres of these sizes: the prediction in three dimensions; in others the
-/// packing fractions of equal spheres, which are not much lower than those of others.
-double close_packing_fraction(const SizeDistribution& radii, int dimension) {
-  constexpr double equal[] = {0.99, 0.84, 0.64, 0.46, 0.31, 0.20, 0.119, 0.069};
-  return dimension == 3 ? predict_packing_fraction(radii).phi : equal[dimension - 1];
-}
 
 /// Throws where a stage cannot work in the scene's domain.
 void require_possible(const Scene& scene) {
@@ -44,28 +33,6 @@ void require_possible(const Scene& scene) {
                     scene.is_periodic() ? "periodic box" : "container with walls", fmt::join(able, "\", \"")),
         stage.where);
   }
-}
-
-/// The packing fraction that the scene's stages are likely to reach when they may fill the container.
-/// Compression leaves a share of close packing that falls with x = A d / V, for a wall of area A, a volume V
-/// and the surface-weighted mean diameter d. Fitted to fills with x from 0.18 (Han's cylinder) to 1.6 (a part
-/// only two spheres thick), all of them met within 0.03.
-double expected_packing_fraction(const Scene& scene, const Shape& container, const SizeDistribution& radii) {
-  const auto runs = [&](std::string_view name) {
-    return std::ranges::any_of(scene.stages, [&](const Spec& s) { return s.name == name; });
-  };
-  const double mean_diameter = 2 * radii.moment(3) / radii.moment(2);
-  const double wall = area_of(container) * mean_diameter / volume_of(container);
-  if (runs("relax")) return predict_packing_fraction(radii).phi * std::max(0.1, 0.985 - 0.20 * wall);
-  if (!runs("refill")) {
-    double fraction = 0;
-    for (const Spec& s : scene.stages) {
-      if (s.name == "insert") fraction = s.number("packing_fraction");
-    }
-    return fraction;
-  }
-  return share_of_close_packing * predict_packing_fraction(radii).phi *
-         std::max(0.1, 1 - wall_deficit * wall);
 }
 
 }  // namespace

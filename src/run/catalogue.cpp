@@ -110,9 +110,8 @@ const PlanItem refilling[] = {
     {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}};
 
 StageEnd run_relax_in_container(const Spec& s, Work& work) {
-  return relax_in_container(work, {.patience = s.number("patience"),
-                                   .sweeps = s.number("sweeps"),
-                                   .seconds = s.number("seconds")});
+  return relax_in_container(
+      work, {.patience = s.number("patience"), .sweeps = s.number("sweeps"), .seconds = s.number("seconds")});
 }
 
 StageEnd run_relax(const Spec& s, PeriodicWork& work) {

@@ -112,8 +112,14 @@ void run_in_container(const Plan& plan, const Monitor& monitor, const Stopwatch&
                     fmt::format("{} spheres, packing fraction {:.4f}, largest overlap {:.1e}",
                                 grouped(spheres), fraction, max_overlap)});
   };
-  Work work{bed,       supply,          packing.seed,      monitor,
-            effects,   milestone,       crowd_milestone,   plan.scene.target,
+  Work work{bed,
+            supply,
+            packing.seed,
+            monitor,
+            effects,
+            milestone,
+            crowd_milestone,
+            plan.scene.target,
             plan.expected_packing_fraction};
 
   StageEnd end = StageEnd::converged;

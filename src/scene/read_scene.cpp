@@ -332,7 +332,8 @@ class Reader {
     if (!node) {
       for (const std::string_view name :
            schema::Schema::find(all_.containers, scene.container.name)->protocol)
-        scene.stages.push_back(read_stage({}, *schema::Schema::find(all_.stages_for(scene), name), "[[stage]]", scene));
+        scene.stages.push_back(
+            read_stage({}, *schema::Schema::find(all_.stages_for(scene), name), "[[stage]]", scene));
       return;
     }
     const toml::array* stages = node->as_array();

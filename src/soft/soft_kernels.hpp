@@ -21,8 +21,8 @@ struct SweepTask {
   SoftSphere* spheres;
   const NeighborRows* groups;
   std::array<float, 3> scale;  ///< edge / 2^32 on each axis
-  float omega;  ///< over-relaxation: the step is min(omega / contacts, 1) times the sum of overlaps
-  const SoftWalls* walls;  ///< of a container; null in a periodic box
+  float omega;       ///< over-relaxation: the step is min(omega / contacts, 1) times the sum of overlaps
+  SoftWalls* walls;  ///< of a container; null in a periodic box
   float* stress;  ///< receives, of each sphere, the sum of its squared overlap ratios when these are measured
 };
 
@@ -51,8 +51,8 @@ struct SoftKernels {
 
   /// Moves the groups [begin, end) one after the other: each sphere by min(omega / n, 1) Σ (ri + rj - d) u
   /// over its n overlapping neighbours, u being the unit vector away from the neighbour (Zhao, Li & Liu 2007,
-  /// equations 3 and 4, for omega = 1). A wall counts as a neighbour. Precondition: no two spheres of a group are neighbours.
-  /// Cost: about 1 ns a neighbour.
+  /// equations 3 and 4, for omega = 1). A wall counts as a neighbour. Precondition: no two spheres of a group
+  /// are neighbours. Cost: about 1 ns a neighbour.
   void (*sweep)(const SweepTask&, std::size_t begin, std::size_t end);
   /// The same; returns the largest overlap ratio (ri + rj - d) / (ri + rj) that was met, and fills `stress`.
   float (*sweep_and_measure)(const SweepTask&, std::size_t begin, std::size_t end);

@@ -80,11 +80,11 @@ class SoftPacking {
   Vector<3> corner_ = Vector<3>::Zero();
   SoftLists lists_;
   std::unique_ptr<SoftWalls> walls_;  // null in a periodic box
-  std::vector<SoftSphere> spheres_;  // in sweep order
+  std::vector<SoftSphere> spheres_;   // in sweep order
   std::vector<std::uint32_t> ids_;
   std::vector<float> stress_;
   std::vector<float> radii_;          // as given, by id; of spheres in a container
-  bool stale_ = true;  // the lists
+  bool stale_ = true;                 // the lists
   std::vector<SoftSphere> built_at_;  // where they were when the lists were built
   std::uint64_t builds_ = 0;
   double moved_ = 0;  // largest move since then, when it was last looked at

@@ -36,14 +36,16 @@ double distance_after(const std::variant<Facet, PreparedTriangle>& piece, const 
 
 /// In units of the coordinates.
 std::int32_t steps_between(const SoftSphere& from, const SoftSphere& to, int k) {
-  return static_cast<std::int32_t>(static_cast<std::uint32_t>(to.x[k]) - static_cast<std::uint32_t>(from.x[k]));
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(to.x[k]) -
+                                   static_cast<std::uint32_t>(from.x[k]));
 }
 
 /// Takes back all but a share of the way.
 void shorten(SoftSphere& to, const SoftSphere& from, double share) {
   for (int k = 0; k < 3; ++k) {
     const auto steps = static_cast<std::int32_t>(share * steps_between(from, to, k));
-    to.x[k] = static_cast<std::int32_t>(static_cast<std::uint32_t>(from.x[k]) + static_cast<std::uint32_t>(steps));
+    to.x[k] =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(from.x[k]) + static_cast<std::uint32_t>(steps));
   }
 }
 
@@ -121,31 +123,54 @@ void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<
   });
   first_.assign(1, 0);
   near_.clear();
+  until_.clear();
   for (std::size_t g = 0; g < groups; ++g) {
-    for (std::uint32_t l = 0; l < lanes; ++l)
-      if (near_lanes[g] >> l & 1) near_.push_back({l, ids[g * lanes + l]});
+    for (std::uint32_t l = 0; l < lanes; ++l) {
+      if (near_lanes[g] >> l & 1) add_near(l, ids[g * lanes + l], spheres[g * lanes + l]);
+    }
     first_.push_back(static_cast<std::uint32_t>(near_.size()));
   }
 }
 
-void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out) const {
+void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere) {
+  const View& view = views_[id];
+  NearSphere near{lane, id, static_cast<std::uint32_t>(until_.size()), 0, place(sphere), 0, 0};
+  const double moved = (near.last - view.at).norm();
+  near.beyond = view.reach - moved;
+  for (const Piece& piece : view.pieces) {
+    if (piece.distance - moved >= sphere.r + skin_) {
+      near.beyond = piece.distance - moved;
+      break;
+    }
+    until_.push_back(static_cast<float>(piece.distance - moved));
+    ++near.count;
+  }
+  near_.push_back(near);
+}
+
+void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out) {
   out = {};
   std::copy(spheres, spheres + lanes, out.before.begin());
   for (std::uint32_t n = first_[group]; n < first_[group + 1]; ++n) {
-    const auto [l, id] = near_[n];
-    const View& view = views_[id];
+    NearSphere& near = near_[n];
+    const std::uint32_t l = near.lane;
+    const std::vector<Piece>& pieces = views_[near.id].pieces;
     const Vector<3> c = place(spheres[l]);
-    const double r = spheres[l].r, moved = (c - view.at).norm();
-    double free = view.reach - moved;
+    const double r = spheres[l].r;
+    near.way += (c - near.last).norm();
+    near.last = c;
+    double free = near.beyond - near.way;
     std::array<Contact, most_contacts> contacts;
     std::size_t count = 0;
-    for (const Piece& piece : view.pieces) {
-      if (piece.distance - moved >= r) {
-        free = std::min(free, piece.distance - moved);
-        break;
+    for (std::uint32_t k = 0; k < near.count; ++k) {
+      float& until = until_[near.first + k];
+      if (until - near.way >= r) {
+        free = std::min(free, until - near.way);
+        continue;
       }
-      const Vector<3> away = offset(piece.facet, c);
+      const Vector<3> away = offset(pieces[k].facet, c);
       const double d = away.norm();
+      until = static_cast<float>(d + near.way);
       free = std::min(free, d);
       if (d < r && d > 0 && count < most_contacts) contacts[count++] = {away / d, r - d};
     }
@@ -157,7 +182,8 @@ void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out
     for (std::size_t k = 0; k < count; ++k) {
       const Contact contact = contacts[k];
       const auto agrees = [&](const Contact& other) { return other.normal.dot(contact.normal) > one_patch; };
-      if (std::any_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(taken), agrees)) continue;
+      if (std::any_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(taken), agrees))
+        continue;
       contacts[taken++] = contact;
       sum += contact.depth * contact.normal;
       const double ratio = contact.depth / r;
@@ -173,29 +199,26 @@ void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out
 
 void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spheres) const {
   for (std::uint32_t n = first_[group]; n < first_[group + 1]; ++n) {
-    const auto [l, id] = near_[n];
-    SoftSphere& now = spheres[l];
-    const SoftSphere& before = push.before[l];
+    const NearSphere& near = near_[n];
+    SoftSphere& now = spheres[near.lane];
+    const SoftSphere& before = push.before[near.lane];
     Vector<3> move;
     for (int k = 0; k < 3; ++k) move[k] = unit_[k] * steps_between(before, now, k);
     const double length = move.norm();
-    if (length <= (1 - kept) * push.free[l]) continue;
-    const View& view = views_[id];
-    const Vector<3> c = place(before);
-    const double moved = (c - view.at).norm();
-    // What the view does not show may begin at its reach.
-    double share = std::min(1.0, (1 - kept) * std::max(0.0, view.reach - moved) / length);
-    for (const Piece& piece : view.pieces) {
-      if (piece.distance - moved > length) break;
-      const Vector<3> away = offset(piece.facet, c);
+    if (length <= (1 - kept) * push.free[near.lane]) continue;
+    const std::vector<Piece>& pieces = views_[near.id].pieces;
+    const Vector<3>& c = near.last;
+    double share = std::min(1.0, (1 - kept) * std::max(0.0, near.beyond - near.way) / length);
+    for (std::uint32_t k = 0; k < near.count; ++k) {
+      if (until_[near.first + k] - near.way > length) continue;
+      const Vector<3> away = offset(pieces[k].facet, c);
       const double d = away.norm();
       if (!(d > 0)) {
         share = 0;
         break;
       }
-      const double after = distance_after(piece.facet, c, away, d, move);
-      if (after >= kept * d && after >= units_kept * resolution_) continue;
-      if (after >= d) continue;
+      const double after = distance_after(pieces[k].facet, c, away, d, move);
+      if (after >= d || (after >= kept * d && after >= units_kept * resolution_)) continue;
       share = std::min(share, d <= units_kept * resolution_ ? 0.0 : (1 - kept) * d / (d - after));
     }
     if (share < 1) shorten(now, before, share);

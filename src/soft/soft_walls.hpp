@@ -28,8 +28,9 @@ struct alignas(64) WallPush {
 /// wall: a move is shortened to nine tenths of the way to the first facet in its path, and so is, when lists
 /// are built anew, the way of a sphere that was far from the wall and has moved farther than that.
 ///
-/// Facets are asked for once and kept with the sphere until it has moved by the skin; only those nearer than
-/// the radius and the distance moved are looked at. Cost of a sweep: about 20 ns a facet that is looked at.
+/// Facets are asked for once and kept with the sphere until it has moved by the skin; one is looked at again
+/// only when the sphere has gone far enough since the last time to touch it. Cost of a sweep: about 20 ns a
+/// facet that is looked at.
 class SoftWalls {
  public:
   /// Spheres have the radii that SoftSphere gives them, times at most `swelling`. A sphere's place on axis k
@@ -51,7 +52,7 @@ class SoftWalls {
 
   bool near(std::size_t group) const { return first_[group] < first_[group + 1]; }
   /// Precondition: near(group); `spheres` is the group's first.
-  void push(std::size_t group, const SoftSphere* spheres, WallPush& out) const;
+  void push(std::size_t group, const SoftSphere* spheres, WallPush& out);
   /// Shortens the moves of the group from `push.before` so that no centre passes the wall.
   void guard(std::size_t group, const WallPush& push, SoftSphere* spheres) const;
 
@@ -66,24 +67,31 @@ class SoftWalls {
   /// What a sphere knows of the wall.
   struct View {
     Vector<3> at = Vector<3>::Zero();
-    double clearance = 0;         // of `at`, or a lower bound
-    double reach = 0;             // all pieces nearer than this to `at` are there
-    std::vector<Piece> pieces;    // nearest first
+    double clearance = 0;       // of `at`, or a lower bound
+    double reach = 0;           // all pieces nearer than this to `at` are there
+    std::vector<Piece> pieces;  // nearest first
   };
+  /// A sphere that may meet a wall until lists are built anew: what a sweep touches, in its order.
   struct NearSphere {
     std::uint32_t lane, id;
+    std::uint32_t first, count;  // its pieces, the first `count` of its view, in until_
+    Vector<3> last;              // where it was pushed last
+    double way;                  // gone since the lists were built
+    double beyond;               // no other piece was nearer than this then
   };
 
   Vector<3> place(const SoftSphere& s) const;
+  void add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere);
   bool look(const Vector<3>& at, double r, double skin, View& view) const;
 
   const Container& container_;
   Vector<3> corner_, unit_;
   double resolution_;
   double skin_ = 0;
-  std::vector<View> views_;             // by id
-  std::vector<std::uint32_t> first_;    // of a group in near_
-  std::vector<NearSphere> near_;        // by group
+  std::vector<View> views_;           // by id
+  std::vector<std::uint32_t> first_;  // of a group in near_
+  std::vector<NearSphere> near_;      // by group
+  std::vector<float> until_;          // no piece is nearer to the centre than this less NearSphere::way
   mutable std::atomic<std::uint64_t> queries_ = 0;
 };
 

@@ -18,12 +18,26 @@ constexpr double share_of_margin = 0.97;
 /// After so many sweeps it is looked at how far things are.
 constexpr int sweeps_a_look = 25;
 /// Stuck: the strain keeps more than this share of itself between so many looks in a row.
-constexpr double hardly_freer = 0.93;
+constexpr double hardly_freer = 0.85;
 constexpr int patience = 2;
 constexpr double burst_swelling = 1.02;
 constexpr int burst_sweeps = 50;
 /// Random places that are looked at for each sphere to find holes.
-constexpr double probes_a_sphere = 2;
+/// The indices of the `count` largest, the largest first.
+std::vector<std::uint32_t> most_squeezed(const std::vector<float>& stress, std::size_t count) {
+  std::vector<std::uint32_t> ids(stress.size());
+  std::iota(ids.begin(), ids.end(), 0u);
+  count = std::min(count, ids.size());
+  std::ranges::partial_sort(ids, ids.begin() + static_cast<std::ptrdiff_t>(count), [&](auto a, auto b) {
+    return stress[a] != stress[b] ? stress[a] > stress[b] : a < b;
+  });
+  ids.resize(count);
+  return ids;
+}
+
+constexpr double probes_a_sphere = 2, least_probes = 1000;
+/// Sum of squared overlap ratios of a sphere that will not find its way by itself.
+constexpr float severe_squeeze = 0.05f;
 
 }  // namespace
 
@@ -46,8 +60,12 @@ void Crowd::measure() {
   largest_overlap_ = packing_->sweep_and_measure(omega_settling);
   ++sweeps_;
   double sum = 0;
-  for (const float s : packing_->stress()) sum += s;
-  strain_ = std::sqrt(sum / static_cast<double>(size()));
+  severe_ = 0;
+  for (const float s : packing_->stress()) {
+    sum += std::sqrt(s);
+    if (s > severe_squeeze) ++severe_;
+  }
+  strain_ = sum / static_cast<double>(size());
 }
 
 Crowd::Rest Crowd::settle(const Monitor& monitor, const std::function<void()>& milestone) {
@@ -79,62 +97,54 @@ void Crowd::burst() {
   packing_->swell(1 + margin);
 }
 
-std::vector<std::uint32_t> Crowd::most_squeezed(std::size_t count) const {
+void Crowd::relocate(double share, Random& random) {
   const std::vector<float> stress = packing_->stress();
-  std::vector<std::uint32_t> ids(stress.size());
-  std::iota(ids.begin(), ids.end(), 0u);
-  count = std::min(count, ids.size());
-  std::ranges::partial_sort(ids, ids.begin() + static_cast<std::ptrdiff_t>(count), [&](auto a, auto b) {
-    return stress[a] != stress[b] ? stress[a] > stress[b] : a < b;
-  });
-  ids.resize(count);
-  return ids;
+  const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(size())));
+  packing_->write_to(spheres_);
+  move_to_holes(most_squeezed(stress, std::max(count, severe_)), random);
 }
 
-void Crowd::relocate(double share, Random& random) {
-  const auto count = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(size())));
-  std::vector<std::uint32_t> ids = most_squeezed(count);
-  packing_->write_to(spheres_);
-  const auto probes = static_cast<std::size_t>(1000 + probes_a_sphere * static_cast<double>(size()));
-  const std::vector<Hole> holes = emptiest_holes(container_, places_, spheres_, probes, count, random);
+void Crowd::move_to_holes(std::vector<std::uint32_t> ids, Random& random) {
   std::ranges::stable_sort(ids, std::greater<>(), [&](std::uint32_t i) { return spheres_.r[i]; });
+  std::vector<double> radii;
+  for (const std::uint32_t i : ids) radii.push_back(spheres_.r[i]);
+  const std::vector<Hole> holes = holes_for(radii, container_, places_, spheres_, probes(), random);
   std::vector<SoftPacking::Move> moves;
-  for (std::size_t k = 0; k < std::min(ids.size(), holes.size()); ++k) {
+  for (std::size_t k = 0; k < holes.size(); ++k) {
     spheres_.set_center(ids[k], holes[k].place);
     moves.push_back({ids[k], holes[k].place});
   }
   packing_->put(moves);
 }
 
-void Crowd::drop_last(std::size_t count) {
-  count = std::min(count, size() - 1);
-  packing_->write_to(spheres_);
-  const auto kept = static_cast<std::uint32_t>(size() - count);
-  std::vector<bool> squeezed(size(), false);
-  for (const std::uint32_t i : most_squeezed(count)) squeezed[i] = true;
-  std::uint32_t goes = kept;  // the next that goes and whose own place is not squeezed
-  for (std::uint32_t i = 0; i < kept; ++i) {
-    if (!squeezed[i]) continue;
-    while (squeezed[goes]) ++goes;
-    spheres_.set_center(i, spheres_.center(goes++));
-  }
-  spheres_.resize(kept);
-  prepare();
+std::size_t Crowd::probes() const {
+  return static_cast<std::size_t>(least_probes + probes_a_sphere * static_cast<double>(size()));
 }
 
-void Crowd::add(std::span<const double> radii, Random& random) {
+void Crowd::drop_last(std::size_t count, Random& random) {
+  count = std::min(count, size() - 1);
   packing_->write_to(spheres_);
-  const auto probes = static_cast<std::size_t>(1000 + probes_a_sphere * static_cast<double>(size()));
-  const std::vector<Hole> holes =
-      emptiest_holes(container_, places_, spheres_, probes, radii.size(), random);
-  std::vector<double> ordered(radii.begin(), radii.end());
+  std::vector<float> stress = packing_->stress();
+  spheres_.resize(size() - count);
+  stress.resize(size());
+  prepare();
+  move_to_holes(most_squeezed(stress, count), random);
+}
+
+std::size_t Crowd::add(std::span<const double> radii, Random& random) {
+  packing_->write_to(spheres_);
   std::vector<std::size_t> order(radii.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return radii[i]; });
-  std::vector<Vector<3>> place(radii.size(), holes.front().place);
-  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = holes[k % holes.size()].place;
+  std::vector<double> descending;
+  for (const std::size_t i : order) descending.push_back(radii[i]);
+  const std::vector<Hole> holes = holes_for(descending, container_, places_, spheres_, probes(), random);
+  if (holes.size() < radii.size()) return 0;
+  std::vector<Vector<3>> place(radii.size());
+  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = holes[k].place;
   for (std::size_t i = 0; i < radii.size(); ++i) spheres_.push_back(place[i], radii[i]);
   prepare();
+  return radii.size();
 }
 
 void Crowd::restore(Spheres<3> spheres) {

@@ -40,23 +40,25 @@ class Crowd {
   /// Sweeps with larger radii for a while and then goes back, which shakes what is stuck out of its place.
   void burst();
 
-  /// Puts the share of the spheres that are squeezed most into the largest holes, the largest into the
-  /// largest.
+  /// Puts the share of the spheres that are squeezed most, and all that are squeezed severely, into the
+  /// largest holes where they clear the wall, the largest first.
   void relocate(double share, Random& random);
 
-  /// Takes away the last `count` spheres. The places that become empty are those where spheres are squeezed
-  /// most; who is squeezed there takes the place of one that goes.
-  void drop_last(std::size_t count);
+  /// Takes away the last `count` spheres, and puts as many that are squeezed most into holes: so the places
+  /// that become empty are those where there is least room.
+  void drop_last(std::size_t count, Random& random);
 
-  /// Adds spheres in the largest holes.
-  void add(std::span<const double> radii, Random& random);
+  /// Adds spheres in the largest holes. Returns how many, which is none if there were not holes for all.
+  std::size_t add(std::span<const double> radii, Random& random);
 
   /// Puts everything back to where `spheres` are: fewer, perhaps.
   void restore(Spheres<3> spheres);
 
   double largest_overlap() const { return largest_overlap_; }
-  /// Root of the mean over the spheres of the sum of their squared overlap ratios.
+  /// Mean over the spheres of the root of the sum of their squared overlap ratios.
   double strain() const { return strain_; }
+  /// How many spheres overlap so much that they will not find a place by themselves.
+  std::size_t severely_squeezed() const { return severe_; }
 
   std::uint64_t sweeps() const { return sweeps_; }
   std::uint64_t list_builds() const { return list_builds_ + packing_->builds(); }
@@ -65,7 +67,8 @@ class Crowd {
  private:
   void measure();
   void prepare();
-  std::vector<std::uint32_t> most_squeezed(std::size_t count) const;
+  std::size_t probes() const;
+  void move_to_holes(std::vector<std::uint32_t> ids, Random& random);
 
   const Container& container_;
   const Places& places_;
@@ -73,6 +76,7 @@ class Crowd {
   std::unique_ptr<SoftPacking> packing_;
   double largest_overlap_ = 1;
   double strain_ = 1;
+  std::size_t severe_ = 0;
   std::uint64_t sweeps_ = 0, list_builds_ = 0, wall_queries_ = 0;
 };
 

@@ -9,8 +9,10 @@
 namespace bernal {
 namespace {
 
-/// Of the probes so many times `wanted` are looked at closely: neighbouring ones find the same hole.
+/// Of the probes so many for each hole that is wanted are looked at closely: neighbouring ones find the same.
 constexpr std::size_t candidates_a_hole = 8;
+/// Of radii that look for holes among themselves.
+constexpr std::size_t most_groups = 4;
 
 double room_between(const CellGrid<3>& grid, const Spheres<3>& spheres, const Vector<3>& p, double enough,
                     double limit) {
@@ -28,41 +30,69 @@ double room_between(const CellGrid<3>& grid, const Spheres<3>& spheres, const Ve
 
 }  // namespace
 
-std::vector<Hole> emptiest_holes(const Container& container, const Places& places,
-                                 const Spheres<3>& spheres, std::size_t probes, std::size_t wanted,
-                                 Random& random) {
+std::vector<Hole> holes_for(std::span<const double> radii, const Container& container, const Places& places,
+                            const Spheres<3>& spheres, std::size_t probes, Random& random) {
   const auto [least, most] = std::ranges::minmax(spheres.r);
   CellGrid<3> grid(container.bounds(), least, most, spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i)
     grid.insert(static_cast<CellGrid<3>::Id>(i), spheres.center(i), spheres.r[i]);
 
+  // Of a hole a sphere needs to clear the wall first of all; the roomiest places may all be too near to it.
   const auto roomier = [](const Hole& a, const Hole& b) { return a.room > b.room; };
-  std::vector<Hole> best;  // a heap, the least roomy on top
-  const std::size_t candidates = candidates_a_hole * wanted;
+  struct Group {
+    double largest;
+    std::size_t candidates;
+    std::vector<Hole> best = {};  // a heap, the least roomy on top
+    double enough(double none) const { return best.size() < candidates ? none : best.front().room; }
+  };
+  std::vector<Group> groups;
+  for (std::size_t g = 0; g < most_groups; ++g) {
+    const std::size_t first = radii.size() * g / most_groups, last = radii.size() * (g + 1) / most_groups;
+    if (last > first) groups.push_back({radii[first], candidates_a_hole * (last - first)});
+  }
   for (std::size_t n = 0; n < probes; ++n) {
     const Vector<3> p = places.draw(random);
-    const double enough = best.size() < candidates ? -std::numeric_limits<double>::infinity() : best.front().room;
-    double room = room_between(grid, spheres, p, enough, most);
+    double enough = most;
+    for (const Group& group : groups) enough = std::min(enough, group.enough(-most));
+    const double room = room_between(grid, spheres, p, enough, most);
     if (room <= enough) continue;
-    room = std::min(room, container.clearance_within(p, std::max(room, 0.0)));
+    const double clearance = container.clearance_within(p, radii.front());
     // A centre stays clear of the wall, as it will not pass it.
-    if (room <= enough || !container.contains(p, 0.5 * least)) continue;
-    if (best.size() == candidates) {
-      std::ranges::pop_heap(best, roomier);
-      best.pop_back();
+    if (clearance < 0.5 * radii.back()) continue;
+    for (Group& group : groups) {
+      const bool last_resort = &group == &groups.back();
+      if ((clearance < group.largest && !last_resort) || room <= group.enough(-most)) continue;
+      if (group.best.size() == group.candidates) {
+        std::ranges::pop_heap(group.best, roomier);
+        group.best.pop_back();
+      }
+      group.best.push_back({p, room, clearance});
+      std::ranges::push_heap(group.best, roomier);
+      break;
     }
-    best.push_back({p, room});
-    std::ranges::push_heap(best, roomier);
   }
+  std::vector<Hole> best;
+  for (const Group& group : groups) best.insert(best.end(), group.best.begin(), group.best.end());
   std::ranges::sort(best, roomier);
+
   std::vector<Hole> holes;
-  for (const Hole& candidate : best) {
-    if (holes.size() == wanted) break;
-    const auto is_same = [&](const Hole& other) {
-      const double apart = std::max(other.room, 0.5 * least);
-      return (other.place - candidate.place).squaredNorm() < apart * apart;
+  std::vector<bool> given(best.size(), false);
+  for (const double r : radii) {
+    const auto is_apart = [&](const Hole& candidate) {
+      return std::ranges::none_of(holes, [&](const Hole& other) {
+        return (other.place - candidate.place).squaredNorm() < 0.25 * (r + least) * (r + least);
+      });
     };
-    if (std::ranges::none_of(holes, is_same)) holes.push_back(candidate);
+    std::size_t chosen = best.size();
+    for (std::size_t k = 0; k < best.size(); ++k) {
+      if (given[k] || (chosen < best.size() && best[k].clearance <= best[chosen].clearance)) continue;
+      if (!is_apart(best[k])) continue;
+      chosen = k;
+      if (best[k].clearance >= r) break;
+    }
+    if (chosen == best.size()) break;
+    given[chosen] = true;
+    holes.push_back(best[chosen]);
   }
   return holes;
 }

@@ -14,11 +14,16 @@ namespace {
 constexpr double relocated = 0.002;
 /// What is taken out, in root mean squared overlap ratios times spheres.
 constexpr double taken_out = 1.5;
-/// Strain above which stirring is of little use.
-constexpr double hopeless = 5e-3;
-constexpr double patience_when_hopeless = 2;
+/// Stirring helps as long as the strain falls below this share of the least so far.
+constexpr double progress = 0.9;
+/// Strain at which there are so many spheres too many that stirring is of no use.
+constexpr double hopeless = 0.02;
+constexpr double patience_when_hopeless = 1;
+/// Largest overlap ratio, in strains, above which it is only a few spheres that are stuck.
+constexpr double local_jam = 40;
 /// What is pushed in at a time, first and at last.
 constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
+constexpr int most_hand_overs = 20;
 /// Tries to find a place where a sphere clears the wall.
 constexpr int tries = 100;
 
@@ -30,22 +35,26 @@ class Relaxation {
       : work_(work),
         options_(options),
         random_(work.random(Stream::relax)),
-        crowd_(work.bed.container(), work.bed.places(), spheres_to_start_from()) {}
+        crowd_(work.bed.container(), work.bed.places(), spheres_to_start_from()),
+        target_count_(crowd_.size()) {}
 
   StageEnd run() {
-    bool free = relax();
-    while (!free && !over_) {
-      const double count = taken_out * crowd_.strain() * static_cast<double>(crowd_.size());
-      if (crowd_.size() <= 1) break;
-      crowd_.drop_last(std::max<std::size_t>(1, static_cast<std::size_t>(count)));
-      short_of_target_ = true;
-      free = relax();
+    bool free = relax(options_.patience);
+    for (double share = taken_out, patience = options_.patience; !free && !cancelled_ && crowd_.size() > 1;) {
+      const double count = share * crowd_.strain() * static_cast<double>(crowd_.size());
+      crowd_.drop_last(std::max<std::size_t>(1, static_cast<std::size_t>(count)), random_);
+      share *= 1.25;
+      patience = over_ ? 0 : 0.7 * patience;
+      free = relax(patience);
     }
-    if (free && work_.target.fill && !over_) push_in();
-    hand_over();
+    if (free && !over_) push_in();
+    // Single precision saw them free of overlap in motion; a few more sweeps bring all of them there.
+    for (int k = 0; !hand_over() && free && k < most_hand_overs; ++k)
+      crowd_.settle(work_.monitor, [this] { report(); });
+    log_effects();
     if (cancelled_) return StageEnd::cancelled;
-    if (over_ && !free) return StageEnd::hit_limit;
-    return short_of_target_ ? StageEnd::full : StageEnd::converged;
+    if (over_) return StageEnd::hit_limit;
+    return crowd_.size() < target_count_ ? StageEnd::full : StageEnd::converged;
   }
 
  private:
@@ -95,16 +104,25 @@ class Relaxation {
   }
 
   /// Settles and stirs. Returns whether the spheres came free of overlap.
-  bool relax() {
-    for (double failures = 0;; ++failures) {
+  bool relax(double patience) {
+    double least_strain = 1e300;
+    for (double failures = 0;;) {
       const Crowd::Rest rest = crowd_.settle(work_.monitor, [this] { report(); });
       if (rest == Crowd::Rest::free) return true;
       cancelled_ = rest == Crowd::Rest::cancelled;
       over_ = over_ || cancelled_ || static_cast<double>(crowd_.sweeps()) > options_.sweeps ||
               (options_.seconds > 0 && seconds() > options_.seconds);
       if (over_) return false;
-      if (failures >= (crowd_.strain() > hopeless ? patience_when_hopeless : options_.patience)) return false;
-      if (static_cast<int>(failures) % 2 == 0)
+      if (crowd_.strain() < progress * least_strain) {
+        least_strain = crowd_.strain();
+        failures = 0;
+      } else if (++failures > (crowd_.strain() > hopeless ? patience_when_hopeless : patience)) {
+        return false;
+      }
+      // Bursts do most; what they do not help to is in the wrong chamber.
+      const bool local =
+          crowd_.severely_squeezed() > 0 || crowd_.largest_overlap() > local_jam * crowd_.strain();
+      if (failures == 0 && !local)
         crowd_.burst();
       else
         crowd_.relocate(relocated, random_);
@@ -114,17 +132,20 @@ class Relaxation {
   /// More and more of the sequence, until even a few find no room.
   void push_in() {
     const Supply& supply = work_.supply;
+    const std::size_t most = work_.target.fill ? supply.wanted() : target_count_;
     double share = pushed_in;
     while (share >= least_pushed_in && !over_) {
       const Spheres<3> before = crowd_.spheres();
       const std::size_t n = before.size();
-      const auto more = std::min(supply.wanted() - n, static_cast<std::size_t>(std::ceil(share * static_cast<double>(n))));
+      const auto more =
+          std::min(most - n, static_cast<std::size_t>(std::ceil(share * static_cast<double>(n))));
       if (more == 0) return;
       std::vector<double> radii;
-      for (std::size_t k = 0; k < more; ++k) radii.push_back(supply.radius(static_cast<std::uint32_t>(n + k)));
-      crowd_.add(radii, random_);
+      for (std::size_t k = 0; k < more; ++k)
+        radii.push_back(supply.radius(static_cast<std::uint32_t>(n + k)));
+      if (crowd_.add(radii, random_) == 0) return;
       crowd_.burst();
-      if (relax()) continue;
+      if (relax(options_.patience)) continue;
       crowd_.restore(before);
       if (more == 1) return;
       share /= 2;
@@ -141,8 +162,8 @@ class Relaxation {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
-  /// Into the bed, in the order of the sequence.
-  void hand_over() {
+  /// Into the bed, in the order of the sequence. Returns whether all fit.
+  bool hand_over() {
     Bed& bed = work_.bed;
     bed.remove_tags_from(0);
     const Spheres<3>& spheres = crowd_.spheres();
@@ -152,6 +173,10 @@ class Relaxation {
       if (placed[i]) bed.insert(spheres.center(i), spheres.r[i], static_cast<std::uint32_t>(i));
     }
     work_.supply.set_placed(placed);
+    return bed.size() == spheres.size();
+  }
+
+  void log_effects() {
     work_.effects["neighbour lists"].calls += crowd_.list_builds();
     work_.effects["walls"].calls += crowd_.wall_queries();
   }
@@ -161,7 +186,7 @@ class Relaxation {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   Random random_;
   Crowd crowd_;
-  bool short_of_target_ = false;
+  const std::size_t target_count_;
   bool over_ = false;  // there is no more time, or no more patience of the user
   bool cancelled_ = false;
 };

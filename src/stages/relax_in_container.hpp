@@ -4,9 +4,9 @@
 namespace bernal {
 
 struct RelaxInContainerOptions {
-  double patience = 12;     ///< how often spheres that are stuck are stirred before some are taken out
-  double sweeps = 20000;    ///< at most
-  double seconds = 0;       ///< at most; 0: as long as it takes
+  double patience = 12;   ///< how often spheres that are stuck are stirred before some are taken out
+  double sweeps = 20000;  ///< at most
+  double seconds = 0;     ///< at most; 0: as long as it takes
 };
 
 /// Random close packing in a container with the sizes as they were drawn.
