@@ -109,14 +109,14 @@ void print_order(const BondOrder& order) {
 void print_layers(const WallProfile& profile) {
   constexpr std::size_t rows = 10, most_columns = 5;
   const std::size_t n = std::min(profile.layers.size(), rows * most_columns);
-  for (std::size_t k = 0; k < n; k += rows) fmt::print("{:>6} {:>8}   ", "z", "porosity");
+  for (std::size_t k = 0; k < n; k += rows) fmt::print("{:>9} {:>8}", "z", "porosity");
   fmt::print("\n");
   for (std::size_t row = 0; row < std::min(n, rows); ++row) {
     for (std::size_t k = row; k < n; k += rows) {
       const WallProfile::Layer& layer = profile.layers[k];
       const bool last = k + 1 == profile.layers.size();
       const double z = (last ? layer.from : 0.5 * (layer.from + layer.to)) / profile.mean_diameter;
-      fmt::print("{:>6} {:>8.4f}   ", fmt::format("{}{:.2f}", last ? ">" : "", z), layer.porosity);
+      fmt::print("{:>9} {:>8.4f}", fmt::format("{}{:.2f}", last ? ">" : "", z), layer.porosity);
     }
     fmt::print("\n");
   }

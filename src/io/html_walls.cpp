@@ -34,7 +34,8 @@ void write_order(Page& page, const BondOrder& order) {
       page.row(name, fmt::format("{:.2f} %", 100 * count.fraction()),
                fmt::format("of the {} spheres{}", grouped(count.spheres), what));
   };
-  row("crystalline", order.all, "; about half a per cent of a random packing of equal spheres looks so");
+  row("crystalline", order.all,
+      "; up to about one per cent of a random packing of equal spheres looks so by chance");
   if (order.near_wall) row("near the wall", *order.near_wall, " that a mean diameter or less parts from it");
   if (order.core) row("in the core", *order.core, " whose centres are there");
 }

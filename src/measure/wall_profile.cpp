@@ -58,6 +58,10 @@ struct Zones {
   }
 };
 
+/// What the last layer has of the container at least: where next to nothing is deeper, a porosity is that of
+/// one pore or sphere.
+constexpr double least_rest = 0.01;
+
 /// Layers of equal thickness down to `reach`, or to half a layer from the deepest point, and one for the
 /// rest; none of them without volume.
 std::vector<double> edges_of(const Depths& depths, double thickness, double reach) {
@@ -66,7 +70,8 @@ std::vector<double> edges_of(const Depths& depths, double thickness, double reac
   for (int k = 1;; ++k) {
     const double z = k * thickness;
     if (z > reach + slack * thickness || z > depths.deepest() - 0.5 * thickness) break;
-    if (depths.deeper(z) > 0 && depths.deeper(z) < depths.deeper(edges.back())) edges.push_back(z);
+    if (depths.deeper(z) < least_rest) break;
+    if (depths.deeper(z) < depths.deeper(edges.back())) edges.push_back(z);
   }
   return edges;
 }

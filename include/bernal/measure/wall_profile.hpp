@@ -25,8 +25,10 @@ enum class Region : std::uint8_t {
 /// container's; so the mean of the porosities, weighted with `share`, is that of the packing, to rounding.
 struct WallProfile {
   struct Layer {
-    double from, to;  ///< z; the last layer holds all that is deeper, in a deep mesh to infinity
-    double share;     ///< of the container's volume; all add up to 1
+    /// z; the last layer holds all that is deeper, a hundredth of the container or more; in a mesh that is
+    /// deeper than was looked at it ends at infinity.
+    double from, to;
+    double share;  ///< of the container's volume; all add up to 1
     double porosity;
     double error;  ///< its standard error from sampling, as if points were independent; they do better
   };
