@@ -19,7 +19,7 @@ using testing::packing_of;
 
 Packing packing_in(Spheres<3> spheres, const Shape& shape) {
   Packing packing = packing_of(std::move(spheres), BoxShape{});
-  packing.domain = shape;
+  packing.domain.emplace<Shape>(shape);
   packing.volume = volume_of(packing.domain);
   return packing;
 }
