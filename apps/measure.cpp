@@ -58,28 +58,26 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
   }
 }
 
-/// g(r) as columns of blocks; what is higher than the chart is cut.
-void print_chart(const RadialDistribution& radial) {
-  constexpr int columns = 75, highest = 3, rows_a_unit = 3, rows = highest * rows_a_unit;
+/// Values from 0 to `highest` as columns of blocks; what is higher is cut. A row is 1 / rows_a_unit high.
+void print_chart(const std::vector<double>& values, int highest, int rows_a_unit, const std::string& reach) {
+  constexpr int columns = 75;
   static const char* const blocks[] = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
   std::vector<double> heights;
-  const std::size_t bins = radial.g.size();
   for (int k = 0; k < columns; ++k) {
-    const std::size_t first = bins * static_cast<std::size_t>(k) / columns;
-    const std::size_t end = std::max(first + 1, bins * (static_cast<std::size_t>(k) + 1) / columns);
+    const std::size_t first = values.size() * static_cast<std::size_t>(k) / columns;
+    const std::size_t end = std::max(first + 1, values.size() * (static_cast<std::size_t>(k) + 1) / columns);
     double sum = 0;
-    for (std::size_t bin = first; bin < end; ++bin) sum += radial.g[bin];
+    for (std::size_t bin = first; bin < end; ++bin) sum += values[bin];
     heights.push_back(8 * rows_a_unit * sum / static_cast<double>(end - first));
   }
-  for (int row = rows - 1; row >= 0; --row) {
+  for (int row = highest * rows_a_unit - 1; row >= 0; --row) {
     std::string line;
     for (const double height : heights)
       line += blocks[static_cast<int>(std::clamp(std::round(height - 8 * row), 0.0, 8.0))];
     const bool marked = (row + 1) % rows_a_unit == 0;
     fmt::print("{:>4} {}\n", marked ? fmt::format("{}", (row + 1) / rows_a_unit) : "", line);
   }
-  const double reach = radial.bin_width * static_cast<double>(bins) / radial.mean_diameter;
-  fmt::print("     0{:>{}}\n", fmt::format("{:.3g} diameters", reach), columns - 1);
+  fmt::print("     0{:>{}}\n", reach, columns - 1);
 }
 
 void print_radial(const Packing& packing, const std::optional<RadialDistribution>& radial) {
@@ -89,10 +87,78 @@ void print_radial(const Packing& packing, const std::optional<RadialDistribution
   }
   fmt::print("\ng(r), the radial distribution function; mean diameter {:.6g} {}, bins of {:.3g} {}\n",
              radial->mean_diameter, packing.scene.unit, radial->bin_width, packing.scene.unit);
-  print_chart(*radial);
+  const double reach = radial->bin_width * static_cast<double>(radial->g.size()) / radial->mean_diameter;
+  print_chart(radial->g, 3, 3, fmt::format("{:.3g} diameters", reach));
   for (const auto& peak : radial->peaks)
     fmt::print("peak              {:.2f} at {:.3f} diameters (± {:.2f}, ± {:.3f})\n", peak.g,
                peak.r / radial->mean_diameter, peak.error, 0.5 * radial->bin_width / radial->mean_diameter);
+}
+
+void print_order(const BondOrder& order) {
+  const auto percent = [](const BondOrder::Count& count) {
+    return count.spheres == 0
+               ? std::string("no spheres")
+               : fmt::format("{:.2f} % of {} spheres", 100 * count.fraction(), grouped(count.spheres));
+  };
+  fmt::print("\ncrystalline       {}, by the order of their bonds\n", percent(order.all));
+  if (order.near_wall) fmt::print("  near the wall   {}\n", percent(*order.near_wall));
+  if (order.core) fmt::print("  in the core     {}\n", percent(*order.core));
+}
+
+/// Ten layers a column: with the usual thickness one column a mean diameter.
+void print_layers(const WallProfile& profile) {
+  constexpr std::size_t rows = 10, most_columns = 5;
+  const std::size_t n = std::min(profile.layers.size(), rows * most_columns);
+  for (std::size_t k = 0; k < n; k += rows) fmt::print("{:>9} {:>8}", "z", "porosity");
+  fmt::print("\n");
+  for (std::size_t row = 0; row < std::min(n, rows); ++row) {
+    for (std::size_t k = row; k < n; k += rows) {
+      const WallProfile::Layer& layer = profile.layers[k];
+      const bool last = k + 1 == profile.layers.size();
+      const double z = (last ? layer.from : 0.5 * (layer.from + layer.to)) / profile.mean_diameter;
+      fmt::print("{:>9} {:>8.4f}", fmt::format("{}{:.2f}", last ? ">" : "", z), layer.porosity);
+    }
+    fmt::print("\n");
+  }
+}
+
+void print_walls(const Packing& packing, const WallProfile& profile) {
+  fmt::print("\nporosity over the distance z from the wall, in mean diameters of {:.6g} {}\n",
+             profile.mean_diameter, packing.scene.unit);
+  const std::size_t even = profile.layers.size() - 1;  // the last layer holds all that is deeper
+  if (even > 1) {
+    std::vector<double> porosities;
+    for (std::size_t k = 0; k < even; ++k) porosities.push_back(profile.layers[k].porosity);
+    print_chart(porosities, 1, 6,
+                fmt::format("{:.3g} diameters", profile.layers[even].from / profile.mean_diameter));
+  }
+  print_layers(profile);
+  double error = 0;
+  for (const WallProfile::Layer& layer : profile.layers) error = std::max(error, layer.error);
+  fmt::print("\nmean porosity     {:.6f}; standard error of a layer at most {:.2g}\n", profile.mean_porosity,
+             error);
+  if (profile.first_minimum)
+    fmt::print("first minimum     {:.3f} at {:.3f} mean diameters\n", profile.first_minimum->porosity,
+               profile.first_minimum->z / profile.mean_diameter);
+  fmt::print("near the wall     packing fraction {:.4f} within a mean diameter\n",
+             profile.near_wall_packing_fraction);
+  fmt::print("core              packing fraction {:.4f} ± {:.4f} beyond {:.3g} mean diameters{}\n",
+             profile.core_packing_fraction, profile.core_packing_error,
+             profile.core_from / profile.mean_diameter,
+             profile.has_core ? "" : ", the deeper half: too narrow for a core");
+  if (profile.segregation)
+    fmt::print("segregation       mean volume near the wall {:.4f} ± {:.4f} of that of all spheres\n",
+               profile.segregation->volume_ratio, profile.segregation->error);
+}
+
+void print_drawn(const DrawnComparison& drawn) {
+  if (drawn.missing == 0)
+    fmt::print("drawn sequence    the same sizes to the bit, less its tail");
+  else
+    fmt::print("drawn sequence    {} of as many draws are missing; quantiles differ by up to {:.2g} %",
+               grouped(drawn.missing), 100 * drawn.largest_deviation);
+  if (drawn.above_largest > 0) fmt::print("; {} larger draws passed over", grouped(drawn.above_largest));
+  fmt::print("\n");
 }
 
 void print_sizes(const Packing& packing, const SizeComparison& sizes) {
@@ -110,6 +176,7 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
              factor * sizes.asked_mean_radius);
   fmt::print("mean volume       {:.5f} of what was asked; ± {:.5f} is expected of independent draws\n",
              sizes.volume_ratio, sizes.volume_ratio_error);
+  if (sizes.drawn) print_drawn(*sizes.drawn);
   if (sizes.classes.size() == 1) return;
   if (!sizes.classes.empty()) {
     fmt::print("\n{:>12} {:>12} {:>12} {:>12}\n", diameters ? "diameter" : "radius", "spheres", "share",
@@ -132,6 +199,8 @@ void print(const Packing& packing, const Measurements& measured) {
   fmt::print("packing fraction  {:.6f}\n", measured.packing_fraction);
   print_contacts(packing, measured);
   print_radial(packing, measured.radial);
+  if (measured.walls) print_walls(packing, *measured.walls);
+  if (measured.order && !packing.spheres.empty()) print_order(*measured.order);
   if (measured.sizes) print_sizes(packing, *measured.sizes);
 }
 
@@ -152,8 +221,8 @@ void measure_folder(const MeasureCall& call) {
 
 void add_measure(CLI::App& app, int& status) {
   auto call = std::make_shared<MeasureCall>();
-  CLI::App* command =
-      app.add_subcommand("measure", "Contacts, rattlers, g(r), sizes against those asked for");
+  CLI::App* command = app.add_subcommand(
+      "measure", "Contacts, rattlers, g(r), porosity near walls, order, sizes against those asked for");
   command->add_option("DIR", call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read")
       ->required();
   command
@@ -168,6 +237,11 @@ void add_measure(CLI::App& app, int& status) {
   command->add_flag("--json", call->json, "One JSON object on standard output");
   command->footer(
       "Rattlers are taken out one after the other until every sphere left is held by D + 1 contacts.\n"
+      "In a container: porosity over the distance from the wall, the packing fraction of the core (more "
+      "than\n"
+      "3 mean diameters from it) and near it, and whether small spheres gather there. In three dimensions: "
+      "the\n"
+      "share of the spheres whose neighbours lie as in a crystal.\n"
       "Exit codes: 0 done; 2 bad input.");
   command->callback([call, &status] {
     measure_folder(*call);

@@ -194,6 +194,31 @@ std::string radial_chart(const RadialDistribution& radial) {
   return std::move(chart).finish();
 }
 
+std::string wall_chart(const WallProfile& profile) {
+  const std::size_t even = profile.layers.size() - 1;  // the last layer holds all that is deeper
+  if (even < 2) return {};
+  double highest = 1;
+  for (const auto& layer : profile.layers) highest = std::max(highest, layer.porosity + layer.error);
+  Chart chart(0, profile.layers[even].from / profile.mean_diameter, 0, highest);
+  chart.axes("distance from the wall (mean diameters)", "porosity");
+  const auto point = [&](std::string& path, std::size_t k, double porosity) {
+    const double middle = 0.5 * (profile.layers[k].from + profile.layers[k].to) / profile.mean_diameter;
+    fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', chart.x(middle),
+                   chart.y(std::clamp(porosity, 0.0, highest)));
+  };
+  std::string line, band;
+  for (std::size_t k = 0; k < even; ++k) {
+    point(line, k, profile.layers[k].porosity);
+    point(band, k, profile.layers[k].porosity + profile.layers[k].error);
+  }
+  for (std::size_t k = even; k-- > 0;) point(band, k, profile.layers[k].porosity - profile.layers[k].error);
+  chart.add(
+      "<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/><path class=\"band\" d=\"{}Z\"/><path class=\"first "
+      "line\" d=\"{}\"/>",
+      left, chart.y(profile.mean_porosity), width - right, band, line);
+  return std::move(chart).finish();
+}
+
 std::string history_chart(std::span<const Milestone> history, double Milestone::*value,
                           std::string_view label) {
   std::vector<Moment> moments;

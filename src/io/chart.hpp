@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "bernal/measure/radial_distribution.hpp"
+#include "bernal/measure/wall_profile.hpp"
 #include "bernal/run/packing.hpp"
 
 namespace bernal {
@@ -22,6 +23,10 @@ std::string size_histogram(const SizeHistogram&);
 
 /// g over r in mean diameters, with the band of its error; what is higher than the axis is cut.
 std::string radial_chart(const RadialDistribution&);
+
+/// Porosity over the distance from the wall in mean diameters, with the band of its error and the mean as a
+/// dashed line; empty where there are fewer than two layers of equal thickness.
+std::string wall_chart(const WallProfile&);
 
 /// A line over the seconds of the run, one point a milestone, as inline SVG. Where a stage begins
 /// its name stands, if there is room for it. Precondition: at least two milestones.

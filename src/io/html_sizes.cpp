@@ -104,7 +104,17 @@ void write_comparison(Page& page, const SizeComparison& c, const Sizes& sizes) {
            100 * c.volume_ratio);
   if (std::isfinite(c.volume_ratio_error) && c.volume_ratio_error > 0)
     page.add(", where independent draws have a standard error of {:.2g} %", 100 * c.volume_ratio_error);
-  page.raw(".</p>\n");
+  page.raw(".");
+  if (c.drawn && c.drawn->missing == 0)
+    page.raw(" The sizes are those of the drawn sequence to the bit, less its tail: none was left out.");
+  else if (c.drawn)
+    page.add(
+        " Of as many draws {} are missing, and other sizes are there instead; in ascending order the sizes "
+        "differ from the drawn ones by up to {:.2g} %.",
+        grouped(c.drawn->missing), 100 * c.drawn->largest_deviation);
+  if (c.drawn && c.drawn->above_largest > 0)
+    page.add(" {} larger draws were passed over.", grouped(c.drawn->above_largest));
+  page.raw("</p>\n");
 }
 
 }  // namespace

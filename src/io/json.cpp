@@ -5,6 +5,11 @@ namespace {
 
 Json json_of(const Vector<3>& v) { return Json::array({v[0], v[1], v[2]}); }
 
+Json json_of(const BondOrder::Count& count) {
+  return {{"spheres", count.spheres}, {"crystalline", count.crystalline}, {"fraction", count.fraction()}};
+}
+Json json_of(const std::optional<BondOrder::Count>& count) { return count ? json_of(*count) : Json(); }
+
 }  // namespace
 
 Json contacts_json(const Contacts& contacts) {
@@ -19,6 +24,39 @@ Json contacts_json(const Contacts& contacts) {
             {"wall_contacts", contacts.backbone_walls},
             {"coordination", contacts.backbone_coordination},
             {"isostatic_contacts", or_null(contacts.isostatic)}}}};
+}
+
+Json crystalline_json(const std::optional<BondOrder>& order) {
+  if (!order) return {};
+  return {
+      {"all", json_of(order->all)}, {"near_wall", json_of(order->near_wall)}, {"core", json_of(order->core)}};
+}
+
+Json walls_json(const WallProfile& profile) {
+  const auto& least = profile.first_minimum;
+  const auto& segregation = profile.segregation;
+  return {{"mean_diameter", profile.mean_diameter},
+          {"mean_porosity", profile.mean_porosity},
+          {"near_wall_phi", profile.near_wall_packing_fraction},
+          {"core_phi", profile.core_packing_fraction},
+          {"core_phi_error", profile.core_packing_error},
+          {"core_from", profile.core_from},
+          {"has_core", profile.has_core},
+          {"first_minimum", least ? Json{{"z", least->z},
+                                         {"z_over_diameter", least->z / profile.mean_diameter},
+                                         {"porosity", least->porosity}}
+                                  : Json()},
+          {"segregation", segregation ? Json{{"spheres_near_wall", segregation->spheres},
+                                             {"mean_volume_ratio", segregation->volume_ratio},
+                                             {"error", segregation->error}}
+                                      : Json()}};
+}
+
+Json drawn_json(const SizeComparison& sizes) {
+  if (!sizes.drawn) return {};
+  return {{"missing", sizes.drawn->missing},
+          {"largest_deviation", sizes.drawn->largest_deviation},
+          {"above_largest", sizes.drawn->above_largest}};
 }
 
 Json::object_t::value_type domain_json(const Domain& domain) {

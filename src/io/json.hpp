@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bernal/domain/domain.hpp"
-#include "bernal/measure/contacts.hpp"
+#include "bernal/measure/measure.hpp"
 
 namespace bernal {
 
@@ -23,6 +23,16 @@ Json or_null(const std::optional<T>& value) {
 
 /// `coordination`, `contacts`, `rattlers` and what goes with them.
 Json contacts_json(const Contacts&);
+
+/// Spheres, crystalline ones and their share: of all, near the wall and in the core; null where there is no
+/// such order or region.
+Json crystalline_json(const std::optional<BondOrder>&);
+
+/// The figures of a wall profile, without its layers.
+Json walls_json(const WallProfile&);
+
+/// How the sizes differ from the drawn sequence, or null.
+Json drawn_json(const SizeComparison&);
 
 /// The key `box` with the edges of a periodic box, or `container` with kind, volume and bounds.
 Json::object_t::value_type domain_json(const Domain&);

@@ -35,8 +35,23 @@ Json json_of(const SizeComparison& sizes) {
           {"mean_radius", {{"realised", sizes.mean_radius}, {"asked", sizes.asked_mean_radius}}},
           {"mean_volume_ratio", sizes.volume_ratio},
           {"mean_volume_ratio_error", sizes.volume_ratio_error},
+          {"drawn", drawn_json(sizes)},
           {"quantiles", quantiles},
           {"classes", classes}};
+}
+
+/// The figures, as in report.json, and the layers.
+Json json_of(const WallProfile& profile) {
+  Json layers = Json::array();
+  for (const auto& layer : profile.layers)
+    layers.push_back({{"from", layer.from},
+                      {"to", layer.to},
+                      {"share", layer.share},
+                      {"porosity", layer.porosity},
+                      {"error", layer.error}});
+  Json json = walls_json(profile);
+  json["layers"] = layers;
+  return json;
 }
 
 }  // namespace
@@ -52,6 +67,8 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
   json.update(contacts_json(measured.contacts));
   json["by_gap"] = by_gap;
   json["g_r"] = measured.radial ? json_of(*measured.radial) : Json();
+  json["crystalline"] = crystalline_json(measured.order);
+  json["walls"] = measured.walls ? json_of(*measured.walls) : Json();
   json["sizes"] = measured.sizes ? json_of(*measured.sizes) : Json();
   json["hash"] = hash_of(packing.spheres);
   return text_of(json);

@@ -37,5 +37,6 @@ class Page {
 // Sections of report.html.
 void write_sizes(Page&, const Report&);
 void write_contacts(Page&, const Report&);
+void write_walls(Page&, const Report&);
 
 }  // namespace bernal

@@ -13,7 +13,8 @@ Json sizes_json(const Measurements& measured) {
   return {{"ks_statistic", measured.sizes->ks_statistic},
           {"ks_p_value", or_null(measured.sizes->ks_p_value)},
           {"chi_squared_p_value", or_null(measured.sizes->chi_squared_p_value)},
-          {"mean_volume_ratio", measured.sizes->volume_ratio}};
+          {"mean_volume_ratio", measured.sizes->volume_ratio},
+          {"drawn", drawn_json(*measured.sizes)}};
 }
 
 std::uint64_t peak_memory_bytes() {
@@ -52,7 +53,9 @@ std::string json_of(const Report& report) {
                {"unit", packing.scene.unit},
                {"phi", packing.packing_fraction()}};
   json.update(contacts_json(report.measured.contacts));
-  json.update({{"sizes", sizes_json(report.measured)},
+  json.update({{"crystalline", crystalline_json(report.measured.order)},
+               {"walls", report.measured.walls ? walls_json(*report.measured.walls) : Json()},
+               {"sizes", sizes_json(report.measured)},
                {"max_overlap", certificate.max_overlap},
                {"min_wall_gap", of_certificate["min_wall_gap"]},
                {"certified", certificate.certified},

@@ -1,6 +1,20 @@
 #include "bernal/measure/measure.hpp"
 
+#include <cmath>
+
 namespace bernal {
+namespace {
+
+SizeComparison compare_sizes_of(const Packing& packing, const SizeDistribution& asked) {
+  const std::vector<double>& radii = packing.spheres.r;
+  SizeComparison sizes = compare_sizes(radii, asked, packing.spheres.dimension());
+  const Draw draw = packing.scene.draw == "quantiles" ? Draw::quantiles : Draw::random;
+  const bool cut_tail = std::holds_alternative<Shape>(packing.domain) && !std::isfinite(asked.max());
+  sizes.drawn = compare_with_drawn(radii, {asked, packing.seed, draw}, cut_tail);
+  return sizes;
+}
+
+}  // namespace
 
 Measurements measure(const Packing& packing, const SizeDistribution* asked, const MeasureOptions& options) {
   Measurements measured;
@@ -11,8 +25,9 @@ Measurements measure(const Packing& packing, const SizeDistribution* asked, cons
   measured.contacts = measured.by_gap.back();
   measured.by_gap.pop_back();
   measured.radial = radial_distribution(packing, options.radial);
-  if (asked && !packing.spheres.empty())
-    measured.sizes = compare_sizes(packing.spheres.r, *asked, packing.spheres.dimension());
+  measured.walls = wall_profile(packing, options.walls);
+  measured.order = bond_order(packing, measured.walls ? measured.walls->regions : std::vector<Region>{});
+  if (asked && !packing.spheres.empty()) measured.sizes = compare_sizes_of(packing, *asked);
   return measured;
 }
 

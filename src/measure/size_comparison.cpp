@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include <boost/math/special_functions/gamma.hpp>
@@ -114,6 +115,28 @@ SizeComparison compare_sizes(std::span<const double> radii, const SizeDistributi
   compare_means(sorted, asked, dimension, result);
   for (const double share : {0.0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 1.0})
     result.quantiles.push_back({share, quantile(sorted, share), asked.quantile(share)});
+  return result;
+}
+
+std::optional<DrawnComparison> compare_with_drawn(std::span<const double> radii, RadiusSequence sequence,
+                                                  bool cut_tail) {
+  std::vector<double> there(radii.begin(), radii.end()), drawn;
+  std::ranges::sort(there);
+  DrawnComparison result;
+  while (drawn.size() < there.size()) {
+    const double r = sequence.next();
+    if (!cut_tail || r <= there.back()) {
+      drawn.push_back(r);
+    } else if (++result.above_largest > there.size()) {
+      return {};
+    }
+  }
+  std::ranges::sort(drawn);
+  std::vector<double> missing;
+  std::ranges::set_difference(drawn, there, std::back_inserter(missing));
+  result.missing = missing.size();
+  for (std::size_t k = 0; k < drawn.size(); ++k)
+    result.largest_deviation = std::max(result.largest_deviation, std::abs(there[k] / drawn[k] - 1));
   return result;
 }
 

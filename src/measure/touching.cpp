@@ -8,9 +8,9 @@
 #include <memory>
 #include <span>
 
-#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/domain/container.hpp"
+#include "measure/localised.hpp"
 #include "neighbors/point_grid.hpp"
 
 namespace bernal {
@@ -53,11 +53,19 @@ bool counts(std::uint32_t i, std::uint32_t j, const Vector<D>& d) {
   return false;
 }
 
+template <int D>
+void append(std::vector<NearPair>& out, std::uint32_t i, std::uint32_t j, double gap, const Vector<D>&) {
+  out.push_back({i, j, gap});
+}
+void append(std::vector<NearBond>& out, std::uint32_t i, std::uint32_t j, double, const Vector<3>& d) {
+  out.push_back({i, j, d});
+}
+
 /// The pairs of sphere i, at `c`, with spheres of its own level and of larger ones: each pair is met from its
 /// smaller end, which need not look far.
-template <int D>
+template <int D, class Found>
 void append_pairs(const Spheres<D>& spheres, std::span<const Level<D>> levels, std::uint32_t i,
-                  const Vector<D>& c, double widest_gap, std::vector<NearPair>& out) {
+                  const Vector<D>& c, double widest_gap, std::vector<Found>& out) {
   const double r = spheres.r[i];
   for (const Level<D>& level : levels) {
     const bool own = &level == &levels.back();
@@ -67,47 +75,29 @@ void append_pairs(const Spheres<D>& spheres, std::span<const Level<D>> levels, s
       const double squared = d.squaredNorm();
       if (!(squared < reach * reach)) return;
       const double sum = r + spheres.r[j], gap = (std::sqrt(squared) - sum) / sum;
-      if (gap < widest_gap) out.push_back({i, j, gap});
+      if (gap < widest_gap) append(out, i, j, gap, d);
     });
   }
 }
 
-template <int D>
-std::vector<NearPair> pairs_among(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
+template <class Found, int D>
+std::vector<Found> pairs_among(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
   constexpr std::size_t chunk = 4096;
   const std::vector<Level<D>> levels = levels_of(spheres, boundary, widest_gap);
-  std::vector<NearPair> pairs;
+  std::vector<Found> pairs;
   for (std::size_t l = 0; l < levels.size(); ++l) {
     const PointGrid<D>& grid = *levels[l].grid;
     const std::size_t n = grid.ids().size();
-    std::vector<std::vector<NearPair>> found((n + chunk - 1) / chunk);
+    std::vector<std::vector<Found>> found((n + chunk - 1) / chunk);
     oneapi::tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t part) {
       for (std::size_t place = part * chunk; place < std::min(n, (part + 1) * chunk); ++place) {
         append_pairs<D>(spheres, std::span(levels).first(l + 1), grid.ids()[place], grid.point(place),
                         widest_gap, found[part]);
       }
     });
-    for (const std::vector<NearPair>& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
+    for (const std::vector<Found>& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
   }
   return pairs;
-}
-
-/// Spheres and wall in the container's own frame, where rounding errors are as small as they can be: far from
-/// the origin the scene's coordinates would lose the digits that tell a contact from a gap.
-Spheres<3> localised(const Spheres<dynamic>& spheres, const Frame& frame) {
-  Spheres<3> local;
-  local.reserve(spheres.size());
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    local.push_back(frame.to_local(spheres.center(i)), spheres.r[i] / frame.scale);
-  }
-  return local;
-}
-
-std::unique_ptr<Container> localised(const Shape& scene_shape, const Frame& frame) {
-  const Shape shape = to_local(scene_shape, frame);
-  const Mesh* mesh = std::get_if<Mesh>(&shape);
-  return mesh ? make_mesh_container(*mesh, WallArithmetic::plain, frame.resolution)
-              : make_analytic_container(shape, WallArithmetic::plain, frame.resolution);
 }
 
 }  // namespace
@@ -115,11 +105,20 @@ std::unique_ptr<Container> localised(const Shape& scene_shape, const Frame& fram
 std::vector<NearPair> near_pairs(const Packing& packing, double widest_gap) {
   if (packing.spheres.empty()) return {};
   if (const Shape* shape = std::get_if<Shape>(&packing.domain))
-    return pairs_among<3>(localised(packing.spheres, frame_of(*shape)), {}, widest_gap);
+    return pairs_among<NearPair, 3>(localised(packing.spheres, frame_of(*shape)), {}, widest_gap);
   return with_dimension(packing.spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
-    return pairs_among<D>(packing.spheres.in<D>(), {std::get<PeriodicBox>(packing.domain).edges}, widest_gap);
+    return pairs_among<NearPair, D>(packing.spheres.in<D>(), {std::get<PeriodicBox>(packing.domain).edges},
+                                    widest_gap);
   });
+}
+
+std::vector<NearBond> near_bonds(const Packing& packing, double widest_gap) {
+  if (packing.spheres.empty()) return {};
+  if (const Shape* shape = std::get_if<Shape>(&packing.domain))
+    return pairs_among<NearBond, 3>(localised(packing.spheres, frame_of(*shape)), {}, widest_gap);
+  return pairs_among<NearBond, 3>(packing.spheres.in<3>(), {std::get<PeriodicBox>(packing.domain).edges},
+                                  widest_gap);
 }
 
 std::vector<NearWall> near_walls(const Packing& packing, double widest_gap) {

@@ -12,6 +12,12 @@ struct NearPair {
   double gap;  ///< (d - ri - rj) / (ri + rj)
 };
 
+/// The same in three dimensions, and where the second lies as seen from the first, in any unit of length.
+struct NearBond {
+  std::uint32_t first, second;
+  Vector<3> displacement;
+};
+
 /// A sphere and a facet, edge or corner of the wall.
 struct NearWall {
   std::uint32_t sphere;
@@ -21,6 +27,8 @@ struct NearWall {
 /// Everything whose gap ratio is below `widest_gap`, each once, in an order that does not depend on the
 /// number of threads. Cost: O(N + pairs).
 std::vector<NearPair> near_pairs(const Packing&, double widest_gap);
+/// The same pairs in the same order. Precondition: three dimensions.
+std::vector<NearBond> near_bonds(const Packing&, double widest_gap);
 /// Nothing in a periodic box.
 std::vector<NearWall> near_walls(const Packing&, double widest_gap);
 

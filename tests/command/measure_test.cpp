@@ -52,6 +52,9 @@ TEST_F(Measure, JsonIsOneObjectAndNothingElse) {
   EXPECT_EQ(measured["by_gap"].size(), 9u);
   EXPECT_EQ(measured["g_r"]["mean_diameter"], 2);
   EXPECT_EQ(measured["g_r"]["g"].size(), measured["g_r"]["error"].size());
+  EXPECT_TRUE(measured["walls"].is_null());
+  EXPECT_TRUE(measured["crystalline"].is_null());  // in two dimensions
+  EXPECT_EQ(measured["sizes"]["drawn"]["missing"], 0);
   EXPECT_EQ(measured["sizes"]["ks_statistic"], 0);
   EXPECT_TRUE(measured["sizes"]["ks_p_value"].is_null());
 }
@@ -61,12 +64,24 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
   ASSERT_EQ(bernal({"pack", box, "-o", out, "--quiet"}).status, 0);
   const Ended text = bernal({"measure", out});
   EXPECT_EQ(text.status, 0) << text.err;
-  EXPECT_NE(text.out.find("with the wall"), std::string::npos) << text.out;
+  for (const std::string part :
+       {"with the wall", "porosity over the distance", "near the wall", "core              packing fraction",
+        "crystalline", "segregation", "drawn sequence    the same sizes to the bit"})
+    EXPECT_NE(text.out.find(part), std::string::npos) << part << "\nis not in\n" << text.out;
   const auto measured = nlohmann::json::parse(bernal({"measure", out, "--json"}).out);
   const auto report = report_of(out);
   for (const char* key :
        {"n", "phi", "coordination", "contacts", "wall_contacts", "rattlers", "backbone", "hash"})
     EXPECT_EQ(measured.at(key), report.at(key)) << key;
+  EXPECT_EQ(measured.at("crystalline"), report.at("crystalline"));
+  double share = 0, integral = 0;
+  for (const auto& layer : measured.at("walls").at("layers")) {
+    share += layer.at("share").get<double>();
+    integral += layer.at("share").get<double>() * layer.at("porosity").get<double>();
+  }
+  EXPECT_NEAR(share, 1, 1e-12);
+  EXPECT_NEAR(integral, measured.at("walls").at("mean_porosity").get<double>(), 1e-9);
+  EXPECT_EQ(measured.at("walls").at("mean_porosity"), report.at("walls").at("mean_porosity"));
   EXPECT_TRUE(measured.at("g_r").is_null());
   EXPECT_TRUE(measured.at("backbone").at("isostatic_contacts").is_null());
 }

@@ -110,5 +110,54 @@ TEST(SizeComparison, QuantilesAreTheSmallestRadiiThatReachTheShare) {
             HUGE_VAL);
 }
 
+/// The first n radii of the sequence that lie at or below `cut`, last first.
+std::vector<double> first_of(RadiusSequence sequence, std::size_t n, double cut = HUGE_VAL) {
+  std::vector<double> radii;
+  while (radii.size() < n)
+    if (const double r = sequence.next(); r <= cut) radii.push_back(r);
+  std::ranges::reverse(radii);
+  return radii;
+}
+
+TEST(DrawnComparison, OfTheSequenceLessItsTailIsZeroToTheBit) {
+  const auto sizes = make_lognormal(1, 0.3, Basis::number, 0, HUGE_VAL);
+  for (const Draw draw : {Draw::random, Draw::quantiles}) {
+    const RadiusSequence sequence(*sizes, 7, draw);
+    for (const std::size_t n : {1, 1000}) {
+      const DrawnComparison same = compare_with_drawn(first_of(sequence, n), sequence, false).value();
+      EXPECT_EQ(same.missing, 0u);
+      EXPECT_EQ(same.largest_deviation, 0);
+      EXPECT_EQ(same.above_largest, 0u);
+    }
+    // Another seed has other radii.
+    EXPECT_GT(compare_with_drawn(first_of({*sizes, 8, draw}, 1000), sequence, false)->missing, 900u);
+  }
+}
+
+TEST(DrawnComparison, ShowsOneSphereThatWasLeftOut) {
+  const auto sizes = make_uniform(1, 2, Basis::number);
+  const RadiusSequence sequence(*sizes, 1, Draw::random);
+  std::vector<double> radii = first_of(sequence, 101);
+  const auto largest = std::ranges::max_element(radii.begin() + 1, radii.end());
+  const double left_out = *largest;
+  radii.erase(largest);
+  const DrawnComparison drawn = compare_with_drawn(radii, sequence, false).value();
+  EXPECT_EQ(drawn.missing, 1u);
+  EXPECT_GT(drawn.largest_deviation, 0);
+  EXPECT_LE(drawn.largest_deviation, left_out - 1);
+}
+
+TEST(DrawnComparison, PassesOverDrawsThatAContainerRefused) {
+  const auto sizes = make_lognormal(1, 0.5, Basis::number, 0, HUGE_VAL);
+  const RadiusSequence sequence(*sizes, 1, Draw::random);
+  const std::vector<double> radii = first_of(sequence, 1000, 2);
+  const DrawnComparison drawn = compare_with_drawn(radii, sequence, true).value();
+  EXPECT_EQ(drawn.missing, 0u);
+  EXPECT_GT(drawn.above_largest, 50u);  // 8 % of all
+  EXPECT_GT(compare_with_drawn(radii, sequence, false)->missing, 50u);
+  // Nothing to compare with where the radii are of another order of magnitude.
+  EXPECT_FALSE(compare_with_drawn(std::vector<double>(10, 1e-3), sequence, true));
+}
+
 }  // namespace
 }  // namespace bernal

@@ -51,6 +51,7 @@ enum class Stream : std::uint64_t {
   refill = 5,
   room = 6,
   relax = 7,
+  measure = 8,
   test = 255
 };
 constexpr std::uint64_t stream(Stream purpose, std::uint64_t index = 0) {

@@ -3,9 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "bernal/measure/bond_order.hpp"
 #include "bernal/measure/contacts.hpp"
 #include "bernal/measure/radial_distribution.hpp"
 #include "bernal/measure/size_comparison.hpp"
+#include "bernal/measure/wall_profile.hpp"
 #include "bernal/run/packing.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
@@ -17,6 +19,8 @@ struct Measurements {
   Contacts contacts;             ///< at MeasureOptions::contact_gap
   std::vector<Contacts> by_gap;  ///< at the others, in their order
   std::optional<RadialDistribution> radial;
+  std::optional<WallProfile> walls;
+  std::optional<BondOrder> order;
   std::optional<SizeComparison> sizes;
 };
 
@@ -24,6 +28,7 @@ struct MeasureOptions {
   double contact_gap = 0.002;
   std::vector<double> gaps = {1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
   RadialOptions radial;
+  WallOptions walls;
 };
 
 /// `asked` is the distribution of radii that the packing is held against; null for none. Cost: that of the

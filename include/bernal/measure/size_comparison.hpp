@@ -4,9 +4,21 @@
 #include <span>
 #include <vector>
 
+#include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
+
+/// The radii that are there against as many of the sequence that was drawn, both in ascending order. A
+/// packing that ended early holds the drawn sequence less its tail: then the two agree to the bit. What a
+/// packer leaves out because it is hard to place shows here, however little it is.
+struct DrawnComparison {
+  std::uint64_t missing = 0;     ///< radii of the sequence that are not there
+  double largest_deviation = 0;  ///< of the k-th smallest radius, over all k, relative to the drawn one
+  /// Draws that were passed over because no radius is so large. A container refuses draws from an unbounded
+  /// tail that it has hardly any room for; elsewhere none are passed over.
+  std::uint64_t above_largest = 0;
+};
 
 /// The radii that are there against the distribution that was asked for, by number.
 struct SizeComparison {
@@ -39,11 +51,19 @@ struct SizeComparison {
     double asked;     ///< infinite at share 1 for an unbounded tail
   };
   std::vector<Quantile> quantiles;
+
+  std::optional<DrawnComparison> drawn;  ///< where it is known how the radii were drawn
 };
 
 /// Cost: O(N log N) and two calls of asked.cumulative a sphere; about 0.3 µs each. Precondition: some radii.
 /// Source of the p-value: the asymptotic distribution of Kolmogorov (1933) at (√N + 0.12 + 0.11/√N) times the
 /// statistic, Stephens, J. R. Stat. Soc. B 32 (1970) 115, good to a few per cent from N = 5.
 SizeComparison compare_sizes(std::span<const double> radii, const SizeDistribution& asked, int dimension);
+
+/// Draws the radii again. `cut_tail`: the container may have refused draws from an unbounded tail. Nothing
+/// where more than half of all draws are above the largest radius: the packing is not of that sequence. Cost:
+/// O(N log N) and N draws. Precondition: some radii.
+std::optional<DrawnComparison> compare_with_drawn(std::span<const double> radii, RadiusSequence sequence,
+                                                  bool cut_tail);
 
 }  // namespace bernal

@@ -1,0 +1,88 @@
+#include "measure/depths.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bernal/core/random.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr double most_in_vain = 16;
+
+/// Volume of the points deeper than z, over a constant factor.
+double inner_volume(const BoxShape& box, double z) {
+  const Vector<3> inner = bounds_of(box).size() - Vector<3>::Constant(2 * z);
+  return inner.minCoeff() > 0 ? inner.prod() : 0;
+}
+double inner_volume(const CylinderShape& cylinder, double z) {
+  const double radius = cylinder.radius - z, height = cylinder.height - 2 * z;
+  return radius > 0 && height > 0 ? radius * radius * height : 0;
+}
+double inner_volume(const SphereShape& sphere, double z) {
+  return std::pow(std::max(0.0, sphere.radius - z), 3);
+}
+double inner_volume(const Mesh&, double) { return 0; }
+
+double deepest_of(const BoxShape& box) { return 0.5 * bounds_of(box).size().minCoeff(); }
+double deepest_of(const CylinderShape& cylinder) { return std::min(cylinder.radius, 0.5 * cylinder.height); }
+double deepest_of(const SphereShape& sphere) { return sphere.radius; }
+double deepest_of(const Mesh&) { return 0; }
+
+/// One point in each cell of a grid over the bounds, at random in it: what is known of the error of
+/// independent points is a bound for these.
+std::vector<double> sample(const Container& container, double reach, std::size_t points) {
+  const Bounds<3> bounds = container.bounds();
+  const Vector<3> size = bounds.size();
+  const double waste = std::clamp(size.prod() / container.volume(), 1.0, most_in_vain);
+  const double edge = std::cbrt(size.prod() / (waste * static_cast<double>(points)));
+  std::array<std::size_t, 3> cells;
+  for (int k = 0; k < 3; ++k) cells[k] = static_cast<std::size_t>(std::max(1.0, std::round(size[k] / edge)));
+
+  std::vector<double> depths(cells[0] * cells[1] * cells[2], -1);
+  oneapi::tbb::parallel_for(std::size_t{0}, depths.size(), [&](std::size_t cell) {
+    Random random(1, stream(Stream::measure, cell));
+    const std::array<std::size_t, 3> at = {cell % cells[0], cell / cells[0] % cells[1],
+                                           cell / (cells[0] * cells[1])};
+    Vector<3> p;
+    for (int k = 0; k < 3; ++k)
+      p[k] = bounds.lower[k] +
+             size[k] * (static_cast<double>(at[k]) + random.uniform()) / static_cast<double>(cells[k]);
+    if (container.contains(p, 0)) depths[cell] = container.clearance_within(p, reach);
+  });
+  std::erase_if(depths, [](double depth) { return depth < 0; });
+  std::ranges::sort(depths);
+  return depths;
+}
+
+}  // namespace
+
+Depths::Depths(const Shape& shape, const Container& container, double reach, std::size_t points) {
+  if (std::holds_alternative<Mesh>(shape)) {
+    shape_ = Mesh{};
+    sampled_ = sample(container, reach, points);
+    deepest_ = sampled_.empty() ? 0 : sampled_.back();
+    if (deepest_ >= reach) deepest_ = std::numeric_limits<double>::infinity();
+  } else {
+    shape_ = shape;
+    deepest_ = std::visit([](const auto& s) { return deepest_of(s); }, shape);
+  }
+}
+
+double Depths::deeper(double z) const {
+  if (z <= 0) return 1;
+  if (!std::holds_alternative<Mesh>(shape_))
+    return std::visit([z](const auto& s) { return inner_volume(s, z) / inner_volume(s, 0); }, shape_);
+  const auto nearer = std::ranges::lower_bound(sampled_, z) - sampled_.begin();
+  return sampled_.empty() ? 0 : 1 - static_cast<double>(nearer) / static_cast<double>(sampled_.size());
+}
+
+double Depths::error_of(double share) const {
+  return sampled_.empty() ? 0 : std::sqrt(share * (1 - share) / static_cast<double>(sampled_.size()));
+}
+
+}  // namespace bernal

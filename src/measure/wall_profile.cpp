@@ -1,0 +1,223 @@
+#include "bernal/measure/wall_profile.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "bernal/core/dimension.hpp"
+#include "bernal/core/random.hpp"
+#include "measure/depths.hpp"
+#include "measure/even_points.hpp"
+#include "measure/localised.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr std::size_t chunk = 256;                       // spheres
+constexpr double fewest_points = 16, most_points = 512;  // in a sphere
+constexpr double least_reach = WallProfile::core_depth + 1;
+/// A mesh has half of the work done in its spheres and half in itself; other walls are quickly asked.
+constexpr double mesh_share = 0.5, analytic_share = 4;
+
+/// What the spheres have of a zone of the container.
+struct Filling {
+  double volume = 0;
+  double variance = 0;  ///< of the volume
+
+  /// `inside` of `points` points of a sphere of volume v lie in the zone.
+  void add(double v, std::uint32_t inside, std::uint32_t points) {
+    const double share = static_cast<double>(inside) / points;
+    volume += v * share;
+    variance += v * v * share * (1 - share) / points;
+  }
+  void add(const Filling& other) {
+    volume += other.volume;
+    variance += other.variance;
+  }
+};
+
+/// Zones between two depths: the layers, that near the wall and the core, which overlap the layers.
+struct Zones {
+  std::vector<double> edges;  ///< where the layers begin
+  double near = 0, core = 0;
+
+  std::size_t count() const { return edges.size() + 2; }
+  std::size_t near_zone() const { return edges.size(); }
+  std::size_t core_zone() const { return edges.size() + 1; }
+  std::size_t layer_of(double z) const {
+    const auto above = std::upper_bound(edges.begin() + 1, edges.end(), z);
+    return static_cast<std::size_t>(above - edges.begin()) - 1;
+  }
+  void count(double z, std::vector<std::uint32_t>& points) const {
+    ++points[layer_of(z)];
+    points[near_zone()] += z < near;
+    points[core_zone()] += z >= core;
+  }
+};
+
+/// What the last layer has of the container at least: where next to nothing is deeper, a porosity is that of
+/// one pore or sphere.
+constexpr double least_rest = 0.01;
+
+/// Layers of equal thickness down to `reach`, or to half a layer from the deepest point, and one for the
+/// rest; none of them without volume.
+std::vector<double> edges_of(const Depths& depths, double thickness, double reach) {
+  constexpr double slack = 1e-9;
+  std::vector<double> edges = {0};
+  for (int k = 1;; ++k) {
+    const double z = k * thickness;
+    if (z > reach + slack * thickness || z > depths.deepest() - 0.5 * thickness) break;
+    if (depths.deeper(z) < least_rest) break;
+    if (depths.deeper(z) < depths.deeper(edges.back())) edges.push_back(z);
+  }
+  return edges;
+}
+
+/// The clearance of every centre, as far as the sphere may reach into a layer.
+std::vector<double> clearances(const Container& container, const Spheres<3>& spheres, double reach) {
+  std::vector<double> found(spheres.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+    found[i] = container.clearance_within(spheres.center(i), reach + spheres.r[i]);
+  });
+  return found;
+}
+
+/// Spreads the volumes of the spheres over the zones: that of a sphere beyond reach goes whole.
+std::vector<Filling> fill(const Container& container, const Spheres<3>& spheres,
+                          const std::vector<double>& clearance, const Zones& zones, double reach,
+                          std::uint32_t points) {
+  std::vector<std::vector<Filling>> parts((spheres.size() + chunk - 1) / chunk);
+  oneapi::tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    std::vector<Filling>& filling = parts[part];
+    filling.resize(zones.count());
+    std::vector<std::uint32_t> inside(zones.count());
+    for (std::size_t i = part * chunk; i < std::min(spheres.size(), (part + 1) * chunk); ++i) {
+      const double r = spheres.r[i], v = ball_volume(3, r);
+      std::ranges::fill(inside, 0u);
+      const bool beyond = clearance[i] - r >= reach;
+      if (beyond) zones.count(reach, inside);
+      Random random(0, stream(Stream::measure, i));
+      const Vector<3> shift = uniform_point<3>(random, {Vector<3>::Zero(), Vector<3>::Ones()});
+      for (std::uint32_t k = 0; !beyond && k < points; ++k) {
+        const Vector<3> p = spheres.center(i) + r * even_point_in_ball(k, shift);
+        zones.count(container.clearance_within(p, reach), inside);
+      }
+      for (std::size_t zone = 0; zone < filling.size(); ++zone)
+        filling[zone].add(v, inside[zone], beyond ? 1 : points);
+    }
+  });
+  std::vector<Filling> sum(zones.count());
+  for (const std::vector<Filling>& part : parts)
+    for (std::size_t zone = 0; zone < sum.size(); ++zone) sum[zone].add(part[zone]);
+  return sum;
+}
+
+struct Fraction {
+  double value, error;
+};
+
+/// Packing fraction of a zone that is `share` of the container.
+Fraction fraction_of(const Filling& filling, double share, double share_error, double volume) {
+  if (!(share > 0)) return {0, 0};
+  const double value = filling.volume / (share * volume);
+  return {value, std::hypot(std::sqrt(filling.variance) / (share * volume), value * share_error / share)};
+}
+
+std::optional<WallProfile::Minimum> first_minimum(const WallProfile& profile, double thickness) {
+  const std::vector<WallProfile::Layer>& layers = profile.layers;
+  const auto end = std::ranges::partition_point(
+      layers, [&](const auto& layer) { return layer.from + 0.5 * thickness < profile.mean_diameter; });
+  const auto lowest = std::ranges::min_element(layers.begin(), end, {}, &WallProfile::Layer::porosity);
+  const auto last_even = layers.end() - 1;  // the last layer may be of any thickness
+  if (lowest == layers.begin() || last_even - lowest < 2) return {};
+  const double before = lowest[-1].porosity, least = lowest->porosity, after = lowest[1].porosity;
+  if (after < least) return {};  // it falls on
+  const double bend = before - 2 * least + after;
+  const double shift = bend > 0 ? 0.5 * (before - after) / bend : 0;
+  return WallProfile::Minimum{lowest->from + (0.5 + shift) * thickness,
+                              least - 0.25 * (before - after) * shift};
+}
+
+std::optional<WallProfile::Segregation> segregation_of(const std::vector<double>& radii, double mean,
+                                                       const std::vector<Region>& regions) {
+  double sum = 0, squares = 0, near_sum = 0, near = 0;
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const double cube = std::pow(radii[i] / mean, 3);
+    sum += cube;
+    if (regions[i] != Region::near_wall) continue;
+    near_sum += cube;
+    ++near;
+  }
+  if (near == 0) return {};
+  const auto n = static_cast<double>(radii.size());
+  const double all = sum / n;
+  for (const double r : radii) squares += std::pow(std::pow(r / mean, 3) - all, 2);
+  // Drawn from n without putting back.
+  const double error = n > 1 ? std::sqrt(squares / (n - 1) / near * (1 - near / n)) / all : 0;
+  return WallProfile::Segregation{static_cast<std::uint64_t>(near), near_sum / near / all, error};
+}
+
+Region region_of(double clearance, double r, const Zones& zones) {
+  if (clearance - r < zones.near) return Region::near_wall;
+  return clearance >= zones.core ? Region::core : Region::between;
+}
+
+}  // namespace
+
+std::optional<WallProfile> wall_profile(const Packing& packing, const WallOptions& options) {
+  const Shape* shape = std::get_if<Shape>(&packing.domain);
+  if (!shape || packing.spheres.empty()) return {};
+  const Frame frame = frame_of(*shape);
+  const std::unique_ptr<Container> container = localised(*shape, frame);
+  const Spheres<3> spheres = localised(packing.spheres, frame);
+  const double volume = container->volume();
+  const double diameter =
+      2 * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / static_cast<double>(spheres.size());
+  const double thickness = options.layer * diameter;
+  const double reach = std::max(options.reach, least_reach) * diameter;
+  const Depths depths(to_local(*shape, frame), *container, reach,
+                      static_cast<std::size_t>(mesh_share * options.work));
+
+  WallProfile profile;
+  profile.has_core = depths.deepest() >= least_reach * diameter;
+  Zones zones;
+  zones.edges = edges_of(depths, thickness, reach);
+  zones.near = diameter;
+  zones.core = profile.has_core ? WallProfile::core_depth * diameter : 0.5 * depths.deepest();
+
+  const std::vector<double> clearance = clearances(*container, spheres, reach);
+  double within_reach = 0;
+  for (std::size_t i = 0; i < spheres.size(); ++i) within_reach += clearance[i] - spheres.r[i] < reach;
+  const double work = options.work * (std::holds_alternative<Mesh>(*shape) ? mesh_share : analytic_share);
+  const auto points =
+      static_cast<std::uint32_t>(std::clamp(work / std::max(1.0, within_reach), fewest_points, most_points));
+  const std::vector<Filling> filling = fill(*container, spheres, clearance, zones, reach, points);
+
+  const auto in_scene = [&](double local) { return frame.scale * local; };
+  for (std::size_t k = 0; k < zones.edges.size(); ++k) {
+    const bool last = k + 1 == zones.edges.size();
+    const double from = zones.edges[k], to = last ? depths.deepest() : zones.edges[k + 1];
+    const double share = depths.deeper(from) - (last ? 0 : depths.deeper(to));
+    const Fraction solid = fraction_of(filling[k], share, depths.error_of(share), volume);
+    profile.layers.push_back({in_scene(from), in_scene(to), share, 1 - solid.value, solid.error});
+  }
+  profile.mean_diameter = in_scene(diameter);
+  profile.mean_porosity = 1 - packing.packing_fraction();
+  const double near_share = 1 - depths.deeper(zones.near), core_share = depths.deeper(zones.core);
+  profile.near_wall_packing_fraction = fraction_of(filling[zones.near_zone()], near_share, 0, volume).value;
+  const Fraction core =
+      fraction_of(filling[zones.core_zone()], core_share, depths.error_of(core_share), volume);
+  profile.core_packing_fraction = core.value;
+  profile.core_packing_error = core.error;
+  profile.core_from = in_scene(zones.core);
+  profile.first_minimum = first_minimum(profile, in_scene(thickness));
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    profile.regions.push_back(region_of(clearance[i], spheres.r[i], zones));
+  profile.segregation = segregation_of(spheres.r, 0.5 * diameter, profile.regions);
+  return profile;
+}
+
+}  // namespace bernal
