@@ -68,14 +68,16 @@ TEST(Scene, TheLeastOneHasEveryDefault) {
   EXPECT_EQ(scene.sizes.name, "constant");
   EXPECT_EQ(scene.sizes.number("value"), 0.1);
   EXPECT_TRUE(scene.sizes_are_diameters);
-  EXPECT_TRUE(scene.target.fill);
+  EXPECT_TRUE(scene.target.is_open());
+  EXPECT_FALSE(scene.target.fill);
   EXPECT_EQ(scene.walls, "filtered");
   EXPECT_EQ(scene.overlap, 0);
   EXPECT_TRUE(scene.stages_are_default);
   std::vector<std::string> protocol;
   for (const Spec& stage : scene.stages) protocol.push_back(stage.name);
-  EXPECT_EQ(protocol, (std::vector<std::string>{"insert", "compress", "shake", "refill"}));
-  EXPECT_EQ(scene.stages[1].numbers("direction"), (std::vector<double>{0, 0, -1}));
+  EXPECT_EQ(protocol, (std::vector<std::string>{"relax"}));
+  EXPECT_EQ(scene.stages[0].integer("patience"), 12);
+  EXPECT_EQ(scene.draw, "quantiles");
 }
 
 TEST(Scene, KeepsWhatTheUserWrote) {
@@ -496,7 +498,7 @@ void for_every_entry(Visit visit) {
         return with_spheres(
             fmt::format("diameter = {{ distribution = \"{}\", {} }}", e.name, joined(lines, ", ")));
       });
-    for (const Entry& e : all.stages)
+    for (const Entry& e : all.stages_in_containers)
       visit(e, keys_of(e, n), [&](const std::vector<std::string>& lines) {
         return with_stage(fmt::format("do = \"{}\"\n", e.name) + joined(lines, "\n"));
       });
