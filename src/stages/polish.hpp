@@ -25,7 +25,7 @@ struct Polished {
 /// largest overlap ratio of a pair is at most `tolerance`, and every contact that bears force is closed to
 /// about that. Radii do not change; centres come back in [0, edge), edges in proportion.
 ///
-/// The spheres become soft under a pressure (SoftSpheres) that falls by factors of ten; at each level the
+/// The spheres become soft under a pressure (JammingEnergy) that falls by factors of ten; at each level the
 /// enthalpy is minimised (TrustRegion), the box being one of its unknowns, so that it does not matter on
 /// which side of jamming the spheres start. Near jamming overlaps are proportional to the pressure. The
 /// potential is smoothed in the same proportion until the contacts are told from the near misses, when the
