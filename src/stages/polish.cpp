@@ -48,6 +48,7 @@ class Polish {
     }
     for (;; overlap *= fall_of_pressure) {
       if (!sharpen(overlap) || soft_.largest_overlap() <= tolerance_ || close_contacts(overlap)) break;
+      if (overlap * fall_of_pressure < resolution()) break;  // the coordinates allow no better
       if (!settle({overlap * fall_of_pressure, overlap * fall_of_pressure, balance_})) break;
     }
     return result();
@@ -145,7 +146,7 @@ class Polish {
     soft_.set_level(overlap, level.smoothing);
     const double noise = resolution() / overlap;
     TrustRegion<JammingEnergy<D>> region(
-        soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap), level.forcing);
+        soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap), level.forcing, work_.monitor);
     for (int step = 0; step < most_steps_a_level; ++step) {
       imbalance_ = region.gradient_length() / std::sqrt(2 * soft_.elastic_energy());
       if (imbalance_ < std::max(level.balance, 4 * noise)) break;
