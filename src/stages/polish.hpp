@@ -40,8 +40,8 @@ struct Polished {
 /// smallest radius. Precondition: overlaps and gaps of neighbours are below about 1e-2; no two centres
 /// coincide. Returns hit_limit if `tolerance` was not reached, or equilibrium not to 1e-2. Cost: the
 /// Newton steps are many and short rather than hard to solve, as contacts change along the way: seconds for
-/// 1,000 spheres, half a minute to minutes for 3,000, minutes for 10,000. Cancelled, it ends within a step.
-/// Memory about 1 kB a sphere. One thread; the same bits each time.
+/// 1,000 spheres, more than half a minute for 3,000, more than a minute for 10,000. Cancelled, it ends within
+/// a step. Memory about 1 kB a sphere. One thread; the same bits each time.
 template <int D>
 Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, PeriodicWork& work);
 
