@@ -33,8 +33,8 @@ struct Polished {
 /// overlaps to `tolerance`.
 ///
 /// Up to 3,000 spheres equilibrium is reached to 1e-6 of the forces and the number of contacts is the
-/// isostatic one, mostly exactly; beyond, where that would take long, to 1e-3, and up to 1 % of the contacts,
-/// the weakest, are still open.
+/// isostatic one, mostly exactly; beyond, where that would take long, to 1e-3, and some of the contacts, the
+/// weakest, are still open: 2.3 % of those of 3,000 spheres that were solved no closer.
 ///
 /// Where rounding of the coordinates allows no better, `tolerance` is not reached: 1e-15 edges over the
 /// smallest radius. Precondition: overlaps and gaps of neighbours are below about 1e-2; no two centres
