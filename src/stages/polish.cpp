@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bernal/core/tolerance.hpp"
-#include "stages/soft_spheres.hpp"
+#include "stages/jamming_energy.hpp"
 #include "stages/trust_region.hpp"
 
 namespace bernal {
@@ -48,6 +48,7 @@ class Polish {
     }
     for (;; overlap *= fall_of_pressure) {
       if (!sharpen(overlap) || soft_.largest_overlap() <= tolerance_ || close_contacts(overlap)) break;
+      if (overlap * fall_of_pressure < resolution()) break;  // the coordinates allow no better
       if (!settle({overlap * fall_of_pressure, overlap * fall_of_pressure, balance_})) break;
     }
     return result();
@@ -80,12 +81,12 @@ class Polish {
     count_contacts();
     if (excess() < 0 || excess() > most_let_go) return false;
     std::ptrdiff_t spare = excess();
-    const SoftSpheres<D> before = soft_;
+    const JammingEnergy<D> before = soft_;
     const Polished reached_before = reached_;
     const double fall = 0.5 * tolerance_ / soft_.largest_overlap();
     soft_.hold(bears_);
     for (;;) {
-      const SoftSpheres<D> held = soft_;
+      const JammingEnergy<D> held = soft_;
       settle({overlap * fall, 0, 0.1 * balance_, held_way, 1e-4});
       const auto first = first_to_pull(held.contacts(), soft_.contacts());
       if (first < 0) break;
@@ -117,8 +118,8 @@ class Polish {
 
   /// Of the same contacts at two levels of pressure: which one's force, linear in between, is the first to
   /// vanish; -1 if none does.
-  static std::ptrdiff_t first_to_pull(const std::vector<typename SoftSpheres<D>::Contact>& high,
-                                      const std::vector<typename SoftSpheres<D>::Contact>& low) {
+  static std::ptrdiff_t first_to_pull(const std::vector<typename JammingEnergy<D>::Contact>& high,
+                                      const std::vector<typename JammingEnergy<D>::Contact>& low) {
     std::ptrdiff_t first = -1;
     double least = 0;
     for (std::size_t c = 0; c < low.size(); ++c) {
@@ -144,8 +145,8 @@ class Polish {
     const double overlap = level.overlap;
     soft_.set_level(overlap, level.smoothing);
     const double noise = resolution() / overlap;
-    TrustRegion<SoftSpheres<D>> region(soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap),
-                                       level.forcing);
+    TrustRegion<JammingEnergy<D>> region(
+        soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap), level.forcing, work_.monitor);
     for (int step = 0; step < most_steps_a_level; ++step) {
       imbalance_ = region.gradient_length() / std::sqrt(2 * soft_.elastic_energy());
       if (imbalance_ < std::max(level.balance, 4 * noise)) break;
@@ -202,7 +203,7 @@ class Polish {
     }
   }
 
-  SoftSpheres<D> soft_;
+  JammingEnergy<D> soft_;
   double tolerance_, balance_, settled_, slenderness_;
   double start_ = gentlest_start;
   double imbalance_ = 0;

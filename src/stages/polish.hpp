@@ -25,7 +25,7 @@ struct Polished {
 /// largest overlap ratio of a pair is at most `tolerance`, and every contact that bears force is closed to
 /// about that. Radii do not change; centres come back in [0, edge), edges in proportion.
 ///
-/// The spheres become soft under a pressure (SoftSpheres) that falls by factors of ten; at each level the
+/// The spheres become soft under a pressure (JammingEnergy) that falls by factors of ten; at each level the
 /// enthalpy is minimised (TrustRegion), the box being one of its unknowns, so that it does not matter on
 /// which side of jamming the spheres start. Near jamming overlaps are proportional to the pressure. The
 /// potential is smoothed in the same proportion until the contacts are told from the near misses, when the
@@ -33,13 +33,15 @@ struct Polished {
 /// overlaps to `tolerance`.
 ///
 /// Up to 3,000 spheres equilibrium is reached to 1e-6 of the forces and the number of contacts is the
-/// isostatic one, mostly exactly; beyond, where that would take long, to 1e-3, and up to 1 % of the contacts,
-/// the weakest, are still open.
+/// isostatic one, mostly exactly; beyond, where that would take long, to 1e-3, and some of the contacts, the
+/// weakest, are still open: 2.3 % of those of 3,000 spheres that were solved no closer.
 ///
 /// Where rounding of the coordinates allows no better, `tolerance` is not reached: 1e-15 edges over the
 /// smallest radius. Precondition: overlaps and gaps of neighbours are below about 1e-2; no two centres
-/// coincide. Returns hit_limit if `tolerance` was not reached, or equilibrium not to 1e-2. Cost: see
-/// tests/bench; memory about 1 kB a sphere. One thread; the same bits each time.
+/// coincide. Returns hit_limit if `tolerance` was not reached, or equilibrium not to 1e-2. Cost: the
+/// Newton steps are many and short rather than hard to solve, as contacts change along the way: seconds for
+/// 1,000 spheres, more than half a minute for 3,000, more than a minute for 10,000. Cancelled, it ends within
+/// a step. Memory about 1 kB a sphere. One thread; the same bits each time.
 template <int D>
 Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, PeriodicWork& work);
 

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "bernal/core/monitor.hpp"
+
 namespace bernal {
 
 /// Minimises a function of many variables by Newton steps within a trust region. `System` has gradient(),
@@ -20,11 +22,13 @@ namespace bernal {
 template <class System>
 class TrustRegion {
  public:
-  /// The equations of a step are solved to `forcing`, relative to the gradient.
-  TrustRegion(System& system, double radius, double forcing)
+  /// The equations of a step are solved to `forcing`, relative to the gradient; or as far as they are when
+  /// the monitor says stop.
+  TrustRegion(System& system, double radius, double forcing, const Monitor& monitor)
       : system_(system),
         radius_(radius),
         forcing_(forcing),
+        monitor_(monitor),
         z_(system.unknowns()),
         h_(Eigen::VectorXd::Zero(system.unknowns())) {}
 
@@ -63,6 +67,7 @@ class TrustRegion {
  private:
   static constexpr double acceptable = 1e-4, bad = 0.25, good = 0.75;
   static constexpr int most_products = 20'000;
+  static constexpr int products_unasked = 16;  // from one question to the monitor to the next
 
   struct Proposal {
     Eigen::VectorXd step;
@@ -83,6 +88,7 @@ class TrustRegion {
     double border = radius_ / 16;
     double ss = 0, sd = 0, dd = rz;  // products of step and direction in the metric
     for (int i = 0; i < most_products && rz > enough; ++i) {
+      if (i % products_unasked == products_unasked - 1 && monitor_.stop()) break;
       system_.hessian_times(direction_, h_);
       ++products_;
       const double curvature = direction_.dot(h_);
@@ -120,6 +126,7 @@ class TrustRegion {
   System& system_;
   double radius_;
   double forcing_;
+  const Monitor& monitor_;
   std::uint64_t products_ = 0;
   bool at_border_ = false;
   std::vector<Proposal> proposals_;

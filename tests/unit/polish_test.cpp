@@ -3,6 +3,7 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
+#include "stages/polish.hpp"
 #include "support/plans.hpp"
 
 // What a polish promises: contacts that are closed to its tolerance, and no more of them than hold the
@@ -44,6 +45,34 @@ TEST(Polish, CostsHardlyAnyPackingFraction) {
   const double with = polished(3, 300, "1.0").packing_fraction();
   EXPECT_GT(with, 0.62);
   EXPECT_LT(with, 0.66);
+}
+
+// ---- when it ends early
+
+StageEnd end_of_polish(int count, double tolerance, const Monitor& monitor) {
+  const Packing packing =
+      run(testing::plan_of("[container]\nkind = \"periodic\"\n[spheres]\ncount = " + std::to_string(count) +
+                           "\nradius = 1.0\n[[stage]]\ndo = \"relax\"\nalpha = 3.0\n"),
+          {.seed = {}, .threads = 1, .monitor = {}});
+  Spheres<3> spheres = packing.spheres.in<3>();
+  Vector<3> edges = std::get<PeriodicBox>(packing.domain).edges;
+  EffectLog effects;
+  PeriodicWork work{
+      .spheres = Spheres<dynamic>(3), .edges = edges, .seed = 1, .monitor = monitor, .effects = effects};
+  return polish<3>(spheres, edges, tolerance, work).end;
+}
+
+TEST(Polish, EndsSoonWhenCancelled) {
+  for (const int answer : {1, 2, 100, 2000}) {
+    int asked = 0;
+    const Monitor monitor{.on_progress = {}, .cancelled = [&] { return ++asked >= answer; }};
+    EXPECT_EQ(end_of_polish(200, 1e-10, monitor), StageEnd::cancelled);
+    EXPECT_LE(asked, answer + 10);
+  }
+}
+
+TEST(Polish, SaysThatRoundingAllowsNoBetter) {
+  EXPECT_EQ(end_of_polish(40, 1e-18, Monitor{}), StageEnd::hit_limit);
 }
 
 }  // namespace

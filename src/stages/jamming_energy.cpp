@@ -1,4 +1,4 @@
-#include "stages/soft_spheres.hpp"
+#include "stages/jamming_energy.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -61,7 +61,7 @@ Eigen::Index at(std::size_t i) {
 }  // namespace
 
 template <int D>
-SoftSpheres<D>::SoftSpheres(const Spheres<D>& spheres, const Vector<D>& edges)
+JammingEnergy<D>::JammingEnergy(const Spheres<D>& spheres, const Vector<D>& edges)
     : order_(spatial_order(spheres, edges)) {
   state_.centers.resize(at<D>(spheres.size()));
   state_.edges = edges;
@@ -75,7 +75,7 @@ SoftSpheres<D>::SoftSpheres(const Spheres<D>& spheres, const Vector<D>& edges)
 }
 
 template <int D>
-void SoftSpheres<D>::set_level(double overlap, double smoothing) {
+void JammingEnergy<D>::set_level(double overlap, double smoothing) {
   load_ = overlap * load_per_overlap_;
   smoothing_ = smoothing;
   if (!held_) find_pairs();
@@ -84,14 +84,14 @@ void SoftSpheres<D>::set_level(double overlap, double smoothing) {
 
 /// Ratio of gap to s up to which two spheres feel each other.
 template <int D>
-double SoftSpheres<D>::width() const {
+double JammingEnergy<D>::width() const {
   return std::min(cutoff * smoothing_, widest);
 }
 
 /// Whether every pair that feels each other is among the pairs: what was d apart when they were found is at
 /// least scale · d - 2 · way apart now.
 template <int D>
-bool SoftSpheres<D>::pairs_are_complete() const {
+bool JammingEnergy<D>::pairs_are_complete() const {
   if (held_) return true;
   const double scale = state_.edges[0] / at_finding_.edges[0];
   double squared = 0;
@@ -105,14 +105,14 @@ bool SoftSpheres<D>::pairs_are_complete() const {
 }
 
 template <int D>
-void SoftSpheres<D>::find_pairs() {
+void JammingEnergy<D>::find_pairs() {
   width_at_finding_ = width();
   at_finding_ = state_;
   pairs_.find(state_.centers.data(), radius_, state_.edges, width_at_finding_, skin * least_radius_);
 }
 
 template <int D>
-void SoftSpheres<D>::hold(const std::vector<char>& bears) {
+void JammingEnergy<D>::hold(const std::vector<char>& bears) {
   pairs_.keep_if([&](const typename PeriodicPairs<D>::Pair& pair) {
     const double s = radius_[pair.first] + radius_[pair.second];
     return bears[pair.first] && bears[pair.second] && away_of(pair).squaredNorm() < s * s;
@@ -122,14 +122,14 @@ void SoftSpheres<D>::hold(const std::vector<char>& bears) {
 
 /// From the second to the first.
 template <int D>
-Vector<D> SoftSpheres<D>::away_of(const typename PeriodicPairs<D>::Pair& pair) const {
+Vector<D> JammingEnergy<D>::away_of(const typename PeriodicPairs<D>::Pair& pair) const {
   return state_.centers.template segment<D>(at<D>(pair.first)) -
          state_.centers.template segment<D>(at<D>(pair.second)) -
          pairs_.images()[pair.image].cwiseProduct(state_.edges);
 }
 
 template <int D>
-void SoftSpheres<D>::evaluate() {
+void JammingEnergy<D>::evaluate() {
   now_.contacts.clear();
   now_.gradient.setZero(unknowns());
   now_.energy = now_.elastic = now_.largest_overlap = 0;
@@ -153,7 +153,7 @@ void SoftSpheres<D>::evaluate() {
 
 /// Leaves of a motion or a gradient what is not fixed.
 template <int D>
-void SoftSpheres<D>::still(Eigen::VectorXd& v) const {
+void JammingEnergy<D>::still(Eigen::VectorXd& v) const {
   if (fixed_.empty()) return;
   for (std::size_t i = 0; i < size(); ++i)
     if (fixed_[i]) v.template segment<D>(at<D>(i)).setZero();
@@ -161,7 +161,7 @@ void SoftSpheres<D>::still(Eigen::VectorXd& v) const {
 }
 
 template <int D>
-void SoftSpheres<D>::meet(std::uint32_t first, std::uint32_t second, const Vector<D>& away) {
+void JammingEnergy<D>::meet(std::uint32_t first, std::uint32_t second, const Vector<D>& away) {
   const double s = radius_[first] + radius_[second], d = away.norm();
   if (!(d > 0)) return;  // coincident centres push in no direction
   const double overlap = s - d, k = stiffness_of<D>(s), t = smoothing_ * s;
@@ -183,7 +183,7 @@ void SoftSpheres<D>::meet(std::uint32_t first, std::uint32_t second, const Vecto
 }
 
 template <int D>
-void SoftSpheres<D>::hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& out) const {
+void JammingEnergy<D>::hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& out) const {
   out.setZero();
   const double* in = v.data();
   double* result = out.data();
@@ -214,7 +214,7 @@ void SoftSpheres<D>::hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& ou
 }
 
 template <int D>
-void SoftSpheres<D>::factor_preconditioner() {
+void JammingEnergy<D>::factor_preconditioner() {
   inverse_blocks_.resize(size());
   for (std::size_t i = 0; i < size(); ++i)
     inverse_blocks_[i] = least_stiffness * stiffness_of<D>(2 * radius_[i]) * Block::Identity();
@@ -231,14 +231,14 @@ void SoftSpheres<D>::factor_preconditioner() {
 }
 
 template <int D>
-void SoftSpheres<D>::precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const {
+void JammingEnergy<D>::precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const {
   for (std::size_t i = 0; i < size(); ++i)
     out.template segment<D>(at<D>(i)).noalias() = inverse_blocks_[i] * v.template segment<D>(at<D>(i));
   out[unknowns() - 1] = inverse_dilation_ * v[unknowns() - 1];
 }
 
 template <int D>
-double SoftSpheres<D>::move(const Eigen::VectorXd& motion) {
+double JammingEnergy<D>::move(const Eigen::VectorXd& motion) {
   state_before_ = state_;
   std::swap(before_, now_);
   const double e = motion[unknowns() - 1];
@@ -250,25 +250,25 @@ double SoftSpheres<D>::move(const Eigen::VectorXd& motion) {
 }
 
 template <int D>
-void SoftSpheres<D>::take_back() {
+void JammingEnergy<D>::take_back() {
   std::swap(state_, state_before_);
   std::swap(now_, before_);
 }
 
 template <int D>
-void SoftSpheres<D>::write(Spheres<D>& spheres) const {
+void JammingEnergy<D>::write(Spheres<D>& spheres) const {
   const Boundary<D> box{state_.edges};
   for (std::size_t i = 0; i < size(); ++i)
     spheres.set_center(order_[i], box.wrap(state_.centers.template segment<D>(at<D>(i))));
 }
 
-template class SoftSpheres<1>;
-template class SoftSpheres<2>;
-template class SoftSpheres<3>;
-template class SoftSpheres<4>;
-template class SoftSpheres<5>;
-template class SoftSpheres<6>;
-template class SoftSpheres<7>;
-template class SoftSpheres<8>;
+template class JammingEnergy<1>;
+template class JammingEnergy<2>;
+template class JammingEnergy<3>;
+template class JammingEnergy<4>;
+template class JammingEnergy<5>;
+template class JammingEnergy<6>;
+template class JammingEnergy<7>;
+template class JammingEnergy<8>;
 
 }  // namespace bernal

@@ -33,7 +33,7 @@ namespace bernal {
 /// jamming; Dagois-Bohy, Tighe, Simon, Henkes & van Hecke, Phys. Rev. Lett. 109, 095703 (2012), the box as an
 /// unknown; Chen & Mangasarian, Comput. Optim. Appl. 5, 97 (1996), the smoothing.
 template <int D>
-class SoftSpheres {
+class JammingEnergy {
  public:
   struct Contact {
     Vector<D> normal;  // from the second to the first
@@ -44,7 +44,7 @@ class SoftSpheres {
   };
 
   /// Precondition: at least one sphere. Centres may be anywhere.
-  SoftSpheres(const Spheres<D>& spheres, const Vector<D>& edges);
+  JammingEnergy(const Spheres<D>& spheres, const Vector<D>& edges);
 
   /// The load is set so that spheres held by 2 D contacts each have the mean overlap ratio `overlap`,
   /// roughly; the smoothing is a ratio too. Evaluates.
