@@ -74,7 +74,8 @@ void expect_in_container(Plan& plan) {
 
   const double mean_volume = ball_volume(3, 1) * plan.radii->moment(3);
   const double volume = volume_of(container);
-  double attainable = expected_packing_fraction(scene, container, *plan.radii);
+  double attainable = plan.attainable_packing_fraction =
+      expected_packing_fraction(scene, container, *plan.radii);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   plan.expected_count = attainable * volume / mean_volume;
   if (scene.target.count)
@@ -101,7 +102,7 @@ void expect_in_periodic_box(Plan& plan) {
   const int dimension = scene.dimension();
   plan.box_follows = scene.container.flag("scalable");
   const double mean_volume = ball_volume(dimension, 1) * plan.radii->moment(dimension);
-  double attainable = close_packing_fraction(*plan.radii, dimension);
+  double attainable = plan.attainable_packing_fraction = close_packing_fraction(*plan.radii, dimension);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   if (plan.box_follows) {
     plan.expected_count = static_cast<double>(*scene.target.count);
@@ -131,13 +132,13 @@ Plan build(const Scene& scene) {
   }
 
   for (const Spec& stage : scene.stages) {
-    for (const PlanItem& item : find_entry(stage_catalogue(), stage).effects) {
+    for (const PlanItem& item : find_entry(stage_catalogue(), stage).effects_in(scene)) {
       const auto same = [&](const PlanItem& other) { return other.name == item.name; };
       if (std::ranges::none_of(plan.items, same)) plan.items.push_back(item);
     }
   }
   for (const StageEntry& stage : stage_catalogue()) {
-    for (const PlanItem& item : stage.effects) {
+    for (const PlanItem& item : stage.effects_in(scene)) {
       const auto same = [&](const PlanItem& other) { return other.name == item.name; };
       const bool runs = std::ranges::any_of(plan.items, same);
       if (!runs && std::ranges::find(plan.absent, item.name) == plan.absent.end())

@@ -124,15 +124,20 @@ StageEnd run_relax(const Spec& s, PeriodicWork& work) {
                       .settle = s.flag("settle")});
 }
 
+const PlanItem relaxing_in_container[] = {
+    {"insertion", "random places, where so few are asked for that these are enough", "O(1) a trial"},
+    {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+    {"relaxation", "overlapping spheres and walls push; what is stuck is stirred or put into holes",
+     "some 1,000 sweeps of O(N)"}};
 const PlanItem relaxing[] = {
     {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
-    {"relaxation", "overlapping spheres push each other apart", "O(N) a sweep"}};
+    {"relaxation", "overlapping spheres push each other apart while the box grows", "some 1,000 sweeps of O(N)"}};
 
 const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},
                              {"compress", run_compress, nullptr, compression},
                              {"shake", run_shake, nullptr, shaking},
                              {"refill", run_refill, nullptr, refilling},
-                             {"relax", run_relax_in_container, run_relax, relaxing}};
+                             {"relax", run_relax_in_container, run_relax, relaxing_in_container, relaxing}};
 
 }  // namespace
 

@@ -35,8 +35,12 @@ struct StageEntry {
   StageEnd (*run)(const Spec&, Work&);
   /// In a periodic box; null where it cannot.
   StageEnd (*run_periodic)(const Spec&, PeriodicWork&);
-  /// Effects that it brings with it, for `Plan::items`.
-  std::span<const PlanItem> effects;
+  /// Effects that it brings with it in a container and in a periodic box, for `Plan::items`.
+  std::span<const PlanItem> effects, periodic_effects = {};
+
+  std::span<const PlanItem> effects_in(const Scene& scene) const {
+    return scene.is_periodic() ? periodic_effects : effects;
+  }
 };
 
 std::span<const ContainerEntry> container_catalogue();

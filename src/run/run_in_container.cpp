@@ -120,7 +120,7 @@ void run_in_container(const Plan& plan, const Monitor& monitor, const Stopwatch&
             milestone,
             crowd_milestone,
             plan.scene.target,
-            plan.expected_packing_fraction};
+            plan.attainable_packing_fraction};
 
   StageEnd end = StageEnd::converged;
   for (const Spec& stage : plan.scene.stages) {
@@ -136,8 +136,10 @@ void run_in_container(const Plan& plan, const Monitor& monitor, const Stopwatch&
     spheres.r[i] *= frame.scale;
   }
   packing.spheres = std::move(spheres);
+  Effect& walls = effects["walls"];
+  walls.calls += bed.wall_queries().calls;
+  walls.seconds += bed.wall_queries().seconds;
   packing.effects = effects.all();
-  packing.effects.push_back(bed.wall_queries());
   conclude(packing, supply, end);
 }
 

@@ -136,12 +136,14 @@ void SoftLists::sort_into_cells(const std::vector<SoftSphere>& compact, const st
 std::vector<SoftLists::Place> SoftLists::sweep_order(const std::vector<SoftSphere>& compact,
                                                      const std::array<double, 3>& edges) {
   const double width = 2.0 * (large_ + skin_);
+  // Few spheres in much room do not need more pencils than there are spheres.
+  const int most_across = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(compact.size()))));
   const auto pencils_across = [&](double edge) {
-    const int count = count_of_cells(edge, width);
+    const int count = std::min(most_across, count_of_cells(edge, width));
     return count > 1 ? count & ~1 : 1;
   };
   const int across_y = pencils_across(edges[1]), across_z = pencils_across(edges[2]);
-  const int along = count_of_cells(edges[0], 2.0 * large_);
+  const int along = std::min(static_cast<int>(compact.size()) + 1, count_of_cells(edges[0], 2.0 * large_));
   const auto pencils = static_cast<std::size_t>(across_y) * static_cast<std::size_t>(across_z);
 
   std::vector<std::uint32_t> order(compact.size());

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -59,6 +60,9 @@ class SoftPacking {
   void write_to(Spheres<D>& spheres, Vector<D>& edges) const;
   /// Centres, in a container.
   void write_to(Spheres<3>& spheres) const;
+
+  /// The unit of the coordinates on the longest edge.
+  double resolution() const { return 0x1p-32 * *std::max_element(edges_.begin(), edges_.end()); }
 
   /// How often lists were built.
   std::uint64_t builds() const { return builds_; }

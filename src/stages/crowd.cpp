@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
 #include "stages/holes.hpp"
 
 namespace bernal {
@@ -20,6 +23,8 @@ constexpr int sweeps_a_look = 25;
 /// Stuck: the strain keeps more than this share of itself between so many looks in a row.
 constexpr double hardly_freer = 0.85;
 constexpr int patience = 2;
+/// The margin is so many resolutions of the coordinates at least, and never more than this.
+constexpr double resolutions_a_margin = 100, largest_margin = 0.01;
 constexpr double burst_swelling = 1.02;
 constexpr int burst_sweeps = 50;
 /// Random places that are looked at for each sphere to find holes.
@@ -44,6 +49,14 @@ constexpr float severe_squeeze = 0.05f;
 Crowd::Crowd(const Container& container, const Places& places, Spheres<3> spheres)
     : container_(container), places_(places), spheres_(std::move(spheres)) {
   prepare();
+  const double resolution = packing_->resolution() / *std::ranges::min_element(spheres_.r);
+  margin_ = std::max(margin_, resolutions_a_margin * resolution);
+  if (margin_ > largest_margin)
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("spheres {:.1g} times smaller than the container cannot be relaxed in it; name "
+                            "other stages, such as \"insert\" and \"compress\"",
+                            std::exp2(-32) / resolution));
+  packing_->swell(1 + margin_);
 }
 
 void Crowd::prepare() {
@@ -52,7 +65,7 @@ void Crowd::prepare() {
     wall_queries_ += packing_->wall_queries();
   }
   packing_ = std::make_unique<SoftPacking>(spheres_, container_, soft_kernels().front());
-  packing_->swell(1 + margin);
+  packing_->swell(1 + margin_);
 }
 
 void Crowd::measure() {
@@ -76,11 +89,14 @@ Crowd::Rest Crowd::settle(const Monitor& monitor, const std::function<void()>& m
       packing_->wear_lists(largest_overlap_ > crowded ? wear_crowded : wear_settling);
       packing_->sweep(largest_overlap_ > crowded ? omega_crowded : omega_settling);
       ++sweeps_;
-      if (monitor.stop()) return Rest::cancelled;
+      if (monitor.stop()) {
+        packing_->write_to(spheres_);
+        return Rest::cancelled;
+      }
     }
     measure();
     milestone();
-    if (largest_overlap_ < share_of_margin * margin) {
+    if (largest_overlap_ < share_of_margin * margin_) {
       packing_->write_to(spheres_);
       return Rest::free;
     }
@@ -91,10 +107,10 @@ Crowd::Rest Crowd::settle(const Monitor& monitor, const std::function<void()>& m
 }
 
 void Crowd::burst() {
-  packing_->swell((1 + margin) * burst_swelling);
+  packing_->swell((1 + margin_) * burst_swelling);
   for (int k = 0; k < burst_sweeps; ++k) packing_->sweep(omega_settling);
   sweeps_ += burst_sweeps;
-  packing_->swell(1 + margin);
+  packing_->swell(1 + margin_);
 }
 
 void Crowd::relocate(double share, Random& random) {

@@ -19,16 +19,14 @@ namespace bernal {
 /// nothing.
 class Crowd {
  public:
-  /// Share of the radius that is kept free around a sphere. It takes 3 margin off the packing fraction.
-  static constexpr double margin = 1e-4;
-
   enum class Rest {
     free,   ///< of overlap
     stuck,  ///< what overlaps has nowhere to go
     cancelled,
   };
 
-  /// Centres are inside the container.
+  /// Centres are inside the container. Throws Error{bad_scene} where single precision cannot tell the spheres
+  /// apart: a container 100,000 times as large as they are.
   Crowd(const Container& container, const Places& places, Spheres<3> spheres);
 
   const Spheres<3>& spheres() const { return spheres_; }
@@ -74,6 +72,7 @@ class Crowd {
   const Places& places_;
   Spheres<3> spheres_;
   std::unique_ptr<SoftPacking> packing_;
+  double margin_ = 1e-4;  // share of the radius; it takes three times as much off the packing fraction
   double largest_overlap_ = 1;
   double strain_ = 1;
   std::size_t severe_ = 0;

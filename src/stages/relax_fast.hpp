@@ -11,13 +11,15 @@ bool fast_path_exists(const Spheres<D>& spheres, const Vector<D>& edges);
 
 /// The published relaxation on sorted arrays, with neighbour lists and over-relaxed steps: a hundred times as
 /// fast as the loop of the paper, and a little denser. It differs from that in five things.
-///  - A sphere moves by min(omega / n, 1) times the sum of its n overlaps, omega about 5. The paper's 1 / n is a
+///  - A sphere moves by min(omega / n, 1) times the sum of its n overlaps, omega about 5. The paper's 1 / n
+///  is a
 ///    third of a Newton step at the five or six contacts of a packed sphere.
 ///  - Spheres are swept in an order in which many can be moved at once.
 ///  - Where molr < 0.003, when it falls in proportion with the growth of the box, the next growth is 0.9 of
 ///  what
 ///    the last two predict, at most molr / 6.
-///  - Beyond 10,000 spheres the number of sweeps between two growths stays what it is there: the packing fraction
+///  - Beyond 10,000 spheres the number of sweeps between two growths stays what it is there: the packing
+///  fraction
 ///    does so too.
 ///  - It ends with overlaps far below `options.stop`.
 /// Preconditions and results are those of `relax_by_the_book`. Cost: about 13 ns a sphere and sweep, lists

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "stages/crowd.hpp"
+#include "stages/insert.hpp"
 
 namespace bernal {
 namespace {
@@ -14,6 +15,8 @@ namespace {
 constexpr double relocated = 0.002;
 /// What is taken out, in root mean squared overlap ratios times spheres.
 constexpr double taken_out = 1.5;
+/// The factor from one time to the next, and that of the patience.
+constexpr double taken_out_faster = 1.25, less_patience = 0.7;
 /// Stirring helps as long as the strain falls below this share of the least so far.
 constexpr double progress = 0.9;
 /// Strain at which there are so many spheres too many that stirring is of no use.
@@ -23,6 +26,11 @@ constexpr double patience_when_hopeless = 1;
 constexpr double local_jam = 40;
 /// What is pushed in at a time, first and at last.
 constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
+/// More than what is likely to fit, in shares of it, is not tried at once.
+constexpr double most_of_attainable = 1.1;
+/// Spheres that fill less than this share of what is likely to fit find places free of overlap by themselves.
+constexpr double dilute = 0.3;
+constexpr InsertOptions insertion = {.attempts = 1000, .packing_fraction = 1};
 constexpr int most_hand_overs = 20;
 /// Tries to find a place where a sphere clears the wall.
 constexpr int tries = 100;
@@ -36,15 +44,15 @@ class Relaxation {
         options_(options),
         random_(work.random(Stream::relax)),
         crowd_(work.bed.container(), work.bed.places(), spheres_to_start_from()),
-        target_count_(crowd_.size()) {}
+        target_count_(std::max(crowd_.size(), target_count())) {}
 
   StageEnd run() {
     bool free = relax(options_.patience);
     for (double share = taken_out, patience = options_.patience; !free && !cancelled_ && crowd_.size() > 1;) {
       const double count = share * crowd_.strain() * static_cast<double>(crowd_.size());
       crowd_.drop_last(std::max<std::size_t>(1, static_cast<std::size_t>(count)), random_);
-      share *= 1.25;
-      patience = over_ ? 0 : 0.7 * patience;
+      share *= taken_out_faster;
+      patience = over_ ? 0 : less_patience * patience;
       free = relax(patience);
     }
     if (free && !over_) push_in();
@@ -53,23 +61,32 @@ class Relaxation {
       crowd_.settle(work_.monitor, [this] { report(); });
     log_effects();
     if (cancelled_) return StageEnd::cancelled;
-    if (over_) return StageEnd::hit_limit;
     return crowd_.size() < target_count_ ? StageEnd::full : StageEnd::converged;
   }
 
  private:
-  /// The first of the drawn sequence, those in the bed where they are and the others at random.
+  /// So many of the drawn sequence fill this share of the container.
+  std::size_t count_for(double packing_fraction) const {
+    double volume = packing_fraction * work_.bed.container().volume();
+    std::size_t count = 0;
+    while (count < work_.supply.wanted() && volume > 0)
+      volume -= volume_of_ball(work_.supply.radius(static_cast<std::uint32_t>(count++)));
+    return count;
+  }
+
+  std::size_t target_count() const {
+    if (work_.target.is_open() && !work_.target.fill) return count_for(work_.attainable);
+    return work_.supply.wanted();
+  }
+
+  /// The first of the drawn sequence, those in the bed where they are and the others at random: as many as
+  /// are asked for, or a few more than are likely to fit.
   Spheres<3> spheres_to_start_from() {
     const Bed& bed = work_.bed;
     const Supply& supply = work_.supply;
-    std::size_t count = supply.wanted();
-    if (!work_.target.count && !work_.target.packing_fraction) {
-      double volume = 0;
-      for (count = 0; count < supply.wanted(); ++count) {
-        volume += volume_of_ball(supply.radius(static_cast<std::uint32_t>(count)));
-        if (volume > work_.attainable * bed.container().volume()) break;
-      }
-    }
+    const double most = work_.target.fill ? 1 : most_of_attainable;
+    std::size_t count =
+        std::max<std::size_t>(1, std::min(target_count(), count_for(most * work_.attainable)));
     for (Bed::Id i = 0; i < bed.size(); ++i) count = std::max<std::size_t>(count, bed.tag(i) + 1);
     Spheres<3> spheres;
     for (std::uint32_t tag = 0; tag < count; ++tag) {
@@ -132,13 +149,12 @@ class Relaxation {
   /// More and more of the sequence, until even a few find no room.
   void push_in() {
     const Supply& supply = work_.supply;
-    const std::size_t most = work_.target.fill ? supply.wanted() : target_count_;
     double share = pushed_in;
     while (share >= least_pushed_in && !over_) {
       const Spheres<3> before = crowd_.spheres();
       const std::size_t n = before.size();
       const auto more =
-          std::min(most - n, static_cast<std::size_t>(std::ceil(share * static_cast<double>(n))));
+          std::min(target_count_ - n, static_cast<std::size_t>(std::ceil(share * static_cast<double>(n))));
       if (more == 0) return;
       std::vector<double> radii;
       for (std::size_t k = 0; k < more; ++k)
@@ -191,9 +207,25 @@ class Relaxation {
   bool cancelled_ = false;
 };
 
+/// Whether what is asked for is so little that spheres need not push each other.
+bool is_dilute(const Work& work) {
+  const double share = dilute * work.attainable;
+  if (work.target.is_open()) return false;
+  double volume = 0;
+  for (std::uint32_t tag = 0; tag < work.supply.wanted(); ++tag) {
+    volume += volume_of_ball(work.supply.radius(tag));
+    if (volume > share * work.bed.container().volume()) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 StageEnd relax_in_container(Work& work, const RelaxInContainerOptions& options) {
+  if (is_dilute(work)) {
+    const StageEnd end = insert(work, insertion);
+    if (end != StageEnd::full) return end;
+  }
   const EffectTimer timer(work.effects["relaxation"]);
   return Relaxation(work, options).run();
 }

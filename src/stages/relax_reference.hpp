@@ -11,10 +11,10 @@ namespace bernal {
 /// the box; molr is the largest overlap that the last sweep met.
 ///
 /// `options.settle` adds the paper's rule that a sphere which touches nothing moves to touch its nearest
-/// neighbour. It is off by default: it changes neither the packing fraction nor the coordination number beyond
-/// the scatter of seeds (N = 1,000, three seeds each: 0.6404 and 0.6399 with and without it for equal spheres,
-/// 0.6625 and 0.6630 for lognormal ones of sigma 0.3), costs up to a tenth more time, and leaves rattlers where
-/// they touch something by decree and not by chance.
+/// neighbour. It is off by default: it changes neither the packing fraction nor the coordination number
+/// beyond the scatter of seeds (N = 1,000, three seeds each: 0.6404 and 0.6399 with and without it for equal
+/// spheres, 0.6625 and 0.6630 for lognormal ones of sigma 0.3), costs up to a tenth more time, and leaves
+/// rattlers where they touch something by decree and not by chance.
 ///
 /// Preconditions: centres in [0, edges), every edge at least twice the largest radius. On return centres and
 /// edges are those of the end; overlaps are below `options.stop` where it converged, to the motion of one

@@ -24,7 +24,7 @@ struct Work {
   std::function<void(std::string_view stage, std::size_t spheres, double volume, double max_overlap)>
       crowd_milestone;
   const Target& target;
-  /// The packing fraction that the plan expects.
+  /// The packing fraction that the stages are likely to reach.
   const double attainable;
   std::uint64_t streams_used = 0;
 

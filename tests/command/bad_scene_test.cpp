@@ -79,7 +79,7 @@ TEST(Explain, PrintsTheProtocolOfASceneThatNamesNone) {
   const Ended text = bernal({"explain", scene.string()});
   EXPECT_EQ(text.status, 0) << text.err;
   EXPECT_EQ(text.err, "");
-  for (const std::string word : {"box", "mm", "diameter", "[[stage]]\ndo = \"insert\"", "do = \"refill\""})
+  for (const std::string word : {"box", "mm", "diameter", "[[stage]]\ndo = \"relax\"", "patience = 12"})
     EXPECT_NE(text.out.find(word), std::string::npos) << word << "\nis not in:\n" << text.out;
 
   // What it prints can be pasted.

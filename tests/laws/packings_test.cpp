@@ -208,8 +208,10 @@ TEST_P(EveryPacking, ThatIsCancelledIsWholeAsFarAsItGoes) {
   };
   const std::size_t all = run(plan, options).spheres.size();
   // Before the first sphere, among the first ones, and in the last stage. In a periodic box all spheres are
-  // there from the start, and the box becomes as large as it must.
+  // there from the start, and the box becomes as large as it must; relaxation in a container leaves those
+  // that touch nothing.
   const bool periodic = plan.scene.is_periodic();
+  const bool inserts = plan.scene.stages.front().name == "insert";
   for (const std::size_t k : {std::size_t{0}, std::min<std::size_t>(30, polls / 2), polls - 1}) {
     const Packing packing = cancelled_after(plan, k);
     EXPECT_EQ(packing.outcome, Outcome::cancelled);
@@ -217,7 +219,7 @@ TEST_P(EveryPacking, ThatIsCancelledIsWholeAsFarAsItGoes) {
     if (periodic) {
       EXPECT_EQ(packing.spheres.size(), all);
     } else {
-      EXPECT_LE(packing.spheres.size(), k <= 30 ? k : all);
+      EXPECT_LE(packing.spheres.size(), k <= 30 && inserts ? k : all);
     }
     expect_certified(packing);
   }
@@ -232,6 +234,9 @@ std::set<std::string> effects_of(const Packing& packing) {
   return names;
 }
 
+const std::string compressed =
+    "[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"compress\"\n"
+    "[[stage]]\ndo = \"shake\"\n[[stage]]\ndo = \"refill\"\n";
 const std::string insert_only = "[[stage]]\ndo = \"insert\"\npacking_fraction = 0.2\n";
 
 TEST(Packing, RunsOnlyTheEffectsThatTheSceneCallsFor) {
@@ -281,7 +286,7 @@ TEST(Packing, ThatCannotReachItsPackingFractionIsFull) {
 }
 
 TEST(Packing, TellsItsHistoryInOrder) {
-  const Packing packing = run_with(plan_of(box + "[spheres]\nfill = true\nradius = 0.07\n"));
+  const Packing packing = run_with(plan_of(box + "[spheres]\nfill = true\nradius = 0.07\n" + compressed));
   ASSERT_FALSE(packing.history.empty());
   for (std::size_t i = 1; i < packing.history.size(); ++i) {
     EXPECT_GE(packing.history[i].seconds, packing.history[i - 1].seconds);

@@ -28,7 +28,8 @@ struct Plan {
   std::string container_notes;              ///< what the importer did: reader, welding, repairs; may be empty
   std::unique_ptr<SizeDistribution> radii;  ///< in the scene's unit
 
-  double expected_packing_fraction = 0;
+  /// What the stages are likely to reach, and what the result is likely to be: less, where less is asked for.
+  double attainable_packing_fraction = 0, expected_packing_fraction = 0;
   double expected_count = 0;
   double expected_memory_bytes = 0;
   std::vector<PlanItem> items;      ///< what would run, in order
