@@ -18,7 +18,7 @@ namespace bernal {
 namespace {
 
 /// Enough for curves that are smooth to the eye; `bernal measure` takes more.
-constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 4e5;
+constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5;
 
 void write_text(const std::filesystem::path& path, std::string_view text) {
   OutputFile file(path);

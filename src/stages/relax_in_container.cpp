@@ -57,8 +57,11 @@ class Relaxation {
     }
     if (free && !over_) push_in();
     // Single precision saw them free of overlap in motion; a few more sweeps bring all of them there.
-    for (int k = 0; !hand_over() && free && k < most_hand_overs; ++k)
-      crowd_.settle(work_.monitor, [this] { report(); });
+    bool all_there = hand_over();
+    for (int k = 0; !all_there && free && !cancelled_ && k < most_hand_overs; ++k) {
+      cancelled_ = crowd_.settle(work_.monitor, [this] { report(); }) == Crowd::Rest::cancelled;
+      all_there = hand_over();
+    }
     log_effects();
     if (cancelled_) return StageEnd::cancelled;
     return crowd_.size() < target_count_ ? StageEnd::full : StageEnd::converged;

@@ -243,9 +243,9 @@ TEST(Packing, RunsOnlyTheEffectsThatTheSceneCallsFor) {
   const std::string spheres = "[spheres]\nfill = true\nradius = 0.07\n";
   EXPECT_EQ(effects_of(run_with(plan_of(box + spheres + insert_only))),
             (std::set<std::string>{"insertion", "walls"}));
-  const auto compressed =
+  const auto pushed_down =
       effects_of(run_with(plan_of(box + spheres + insert_only + "[[stage]]\ndo = \"compress\"\n")));
-  EXPECT_EQ(compressed, (std::set<std::string>{"insertion", "walls", "neighbour lists", "compression"}));
+  EXPECT_EQ(pushed_down, (std::set<std::string>{"insertion", "walls", "neighbour lists", "compression"}));
   const auto relaxed = effects_of(run_with(plan_of(unequal_edges)));
   EXPECT_TRUE(relaxed.contains("relaxation"));
   EXPECT_FALSE(relaxed.contains("walls") || relaxed.contains("insertion") || relaxed.contains("compression"));
