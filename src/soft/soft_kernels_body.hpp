@@ -194,11 +194,12 @@ float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
         const Floats reach = me.r + it.r;
         const Floats d = root((dx * dx + dy * dy) + dz * dz);
         const Ints overlap = (d < reach) & (d > 0.0f);
-        const Floats push = where(overlap, reach / d - 1.0f);
+        const Floats weight = where(overlap, (it.r + it.r) / reach);
+        const Floats push = where(overlap, weight * (reach / d - 1.0f));
         sum_x += push * dx;
         sum_y += push * dy;
         sum_z += push * dz;
-        contacts -= to_floats(overlap);
+        contacts += weight;
         if constexpr (measure) {
           const Floats ratio = where(overlap, (reach - d) / reach);
           worst = ratio > worst ? ratio : worst;
