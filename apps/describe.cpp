@@ -1,5 +1,6 @@
 #include "describe.hpp"
 
+#include <algorithm>
 #include <variant>
 
 #include <fmt/format.h>
@@ -56,5 +57,8 @@ std::string describe_target(const Scene& scene) {
   if (scene.target.count) return grouped(static_cast<std::uint64_t>(*scene.target.count));
   if (scene.target.packing_fraction)
     return fmt::format("up to packing fraction {}", *scene.target.packing_fraction);
-  return "as many as fit";
+  if (scene.target.fill) return "as many as can be made to fit";
+  const bool relaxed =
+      std::ranges::any_of(scene.stages, [](const Spec& stage) { return stage.name == "relax"; });
+  return relaxed && !scene.is_periodic() ? "as many as are expected to fit" : "as many as fit";
 }

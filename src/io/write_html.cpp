@@ -40,6 +40,12 @@ std::string seconds_text(double seconds) {
              : fmt::format("{:.0f} min {:02.0f} s", std::floor(seconds / 60), std::fmod(seconds, 60));
 }
 
+/// A packing that was read back from its files has no plan.
+std::string expected_text(const Packing& packing) {
+  if (!(packing.expected_packing_fraction > 0)) return {};
+  return fmt::format("; {:.3f} was expected", packing.expected_packing_fraction);
+}
+
 void write_headline(Page& page, const Report& report) {
   const Packing& packing = report.packing;
   const bool certified = report.certificate.certified;
@@ -47,9 +53,9 @@ void write_headline(Page& page, const Report& report) {
   page.card(grouped(packing.spheres.size()), "Spheres",
             fmt::format("{}: {}", name_of(packing.outcome), escaped(packing.reason)));
   page.card(fmt::format("{:.4f}", packing.packing_fraction()), "Packing fraction",
-            fmt::format("the share of the {}’s {} that is sphere",
+            fmt::format("the share of the {}’s {} that is sphere{}",
                         std::holds_alternative<PeriodicBox>(packing.domain) ? "box" : "container",
-                        volume_word(packing)));
+                        volume_word(packing), expected_text(packing)));
   page.card(certified ? "yes" : "no", "Certified",
             certified ? "no overlap, nothing sticks out; proven on the written file"
                       : "see the certificate below for what is wrong",
@@ -80,22 +86,28 @@ void write_scene(Page& page, const Report& report, std::string_view scene) {
       escaped(scene));
 }
 
-/// In a periodic box overlaps go away while it grows; in a container spheres settle.
+/// Where spheres are relaxed overlaps go away; where they are compressed they settle.
 void write_history(Page& page, const Report& report) {
   const Packing& packing = report.packing;
   if (packing.history.size() >= 2) {
     const bool periodic = std::holds_alternative<PeriodicBox>(packing.domain);
+    const bool relaxed =
+        std::ranges::any_of(packing.history, [](const Milestone& m) { return m.max_overlap > 0; });
     page.add("<h2>How the run went</h2>\n<div class=\"pair\"><div>{}</div><div>{}</div></div>\n",
              history_chart(packing.history, &Milestone::packing_fraction, "packing fraction"),
-             periodic ? overlap_chart(packing.history)
-                      : history_chart(packing.history, &Milestone::potential,
-                                      fmt::format("mean height of the spheres ({})", packing.scene.unit)));
-    page.raw(periodic ? "<p class=\"dim\">The run starts in a box that is too small, where spheres overlap; "
-                        "they push each "
-                        "other apart while the box grows.</p>\n"
-                      : "<p class=\"dim\">The height is measured against the direction in which the spheres "
-                        "are pushed; it "
-                        "falls as they settle and rises as new ones are put on top.</p>\n");
+             relaxed ? overlap_chart(packing.history)
+                     : history_chart(packing.history, &Milestone::potential,
+                                     fmt::format("mean height of the spheres ({})", packing.scene.unit)));
+    page.raw(
+        relaxed && !periodic
+            ? "<p class=\"dim\">Spheres that overlap push each other apart, and the wall pushes too. What "
+              "is stuck is shaken with larger radii or put into holes, where the overlap jumps.</p>\n"
+        : periodic ? "<p class=\"dim\">The run starts in a box that is too small, where spheres overlap; "
+                     "they push each "
+                     "other apart while the box grows.</p>\n"
+                   : "<p class=\"dim\">The height is measured against the direction in which the spheres "
+                     "are pushed; it "
+                     "falls as they settle and rises as new ones are put on top.</p>\n");
   }
   if (packing.effects.empty()) return;
   page.raw(

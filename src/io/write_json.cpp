@@ -51,7 +51,8 @@ std::string json_of(const Report& report) {
                {"n", packing.spheres.size()},
                {"dimension", packing.spheres.dimension()},
                {"unit", packing.scene.unit},
-               {"phi", packing.packing_fraction()}};
+               {"phi", packing.packing_fraction()},
+               {"expected_phi", packing.expected_packing_fraction}};
   json.update(contacts_json(report.measured.contacts));
   json.update({{"crystalline", crystalline_json(report.measured.order)},
                {"walls", report.measured.walls ? walls_json(*report.measured.walls) : Json()},

@@ -131,7 +131,8 @@ const PlanItem relaxing_in_container[] = {
      "some 1,000 sweeps of O(N)"}};
 const PlanItem relaxing[] = {
     {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
-    {"relaxation", "overlapping spheres push each other apart while the box grows", "some 1,000 sweeps of O(N)"}};
+    {"relaxation", "overlapping spheres push each other apart while the box grows",
+     "some 1,000 sweeps of O(N)"}};
 
 const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},
                              {"compress", run_compress, nullptr, compression},

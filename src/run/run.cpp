@@ -14,6 +14,7 @@ Packing run(const Plan& plan, const RunOptions& options) {
   Packing packing;
   packing.domain = plan.domain;
   packing.volume = volume_of(plan.domain);
+  packing.expected_packing_fraction = plan.expected_packing_fraction;
   packing.scene = plan.scene;
   packing.seed = options.seed.value_or(plan.scene.seed);
   packing.scene.seed = packing.seed;

@@ -56,7 +56,9 @@ void conclude(Packing& packing, const Supply& supply, StageEnd end) {
     packing.reason = fmt::format("the last stage reached its limit with {} spheres", n);
   } else if (target.is_open()) {
     packing.outcome = Outcome::converged;
-    packing.reason = fmt::format("the stages of the scene place {} spheres and no more", n);
+    packing.reason = end == StageEnd::converged && !target.fill && packing.scene.stages.back().name == "relax"
+                         ? fmt::format("{} spheres are placed, as many as were expected to fit", n)
+                         : fmt::format("the stages of the scene place {} spheres and no more", n);
   } else {
     packing.outcome = Outcome::full;
     packing.reason =

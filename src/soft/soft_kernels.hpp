@@ -49,10 +49,12 @@ struct SearchTask {
 struct SoftKernels {
   std::string_view name;
 
-  /// Moves the groups [begin, end) one after the other: each sphere by min(omega / n, 1) Σ (ri + rj - d) u
-  /// over its n overlapping neighbours, u being the unit vector away from the neighbour (Zhao, Li & Liu 2007,
-  /// equations 3 and 4, for omega = 1). A wall counts as a neighbour. Precondition: no two spheres of a group
-  /// are neighbours. Cost: about 1 ns a neighbour.
+  /// Moves the groups [begin, end) one after the other: each sphere by min(omega / n, 1) Σ w (ri + rj - d) u
+  /// over its overlapping neighbours, u being the unit vector away from the neighbour, w = 2 rj / (ri + rj)
+  /// and n = Σ w: of a pair the larger one gives way less, so that a large sphere among many small ones is
+  /// moved by its large neighbours (Zhao, Li & Liu 2007, equations 3 and 4, for omega = 1 and equal radii). A
+  /// wall counts as a neighbour with w = 1. Precondition: no two spheres of a group are neighbours. Cost:
+  /// about 1 ns a neighbour.
   void (*sweep)(const SweepTask&, std::size_t begin, std::size_t end);
   /// The same; returns the largest overlap ratio (ri + rj - d) / (ri + rj) that was met, and fills `stress`.
   float (*sweep_and_measure)(const SweepTask&, std::size_t begin, std::size_t end);

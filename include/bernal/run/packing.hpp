@@ -33,7 +33,7 @@ struct Milestone {
   double packing_fraction = 0;
   double potential = 0;    ///< mean height of the spheres along the compression direction, scene units
   double max_overlap = 0;  ///< largest overlap ratio of a pair that a relaxation has left so far
-  double seconds = 0;    ///< since the start of the run
+  double seconds = 0;      ///< since the start of the run
 };
 
 /// The result of a run: plain data. Lengths are in the scene's unit and frame. `spheres` has the dimension of
@@ -41,7 +41,8 @@ struct Milestone {
 struct Packing {
   Spheres<dynamic> spheres;  ///< in a periodic box with centres in [0, edge)
   Domain domain;
-  double volume = 0;  ///< of the domain
+  double volume = 0;                     ///< of the domain
+  double expected_packing_fraction = 0;  ///< by the plan, before the run
   Scene scene;
   std::uint64_t seed = 1;
   int threads = 1;
