@@ -90,16 +90,18 @@ void write_classes(Page& page, const Sizes& sizes, const std::map<double, std::u
   page.raw("</table>\n");
 }
 
+std::string share_of_cases(double p) { return p > 0.99 ? "over 99 %" : fmt::format("{:.2g} %", 100 * p); }
+
 void write_comparison(Page& page, const SizeComparison& c, const Sizes& sizes) {
   page.add(
       "<p class=\"dim\">Against what was asked: the cumulative shares by number differ by at most {:.3g}",
       c.ks_statistic);
   if (c.ks_p_value)
-    page.add("; independent draws would differ by more in {:.2g} % of all cases (Kolmogorov–Smirnov)",
-             100 * *c.ks_p_value);
+    page.add("; independent draws would differ by more in {} of all cases (Kolmogorov–Smirnov)",
+             share_of_cases(*c.ks_p_value));
   if (c.chi_squared_p_value)
-    page.add("; independent draws would have counts farther off in {:.2g} % of all cases (χ²)",
-             100 * *c.chi_squared_p_value);
+    page.add("; independent draws would have counts farther off in {} of all cases (χ²)",
+             share_of_cases(*c.chi_squared_p_value));
   page.add(". The mean {} of a sphere is {:.2f} % of what was asked", sizes.volume_word(),
            100 * c.volume_ratio);
   if (std::isfinite(c.volume_ratio_error) && c.volume_ratio_error > 0)
