@@ -172,7 +172,11 @@ void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out
       const double d = away.norm();
       until = static_cast<float>(d + near.way);
       free = std::min(free, d);
-      if (d < r && d > 0 && count < most_contacts) contacts[count++] = {away / d, r - d};
+      if (!(d < r && d > 0)) continue;
+      if (count < most_contacts)
+        contacts[count++] = {away / d, r - d};
+      else if (Contact& least = *std::ranges::min_element(contacts, {}, &Contact::depth); least.depth < r - d)
+        least = {away / d, r - d};
     }
     out.free[l] = free;
     std::sort(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(count),
