@@ -45,6 +45,8 @@ class SoftLists {
   const std::vector<std::vector<Chain>>& phases() const { return phases_; }
   const NeighborRows* groups() const { return groups_.data(); }
   float skin() const { return skin_; }
+  /// For the lists to come.
+  void set_skin(float skin) { skin_ = skin; }
 
  private:
   using Place = std::uint32_t;

@@ -74,6 +74,7 @@ class SoftPacking {
   void for_each_chain(const Sweep& sweep) const;
   SweepTask task(float omega);
   void set_place(SoftSphere& sphere, const Vector<3>& center) const;
+  void choose_skin();
   void keep_lists_valid();
   double largest_move() const;
 
@@ -83,6 +84,7 @@ class SoftPacking {
   std::array<double, 3> edges_;
   Vector<3> corner_ = Vector<3>::Zero();
   SoftLists lists_;
+  float thickest_skin_;
   std::unique_ptr<SoftWalls> walls_;  // null in a periodic box
   std::vector<SoftSphere> spheres_;   // in sweep order
   std::vector<std::uint32_t> ids_;
@@ -93,6 +95,7 @@ class SoftPacking {
   std::uint64_t builds_ = 0;
   double moved_ = 0;  // largest move since then, when it was last looked at
   double wear_ = 0.9;
+  int age_ = 0;       // of the lists, in sweeps, when it was last looked at
   int sweeps_ = 0;    // since it was last looked at
   int patience_ = 0;  // sweeps until it is looked at again
 };
