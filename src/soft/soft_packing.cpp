@@ -43,6 +43,11 @@ std::int32_t to_fixed(double x, double edge) {
 
 }  // namespace
 
+Pace pace_for(double largest_overlap) {
+  constexpr double crowded = 0.06;
+  return largest_overlap > crowded ? Pace{5.4f, 1.6} : Pace{5, 0.9};
+}
+
 template <int D>
 SoftPacking::SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels)
     : kernels_(kernels),

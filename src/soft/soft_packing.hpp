@@ -12,6 +12,21 @@
 
 namespace bernal {
 
+/// How spheres are best moved in three dimensions.
+struct Pace {
+  float omega;  ///< over-relaxation, see SoftKernels::sweep
+  double wear;  ///< of the lists, see SoftPacking::wear_lists
+};
+/// By the largest overlap ratio that was measured last: hastily while spheres are crowded.
+///
+/// At six contacts a sweep stops being stable at omega = 6; nearer to that it agitates the spheres, which
+/// finds denser packings while they are crowded, and loses contacts when they come to rest. 3 instead of 5
+/// costs 0.004 of packing fraction. As the normals of n contacts have a mean square of 1 / D along any axis,
+/// a Newton step is D / n times the sum of the overlaps, and these are 1.8 and 1.67 of it: in other
+/// dimensions omega goes with D / 3. The missed neighbours of worn lists do no harm to crowded spheres, and a
+/// fifth of the time is saved.
+Pace pace_for(double largest_overlap);
+
 /// Overlapping spheres that push each other apart, in a periodic box of one, two or three dimensions or in a
 /// container: the state of the fast relaxation. In single precision and fixed point: overlap ratios are good
 /// to about 1e-6.
@@ -33,7 +48,7 @@ class SoftPacking {
   static double smallest_edge(const std::vector<double>& radii);
 
   /// Lists are built anew when a sphere has moved by `wear` skins. Above 1, neighbours may be missed until
-  /// then: of no matter while all spheres overlap many others. 0.9 where nothing is said.
+  /// then. 0.9 where nothing is said.
   void wear_lists(double wear) { wear_ = wear; }
 
   /// Every sphere is moved once, by min(omega / n, 1) times the sum of its n overlaps. Parallel where there

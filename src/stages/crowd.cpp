@@ -12,10 +12,6 @@
 namespace bernal {
 namespace {
 
-/// Over-relaxation, as in relax_fast.cpp: nearer to what is stable while spheres are crowded.
-constexpr float omega_crowded = 5.4f, omega_settling = 5;
-constexpr double crowded = 0.06;
-constexpr double wear_crowded = 1.6, wear_settling = 0.9;
 /// Of the margin, what single precision leaves to rely on.
 constexpr double share_of_margin = 0.97;
 /// After so many sweeps it is looked at how far things are.
@@ -28,6 +24,10 @@ constexpr double resolutions_a_margin = 100, largest_margin = 0.01;
 constexpr double burst_swelling = 1.02;
 constexpr int burst_sweeps = 50;
 /// Random places that are looked at for each sphere to find holes.
+constexpr double probes_a_sphere = 2, least_probes = 1000;
+/// Sum of squared overlap ratios of a sphere that will not find its way by itself.
+constexpr float severe_squeeze = 0.05f;
+
 /// The indices of the `count` largest, the largest first.
 std::vector<std::uint32_t> most_squeezed(const std::vector<float>& stress, std::size_t count) {
   std::vector<std::uint32_t> ids(stress.size());
@@ -39,10 +39,6 @@ std::vector<std::uint32_t> most_squeezed(const std::vector<float>& stress, std::
   ids.resize(count);
   return ids;
 }
-
-constexpr double probes_a_sphere = 2, least_probes = 1000;
-/// Sum of squared overlap ratios of a sphere that will not find its way by itself.
-constexpr float severe_squeeze = 0.05f;
 
 }  // namespace
 
@@ -69,8 +65,9 @@ void Crowd::prepare() {
 }
 
 void Crowd::measure() {
-  packing_->wear_lists(wear_settling);
-  largest_overlap_ = packing_->sweep_and_measure(omega_settling);
+  const Pace pace = pace_for(0);
+  packing_->wear_lists(pace.wear);
+  largest_overlap_ = packing_->sweep_and_measure(pace.omega);
   ++sweeps_;
   double sum = 0;
   severe_ = 0;
@@ -85,9 +82,10 @@ Crowd::Rest Crowd::settle(const Monitor& monitor, const std::function<void()>& m
   int slow = 0;
   double last_strain = 1e300;
   for (;;) {
+    const Pace pace = pace_for(largest_overlap_);
+    packing_->wear_lists(pace.wear);
     for (int k = 1; k < sweeps_a_look; ++k) {
-      packing_->wear_lists(largest_overlap_ > crowded ? wear_crowded : wear_settling);
-      packing_->sweep(largest_overlap_ > crowded ? omega_crowded : omega_settling);
+      packing_->sweep(pace.omega);
       ++sweeps_;
       if (monitor.stop()) {
         packing_->write_to(spheres_);
@@ -108,7 +106,7 @@ Crowd::Rest Crowd::settle(const Monitor& monitor, const std::function<void()>& m
 
 void Crowd::burst() {
   packing_->swell((1 + margin_) * burst_swelling);
-  for (int k = 0; k < burst_sweeps; ++k) packing_->sweep(omega_settling);
+  for (int k = 0; k < burst_sweeps; ++k) packing_->sweep(pace_for(0).omega);
   sweeps_ += burst_sweeps;
   packing_->swell(1 + margin_);
 }

@@ -8,16 +8,6 @@
 namespace bernal {
 namespace {
 
-/// Over-relaxation. At six contacts a sweep stops being stable at 6; nearer to that it agitates the spheres,
-/// which finds denser packings while they are crowded, and loses contacts when they come to rest. 3 instead
-/// of 5 costs 0.004 of packing fraction.
-/// In three dimensions, that is: as the normals of n contacts have a mean square of 1 / D along any axis, a
-/// Newton step is D / n times the sum of the overlaps, and these are 1.8 and 1.67 of it.
-constexpr float omega_crowded = 5.4f, omega_settling = 5;
-constexpr double crowded = 0.06;
-/// How far spheres move before lists are built anew, in skins. While they are crowded some missed neighbours
-/// do no harm, and a fifth of the time is saved.
-constexpr double wear_crowded = 1.6, wear_settling = 0.9;
 /// Where the overlap falls linearly with the growth of the box. Earlier, prediction costs contacts.
 constexpr double predictable = 3e-3;
 constexpr double share_of_prediction = 0.9;
@@ -69,8 +59,9 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, c
   Growth growth(options.beta);
   StageEnd end = StageEnd::converged;
   for (double molr = 1;;) {
-    packing.wear_lists(molr > crowded ? wear_crowded : wear_settling);
-    const float omega = (molr > crowded ? omega_crowded : omega_settling) * D / 3;
+    const Pace pace = pace_for(molr);
+    packing.wear_lists(pace.wear);
+    const float omega = pace.omega * D / 3;
     for (int k = 1; k < sweeps && end == StageEnd::converged; ++k) {
       packing.sweep(omega);
       if (work.monitor.stop()) end = StageEnd::cancelled;
