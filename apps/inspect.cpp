@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -167,7 +168,11 @@ void add_inspect(CLI::App& app, int& status) {
   command
       ->add_option("--radius", call->radius,
                    "Count the chambers that spheres of this radius, in the file's lengths, cannot leave")
-      ->check(CLI::PositiveNumber)
+      ->check([](const std::string& text) {
+        double radius = 0;
+        const bool fine = CLI::detail::lexical_cast(text, radius) && radius > 0 && std::isfinite(radius);
+        return fine ? std::string() : text + " is no length above 0";
+      })
       ->type_name("LENGTH");
   command->add_flag("--json", call->json, "One JSON object on standard output");
   command->callback([call, &status] { status = inspect(*call); });

@@ -98,10 +98,12 @@ void print_chambers(const Packing& packing, const Chambers& found) {
   constexpr std::size_t most_rows = 20;
   const std::size_t n = found.chambers.size(), rows = std::min(n, most_rows);
   fmt::print("chambers          {}", n);
-  if (n > 1)
-    fmt::print(", which spheres of the smallest radius, {:.4g} {}, cannot leave", found.radius,
-               packing.scene.unit);
-  fmt::print("; the smallest spheres can nowhere cover {:.2f} %, those of the mean radius {:.2f} %\n",
+  if (n == 1)
+    fmt::print("; too narrow: ");
+  else
+    fmt::print(", which spheres of the smallest radius, {:.4g} {}, cannot leave\ntoo narrow        ",
+               found.radius, packing.scene.unit);
+  fmt::print("{:.2f} % of the container for the smallest spheres, {:.2f} % for those of the mean radius\n",
              100 * found.by_smallest.share, 100 * found.by_mean.share);
   if (n > 1) fmt::print("\n{:>9} {:>9} {:>17}  {}\n", "share", "spheres", "packing fraction", "position");
   for (std::size_t k = 0; k < rows && n > 1; ++k) {
@@ -112,6 +114,7 @@ void print_chambers(const Packing& packing, const Chambers& found) {
   if (n > rows) fmt::print("          and {} smaller ones\n", grouped(n - rows));
   if (found.misplaced > 0)
     fmt::print("misplaced         {} spheres stick out and are in no chamber\n", grouped(found.misplaced));
+  if (n > 1) fmt::print("\n");
 }
 
 void print_order(const BondOrder& order) {

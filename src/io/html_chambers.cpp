@@ -43,7 +43,8 @@ void write_chambers(Page& page, const Report& report) {
     page.raw("<p>One: the smallest spheres can get from every place to every other. ");
   } else {
     page.add(
-        "<p>{}: parts of the container that spheres of the smallest radius, {:.4g} {}, cannot leave, because "
+        "<p>There are {}: parts of the container that spheres of the smallest radius, {:.4g} {}, cannot "
+        "leave, because "
         "what joins them is narrower. The packing fraction of a chamber is that of what such spheres can "
         "cover "
         "there. The search looks at cells of {:.3g} {}; necks and pockets much thinner can be missed. ",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <span>
 
 #include "bernal/core/dimension.hpp"
 #include "measure/even_points.hpp"
@@ -20,6 +21,7 @@ constexpr double cells_per_radius = 4;
 constexpr double near_gap = 0.3;  ///< between spheres that a line of places may join
 /// A container that fills less of its bounds than one in so many has fewer points.
 constexpr double most_in_vain = 64;
+constexpr std::size_t most_known = 16;  ///< places that are tried for every point
 constexpr std::uint32_t none = Chambers::none;
 
 /// The components of the places in a container; where it is convex there is one, or none.
@@ -31,15 +33,17 @@ class Components {
       edge_ = std::max(space.radius() / cells_per_radius, bounds.size().maxCoeff() / cells);
       edge_ = std::min(edge_, bounds.size().maxCoeff());
       cells_.emplace(space, edge_);
-      for (std::size_t k = 0; k < cells_->components(); ++k) deepest_.push_back(cells_->deepest(k).point);
-    } else if (space.is_place(space.container().clearance(bounds.center()))) {
-      deepest_.push_back(bounds.center());
+      for (std::size_t k = 0; k < cells_->components(); ++k) deepest_.push_back(cells_->deepest(k));
+    } else {
+      const Place center = {bounds.center(), space.container().clearance(bounds.center())};
+      if (space.is_place(center.clearance)) deepest_.push_back(center);
     }
   }
 
   double edge() const { return edge_; }
   double step() const { return cells_ ? cells_->step() : 0; }
-  const std::vector<Vector<3>>& deepest() const { return deepest_; }
+  /// A place well inside each.
+  const std::vector<Place>& deepest() const { return deepest_; }
 
   /// See FreeCells::find.
   std::optional<FreeCells::Found> find(const Place& place) const {
@@ -51,7 +55,7 @@ class Components {
  private:
   std::optional<FreeCells> cells_;
   double edge_ = 0;
-  std::vector<Vector<3>> deepest_;
+  std::vector<Place> deepest_;
 };
 
 /// A sphere's centre as a place; absent where it is none.
@@ -113,8 +117,11 @@ struct Sampled {
 };
 
 /// `chamber_of(place)` is asked for the place nearest to a point, where a sphere there covers the point.
+/// `known` are places that are tried first: where the spheres are nearly as large as a round part of a mesh,
+/// they cover most of it, and the search for the nearest wall is slow.
 template <class ChamberOf>
-Sampled sample(const FreeSpace& space, std::size_t chambers, std::uint32_t points, ChamberOf&& chamber_of) {
+Sampled sample(const FreeSpace& space, std::span<const Place> known, std::size_t chambers,
+               std::uint32_t points, ChamberOf&& chamber_of) {
   enum : std::uint32_t { outside = none, uncovered = none - 1, elsewhere = none - 2 };
   const Bounds<3> bounds = space.container().bounds();
   const double waste = std::clamp(bounds.volume() / space.container().volume(), 1.0, most_in_vain);
@@ -123,7 +130,11 @@ Sampled sample(const FreeSpace& space, std::size_t chambers, std::uint32_t point
     const Vector<3> p = bounds.lower + bounds.size().cwiseProduct(even_point(k));
     kinds[k] = outside;
     if (!space.container().contains(p, 0)) return;
-    const std::optional<Place> place = space.nearest(p, space.radius());
+    std::optional<Place> place;
+    const auto near =
+        std::ranges::find_if(known, [&](const Place& at) { return (at.point - p).norm() <= space.radius(); });
+    if (near != known.end()) place = *near;
+    if (!place) place = space.nearest(p, space.radius());
     kinds[k] = place ? std::min<std::uint32_t>(chamber_of(*place), elsewhere) : uncovered;
   });
   Sampled sampled;
@@ -183,7 +194,7 @@ Chambers measure(const Shape& shape, const Packing* packing, double radius, doub
     }
     return chamber;
   };
-  for (std::size_t k = 0; k < n; ++k) place(sets[k], components.deepest()[k]);
+  for (std::size_t k = 0; k < n; ++k) place(sets[k], components.deepest()[k].point);
   std::vector<double> solid;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     found.of_sphere.push_back(centers[i] ? place(sets[n + i], centers[i]->point) : none);
@@ -196,7 +207,9 @@ Chambers measure(const Shape& shape, const Packing* packing, double radius, doub
     solid[found.of_sphere[i]] += ball_volume(3, spheres.r[i]);
   }
 
-  const Sampled sampled = sample(space, found.chambers.size(), options.points, [&](const Place& at) {
+  std::vector<Place> known = components.deepest();
+  known.resize(std::min(known.size(), most_known));
+  const Sampled sampled = sample(space, known, found.chambers.size(), options.points, [&](const Place& at) {
     if (found.chambers.size() == 1) return 0u;
     const std::optional<FreeCells::Found> component = components.find(at);
     return component ? chamber_of_set[sets[component->component]] : none;
@@ -209,10 +222,12 @@ Chambers measure(const Shape& shape, const Packing* packing, double radius, doub
       chamber.packing_fraction = solid[k] / (chamber.share * container->volume());
   }
   found.by_smallest = found.by_mean = uncovered_of(sampled, radius);
-  if (mean_radius > radius)
-    found.by_mean = uncovered_of(sample(FreeSpace(*container, mean_radius / frame.scale), 0, options.points,
-                                        [](const Place&) { return none; }),
+  if (mean_radius > radius) {
+    const FreeSpace of_mean(*container, mean_radius / frame.scale);
+    std::erase_if(known, [&](const Place& at) { return !of_mean.is_place(at.clearance); });
+    found.by_mean = uncovered_of(sample(of_mean, known, 0, options.points, [](const Place&) { return none; }),
                                  mean_radius);
+  }
   sort(found);
   return found;
 }

@@ -11,8 +11,8 @@ struct Place {
   double clearance;
 };
 
-/// The places of spheres of radius r in a container: the points whose clearance is r, or less by a thousandth
-/// of r, which keeps a tube as wide as the spheres from having none but its axis.
+/// The places of spheres of radius r in a container: the points whose clearance is r, or less by a
+/// ten-thousandth of r, which keeps a tube as wide as the spheres from having none but its axis.
 class FreeSpace {
  public:
   FreeSpace(const Container& container, double r) : container_(container), r_(r) {}
@@ -35,7 +35,7 @@ class FreeSpace {
   bool joined(const Place& a, const Place& b, double step) const;
 
  private:
-  static constexpr double slack = 1e-3;
+  static constexpr double slack = 1e-4;
 
   const Container& container_;
   double r_;

@@ -67,7 +67,7 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
   EXPECT_EQ(text.status, 0) << text.err;
   for (const std::string part :
        {"with the wall", "porosity over the distance", "near the wall", "core              packing fraction",
-        "chambers          1; ", "crystalline", "segregation", "drawn sequence    the same sizes to the bit"})
+        "chambers          1; too narrow: ", "crystalline", "segregation", "drawn sequence    the same sizes to the bit"})
     EXPECT_NE(text.out.find(part), std::string::npos) << part << "\nis not in\n" << text.out;
   const auto measured = nlohmann::json::parse(bernal({"measure", out, "--json"}).out);
   const auto report = report_of(out);
