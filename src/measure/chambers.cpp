@@ -169,8 +169,8 @@ void sort(Chambers& found) {
     if (chamber != none) chamber = place[chamber];
 }
 
-Chambers measure(const Shape& shape, const Packing* packing, double radius, double mean_radius,
-                 const ChamberOptions& options) {
+Chambers chambers_in(const Shape& shape, const Packing* packing, double radius, double mean_radius,
+                     const ChamberOptions& options) {
   const Frame frame = frame_of(shape);
   const std::unique_ptr<Container> container = localised(shape, frame);
   const FreeSpace space(*container, radius / frame.scale);
@@ -185,7 +185,7 @@ Chambers measure(const Shape& shape, const Packing* packing, double radius, doub
   found.radius = radius;
   found.resolution = frame.scale * components.edge();
   std::vector<std::uint32_t> chamber_of_set(sets.size(), none);
-  const auto place = [&](std::uint32_t set, const Vector<3>& position) {
+  const auto chamber_at = [&](std::uint32_t set, const Vector<3>& position) {
     std::uint32_t& chamber = chamber_of_set[set];
     if (chamber == none) {
       chamber = static_cast<std::uint32_t>(found.chambers.size());
@@ -194,10 +194,10 @@ Chambers measure(const Shape& shape, const Packing* packing, double radius, doub
     }
     return chamber;
   };
-  for (std::size_t k = 0; k < n; ++k) place(sets[k], components.deepest()[k].point);
+  for (std::size_t k = 0; k < n; ++k) chamber_at(sets[k], components.deepest()[k].point);
   std::vector<double> solid;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    found.of_sphere.push_back(centers[i] ? place(sets[n + i], centers[i]->point) : none);
+    found.of_sphere.push_back(centers[i] ? chamber_at(sets[n + i], centers[i]->point) : none);
     solid.resize(found.chambers.size());
     if (!centers[i]) {
       ++found.misplaced;
@@ -239,11 +239,11 @@ std::optional<Chambers> chambers(const Packing& packing, const ChamberOptions& o
   if (!shape || packing.spheres.empty()) return {};
   const std::vector<double>& radii = packing.spheres.r;
   const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
-  return measure(*shape, &packing, *std::ranges::min_element(radii), mean, options);
+  return chambers_in(*shape, &packing, *std::ranges::min_element(radii), mean, options);
 }
 
 Chambers chambers_for(const Shape& shape, double radius, const ChamberOptions& options) {
-  return measure(shape, nullptr, radius, radius, options);
+  return chambers_in(shape, nullptr, radius, radius, options);
 }
 
 }  // namespace bernal

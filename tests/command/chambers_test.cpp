@@ -9,7 +9,7 @@ constexpr const char* scene = R"(unit = "mm"
 kind = "mesh"
 file = "two.off"
 [spheres]
-count = 40
+count = 20
 diameter = 0.5
 [[stage]]
 do = "insert"
@@ -45,7 +45,7 @@ TEST(ChambersOfAPacking, StandInEveryReport) {
     ASSERT_EQ(found.at("list").size(), 2u);
     std::uint64_t n = 0;
     for (const auto& chamber : found.at("list")) n += chamber.at("n").get<std::uint64_t>();
-    EXPECT_EQ(n, 40u);
+    EXPECT_EQ(n, 20u);
     EXPECT_EQ(found.at("misplaced"), 0);
     EXPECT_EQ(found.at("uncovered").at("smallest"), found.at("uncovered").at("mean"));
   }

@@ -52,7 +52,7 @@ struct ChamberOptions {
 /// Pockets of places much thinner than a cell can be missed, and a neck much thinner than a cell taken for
 /// closed, unless spheres stand in it; a neck counts as open from 0.9999 r on, a short and sharp one from
 /// 0.99 r. The same bits for any number of threads. Cost: 0.3 to 0.6 s of one core in a mesh of 10,000
-/// triangles, 1 s in one of 100,000, and 5 µs a sphere; seconds where spheres are nearly as large as a round
+/// triangles, 1 s in one of 100,000, a few µs a sphere; seconds where spheres are nearly as large as a round
 /// part of many triangles, from whose middle they are all equally near. Precondition: options positive.
 std::optional<Chambers> chambers(const Packing&, const ChamberOptions& = {});
 
