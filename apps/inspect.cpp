@@ -1,15 +1,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/unit.hpp"
+#include "bernal/measure/chambers.hpp"
 #include "commands.hpp"
 
 using namespace bernal;
@@ -19,6 +22,7 @@ namespace {
 struct InspectCall {
   std::filesystem::path mesh;
   std::string unit;
+  std::optional<double> radius;
   bool json = false;
 };
 
@@ -43,7 +47,22 @@ std::vector<Row> defects(const MeshReport& report) {
   return rows;
 }
 
-void print(const InspectCall& call, const MeshReport& report) {
+/// What spheres of the radius find there.
+std::vector<Row> rows_of(const Chambers& found, const std::string& unit) {
+  std::vector<Row> rows = {
+      {"chambers",
+       fmt::format("{} for spheres of radius {:g} {}", found.chambers.size(), found.radius, unit)},
+      {"cannot be covered", fmt::format("{:.2f} ± {:.2f} % of the volume", 100 * found.by_smallest.share,
+                                        100 * found.by_smallest.error)}};
+  if (found.chambers.size() < 2) return rows;
+  for (std::size_t k = 0; k < found.chambers.size(); ++k)
+    rows.emplace_back(fmt::format("chamber {}", k + 1),
+                      fmt::format("{:.2f} % of the volume, at {}", 100 * found.chambers[k].share,
+                                  text_of(found.chambers[k].position)));
+  return rows;
+}
+
+void print(const InspectCall& call, const MeshReport& report, const std::optional<Chambers>& chambers) {
   const std::string unit = call.unit.empty() ? "file units" : call.unit;
   const auto power = [&](const char* sign) { return call.unit.empty() ? unit + sign : call.unit + sign; };
   std::vector<Row> rows = {
@@ -65,6 +84,10 @@ void print(const InspectCall& call, const MeshReport& report) {
     rows.emplace_back("volume", fmt::format("{:.6g} {}", report.volume, power("³")));
     rows.emplace_back("genus", fmt::format("{}", report.genus));
   }
+  if (chambers) {
+    const std::vector<Row> found = rows_of(*chambers, unit);
+    rows.insert(rows.end(), found.begin(), found.end());
+  }
   const std::vector<Row> found = defects(report);
   rows.insert(rows.end(), found.begin(), found.end());
   for (const std::string& repair : report.repairs) rows.emplace_back("repair", repair);
@@ -76,9 +99,26 @@ void print(const InspectCall& call, const MeshReport& report) {
   for (const auto& [name, value] : rows) fmt::print("{:<{}}  {}\n", name, width, value);
 }
 
-nlohmann::ordered_json as_json(const InspectCall& call, const MeshReport& report) {
+nlohmann::ordered_json point(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
+
+nlohmann::ordered_json as_json(const std::optional<Chambers>& found) {
   using nlohmann::ordered_json;
-  const auto point = [](const Vector<3>& p) { return ordered_json{p[0], p[1], p[2]}; };
+  if (!found) return nullptr;
+  ordered_json list = ordered_json::array();
+  for (const Chambers::Chamber& chamber : found->chambers)
+    list.push_back({{"share", chamber.share},
+                    {"share_error", chamber.share_error},
+                    {"position", point(chamber.position)},
+                    {"clearance", chamber.clearance}});
+  return {{"radius", found->radius},
+          {"resolution", found->resolution},
+          {"uncovered", {{"share", found->by_smallest.share}, {"error", found->by_smallest.error}}},
+          {"list", list}};
+}
+
+nlohmann::ordered_json as_json(const InspectCall& call, const MeshReport& report,
+                               const std::optional<Chambers>& chambers) {
+  using nlohmann::ordered_json;
   return {{"file", call.mesh.string()},
           {"unit", call.unit.empty() ? ordered_json(nullptr) : ordered_json(call.unit)},
           {"usable", report.usable()},
@@ -99,17 +139,21 @@ nlohmann::ordered_json as_json(const InspectCall& call, const MeshReport& report
           {"degenerate_faces", report.degenerate_faces},
           {"duplicate_faces", report.duplicate_faces},
           {"self_intersections", report.self_intersections},
+          {"chambers", as_json(chambers)},
           {"repairs", report.repairs},
           {"problems", report.problems}};
 }
 
 int inspect(const InspectCall& call) {
   if (!call.unit.empty()) metres_per(call.unit);  // refuses an unknown one before the file is read
-  const MeshReport report = read_mesh(call.mesh).report;
+  const ImportedMesh imported = read_mesh(call.mesh);
+  const MeshReport& report = imported.report;
+  std::optional<Chambers> chambers;
+  if (call.radius && report.usable()) chambers = chambers_for(imported.mesh, *call.radius);
   if (call.json)
-    fmt::print("{}\n", as_json(call, report).dump(2));
+    fmt::print("{}\n", as_json(call, report, chambers).dump(2));
   else
-    print(call, report);
+    print(call, report, chambers);
   return report.usable() ? exit_code::done : exit_code::no;
 }
 
@@ -121,6 +165,15 @@ void add_inspect(CLI::App& app, int& status) {
       app.add_subcommand("inspect", "Say what a CAD file is and whether it can be a container");
   command->add_option("MESH", call->mesh, "The file: STL, OBJ, OFF, PLY, 3MF, glTF, …")->required();
   command->add_option("--unit", call->unit, "Unit of the file's lengths: nm, um, mm, cm, m, in, ft");
+  command
+      ->add_option("--radius", call->radius,
+                   "Count the chambers that spheres of this radius, in the file's lengths, cannot leave")
+      ->check([](const std::string& text) {
+        double radius = 0;
+        const bool fine = CLI::detail::lexical_cast(text, radius) && radius > 0 && std::isfinite(radius);
+        return fine ? std::string() : text + " is no length above 0";
+      })
+      ->type_name("LENGTH");
   command->add_flag("--json", call->json, "One JSON object on standard output");
   command->callback([call, &status] { status = inspect(*call); });
 }

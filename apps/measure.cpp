@@ -94,6 +94,29 @@ void print_radial(const Packing& packing, const std::optional<RadialDistribution
                peak.r / radial->mean_diameter, peak.error, 0.5 * radial->bin_width / radial->mean_diameter);
 }
 
+void print_chambers(const Packing& packing, const Chambers& found) {
+  constexpr std::size_t most_rows = 20;
+  const std::size_t n = found.chambers.size(), rows = std::min(n, most_rows);
+  fmt::print("chambers          {}", n);
+  if (n == 1)
+    fmt::print("; too narrow: ");
+  else
+    fmt::print(", which spheres of the smallest radius, {:.4g} {}, cannot leave\ntoo narrow        ",
+               found.radius, packing.scene.unit);
+  fmt::print("{:.2f} % of the container for the smallest spheres, {:.2f} % for those of the mean radius\n",
+             100 * found.by_smallest.share, 100 * found.by_mean.share);
+  if (n > 1) fmt::print("\n{:>9} {:>9} {:>17}  {}\n", "share", "spheres", "packing fraction", "position");
+  for (std::size_t k = 0; k < rows && n > 1; ++k) {
+    const Chambers::Chamber& chamber = found.chambers[k];
+    fmt::print("{:>8.2f}% {:>9} {:>17.4f}  {:.4g}\n", 100 * chamber.share, grouped(chamber.spheres),
+               chamber.packing_fraction, fmt::join(chamber.position, ", "));
+  }
+  if (n > rows) fmt::print("          and {} smaller ones\n", grouped(n - rows));
+  if (found.misplaced > 0)
+    fmt::print("misplaced         {} spheres stick out and are in no chamber\n", grouped(found.misplaced));
+  if (n > 1) fmt::print("\n");
+}
+
 void print_order(const BondOrder& order) {
   const auto percent = [](const BondOrder::Count& count) {
     return count.spheres == 0
@@ -197,6 +220,7 @@ void print(const Packing& packing, const Measurements& measured) {
              std::holds_alternative<PeriodicBox>(packing.domain) ? "periodic box" : kind_of(packing.domain),
              fmt::join(extent_of(packing.domain), " x "), packing.scene.unit);
   fmt::print("packing fraction  {:.6f}\n", measured.packing_fraction);
+  if (measured.chambers) print_chambers(packing, *measured.chambers);
   print_contacts(packing, measured);
   print_radial(packing, measured.radial);
   if (measured.walls) print_walls(packing, *measured.walls);
@@ -222,7 +246,8 @@ void measure_folder(const MeasureCall& call) {
 void add_measure(CLI::App& app, int& status) {
   auto call = std::make_shared<MeasureCall>();
   CLI::App* command = app.add_subcommand(
-      "measure", "Contacts, rattlers, g(r), porosity near walls, order, sizes against those asked for");
+      "measure",
+      "Contacts, rattlers, g(r), chambers, porosity near walls, order, sizes against those asked for");
   command->add_option("DIR", call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read")
       ->required();
   command
@@ -237,7 +262,11 @@ void add_measure(CLI::App& app, int& status) {
   command->add_flag("--json", call->json, "One JSON object on standard output");
   command->footer(
       "Rattlers are taken out one after the other until every sphere left is held by D + 1 contacts.\n"
-      "In a container: porosity over the distance from the wall, the packing fraction of the core (more "
+      "In a container: the chambers that the smallest spheres cannot leave, with the packing fraction of "
+      "each, "
+      "and\n"
+      "what no sphere can cover; porosity over the distance from the wall, the packing fraction of the core "
+      "(more "
       "than\n"
       "3 mean diameters from it) and near it, and whether small spheres gather there. In three dimensions: "
       "the\n"

@@ -32,6 +32,26 @@ Json crystalline_json(const std::optional<BondOrder>& order) {
       {"all", json_of(order->all)}, {"near_wall", json_of(order->near_wall)}, {"core", json_of(order->core)}};
 }
 
+Json chambers_json(const std::optional<Chambers>& found) {
+  if (!found) return {};
+  const auto uncovered = [](const Chambers::Uncovered& of) {
+    return Json{{"radius", of.radius}, {"share", of.share}, {"error", of.error}};
+  };
+  Json list = Json::array();
+  for (const Chambers::Chamber& chamber : found->chambers)
+    list.push_back({{"n", chamber.spheres},
+                    {"share", chamber.share},
+                    {"share_error", chamber.share_error},
+                    {"phi", chamber.packing_fraction},
+                    {"position", json_of(chamber.position)},
+                    {"clearance", chamber.clearance}});
+  return {{"radius", found->radius},
+          {"resolution", found->resolution},
+          {"misplaced", found->misplaced},
+          {"uncovered", {{"smallest", uncovered(found->by_smallest)}, {"mean", uncovered(found->by_mean)}}},
+          {"list", list}};
+}
+
 Json walls_json(const WallProfile& profile) {
   const auto& least = profile.first_minimum;
   const auto& segregation = profile.segregation;

@@ -28,6 +28,9 @@ Json contacts_json(const Contacts&);
 /// such order or region.
 Json crystalline_json(const std::optional<BondOrder>&);
 
+/// The chambers with what is in them, and what cannot be covered.
+Json chambers_json(const std::optional<Chambers>&);
+
 /// The figures of a wall profile, without its layers.
 Json walls_json(const WallProfile&);
 

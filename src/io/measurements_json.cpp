@@ -68,6 +68,7 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
   json["by_gap"] = by_gap;
   json["g_r"] = measured.radial ? json_of(*measured.radial) : Json();
   json["crystalline"] = crystalline_json(measured.order);
+  json["chambers"] = chambers_json(measured.chambers);
   json["walls"] = measured.walls ? json_of(*measured.walls) : Json();
   json["sizes"] = measured.sizes ? json_of(*measured.sizes) : Json();
   json["hash"] = hash_of(packing.spheres);

@@ -37,6 +37,7 @@ class Page {
 // Sections of report.html.
 void write_sizes(Page&, const Report&);
 void write_contacts(Page&, const Report&);
+void write_chambers(Page&, const Report&);
 void write_walls(Page&, const Report&);
 
 }  // namespace bernal

@@ -185,6 +185,7 @@ std::string html_of(const Report& report, std::string_view picture, std::string_
   write_scene(page, report, scene);
   write_sizes(page, report);
   write_contacts(page, report);
+  write_chambers(page, report);
   write_walls(page, report);
   write_history(page, report);
   write_certificate(page, report);

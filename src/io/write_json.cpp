@@ -55,6 +55,7 @@ std::string json_of(const Report& report) {
                {"expected_phi", packing.expected_packing_fraction}};
   json.update(contacts_json(report.measured.contacts));
   json.update({{"crystalline", crystalline_json(report.measured.order)},
+               {"chambers", chambers_json(report.measured.chambers)},
                {"walls", report.measured.walls ? walls_json(*report.measured.walls) : Json()},
                {"sizes", sizes_json(report.measured)},
                {"max_overlap", certificate.max_overlap},

@@ -19,6 +19,7 @@ namespace {
 
 /// Enough for curves that are smooth to the eye; `bernal measure` takes more.
 constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5;
+constexpr std::uint32_t points_for_a_report = 4000;
 
 void write_text(const std::filesystem::path& path, std::string_view text) {
   OutputFile file(path);
@@ -69,9 +70,10 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   }
   const Certificate certificate = certify_written(csv, packing);
   const std::unique_ptr<SizeDistribution> asked = asked_sizes(packing.scene);
-  const Measurements measured =
-      measure(packing, asked.get(),
-              {.radial = {.work = distances_for_a_report}, .walls = {.work = wall_distances_for_a_report}});
+  const Measurements measured = measure(packing, asked.get(),
+                                        {.radial = {.work = distances_for_a_report},
+                                         .chambers = {.points = points_for_a_report},
+                                         .walls = {.work = wall_distances_for_a_report}});
   const Report report{packing, certificate, measured, asked.get(), hash_of(packing.spheres)};
   const std::string scene = scene_as_run(packing, folder);
   const std::string picture = svg_of(packing.spheres, packing.domain, packing.scene.unit);

@@ -25,6 +25,7 @@ Measurements measure(const Packing& packing, const SizeDistribution* asked, cons
   measured.contacts = measured.by_gap.back();
   measured.by_gap.pop_back();
   measured.radial = radial_distribution(packing, options.radial);
+  measured.chambers = chambers(packing, options.chambers);
   measured.walls = wall_profile(packing, options.walls);
   measured.order = bond_order(packing, measured.walls ? measured.walls->regions : std::vector<Region>{});
   if (asked && !packing.spheres.empty()) measured.sizes = compare_sizes_of(packing, *asked);

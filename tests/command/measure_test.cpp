@@ -53,6 +53,7 @@ TEST_F(Measure, JsonIsOneObjectAndNothingElse) {
   EXPECT_EQ(measured["g_r"]["mean_diameter"], 2);
   EXPECT_EQ(measured["g_r"]["g"].size(), measured["g_r"]["error"].size());
   EXPECT_TRUE(measured["walls"].is_null());
+  EXPECT_TRUE(measured["chambers"].is_null());
   EXPECT_TRUE(measured["crystalline"].is_null());  // in two dimensions
   EXPECT_EQ(measured["sizes"]["drawn"]["missing"], 0);
   EXPECT_EQ(measured["sizes"]["ks_statistic"], 0);
@@ -64,9 +65,9 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
   ASSERT_EQ(bernal({"pack", box, "-o", out, "--quiet"}).status, 0);
   const Ended text = bernal({"measure", out});
   EXPECT_EQ(text.status, 0) << text.err;
-  for (const std::string part :
-       {"with the wall", "porosity over the distance", "near the wall", "core              packing fraction",
-        "crystalline", "segregation", "drawn sequence    the same sizes to the bit"})
+  for (const std::string part : {"with the wall", "porosity over the distance", "near the wall",
+                                 "core              packing fraction", "chambers          1; too narrow: ",
+                                 "crystalline", "segregation", "drawn sequence    the same sizes to the bit"})
     EXPECT_NE(text.out.find(part), std::string::npos) << part << "\nis not in\n" << text.out;
   const auto measured = nlohmann::json::parse(bernal({"measure", out, "--json"}).out);
   const auto report = report_of(out);
@@ -74,6 +75,11 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
        {"n", "phi", "coordination", "contacts", "wall_contacts", "rattlers", "backbone", "hash"})
     EXPECT_EQ(measured.at(key), report.at(key)) << key;
   EXPECT_EQ(measured.at("crystalline"), report.at("crystalline"));
+  const auto& chamber = measured.at("chambers").at("list").at(0);
+  EXPECT_EQ(chamber.at("n"), measured.at("n"));
+  EXPECT_EQ(measured.at("chambers").at("list").size(), report.at("chambers").at("list").size());
+  EXPECT_NEAR(chamber.at("phi").get<double>() * chamber.at("share").get<double>(),
+              measured.at("phi").get<double>(), 1e-12);
   double share = 0, integral = 0;
   for (const auto& layer : measured.at("walls").at("layers")) {
     share += layer.at("share").get<double>();

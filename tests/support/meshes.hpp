@@ -62,6 +62,34 @@ inline Mesh l_shape_mesh(double height = 1) {
                  {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}});
 }
 
+/// A square tube along x: its half width at each of the given x, which do not fall.
+inline Mesh square_tube_mesh(const std::vector<std::array<double, 2>>& rings) {
+  Mesh mesh;
+  for (const auto& [x, half] : rings)
+    for (const auto& [y, z] : {std::array{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
+      mesh.vertices.emplace_back(x, half * y, half * z);
+  const std::uint32_t last = 4 * index(rings.size() - 1);
+  mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {last, last + 1, last + 2}, {last, last + 2, last + 3}};
+  for (std::uint32_t ring = 0; ring < last; ring += 4)
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const std::uint32_t j = (i + 1) % 4;
+      mesh.triangles.push_back({ring + i, ring + j, ring + 4 + j});
+      mesh.triangles.push_back({ring + i, ring + 4 + j, ring + 4 + i});
+    }
+  return mesh;
+}
+
+/// Two cubes of edge 2 whose centres lie on the x axis, joined by a neck of length 1 and half width `half`.
+inline Mesh two_cubes_mesh(double half) {
+  return square_tube_mesh({{0, 1}, {2, 1}, {2, half}, {3, half}, {3, 1}, {5, 1}});
+}
+
+/// A box of 4 x 2 x `height` with a baffle across its middle, 0.02 thick, that ends `gap` above y = 0.
+inline Mesh baffle_mesh(double gap, double height) {
+  return extrude({{0, 0}, {4, 0}, {4, 2}, {2.01, 2}, {2.01, gap}, {1.99, gap}, {1.99, 2}, {0, 2}}, height,
+                 {{0, 5, 6}, {0, 6, 7}, {1, 2, 3}, {1, 3, 4}, {0, 1, 4}, {0, 4, 5}});
+}
+
 /// A closed tube about the closed curve `center(u)`, u in [0, 1), with rings of `radius(u, v)`; the rings are
 /// built on the unit vectors `first(u)` and `second(u)`, with first × second along the curve.
 template <typename Center, typename Radius, typename First, typename Second>

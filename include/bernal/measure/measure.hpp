@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bernal/measure/bond_order.hpp"
+#include "bernal/measure/chambers.hpp"
 #include "bernal/measure/contacts.hpp"
 #include "bernal/measure/radial_distribution.hpp"
 #include "bernal/measure/size_comparison.hpp"
@@ -19,6 +20,7 @@ struct Measurements {
   Contacts contacts;             ///< at MeasureOptions::contact_gap
   std::vector<Contacts> by_gap;  ///< at the others, in their order
   std::optional<RadialDistribution> radial;
+  std::optional<Chambers> chambers;
   std::optional<WallProfile> walls;
   std::optional<BondOrder> order;
   std::optional<SizeComparison> sizes;
@@ -28,6 +30,7 @@ struct MeasureOptions {
   double contact_gap = 0.002;
   std::vector<double> gaps = {1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
   RadialOptions radial;
+  ChamberOptions chambers;
   WallOptions walls;
 };
 
