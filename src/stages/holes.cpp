@@ -77,22 +77,21 @@ std::vector<Hole> holes_for(std::span<const double> radii, const Container& cont
 
   std::vector<Hole> holes;
   std::vector<bool> given(best.size(), false);
+  std::vector<double> squared_apart(best.size(),
+                                    std::numeric_limits<double>::infinity());  // from those given
   for (const double r : radii) {
-    const auto is_apart = [&](const Hole& candidate) {
-      return std::ranges::none_of(holes, [&](const Hole& other) {
-        return (other.place - candidate.place).squaredNorm() < 0.25 * (r + least) * (r + least);
-      });
-    };
     std::size_t chosen = best.size();
     for (std::size_t k = 0; k < best.size(); ++k) {
       if (given[k] || (chosen < best.size() && best[k].clearance <= best[chosen].clearance)) continue;
-      if (!is_apart(best[k])) continue;
+      if (squared_apart[k] < 0.25 * (r + least) * (r + least)) continue;
       chosen = k;
       if (best[k].clearance >= r) break;
     }
     if (chosen == best.size()) break;
     given[chosen] = true;
     holes.push_back(best[chosen]);
+    for (std::size_t k = 0; k < best.size(); ++k)
+      squared_apart[k] = std::min(squared_apart[k], (best[k].place - best[chosen].place).squaredNorm());
   }
   return holes;
 }
