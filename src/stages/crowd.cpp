@@ -28,6 +28,10 @@ constexpr double resolutions_a_margin = 100, largest_margin = 0.01;
 constexpr double burst_swelling = 1.02;
 constexpr int burst_sweeps = 50;
 /// Random places that are looked at for each sphere to find holes.
+constexpr double probes_a_sphere = 2, least_probes = 1000;
+/// Sum of squared overlap ratios of a sphere that will not find its way by itself.
+constexpr float severe_squeeze = 0.05f;
+
 /// The indices of the `count` largest, the largest first.
 std::vector<std::uint32_t> most_squeezed(const std::vector<float>& stress, std::size_t count) {
   std::vector<std::uint32_t> ids(stress.size());
@@ -40,10 +44,6 @@ std::vector<std::uint32_t> most_squeezed(const std::vector<float>& stress, std::
   return ids;
 }
 
-constexpr double probes_a_sphere = 2, least_probes = 1000;
-/// Sum of squared overlap ratios of a sphere that will not find its way by itself.
-constexpr float severe_squeeze = 0.05f;
-
 }  // namespace
 
 Crowd::Crowd(const Container& container, const Places& places, Spheres<3> spheres)
@@ -53,9 +53,9 @@ Crowd::Crowd(const Container& container, const Places& places, Spheres<3> sphere
   margin_ = std::max(margin_, resolutions_a_margin * resolution);
   if (margin_ > largest_margin)
     throw Error(ErrorCode::bad_scene,
-                fmt::format("spheres {:.1g} times smaller than the container cannot be relaxed in it; name "
+                fmt::format("spheres {:.0e} times smaller than the container cannot be relaxed in it; name "
                             "other stages, such as \"insert\" and \"compress\"",
-                            std::exp2(-32) / resolution));
+                            std::exp2(32) * resolution));
   packing_->swell(1 + margin_);
 }
 
