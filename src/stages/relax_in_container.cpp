@@ -64,7 +64,8 @@ class Relaxation {
     }
     log_effects();
     if (cancelled_) return StageEnd::cancelled;
-    return crowd_.size() < target_count_ ? StageEnd::full : StageEnd::converged;
+    if (crowd_.size() >= target_count_) return StageEnd::converged;
+    return over_ ? StageEnd::hit_limit : StageEnd::full;
   }
 
  private:
