@@ -6,11 +6,12 @@
 
 namespace bernal {
 
-/// The share of a container's volume that a sphere of radius r can cover without passing the wall: corners
-/// and parts thinner than the sphere are left out. From 5,000 points of a low-discrepancy sequence; a point
-/// nearer to the wall than r counts when the sphere that touches the wall there does not pass it elsewhere.
-/// Error: about 0.003 from the points in a part with few corners; where a sphere could cover the point from
-/// another side it is missed. Cost: about 50 ms in a mesh.
+/// The share of a container's volume that spheres of radius r can cover without passing the wall: corners and
+/// parts thinner than the sphere are left out. From 5,000 points of a low-discrepancy sequence; a point
+/// nearer to the wall than r counts when a sphere that is moved from there off one wall after the other,
+/// until it clears all of them, still covers it. Error: about 0.003 from the points; where the nearest place
+/// at which the sphere fits is elsewhere, as in corners that are not right-angled, a point may be missed.
+/// Cost: about 50 ms in a mesh.
 double coverable_share(const Container& container, double r);
 
 /// The packing fraction that the scene's stages are likely to reach in a container when they may fill it.

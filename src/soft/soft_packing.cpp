@@ -237,11 +237,13 @@ void SoftPacking::write_to(Spheres<D>& spheres, Vector<D>& edges) const {
 }
 
 void SoftPacking::write_to(Spheres<3>& spheres) const {
-  for (std::size_t p = 0; p < spheres_.size(); ++p) {
-    if (!(spheres_[p].r > 0)) continue;
+  std::vector<SoftSphere> stopped = spheres_;
+  if (builds_ > 0) walls_->stop_strays(stopped, built_at_, ids_);
+  for (std::size_t p = 0; p < stopped.size(); ++p) {
+    if (!(stopped[p].r > 0)) continue;
     for (std::size_t k = 0; k < 3; ++k)
       spheres.x[k][ids_[p]] =
-          corner_[static_cast<int>(k)] + static_cast<std::uint32_t>(spheres_[p].x[k]) * (edges_[k] * 0x1p-32);
+          corner_[static_cast<int>(k)] + static_cast<std::uint32_t>(stopped[p].x[k]) * (edges_[k] * 0x1p-32);
   }
 }
 

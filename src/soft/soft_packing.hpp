@@ -73,7 +73,7 @@ class SoftPacking {
 
   template <int D>
   void write_to(Spheres<D>& spheres, Vector<D>& edges) const;
-  /// Centres, in a container.
+  /// Centres, in a container; all of them inside.
   void write_to(Spheres<3>& spheres) const;
 
   /// The unit of the coordinates on the longest edge.

@@ -11,6 +11,8 @@ namespace {
 /// Cosine of 25°: pushes that agree so well come from one smooth patch.
 constexpr double one_patch = 0.9;
 constexpr std::size_t most_contacts = 32;
+/// In radii: points nearer than this to a plane are in it. Distances are good to some 1e-11.
+constexpr double in_plane = 1e-6;
 /// A centre keeps this share of its distance from a facet when it moves towards it.
 constexpr double kept = 0.1;
 /// A centre nearer to a facet than so many units of the coordinates does not approach it at all.
@@ -51,8 +53,26 @@ void shorten(SoftSphere& to, const SoftSphere& from, double share) {
 
 struct Contact {
   Vector<3> normal;
-  double depth;
+  double distance;
 };
+
+/// Leaves, in ascending order of distance, those contacts that push for themselves; returns how many. Another
+/// one of a smooth patch does not, and neither does one whose nearest point is not in front of the plane in
+/// which a nearer one touches: the rest of a face in many triangles, or the edge at its end.
+std::size_t leave_distinct(Contact* contacts, std::size_t count, double r) {
+  std::sort(contacts, contacts + count,
+            [](const Contact& a, const Contact& b) { return a.distance < b.distance; });
+  std::size_t kept_so_far = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Contact contact = contacts[k];
+    const auto speaks_for_it = [&](const Contact& nearer) {
+      const double cosine = nearer.normal.dot(contact.normal);
+      return cosine > one_patch || cosine * contact.distance > nearer.distance - in_plane * r;
+    };
+    if (std::none_of(contacts, contacts + kept_so_far, speaks_for_it)) contacts[kept_so_far++] = contact;
+  }
+  return kept_so_far;
+}
 
 }  // namespace
 
@@ -73,8 +93,11 @@ void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<
     for (std::uint32_t n = first_[g]; n < first_[g + 1]; ++n) near[g * lanes + near_[n].lane] = true;
   for (std::size_t p = 0; p < spheres.size(); ++p) {
     if (!(spheres[p].r > 0) || near[p]) continue;
-    const Vector<3> from = place(built_at[p]), way = place(spheres[p]) - from;
+    const Vector<3> from = place(built_at[p]);
+    Vector<3> way;
+    for (int k = 0; k < 3; ++k) way[k] = unit_[k] * steps_between(built_at[p], spheres[p], k);
     const double length = way.norm();
+    if (!(length > 0)) continue;
     const View& view = views_[ids[p]];
     if (length < view.clearance - (from - view.at).norm()) continue;
     ++queries_;
@@ -173,31 +196,22 @@ void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out
       until = static_cast<float>(d + near.way);
       free = std::min(free, d);
       if (!(d < r && d > 0)) continue;
-      if (count < most_contacts)
-        contacts[count++] = {away / d, r - d};
-      else if (Contact& least = *std::ranges::min_element(contacts, {}, &Contact::depth); least.depth < r - d)
-        least = {away / d, r - d};
+      if (count == most_contacts) count = leave_distinct(contacts.data(), count, r);
+      if (count < most_contacts) contacts[count++] = {away / d, d};
     }
     out.free[l] = free;
-    std::sort(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(count),
-              [](const Contact& a, const Contact& b) { return a.depth > b.depth; });
-    std::size_t taken = 0;
+    count = leave_distinct(contacts.data(), count, r);
     Vector<3> sum = Vector<3>::Zero();
     for (std::size_t k = 0; k < count; ++k) {
-      const Contact contact = contacts[k];
-      const auto agrees = [&](const Contact& other) { return other.normal.dot(contact.normal) > one_patch; };
-      if (std::any_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(taken), agrees))
-        continue;
-      contacts[taken++] = contact;
-      sum += contact.depth * contact.normal;
-      const double ratio = contact.depth / r;
+      const double depth = r - contacts[k].distance, ratio = depth / r;
+      sum += depth * contacts[k].normal;
       out.squares[l] += static_cast<float>(ratio * ratio);
       out.worst[l] = std::max(out.worst[l], static_cast<float>(ratio));
     }
     out.x[l] = static_cast<float>(sum[0]);
     out.y[l] = static_cast<float>(sum[1]);
     out.z[l] = static_cast<float>(sum[2]);
-    out.contacts[l] = static_cast<float>(taken);
+    out.contacts[l] = static_cast<float>(count);
   }
 }
 
@@ -214,7 +228,7 @@ void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spher
     const Vector<3>& c = near.last;
     double share = std::min(1.0, (1 - kept) * std::max(0.0, near.beyond - near.way) / length);
     for (std::uint32_t k = 0; k < near.count; ++k) {
-      if (until_[near.first + k] - near.way > length) continue;
+      if ((1 - kept) * (until_[near.first + k] - near.way) > length) continue;
       const Vector<3> away = offset(pieces[k].facet, c);
       const double d = away.norm();
       if (!(d > 0)) {

@@ -24,9 +24,11 @@ struct alignas(64) WallPush {
 /// The wall of a container, for spheres that overlap it while they relax.
 ///
 /// Every facet, edge and corner nearer than the radius pushes along the line to its nearest point; of a
-/// smooth patch, whose pushes agree in direction to 25°, only the deepest does. No centre ever passes the
-/// wall: a move is shortened to nine tenths of the way to the first facet in its path, and so is, when lists
-/// are built anew, the way of a sphere that was far from the wall and has moved farther than that.
+/// smooth patch, whose pushes agree in direction to 25°, only the deepest does, and so of a face in many
+/// triangles and of its edges that are no nearer: how a wall is cut into facets makes no difference. No
+/// centre ever passes the wall: a move is shortened to nine tenths of the way to the first facet in its path,
+/// and so is, when lists are built anew, the way of a sphere that was far from the wall and has moved farther
+/// than that.
 ///
 /// Facets are asked for once and kept with the sphere until it has moved by the skin; one is looked at again
 /// only when the sphere has gone far enough since the last time to touch it. Cost of a sweep: about 20 ns a

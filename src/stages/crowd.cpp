@@ -16,7 +16,7 @@ namespace {
 constexpr double share_of_margin = 0.97;
 /// After so many sweeps it is looked at how far things are.
 constexpr int sweeps_a_look = 25;
-/// Stuck: the strain keeps more than this share of itself between so many looks in a row.
+/// Stuck: at so many looks in a row the strain is more than this share of the least so far.
 constexpr double hardly_freer = 0.85;
 constexpr int patience = 2;
 /// The margin is so many resolutions of the coordinates at least, and never more than this.
@@ -49,9 +49,9 @@ Crowd::Crowd(const Container& container, const Places& places, Spheres<3> sphere
   margin_ = std::max(margin_, resolutions_a_margin * resolution);
   if (margin_ > largest_margin)
     throw Error(ErrorCode::bad_scene,
-                fmt::format("spheres {:.1g} times smaller than the container cannot be relaxed in it; name "
+                fmt::format("spheres {:.0e} times smaller than the container cannot be relaxed in it; name "
                             "other stages, such as \"insert\" and \"compress\"",
-                            std::exp2(-32) / resolution));
+                            std::exp2(32) * resolution));
   packing_->swell(1 + margin_);
 }
 
@@ -80,7 +80,7 @@ void Crowd::measure() {
 
 Crowd::Rest Crowd::settle(const Monitor& monitor, const std::function<void()>& milestone) {
   int slow = 0;
-  double last_strain = 1e300;
+  double least_strain = 1e300;
   for (;;) {
     const Pace pace = pace_for(largest_overlap_);
     packing_->wear_lists(pace.wear);
@@ -98,9 +98,9 @@ Crowd::Rest Crowd::settle(const Monitor& monitor, const std::function<void()>& m
       packing_->write_to(spheres_);
       return Rest::free;
     }
-    slow = strain_ > hardly_freer * last_strain ? slow + 1 : 0;
+    slow = strain_ > hardly_freer * least_strain ? slow + 1 : 0;
     if (slow == patience) return Rest::stuck;
-    last_strain = strain_;
+    least_strain = std::min(least_strain, strain_);  // may swing: only a new low counts, so that this ends
   }
 }
 

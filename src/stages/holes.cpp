@@ -40,7 +40,7 @@ std::vector<Hole> holes_for(std::span<const double> radii, const Container& cont
   // Of a hole a sphere needs to clear the wall first of all; the roomiest places may all be too near to it.
   const auto roomier = [](const Hole& a, const Hole& b) { return a.room > b.room; };
   struct Group {
-    double largest;
+    double least_clearance;
     std::size_t candidates;
     std::vector<Hole> best = {};  // a heap, the least roomy on top
     double enough(double none) const { return best.size() < candidates ? none : best.front().room; }
@@ -50,6 +50,8 @@ std::vector<Hole> holes_for(std::span<const double> radii, const Container& cont
     const std::size_t first = radii.size() * g / most_groups, last = radii.size() * (g + 1) / most_groups;
     if (last > first) groups.push_back({radii[first], candidates_a_hole * (last - first)});
   }
+  // A centre stays clear of the wall, as it will not pass it; that is the last resort.
+  groups.push_back({0.5 * radii.back(), groups.back().candidates});
   for (std::size_t n = 0; n < probes; ++n) {
     const Vector<3> p = places.draw(random);
     double enough = most;
@@ -57,11 +59,8 @@ std::vector<Hole> holes_for(std::span<const double> radii, const Container& cont
     const double room = room_between(grid, spheres, p, enough, most);
     if (room <= enough) continue;
     const double clearance = container.clearance_within(p, radii.front());
-    // A centre stays clear of the wall, as it will not pass it.
-    if (clearance < 0.5 * radii.back()) continue;
     for (Group& group : groups) {
-      const bool last_resort = &group == &groups.back();
-      if ((clearance < group.largest && !last_resort) || room <= group.enough(-most)) continue;
+      if (clearance < group.least_clearance || room <= group.enough(-most)) continue;
       if (group.best.size() == group.candidates) {
         std::ranges::pop_heap(group.best, roomier);
         group.best.pop_back();
@@ -77,22 +76,21 @@ std::vector<Hole> holes_for(std::span<const double> radii, const Container& cont
 
   std::vector<Hole> holes;
   std::vector<bool> given(best.size(), false);
+  std::vector<double> squared_apart(best.size(),
+                                    std::numeric_limits<double>::infinity());  // from those given
   for (const double r : radii) {
-    const auto is_apart = [&](const Hole& candidate) {
-      return std::ranges::none_of(holes, [&](const Hole& other) {
-        return (other.place - candidate.place).squaredNorm() < 0.25 * (r + least) * (r + least);
-      });
-    };
     std::size_t chosen = best.size();
     for (std::size_t k = 0; k < best.size(); ++k) {
       if (given[k] || (chosen < best.size() && best[k].clearance <= best[chosen].clearance)) continue;
-      if (!is_apart(best[k])) continue;
+      if (squared_apart[k] < 0.25 * (r + least) * (r + least)) continue;
       chosen = k;
       if (best[k].clearance >= r) break;
     }
     if (chosen == best.size()) break;
     given[chosen] = true;
     holes.push_back(best[chosen]);
+    for (std::size_t k = 0; k < best.size(); ++k)
+      squared_apart[k] = std::min(squared_apart[k], (best[k].place - best[chosen].place).squaredNorm());
   }
   return holes;
 }

@@ -55,6 +55,7 @@ class Relaxation {
       patience = over_ ? 0 : less_patience * patience;
       free = relax(patience);
     }
+    const bool limited = over_;  // what is added after that is as much as there is time for
     if (free && !over_) push_in();
     // Single precision saw them free of overlap in motion; a few more sweeps bring all of them there.
     bool all_there = hand_over();
@@ -64,7 +65,8 @@ class Relaxation {
     }
     log_effects();
     if (cancelled_) return StageEnd::cancelled;
-    return crowd_.size() < target_count_ ? StageEnd::full : StageEnd::converged;
+    if (crowd_.size() >= target_count_) return StageEnd::converged;
+    return limited ? StageEnd::hit_limit : StageEnd::full;
   }
 
  private:

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "bernal/domain/shape.hpp"
 
@@ -90,6 +91,33 @@ inline Mesh baffle_mesh(double gap, double height) {
                  {{0, 5, 6}, {0, 6, 7}, {1, 2, 3}, {1, 3, 4}, {0, 1, 4}, {0, 4, 5}});
 }
 
+/// Two chambers of 1 x 1 x 1 that a slit of 0.2 x 0.1 x 1 joins.
+inline Mesh two_chambers_mesh() {
+  return extrude({{0, 0},
+                  {1, 0},
+                  {1, 0.45},
+                  {1.2, 0.45},
+                  {1.2, 0},
+                  {2.2, 0},
+                  {2.2, 1},
+                  {1.2, 1},
+                  {1.2, 0.55},
+                  {1, 0.55},
+                  {1, 1},
+                  {0, 1}},
+                 1,
+                 {{0, 1, 2},
+                  {0, 2, 9},
+                  {0, 9, 11},
+                  {9, 10, 11},
+                  {2, 3, 8},
+                  {2, 8, 9},
+                  {3, 4, 5},
+                  {3, 5, 6},
+                  {3, 6, 8},
+                  {6, 7, 8}});
+}
+
 /// A closed tube about the closed curve `center(u)`, u in [0, 1), with rings of `radius(u, v)`; the rings are
 /// built on the unit vectors `first(u)` and `second(u)`, with first × second along the curve.
 template <typename Center, typename Radius, typename First, typename Second>
@@ -147,6 +175,25 @@ inline Mesh helix_mesh(std::uint32_t along = 96, std::uint32_t around = 10) {
       [=](double u) -> Vector<3> { return ahead(u).cross(first(u)); });
 }
 
+/// The same surface, each triangle divided `levels` times into four.
+inline Mesh divided(Mesh mesh, int levels) {
+  for (int level = 0; level < levels; ++level) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
+    const auto between = [&](std::uint32_t i, std::uint32_t j) {
+      const auto [entry, is_new] = middle.try_emplace(std::minmax(i, j), index(mesh.vertices.size()));
+      if (is_new) mesh.vertices.push_back(0.5 * (mesh.vertices[i] + mesh.vertices[j]));
+      return entry->second;
+    };
+    std::vector<std::array<std::uint32_t, 3>> finer;
+    for (const auto& [i, j, k] : mesh.triangles) {
+      const std::uint32_t ij = between(i, j), jk = between(j, k), ki = between(k, i);
+      finer.insert(finer.end(), {{i, ij, ki}, {j, jk, ij}, {k, ki, jk}, {ij, jk, ki}});
+    }
+    mesh.triangles = std::move(finer);
+  }
+  return mesh;
+}
+
 /// An icosahedron, each triangle divided `levels` times into four, on the sphere of the given radius.
 inline Mesh icosphere_mesh(double radius, int levels) {
   const double g = std::numbers::phi;
@@ -165,20 +212,7 @@ inline Mesh icosphere_mesh(double radius, int levels) {
             {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
              {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
              {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
-  for (int level = 0; level < levels; ++level) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle;
-    const auto between = [&](std::uint32_t i, std::uint32_t j) {
-      const auto [entry, is_new] = middle.try_emplace(std::minmax(i, j), index(mesh.vertices.size()));
-      if (is_new) mesh.vertices.push_back(0.5 * (mesh.vertices[i] + mesh.vertices[j]));
-      return entry->second;
-    };
-    std::vector<std::array<std::uint32_t, 3>> finer;
-    for (const auto& [i, j, k] : mesh.triangles) {
-      const std::uint32_t ij = between(i, j), jk = between(j, k), ki = between(k, i);
-      finer.insert(finer.end(), {{i, ij, ki}, {j, jk, ij}, {k, ki, jk}, {ij, jk, ki}});
-    }
-    mesh.triangles = std::move(finer);
-  }
+  mesh = divided(std::move(mesh), levels);
   for (Vector<3>& v : mesh.vertices) v = radius * v.normalized();
   return mesh;
 }

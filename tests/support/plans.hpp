@@ -7,6 +7,7 @@
 
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "run/estimate.hpp"
 
 // Plans that no scene file can state: of a given mesh, or of a scene that has been scaled and shifted.
 namespace bernal::testing {
@@ -83,9 +84,10 @@ inline Plan shifted(Plan plan, const Vector<3>& by) {
 /// The plan of a scene in TOML.
 inline Plan plan_of(const std::string& toml) { return build(parse_scene(toml, "test.toml")); }
 
-/// The same with the container replaced.
+/// The same with the container replaced, and what is likely to fit into it.
 inline Plan plan_of(const std::string& toml, Shape container) {
   Plan plan = plan_of(toml);
+  plan.attainable_packing_fraction = expected_packing_fraction(plan.scene, container, *plan.radii);
   plan.domain = std::move(container);
   return plan;
 }

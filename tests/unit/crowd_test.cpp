@@ -1,0 +1,170 @@
+#include "stages/crowd.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/error.hpp"
+#include "support/meshes.hpp"
+
+namespace bernal {
+namespace {
+
+struct CrowdUnderTest {
+  std::unique_ptr<Container> container;
+  Places places;
+  Random random;
+  Crowd crowd;
+
+  CrowdUnderTest(std::unique_ptr<Container> of, Spheres<3> spheres)
+      : container(std::move(of)),
+        places(*container),
+        random(1, stream(Stream::test)),
+        crowd(*container, places, std::move(spheres)) {}
+
+  Crowd::Rest settle() {
+    return crowd.settle({}, [] {});
+  }
+};
+
+std::unique_ptr<Container> box_of(const Vector<3>& size) {
+  return make_analytic_container(BoxShape{Vector<3>::Zero(), size}, WallArithmetic::filtered, 0x1p-50);
+}
+
+/// At random in the bounds, with radii from half of `largest` to it, which take up `phi` of their volume.
+Spheres<3> random_spheres(const Bounds<3>& bounds, double largest, double phi) {
+  Random random(2, stream(Stream::test));
+  Spheres<3> spheres;
+  for (double volume = 0; volume < phi * bounds.volume();) {
+    spheres.push_back(uniform_point(random, bounds), random.uniform(0.5 * largest, largest));
+    volume += 4.0 / 3.0 * std::numbers::pi * std::pow(spheres.r.back(), 3);
+  }
+  return spheres;
+}
+
+void expect_free(const Spheres<3>& spheres, const Container& container) {
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    EXPECT_TRUE(container.contains(spheres.center(i), spheres.r[i])) << i;
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GE((spheres.center(i) - spheres.center(j)).norm(), spheres.r[i] + spheres.r[j]) << i << " " << j;
+  }
+}
+
+TEST(Crowd, ComesFreeWhereThereIsRoom) {
+  const Spheres<3> spheres = random_spheres({{0, 0, 0}, {1, 1, 1}}, 0.08, 0.45);
+  CrowdUnderTest tested(box_of({1, 1, 1}), spheres);
+  EXPECT_EQ(tested.settle(), Crowd::Rest::free);
+  EXPECT_EQ(tested.crowd.spheres().r, spheres.r);
+  EXPECT_EQ(tested.crowd.severely_squeezed(), 0u);
+  expect_free(tested.crowd.spheres(), *tested.container);
+}
+
+TEST(Crowd, GetsStuckWhereThereIsNone) {
+  CrowdUnderTest tested(box_of({1, 1, 1}), random_spheres({{0, 0, 0}, {1, 1, 1}}, 0.1, 0.8));
+  EXPECT_EQ(tested.settle(), Crowd::Rest::stuck);
+  EXPECT_GT(tested.crowd.largest_overlap(), 0.01);
+  EXPECT_GT(tested.crowd.strain(), 0.01);
+}
+
+TEST(Crowd, StopsWhenItIsTold) {
+  CrowdUnderTest tested(box_of({1, 1, 1}), random_spheres({{0, 0, 0}, {1, 1, 1}}, 0.1, 0.8));
+  Monitor monitor;
+  monitor.cancelled = [] { return true; };
+  EXPECT_EQ(tested.crowd.settle(monitor, [] {}), Crowd::Rest::cancelled);
+  EXPECT_EQ(tested.crowd.sweeps(), 1u);
+}
+
+TEST(Crowd, ThatLosesItsLastKeepsTheOthersToTheBit) {
+  const Spheres<3> spheres = random_spheres({{0, 0, 0}, {1, 1, 1}}, 0.1, 0.8);
+  CrowdUnderTest tested(box_of({1, 1, 1}), spheres);
+  tested.settle();
+  tested.crowd.drop_last(40, tested.random);
+  ASSERT_EQ(tested.crowd.size(), spheres.size() - 40);
+  for (std::size_t i = 0; i < tested.crowd.size(); ++i) {
+    EXPECT_EQ(tested.crowd.spheres().r[i], spheres.r[i]);
+    EXPECT_TRUE(tested.container->contains(tested.crowd.spheres().center(i), 0));
+  }
+  tested.settle();
+  tested.crowd.drop_last(100000, tested.random);  // never all
+  EXPECT_EQ(tested.crowd.size(), 1u);
+  EXPECT_EQ(tested.crowd.spheres().r[0], spheres.r[0]);
+  EXPECT_EQ(tested.settle(), Crowd::Rest::free);
+}
+
+TEST(Crowd, TakesMoreWhereThereAreHoles) {
+  const Spheres<3> spheres = random_spheres({{0, 0, 0}, {1, 1, 1}}, 0.08, 0.4);
+  CrowdUnderTest tested(box_of({1, 1, 1}), spheres);
+  tested.settle();
+  const std::vector<double> more{0.03, 0.09, 0.05, 0.09};
+  ASSERT_EQ(tested.crowd.add(more, tested.random), more.size());
+  ASSERT_EQ(tested.crowd.size(), spheres.size() + more.size());
+  for (std::size_t k = 0; k < more.size(); ++k)
+    EXPECT_EQ(tested.crowd.spheres().r[spheres.size() + k], more[k]);
+  EXPECT_EQ(tested.settle(), Crowd::Rest::free);
+  expect_free(tested.crowd.spheres(), *tested.container);
+}
+
+TEST(Crowd, StaysAsItIsWhereThereAreNoHoles) {
+  // No place in the slab clears its wall by half the radius of a sphere that is to come.
+  CrowdUnderTest tested(box_of({1, 1, 0.2}), random_spheres({{0, 0, 0}, {1, 1, 0.2}}, 0.05, 0.2));
+  ASSERT_EQ(tested.settle(), Crowd::Rest::free);
+  const Spheres<3> before = tested.crowd.spheres();
+  const std::vector<double> large{0.21, 0.22};
+  EXPECT_EQ(tested.crowd.add(large, tested.random), 0u);
+  EXPECT_EQ(tested.crowd.spheres(), before);
+  EXPECT_EQ(tested.settle(), Crowd::Rest::free);
+}
+
+TEST(Crowd, IsPutBackAsItWas) {
+  CrowdUnderTest tested(box_of({1, 1, 1}), random_spheres({{0, 0, 0}, {1, 1, 1}}, 0.08, 0.4));
+  ASSERT_EQ(tested.settle(), Crowd::Rest::free);
+  const Spheres<3> before = tested.crowd.spheres();
+  tested.crowd.burst();
+  tested.crowd.restore(before);
+  EXPECT_EQ(tested.crowd.spheres(), before);
+  // It is free of overlap already: nothing moves farther than the coordinates are good to.
+  EXPECT_EQ(tested.settle(), Crowd::Rest::free);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_LT((tested.crowd.spheres().center(i) - before.center(i)).norm(), 1e-3 * before.r[i]);
+}
+
+TEST(Crowd, MovesFromAChamberThatIsTooFullToOneThatIsEmpty) {
+  // No sphere is as small as the slit.
+  const Mesh mesh = test::two_chambers_mesh();
+  ASSERT_NEAR(volume_of(Shape(mesh)), 2.02, 1e-12);
+  const Spheres<3> spheres = random_spheres({{0.01, 0.01, 0.01}, {0.99, 0.99, 0.99}}, 0.12, 0.9);
+  CrowdUnderTest tested(make_mesh_container(mesh, WallArithmetic::filtered, 0x1p-50), spheres);
+  ASSERT_EQ(tested.settle(), Crowd::Rest::stuck);
+  const auto on_the_right = [&] {
+    return std::ranges::count_if(tested.crowd.spheres().x[0], [](double x) { return x > 1.2; });
+  };
+  EXPECT_EQ(on_the_right(), 0);
+  Crowd::Rest rest = Crowd::Rest::stuck;
+  for (int k = 0; k < 60 && rest != Crowd::Rest::free; ++k) {
+    tested.crowd.relocate(0.05, tested.random);
+    rest = tested.settle();
+  }
+  ASSERT_EQ(rest, Crowd::Rest::free) << tested.crowd.strain();
+  expect_free(tested.crowd.spheres(), *tested.container);
+  // Of 0.9 of a chamber's volume at least a quarter has to go.
+  EXPECT_GT(static_cast<double>(on_the_right()), 0.25 * static_cast<double>(spheres.size()));
+}
+
+TEST(Crowd, OfSpheresThatSinglePrecisionCannotTellApartIsRefused) {
+  Spheres<3> dust;
+  dust.push_back({0.5, 0.5, 0.5}, 1e-6);
+  try {
+    CrowdUnderTest tested(box_of({1, 1, 1}), dust);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_scene);
+    EXPECT_NE(std::string(error.what()).find("1e+06 times smaller"), std::string::npos) << error.what();
+  }
+  dust.r[0] = 1e-5;
+  CrowdUnderTest tested(box_of({1, 1, 1}), dust);
+  EXPECT_EQ(tested.settle(), Crowd::Rest::free);
+}
+
+}  // namespace
+}  // namespace bernal

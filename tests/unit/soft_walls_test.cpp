@@ -1,0 +1,233 @@
+#include "soft/soft_walls.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/random.hpp"
+#include "soft/soft_packing.hpp"
+#include "support/meshes.hpp"
+
+namespace bernal {
+namespace {
+
+std::unique_ptr<Container> container_of(const Shape& shape) {
+  constexpr double resolution = 0x1p-50;
+  if (const auto* mesh = std::get_if<Mesh>(&shape))
+    return make_mesh_container(*mesh, WallArithmetic::filtered, resolution);
+  return make_analytic_container(shape, WallArithmetic::filtered, resolution);
+}
+
+Mesh cube_with_cubic_void() {
+  return test::joined(test::box_mesh({0, 0, 0}, {2, 2, 2}),
+                      test::inverted(test::box_mesh({0.8, 0.8, 0.8}, {0.4, 0.4, 0.4})));
+}
+
+// ---- one sphere
+
+struct Overlapping {
+  std::string name;
+  Shape shape;
+  Vector<3> center;
+  double r;
+  Vector<3> nearest;  // point of the wall
+
+  friend void PrintTo(const Overlapping& tested, std::ostream* out) { *out << tested.name; }
+};
+
+class OneContact : public ::testing::TestWithParam<Overlapping> {};
+
+/// One contact moves a sphere by the whole overlap, two by half their sum: so a wall that counts twice shows.
+TEST_P(OneContact, PushesByTheOverlapAlongItsNormal) {
+  const Overlapping& tested = GetParam();
+  const auto container = container_of(tested.shape);
+  const Vector<3> away = tested.center - tested.nearest;
+  const double overlap = tested.r - away.norm();
+  for (const SoftKernels& kernels : soft_kernels()) {
+    SCOPED_TRACE(kernels.name);
+    Spheres<3> spheres;
+    spheres.push_back(tested.center, tested.r);
+    SoftPacking packing(spheres, *container, kernels);
+    // Single precision of the overlap and of the coordinates.
+    const double tolerance = 4 * (0x1p-24 * tested.r + packing.resolution());
+    EXPECT_NEAR(packing.sweep_and_measure(1), overlap / tested.r, tolerance / tested.r);
+    EXPECT_NEAR(packing.stress()[0], std::pow(overlap / tested.r, 2), 3 * tolerance / tested.r);
+    packing.write_to(spheres);
+    const Vector<3> expected = tested.center + overlap * away.normalized();
+    EXPECT_LT((spheres.center(0) - expected).norm(), tolerance) << spheres.center(0).transpose();
+    EXPECT_LT(packing.sweep_and_measure(1), 2 * tolerance / tested.r);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , OneContact,
+    ::testing::Values(
+        Overlapping{"Plane", BoxShape{{0, 0, 0}, {1, 2, 3}}, {0.06, 1, 1}, 0.1, {0, 1, 1}},
+        Overlapping{"Barrel", CylinderShape{{0, 0, 0}, {0, 0, 1}, 1, 2}, {0.57, 0.76, 1}, 0.1, {0.6, 0.8, 1}},
+        Overlapping{"BarrelFromDeepInside",
+                    CylinderShape{{0, 0, 0}, {0, 0, 1}, 1, 2},
+                    {0.03, 0.04, 1},
+                    0.99,
+                    {0.6, 0.8, 1}},
+        Overlapping{"SphericalWall", SphereShape{{1, 1, 1}, 1}, {1, 1.95, 1}, 0.1, {1, 2, 1}},
+        Overlapping{"Face", test::box_mesh({0, 0, 0}, {1, 1, 1}), {0.04, 0.6, 0.5}, 0.1, {0, 0.6, 0.5}},
+        // The diagonal of the face, where two triangles are equally near.
+        Overlapping{
+            "DiagonalOfAFace", test::box_mesh({0, 0, 0}, {1, 1, 1}), {0.5, 0.04, 0.5}, 0.1, {0.5, 0, 0.5}},
+        Overlapping{"FaceInManyTriangles",
+                    test::divided(test::box_mesh({0, 0, 0}, {1, 1, 1}), 5),
+                    {0.08, 0.613, 0.507},
+                    0.1,
+                    {0, 0.613, 0.507}},
+        // Nearly a radius deep, some 800 triangles overlap.
+        Overlapping{"DeepInAFaceInManyTriangles",
+                    test::divided(test::box_mesh({0, 0, 0}, {1, 1, 1}), 6),
+                    {0.03, 0.613, 0.507},
+                    0.25,
+                    {0, 0.613, 0.507}},
+        Overlapping{"InnerEdge", test::l_shape_mesh(), {0.92, 0.95, 0.5}, 0.2, {1, 1, 0.5}},
+        Overlapping{"FaceNextToAnInnerEdge", test::l_shape_mesh(), {1.05, 0.9, 0.5}, 0.2, {1.05, 1, 0.5}},
+        Overlapping{"InnerCorner", cube_with_cubic_void(), {0.75, 0.72, 0.76}, 0.2, {0.8, 0.8, 0.8}},
+        Overlapping{"SideOfAVoid", cube_with_cubic_void(), {0.7, 0.85, 1.1}, 0.2, {0.8, 0.85, 1.1}}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST(SoftWalls, PushOutOfACornerFromEveryFace) {
+  for (const Shape& shape :
+       {Shape(BoxShape{{0, 0, 0}, {1, 1, 1}}), Shape(test::box_mesh({0, 0, 0}, {1, 1, 1})),
+        Shape(test::divided(test::box_mesh({0, 0, 0}, {1, 1, 1}), 5))}) {
+    const auto container = container_of(shape);
+    Spheres<3> spheres;
+    spheres.push_back({0.09, 0.08, 0.07}, 0.1);
+    SoftPacking packing(spheres, *container, soft_kernels().front());
+    EXPECT_NEAR(packing.sweep_and_measure(3), 0.3, 1e-6);
+    EXPECT_NEAR(packing.stress()[0], 0.01 + 0.04 + 0.09, 1e-6);
+    packing.write_to(spheres);
+    EXPECT_LT((spheres.center(0) - Vector<3>(0.1, 0.1, 0.1)).norm(), 1e-7);
+  }
+}
+
+TEST(SoftWalls, BetweenPlatesNearerThanADiameterPushToTheMiddle) {
+  const auto container = container_of(test::box_mesh({0, 0, 0}, {1, 1, 0.15}));
+  Spheres<3> spheres;
+  spheres.push_back({0.4, 0.45, 0.06}, 0.1);
+  SoftPacking packing(spheres, *container, soft_kernels().front());
+  packing.sweep(1);  // (0.04 - 0.01) / 2
+  packing.write_to(spheres);
+  EXPECT_LT((spheres.center(0) - Vector<3>(0.4, 0.45, 0.075)).norm(), 1e-7);
+}
+
+// ---- many spheres
+
+/// Spheres at random inside that would fill the container `phi` times over, their radii down to r / `range`.
+Spheres<3> crowd_in(const Container& container, double r, double range, double phi, std::uint64_t seed) {
+  Random random(seed, stream(Stream::test));
+  Spheres<3> spheres;
+  double volume = 0;
+  while (volume < phi * container.volume()) {
+    const Vector<3> c = uniform_point(random, container.bounds());
+    if (!container.contains(c, 0)) continue;
+    spheres.push_back(c, r * std::pow(range, -random.uniform()));
+    volume += 4.0 / 3.0 * std::numbers::pi * std::pow(spheres.r.back(), 3);
+  }
+  return spheres;
+}
+
+Spheres<3> after_sweeps(Spheres<3> spheres, const Container& container, const SoftKernels& kernels,
+                        int sweeps) {
+  SoftPacking packing(spheres, container, kernels);
+  for (int k = 0; k < sweeps; ++k) packing.sweep(5);
+  packing.write_to(spheres);
+  return spheres;
+}
+
+TEST(SoftWalls, GiveTheSameBitsInEveryInstructionSet) {
+  for (const Shape& shape :
+       {Shape(CylinderShape{{0, 0, 0}, {1, 2, 3}, 0.5, 1}), Shape(test::l_shape_mesh())}) {
+    const auto container = container_of(shape);
+    const Spheres<3> crowd = crowd_in(*container, 0.08, 3, 0.7, 1);
+    const Spheres<3> plain = after_sweeps(crowd, *container, soft_kernels().back(), 60);
+    EXPECT_NE(plain, crowd);
+    for (const SoftKernels& kernels : soft_kernels())
+      EXPECT_EQ(after_sweeps(crowd, *container, kernels, 60), plain) << kernels.name;
+  }
+}
+
+TEST(SoftWalls, GiveTheSameBitsForAnyNumberOfThreads) {
+  for (const Shape& shape : {Shape(BoxShape{{0, 0, 0}, {1, 1, 1}}), Shape(test::l_shape_mesh())}) {
+    const auto container = container_of(shape);
+    const double r = std::cbrt(container->volume()) / 42;
+    const Spheres<3> crowd = crowd_in(*container, r, 1, 0.7, 1);
+    ASSERT_GT(crowd.size(), 12000u);
+    const auto with_threads = [&](std::size_t n) {
+      tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
+      return after_sweeps(crowd, *container, soft_kernels().front(), 12);
+    };
+    EXPECT_EQ(with_threads(1), with_threads(2));
+  }
+}
+
+struct Enclosed {
+  std::string name;
+  Shape shape;
+  std::function<int(const Vector<3>&)> chamber;
+  double r;      // of the largest
+  double range;  // of the radii
+
+  friend void PrintTo(const Enclosed& tested, std::ostream* out) { *out << tested.name; }
+};
+
+/// Two unit cubes side by side with a plate of the given thickness between them.
+Mesh two_chambers(double plate) {
+  return test::joined(test::box_mesh({-1, 0, 0}, {1, 1, 1}), test::box_mesh({plate, 0, 0}, {1, 1, 1}));
+}
+
+int side(const Vector<3>& c) { return c[0] > 0; }
+int any(const Vector<3>&) { return 0; }
+
+class EnclosedCrowd : public ::testing::TestWithParam<Enclosed> {};
+
+TEST_P(EnclosedCrowd, NeverPassesAWall) {
+  const Enclosed& tested = GetParam();
+  const auto container = container_of(tested.shape);
+  for (const double phi : {0.8, 2.5}) {
+    const Spheres<3> start = crowd_in(*container, tested.r, tested.range, phi, 3);
+    SoftPacking packing(start, *container, soft_kernels().front());
+    packing.wear_lists(1.6);  // as a crowd does
+    for (int k = 1; k <= 200; ++k) {
+      packing.sweep(5.4f);
+      if (k > 10 && k % 50 != 0) continue;
+      Spheres<3> now = start;
+      packing.write_to(now);
+      for (std::size_t i = 0; i < now.size(); ++i) {
+        ASSERT_TRUE(container->contains(now.center(i), 0))
+            << "sphere " << i << " after " << k << " sweeps, " << now.center(i).transpose();
+        ASSERT_EQ(tested.chamber(now.center(i)), tested.chamber(start.center(i))) << i << " after " << k;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , EnclosedCrowd,
+    ::testing::Values(
+        Enclosed{"OnBothSidesOfAThinPlate", two_chambers(1e-4), side, 0.1, 1},
+        Enclosed{"OfOneToTenOnBothSidesOfAThinPlate", two_chambers(1e-4), side, 0.3, 10},
+        Enclosed{"OnBothSidesOfAPlateWithoutThickness", two_chambers(0), side, 0.1, 1},
+        Enclosed{"OfOneToTenOnBothSidesOfAPlateWithoutThickness", two_chambers(0), side, 0.3, 10},
+        Enclosed{"InAnL", test::l_shape_mesh(), any, 0.3, 10},
+        Enclosed{"AroundAVoid", cube_with_cubic_void(), any, 0.3, 10},
+        Enclosed{"InAThinShell",
+                 test::joined(test::icosphere_mesh(1, 2), test::inverted(test::icosphere_mesh(0.9, 2))), any,
+                 0.1, 10},
+        Enclosed{"InACylinder", CylinderShape{{0, 0, 0}, {1, 2, 3}, 0.5, 1}, any, 0.15, 10},
+        Enclosed{"InASphere", SphereShape{{0, 0, 0}, 0.7}, any, 0.15, 10},
+        // Not one sphere has room.
+        Enclosed{"InASlabOfHalfARadius", BoxShape{{0, 0, 0}, {1, 1, 0.05}}, any, 0.1, 1}),
+    [](const auto& tested) { return tested.param.name; });
+
+}  // namespace
+}  // namespace bernal
