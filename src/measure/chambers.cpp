@@ -9,6 +9,7 @@
 #include <span>
 
 #include "bernal/core/dimension.hpp"
+#include "measure/convex.hpp"
 #include "measure/even_points.hpp"
 #include "measure/free_cells.hpp"
 #include "measure/localised.hpp"
@@ -24,17 +25,30 @@ constexpr double most_in_vain = 64;
 constexpr std::size_t most_known = 16;  ///< places that are tried for every point
 constexpr std::uint32_t none = Chambers::none;
 
+/// The deepest place that a coarse look finds.
+std::vector<Place> deepest_of_coarse_cells(const FreeSpace& space, double size) {
+  constexpr double cells = 16;
+  const FreeCells coarse(space, size / cells);
+  std::vector<Place> deepest;
+  for (std::size_t k = 0; k < coarse.components(); ++k)
+    if (deepest.empty() || coarse.deepest(k).clearance > deepest.front().clearance)
+      deepest = {coarse.deepest(k)};
+  return deepest;
+}
+
 /// The components of the places in a container; where it is convex there is one, or none.
 class Components {
  public:
   Components(const Shape& shape, const FreeSpace& space, int cells) {
     const Bounds<3> bounds = space.container().bounds();
-    if (std::holds_alternative<Mesh>(shape)) {
+    const auto* mesh = std::get_if<Mesh>(&shape);
+    if (mesh && is_convex(*mesh)) deepest_ = deepest_of_coarse_cells(space, bounds.size().maxCoeff());
+    if (mesh && deepest_.empty()) {
       edge_ = std::max(space.radius() / cells_per_radius, bounds.size().maxCoeff() / cells);
       edge_ = std::min(edge_, bounds.size().maxCoeff());
       cells_.emplace(space, edge_);
       for (std::size_t k = 0; k < cells_->components(); ++k) deepest_.push_back(cells_->deepest(k));
-    } else {
+    } else if (!mesh) {
       const Place center = {bounds.center(), space.container().clearance(bounds.center())};
       if (space.is_place(center.clearance)) deepest_.push_back(center);
     }

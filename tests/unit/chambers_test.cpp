@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "measure/convex.hpp"
 #include "support/meshes.hpp"
 #include "support/packings.hpp"
 #include "support/periodic.hpp"
@@ -38,6 +39,19 @@ double covered(const Vector<3>& size, double r) {
 /// Standard errors that a share may be off; and a slope of its own, for a place may lack a thousandth of r.
 void expect_share(double share, double error, double expected) {
   EXPECT_NEAR(share, expected, 4 * error + 2e-3);
+}
+
+TEST(IsConvex, ForPrismsAndNotForWhatHasAnInnerEdgeOrTwoPieces) {
+  EXPECT_TRUE(is_convex(test::prism_mesh(64, 1, 2)));
+  EXPECT_TRUE(is_convex(test::two_cubes_mesh(1)));  // a neck as wide as the cubes: one bar
+  EXPECT_FALSE(is_convex(test::two_cubes_mesh(0.5)));
+  EXPECT_FALSE(is_convex(test::l_shape_mesh()));
+  Mesh two = test::prism_mesh(5, 1, 2);
+  const Mesh other = test::translated(test::prism_mesh(5, 1, 2), {3, 0, 0});
+  const auto first = static_cast<std::uint32_t>(two.vertices.size());
+  two.vertices.insert(two.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& [a, b, c] : other.triangles) two.triangles.push_back({first + a, first + b, first + c});
+  EXPECT_FALSE(is_convex(two));
 }
 
 TEST(Chambers, OfABoxAreOneThatLacksItsEdges) {

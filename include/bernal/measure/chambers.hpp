@@ -46,7 +46,7 @@ struct ChamberOptions {
 
 /// Absent in a periodic box and without spheres.
 ///
-/// Boxes, cylinders and spheres are convex, and so are their places: one chamber or none. In a mesh the cells
+/// Boxes, cylinders, spheres and convex meshes have convex places: one chamber or none. In another mesh the cells
 /// of an octree that clearance, being 1-Lipschitz, does not decide are searched for a place down to the
 /// finest; two places belong together where a line of places joins them, see src/measure/free_space.hpp.
 /// Pockets of places much thinner than a cell can be missed, and a neck much thinner than a cell taken for
