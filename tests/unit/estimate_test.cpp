@@ -95,8 +95,9 @@ TEST(Estimate, FallsAsSpheresGrow) {
   }
 }
 
-TEST(Estimate, IsWhatRelaxationReaches) {
-  // Seeds differ by 0.003 to 0.005 in containers of so few spheres.
+TEST(Estimate, IsALittleLessThanWhatRelaxationReachesWithPatience) {
+  // So that what is expected is reached without much. Seeds differ by 0.003 to 0.005 in containers of so few
+  // spheres.
   const std::string spheres = "[spheres]\nfill = true\nradius = ";
   for (const std::string& scene :
        {"[container]\nkind = \"box\"\nsize = [1.0, 1.0, 1.0]\n" + spheres + "0.05\n",
@@ -105,7 +106,9 @@ TEST(Estimate, IsWhatRelaxationReaches) {
     const Plan plan = testing::plan_of(scene);
     RunOptions options;
     options.threads = 1;
-    EXPECT_NEAR(run(plan, options).packing_fraction(), plan.expected_packing_fraction, 0.015) << scene;
+    const double reached = run(plan, options).packing_fraction();
+    EXPECT_GT(reached, plan.expected_packing_fraction - 0.005) << scene;
+    EXPECT_LT(reached, plan.expected_packing_fraction + 0.025) << scene;
   }
 }
 
