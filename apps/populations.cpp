@@ -31,7 +31,7 @@ void require_few(std::size_t populations) {
                             most_populations));
 }
 
-/// The words between any of `separators`; nothing between two commas is a word too.
+/// The words between separators; nothing between two of them is a word too.
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> words;
   for (;;) {
