@@ -21,14 +21,14 @@ struct Prediction {
 ///
 /// What it is worth: f was fitted so that equal spheres have 0.6435. Against event-driven simulations of
 /// lognormal spheres and mixtures of two such populations, mean diameters 1 : 2 (the source's table 2; 1,024
-/// and 2,048 spheres), it is higher by 0.0004 to 0.008; against 6,000 soft spheres the source finds no
-/// difference that its plot could show. Two sizes of infinite ratio pack to 1 - (1 - 0.6435)² = 0.8729 with
+/// and 2,048 spheres), it is higher by 0.0004 to 0.008; with 6,000 soft spheres the source finds the
+/// agreement excellent. Two sizes of infinite ratio pack to 1 - (1 - 0.6435)² = 0.8729 with
 /// 26.3 % of the volume small, exactly; there the model stays at 0.8595. It knows nothing of friction, of
 /// walls, of crystals and of segregation.
 ///
 /// Precondition: finite second and third moments; rods >= 2, else Error{bad_argument}. Lognormal sizes need
-/// more rods the wider they are: `error` passes 0.001 at sigma = 2.8 with 64,000 rods, and beyond 5 no number
-/// of rods that is worth waiting for is enough. Deterministic.
+/// more rods the wider they are: `error` passes 0.001 at sigma = 2.8 with 64,000 rods, and at 5 with ten
+/// million. Deterministic.
 /// Cost: O(rods log rods); 0.8 ms for 16,000 rods of lognormal sizes, 0.2 ms for two classes.
 /// Source: Farr & Groot, J. Chem. Phys. 131, 244104 (2009); Farr, Powder Technology 245, 28 (2013), section
 /// IV. Their program evaluates erfc to 1.5e-7 and therefore differs in the fifth digit at sigma = 1.
