@@ -21,6 +21,7 @@ constexpr const char* examples = R"(Examples:
   bernal measure out                                 contacts, rattlers, g(r), sizes against those asked for
   bernal inspect part.stl --unit mm                  can this CAD file be a container?
   bernal explain data/scenes/hopper.toml             what would run, and what it would cost
+  bernal predict --lognormal 0.5                     how densely spheres of these sizes pack
 
 Exit codes: 0 done; 1 not certified, or not usable; 2 bad input; 3 ended without reaching what the scene asks.
 Messages go to standard error, results to files or standard output.)";
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
   add_inspect(app, status);
   add_explain(app, status);
   add_measure(app, status);
+  add_predict(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version

@@ -1,9 +1,14 @@
 #include "bernal/predict/predict.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "bernal/core/error.hpp"
+#include "predict/chord_table.hpp"
 #include "predict/rods.hpp"
 
 namespace bernal {
@@ -11,10 +16,36 @@ namespace bernal {
 Prediction predict_packing_fraction(const SizeDistribution& sizes, int rods) {
   if (rods < 2)
     throw Error(ErrorCode::bad_argument, "a prediction needs at least 2 rods, not " + std::to_string(rods));
-  const auto phi = [&](int n) { return predict::covered_fraction(predict::rod_lengths(sizes, n)); };
-  Prediction prediction{.phi = phi(rods), .rods = rods};
-  prediction.error = std::abs(prediction.phi - phi(rods / 2));
+  const predict::ChordTable chords(sizes, rods);
+  const std::vector<double> lengths = chords.rod_lengths(rods);
+  Prediction prediction{.phi = predict::covered_fraction(lengths), .rods = rods};
+  const double fewer = predict::covered_fraction(chords.rod_lengths(std::max(1, rods / 4)));
+  // The mean chord is 2 <D³> / 3 <D²>. What the rods fall short of it is volume of spheres so large, and so
+  // few, that no rod stands for them.
+  const double mean = std::accumulate(lengths.begin(), lengths.end(), 0.0) / rods;
+  const double missed = std::abs(1 - 1.5 * mean * sizes.moment(2) / sizes.moment(3));
+  prediction.error = std::max(std::abs(prediction.phi - fewer), missed * (1 - prediction.phi));
   return prediction;
+}
+
+double fitted_packing_fraction(double sigma) {
+  if (!(sigma >= 0 && sigma <= 3))
+    throw Error(ErrorCode::bad_argument,
+                "the fit is for lognormal sizes of sigma from 0 to 3, not " + std::to_string(sigma));
+  const double wave = 1 - std::exp(-0.75 * std::pow(sigma, 0.7) - 0.025 * std::pow(sigma, 4));
+  return 1 - 0.57 * std::exp(-sigma) + 0.2135 * std::exp(-0.57 * sigma / 0.2135) +
+         0.0019 * (std::cos(2 * std::numbers::pi * wave) - 1);
+}
+
+double relative_viscosity(double solids, double packing_fraction, double intrinsic) {
+  if (!(solids >= 0 && solids < packing_fraction && packing_fraction <= 1))
+    throw Error(ErrorCode::bad_argument, "a suspension flows where its volume fraction of solids, " +
+                                             std::to_string(solids) + ", lies from 0 to below " +
+                                             std::to_string(packing_fraction) + ", where it jams");
+  if (!(intrinsic > 0 && std::isfinite(intrinsic)))
+    throw Error(ErrorCode::bad_argument,
+                "the intrinsic viscosity must be positive, not " + std::to_string(intrinsic));
+  return std::pow(1 - solids / packing_fraction, -intrinsic * packing_fraction);
 }
 
 }  // namespace bernal

@@ -1,51 +1,41 @@
 #include "predict/rods.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
-#include <queue>
+#include <vector>
 
 namespace bernal::predict {
 
-std::vector<double> rod_lengths(const SizeDistribution& sizes, int count) {
-  // In y = L² the share of longer rods, m2 - y m0, is convex and falls with the slope -m0. So Newton's method
-  // started below a root, here at the root of the next shorter rod, climbs to it and never passes it; where
-  // m0 is a staircase (size classes) it arrives after a step a class.
-  const double all = sizes.moment(2);
-  std::vector<double> lengths(static_cast<std::size_t>(count));
-  double y = 0;
-  for (int i = 0; i < count; ++i) {
-    const double longer = (count - i - 0.5) / count * all;
-    for (;;) {
-      const double length = std::sqrt(y);
-      const double m0 = sizes.moment_above(0, length), m2 = sizes.moment_above(2, length);
-      if (!(m0 > 0)) break;  // rounding carried y past the largest sphere, where the longest rods end
-      const double better = (m2 - longer) / m0;
-      const bool arrived = !(better > y * (1 + 8 * std::numeric_limits<double>::epsilon()));
-      y = std::max(y, better);
-      if (arrived) break;
-    }
-    lengths[static_cast<std::size_t>(i)] = std::sqrt(y);
-  }
-  return lengths;
-}
-
-double covered_fraction(std::span<const double> ascending_lengths) {
+double covered_fraction(std::span<const double> lengths) {
   constexpr double f = 0.7654;  // gives equal spheres their random close packing fraction
-  std::priority_queue<double> gaps;
-  double total_gap = f * ascending_lengths.back();
-  gaps.push(total_gap);
-  for (std::size_t i = ascending_lengths.size() - 1; i-- > 0;) {
-    const double length = ascending_lengths[i];
-    const double gap = gaps.top();
-    const double left = f * length, right = std::max(f * length, gap - (1 + f) * length);
-    gaps.pop();
-    gaps.push(left);
-    gaps.push(right);
+  // A rod leaves a gap f L, never larger than those left before, so these wait in a queue that needs no
+  // sorting. Only what remains of a gap that held a rod without growing goes to a heap.
+  std::vector<double> queue(2 * lengths.size());
+  std::vector<double> heap;
+  std::size_t front = 0, back = 0;
+  double total_length = lengths.front();
+  double total_gap = queue[back++] = f * lengths.front();
+  for (const double length : lengths.subspan(1)) {
+    const bool from_heap = !heap.empty() && (front == back || heap.front() > queue[front]);
+    const double left = f * length;
+    double gap;
+    if (from_heap) {
+      gap = heap.front();
+      std::ranges::pop_heap(heap);
+      heap.pop_back();
+    } else {
+      gap = queue[front++];
+    }
+    double right = gap - (1 + f) * length;
+    queue[back++] = left;
+    if (right > left) {
+      heap.push_back(right);
+      std::ranges::push_heap(heap);
+    } else {
+      queue[back++] = right = left;
+    }
     total_gap += left + right - gap;
+    total_length += length;
   }
-  const double total_length = std::accumulate(ascending_lengths.begin(), ascending_lengths.end(), 0.0);
   return total_length / (total_length + total_gap);
 }
 

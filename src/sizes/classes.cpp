@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <ranges>
 
 #include "bernal/sizes/size_distribution.hpp"
 #include "sizes/check.hpp"
@@ -12,12 +14,24 @@ struct Class {
   double radius;
   double share;  ///< of the number; all shares add up to 1
   double up_to;  ///< share of this class and all smaller ones
+  /// Σ share r^k over this class and all larger ones, k = 0 … 3.
+  std::array<double, 4> from = {};
 };
 
 class Classes final : public SizeDistribution {
  public:
   /// Precondition: ascending radii, shares that add up to 1.
-  explicit Classes(std::vector<Class> classes) : classes_(std::move(classes)) {}
+  explicit Classes(std::vector<Class> classes) : classes_(std::move(classes)) {
+    std::array<double, 4> from = {};
+    for (Class& c : classes_ | std::views::reverse) {
+      double part = c.share;
+      for (double& sum : from) {
+        sum += part;
+        part *= c.radius;
+      }
+      c.from = from;
+    }
+  }
 
   std::string_view name() const override { return "classes"; }
 
@@ -28,8 +42,7 @@ class Classes final : public SizeDistribution {
   }
 
   double cumulative(double radius) const override {
-    const auto above = [](double value, const Class& c) { return value < c.radius; };
-    const auto found = std::upper_bound(classes_.begin(), classes_.end(), radius, above);
+    const auto found = first_above(radius);
     return found == classes_.begin() ? 0 : std::prev(found)->up_to;
   }
 
@@ -40,16 +53,28 @@ class Classes final : public SizeDistribution {
   }
 
   double moment_above(int k, double radius) const override {
+    const auto first = first_above(radius);
+    if (first == classes_.end()) return 0;
+    if (k >= 0 && k <= 3) return first->from[static_cast<std::size_t>(k)];
     double sum = 0;
-    for (const Class& c : classes_)
-      if (c.radius > radius) sum += c.share * std::pow(c.radius, k);
+    for (auto c = first; c != classes_.end(); ++c) sum += c->share * std::pow(c->radius, k);
     return sum;
   }
 
   double min() const override { return classes_.front().radius; }
   double max() const override { return classes_.back().radius; }
 
+  std::vector<double> atoms() const override {
+    std::vector<double> radii;
+    for (const Class& c : classes_) radii.push_back(c.radius);
+    return radii;
+  }
+
  private:
+  std::vector<Class>::const_iterator first_above(double radius) const {
+    return std::ranges::upper_bound(classes_, radius, {}, &Class::radius);
+  }
+
   std::vector<Class> classes_;
 };
 
@@ -65,7 +90,7 @@ std::unique_ptr<SizeDistribution> make_classes(std::vector<double> radii, std::v
   for (std::size_t i = 0; i < radii.size(); ++i) {
     require_positive("the radius of a size class", radii[i]);
     require_positive("the share of a size class", shares[i]);
-    classes.push_back({radii[i], shares[i], 0});
+    classes.push_back({.radius = radii[i], .share = shares[i], .up_to = 0});
   }
   std::ranges::sort(classes, {}, &Class::radius);
   const auto same = std::ranges::adjacent_find(classes, {}, &Class::radius);

@@ -17,6 +17,7 @@ class Constant final : public SizeDistribution {
   double moment_above(int k, double radius) const override { return radius < radius_ ? moment(k) : 0; }
   double min() const override { return radius_; }
   double max() const override { return radius_; }
+  std::vector<double> atoms() const override { return {radius_}; }
 
  private:
   double radius_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <tuple>
 
@@ -79,6 +80,14 @@ class Mixture final : public SizeDistribution {
 
   double min() const override { return min_; }
   double max() const override { return max_; }
+
+  std::vector<double> atoms() const override {
+    std::vector<double> radii;
+    for (const Part& part : parts_) std::ranges::copy(part.sizes->atoms(), std::back_inserter(radii));
+    std::ranges::sort(radii);
+    radii.erase(std::ranges::unique(radii).begin(), radii.end());
+    return radii;
+  }
 
   /// The part that u falls to, and there the radius of what is left of u. No root to be found.
   double radius_at(double u) const override {

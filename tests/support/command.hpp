@@ -23,13 +23,14 @@ struct Ended {
 /// A process with its outputs kept in files, so that no pipe can fill up and block it.
 class Process {
  public:
-  explicit Process(const std::vector<std::string>& words) {
+  /// `input` is the file that it reads as its standard input.
+  explicit Process(const std::vector<std::string>& words, const std::string& input = "/dev/null") {
     std::vector<char*> argv;
     for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
     argv.push_back(nullptr);
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, input.c_str(), O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out().c_str(), O_WRONLY | O_CREAT, 0600);
     posix_spawn_file_actions_addopen(&files, STDERR_FILENO, err().c_str(), O_WRONLY | O_CREAT, 0600);
     const int failed = posix_spawnp(&pid_, argv[0], &files, nullptr, argv.data(), environ);
@@ -57,10 +58,12 @@ class Process {
 };
 
 /// The built command with these words after its name.
-inline Process start_bernal(std::vector<std::string> words) {
+inline Process start_bernal(std::vector<std::string> words, const std::string& input = "/dev/null") {
   words.insert(words.begin(), BERNAL_COMMAND);
-  return Process(words);
+  return Process(words, input);
 }
-inline Ended bernal(std::vector<std::string> words) { return start_bernal(std::move(words)).wait(); }
+inline Ended bernal(std::vector<std::string> words, const std::string& input = "/dev/null") {
+  return start_bernal(std::move(words), input).wait();
+}
 
 }  // namespace bernal::testing

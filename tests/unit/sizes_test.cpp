@@ -53,6 +53,21 @@ TEST_P(Sizes, QuantileIsMonotonicAndKeepsItsLimits) {
   EXPECT_EQ(sizes->cumulative(sizes->max()), 1);
 }
 
+TEST_P(Sizes, AtomsAreWhereTheCumulativeJumps) {
+  double jumps = 0, previous = 0;
+  for (const double atom : sizes->atoms()) {
+    EXPECT_GT(atom, previous);
+    previous = atom;
+    const double jump = sizes->cumulative(atom) - sizes->cumulative(std::nextafter(atom, 0));
+    EXPECT_GT(jump, 0) << atom;
+    jumps += jump;
+  }
+  EXPECT_LE(jumps, 1 + 1e-13);
+  if (sizes->name() == "constant" || sizes->name() == "classes") {
+    EXPECT_NEAR(jumps, 1, 1e-13);
+  }
+}
+
 TEST_P(Sizes, EveryDrawIsPositiveAndFinite) {
   for (const double u : {0x1p-54, 0x1p-53, largest_draw}) {
     EXPECT_GT(sizes->quantile(u), 0) << u;

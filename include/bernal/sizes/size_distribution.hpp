@@ -28,6 +28,8 @@ class SizeDistribution {
   virtual double min() const = 0;
   /// Infinity where the distribution has an unbounded tail.
   virtual double max() const = 0;
+  /// The radii that a share of the number has exactly, ascending: the size classes. `cumulative` jumps there.
+  virtual std::vector<double> atoms() const { return {}; }
 
   /// The radius that stands for `u` in (0, 1): where u is uniform, the radius follows this distribution, and
   /// the radii up to any limit come from a few intervals of u. quantile(u), except where something quicker

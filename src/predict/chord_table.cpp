@@ -1,0 +1,144 @@
+#include "predict/chord_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bernal/core/error.hpp"
+
+namespace bernal::predict {
+namespace {
+
+/// Of a piece of twice the width, relative to the smaller of what is longer and what is shorter.
+constexpr double agreement = 1e-10;
+/// Of all: what m2 - L² m0 and quadratures leave of roundoff.
+constexpr double rounding = 1e-14;
+/// A jump of the density is a kink of T'; its piece is wrong by its width squared. This is narrower than any.
+constexpr int most_halvings = 45;
+/// A distribution that is nothing but kinks ends here, less precise.
+constexpr std::size_t most_pieces = 1 << 17;
+
+/// Value and derivative of Σ terms[k] s^k.
+struct Polynomial {
+  double value, slope;
+
+  Polynomial(const std::array<double, 6>& c, double s) : value(c[5]), slope(0) {
+    for (int k = 4; k >= 0; --k) {
+      slope = slope * s + value;
+      value = value * s + c[static_cast<std::size_t>(k)];
+    }
+  }
+};
+
+/// s in [-1, 1] where the falling polynomial is `target`: Newton's method from `s`, halving where it leaves
+/// the bracket. `slope` receives the last derivative.
+double root(const std::array<double, 6>& terms, double target, double s, double& slope) {
+  double low = -1, high = 1;
+  for (int step = 0; step < 60; ++step) {
+    s = s > low && s < high ? s : 0.5 * (low + high);
+    const Polynomial p(terms, s);
+    slope = p.slope;
+    const double excess = p.value - target;
+    (excess > 0 ? low : high) = s;
+    const double better = s - excess / p.slope;
+    if (std::abs(better - s) < 1e-6) return std::clamp(better, -1.0, 1.0);  // the next would be below 1e-12
+    s = better;
+  }
+  return s;
+}
+
+}  // namespace
+
+ChordTable::Knot ChordTable::knot(double length) const {
+  const double m0 = sizes_->moment_above(0, length), m2 = sizes_->moment_above(2, length);
+  const Knot k{length, m2 - length * length * m0, -2 * length * m0};
+  if (!std::isfinite(k.tail) || !std::isfinite(k.slope))
+    throw Error(ErrorCode::bad_argument, "the sizes spread too widely to predict their packing fraction");
+  return k;
+}
+
+ChordTable::Piece ChordTable::through(const Knot& a, const Knot& middle, const Knot& b) {
+  const double half = 0.5 * (b.length - a.length);
+  const double even = 0.5 * (a.tail + b.tail) - middle.tail;
+  const double odd = 0.5 * (b.tail - a.tail) - half * middle.slope;
+  const double even_slope = 0.5 * half * (b.slope - a.slope);
+  const double odd_slope = half * (0.5 * (a.slope + b.slope) - middle.slope);
+  return {a.length,
+          b.length,
+          a.tail,
+          b.tail,
+          0,
+          {middle.tail, half * middle.slope, 2 * even - 0.5 * even_slope, 0.5 * (5 * odd - odd_slope),
+           0.5 * even_slope - even, 0.5 * (odd_slope - 3 * odd)}};
+}
+
+bool ChordTable::is_right(const Piece& piece, double s, const Knot& truth) const {
+  const double error = std::abs(Polynomial(piece.terms, s).value - truth.tail);
+  return error <= agreement * std::min(truth.tail, all_ - truth.tail) + rounding * all_;
+}
+
+void ChordTable::add(const Knot& a, const Knot& middle, const Knot& b, int halvings) {
+  const Piece whole = through(a, middle, b);
+  const Knot left = knot(0.5 * (a.length + middle.length));
+  const Knot right = knot(0.5 * (middle.length + b.length));
+  if ((is_right(whole, -0.5, left) && is_right(whole, 0.5, right)) || halvings >= most_halvings ||
+      pieces_.size() >= most_pieces) {
+    pieces_.push_back(through(a, left, middle));
+    pieces_.push_back(through(middle, right, b));
+    return;
+  }
+  add(a, left, middle, halvings + 1);
+  add(middle, right, b, halvings + 1);
+}
+
+ChordTable::ChordTable(const SizeDistribution& sizes, int most) : sizes_(&sizes), all_(sizes.moment(2)) {
+  if (!std::isnormal(all_))
+    throw Error(ErrorCode::bad_argument, "the sizes spread too widely to predict their packing fraction");
+  const double shortest = 0.5 / most * all_;
+  // A chord is no longer than its sphere, so F(L) <= L² / T(0): no rod is shorter than this.
+  double from = std::sqrt(shortest);
+  if (sizes.min() > from) {
+    from = sizes.min();
+    pieces_.push_back({0, from, all_, all_ - from * from, 1, {}});
+  }
+  const std::vector<double> atoms = sizes.atoms();
+  auto atom = std::upper_bound(atoms.begin(), atoms.end(), from);
+  // T is smooth between classes; on an octave a power of L is nearly a polynomial.
+  for (Knot a = knot(from); a.length < sizes.max() && a.tail > shortest;) {
+    double to = std::min(2 * a.length, sizes.max());
+    if (atom != atoms.end() && *atom <= to) to = *atom++;
+    const Knot b = knot(std::nextafter(to, 0.0));  // before a class ends at `to`
+    const double m0 = -0.5 * a.slope / a.length;
+    if (m0 == -0.5 * b.slope / b.length)
+      pieces_.push_back({a.length, to, a.tail, b.tail, m0, {}});
+    else
+      add(a, knot(0.5 * (a.length + b.length)), b, 0);
+    a = knot(to);
+  }
+}
+
+std::vector<double> ChordTable::rod_lengths(int count) const {
+  std::vector<double> lengths(static_cast<std::size_t>(count));
+  auto piece = pieces_.end() - 1;
+  const double step = all_ / count;
+  double s = 1, longest = piece->b;
+  double slope = -2 * step;
+  for (int i = 0; i < count; ++i) {
+    const double target = (i + 0.5) * step;
+    while (piece->tail_a < target && piece != pieces_.begin()) {
+      --piece;
+      s = 1;
+    }
+    double length;
+    if (piece->m0 > 0) {
+      const double square = piece->b * piece->b - (target - piece->tail_b) / piece->m0;
+      length = std::clamp(std::sqrt(std::max(square, 0.0)), piece->a, piece->b);
+    } else {
+      s = root(piece->terms, target, s + step / slope, slope);
+      length = 0.5 * (piece->a + piece->b) + s * (0.5 * (piece->b - piece->a));
+    }
+    longest = lengths[static_cast<std::size_t>(i)] = std::min(length, longest);
+  }
+  return lengths;
+}
+
+}  // namespace bernal::predict
