@@ -18,7 +18,7 @@ constexpr double wall_deficit = 0.33;
 /// of 100 to 30,000 spheres, all of which met this within 0.016.
 constexpr double share_relaxed = 0.975, wall_deficit_relaxed = 0.115;
 /// And where only a part of the container is wide enough for the larger spheres.
-constexpr double share_in_thin_parts = 0.82;
+constexpr double share_in_thin_parts = 0.80;
 /// Classes of equal volume that the sizes are looked at in, and the quantiles that these are made from.
 constexpr std::size_t classes = 5, quantiles = 500;
 constexpr std::size_t points = 5000;

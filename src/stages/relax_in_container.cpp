@@ -13,8 +13,8 @@ namespace {
 
 /// The share of the spheres that is put elsewhere at a time.
 constexpr double relocated = 0.002;
-/// What is taken out, in root mean squared overlap ratios times spheres.
-constexpr double taken_out = 1.5;
+/// What is taken out, in strains times spheres.
+constexpr double taken_out = 0.7;
 /// The factor from one time to the next, and that of the patience.
 constexpr double taken_out_faster = 1.25, less_patience = 0.7;
 /// Stirring helps as long as the strain falls below this share of the least so far.
