@@ -108,7 +108,7 @@ Entry relax_in_container_entry() {
                    {.name = "sweeps",
                     .type = Type::integer,
                     .help = "of all spheres, after which it stops",
-                    .otherwise = 20000,
+                    .otherwise = 40000,
                     .range = {1, 1e9}},
                    {.name = "seconds",
                     .type = Type::number,

@@ -5,7 +5,7 @@ namespace bernal {
 
 struct RelaxInContainerOptions {
   double patience = 12;   ///< how often spheres that are stuck are stirred before some are taken out
-  double sweeps = 20000;  ///< at most
+  double sweeps = 40000;  ///< at most
   double seconds = 0;     ///< at most; 0: as long as it takes
 };
 
