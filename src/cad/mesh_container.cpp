@@ -76,4 +76,9 @@ std::unique_ptr<Container> make_mesh_container(const Mesh& mesh, WallArithmetic 
   return std::make_unique<MeshContainer>(mesh, arithmetic, resolution);
 }
 
+std::unique_ptr<Container> make_container(const Shape& shape, WallArithmetic arithmetic, double resolution) {
+  if (const auto* mesh = std::get_if<Mesh>(&shape)) return make_mesh_container(*mesh, arithmetic, resolution);
+  return make_analytic_container(shape, arithmetic, resolution);
+}
+
 }  // namespace bernal

@@ -14,10 +14,7 @@ Spheres<3> localised(const Spheres<dynamic>& spheres, const Frame& frame) {
 }
 
 std::unique_ptr<Container> localised(const Shape& scene_shape, const Frame& frame) {
-  const Shape shape = to_local(scene_shape, frame);
-  const Mesh* mesh = std::get_if<Mesh>(&shape);
-  return mesh ? make_mesh_container(*mesh, WallArithmetic::plain, frame.resolution)
-              : make_analytic_container(shape, WallArithmetic::plain, frame.resolution);
+  return make_container(to_local(scene_shape, frame), WallArithmetic::plain, frame.resolution);
 }
 
 }  // namespace bernal

@@ -67,11 +67,8 @@ std::vector<double> radii_by_volume(const SizeDistribution& radii) {
 /// ones have no more room than what they can cover, which in thin parts is less than their share.
 double reached_by_relaxation(const Shape& shape, const SizeDistribution& radii) {
   const Frame frame = frame_of(shape);
-  const Shape local = to_local(shape, frame);
-  const auto* mesh = std::get_if<Mesh>(&local);
   const std::unique_ptr<Container> container =
-      mesh ? make_mesh_container(*mesh, WallArithmetic::plain, frame.resolution)
-           : make_analytic_container(local, WallArithmetic::plain, frame.resolution);
+      make_container(to_local(shape, frame), WallArithmetic::plain, frame.resolution);
   const std::vector<double> by_volume = radii_by_volume(radii);
   const double n = static_cast<double>(by_volume.size());
   double mean = 0, tightest = 2;

@@ -20,11 +20,6 @@ WallArithmetic arithmetic_of(const Scene& scene) {
   return scene.walls == "exact" ? WallArithmetic::exact : WallArithmetic::filtered;
 }
 
-std::unique_ptr<Container> make_container(const Shape& local, WallArithmetic arithmetic, double resolution) {
-  if (const auto* mesh = std::get_if<Mesh>(&local)) return make_mesh_container(*mesh, arithmetic, resolution);
-  return make_analytic_container(local, arithmetic, resolution);
-}
-
 /// The frame in which the packer works. Throws where coordinates are so large that neighbouring spheres could
 /// not be told apart.
 Frame working_frame(const Plan& plan) {

@@ -13,4 +13,7 @@ namespace bernal {
 std::unique_ptr<Container> make_mesh_container(const Mesh& mesh, WallArithmetic arithmetic,
                                                double resolution);
 
+/// The container of any shape: analytic where there is one, else that of the mesh. Throws as these do.
+std::unique_ptr<Container> make_container(const Shape& shape, WallArithmetic arithmetic, double resolution);
+
 }  // namespace bernal
