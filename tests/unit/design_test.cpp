@@ -202,5 +202,64 @@ TEST(Maximise, RefusesWhatIsNoQuestion) {
   EXPECT_THROW(maximise_packing_fraction(wrong, 2), Error);
 }
 
+std::unique_ptr<SizeDistribution> lognormal(double sigma) {
+  return make_lognormal(1, sigma, Basis::volume, 0, infinity);
+}
+
+TEST(Match, FindsTheWidthOfLognormalSizes) {
+  // Farr 2013, table 1, read backwards; the slope there is above 0.1, the digits 1e-7.
+  EXPECT_NEAR(match_packing_fraction(lognormal, 1e-3, 3, 0.7072591).parameter, 0.5, 2e-6);
+  EXPECT_NEAR(match_packing_fraction(lognormal, 1e-3, 3, 0.8013511).parameter, 1.0, 2e-6);
+  for (const double target : {0.6435, 0.65, 0.7, 0.75, 0.9}) {
+    const Match match = match_packing_fraction(lognormal, 1e-3, 3, target, 4000);
+    ASSERT_TRUE(match.found) << target;
+    EXPECT_NEAR(match.prediction.phi, target, 1e-7);
+    EXPECT_NEAR(predict_packing_fraction(*lognormal(match.parameter), 4000).phi, target, 1e-7);
+  }
+}
+
+TEST(Match, TakesTheFirstOfTwo) {
+  // Two sizes of one ratio pack equally well with fewer small ones than at best and with more.
+  const FamilyOf small_share = [](double w) { return make_classes({1, 5}, {w, 1 - w}, Basis::volume); };
+  const Match fewer = match_packing_fraction(small_share, 0.01, 0.99, 0.75, 4000);
+  const Match more = match_packing_fraction(small_share, 0.99, 0.01, 0.75, 4000);
+  ASSERT_TRUE(fewer.found && more.found);
+  EXPECT_LT(fewer.parameter, 0.2083);
+  EXPECT_GT(more.parameter, 0.2083);
+  EXPECT_NEAR(fewer.prediction.phi, more.prediction.phi, 2e-7);
+}
+
+TEST(Match, FindsWhatOnlyTheTopOfAHumpReaches) {
+  const FamilyOf small_share = [](double w) { return make_classes({1, 5}, {w, 1 - w}, Basis::volume); };
+  // The maximum is 0.7877872; steps of 0.03 beside it reach 0.786.
+  const Match match = match_packing_fraction(small_share, 0.01, 0.99, 0.7877, 4000);
+  ASSERT_TRUE(match.found);
+  EXPECT_NEAR(match.parameter, 0.2083, 5e-3);
+  const Match beyond = match_packing_fraction(small_share, 0.01, 0.99, 0.7879, 4000);
+  EXPECT_FALSE(beyond.found);
+  EXPECT_NEAR(beyond.most, 0.7877872, 1e-6);
+  EXPECT_NEAR(beyond.at_most, 0.2083, 1e-3);
+}
+
+TEST(Match, SaysWhatTheFamilyReaches) {
+  const Match loose = match_packing_fraction(lognormal, 1e-3, 1, 0.6, 4000);
+  EXPECT_FALSE(loose.found);
+  EXPECT_NEAR(loose.least, 0.6434855, 1e-5);
+  EXPECT_NEAR(loose.most, predict_packing_fraction(*lognormal(1), 4000).phi, 1e-9);
+  EXPECT_EQ(loose.at_most, 1);
+  // A family that jumps over the target has no member there.
+  const FamilyOf jump = [](double x) { return x < 0.5 ? make_constant(1) : lognormal(0.5); };
+  EXPECT_FALSE(match_packing_fraction(jump, 0, 1, 0.68, 1000).found);
+}
+
+TEST(Match, RefusesWhatIsNoPackingFraction) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double target : {0.0, 1.0, -0.5, 1.5, nan, infinity})
+    EXPECT_THROW(match_packing_fraction(lognormal, 0.1, 1, target), Error) << target;
+  EXPECT_THROW(match_packing_fraction(lognormal, 1, 1, 0.7), Error);
+  EXPECT_THROW(match_packing_fraction(lognormal, 0.1, infinity, 0.7), Error);
+  EXPECT_THROW(match_packing_fraction(lognormal, 0.1, 1, 0.7, 1), Error);
+}
+
 }  // namespace
 }  // namespace bernal
