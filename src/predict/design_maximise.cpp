@@ -1,13 +1,12 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <ranges>
 #include <string>
 
 #include "bernal/core/error.hpp"
 #include "bernal/predict/design.hpp"
+#include "predict/compositions.hpp"
 #include "predict/search.hpp"
 
 namespace bernal {
@@ -15,53 +14,9 @@ namespace {
 
 /// Starts that end this near to the best found the same packing fraction.
 constexpr double same = 1e-5;
-/// Of the rods' number; what is beyond it does not count as density.
-constexpr double tolerated_error = 1e-4;
 constexpr int starts_each_population = 4;
 constexpr int to_refine = 3;
 constexpr int most_evaluations = 2000;
-
-/// x_k = u_k (1 - x_1 - … - x_(k-1)), the last is what remains; `backward` begins at the other end.
-std::vector<double> shares_at(std::span<const double> u, bool backward = false) {
-  std::vector<double> shares;
-  double rest = 1;
-  for (const double part : u) {
-    shares.push_back(part * rest);
-    rest -= shares.back();
-  }
-  shares.push_back(std::max(rest, 0.0));
-  if (backward) std::ranges::reverse(shares);
-  return shares;
-}
-
-/// The place in the cube that shares of any scale have.
-std::vector<double> place_of(std::vector<double> shares, bool backward) {
-  if (backward) std::ranges::reverse(shares);
-  double rest = std::accumulate(shares.begin(), shares.end(), 0.0);
-  shares.pop_back();
-  for (double& share : shares) {
-    const double part = rest > 0 ? std::clamp(share / rest, 0.0, 1.0) : 0.0;
-    rest -= share;
-    share = part;
-  }
-  return shares;
-}
-
-/// Where the k-th search begins: the 0th at equal shares, the others spread evenly over the simplex. The
-/// points k / phi_d^j mod 1, where phi_d^(d+1) = phi_d + 1, fill a cube (Roberts 2018); u = 1 - v^(1/m) with
-/// m further shares makes them even on the simplex.
-std::vector<double> start(int k, int populations) {
-  const int variables = populations - 1;
-  double root = 2;
-  for (int i = 0; i < 64; ++i) root = std::pow(1 + root, 1.0 / (variables + 1));
-  std::vector<double> u;
-  for (int j = 1; j <= variables; ++j) {
-    const double further = populations - j;
-    const double along = 0.5 + k * std::pow(root, -j);
-    u.push_back(k == 0 ? 1 / (further + 1) : 1 - std::pow(along - std::floor(along), 1 / further));
-  }
-  return shares_at(u);
-}
 
 struct Composition {
   std::vector<double> shares;
@@ -77,17 +32,18 @@ class Search {
     std::vector<std::vector<double>> starts;
     if (options_.from.empty()) {
       for (int k = 0; k <= starts_each_population * populations_; ++k)
-        starts.push_back(start(k, populations_));
+        starts.push_back(predict::even_composition(k, populations_));
     } else {
-      starts.push_back(shares_at(place_of(options_.from, false)));
+      starts.push_back(predict::shares_at(predict::place_of(options_.from)));
     }
-    all_ = static_cast<int>(starts.size());
 
     std::vector<Composition> ends;
+    const int rods = predict::few_rods(options_.rods);
     for (const std::vector<double>& from : starts) {
-      ends.push_back(settled({from, value(from, few_rods())}, 0.2, 1e-6, few_rods()));
-      ++done_;
-      if (stopped()) break;
+      inquiry_.fraction = static_cast<double>(ends.size()) / static_cast<double>(starts.size() + 1);
+      inquiry_.activity = "start " + std::to_string(ends.size() + 1) + " of " + std::to_string(starts.size());
+      ends.push_back(settled({from, value(from, rods)}, 0.2, 1e-6, rods));
+      if (inquiry_.stopped()) break;
     }
     std::ranges::stable_sort(ends, std::greater(), &Composition::value);
     Optimum optimum;
@@ -97,74 +53,63 @@ class Search {
     optimum.spread = ends.front().value - ends.back().value;
     optimum.shares = refined(ends);
     optimum.prediction = predict_packing_fraction(*mixture_(optimum.shares), options_.rods);
-    optimum.evaluations = evaluations_ + 1;
-    optimum.cancelled = stopped_;
+    optimum.evaluations = inquiry_.evaluations + 1;
+    optimum.cancelled = inquiry_.stopped();
     return optimum;
   }
 
  private:
-  int few_rods() const { return std::min(options_.rods, std::max(1000, options_.rods / 4)); }
-
   /// The best with all rods: of the best few, for which is best can depend on their number.
   std::vector<double> refined(const std::vector<Composition>& ends) {
+    inquiry_.activity = "refining";
     Composition best{ends.front().shares, -1};
     for (const Composition& end : ends | std::views::take(to_refine)) {
-      if (end.value < ends.front().value - 1e-3 || stopped()) continue;
+      if (end.value < ends.front().value - 1e-3 || inquiry_.stopped()) continue;
       const Composition fine =
           settled({end.shares, value(end.shares, options_.rods)}, 0.01, 1e-7, options_.rods);
       if (fine.value > best.value) best = fine;
     }
+    leave_out_idle(best);
     return best.shares;
   }
 
-  bool stopped() {
-    stopped_ = stopped_ || options_.monitor.stop();
-    return stopped_;
+  /// A population that next to nothing is left of, and that nothing is lost without, is not there.
+  void leave_out_idle(Composition& best) {
+    for (std::size_t k = 0; k < best.shares.size(); ++k) {
+      if (best.shares[k] == 0 || best.shares[k] > 1e-3) continue;
+      Composition without = best;
+      without.shares[k] = 0;
+      for (double& share : without.shares) share /= 1 - best.shares[k];
+      without.value = value(without.shares, options_.rods);
+      if (without.value >= best.value - 1e-7) best = without;
+    }
   }
 
   /// Climbs until neither of two climbs, one along either cut of the simplex, gains: at a kink or a face one
   /// simplex of Nelder and Mead can shrink where another does not.
   Composition settled(Composition best, double step, double tolerance, int rods) {
     int idle = 0;
-    for (bool backward = false; idle < 2 && !stopped(); backward = !backward) {
+    for (bool backward = false; idle < 2 && !inquiry_.stopped(); backward = !backward) {
       const predict::Objective phi = [&](std::span<const double> u) {
-        return value(shares_at(u, backward), rods);
+        return value(predict::shares_at(u, backward), rods);
       };
       const predict::Place end =
-          predict::climb(phi, place_of(best.shares, backward), {step, 0.1 * tolerance, most_evaluations},
-                         [this] { return stopped(); });
+          predict::climb(phi, predict::place_of(best.shares, backward),
+                         {step, 0.1 * tolerance, most_evaluations}, [this] { return inquiry_.stopped(); });
       const double gain = end.value - best.value;
-      if (gain > 0) best = {shares_at(end.x, backward), end.value};
+      if (gain > 0) best = {predict::shares_at(end.x, backward), end.value};
       idle = gain > tolerance ? 0 : idle + 1;
       step = std::max(0.25 * step, 0.01);
     }
     return best;
   }
 
-  double value(const std::vector<double>& shares, int rods) {
-    report();
-    ++evaluations_;
-    const Prediction p = predict_packing_fraction(*mixture_(shares), rods);
-    best_ = std::max(best_, p.phi);
-    return p.phi - std::max(0.0, p.error - tolerated_error);
-  }
-
-  void report() {
-    const auto now = std::chrono::steady_clock::now();
-    if (!options_.monitor.on_progress || now - reported_ < std::chrono::milliseconds(50)) return;
-    reported_ = now;
-    const std::string detail = "start " + std::to_string(std::min(done_ + 1, all_)) + " of " +
-                               std::to_string(all_) + ", densest " + std::to_string(best_);
-    options_.monitor.report({"search", static_cast<double>(done_) / (all_ + 1), detail});
-  }
+  double value(const std::vector<double>& shares, int rods) { return inquiry_.phi(*mixture_(shares), rods); }
 
   const MixtureOf& mixture_;
   int populations_;
   const SearchOptions& options_;
-  int all_ = 0, done_ = 0, evaluations_ = 0;
-  double best_ = 0;
-  bool stopped_ = false;
-  std::chrono::steady_clock::time_point reported_{};
+  predict::Inquiry inquiry_{options_.monitor};
 };
 
 void require(bool holds, const std::string& message) {
@@ -199,7 +144,7 @@ Optimum maximise_packing_fraction(std::span<const double> radii, const SearchOpt
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return radii[i]; });
   std::vector<double> sizes;
   for (const std::size_t i : order) sizes.push_back(radii[i] / radii[order.front()]);
-  require(sizes.back() > 1e-60, "the sizes are too far apart");
+  predict::require_few_enough(1 / sizes.back(), options.rods);
 
   const MixtureOf mixture = [&](std::span<const double> shares) {
     std::vector<double> of, amounts;

@@ -53,11 +53,11 @@ TEST(Maximise, TwoSizesAgreeWithEveryCompositionTried) {
     const Optimum found = densest({1, ratio});
     expect_whole(found, {1, ratio}, 4000);
     double best = 0;
-    for (int k = 1; k < 5000; ++k)
-      best = std::max(best, phi_of({1, ratio}, {k / 5000.0, 1 - k / 5000.0}, 4000));
+    for (int k = 1; k < 2000; ++k)
+      best = std::max(best, phi_of({1, ratio}, {k / 2000.0, 1 - k / 2000.0}, 4000));
     EXPECT_GT(found.prediction.phi, best - 1e-7);
-    // |dphi/dw| is below 3 beside the maximum, where the curve is steepest: half a step is below 3e-4.
-    EXPECT_LT(found.prediction.phi, best + 3e-4);
+    // |dphi/dw| is below 3 beside the maximum, where the curve is steepest: half a step is below 8e-4.
+    EXPECT_LT(found.prediction.phi, best + 8e-4);
   }
 }
 
@@ -102,7 +102,8 @@ TEST(Maximise, InfiniteRatioStaysAtTheLimitOfTheModel) {
   const Optimum far = densest({1, 100}, 16000);
   EXPECT_NEAR(far.prediction.phi, 0.857, 0.001);
   EXPECT_NEAR(far.shares[0], 0.2628, 0.01);
-  for (const double ratio : {1e3, 1e4}) EXPECT_LT(densest({1, ratio}, 4000).prediction.phi, 0.8605) << ratio;
+  EXPECT_LT(densest({1, 1000}, 16000).prediction.phi, 0.8605);
+  EXPECT_THROW(densest({1, 1001}, 16000), Error);
 }
 
 TEST(Maximise, ScaleAndOrderDoNotMatter) {

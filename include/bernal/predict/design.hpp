@@ -49,12 +49,13 @@ using MixtureOf = std::function<std::unique_ptr<SizeDistribution>(std::span<cons
 /// model does not say. A maximum so found is no proof of the global one: `agreeing` and `spread` say how much
 /// speaks for it.
 ///
-/// Precondition: radii positive and finite, 2 to 6 of them, equal ones allowed (only the sum of their shares
-/// is then determined), else Error{bad_argument}. Order and scale of the radii do not matter. Deterministic;
-/// may be called from several threads at once. Cost: with 4,000 rods 30 ms for two sizes, 0.1 s for three, 2
-/// s for six, and three times that with 16,000; with 2,000 rods and `from` given, 20 ms for three. Source:
-/// Farr, Powder Technology 245, 28 (2013), section V. Nelder & Mead, Computer J. 7, 308 (1965), in S. G.
-/// Johnson's NLopt. The starts: M. Roberts, The unreasonable effectiveness of quasirandom sequences (2018).
+/// Precondition: radii positive and finite, no farther apart than widest_ratio(rods), 2 to 6 of them, equal
+/// ones allowed (only the sum of their shares is then determined), else Error{bad_argument}. Order and scale
+/// of the radii do not matter. Deterministic; may be called from several threads at once. Cost: with 4,000
+/// rods 30 ms for two sizes, 0.1 s for three, 2 s for six, and three times that with 16,000; with 2,000 rods
+/// and `from` given, 20 ms for three. Source: Farr, Powder Technology 245, 28 (2013), section V. Nelder &
+/// Mead, Computer J. 7, 308 (1965), in S. G. Johnson's NLopt. The starts: M. Roberts, The unreasonable
+/// effectiveness of quasirandom sequences (2018).
 Optimum maximise_packing_fraction(std::span<const double> radii, const SearchOptions& options = {});
 
 /// The same for populations of any kind. `mixture` is called once for each composition; what it throws passes
@@ -84,5 +85,47 @@ struct Match {
 /// }, 1e-3, 3, 0.7) has sigma 0.4626. Source: Alefeld, Potra & Shi, ACM Trans. Math. Softw. 21, 327 (1995),
 /// in Boost.Math.
 Match match_packing_fraction(const FamilyOf& family, double from, double to, double target, int rods = 16000);
+
+/// A few sizes between a smallest and a largest one, both among them, that pack densest.
+struct DensestSizes {
+  std::vector<double> radii;  ///< ascending
+  Optimum optimum;            ///< its shares are those of `radii`
+};
+
+/// The `count` sizes between two radii, and their shares of the volume, that pack densest by the rod model:
+/// the positions in between, on a logarithmic axis, are searched for together with the composition, from
+/// even ones and 8 more starts. Precondition: 0 < min < max <= rods / 16 min, count from 2 to 6, else
+/// Error{bad_argument}. Deterministic. Cost: 0.1 s for three sizes, 2 s for six.
+DensestSizes densest_sizes(double min, double max, int count, const SearchOptions& options = {});
+
+/// A density between two limits, by volume.
+struct DensestDensity {
+  std::vector<double> radii;  ///< limits of the bins, evenly spaced on a logarithmic axis; one more than bins
+  Optimum optimum;            ///< its shares are those of the bins
+  /// With 2 bins, 4, 8, … and as many as asked for; all for the same `rods`.
+  struct Level {
+    int bins;
+    double phi;
+  };
+  std::vector<Level> levels;
+  /// For comparison: the densest power law, the share (r^q - min^q) / (max^q - min^q) below r, and its q.
+  double power_law_phi = 0, power_law_exponent = 0;
+};
+
+/// The density between two radii that packs densest by the rod model among those that are constant in each
+/// bin on a logarithmic axis: make_sieve(radii, sums of the shares). Shares are moved from bin to bin in ever
+/// smaller amounts; each number of bins begins at the one before, at the best power law and at the densest
+/// few sizes. In the search 128 classes stand for the bins; what is returned is exact.
+///
+/// There is no densest density: with more bins the best one becomes denser and gathers into narrow peaks,
+/// whose limit is `densest_sizes`. `levels` shows how far that has gone.
+///
+/// Precondition: 0 < min < max <= rods / 16 min, bins 2, 4, 8, 16, 32 or 64, else Error{bad_argument}.
+/// Deterministic. Cost: 2 s for 16 bins.
+DensestDensity densest_density(double min, double max, int bins, const SearchOptions& options = {});
+
+/// The largest over the smallest radius that so many rods can stand for; precondition of what is above and of
+/// maximise_packing_fraction of radii.
+constexpr double widest_ratio(int rods) { return rods / 16.0; }
 
 }  // namespace bernal
