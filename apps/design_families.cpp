@@ -14,7 +14,7 @@ using namespace bernal;
 
 namespace {
 
-constexpr double widest_ratio = 1e4;  ///< of diameters: more rods than anyone waits for, beyond
+constexpr double most_ratio = 1e4;  ///< of diameters: more rods than anyone waits for, beyond
 /// Where no limit says how far apart two sizes may be.
 constexpr double usual_ratio = 100;
 /// ln of the least ratio tried; below it nothing differs from equal spheres.
@@ -118,11 +118,11 @@ SizeFamily two_sizes(const SizeLimits& limits, int rods) {
 SizeLimits limits_of(std::optional<double> min, std::optional<double> max, std::optional<double> ratio) {
   checked(min, "--min");
   checked(max, "--max");
-  if (ratio && !(*ratio > 1 && *ratio <= widest_ratio))
+  if (ratio && !(*ratio > 1 && *ratio <= most_ratio))
     refuse(
         fmt::format("--max-ratio, the largest over the smallest diameter, must lie above 1 and not above "
                     "{:g}, not at {}",
-                    widest_ratio, *ratio));
+                    most_ratio, *ratio));
   if (min && max && ratio) refuse("give two of --min, --max and --max-ratio; the third follows");
   if ((min || max) && !(min && max) && !ratio)
     refuse(fmt::format("{} alone limits nothing; give the other limit or --max-ratio too",
@@ -137,8 +137,8 @@ SizeLimits limits_of(std::optional<double> min, std::optional<double> max, std::
   if (!limits.min) return limits;
   if (!(*limits.min < *limits.max))
     refuse(fmt::format("--min {} is not below --max {}", *limits.min, *limits.max));
-  if (!(*limits.max / *limits.min <= widest_ratio * (1 + 1e-9)))
-    refuse(fmt::format("the limits are farther apart than 1 : {:g}", widest_ratio));
+  if (!(*limits.max / *limits.min <= most_ratio * (1 + 1e-9)))
+    refuse(fmt::format("the limits are farther apart than 1 : {:g}", most_ratio));
   if (!std::isnormal(*limits.min) || !std::isfinite(*limits.max))
     refuse("the limits are out of the range of numbers");
   return limits;

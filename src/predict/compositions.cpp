@@ -67,6 +67,13 @@ void require_few_enough(double ratio, int rods) {
                     std::to_string(static_cast<int>(widest_ratio(rods))) + "; more rods reach farther");
 }
 
+void require_limits(double min, double max, int rods) {
+  if (!(min > 0 && min < max && std::isfinite(max)))
+    throw Error(ErrorCode::bad_argument,
+                "sizes are searched for from a positive smallest to a larger, finite largest one");
+  require_few_enough(max / min, rods);
+}
+
 int few_rods(int rods) { return std::min(rods, std::max(1000, rods / 4)); }
 
 double Inquiry::phi(const SizeDistribution& sizes, int rods) {

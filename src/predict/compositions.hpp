@@ -24,6 +24,9 @@ std::vector<double> even_composition(int k, int populations);
 /// Throws Error{bad_argument} where sizes of this ratio, >= 1, are farther apart than rods can stand for.
 void require_few_enough(double ratio, int rods);
 
+/// Throws Error{bad_argument} unless 0 < min < max and so many rods can stand for both.
+void require_limits(double min, double max, int rods);
+
 /// The rods that most of a search for an answer with `rods` has.
 int few_rods(int rods);
 

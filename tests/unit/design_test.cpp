@@ -262,5 +262,67 @@ TEST(Match, RefusesWhatIsNoPackingFraction) {
   EXPECT_THROW(match_packing_fraction(lognormal, 0.1, 1, 0.7, 1), Error);
 }
 
+TEST(DensestSizes, TwoAreTheEndsAndMoreGainLessAndLess) {
+  const double two = densest({1, 10}).prediction.phi;
+  double last = 0;
+  for (int count = 2; count <= 4; ++count) {
+    const DensestSizes found = densest_sizes(1, 10, count, with_rods(4000));
+    ASSERT_EQ(found.radii.size(), static_cast<std::size_t>(count));
+    EXPECT_EQ(found.radii.front(), 1);
+    EXPECT_EQ(found.radii.back(), 10);
+    EXPECT_TRUE(std::ranges::is_sorted(found.radii));
+    expect_whole(found.optimum, found.radii, 4000);
+    if (count == 2) {
+      EXPECT_NEAR(found.optimum.prediction.phi, two, 1e-5);
+    }
+    EXPECT_GT(found.optimum.prediction.phi, last - 1e-5);
+    last = found.optimum.prediction.phi;
+  }
+  // Every position of a third size on a grid, each at its best composition.
+  double best = 0;
+  for (int k = 1; k < 20; ++k)
+    best = std::max(best, densest({1, std::pow(10, k / 20.0), 10}, 1000).prediction.phi);
+  EXPECT_GT(densest_sizes(1, 10, 3, with_rods(1000)).optimum.prediction.phi, best - 1e-5);
+}
+
+TEST(DensestDensity, GathersIntoPeaksAsBinsNarrow) {
+  const DensestDensity found = densest_density(2, 6, 8, with_rods(4000));
+  ASSERT_EQ(found.levels.size(), 3u);
+  ASSERT_EQ(found.radii.size(), 9u);
+  EXPECT_NEAR(found.radii.front(), 2, 1e-12);
+  EXPECT_NEAR(found.radii.back(), 6, 1e-12);
+  EXPECT_LT(found.levels[0].phi, found.levels[1].phi);
+  EXPECT_LT(found.levels[1].phi, found.levels[2].phi);
+  std::vector<double> passing = {0};
+  for (const double share : found.optimum.shares) passing.push_back(passing.back() + share);
+  EXPECT_NEAR(passing.back(), 1, 1e-9);
+  EXPECT_NEAR(predict_packing_fraction(*make_sieve(found.radii, passing), 4000).phi,
+              found.optimum.prediction.phi, 1e-12);
+  // At ratio 3: the outermost bins only, and less dense than the two sizes that they surround.
+  for (std::size_t k = 1; k < 7; ++k) EXPECT_LT(found.optimum.shares[k], 1e-3);
+  EXPECT_LT(found.optimum.prediction.phi, densest({1, 3}).prediction.phi);
+  EXPECT_GT(found.optimum.prediction.phi, found.power_law_phi + 0.03);
+}
+
+TEST(DensestDensity, TwoBinsAgreeWithEveryDensityTried) {
+  const DensestDensity found = densest_density(1, 4, 2, with_rods(1000));
+  double best = 0;
+  for (int k = 0; k <= 100; ++k)
+    best = std::max(best, predict_packing_fraction(*make_sieve({1, 2, 4}, {0, k / 100.0, 1}), 1000).phi);
+  // The search has 128 classes in place of the bins.
+  EXPECT_NEAR(found.optimum.prediction.phi, best, 1e-4);
+  EXPECT_GT(found.optimum.prediction.phi, found.power_law_phi - 1e-4);
+}
+
+TEST(DensestDensity, RefusesWhatIsNoQuestion) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [min, max] : {std::pair(0.0, 1.0), {1, 1}, {2, 1}, {nan, 1}, {1, infinity}, {1, 300}}) {
+    EXPECT_THROW(densest_density(min, max, 2, with_rods(4000)), Error) << min << ' ' << max;
+    EXPECT_THROW(densest_sizes(min, max, 2, with_rods(4000)), Error) << min << ' ' << max;
+  }
+  for (const int bins : {-2, 0, 1, 3, 128}) EXPECT_THROW(densest_density(1, 2, bins), Error) << bins;
+  for (const int count : {-1, 1, 7}) EXPECT_THROW(densest_sizes(1, 2, count), Error) << count;
+}
+
 }  // namespace
 }  // namespace bernal
