@@ -67,14 +67,23 @@ Answer find(const BestCall& call) {
   watch_for_interrupts(false);
   SearchOptions options;
   options.rods = call.output.rods;
-  options.monitor = {[&](const Progress& progress) { bar.show(progress); }, interrupted};
+  options.monitor.cancelled = interrupted;
+  const auto part = [&](double from, double to) {
+    options.monitor.on_progress = [&bar, from, to](Progress progress) {
+      progress.fraction = from + (to - from) * progress.fraction;
+      bar.show(progress);
+    };
+  };
 
   const auto start = std::chrono::steady_clock::now();
   const double min = 0.5 * *limits.min, max = 0.5 * *limits.max;
   Answer answer;
+  part(0, 0.4);
   answer.density = densest_density(min, max, call.bins, options);
+  part(0.4, 0.45);
   answer.sizes = densest_sizes(min, max, 2, options);
   for (int count = 3; count <= most_sizes && !interrupted(); ++count) {
+    part(0.25 + 0.02 * count * count, 0.25 + 0.02 * (count + 1) * (count + 1));  // each takes longer
     const DensestSizes more = densest_sizes(min, max, count, options);
     if (more.optimum.prediction.phi < answer.sizes.optimum.prediction.phi + worth_a_size) break;
     answer.sizes = more;
