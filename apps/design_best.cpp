@@ -21,7 +21,7 @@ namespace {
 
 /// Of the packing fraction: a size more that gains less is not worth having; the model's error is 0.01.
 constexpr double worth_a_size = 0.002;
-constexpr int most_sizes = 5;
+constexpr std::size_t most_sizes = 5;
 
 struct BestCall {
   double min = 0, max = 0;
@@ -82,7 +82,7 @@ Answer find(const BestCall& call) {
   answer.density = densest_density(min, max, call.bins, options);
   part(0.4, 0.45);
   answer.sizes = densest_sizes(min, max, 2, options);
-  for (int count = 3; count <= most_sizes && !interrupted(); ++count) {
+  for (int count = 3; count <= static_cast<int>(most_sizes) && !interrupted(); ++count) {
     part(0.25 + 0.02 * count * count, 0.25 + 0.02 * (count + 1) * (count + 1));  // each takes longer
     const DensestSizes more = densest_sizes(min, max, count, options);
     if (more.optimum.prediction.phi < answer.sizes.optimum.prediction.phi + worth_a_size) break;
@@ -113,8 +113,10 @@ void print(const Answer& answer) {
   fmt::print("  power law       {:.4f} at best, of exponent {:.2f}\n", density.power_law_phi,
              density.power_law_exponent);
   print_certainty(density.optimum, 1e-4);
-  fmt::print("{:<18}{:.6f}; one more would gain less than {}\n",
-             fmt::format("{} sizes", answer.sizes.radii.size()), answer.sizes_prediction.phi, worth_a_size);
+  const std::size_t count = answer.sizes.radii.size();
+  fmt::print("{:<18}{:.6f}; {}\n", fmt::format("{} sizes", count), answer.sizes_prediction.phi,
+             count < most_sizes ? fmt::format("one more would gain less than {}", worth_a_size)
+                                : "more were not tried");
   print_certainty(answer.sizes.optimum, 1e-5);
   if (answer.sizes_prediction.phi > answer.density_prediction.phi)
     fmt::print(

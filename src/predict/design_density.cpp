@@ -24,7 +24,7 @@ using Shares = std::vector<double>;
 class DensitySearch {
  public:
   DensitySearch(double min, double max, const SearchOptions& options)
-      : min_(min), width_(std::log(max / min)), options_(options) {}
+      : min_(min), max_(max), width_(std::log(max / min)), options_(options) {}
 
   DensestDensity run(int most_bins) {
     DensestDensity answer;
@@ -45,7 +45,7 @@ class DensitySearch {
           densest = end;
           best = from;
         }
-        inquiry_.fraction = std::min(1.0, inquiry_.fraction + static_cast<double>(bins) / (8.0 * most_bins));
+        inquiry_.fraction = std::min(1.0, inquiry_.fraction + 0.7 * bins / (8.0 * most_bins));
       }
       answer.optimum.starts = static_cast<int>(ends.size());
       answer.optimum.agreeing =
@@ -127,12 +127,16 @@ class DensitySearch {
 
   /// Where the densest four sizes lie.
   Shares spread_peaks(int bins) {
-    inquiry_.activity = "a few sizes";
     SearchOptions options;
     options.rods =
         std::min(options_.rods, std::max(options_.rods / 4, static_cast<int>(17 * std::exp(width_))));
     options.monitor.cancelled = [this] { return inquiry_.stopped(); };
-    const DensestSizes few = densest_sizes(min_, radius(1), 4, options);
+    options.monitor.on_progress = [this](Progress progress) {
+      progress.fraction *= 0.3;
+      options_.monitor.report(progress);
+    };
+    const DensestSizes few = densest_sizes(min_, max_, 4, options);
+    inquiry_.fraction = 0.3;
     Shares shares(static_cast<std::size_t>(bins), 0.0);
     for (std::size_t k = 0; k < few.radii.size(); ++k) {
       const double along = std::log(few.radii[k] / min_) / width_;
@@ -153,16 +157,16 @@ class DensitySearch {
   double best_power_law(DensestDensity& answer) {
     inquiry_.activity = "power laws";
     const auto loose = [&](double q) {
-      return -inquiry_.phi(*make_fuller(radius(1), q, min_), predict::few_rods(options_.rods));
+      return -inquiry_.phi(*make_fuller(max_, q, min_), predict::few_rods(options_.rods));
     };
     std::uintmax_t most = 40;
     answer.power_law_exponent = boost::math::tools::brent_find_minima(loose, 0.01, 3.0, 20, most).first;
     answer.power_law_phi =
-        predict_packing_fraction(*make_fuller(radius(1), answer.power_law_exponent, min_), options_.rods).phi;
+        predict_packing_fraction(*make_fuller(max_, answer.power_law_exponent, min_), options_.rods).phi;
     return answer.power_law_exponent;
   }
 
-  double min_, width_;
+  double min_, max_, width_;
   const SearchOptions& options_;
   predict::Inquiry inquiry_{options_.monitor};
 };
