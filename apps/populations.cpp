@@ -98,6 +98,21 @@ Population parse_lognormal(const std::string& text, const std::string& where) {
   return of_means(number_of(words[0], where), number_of(words[1], where), number_of(words[2], where), where);
 }
 
+Population parse_lognormal_means(const std::string& text, const std::string& where) {
+  const std::vector<std::string_view> words = split(text, ',');
+  if (words.size() != 2) refuse(where, fmt::format("\"{}\" is not D43,D32", text.substr(0, 40)));
+  return of_means(number_of(words[0], where), number_of(words[1], where), 1, where);
+}
+
+std::vector<Population> parse_diameters(const std::string& text, const std::string& where) {
+  std::vector<Population> populations;
+  for (const std::string_view word : split(text, ',')) {
+    populations.push_back(checked({number_of(word, where), 0, 1}, where));
+    require_few(populations.size());
+  }
+  return populations;
+}
+
 std::vector<Population> parse_classes(const std::string& text, const std::string& where) {
   std::vector<Population> populations;
   for (const std::string_view item : split(text, ',')) {

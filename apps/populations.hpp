@@ -17,6 +17,10 @@ struct Population {
 
 /// "SIGMA" or "D43,D32,VOLUME".
 Population parse_lognormal(const std::string& text, const std::string& where);
+/// "D43,D32", of volume 1.
+Population parse_lognormal_means(const std::string& text, const std::string& where);
+/// "D,D,…", each of volume 1.
+std::vector<Population> parse_diameters(const std::string& text, const std::string& where);
 /// "D:V,D:V,…".
 std::vector<Population> parse_classes(const std::string& text, const std::string& where);
 /// One population a line, numbers between blanks, tabs or commas; '#' begins a comment. `format` is

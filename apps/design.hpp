@@ -1,0 +1,41 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "bernal/predict/predict.hpp"
+#include "bernal/sizes/size_distribution.hpp"
+#include "populations.hpp"
+
+// bernal design: one file for each of its commands, and what they share.
+void add_design_maximise(CLI::App& design, int& status);
+void add_design_target(CLI::App& design, int& status);
+void add_design_best(CLI::App& design, int& status);
+
+/// --rods and --json, as in bernal predict.
+struct DesignOutput {
+  int rods = 16000;
+  bool json = false;
+};
+void add_output(CLI::App& command, DesignOutput& output);
+
+/// A length or an amount in the fewest digits, at most ten, that are good to 1e-10.
+std::string number(double value);
+/// A share of the volume to a millionth.
+double rounded_share(double share);
+
+/// The inline table of populations with these shares, as [spheres] of a scene takes it after "diameter = ".
+/// Populations without share are left out, those of one diameter put together.
+std::string mixture_table(const std::vector<Population>& populations, const std::vector<double>& shares);
+
+/// The sizes that such a table stands for, read as a scene is read: what is said of them holds for what is
+/// pasted. Radii.
+std::unique_ptr<bernal::SizeDistribution> sizes_of_table(const std::string& table);
+
+/// The lines that end every answer: the error, and the table to paste.
+void print_error_and_table(const bernal::Prediction& prediction, const std::string& table);
+/// phi, error, rods, and the table alone and as a line of a scene.
+nlohmann::ordered_json table_as_json(const bernal::Prediction& prediction, const std::string& table);

@@ -1,0 +1,36 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Where the sizes may lie. Lengths are diameters in any unit.
+struct SizeLimits {
+  std::optional<double> min, max;  ///< both or none; none is without limits
+  bool from_above = false;         ///< narrower sizes keep the largest diameter, else the smallest
+};
+
+/// From what the user gave, any of it absent. Throws bernal::Error{bad_argument} in one line.
+SizeLimits limits_of(std::optional<double> min, std::optional<double> max, std::optional<double> ratio);
+
+/// A family of size distributions, ordered from narrow to wide by a number t in [from, to].
+struct SizeFamily {
+  struct Member {
+    std::string name;   ///< "sigma"
+    double value;       ///< of that
+    std::string table;  ///< as [spheres] takes it after "diameter = "
+  };
+  double from, to;
+  std::function<Member(double t)> member;
+  std::string what;  ///< "lognormal sizes", then of what limits
+  /// Once t is found: the same family with all else that a member chooses for itself held fixed, so that phi
+  /// is continuous in t; empty where there is nothing else.
+  std::function<std::function<Member(double t)>(double t)> held;
+};
+
+/// The families by name, in the order of --help.
+std::vector<std::string> family_names();
+
+/// `exponent` is that of fuller. `rods` stand for the sizes where a member is chosen by how it packs.
+SizeFamily family_of(std::string_view name, const SizeLimits& limits, double exponent, int rods);

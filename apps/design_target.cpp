@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/predict/design.hpp"
+#include "commands.hpp"
+#include "design.hpp"
+#include "design_families.hpp"
+
+using namespace bernal;
+
+namespace {
+
+struct TargetCall {
+  double phi = 0;
+  std::string family;
+  std::optional<double> min, max, ratio;
+  double exponent = 0.5;
+  DesignOutput output;
+};
+
+struct Answer {
+  Match match{};
+  SizeFamily::Member member{};
+  std::string what;
+  std::optional<double> cut_off{};  ///< of the volume, by the limits of lognormal sizes
+  bool can_be_wider = false;        ///< limits keep the family from its widest
+  double seconds = 0;
+};
+
+Match match_member(const std::function<SizeFamily::Member(double)>& member, double from, double to,
+                   const TargetCall& call) {
+  return match_packing_fraction([&](double t) { return sizes_of_table(member(t).table); }, from, to, call.phi,
+                                call.output.rods);
+}
+
+/// What of the volume of lognormal sizes lies beyond limits of this ratio about their median.
+double beyond(double ratio, double sigma) {
+  return std::erfc(0.5 * std::log(ratio) / (sigma * std::sqrt(2.0)));
+}
+
+Answer find(const TargetCall& call) {
+  if (!(call.phi > 0 && call.phi < 1))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("--phi: a packing fraction lies between 0 and 1, not at {}", call.phi));
+  if (!(call.exponent > 0 && call.exponent <= 10))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("--exponent must lie above 0 and not above 10, not at {}", call.exponent));
+  const SizeLimits limits = limits_of(call.min, call.max, call.ratio);
+  const SizeFamily family = family_of(call.family, limits, call.exponent, call.output.rods);
+
+  const auto start = std::chrono::steady_clock::now();
+  Answer answer{.what = family.what};
+  answer.match = match_member(family.member, family.from, family.to, call);
+  if (family.held && (answer.match.found || answer.match.most > call.phi)) {
+    // Near where the best share is about right, with that share: a root of what is continuous.
+    const double t = answer.match.found ? answer.match.parameter : answer.match.at_most;
+    const auto member = family.held(t);
+    const Match held =
+        match_member(member, std::max(family.from, t - 0.2), std::min(family.to, t + 0.2), call);
+    if (held.found) answer.match = held;
+    answer.member = member(answer.match.parameter);
+  } else {
+    answer.member = family.member(answer.match.parameter);
+  }
+  if (answer.match.found && call.family == "lognormal" && limits.min)
+    answer.cut_off = beyond(*limits.max / *limits.min, answer.match.parameter);
+  answer.can_be_wider = limits.min || call.family != "lognormal";
+  answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return answer;
+}
+
+void print(const Answer& answer) {
+  fmt::print("packing fraction  {:.6f}, random close packing without walls\n", answer.match.prediction.phi);
+  fmt::print("{:<18}{:.6g}; the narrowest of {}\n", answer.member.name, answer.member.value, answer.what);
+  if (answer.cut_off)
+    fmt::print("cut off           {:.2g} % of the volume would lie beyond these limits\n",
+               100 * *answer.cut_off);
+  print_error_and_table(answer.match.prediction, answer.member.table);
+}
+
+nlohmann::ordered_json as_json(const TargetCall& call, const Answer& answer) {
+  nlohmann::ordered_json json;
+  if (answer.match.found)
+    json = table_as_json(answer.match.prediction, answer.member.table);
+  else
+    json = {{"phi", nullptr}, {"diameter", nullptr}, {"reachable", {answer.match.least, answer.match.most}}};
+  json["found"] = answer.match.found;
+  json["target"] = call.phi;
+  json["family"] = call.family;
+  if (answer.match.found) json["parameter"] = {{"name", answer.member.name}, {"value", answer.member.value}};
+  if (answer.cut_off) json["cut_off"] = *answer.cut_off;
+  json["seconds"] = answer.seconds;
+  return json;
+}
+
+constexpr const char* footer =
+    R"(Families, each by volume and from narrow to wide by one number; the narrowest that will do is taken:
+  lognormal      sigma, about the middle of the limits (on a logarithmic axis), cut off at both
+  rosin_rammler  the slope n, with d63 at that middle, cut off at both limits
+  uniform        max/min
+  fuller         max/min, of the exponent given
+  two_sizes      max/min, each ratio with the composition that packs densest
+
+Limits: no sphere is smaller or larger. --max-ratio R alone is from 1 to R; with --min or --max from or
+to there; --min and --max say both. Without any, lognormal sizes are not cut off and have a median of
+1, the others have 1 : 100. Sizes that need less than the limits allow begin at the smallest, or, where
+--max is given, end at the largest.
+
+Examples:
+  bernal design target --phi 0.7 --family lognormal                   sigma = 0.4619
+  bernal design target --phi 0.7 --family lognormal --max-ratio 10
+  bernal design target --phi 0.75 --family fuller --max 16 --max-ratio 30 --json
+Exit codes: 0 done; 2 bad input; 3 no member of the family packs so, and what the family reaches.)";
+
+}  // namespace
+
+void add_design_target(CLI::App& design, int& status) {
+  auto call = std::make_shared<TargetCall>();
+  CLI::App* command =
+      design.add_subcommand("target", "The sizes of a family that pack to a given packing fraction");
+  command->add_option("--phi", call->phi, "The packing fraction asked for")->required()->type_name("P");
+  command->add_option("--family", call->family, "One of the families below")
+      ->required()
+      ->check(CLI::IsMember(family_names()))
+      ->type_name("NAME");
+  command->add_option("--max-ratio", call->ratio, "The largest over the smallest diameter, at most")
+      ->type_name("R");
+  command->add_option("--min", call->min, "No diameter is smaller")->type_name("D");
+  command->add_option("--max", call->max, "No diameter is larger")->type_name("D");
+  command->add_option("--exponent", call->exponent, "Of fuller; 0.5 if absent")->type_name("Q");
+  add_output(*command, call->output);
+  command->footer(footer);
+  command->callback([call, &status] {
+    const Answer answer = find(*call);
+    if (call->output.json)
+      fmt::print("{}\n", as_json(*call, answer).dump(2));
+    else if (answer.match.found)
+      print(answer);
+    if (!answer.match.found)
+      fmt::print(stderr, "bernal: no {} pack to {}: they reach from {:.4f} to {:.4f}{}\n", answer.what,
+                 call->phi, answer.match.least, answer.match.most,
+                 call->phi > answer.match.most && answer.can_be_wider ? "; wider limits reach farther" : "");
+    status = answer.match.found ? exit_code::done : exit_code::not_reached;
+  });
+}

@@ -1,0 +1,171 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <ranges>
+#include <string>
+
+#include "bernal/core/error.hpp"
+#include "bernal/predict/design.hpp"
+#include "predict/compositions.hpp"
+#include "predict/search.hpp"
+
+namespace bernal {
+namespace {
+
+/// Starts that end this near to the best found the same packing fraction.
+constexpr double same = 1e-5;
+constexpr int starts_each_population = 4;
+constexpr int to_refine = 3;
+constexpr int most_evaluations = 2000;
+
+struct Composition {
+  std::vector<double> shares;
+  double value;
+};
+
+class Search {
+ public:
+  Search(const MixtureOf& mixture, int populations, const SearchOptions& options)
+      : mixture_(mixture), populations_(populations), options_(options) {}
+
+  Optimum run() {
+    std::vector<std::vector<double>> starts;
+    if (options_.from.empty()) {
+      for (int k = 0; k <= starts_each_population * populations_; ++k)
+        starts.push_back(predict::even_composition(k, populations_));
+    } else {
+      starts.push_back(predict::shares_at(predict::place_of(options_.from)));
+    }
+
+    std::vector<Composition> ends;
+    const int rods = predict::few_rods(options_.rods);
+    for (const std::vector<double>& from : starts) {
+      inquiry_.fraction = static_cast<double>(ends.size()) / static_cast<double>(starts.size() + 1);
+      inquiry_.activity = "start " + std::to_string(ends.size() + 1) + " of " + std::to_string(starts.size());
+      ends.push_back(settled({from, value(from, rods)}, 0.2, 1e-6, rods));
+      if (inquiry_.stopped()) break;
+    }
+    std::ranges::stable_sort(ends, std::greater(), &Composition::value);
+    Optimum optimum;
+    optimum.starts = static_cast<int>(ends.size());
+    optimum.agreeing = static_cast<int>(std::ranges::count_if(
+        ends, [&](const Composition& end) { return end.value >= ends.front().value - same; }));
+    optimum.spread = ends.front().value - ends.back().value;
+    optimum.shares = refined(ends);
+    optimum.prediction = predict_packing_fraction(*mixture_(optimum.shares), options_.rods);
+    optimum.evaluations = inquiry_.evaluations + 1;
+    optimum.cancelled = inquiry_.stopped();
+    return optimum;
+  }
+
+ private:
+  /// The best with all rods: of the best few, for which is best can depend on their number.
+  std::vector<double> refined(const std::vector<Composition>& ends) {
+    inquiry_.activity = "refining";
+    Composition best{ends.front().shares, -1};
+    for (const Composition& end : ends | std::views::take(to_refine)) {
+      if (end.value < ends.front().value - 1e-3 || inquiry_.stopped()) continue;
+      const Composition fine =
+          settled({end.shares, value(end.shares, options_.rods)}, 0.01, 1e-7, options_.rods);
+      if (fine.value > best.value) best = fine;
+    }
+    leave_out_idle(best);
+    return best.shares;
+  }
+
+  /// A population that next to nothing is left of, and that nothing is lost without, is not there.
+  void leave_out_idle(Composition& best) {
+    for (std::size_t k = 0; k < best.shares.size(); ++k) {
+      if (best.shares[k] == 0 || best.shares[k] > 1e-3) continue;
+      Composition without = best;
+      without.shares[k] = 0;
+      for (double& share : without.shares) share /= 1 - best.shares[k];
+      without.value = value(without.shares, options_.rods);
+      if (without.value >= best.value - 1e-7) best = without;
+    }
+  }
+
+  /// Climbs until neither of two climbs, one along either cut of the simplex, gains: at a kink or a face one
+  /// simplex of Nelder and Mead can shrink where another does not.
+  Composition settled(Composition best, double step, double tolerance, int rods) {
+    int idle = 0;
+    for (bool backward = false; idle < 2 && !inquiry_.stopped(); backward = !backward) {
+      const predict::Objective phi = [&](std::span<const double> u) {
+        return value(predict::shares_at(u, backward), rods);
+      };
+      const predict::Place end =
+          predict::climb(phi, predict::place_of(best.shares, backward),
+                         {step, 0.1 * tolerance, most_evaluations}, [this] { return inquiry_.stopped(); });
+      const double gain = end.value - best.value;
+      if (gain > 0) best = {predict::shares_at(end.x, backward), end.value};
+      idle = gain > tolerance ? 0 : idle + 1;
+      step = std::max(0.25 * step, 0.01);
+    }
+    return best;
+  }
+
+  double value(const std::vector<double>& shares, int rods) { return inquiry_.phi(*mixture_(shares), rods); }
+
+  const MixtureOf& mixture_;
+  int populations_;
+  const SearchOptions& options_;
+  predict::Inquiry inquiry_{options_.monitor};
+};
+
+void require(bool holds, const std::string& message) {
+  if (!holds) throw Error(ErrorCode::bad_argument, message);
+}
+
+}  // namespace
+
+Optimum maximise_packing_fraction(const MixtureOf& mixture, int populations, const SearchOptions& options) {
+  require(populations >= 2 && populations <= most_populations_to_mix,
+          "a composition is searched for of 2 to 6 populations, not of " + std::to_string(populations));
+  require(options.rods >= 2, "a prediction needs at least 2 rods, not " + std::to_string(options.rods));
+  if (!options.from.empty()) {
+    double sum = 0;
+    for (const double share : options.from) {
+      require(share >= 0, "the shares to begin at must not be negative");
+      sum += share;
+    }
+    require(options.from.size() == static_cast<std::size_t>(populations) && sum > 0 && std::isfinite(sum),
+            "the shares to begin at must be one for each population, finite and not all zero");
+  }
+  return Search(mixture, populations, options).run();
+}
+
+Optimum maximise_packing_fraction(std::span<const double> radii, const SearchOptions& options) {
+  require(std::ranges::all_of(radii, [](double r) { return r > 0 && std::isfinite(r); }),
+          "sizes must be positive and finite");
+  require(!radii.empty(), "a composition is searched for of 2 to 6 populations, not of 0");
+  // In one order and to one scale, whatever the caller's: the largest first.
+  std::vector<std::size_t> order(radii.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return radii[i]; });
+  std::vector<double> sizes;
+  for (const std::size_t i : order) sizes.push_back(radii[i] / radii[order.front()]);
+  predict::require_few_enough(1 / sizes.back(), options.rods);
+
+  const MixtureOf mixture = [&](std::span<const double> shares) {
+    std::vector<double> of, amounts;
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+      if (!(shares[k] > 0)) continue;
+      if (!of.empty() && of.back() == sizes[k]) {
+        amounts.back() += shares[k];
+      } else {
+        of.push_back(sizes[k]);
+        amounts.push_back(shares[k]);
+      }
+    }
+    return make_classes(std::move(of), std::move(amounts), Basis::volume);
+  };
+  SearchOptions ordered = options;
+  if (ordered.from.size() == order.size())
+    for (std::size_t k = 0; k < order.size(); ++k) ordered.from[k] = options.from[order[k]];
+  const Optimum found = maximise_packing_fraction(mixture, static_cast<int>(sizes.size()), ordered);
+  Optimum optimum = found;
+  for (std::size_t k = 0; k < order.size(); ++k) optimum.shares[order[k]] = found.shares[k];
+  return optimum;
+}
+
+}  // namespace bernal

@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "bernal/core/error.hpp"
+#include "bernal/predict/design.hpp"
+#include "predict/compositions.hpp"
+#include "predict/search.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr double same = 1e-5;
+constexpr int starts = 9;
+constexpr int most_evaluations = 4000;
+constexpr int to_refine = 3;
+
+/// Places are u: count - 1 of the composition, then count - 2 positions between the ends.
+class SizesSearch {
+ public:
+  SizesSearch(double min, double max, int count, const SearchOptions& options)
+      : min_(min), max_(max), count_(static_cast<std::size_t>(count)), options_(options) {}
+
+  DensestSizes run() {
+    const int rods = predict::few_rods(options_.rods);
+    std::vector<predict::Place> ends;
+    for (int k = 0; k < starts && !inquiry_.stopped(); ++k) {
+      inquiry_.fraction = static_cast<double>(k) / (starts + 1);
+      inquiry_.activity = std::to_string(count_) + " sizes";
+      ends.push_back(settled(start(k), 0.1, 1e-6, rods));
+    }
+    if (ends.empty()) ends.push_back({start(0), 0});
+    std::ranges::stable_sort(ends, std::greater(), &predict::Place::value);
+    predict::Place best = ends.front();
+    best.value = -1;
+    for (std::size_t k = 0; k < std::min<std::size_t>(to_refine, ends.size()) && !inquiry_.stopped(); ++k) {
+      const predict::Place fine = settled(ends[k].x, 0.01, 1e-7, options_.rods);
+      if (fine.value > best.value) best = fine;
+    }
+
+    DensestSizes answer = at(best.x);
+    answer.optimum.starts = static_cast<int>(ends.size());
+    for (const predict::Place& end : ends) answer.optimum.agreeing += end.value >= ends.front().value - same;
+    answer.optimum.spread = ends.front().value - ends.back().value;
+    answer.optimum.prediction = predict_packing_fraction(*mixture(best.x), options_.rods);
+    answer.optimum.evaluations = inquiry_.evaluations + 1;
+    answer.optimum.cancelled = inquiry_.stopped();
+    return answer;
+  }
+
+ private:
+  /// Even positions with a third as much of each size as of the next larger; others spread evenly.
+  std::vector<double> start(int k) const {
+    const auto n = static_cast<int>(count_);
+    if (k > 0) return predict::even_point(k, 2 * n - 3);
+    std::vector<double> shares;
+    for (int i = 0; i < n; ++i) shares.push_back(std::pow(3, i));
+    std::vector<double> u = predict::place_of(shares);
+    for (int i = 1; i < n - 1; ++i) u.push_back(static_cast<double>(i) / (n - 1));
+    return u;
+  }
+
+  DensestSizes at(std::span<const double> u) const {
+    std::vector<std::pair<double, double>> sizes;
+    std::vector<double> shares = predict::shares_at(u.first(count_ - 1));
+    sizes.emplace_back(min_, shares.front());
+    for (std::size_t i = 1; i + 1 < count_; ++i)
+      sizes.emplace_back(std::clamp(min_ * std::pow(max_ / min_, u[count_ - 2 + i]), min_, max_), shares[i]);
+    sizes.emplace_back(max_, shares.back());
+    std::ranges::sort(sizes);
+    DensestSizes of;
+    for (const auto& [radius, share] : sizes) {
+      of.radii.push_back(radius);
+      of.optimum.shares.push_back(share);
+    }
+    return of;
+  }
+
+  std::unique_ptr<SizeDistribution> mixture(std::span<const double> u) const {
+    const DensestSizes of = at(u);
+    std::vector<double> radii, shares;
+    for (std::size_t k = 0; k < of.radii.size(); ++k) {
+      if (!(of.optimum.shares[k] > 0)) continue;
+      if (!radii.empty() && radii.back() == of.radii[k]) {
+        shares.back() += of.optimum.shares[k];
+      } else {
+        radii.push_back(of.radii[k]);
+        shares.push_back(of.optimum.shares[k]);
+      }
+    }
+    return make_classes(std::move(radii), std::move(shares), Basis::volume);
+  }
+
+  /// Climbs again from where it ended until that gains nothing twice.
+  predict::Place settled(const std::vector<double>& from, double step, double tolerance, int rods) {
+    const predict::Objective phi = [&](std::span<const double> u) { return inquiry_.phi(*mixture(u), rods); };
+    predict::Place best{from, phi(from)};
+    for (int idle = 0; idle < 2 && !inquiry_.stopped();
+         step = idle == 1 ? 0.05 : std::max(0.5 * step, 0.005)) {
+      const predict::Place end = predict::climb(phi, best.x, {step, 0.1 * tolerance, most_evaluations},
+                                                [this] { return inquiry_.stopped(); });
+      idle = end.value > best.value + tolerance ? 0 : idle + 1;
+      if (end.value > best.value) best = end;
+    }
+    return best;
+  }
+
+  double min_, max_;
+  std::size_t count_;
+  const SearchOptions& options_;
+  predict::Inquiry inquiry_{options_.monitor};
+};
+
+}  // namespace
+
+DensestSizes densest_sizes(double min, double max, int count, const SearchOptions& options) {
+  predict::require_limits(min, max, options.rods);
+  if (count < 2 || count > most_populations_to_mix)
+    throw Error(ErrorCode::bad_argument, "2 to 6 sizes are searched for, not " + std::to_string(count));
+  return SizesSearch(min, max, count, options).run();
+}
+
+}  // namespace bernal
