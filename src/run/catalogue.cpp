@@ -6,6 +6,7 @@
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/unit.hpp"
 #include "stages/compress.hpp"
+#include "stages/grow.hpp"
 #include "stages/insert.hpp"
 #include "stages/refill.hpp"
 #include "stages/relax.hpp"
@@ -124,6 +125,15 @@ StageEnd run_relax(const Spec& s, PeriodicWork& work) {
                       .settle = s.flag("settle")});
 }
 
+StageEnd run_grow(const Spec& s, PeriodicWork& work) {
+  GrowOptions options{.phi_init = s.number("phi_init"),
+                      .rate = s.number("rate"),
+                      .pressure = s.number("pressure"),
+                      .polish = s.number("polish")};
+  if (s.has("delta")) options.delta = s.number("delta");
+  return grow(work, options);
+}
+
 const PlanItem relaxing_in_container[] = {
     {"insertion", "random places, where so few are asked for that these are enough", "O(1) a trial"},
     {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
@@ -134,11 +144,17 @@ const PlanItem relaxing[] = {
     {"relaxation", "overlapping spheres push each other apart while the box grows",
      "some 1,000 sweeps of O(N)"}};
 
+const PlanItem growing[] = {{"insertion", "random places at the start, the largest first", "O(1) a trial"},
+                            {"neighbour shells", "each sphere renews its own list", "about 0.5 µs"},
+                            {"collisions", "of growing spheres, from a calendar of events", "about 0.5 µs"},
+                            {"growth", "until the spheres jam", "some 2,000 collisions a sphere"}};
+
 const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},
                              {"compress", run_compress, nullptr, compression},
                              {"shake", run_shake, nullptr, shaking},
                              {"refill", run_refill, nullptr, refilling},
-                             {"relax", run_relax_in_container, run_relax, relaxing_in_container, relaxing}};
+                             {"relax", run_relax_in_container, run_relax, relaxing_in_container, relaxing},
+                             {"grow", nullptr, run_grow, {}, growing}};
 
 }  // namespace
 
