@@ -27,9 +27,9 @@ Files figure_1(const FigureOptions& options) {
 
   Plot plot({78, 84, 700, 440}, {0, 3, "width σ of ln(diameter)"}, {0.6, 1, "packing fraction φ"});
   plot.axes();
+  plot.add("<rect class=\"page\" x=\"364\" y=\"232\" width=\"328\" height=\"200\"/>");
   plot.line(sigmas, phi, "line heavy");
-  plot.add("<rect class=\"page\" x=\"352\" y=\"214\" width=\"340\" height=\"220\"/>");
-  Plot inset({420, 260, 672, 385}, {0, 3, "σ"}, {-4e-4, 4e-4, "Farr's fit (eq. 27) − rods"});
+  Plot inset({430, 278, 672, 385}, {0, 3, "σ"}, {-4e-4, 4e-4, "Farr's fit (eq. 27) − rods"});
   inset.axes();
   inset.line(sigmas, off, "line three");
   return {{"fig1.svg", svg_document(730, 500, "Random close packing of lognormal spheres, by 64,000 rods",

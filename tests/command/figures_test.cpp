@@ -61,7 +61,7 @@ TEST(MapCommand, RefusesAbsurdInputInOneLine) {
   };
   refuses({"0"}, "SIGMA_B");
   refuses({"0", "9"}, "SIGMA_B");
-  refuses({"nan", "0"}, "SIGMA_A");
+  refuses({"nan", "0"}, "width");
   refuses({"0", "0", "--ratios", "2,1"}, "ratios");
   refuses({"0", "0", "--ratios", "0,1"}, "ratios");
   refuses({"0", "0", "--points", "1"}, "points");

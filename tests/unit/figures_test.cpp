@@ -142,7 +142,9 @@ TEST(Figures, FilesAreWhole) {
   for (std::size_t i = 0; i < fig1.at("sigma").size(); ++i) {
     // Farr's fit is right to 3e-4.
     EXPECT_LT(std::abs(number(fig1.at("fit_minus_rods")[i])), 3e-4);
-    if (fig1.at("sigma")[i] == "0.5") EXPECT_NEAR(number(fig1.at("phi_rods")[i]), 0.7072627, 2e-7);
+    if (fig1.at("sigma")[i] == "0.5") {
+      EXPECT_NEAR(number(fig1.at("phi_rods")[i]), 0.7072627, 2e-7);
+    }
   }
   const auto table2 = columns_of(folder.path() / "table2.csv");
   ASSERT_EQ(table2.at("phi_rods").size(), 6u);

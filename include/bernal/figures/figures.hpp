@@ -36,7 +36,7 @@ struct MapOptions {
   double least_ratio = 1, most_ratio = 10;  ///< of the volume-weighted mean diameters, b over a
   int points = 1000;                        ///< along each axis, at least 2
   int rods = 2000;
-  Monitor monitor;
+  Monitor monitor = {};
 };
 
 struct WrittenMap {
