@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "bernal/core/text.hpp"
 #include "bernal/predict/design.hpp"
 #include "figures/contours.hpp"
 #include "figures/drawing.hpp"
@@ -19,9 +20,9 @@ constexpr std::size_t rows_at_once = 4;
 /// Where packings are made: ratios of sizes up to which `relax` comes within the error of the model, 0.01.
 /// With this alpha it reaches 0.6932 at D3 / D1 = 2.25, where the model says 0.6948, and 0.729 of 0.738 at
 /// 3.2; at 4 it stays at 0.748 of 0.767.
-constexpr std::array<std::array<double, 2>, 3> packed_ratios = {{{1.5, 1.5}, {1.6, 1.7}, {2, 1.5}}};
+constexpr std::array<std::array<double, 2>, 3> packed_ratios = {{{1.8, 1.25}, {1.3, 2.1}, {2.2, 1.35}}};
 constexpr double alpha = 60;
-constexpr std::int64_t packed_spheres = 10'000;
+constexpr std::uint32_t packed_spheres = 10'000;
 
 Optimum densest(double second, double third, const std::vector<double>& from) {
   const std::array<double, 3> radii = {1, second, second * third};
@@ -100,9 +101,11 @@ Files figure_6(const FigureOptions& options) {
       csv += fmt::format("{},{:.6f},{},{:.3f}\n", csv_line("relax", second, third, packed->phi, best.shares),
                          best.prediction.phi, packed->spheres, packed->coordination);
       add_marker(plot, Marker::disc, second, third);
-      add_text(plot, plot.x(second) + 10, plot.y(third) + 4, "start", fmt::format("{:.4f}", packed->phi));
+      plot.add("<text class=\"halo\" x=\"{:.1f}\" y=\"{:.1f}\">{:.4f}</text>", plot.x(second) + 10,
+               plot.y(third) + 4, packed->phi);
     }
-    legend_marker(plot, Marker::disc, 330, 58, fmt::format("φ packed by relax, {} spheres", packed_spheres));
+    legend_marker(plot, Marker::disc, 330, 58,
+                  fmt::format("φ packed by relax, {} spheres", grouped(packed_spheres)));
   }
   return {{"fig6.svg", svg_document(690, 720, "φ of the densest mixture of three sizes D1 ≤ D2 ≤ D3",
                                     std::move(plot).finish())},
