@@ -23,6 +23,8 @@ constexpr const char* examples = R"(Examples:
   bernal explain data/scenes/hopper.toml             what would run, and what it would cost
   bernal predict --lognormal 0.5                     how densely spheres of these sizes pack
   bernal design maximise --diameters 1,3,9           how much of each size packs densest
+  bernal map 0.3 0.6 -o out                          how densely all their mixtures do
+  bernal reproduce fig6 -o out                       a figure of the paper behind that
 
 Exit codes: 0 done; 1 not certified, or not usable; 2 bad input; 3 ended without reaching what the scene asks.
 Messages go to standard error, results to files or standard output.)";
@@ -49,6 +51,8 @@ int main(int argc, char** argv) {
   add_measure(app, status);
   add_predict(app, status);
   add_design(app, status);
+  add_map(app, status);
+  add_reproduce(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version

@@ -10,6 +10,8 @@ void add_explain(CLI::App& app, int& status);
 void add_measure(CLI::App& app, int& status);
 void add_predict(CLI::App& app, int& status);
 void add_design(CLI::App& app, int& status);
+void add_map(CLI::App& app, int& status);
+void add_reproduce(CLI::App& app, int& status);
 
 /// Exit codes, the same for every subcommand.
 namespace exit_code {

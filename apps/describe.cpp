@@ -54,9 +54,15 @@ std::string describe_sizes(const Scene& scene) {
 }
 
 std::string describe_target(const Scene& scene) {
-  if (scene.target.count) return grouped(static_cast<std::uint64_t>(*scene.target.count));
+  std::string fraction;
   if (scene.target.packing_fraction)
-    return fmt::format("up to packing fraction {}", *scene.target.packing_fraction);
+    fraction = fmt::format("packing fraction {}{}", *scene.target.packing_fraction,
+                           scene.target.predicted ? ", the predicted one less its error" : "");
+  if (scene.target.count) {
+    const std::string count = grouped(static_cast<std::uint64_t>(*scene.target.count));
+    return fraction.empty() ? count : count + " at " + fraction;
+  }
+  if (!fraction.empty()) return "up to " + fraction;
   if (scene.target.fill) return "as many as can be made to fit";
   const bool relaxed =
       std::ranges::any_of(scene.stages, [](const Spec& stage) { return stage.name == "relax"; });

@@ -11,6 +11,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/predict/design.hpp"
+#include "bernal/run/run.hpp"
 #include "commands.hpp"
 #include "design.hpp"
 #include "interrupt.hpp"
@@ -60,7 +61,9 @@ Optimum densest(const std::vector<Population>& populations, const SearchOptions&
     const MixtureOf mixture = [&](std::span<const double> shares) {
       std::vector<Population> with_shares = populations;
       for (std::size_t k = 0; k < shares.size(); ++k) with_shares[k].volume = shares[k];
-      return sizes_of(with_shares);
+      Scene scene;
+      scene.sizes = sizes_of(with_shares);
+      return radii_of(scene);
     };
     return maximise_packing_fraction(mixture, static_cast<int>(populations.size()), options);
   }

@@ -1,4 +1,3 @@
-#include <charconv>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -14,12 +13,11 @@
 #include "describe.hpp"
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
+#include "seed.hpp"
 
 using namespace bernal;
 
 namespace {
-
-constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 63) - 1;  ///< that a scene can hold
 
 struct PackCall {
   std::filesystem::path scene;
@@ -43,16 +41,6 @@ void print_result(const Packing& packing, const WrittenPacking& written) {
   fmt::print(stderr, "proof      {}\n", written.certificate.statement);
   for (std::size_t i = 0; i < written.files.size(); ++i)
     fmt::print(stderr, "{:<9}  {}\n", i == 0 ? "files" : "", written.files[i].string());
-}
-
-/// CLI11 would take a number that is too large for the largest one.
-std::uint64_t parse_seed(const std::string& text) {
-  std::uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (error != std::errc{} || end != text.data() + text.size() || seed > largest_seed)
-    throw CLI::ValidationError(
-        "--seed", fmt::format("must be a whole number from 0 to {}, not {}", largest_seed, text));
-  return seed;
 }
 
 int pack(const PackCall& call) {
@@ -90,11 +78,8 @@ void add_pack(CLI::App& app, int& status) {
   command->add_option("-o,--output", call->folder, "Folder for the results; made if it does not exist")
       ->required()
       ->type_name("DIR");
-  command
-      ->add_option_function<std::string>(
-          "--seed", [call](const std::string& text) { call->seed = parse_seed(text); },
-          "Instead of the scene's; one seed gives one packing, bit for bit")
-      ->type_name("N");
+  add_seed(*command, "Instead of the scene's; one seed gives one packing, bit for bit",
+           [call](std::uint64_t seed) { call->seed = seed; });
   command
       ->add_option("--threads", call->threads, "As many as the machine has if absent; the result is the same")
       ->check(CLI::Range(1, 1024))

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -89,6 +89,13 @@ std::vector<double> numbers_of_line(std::string_view line, const std::string& wh
   }
 }
 
+/// Sizes whose shares count volume.
+Spec by_volume(std::string name) {
+  Spec spec{std::move(name), {}, {}};
+  spec.parameters["basis"].value = std::string("volume");
+  return spec;
+}
+
 }  // namespace
 
 Population parse_lognormal(const std::string& text, const std::string& where) {
@@ -153,7 +160,7 @@ std::vector<Population> read_populations(std::istream& in, char format) {
   return populations;
 }
 
-std::unique_ptr<SizeDistribution> sizes_of(const std::vector<Population>& populations) {
+Spec sizes_of(const std::vector<Population>& populations) {
   double largest = 0, all = 0;
   for (const Population& p : populations) {
     if (p.volume > 0) largest = std::max(largest, p.d43);
@@ -162,7 +169,7 @@ std::unique_ptr<SizeDistribution> sizes_of(const std::vector<Population>& popula
   if (!(all > 0)) throw Error(ErrorCode::bad_argument, "all populations have volume zero");
 
   std::map<double, double> classes;  // the volume of each radius
-  std::vector<std::unique_ptr<SizeDistribution>> of;
+  Spec mixture = by_volume("mixture");
   std::vector<double> shares;
   for (const Population& p : populations) {
     const double radius = p.d43 / largest, share = p.volume / all;
@@ -173,9 +180,11 @@ std::unique_ptr<SizeDistribution> sizes_of(const std::vector<Population>& popula
     if (p.sigma < 1e-9) {
       classes[radius] += share;
     } else {
-      const double median = radius * std::exp(-0.5 * p.sigma * p.sigma);  // d43 = median by volume e^(s²/2)
-      of.push_back(
-          make_lognormal(median, p.sigma, Basis::volume, 0, std::numeric_limits<double>::infinity()));
+      Spec lognormal = by_volume("lognormal");
+      lognormal.parameters["median"].value =
+          radius * std::exp(-0.5 * p.sigma * p.sigma);  // d43 = median by volume e^(s²/2)
+      lognormal.parameters["sigma"].value = p.sigma;
+      mixture.parts.push_back(std::move(lognormal));
       shares.push_back(share);
     }
   }
@@ -187,8 +196,12 @@ std::unique_ptr<SizeDistribution> sizes_of(const std::vector<Population>& popula
       volumes.push_back(volume);
       total += volume;
     }
-    of.push_back(make_classes(std::move(radii), std::move(volumes), Basis::volume));
+    Spec all_classes = by_volume("classes");
+    all_classes.parameters["values"].value = std::move(radii);
+    all_classes.parameters["shares"].value = std::move(volumes);
+    mixture.parts.push_back(std::move(all_classes));
     shares.push_back(total);
   }
-  return make_mixture(std::move(of), std::move(shares), Basis::volume);
+  mixture.parameters["shares"].value = std::move(shares);
+  return mixture;
 }

@@ -1,10 +1,9 @@
 #pragma once
 #include <istream>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "bernal/sizes/size_distribution.hpp"
+#include "bernal/scene/scene.hpp"
 
 /// Spheres as the user states them: those of one diameter (sigma = 0), or lognormal ones.
 struct Population {
@@ -29,5 +28,6 @@ std::vector<Population> parse_classes(const std::string& text, const std::string
 ///   d  diameter volume     one diameter
 std::vector<Population> read_populations(std::istream& in, char format);
 
-/// All of them mixed, in units of their largest mean radius; those without volume are left out.
-std::unique_ptr<bernal::SizeDistribution> sizes_of(const std::vector<Population>& populations);
+/// All of them mixed, as a scene has them: radii in units of the largest mean radius; those without volume
+/// are left out.
+bernal::Spec sizes_of(const std::vector<Population>& populations);

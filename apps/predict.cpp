@@ -12,10 +12,14 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/figures/check_prediction.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "populations.hpp"
+#include "progress_bar.hpp"
+#include "seed.hpp"
 
 using namespace bernal;
 
@@ -31,12 +35,16 @@ struct PredictCall {
   std::optional<double> solids;
   double intrinsic = 2.5;
   bool json = false;
+  bool check = false;
+  CheckOptions packing;
+  bool quiet = false;
 };
 
 struct Answer {
   Prediction prediction;
   double seconds = 0;
   std::optional<double> viscosity;
+  std::optional<PredictionCheck> packed;
 };
 
 std::vector<Population> populations_of(const PredictCall& call) {
@@ -53,11 +61,36 @@ std::vector<Population> populations_of(const PredictCall& call) {
   return populations;
 }
 
-std::unique_ptr<SizeDistribution> sizes_of_scene(const std::filesystem::path& file) {
-  const Scene scene = read_scene(file);
-  if (scene.dimension() != 3)
-    throw Error(ErrorCode::bad_scene, "the rod model is for three dimensions", scene.container.where);
-  return radii_of(scene);
+/// The sizes in a scene, which is otherwise empty where flags or standard input give them.
+Scene scene_of(const PredictCall& call) {
+  Scene scene;
+  if (call.scene.empty()) {
+    const std::vector<Population> populations = populations_of(call);
+    if (call.fit && populations.size() != 1)
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("--fit is for one lognormal population, not for {}", populations.size()));
+    scene.sizes = sizes_of(populations);
+  } else {
+    scene = read_scene(call.scene);
+    if (scene.dimension() != 3)
+      throw Error(ErrorCode::bad_scene, "the rod model is for three dimensions", scene.container.where);
+  }
+  return scene;
+}
+
+/// Of the one lognormal population that a fit is for.
+double width_of(const Scene& scene) {
+  const Spec& only = scene.sizes.parts.front();
+  return only.has("sigma") ? only.number("sigma") : 0;
+}
+
+/// Packs those very sizes.
+PredictionCheck check(const Scene& scene, PredictCall& call) {
+  watch_for_interrupts(call.quiet);
+  ProgressBar bar(call.quiet);
+  call.packing.monitor.on_progress = [&](const Progress& progress) { bar.show(progress); };
+  call.packing.monitor.cancelled = interrupted;
+  return check_prediction(scene_to_check(scene.sizes, scene.sizes_are_diameters, call.packing), call.packing);
 }
 
 /// How the sizes were given: one way only.
@@ -72,24 +105,29 @@ void require_one_source(const PredictCall& call) {
     throw Error(ErrorCode::bad_argument, "--fit is for one lognormal population, not for a scene");
 }
 
-Answer predict(const PredictCall& call) {
+Answer predict(PredictCall& call) {
   require_one_source(call);
-  std::vector<Population> populations;
-  if (call.scene.empty()) populations = populations_of(call);
-  if (call.fit && populations.size() != 1)
-    throw Error(ErrorCode::bad_argument,
-                fmt::format("--fit is for one lognormal population, not for {}", populations.size()));
-
+  const Scene scene = scene_of(call);
   Answer answer;
   const auto start = std::chrono::steady_clock::now();
   if (call.fit)
-    answer.prediction = {fitted_packing_fraction(populations.front().sigma), 0, 3e-4};
+    answer.prediction = {fitted_packing_fraction(width_of(scene)), 0, 3e-4};
   else
-    answer.prediction = predict_packing_fraction(
-        *(call.scene.empty() ? sizes_of(populations) : sizes_of_scene(call.scene)), call.rods);
+    answer.prediction = predict_packing_fraction(*radii_of(scene), call.rods);
   answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (call.solids) answer.viscosity = relative_viscosity(*call.solids, answer.prediction.phi, call.intrinsic);
+  if (call.check) answer.packed = check(scene, call);
   return answer;
+}
+
+void print(const PredictionCheck& packed, double predicted) {
+  fmt::print("packed            {:.6f}, {} spheres in a periodic box{}, {:.3f} contacts each, in {:.1f} s\n",
+             packed.phi, grouped(packed.spheres), packed.certified ? ", certified" : ", NOT certified",
+             packed.coordination, packed.seconds);
+  fmt::print("difference        {:+.4f}, packed less predicted; {:+.4f} is from having so many spheres\n",
+             packed.phi - predicted, packed.predicted - predicted);
+  if (packed.outcome != Outcome::converged)
+    fmt::print("outcome           {}: not as dense as it would become\n", name_of(packed.outcome));
 }
 
 void print(const PredictCall& call, const Answer& answer) {
@@ -104,6 +142,14 @@ void print(const PredictCall& call, const Answer& answer) {
   if (answer.viscosity)
     fmt::print("viscosity         {:.6g} times that of the liquid, at a volume fraction of solids of {:g}\n",
                *answer.viscosity, *call.solids);
+  if (answer.packed) print(*answer.packed, p.phi);
+}
+
+/// A packing is an answer of its own unless it was stopped, is not certified or did not become close.
+int status_of(const Answer& answer) {
+  if (!answer.packed) return exit_code::done;
+  if (!answer.packed->certified) return exit_code::no;
+  return answer.packed->outcome == Outcome::converged ? exit_code::done : exit_code::not_reached;
 }
 
 nlohmann::ordered_json as_json(const PredictCall& call, const Answer& answer) {
@@ -116,6 +162,14 @@ nlohmann::ordered_json as_json(const PredictCall& call, const Answer& answer) {
     json["solids"] = *call.solids;
     json["relative_viscosity"] = *answer.viscosity;
   }
+  if (answer.packed)
+    json["packed"] = {{"phi", answer.packed->phi},
+                      {"phi_predicted_for_these_spheres", answer.packed->predicted},
+                      {"spheres", answer.packed->spheres},
+                      {"certified", answer.packed->certified},
+                      {"coordination", answer.packed->coordination},
+                      {"outcome", name_of(answer.packed->outcome)},
+                      {"seconds", answer.packed->seconds}};
   return json;
 }
 
@@ -134,11 +188,12 @@ Examples:
   bernal predict --lognormal 20,17,3 --classes 100:7 --json
   bernal predict --stdin d < sieves.txt
   bernal predict --lognormal 0.5 --solids 0.6        viscosity of a suspension (Krieger and Dougherty)
+  bernal predict --lognormal 0.3 --check             and is it true? some seconds
 
 The rod model (Farr and Groot 2009, Farr 2013) knows the sizes alone: smooth spheres, no walls, no
 friction, no segregation. It is up to 0.01 above simulations of lognormal spheres and their mixtures,
 and below the truth where sizes are very different: 0.8595 instead of 0.8729 at best for two sizes.
-Exit codes: 0 done; 2 bad input.)";
+Exit codes: 0 done; 2 bad input; with --check 1 not certified, 3 the packing was stopped or is loose.)";
 
 }  // namespace
 
@@ -169,6 +224,21 @@ void add_predict(CLI::App& app, int& status) {
   command->add_option("--intrinsic", call->intrinsic, "Intrinsic viscosity; 2.5, that of spheres, if absent")
       ->type_name("ETA");
   command->add_flag("--json", call->json, "One JSON object on standard output");
+  CLI::Option* check = command->add_flag(
+      "--check", call->check, "Also pack these sizes in a periodic box, certify that, and say both numbers");
+  command
+      ->add_option("--spheres", call->packing.spheres,
+                   "So many; 10,000 if absent, more for wide distributions")
+      ->needs(check)
+      ->check(CLI::Range(1, 10'000'000))
+      ->type_name("N");
+  command->add_option("--stage", call->packing.stage, "What packs them; relax if absent")
+      ->needs(check)
+      ->type_name("NAME");
+  add_seed(*command, "Of that packing; 1 if absent", [call](std::uint64_t seed) {
+    call->packing.seed = seed;
+  })->needs(check);
+  command->add_flag("--quiet", call->quiet, "Show no progress");
   command->footer(footer);
   command->callback([call, &status] {
     const Answer answer = predict(*call);
@@ -176,6 +246,6 @@ void add_predict(CLI::App& app, int& status) {
       fmt::print("{}\n", as_json(*call, answer).dump(2));
     else
       print(*call, answer);
-    status = exit_code::done;
+    status = status_of(answer);
   });
 }

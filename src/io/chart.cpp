@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "io/html_text.hpp"
+#include "io/plot.hpp"
 
 namespace bernal {
 namespace {
@@ -15,72 +16,15 @@ namespace {
 constexpr double width = 520, height = 260;
 constexpr double left = 62, right = 12, top = 44, bottom = 44;
 
-/// Round numbers that divide an axis into about five parts.
-class Ticks {
+/// A chart of the report.
+class Chart : public Plot {
  public:
-  Ticks(double from, double to, double least_step = 0) {
-    const double raw = (to - from) / 5;
-    const double decade = std::pow(10, std::floor(std::log10(raw)));
-    step_ = std::max(least_step, decade * (raw > 5 * decade   ? 10
-                                           : raw > 2 * decade ? 5
-                                           : raw > decade     ? 2
-                                                              : 1));
-    const double first = std::ceil(from / step_ - 1e-9);
-    for (int k = 0; k < most_ticks && (first + k) * step_ <= to + 1e-9 * step_; ++k) {
-      values_.push_back((first + k) * step_);
-    }
-  }
-  const std::vector<double>& values() const { return values_; }
-  std::string text(double value) const {
-    const int decimals = static_cast<int>(std::ceil(-std::log10(step_) - 1e-9));
-    if (decimals > 5 || std::abs(value) >= 1e6) return fmt::format("{:.3g}", value);
-    return fmt::format("{:.{}f}", value == 0 ? 0.0 : value, std::max(0, decimals));
-  }
-
- private:
-  static constexpr int most_ticks = 12;  // where the axis is so short that adding a step changes nothing
-
-  double step_;
-  std::vector<double> values_;
-};
-
-/// A plot area with two linear axes; draws itself into SVG text.
-class Chart {
- public:
-  Chart(double x0, double x1, double y0, double y1) : x0_(x0), x1_(x1), y0_(y0), y1_(y1) {
+  Chart(const Axis& along, const Axis& across)
+      : Plot({left, top, width - right, height - bottom}, along, across) {
     add("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\">", width, height);
+    axes();
   }
-  double x(double v) const { return left + (width - left - right) * (v - x0_) / (x1_ - x0_); }
-  double y(double v) const { return height - bottom - (height - top - bottom) * (v - y0_) / (y1_ - y0_); }
-
-  template <class... Args>
-  void add(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
-  }
-
-  /// `decades`: y is a decimal logarithm.
-  void axes(std::string_view x_label, std::string_view y_label, bool decades = false) {
-    const Ticks along(x0_, x1_), across(y0_, y1_, decades ? 1 : 0);
-    for (const double v : across.values()) {
-      add("<path class=\"grid\" d=\"M{} {:.1f}H{}\"/>", left, y(v), width - right);
-      add("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", left - 8, y(v) + 4,
-          decades ? fmt::format("1e{:.0f}", v) : across.text(v));
-    }
-    for (const double v : along.values()) {
-      add("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>", x(v), height - bottom + 18,
-          along.text(v));
-    }
-    add("<path class=\"axis\" d=\"M{} {}H{}\"/>", left, height - bottom, width - right);
-    add("<text class=\"label\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-        (left + width - right) / 2, height - 6, escaped(x_label));
-    add("<text class=\"label\" x=\"{}\" y=\"14\">{}</text>", 4, escaped(y_label));
-  }
-
-  std::string finish() && { return std::move(out_) + "</svg>"; }
-
- private:
-  double x0_, x1_, y0_, y1_;
-  std::string out_;
+  std::string finish() && { return std::move(*this).Plot::finish() + "</svg>"; }
 };
 
 /// A point of a history, and the stage that it belongs to.
@@ -105,10 +49,9 @@ void add_stages(Chart& chart, const std::vector<Moment>& history) {
 }
 
 std::string chart_of(const std::vector<Moment>& history, double y0, double y1, std::string_view label,
-                     bool decades) {
+                     Scale scale) {
   const double last = std::ranges::max(history, {}, &Moment::seconds).seconds;
-  Chart chart(0, last > 0 ? 1.02 * last : 1, y0, y1);
-  chart.axes("seconds since the start of the run", label, decades);
+  Chart chart({0, last > 0 ? 1.02 * last : 1, "seconds since the start of the run"}, {y0, y1, label, scale});
   add_stages(chart, history);
   std::string line;
   for (const Moment& m : history) {
@@ -152,8 +95,8 @@ std::string size_histogram(const SizeHistogram& histogram) {
 
   const double highest =
       std::max({std::ranges::max(number), std::ranges::max(volume), std::ranges::max(asked)});
-  Chart chart(least, most, 0, 1.05 * highest);
-  chart.axes(histogram.label, "per cent of all spheres, in 36 equal steps");
+  Chart chart({least, most, histogram.label},
+              {0, 1.05 * highest, "per cent of all spheres, in 36 equal steps"});
   const double bar = chart.x(most) / bins - chart.x(least) / bins;
   std::string by_volume, by_asked;
   for (std::size_t k = 0; k < bins; ++k) {
@@ -178,8 +121,9 @@ std::string radial_chart(const RadialDistribution& radial) {
   const auto diameters = [&](std::size_t k) { return radial.r[k] / radial.mean_diameter; };
   for (std::size_t k = 0; k < radial.g.size(); ++k)
     if (diameters(k) > 1.2) highest = std::max(highest, 1.1 * radial.g[k]);
-  Chart chart(0, radial.bin_width * static_cast<double>(radial.g.size()) / radial.mean_diameter, 0, highest);
-  chart.axes("distance of the centres (mean diameters)", "g(r)");
+  Chart chart({0, radial.bin_width * static_cast<double>(radial.g.size()) / radial.mean_diameter,
+               "distance of the centres (mean diameters)"},
+              {0, highest, "g(r)"});
   const auto point = [&](std::string& path, std::size_t k, double g) {
     fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L',
                    chart.x(diameters(k)), chart.y(std::clamp(g, 0.0, highest)));
@@ -199,8 +143,9 @@ std::string wall_chart(const WallProfile& profile) {
   if (even < 2) return {};
   double highest = 1;
   for (const auto& layer : profile.layers) highest = std::max(highest, layer.porosity + layer.error);
-  Chart chart(0, profile.layers[even].from / profile.mean_diameter, 0, highest);
-  chart.axes("distance from the wall (mean diameters)", "porosity");
+  Chart chart(
+      {0, profile.layers[even].from / profile.mean_diameter, "distance from the wall (mean diameters)"},
+      {0, highest, "porosity"});
   const auto point = [&](std::string& path, std::size_t k, double porosity) {
     const double middle = 0.5 * (profile.layers[k].from + profile.layers[k].to) / profile.mean_diameter;
     fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', chart.x(middle),
@@ -231,7 +176,7 @@ std::string history_chart(std::span<const Milestone> history, double Milestone::
   // A value that only rounding has moved is drawn as the flat line that it is.
   double room = std::max({0.08 * (most - least), 1e-3 * std::abs(least), 1e-3 * std::abs(most)});
   if (!(room > 0)) room = 1;
-  return chart_of(moments, least - room, most + room, label, false);
+  return chart_of(moments, least - room, most + room, label, Scale::linear);
 }
 
 std::string overlap_chart(std::span<const Milestone> history) {
@@ -241,7 +186,7 @@ std::string overlap_chart(std::span<const Milestone> history) {
   if (moments.size() < 2) return {};
   const auto [least, most] = std::ranges::minmax(moments, {}, &Moment::value);
   const double from = std::floor(least.value), to = std::max(from + 1, std::ceil(most.value));
-  return chart_of(moments, from, to, "largest overlap, of the sum of the radii", true);
+  return chart_of(moments, from, to, "largest overlap, of the sum of the radii", Scale::exponents);
 }
 
 }  // namespace bernal

@@ -116,6 +116,37 @@ ChordTable::ChordTable(const SizeDistribution& sizes, int most) : sizes_(&sizes)
   }
 }
 
+ChordTable::ChordTable(const SizeDistribution& sizes, const ChordTable& pieces_of)
+    : sizes_(&sizes), all_(sizes.moment(2)) {
+  pieces_.reserve(pieces_of.pieces_.size());
+  for (const Piece& piece : pieces_of.pieces_) {
+    const Knot b = knot(std::nextafter(piece.b, 0.0));  // before a class ends there
+    if (piece.m0 > 0) {
+      const double tail = piece.a > 0 ? knot(piece.a).tail : all_;
+      pieces_.push_back({piece.a, piece.b, tail, b.tail, -0.5 * b.slope / b.length, {}});
+    } else {
+      pieces_.push_back(through(knot(piece.a), knot(0.5 * (piece.a + piece.b)), b));
+    }
+  }
+}
+
+ChordTable ChordTable::mixture(const ChordTable& a, double number_a, const ChordTable& b, double number_b) {
+  const auto both = [&](double of_a, double of_b) { return number_a * of_a + number_b * of_b; };
+  ChordTable table;
+  table.all_ = both(a.all_, b.all_);
+  table.pieces_ = a.pieces_;
+  for (std::size_t i = 0; i < table.pieces_.size(); ++i) {
+    Piece& piece = table.pieces_[i];
+    const Piece& other = b.pieces_[i];
+    piece.tail_a = both(piece.tail_a, other.tail_a);
+    piece.tail_b = both(piece.tail_b, other.tail_b);
+    piece.m0 = both(piece.m0, other.m0);
+    for (std::size_t k = 0; k < piece.terms.size(); ++k)
+      piece.terms[k] = both(piece.terms[k], other.terms[k]);
+  }
+  return table;
+}
+
 std::vector<double> ChordTable::rod_lengths(int count) const {
   std::vector<double> lengths(static_cast<std::size_t>(count));
   auto piece = pieces_.end() - 1;

@@ -22,11 +22,21 @@ class ChordTable {
   /// Of a distribution that may be asked for up to `most` rods.
   ChordTable(const SizeDistribution& sizes, int most);
 
+  /// Of a distribution on the pieces of another, whose sizes contain these, as a mixture's do those of its
+  /// parts. As precise, relative to the other.
+  ChordTable(const SizeDistribution& sizes, const ChordTable& pieces_of);
+
+  /// T is linear in the numbers of spheres: the table of `a` and `b` together in these numbers, at least 0
+  /// and not both 0. Precondition: both have the same pieces. Cost: 10 ns a piece.
+  static ChordTable mixture(const ChordTable& a, double number_a, const ChordTable& b, double number_b);
+
   /// The lengths of `count` <= `most` rods in descending order: F^-1((count - i + 1/2) / count),
   /// i = 1 … count (eq. 24). About 20 ns each.
   std::vector<double> rod_lengths(int count) const;
 
  private:
+  ChordTable() = default;
+
   struct Knot {
     double length, tail, slope;
   };
@@ -43,8 +53,8 @@ class ChordTable {
   void add(const Knot& a, const Knot& middle, const Knot& b, int halvings);
   static Piece through(const Knot& a, const Knot& middle, const Knot& b);
 
-  const SizeDistribution* sizes_;
-  double all_;
+  const SizeDistribution* sizes_ = nullptr;
+  double all_ = 0;
   std::vector<Piece> pieces_;  ///< ascending
 };
 

@@ -9,23 +9,32 @@
 
 #include "bernal/core/error.hpp"
 #include "predict/chord_table.hpp"
+#include "predict/from_chords.hpp"
 #include "predict/rods.hpp"
 
 namespace bernal {
 
-Prediction predict_packing_fraction(const SizeDistribution& sizes, int rods) {
+void predict::require_enough(int rods) {
   if (rods < 2)
     throw Error(ErrorCode::bad_argument, "a prediction needs at least 2 rods, not " + std::to_string(rods));
-  const predict::ChordTable chords(sizes, rods);
+}
+
+Prediction predict::predict_from_chords(const ChordTable& chords, double mean_chord, int rods) {
   const std::vector<double> lengths = chords.rod_lengths(rods);
   Prediction prediction{.phi = predict::covered_fraction(lengths), .rods = rods};
   const double fewer = predict::covered_fraction(chords.rod_lengths(std::max(1, rods / 4)));
-  // The mean chord is 2 <D³> / 3 <D²>. What the rods fall short of it is volume of spheres so large, and so
-  // few, that no rod stands for them.
+  // What the rods fall short of the mean chord is volume of spheres so large, and so few, that no rod stands
+  // for them.
   const double mean = std::accumulate(lengths.begin(), lengths.end(), 0.0) / rods;
-  const double missed = std::abs(1 - 1.5 * mean * sizes.moment(2) / sizes.moment(3));
+  const double missed = std::abs(1 - mean / mean_chord);
   prediction.error = std::max(std::abs(prediction.phi - fewer), missed * (1 - prediction.phi));
   return prediction;
+}
+
+Prediction predict_packing_fraction(const SizeDistribution& sizes, int rods) {
+  predict::require_enough(rods);
+  return predict::predict_from_chords(predict::ChordTable(sizes, rods),
+                                      sizes.moment(3) / (1.5 * sizes.moment(2)), rods);
 }
 
 double fitted_packing_fraction(double sigma) {

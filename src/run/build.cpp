@@ -66,6 +66,22 @@ Draw draw_of(const Scene& scene) { return scene.draw == "quantiles" ? Draw::quan
 
 namespace {
 
+/// Puts a number where the scene says "predicted": what its stages are likely to reach less the error of that
+/// expectation, so that it is reached, and rounded down to what a reader can take in.
+void resolve_predicted(Plan& plan) {
+  Target& target = plan.scene.target;
+  if (!target.predicted) return;
+  if (plan.scene.dimension() != 3)
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("packing fractions are predicted in three dimensions, not in {}; give \"packing_"
+                            "fraction\" as a number",
+                            plan.scene.dimension()),
+                target.where);
+  const double expected = plan.attainable_packing_fraction;
+  const double surely = std::max(0.5 * expected, expected - error_of_expectation(plan.scene));
+  target.packing_fraction = std::max(1e-4, std::floor(1e4 * surely) / 1e4);
+}
+
 void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Shape& container = std::get<Shape>(plan.domain);
@@ -76,6 +92,7 @@ void expect_in_container(Plan& plan) {
   const double volume = volume_of(container);
   double attainable = plan.attainable_packing_fraction =
       expected_packing_fraction(scene, container, *plan.radii);
+  resolve_predicted(plan);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   plan.expected_count = attainable * volume / mean_volume;
   if (scene.target.count)
@@ -103,6 +120,7 @@ void expect_in_periodic_box(Plan& plan) {
   plan.box_follows = scene.container.flag("scalable");
   const double mean_volume = ball_volume(dimension, 1) * plan.radii->moment(dimension);
   double attainable = plan.attainable_packing_fraction = close_packing_fraction(*plan.radii, dimension);
+  resolve_predicted(plan);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   if (plan.box_follows) {
     plan.expected_count = static_cast<double>(*scene.target.count);

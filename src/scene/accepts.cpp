@@ -52,7 +52,8 @@ std::string kind_of_value(const Key& key) {
                  ? fmt::format("a whole number of at least {}", key.range.min)
                  : fmt::format("a whole number from {:.0f} to {:.0f}", key.range.min, key.range.max);
     case Type::number:
-      return number_range(key.range);
+      return number_range(key.range) +
+             (key.words.empty() ? "" : fmt::format(" or \"{}\"", fmt::join(key.words, "\" or \"")));
     case Type::length:
       return "a positive length";
     case Type::word:
@@ -100,6 +101,8 @@ bool accepts(const Key& key, const Value& value) {
     case Type::integer:
       return key.range.contains(static_cast<double>(std::get<std::int64_t>(value)));
     case Type::number:
+      if (std::holds_alternative<std::string>(value))
+        return std::ranges::find(key.words, text()) != key.words.end();
       return std::isfinite(number()) && key.range.contains(number());
     case Type::length:
       return is_length(number());

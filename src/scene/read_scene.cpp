@@ -178,7 +178,8 @@ class Reader {
 
   /// Reads and checks one key.
   Value read_value(const toml::node& node, const Key& key, std::string_view where) const {
-    const std::optional<Value> value = value_in(node, key.type);
+    const bool is_word = key.type == Type::number && !key.words.empty() && node.is_string();
+    const std::optional<Value> value = value_in(node, is_word ? Type::word : key.type);
     if (value && schema::accepts(key, *value)) return *value;
     if (value && (key.type == Type::unit || key.type == Type::word)) {
       Names words = key.words;
@@ -255,7 +256,11 @@ class Reader {
     const Spec spec = read_keys(table, all_.spheres, {}, "[spheres]");
     scene.target.where = spec.where;
     if (spec.has("count")) scene.target.count = spec.integer("count");
-    if (spec.has("packing_fraction")) scene.target.packing_fraction = spec.number("packing_fraction");
+    if (spec.has("packing_fraction")) {
+      scene.target.predicted =
+          std::holds_alternative<std::string>(spec.parameters.at("packing_fraction").value);
+      if (!scene.target.predicted) scene.target.packing_fraction = spec.number("packing_fraction");
+    }
     scene.target.fill = spec.has("fill");
     if (scene.target.fill && !spec.flag("fill"))
       fail(table.get("fill")->source(),
@@ -277,7 +282,7 @@ class Reader {
     const Target& target = scene.target;
     const auto fail = [&](const char* message) { throw Error(ErrorCode::bad_scene, message, target.where); };
     const bool scalable = scene.is_periodic() && scene.container.flag("scalable");
-    if (target.count && target.packing_fraction && !scalable)
+    if (target.count && target.has_packing_fraction() && !scalable)
       fail(
           "\"count\" and \"packing_fraction\" in [spheres] exclude each other; give one of them (both go "
           "together only in a periodic box without size)");

@@ -43,8 +43,11 @@ Schema make_schema() {
                             .range = {1, 0x1p31 - 1}},
                            {.name = "packing_fraction",
                             .type = Type::number,
-                            .help = "stop when the spheres fill this fraction of the container",
-                            .range = {0, 1, true, true}},
+                            .help =
+                                "stop when the spheres fill this fraction of the container; \"predicted\": "
+                                "as much as is predicted, less the error of that",
+                            .range = {0, 1, true, true},
+                            .words = {"predicted"}},
                            {.name = "fill",
                             .type = Type::flag,
                             .help = "true: as many spheres as the stages can place"},

@@ -13,7 +13,7 @@ namespace bernal::schema {
 enum class Type {
   flag,          ///< true or false
   integer,       ///< within Key::range
-  number,        ///< finite, within Key::range
+  number,        ///< finite, within Key::range; or one of Key::words, if there are any
   length,        ///< positive, in the scene's unit
   word,          ///< one of Key::words
   unit,          ///< a name from core/unit.hpp

@@ -57,6 +57,8 @@ std::string spheres_as_toml(const Scene& scene) {
   if (scene.target.count) target += fmt::format("count = {}\n", *scene.target.count);
   if (scene.target.packing_fraction)
     target += fmt::format("packing_fraction = {}\n", *scene.target.packing_fraction);
+  else if (scene.target.predicted)
+    target += "packing_fraction = \"predicted\"\n";
   if (scene.target.fill) target += "fill = true\n";
   return fmt::format("[spheres]\n{}{} = {}\ndraw = {}\n", target,
                      scene.sizes_are_diameters ? "diameter" : "radius", distribution_as_toml(scene.sizes),

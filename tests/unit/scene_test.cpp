@@ -47,6 +47,7 @@ void expect_equal(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.draw, b.draw);
   EXPECT_EQ(a.target.count, b.target.count);
   EXPECT_EQ(a.target.packing_fraction, b.target.packing_fraction);
+  EXPECT_EQ(a.target.predicted, b.target.predicted);
   EXPECT_EQ(a.target.fill, b.target.fill);
   EXPECT_EQ(a.walls, b.walls);
   EXPECT_EQ(a.overlap, b.overlap);
@@ -295,7 +296,7 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
       {with_spheres("count = 0\nradius = 1"), 3, {"whole number from 1 to 2147483647, not 0"}},
       {with_spheres("count = 2147483648\nradius = 1"), 3, {"not 2147483648"}},
       {with_spheres("count = 99999999999999999999\nradius = 1"), 3, {"TOML"}},
-      {with_spheres("packing_fraction = 1.0\nradius = 1"), 3, {"above 0 and below 1, not 1"}},
+      {with_spheres("packing_fraction = 1.0\nradius = 1"), 3, {"above 0 and below 1 or \"predicted\", not 1"}},
       {with_spheres("radius = -0.5"), 3, {"\"radius\" in [spheres]", "positive length", "not -0.5"}},
       {with_spheres("radius = { distribution = \"uniform\", min = 2, max = 1 }"), 3, {"2 is not below 1"}},
       {with_spheres("radius = { distribution = \"uniform\", min = 2, max = 2 }"),

@@ -46,11 +46,14 @@ struct Spec {
 struct Target {
   std::optional<std::int64_t> count;
   std::optional<double> packing_fraction;
+  /// `packing_fraction = "predicted"`: `build` puts in a number, what is predicted less the error of that.
+  bool predicted = false;
   bool fill = false;  ///< as many as the stages can place, at any price
   Location where;
 
+  bool has_packing_fraction() const { return packing_fraction || predicted; }
   /// Whether it is left to the stages how many spheres there are.
-  bool is_open() const { return !count && !packing_fraction; }
+  bool is_open() const { return !count && !has_packing_fraction(); }
 };
 
 /// A packing problem as the user states it: plain data, no behaviour. Lengths are in `unit`.

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/plot.hpp"
+
+namespace bernal::figures {
+
+/// A whole SVG file. Style sheet, background and title are added to the body.
+std::string svg_document(double width, double height, std::string_view title, std::string_view body);
+
+/// A row of a legend: a stroke or a marker, and what it stands for.
+void legend_line(Plot&, double x, double y, std::string_view classes, std::string_view text);
+
+enum class Marker { triangle, disc };
+void add_marker(Plot&, Marker, double x, double y);
+void legend_marker(Plot&, Marker, double x, double y, std::string_view text);
+/// A vertical bar of ± error.
+void add_error_bar(Plot&, double x, double y, double error);
+
+/// Text in the axes' ink.
+void add_text(Plot&, double x, double y, std::string_view anchor, std::string_view text);
+
+/// `steps` + 1 numbers from `from` to `to`, evenly or evenly in the logarithm.
+std::vector<double> spread(double from, double to, int steps, bool logarithmic = false);
+
+}  // namespace bernal::figures

@@ -1,0 +1,22 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "bernal/figures/figures.hpp"
+
+namespace bernal::figures {
+
+struct File {
+  std::string name, text;
+};
+using Files = std::vector<File>;  ///< empty where the monitor stopped it
+
+// One file a figure.
+Files figure_1(const FigureOptions&);
+Files figure_2(const FigureOptions&);
+Files figure_5(const FigureOptions&);
+Files figure_6(const FigureOptions&);
+Files table_1(const FigureOptions&);
+Files table_2(const FigureOptions&);
+
+}  // namespace bernal::figures

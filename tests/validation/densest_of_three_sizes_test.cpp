@@ -1,0 +1,39 @@
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "bernal/figures/figures.hpp"
+#include "support/folder.hpp"
+
+// Figure 6 of Farr, Powder Technology 245, 28 (2013), claims what no packing was made for: the densest
+// mixtures of three sizes. Three of its points are packed here in three dimensions, by 10,000 spheres each.
+namespace bernal {
+namespace {
+
+TEST(DensestOfThreeSizes, PacksAsDenselyAsTheRodModelSays) {
+  const testing::Folder folder;
+  FigureOptions options;
+  options.pack = true;
+  ASSERT_EQ(write_figure("fig6", folder.path(), options).size(), 2u);
+  const std::string csv = testing::text_of(folder.path() / "fig6.csv");
+  int packed = 0;
+  double corner = 0;
+  for (std::size_t at = 0; at < csv.size(); at = csv.find('\n', at) + 1) {
+    const std::string line = csv.substr(at, csv.find('\n', at) - at);
+    double second = 0, third = 0, phi = 0, shares[3], predicted = 0;
+    if (std::sscanf(line.c_str(), "rods,%lf,%lf,%lf", &second, &third, &phi) == 3) corner = phi;
+    if (std::sscanf(line.c_str(), "relax,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &second, &third, &phi, &shares[0],
+                    &shares[1], &shares[2], &predicted) != 7)
+      continue;
+    ++packed;
+    RecordProperty(fmt::format("{}_{}", second, third), fmt::format("{:.4f} of {:.4f}", phi, predicted));
+    EXPECT_NEAR(phi, predicted, 0.01) << "D2 / D1 " << second << ", D3 / D2 " << third;
+    EXPECT_GT(phi, 0.67);  // denser than any of the three sizes alone
+  }
+  EXPECT_EQ(packed, 3);
+  EXPECT_GT(corner, 0.9);  // the last point of the grid, 1 : 10 : 100
+}
+
+}  // namespace
+}  // namespace bernal
