@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
@@ -24,6 +25,12 @@ struct PeriodicWork {
   bool placed = false;
   /// Those that the box is to end with, where the scene says so.
   std::optional<Vector<dynamic>> target_edges = {};
+  /// Axes on which the box ends at walls, with whole spheres between them; empty: none.
+  std::vector<bool> walls = {};
+  /// While a stage puts spheres in their places one after the other: how many have them, and their share of
+  /// the volume of all. Otherwise all do.
+  std::size_t placed_count = 0;
+  double placed_share = 1;
   /// Volume of the box that the spheres needed, before it grew to the one that was asked for.
   double needed_volume = 0;
   /// Largest overlap ratio that the result may keep; 0 for none.
@@ -40,6 +47,7 @@ struct PeriodicWork {
   /// A fresh stream of random numbers for one round of a stage.
   Random random(Stream purpose) { return {seed, stream(purpose, streams_used++)}; }
   int dimension() const { return spheres.dimension(); }
+  bool has_wall(int axis) const { return !walls.empty() && walls[static_cast<std::size_t>(axis)]; }
 };
 
 }  // namespace bernal

@@ -52,6 +52,7 @@ enum class Stream : std::uint64_t {
   room = 6,
   relax = 7,
   measure = 8,
+  fly = 10,
   test = 255
 };
 constexpr std::uint64_t stream(Stream purpose, std::uint64_t index = 0) {
