@@ -2,69 +2,86 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <numeric>
+
+#include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
-#include "bernal/core/tolerance.hpp"
-#include "soft/neighbor_relaxation.hpp"
-#include "soft/soft_packing.hpp"
 #include "stages/overlapping.hpp"
-#include "stages/periodic_holes.hpp"
+#include "stages/periodic_crowd.hpp"
 #include "stages/resize_box.hpp"
 
 namespace bernal {
 namespace {
 
-/// Spheres are relaxed with radii that are larger by this share, so that those that were asked for touch
-/// nothing; by so many resolutions of the coordinates at least, and never more than the last.
-constexpr double least_margin = 1e-4, resolutions_a_margin = 100, largest_margin = 0.01;
-/// Of the margin, what single precision leaves to rely on.
-constexpr double share_of_margin = 0.97;
-constexpr int sweeps_a_look = 25;
-/// Stuck: at so many looks in a row the strain is more than this share of the least so far.
-constexpr double hardly_freer = 0.85;
-constexpr int looks_when_stuck = 2;
-constexpr double burst_swelling = 1.02;
-constexpr int burst_sweeps = 50;
 /// Stirring helps as long as the strain falls below this share of the least so far.
 constexpr double progress = 0.9;
+/// Strain at which there are so many spheres too many that stirring is of no use.
+constexpr double hopeless = 0.02;
+constexpr int patience_when_hopeless = 3;
 /// The share of the spheres that is put elsewhere at a time.
 constexpr double relocated = 0.002;
-/// Sum of squared overlap ratios of a sphere that will not find its way by itself; and the largest overlap
-/// ratio, in strains, above which it is only a few spheres that are stuck.
-constexpr float severe_squeeze = 0.05f;
+/// Largest overlap ratio, in strains, above which it is only a few spheres that are stuck.
 constexpr double local_jam = 40;
-/// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
+/// What is taken out when not all fit, in strains times spheres; and the factor from one time to the next.
+constexpr double taken_out = 0.7, taken_out_faster = 1.25;
+/// For that there are so many sweeps more, in those of the limit.
+constexpr double more_sweeps = 1;
+/// Moves, in radii of the smallest, that break the symmetry of spheres which come in a lattice or in line.
 constexpr double jitter = 1e-6;
+/// In place of the number of overlaps of a sphere that has been taken away.
+constexpr auto gone = static_cast<std::size_t>(-1);
 
-/// What pushes spheres apart: the sorted arrays of up to three dimensions where the box is wide enough for
-/// them.
 template <int D>
-class Engine {
- public:
-  Engine(const Spheres<D>& spheres, const Vector<D>& edges) {
-    if constexpr (D <= 3) {
-      if (edges.minCoeff() > 1.1 * burst_swelling * SoftPacking::smallest_edge(spheres.r)) {
-        wide_ = std::make_unique<SoftPacking>(spheres, edges, soft_kernels().front());
-        return;
-      }
-    }
-    any_ = std::make_unique<NeighborRelaxation<D>>(spheres, edges);
+Spheres<D> starting_places(PeriodicWork& work, Random& random) {
+  Spheres<D> spheres = work.spheres.in<D>();
+  const Vector<D> edges = *work.target_edges;
+  const Boundary<D> boundary{edges};
+  if (work.placed) {
+    Vector<D> now = work.edges;
+    resize_box<D>(spheres, now, edges);
   }
-  template <class Act>
-  auto with(Act&& act) {
-    if constexpr (D <= 3) {
-      if (wide_) return act(*wide_);
-    }
-    return act(*any_);
-  }
+  const double step = jitter * std::ranges::min(spheres.r);
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    spheres.set_center(i, work.placed
+                              ? boundary.wrap(spheres.center(i) + step * uniform_direction<D>(random))
+                              : uniform_point(random, Bounds<D>{Vector<D>::Zero(), edges}));
+  return spheres;
+}
 
- private:
-  std::unique_ptr<SoftPacking> wide_;
-  std::unique_ptr<NeighborRelaxation<D>> any_;
-};
+/// Those that are left when, again and again, the one that overlaps most others has gone, the last of those.
+template <int D>
+Spheres<D> without_overlap(const Spheres<D>& spheres, const Vector<D>& edges, double allowed) {
+  const auto pairs = overlapping<D>(spheres, edges, allowed);
+  std::vector<std::vector<std::uint32_t>> others(spheres.size());
+  for (const auto& [i, j] : pairs) {
+    others[i].push_back(j);
+    others[j].push_back(i);
+  }
+  std::vector<std::size_t> overlaps(spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) overlaps[i] = others[i].size();
+  // By number of overlaps; an entry is outdated where that has fallen since.
+  std::vector<std::pair<std::size_t, std::size_t>> heap;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    if (overlaps[i] > 0) heap.emplace_back(overlaps[i], i);
+  std::ranges::make_heap(heap);
+  while (!heap.empty()) {
+    std::ranges::pop_heap(heap);
+    const auto [count, i] = heap.back();
+    heap.pop_back();
+    if (count != overlaps[i]) continue;
+    overlaps[i] = gone;
+    for (const std::uint32_t j : others[i]) {
+      if (overlaps[j] == gone || --overlaps[j] == 0) continue;
+      heap.emplace_back(overlaps[j], j);
+      std::ranges::push_heap(heap);
+    }
+  }
+  Spheres<D> left;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    if (overlaps[i] == 0) left.push_back(spheres.center(i), spheres.r[i]);
+  return left;
+}
 
 template <int D>
 class Filling {
@@ -72,173 +89,76 @@ class Filling {
   Filling(PeriodicWork& work, const FillOptions& options)
       : work_(work),
         options_(options),
+        most_sweeps_(options.sweeps),
         random_(work.random(Stream::relax)),
         edges_(*work.target_edges),
-        radii_(work.spheres.r),
-        spheres_(work.spheres.in<D>()) {
-    start();
-    for (double& r : spheres_.r) r *= 1 - work.allowed_overlap;
-    const double resolution = 0x1p-32 * edges_.maxCoeff() / std::ranges::min(spheres_.r);
-    margin_ = std::clamp(resolutions_a_margin * resolution, least_margin, largest_margin);
-    prepare();
+        crowd_(starting_places<D>(work, random_), edges_, work.allowed_overlap) {
+    work_.edges = edges_;
   }
 
   StageEnd run() {
-    const StageEnd end = relax();
-    log_effects();
-    if (end != StageEnd::converged) keep_what_is_free();
-    work_.spheres = std::move(spheres_);
-    work_.edges = edges_;
+    const StageEnd end = relax(options_.patience);
+    if (end != StageEnd::converged && end != StageEnd::cancelled) take_out(end);
+    work_.effects["neighbour lists"].calls += crowd_.list_builds();
+    work_.spheres = without_overlap<D>(crowd_.spheres(), edges_, work_.allowed_overlap);
     work_.needed_volume = edges_.prod();
     work_.placed = true;
     return end;
   }
 
  private:
-  enum class Rest { free, stuck, over, cancelled };
+  using Rest = typename PeriodicCrowd<D>::Rest;
 
-  void start() {
-    const Boundary<D> boundary{edges_};
-    if (work_.placed) {
-      Vector<D> edges = work_.edges;
-      resize_box<D>(spheres_, edges, edges_);
-    }
-    const double step = jitter * std::ranges::min(spheres_.r);
-    for (std::size_t i = 0; i < spheres_.size(); ++i)
-      spheres_.set_center(
-          i, work_.placed ? boundary.wrap(spheres_.center(i) + step * uniform_direction<D>(random_))
-                          : uniform_point(random_, Bounds<D>{Vector<D>::Zero(), edges_}));
-  }
-
-  /// The spheres in a box that is smaller by the margin: distances to radii are all that matters.
-  void prepare() {
-    Spheres<D> shrunk = spheres_;
-    Vector<D> edges = edges_;
-    resize_box<D>(shrunk, edges, edges_ / (1 + margin_));
-    if (engine_) builds_ += builds();
-    engine_ = std::make_unique<Engine<D>>(shrunk, edges);
-  }
-
-  void write() {
-    Vector<D> edges;
-    engine_->with([&](auto& engine) { engine.write_to(spheres_, edges); });
-    // Cut off to the edge: what was shrunk and rounded returns to the very edges that were asked for.
-    resize_box<D>(spheres_, edges, edges_);
-  }
-
-  std::uint64_t builds() {
-    return engine_->with([](const auto& engine) { return engine.builds(); });
-  }
-
-  void sweep(int times, float omega) {
-    engine_->with([&](auto& engine) {
-      for (int k = 0; k < times; ++k) engine.sweep(omega);
-    });
-    sweeps_ += times;
-  }
-
-  void measure() {
-    std::vector<float> stress;
-    engine_->with([&](auto& engine) {
-      const Pace pace = pace_for(0);
-      engine.wear_lists(pace.wear);
-      largest_overlap_ = engine.sweep_and_measure(pace.omega * D / 3);
-      stress = engine.stress();
-    });
-    ++sweeps_;
-    double sum = 0;
-    severe_ = 0;
-    for (const float s : stress) {
-      sum += std::sqrt(s);
-      if (s > severe_squeeze) ++severe_;
-    }
-    strain_ = sum / static_cast<double>(spheres_.size());
-  }
-
-  Rest settle() {
-    int slow = 0;
-    double least_strain = 1e300;
-    for (;;) {
-      const Pace pace = pace_for(largest_overlap_);
-      engine_->with([&](auto& engine) { engine.wear_lists(pace.wear); });
-      for (int k = 1; k < sweeps_a_look; ++k) {
-        sweep(1, pace.omega * D / 3);
-        if (work_.monitor.stop()) return Rest::cancelled;
-      }
-      measure();
-      if (getenv("FILL_TRACE")) fprintf(stderr, "%6.0f %.2e %.2e\n", sweeps_, largest_overlap_, strain_);
-      if (largest_overlap_ < share_of_margin * margin_) return Rest::free;
-      if (sweeps_ > options_.sweeps) return Rest::over;
-      slow = strain_ > hardly_freer * least_strain ? slow + 1 : 0;
-      if (slow == looks_when_stuck) return Rest::stuck;
-      least_strain = std::min(least_strain, strain_);
-    }
-  }
-
-  void burst() {
-    engine_->with([&](auto& engine) { engine.grow(1 / burst_swelling); });
-    sweep(burst_sweeps, pace_for(0).omega * D / 3);
-    engine_->with([&](auto& engine) { engine.grow(burst_swelling); });
-  }
-
-  void relocate() {
-    const std::vector<float> stress = engine_->with([](const auto& engine) { return engine.stress(); });
-    write();
-    std::vector<std::uint32_t> ids(spheres_.size());
-    std::iota(ids.begin(), ids.end(), 0u);
-    const auto count = std::max<std::size_t>(
-        severe_, static_cast<std::size_t>(std::ceil(relocated * static_cast<double>(spheres_.size()))));
-    std::ranges::stable_sort(ids, std::greater<>(), [&](auto i) { return stress[i]; });
-    ids.resize(std::min(count, ids.size()));
-    move_to_holes<D>(spheres_, edges_, std::move(ids), random_);
-    prepare();
-  }
-
-  StageEnd relax() {
+  /// Settles and stirs.
+  StageEnd relax(int patience) {
     double least_strain = 1e300;
     for (int failures = 0;;) {
-      const Rest rest = settle();
+      const Rest rest = crowd_.settle(work_.monitor, most_sweeps_);
       report();
-      if (rest == Rest::free) {
-        write();
-        if (overlapping<D>(spheres_, edges_, work_.allowed_overlap).empty()) return StageEnd::converged;
-      }
-      if (rest == Rest::cancelled || rest == Rest::over) {
-        write();
-        return rest == Rest::over ? StageEnd::hit_limit : StageEnd::cancelled;
-      }
-      if (strain_ < progress * least_strain) {
-        least_strain = strain_;
+      if (rest == Rest::cancelled) return StageEnd::cancelled;
+      if (rest == Rest::free && overlapping<D>(crowd_.spheres(), edges_, work_.allowed_overlap).empty())
+        return StageEnd::converged;
+      if (crowd_.sweeps() > most_sweeps_) return StageEnd::hit_limit;
+      if (crowd_.strain() < progress * least_strain) {
+        least_strain = crowd_.strain();
         failures = 0;
-      } else if (++failures > options_.patience) {
-        write();
+      } else if (++failures > (crowd_.strain() > hopeless ? std::min(patience, patience_when_hopeless) : patience)) {
         return StageEnd::full;
       }
-      const bool local = severe_ > 0 || largest_overlap_ > local_jam * strain_;
+      // Bursts do most; what they do not help to is where there is no room.
+      const bool local =
+          crowd_.severely_squeezed() > 0 || crowd_.largest_overlap() > local_jam * crowd_.strain();
       if (failures % 2 == 0 && !local)
-        burst();
+        crowd_.burst();
       else
-        relocate();
+        crowd_.relocate(relocated, random_);
     }
   }
 
-  void report() { }
-  void log_effects() { work_.effects["neighbour lists"].calls += builds_ + builds(); }
+  /// Fewer and fewer, the last ones first, until the others are free of overlap.
+  void take_out(StageEnd end) {
+    most_sweeps_ = crowd_.sweeps() + more_sweeps * options_.sweeps;
+    double share = taken_out;
+    while (end != StageEnd::converged && end != StageEnd::cancelled && crowd_.size() > 1 &&
+           crowd_.sweeps() <= most_sweeps_) {
+      const double count = share * crowd_.strain() * static_cast<double>(crowd_.size());
+      crowd_.drop_last(std::max<std::size_t>(1, static_cast<std::size_t>(count)), random_);
+      share *= taken_out_faster;
+      end = relax(0);
+    }
+  }
 
-  void keep_what_is_free() {}
+  void report() {
+    const double done = std::log(crowd_.largest_overlap()) / std::log(crowd_.margin());
+    work_.milestone("fill", std::clamp(done, 0.0, 0.99), crowd_.largest_overlap());
+  }
 
   PeriodicWork& work_;
   const FillOptions options_;
+  double most_sweeps_;
   Random random_;
   const Vector<D> edges_;
-  const std::vector<double> radii_;
-  Spheres<D> spheres_;
-  double margin_ = 0;
-  std::unique_ptr<Engine<D>> engine_;
-  double largest_overlap_ = 1, strain_ = 1;
-  std::size_t severe_ = 0;
-  double sweeps_ = 0;
-  std::uint64_t builds_ = 0;
+  PeriodicCrowd<D> crowd_;
 };
 
 }  // namespace
@@ -249,6 +169,12 @@ bool fits_box(const PeriodicWork& work) {
 }
 
 StageEnd fill_by_relaxation(PeriodicWork& work, const FillOptions& options) {
+  if (work.spheres.empty()) return StageEnd::converged;
+  if (!fits_box(work))
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("the largest sphere is {:.4g} times as wide as the box that is to be filled; give "
+                            "more or smaller spheres",
+                            2 * std::ranges::max(work.spheres.r) / work.target_edges->minCoeff()));
   const EffectTimer timer(work.effects["relaxation"]);
   return with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
     return Filling<decltype(dimension)::value>(work, options).run();
