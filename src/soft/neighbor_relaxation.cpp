@@ -32,7 +32,8 @@ constexpr float longest_move = 0x1p30f;
 
 std::uint32_t to_fixed(double x, double edge) {
   const double share = x / edge;
-  return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::llround((share - std::floor(share)) * 0x1p32)));
+  return static_cast<std::uint32_t>(
+      static_cast<std::int64_t>(std::llround((share - std::floor(share)) * 0x1p32)));
 }
 
 /// The sums of the components of four vectors.
@@ -83,7 +84,8 @@ NeighborRelaxation<D>::NeighborRelaxation(const Spheres<D>& spheres, const Vecto
       ids_(spheres.size()),
       stress_(spheres.size(), 0.0f) {
   for (std::size_t i = 0; i < count_; ++i) {
-    for (int k = 0; k < D; ++k) places_[i].x[k] = to_fixed(spheres.x[static_cast<std::size_t>(k)][i], edges[k]);
+    for (int k = 0; k < D; ++k)
+      places_[i].x[k] = to_fixed(spheres.x[static_cast<std::size_t>(k)][i], edges[k]);
     radii_[i] = static_cast<float>(spheres.r[i]);
     largest_radius_ = std::max(largest_radius_, radii_[i]);
     ids_[i] = static_cast<Id>(i);
@@ -108,7 +110,7 @@ void NeighborRelaxation<D>::grow(double factor) {
 
 template <int D>
 inline typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::away(const Place& from,
-                                                                           const Place& to) const {
+                                                                          const Place& to) const {
   return __builtin_convertvector(__builtin_bit_cast(Ints, Whole(to.x - from.x)), Floats) * scale_;
 }
 
@@ -130,7 +132,8 @@ double NeighborRelaxation<D>::move_all(float omega) {
         return to_four(Floats(d * d));
       };
       const __m128 squared = sums(squares(j[0]), squares(j[1]), squares(j[2]), squares(j[3]));
-      const __m128 reach = _mm_add_ps(mine, _mm_setr_ps(radii_[j[0]], radii_[j[1]], radii_[j[2]], radii_[j[3]]));
+      const __m128 reach =
+          _mm_add_ps(mine, _mm_setr_ps(radii_[j[0]], radii_[j[1]], radii_[j[2]], radii_[j[3]]));
       const int near = _mm_movemask_ps(_mm_cmplt_ps(squared, _mm_mul_ps(reach, reach)));
       for (int k = 0; k < 4; ++k) {
         *end = j[k];
@@ -254,7 +257,8 @@ void NeighborRelaxation<D>::sort_into_cells(double reach) {
   double share = 1, looked_at = 1, cells = 1, least_cost = cost_of_a_cell + count;
   gridded_.clear();
   for (Axis axis : axes) {
-    axis.cells = static_cast<int>(std::min<double>(axis.cells, std::max(1.0, most_cells_a_sphere * count / cells)));
+    axis.cells =
+        static_cast<int>(std::min<double>(axis.cells, std::max(1.0, most_cells_a_sphere * count / cells)));
     if (axis.cells < 4) break;
     share *= 3.0 / axis.cells;
     looked_at *= 3;
@@ -339,7 +343,8 @@ void NeighborRelaxation<D>::build_lists() {
     rows_near(i, rows);
     std::size_t candidates = 0;
     for (const Row& row : rows) candidates += row.last - row.first;
-    if (neighbors_.size() < used + candidates + 2 * block) neighbors_.resize(2 * (used + candidates + 2 * block));
+    if (neighbors_.size() < used + candidates + 2 * block)
+      neighbors_.resize(2 * (used + candidates + 2 * block));
     Id* end = &neighbors_[used];
     const Place me = places_[i];
     const __m128 blown_up = _mm_set1_ps(radii_[i] + static_cast<float>(skin_));

@@ -43,9 +43,8 @@ Spheres<D> starting_places(PeriodicWork& work, Random& random) {
   }
   const double step = jitter * std::ranges::min(spheres.r);
   for (std::size_t i = 0; i < spheres.size(); ++i)
-    spheres.set_center(i, work.placed
-                              ? boundary.wrap(spheres.center(i) + step * uniform_direction<D>(random))
-                              : uniform_point(random, Bounds<D>{Vector<D>::Zero(), edges}));
+    spheres.set_center(i, work.placed ? boundary.wrap(spheres.center(i) + step * uniform_direction<D>(random))
+                                      : uniform_point(random, Bounds<D>{Vector<D>::Zero(), edges}));
   return spheres;
 }
 
@@ -122,7 +121,8 @@ class Filling {
       if (crowd_.strain() < progress * least_strain) {
         least_strain = crowd_.strain();
         failures = 0;
-      } else if (++failures > (crowd_.strain() > hopeless ? std::min(patience, patience_when_hopeless) : patience)) {
+      } else if (++failures >
+                 (crowd_.strain() > hopeless ? std::min(patience, patience_when_hopeless) : patience)) {
         return StageEnd::full;
       }
       // Bursts do most; what they do not help to is where there is no room.
@@ -171,10 +171,11 @@ bool fits_box(const PeriodicWork& work) {
 StageEnd fill_by_relaxation(PeriodicWork& work, const FillOptions& options) {
   if (work.spheres.empty()) return StageEnd::converged;
   if (!fits_box(work))
-    throw Error(ErrorCode::bad_scene,
-                fmt::format("the largest sphere is {:.4g} times as wide as the box that is to be filled; give "
-                            "more or smaller spheres",
-                            2 * std::ranges::max(work.spheres.r) / work.target_edges->minCoeff()));
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("the largest sphere is {:.4g} times as wide as the box that is to be filled; give "
+                    "more or smaller spheres",
+                    2 * std::ranges::max(work.spheres.r) / work.target_edges->minCoeff()));
   const EffectTimer timer(work.effects["relaxation"]);
   return with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
     return Filling<decltype(dimension)::value>(work, options).run();

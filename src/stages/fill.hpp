@@ -21,9 +21,9 @@ bool fits_box(const PeriodicWork& work);
 ///
 /// On `converged` all are there and no two images overlap by more than `work.allowed_overlap`, whatever the
 /// rounding. Otherwise, `full` where stirring does not help any more and `hit_limit` or `cancelled` where it
-/// was cut short, `work.spheres` holds those that are free of overlap, in the order that they had. Radii never
-/// change by a bit. Deterministic in the seed.
-/// Precondition: `work.target_edges` is set. Throws Error{bad_scene} where a sphere overlaps its own image.
+/// was cut short, `work.spheres` holds those that are free of overlap, in the order that they had. Radii
+/// never change by a bit. Deterministic in the seed. Precondition: `work.target_edges` is set. Throws
+/// Error{bad_scene} where a sphere overlaps its own image.
 StageEnd fill_by_relaxation(PeriodicWork& work, const FillOptions& options);
 
 /// The same for spheres of widely differing sizes: the largest come first, at places where they fit between

@@ -16,16 +16,16 @@ namespace {
 /// Spheres down to this share of the largest of a class belong to it: a level of the background grid.
 constexpr double least_of_class = 0.5;
 /// Random places that are tried for a sphere before the others of its class are moved.
-constexpr int tries = 20;
+constexpr int tries = 4;
 /// So often a place that overlaps is pushed to where it does not.
 constexpr int pushes = 12;
 /// A push goes this much farther than contact, and over-relaxed where there are several.
 constexpr double beyond_contact = 1e-4, over_relaxation = 1.5;
 /// A class is left when moving it has helped fewer than this share of those that wait, so often in a row.
 constexpr double worthwhile = 0.02;
-constexpr int patience = 4;
+constexpr int patience = 8;
 /// Sweeps of random moves between two rounds of trials, and how the moves adapt, to what share of success.
-constexpr int sweeps_a_round = 2;
+constexpr int sweeps_a_round = 1;
 constexpr double first_step = 0.3, successful = 0.4, adapted = 1.1, shortest_step = 1e-3;
 
 template <int D>
@@ -139,7 +139,8 @@ class Insertion {
     placed_[i] = true;
   }
 
-  /// Moves those of a class that have places, by up to `step` radii on each axis, where nothing is in the way.
+  /// Moves those of a class that have places, by up to `step` radii on each axis, where nothing is in the
+  /// way.
   void move_at_random(const std::vector<Id>& members, double& step) {
     std::size_t moved = 0, there = 0;
     for (const Id i : members) {

@@ -95,7 +95,8 @@ void PeriodicCrowd<D>::measure() {
   double sum = 0;
   for (const float s : stress_) sum += std::sqrt(s);
   strain_ = sum / static_cast<double>(size());
-  severe_ = static_cast<std::size_t>(std::ranges::count_if(stress_, [](float s) { return s > severe_squeeze; }));
+  severe_ =
+      static_cast<std::size_t>(std::ranges::count_if(stress_, [](float s) { return s > severe_squeeze; }));
 }
 
 template <int D>

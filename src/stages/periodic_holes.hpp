@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "bernal/core/random.hpp"
@@ -11,14 +10,15 @@
 namespace bernal {
 
 /// Puts some of the spheres of a periodic box into holes between the others: the largest first, each into the
-/// roomiest of the random places, two for each sphere in the box and a thousand more, that none of those
-/// before it has covered by half. Room is what is left to the nearest surface. Precondition: not all spheres
-/// are to be moved. Cost: about 1 µs a place in three dimensions, N times as much where N is small.
+/// next roomiest of so many random places that none of those before it covers by half; at random where there
+/// are no more holes. Room is what is left to the nearest surface. Cost: two random places for each sphere in
+/// the box and a thousand more, each about 1 µs in three dimensions.
 template <int D>
 void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std::uint32_t> ids,
                    Random& random) {
   constexpr double probes_a_sphere = 2, least_probes = 1000;
   const Boundary<D> boundary{edges};
+  const Bounds<D> box{Vector<D>::Zero(), edges};
   const auto [least, most] = std::ranges::minmax(spheres.r);
   std::ranges::stable_sort(ids, std::greater<>(), [&](auto i) { return spheres.r[i]; });
   std::vector<bool> moves(spheres.size(), false);
@@ -35,7 +35,7 @@ void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std:
   const auto probes =
       static_cast<std::size_t>(least_probes + probes_a_sphere * static_cast<double>(spheres.size()));
   for (std::size_t n = 0; n < probes; ++n) {
-    const Vector<D> p = uniform_point(random, Bounds<D>{Vector<D>::Zero(), edges});
+    const Vector<D> p = uniform_point(random, box);
     double room = most;
     const auto lower = [&](double reach) {
       grid.for_each_near(p, reach, [&](std::uint32_t j) {
@@ -47,17 +47,18 @@ void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std:
     holes.push_back({p, room});
   }
   std::ranges::stable_sort(holes, std::greater<>(), &Hole::room);
-  std::vector<double> squared_apart(holes.size(), std::numeric_limits<double>::infinity());
+  auto hole = holes.begin();
   for (const std::uint32_t i : ids) {
-    const double clear = 0.25 * (spheres.r[i] + least) * (spheres.r[i] + least);
-    std::size_t chosen = 0;
-    while (chosen < holes.size() && squared_apart[chosen] < clear) ++chosen;
-    if (chosen == holes.size()) return;
-    const Vector<D> place = holes[chosen].place;
-    spheres.set_center(i, place);
-    for (std::size_t k = 0; k < holes.size(); ++k)
-      squared_apart[k] =
-          std::min(squared_apart[k], boundary.minimum_image(holes[k].place - place).squaredNorm());
+    const double r = spheres.r[i], apart = 0.5 * (r + least);
+    const auto taken = [&] {
+      return grid.any_near(hole->place, r, [&](std::uint32_t j) {
+        return moves[j] &&
+               boundary.minimum_image(hole->place - spheres.center(j)).squaredNorm() < apart * apart;
+      });
+    };
+    while (hole != holes.end() && taken()) ++hole;
+    spheres.set_center(i, hole != holes.end() ? (hole++)->place : uniform_point(random, box));
+    grid.insert(i, spheres.center(i), r);
   }
 }
 
