@@ -10,6 +10,7 @@
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
 #include "stages/effect_log.hpp"
+#include "stages/fill_task.hpp"
 #include "stages/stage_end.hpp"
 
 namespace bernal {
@@ -31,6 +32,10 @@ struct PeriodicWork {
   /// the volume of all. Otherwise all do.
   std::size_t placed_count = 0;
   double placed_share = 1;
+  /// By the plan, for stages that choose their method.
+  FillTask fill_task = {};
+  /// How a stage went about it, for people: follows "all 200 spheres are placed".
+  std::string account = {};
   /// Volume of the box that the spheres needed, before it grew to the one that was asked for.
   double needed_volume = 0;
   /// Largest overlap ratio that the result may keep; 0 for none.
