@@ -42,14 +42,14 @@ class PartialGrid {
   /// `repeats[k]` says whether axis k is periodic. No query will reach farther than `reach` and `slack`.
   PartialGrid(const Vector<D>& edges, const std::array<bool, D>& repeats, double reach, double slack,
               std::size_t expected, int axes = automatic)
-      : edges_(edges), repeats_(repeats), slack_(slack) {
+      : repeats_(repeats), slack_(slack) {
     std::array<double, D> cells;
     for (int k = 0; k < D; ++k) {
       cells[k] = std::clamp(std::floor(edges[k] / (reach + slack)), 1.0, most_cells_along_an_axis);
       period_[k] = repeats[k] ? edges[k] : std::numeric_limits<double>::infinity();
     }
     const auto spheres = static_cast<double>(expected);
-    axes_ = axes;
+    axes_ = std::min(axes, D);
     if (axes == automatic) {
       axes_ = 0;
       for (int k = 1; k <= D; ++k)
@@ -57,7 +57,7 @@ class PartialGrid {
     }
     // A box that is almost empty: cells of no use are not made.
     double all = 1;
-    for (int k = 0; k < axes_; ++k) {
+    for (int k = 0; k < std::min(axes_, D); ++k) {
       const double most = std::max(3.0, std::floor(std::max(64.0, 4 * spheres) / all));
       cells_[k] = static_cast<int>(std::min(cells[k], most));
       all *= cells_[k];
@@ -78,7 +78,7 @@ class PartialGrid {
     std::fill(start_.begin(), start_.end(), 0);
     for (std::size_t i = 0; i < n; ++i) {
       std::size_t index = 0;
-      for (int k = axes_ - 1; k >= 0; --k)
+      for (int k = std::min(axes_, D) - 1; k >= 0; --k)
         index = index * static_cast<std::size_t>(cells_[k]) + coordinate(k, place(x, k, i));
       cell[i] = static_cast<std::uint32_t>(index);
       ++start_[index + 1];
@@ -175,9 +175,13 @@ class PartialGrid {
   /// the grid, until it returns true.
   template <class Visit>
   bool any_run(const Vector<D>& c, double half, Visit&& visit) const {
-    if (axes_ == 0) return visit(0, ids_.size());
-    std::array<int, D> first{}, count{}, step{};
-    for (int k = 0; k < axes_; ++k) {
+    const int axes = std::min(axes_, D);  // for the compiler, which warns of D = 1 otherwise
+    if (axes == 0) return visit(0, ids_.size());
+    std::array<int, D> first, count, step;
+    first.fill(0);
+    count.fill(1);
+    step.fill(0);
+    for (int k = 0; k < axes; ++k) {
       const double low = std::floor((c[k] - half - slack_) * per_length_[k]);
       const double high = std::floor((c[k] + half + slack_) * per_length_[k]);
       if (repeats_[k]) {
@@ -191,7 +195,7 @@ class PartialGrid {
     }
     for (;;) {
       std::size_t row = 0;
-      for (int k = axes_ - 1; k > 0; --k) {
+      for (int k = axes - 1; k > 0; --k) {
         const int at = first[k] + step[k];
         row = row * static_cast<std::size_t>(cells_[k]) +
               static_cast<std::size_t>(at < cells_[k] ? at : at - cells_[k]);
@@ -204,16 +208,15 @@ class PartialGrid {
       if (visit(start_[begin], start_[end])) return true;
       if (beyond > 0 && visit(start_[row], start_[row + static_cast<std::size_t>(beyond)])) return true;
       int k = 1;
-      for (; k < axes_; ++k) {
+      for (; k < axes; ++k) {
         if (++step[k] < count[k]) break;
         step[k] = 0;
       }
-      if (k >= axes_) break;
+      if (k >= axes) break;
     }
     return visit(start_.back(), ids_.size());
   }
 
-  Vector<D> edges_;
   std::array<bool, D> repeats_;
   Vector<D> period_;
   double slack_;

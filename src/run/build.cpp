@@ -33,6 +33,15 @@ void require_possible(const Scene& scene) {
                     scene.is_periodic() ? "periodic box" : "container with walls", fmt::join(able, "\", \"")),
         stage.where);
   }
+  if (scene.container.has("walls"))
+    for (const Spec& stage : scene.stages)
+      if (stage.name != "fly")
+        throw Error(
+            ErrorCode::bad_scene,
+            fmt::format("\"{}\" does not know the walls of a box that is periodic along other axes; there, "
+                        "the stage is \"fly\"",
+                        stage.name),
+            stage.where);
   const bool flies = std::ranges::find(scene.stages, "fly", &Spec::name) != scene.stages.end();
   const Target& target = scene.target;
   if (flies && !target.packing_fraction && (!target.count || scene.container.flag("scalable")))

@@ -55,6 +55,10 @@ Domain make_periodic(const Scene& scene, std::string&) {
   PeriodicBox box{Vector<dynamic>::Constant(scene.dimension(), c.has("edge") ? c.number("edge") : 1.0)};
   if (c.has("size"))
     box.edges = Eigen::Map<const Eigen::VectorXd>(c.numbers("size").data(), scene.dimension());
+  if (c.has("walls")) {
+    box.walls.assign(static_cast<std::size_t>(scene.dimension()), false);
+    for (const double axis : c.numbers("walls")) box.walls.at(static_cast<std::size_t>(axis)) = true;
+  }
   return box;
 }
 
@@ -148,14 +152,19 @@ const PlanItem flying[] = {
 
 /// The method and why it, at the first of its effects.
 std::vector<PlanItem> chosen_effects_of_fly(const Spec& stage, const Plan& plan) {
-  const FillChoice choice = choose_filling(stage.text("method"), fill_task_of(plan));
+  FillChoice choice;
+  try {
+    choice = choose_filling(stage.text("method"), fill_task_of(plan));
+  } catch (const Error& error) {
+    throw Error(ErrorCode::bad_scene, error.what(), stage.location("method"));
+  }
   std::vector<PlanItem> items;
   if (choice.method == FillMethod::patent || choice.method == FillMethod::flight)
     items.assign(flying, flying + 2);
   else
     items.assign(flying + (choice.method == FillMethod::classes ? 2 : 4), std::end(flying));
   if (choice.method == FillMethod::patent) items[1].cost = "O(N) each";
-  items.front().what += fmt::format(" (method {}, {})", name_of(choice.method), choice.reason);
+  items.insert(items.begin(), {"fly", fmt::format("by {}, {}", name_of(choice.method), choice.reason), ""});
   return items;
 }
 
@@ -184,7 +193,8 @@ FillTask fill_task_of(const Plan& plan) {
   const Target& target = plan.scene.target;
   FillTask task{.dimension = dimension,
                 .attainable = plan.attainable_packing_fraction,
-                .size_ratio = plan.radii->quantile(1 - rare) / plan.radii->quantile(rare)};
+                .size_ratio = plan.radii->quantile(1 - rare) / plan.radii->quantile(rare),
+                .has_walls = std::get<PeriodicBox>(plan.domain).has_walls()};
   if (target.packing_fraction)
     task.packing_fraction = *target.packing_fraction;
   else if (target.count)

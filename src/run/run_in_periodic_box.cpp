@@ -100,6 +100,7 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
 
     PeriodicWork work{.spheres = Spheres<dynamic>(dimension),
                       .edges = std::get<PeriodicBox>(plan.domain).edges / unit,
+                      .walls = std::get<PeriodicBox>(plan.domain).walls,
                       .allowed_overlap = scene.overlap,
                       .seed = packing.seed,
                       .monitor = monitor,
@@ -134,7 +135,7 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
     for (auto& column : packing.spheres.x)
       for (double& x : column) x *= unit;
     for (double& r : packing.spheres.r) r *= unit;
-    PeriodicBox box{work.edges * unit};
+    PeriodicBox box{work.edges * unit, work.walls};
     packing.domain = box;
     packing.volume = volume_of(packing.domain);
     packing.scene.container.parameters["size"].value =

@@ -17,7 +17,7 @@ enum class FillMethod {
 std::string_view name_of(FillMethod);
 
 struct FillChoice {
-  FillMethod method;
+  FillMethod method = FillMethod::relaxation;
   std::string reason;  ///< a clause: "as …"
 };
 

@@ -24,10 +24,10 @@ struct PeriodicWork {
   /// Of the box; before the spheres are placed only its proportions mean something.
   Vector<dynamic> edges;
   bool placed = false;
-  /// Those that the box is to end with, where the scene says so.
-  std::optional<Vector<dynamic>> target_edges = {};
   /// Axes on which the box ends at walls, with whole spheres between them; empty: none.
   std::vector<bool> walls = {};
+  /// Those that the box is to end with, where the scene says so.
+  std::optional<Vector<dynamic>> target_edges = {};
   /// While a stage puts spheres in their places one after the other: how many have them, and their share of
   /// the volume of all. Otherwise all do.
   std::size_t placed_count = 0;
