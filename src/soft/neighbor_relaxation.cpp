@@ -23,12 +23,15 @@ constexpr double thinnest = 0.125;
 /// Looking at a cell costs as much as looking at so many spheres.
 constexpr double cost_of_a_cell = 1.5;
 constexpr double most_cells_a_sphere = 4;
-/// A burst of larger radii must not make a box narrow.
-constexpr double narrow = 4.2;
+/// In a box of fewer of the largest radii spheres may overlap in several images; and a little more, for
+/// rounding.
+constexpr double narrow = 4.001;
 /// Places are read four at a time.
 constexpr std::size_t block = 4;
 /// A move by this share of the box is as good as any longer one.
 constexpr float longest_move = 0x1p30f;
+/// In sums of radii, of spheres whose centres coincide.
+constexpr float least_distance = 1e-3f;
 
 std::uint32_t to_fixed(double x, double edge) {
   const double share = x / edge;
@@ -56,18 +59,6 @@ inline __m128 to_four(const Floats& v) {
     return folded(__builtin_bit_cast(__m128, v));
   else
     return folded(__builtin_bit_cast(Pair, v));
-}
-
-/// Some direction away from where another sphere has the same centre, a different one for each pair.
-template <int D>
-Vector<D> any_direction(std::uint32_t i, std::uint32_t j) {
-  Vector<D> v;
-  std::uint32_t state = std::min(i, j) * 2654435761u ^ (std::max(i, j) + 1) * 2246822519u;
-  for (int k = 0; k < D; ++k) {
-    state = (state ^ (state >> 15)) * 2654435769u + 1;
-    v[k] = static_cast<double>(state >> 8) * 0x1p-23 - 1 + 0x1p-25;
-  }
-  return (i < j ? 1 : -1) * v.normalized();
 }
 
 }  // namespace
@@ -115,107 +106,121 @@ inline typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::away(const 
 }
 
 template <int D>
-template <bool measure>
-double NeighborRelaxation<D>::move_all(float omega) {
-  keep_lists_valid();
-  if (edges_.minCoeff() < narrow * largest_radius_) return move_all_among_images<measure>(omega);
-  float largest = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Place me = places_[i];
-    const float r = radii_[i];
-    const __m128 mine = _mm_set1_ps(r);
-    Id* end = hits_.data();
-    for (std::size_t n = list_[i]; n < list_[i + 1]; n += block) {
-      const Id* j = &neighbors_[n];
-      const auto squares = [&](Id k) {
-        const Floats d = away(places_[k], me);
-        return to_four(Floats(d * d));
-      };
-      const __m128 squared = sums(squares(j[0]), squares(j[1]), squares(j[2]), squares(j[3]));
-      const __m128 reach =
-          _mm_add_ps(mine, _mm_setr_ps(radii_[j[0]], radii_[j[1]], radii_[j[2]], radii_[j[3]]));
-      const int near = _mm_movemask_ps(_mm_cmplt_ps(squared, _mm_mul_ps(reach, reach)));
-      for (int k = 0; k < 4; ++k) {
-        *end = j[k];
-        end += near >> k & 1;
-      }
-    }
-    if constexpr (measure) stress_[i] = 0;
-    if (end == hits_.data()) continue;
-    Floats sum{};
-    float contacts = 0;
-    for (const Id* j = hits_.data(); j < end; ++j) {
-      Floats d = away(places_[*j], me);
-      const __m128 four = to_four(Floats(d * d));
-      float distance = std::sqrt((four[0] + four[1]) + (four[2] + four[3]));
-      const float reach = r + radii_[*j], weight = 2 * radii_[*j] / reach;
-      if constexpr (measure) {
-        const float ratio = 1 - distance / reach;
-        largest = std::max(largest, ratio);
-        stress_[i] += ratio * ratio;
-      }
-      if (!(distance > 0)) {
-        const Vector<D> any = any_direction<D>(ids_[i], ids_[*j]);
-        for (int k = 0; k < D; ++k) d[k] = static_cast<float>(any[k]) * 1e-3f * reach;
-        distance = 1e-3f * reach;
-      }
-      sum += d * (weight * (reach / distance - 1));
-      contacts += weight;
-    }
-    const Floats step = sum * std::min(omega / contacts, 1.0f) * inverse_scale_;
-    const Floats limit = Floats{} + longest_move;
-    const Floats capped = step < limit ? (step > -limit ? step : -limit) : limit;
-    places_[i].x = me.x + __builtin_bit_cast(Whole, __builtin_convertvector(capped, Ints));
-  }
-  ++age_;
-  return largest;
-}
-
-/// The same where a sphere may overlap several images of another.
-template <int D>
-template <bool measure>
-double NeighborRelaxation<D>::move_all_among_images(float omega) {
-  const Boundary<D> boundary{edges_};
-  double largest = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    Vector<D> sum = Vector<D>::Zero();
-    double contacts = 0, stress = 0;
-    for (std::size_t n = list_[i]; n < list_[i + 1] && neighbors_[n] < count_; ++n) {
-      const Id j = neighbors_[n];
-      const double reach = static_cast<double>(radii_[i]) + radii_[j], weight = 2 * radii_[j] / reach;
-      const Floats shortest = away(places_[j], places_[i]);
-      Vector<D> displacement;
-      for (int k = 0; k < D; ++k) displacement[k] = shortest[k];
-      boundary.for_each_image(displacement, reach, [&](const Vector<D>& image) {
-        const double d = image.norm();
-        if (!(d < reach)) return;
-        const double ratio = 1 - d / reach;
-        largest = std::max(largest, ratio);
-        stress += ratio * ratio;
-        contacts += weight;
-        sum += weight * (d > 0 ? Vector<D>(image * (reach / d - 1))
-                               : Vector<D>(any_direction<D>(ids_[i], ids_[j]) * reach));
-      });
-    }
-    if constexpr (measure) stress_[i] = static_cast<float>(stress);
-    if (!(contacts > 0)) continue;
-    sum *= std::min(static_cast<double>(omega) / contacts, 1.0);
-    for (int k = 0; k < D; ++k)
-      places_[i].x[k] += static_cast<std::uint32_t>(
-          static_cast<std::int64_t>(std::clamp(sum[k] * 0x1p32 / edges_[k], -0x1p30, 0x1p30)));
-  }
-  ++age_;
-  return largest;
-}
-
-template <int D>
 void NeighborRelaxation<D>::sweep(float omega) {
-  move_all<false>(omega);
+  move_all(omega);
 }
 
 template <int D>
 double NeighborRelaxation<D>::sweep_and_measure(float omega) {
-  return move_all<true>(omega);
+  return move_all(omega);
+}
+
+template <int D>
+float NeighborRelaxation<D>::move_all(float omega) {
+  keep_lists_valid();
+  const bool in_images = edges_.minCoeff() < narrow * largest_radius_;
+  float largest = 0;
+  for (Id i = 0; i < count_; ++i) {
+    const Id* end = find_overlapping(i);
+    stress_[i] = 0;
+    if (end == hits_.data()) continue;
+    const Push push = in_images ? push_from_images(i, end) : push_from_nearest(i, end);
+    stress_[i] = push.stress;
+    largest = std::max(largest, push.largest);
+    const Floats step = push.sum * std::min(omega / push.contacts, 1.0f) * inverse_scale_;
+    const Floats limit = Floats{} + longest_move;
+    const Floats capped = step < limit ? (step > -limit ? step : -limit) : limit;
+    places_[i].x += __builtin_bit_cast(Whole, __builtin_convertvector(capped, Ints));
+  }
+  ++age_;
+  return largest;
+}
+
+/// Those of its list, by the nearest image: none of the others can be nearer.
+template <int D>
+const typename NeighborRelaxation<D>::Id* NeighborRelaxation<D>::find_overlapping(Id i) {
+  const Place me = places_[i];
+  const __m128 r = _mm_set1_ps(radii_[i]);
+  Id* end = hits_.data();
+  for (std::size_t n = list_[i]; n < list_[i + 1]; n += block) {
+    const Id* j = &neighbors_[n];
+    const auto square = [&](Id k) {
+      const Floats d = away(places_[k], me);
+      return to_four(Floats(d * d));
+    };
+    const __m128 squared = sums(square(j[0]), square(j[1]), square(j[2]), square(j[3]));
+    const __m128 reach = _mm_add_ps(r, _mm_setr_ps(radii_[j[0]], radii_[j[1]], radii_[j[2]], radii_[j[3]]));
+    const int near = _mm_movemask_ps(_mm_cmplt_ps(squared, _mm_mul_ps(reach, reach)));
+    for (std::size_t k = 0; k < block; ++k) {
+      *end = j[k];
+      end += near >> k & 1;
+    }
+  }
+  return end;
+}
+
+template <int D>
+typename NeighborRelaxation<D>::Push NeighborRelaxation<D>::push_from_nearest(Id i, const Id* end) const {
+  Push push;
+  for (const Id* j = hits_.data(); j < end; ++j) {
+    Floats d = away(places_[*j], places_[i]);
+    const __m128 four = to_four(Floats(d * d));
+    float distance = std::sqrt((four[0] + four[1]) + (four[2] + four[3]));
+    const float reach = radii_[i] + radii_[*j];
+    push.measure(1 - distance / reach);
+    if (!(distance > 0)) {
+      distance = least_distance * reach;
+      d = any_direction(i, *j) * distance;
+    }
+    const float weight = 2 * radii_[*j] / reach;
+    push.sum += d * (weight * (reach / distance - 1));
+    push.contacts += weight;
+  }
+  return push;
+}
+
+template <int D>
+typename NeighborRelaxation<D>::Push NeighborRelaxation<D>::push_from_images(Id i, const Id* end) const {
+  const Boundary<D> boundary{edges_};
+  Push push;
+  push.contacts =
+      std::numeric_limits<float>::min();  // in case the nearest image is a contact to rounding only
+  for (const Id* j = hits_.data(); j < end; ++j) {
+    const float reach = radii_[i] + radii_[*j], weight = 2 * radii_[*j] / reach;
+    const Floats nearest = away(places_[*j], places_[i]);
+    Vector<D> displacement;
+    for (int k = 0; k < D; ++k) displacement[k] = nearest[k];
+    boundary.for_each_image(displacement, reach, [&](const Vector<D>& image) {
+      auto distance = static_cast<float>(image.norm());
+      if (!(distance < reach)) return;
+      push.measure(1 - distance / reach);
+      Floats d{};
+      for (int k = 0; k < D; ++k) d[k] = static_cast<float>(image[k]);
+      if (!(distance > 0)) {
+        distance = least_distance * reach;
+        d = any_direction(i, *j) * distance;
+      }
+      push.sum += d * (weight * (reach / distance - 1));
+      push.contacts += weight;
+    });
+  }
+  return push;
+}
+
+/// Away from a sphere with the same centre; a different one for each pair.
+template <int D>
+typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::any_direction(Id i, Id j) const {
+  const Id a = std::min(ids_[i], ids_[j]), b = std::max(ids_[i], ids_[j]);
+  Vector<D> v;
+  std::uint32_t state = a * 2654435761u ^ (b + 1) * 2246822519u;
+  for (int k = 0; k < D; ++k) {
+    state = (state ^ (state >> 15)) * 2654435769u + 1;
+    v[k] = static_cast<double>(state >> 8) * 0x1p-23 - 1 + 0x1p-25;
+  }
+  v.normalize();
+  Floats direction{};
+  for (int k = 0; k < D; ++k) direction[k] = static_cast<float>(a == ids_[i] ? v[k] : -v[k]);
+  return direction;
 }
 
 template <int D>

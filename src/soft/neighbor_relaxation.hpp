@@ -73,10 +73,21 @@ class NeighborRelaxation {
     Id first, last;
   };
 
-  template <bool measure>
-  double move_all(float omega);
-  template <bool measure>
-  double move_all_among_images(float omega);
+  /// What the overlaps of a sphere do to it.
+  struct Push {
+    Floats sum{};
+    float contacts = 0, stress = 0, largest = 0;
+    void measure(float ratio) {
+      stress += ratio * ratio;
+      largest = ratio > largest ? ratio : largest;
+    }
+  };
+
+  float move_all(float omega);
+  const Id* find_overlapping(Id i);
+  Push push_from_nearest(Id i, const Id* end) const;
+  Push push_from_images(Id i, const Id* end) const;
+  Floats any_direction(Id i, Id j) const;
   void keep_lists_valid();
   bool moved_too_far() const;
   void build_lists();

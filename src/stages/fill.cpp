@@ -25,6 +25,9 @@ constexpr double relocated = 0.002;
 constexpr double local_jam = 40;
 /// What is taken out when not all fit, in strains times spheres; and the factor from one time to the next.
 constexpr double taken_out = 0.7, taken_out_faster = 1.25;
+/// Of sizes, for lists that are made for one: in four dimensions 10,000 spheres of three classes with ratios
+/// 10 : 4 : 1 fill 0.4 of a box in 1.8 s by relaxation and in 0.07 s by classes.
+constexpr double wide_range = 3;
 /// For that there are so many sweeps more, in those of the limit.
 constexpr double more_sweeps = 1;
 /// Moves, in radii of the smallest, that break the symmetry of spheres which come in a lattice or in line.
@@ -180,6 +183,15 @@ StageEnd fill_by_relaxation(PeriodicWork& work, const FillOptions& options) {
   return with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
     return Filling<decltype(dimension)::value>(work, options).run();
   });
+}
+
+StageEnd fill(PeriodicWork& work, const FillOptions& options) {
+  if (work.spheres.empty()) return StageEnd::converged;
+  const auto [least, most] = std::ranges::minmax(work.spheres.r);
+  const bool lists_know_sizes =
+      work.dimension() <= 3 && work.target_edges->minCoeff() > SoftPacking::smallest_edge(work.spheres.r);
+  return most > wide_range * least && !lists_know_sizes ? fill_by_classes(work, options)
+                                                        : fill_by_relaxation(work, options);
 }
 
 }  // namespace bernal

@@ -31,4 +31,8 @@ StageEnd fill_by_relaxation(PeriodicWork& work, const FillOptions& options);
 /// places already keep them for a start if they do not overlap.
 StageEnd fill_by_classes(PeriodicWork& work, const FillOptions& options);
 
+/// The one of the two that is likely to be faster: by classes where sizes differ by more than a factor of
+/// three and the box is too narrow, or of too many dimensions, for lists that know sizes.
+StageEnd fill(PeriodicWork& work, const FillOptions& options);
+
 }  // namespace bernal
