@@ -67,6 +67,7 @@ std::size_t EventFlight<D>::insert() {
       near_.emplace_back();
       ++accepted;
       in_vain_ = 0;
+      if (spheres_.is_worn()) list_pairs();
     } else {
       ++place;
       ++in_vain_;
@@ -107,24 +108,26 @@ double EventFlight<D>::time_to_meet(Id i, Id j, Vector<D>& way) const {
     way = d;
     return time_to_meet(d, w, contact);
   }
-  // Every image that may come near enough: on each axis the nearest one and those to its sides.
-  std::array<int, D> at;
-  at.fill(-1);
+  // Every image that may come near enough: axis by axis, as its distance is nowhere less than along an axis.
+  const double reach = contact + 2 * spheres_.skin();
+  std::array<std::array<double, 3>, D> images;
+  std::array<int, D> count, at{};
+  for (int k = 0; k < D; ++k) {
+    count[k] = 0;
+    images[k][count[k]++] = d[k];
+    for (const double image : {d[k] - spheres_.edge(k), d[k] + spheres_.edge(k)})
+      if (spheres_.repeats(k) && std::abs(image) < reach) images[k][count[k]++] = image;
+  }
   double first = never;
   for (;;) {
-    Vector<D> image = d;
-    bool possible = true;
-    for (int k = 0; k < D; ++k) {
-      if (at[k] == 0) continue;
-      image[k] += at[k] * spheres_.edge(k);
-      possible = possible && spheres_.repeats(k) && std::abs(image[k]) < contact + 2 * spheres_.skin();
-    }
-    if (const double time = possible ? time_to_meet(image, w, contact) : never; time < first) {
+    Vector<D> image;
+    for (int k = 0; k < D; ++k) image[k] = images[k][at[k]];
+    if (const double time = time_to_meet(image, w, contact); time < first) {
       first = time;
       way = image;
     }
     int k = 0;
-    while (k < D && ++at[k] > 1) at[k++] = -1;
+    while (k < D && ++at[k] == count[k]) at[k++] = 0;
     if (k == D) return first;
   }
 }

@@ -37,6 +37,7 @@ std::size_t PatentFlight<D>::insert() {
       spheres_.accept(place, c, random_);
       ++accepted;
       in_vain_ = 0;
+      if (spheres_.is_worn()) spheres_.sort();
     } else {
       ++place;
       ++in_vain_;
