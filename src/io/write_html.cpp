@@ -166,7 +166,7 @@ void write_certificate(Page& page, const Report& report) {
 std::string html_of(const Report& report, std::string_view picture, std::string_view scene) {
   const Packing& packing = report.packing;
   std::string title =
-      fmt::format("{} spheres in a {}", grouped(packing.spheres.size()), domain_name(packing.domain));
+      fmt::format("{} spheres in a {}", grouped(packing.spheres.size()), name_of(packing.domain));
   if (packing.scene.container.has("file")) {
     title += ", " + std::filesystem::path(packing.scene.container.text("file")).filename().string();
   }
