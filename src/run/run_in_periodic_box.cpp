@@ -53,10 +53,9 @@ void conclude(Packing& packing, const PeriodicWork& work, StageEnd end, bool fit
     packing.outcome = end == StageEnd::cancelled ? Outcome::cancelled
                       : end == StageEnd::full    ? Outcome::full
                                                  : Outcome::hit_limit;
-    packing.reason =
-        fmt::format("{}{} of {} spheres are placed, packing fraction {:.4f}, mostly the largest of them{}",
-                    end == StageEnd::cancelled ? "stopped by the user: " : "", n, grouped(wanted),
-                    packing.packing_fraction(), account);
+    packing.reason = fmt::format("{}{} of {} spheres are placed, packing fraction {:.4f}{}",
+                                 end == StageEnd::cancelled ? "stopped by the user: " : "", n,
+                                 grouped(wanted), packing.packing_fraction(), account);
   } else if (end == StageEnd::cancelled) {
     packing.outcome = Outcome::cancelled;
     packing.reason = fmt::format("stopped by the user with {} spheres", n);

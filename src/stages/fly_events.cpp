@@ -57,22 +57,13 @@ std::size_t EventFlight<D>::insert() {
   } else {
     spheres_.update();
   }
-  std::size_t accepted = 0, place = 0;
-  for (std::size_t k = std::min(batch_, spheres_.queue().size()); k > 0; --k) {
-    const double r = spheres_.waiting_radius(place);
-    Vector<D> c = spheres_.random_place(r, random_);
-    if (spheres_.push_into_room(c, r, pushes)) {
-      from_.row(static_cast<Eigen::Index>(spheres_.size())) = c.transpose().array();
-      spheres_.accept(place, c, random_);
-      near_.emplace_back();
-      ++accepted;
-      in_vain_ = 0;
-      if (spheres_.is_worn()) list_pairs();
-    } else {
-      ++place;
-      ++in_vain_;
-    }
-  }
+  const std::size_t accepted = spheres_.insert(
+      batch_, random_, [&](Vector<D>& c, double r) { return spheres_.push_into_room(c, r, pushes); },
+      [&](const Vector<D>& c) {
+        from_.row(static_cast<Eigen::Index>(spheres_.size() - 1)) = c.transpose().array();
+        near_.emplace_back();
+        if (spheres_.is_worn()) list_pairs();
+      });
   list_new_pairs();
   return accepted;
 }

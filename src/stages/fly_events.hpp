@@ -30,8 +30,6 @@ class EventFlight {
   std::size_t insert();
   /// One stretch of flight.
   void fly();
-  /// Places tried since the last that was free.
-  double in_vain() const { return in_vain_; }
   std::uint64_t collisions() const { return collisions_; }
 
  private:
@@ -73,7 +71,6 @@ class EventFlight {
   std::vector<Id> hits_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   double end_ = 0;  // of this stretch, which starts at 0
-  double in_vain_ = 0;
   std::uint64_t collisions_ = 0;
 };
 

@@ -11,7 +11,7 @@
 namespace bernal {
 namespace {
 
-/// So often Δt is halved before all stand still for a step and start again in other directions.
+/// So often Δt is halved before what is left of it counts as no time.
 constexpr int most_halvings = 40;
 
 }  // namespace
@@ -28,22 +28,11 @@ PatentFlight<D>::PatentFlight(FlyingSpheres<D>& spheres, const FlyOptions& optio
 
 template <int D>
 std::size_t PatentFlight<D>::insert() {
-  std::size_t accepted = 0;
-  std::size_t place = 0;  // of the queue
-  for (std::size_t k = std::min(batch_, spheres_.queue().size()); k > 0; --k) {
-    const double r = spheres_.waiting_radius(place);
-    const Vector<D> c = spheres_.random_place(r, random_);
-    if (spheres_.is_free(c, r)) {
-      spheres_.accept(place, c, random_);
-      ++accepted;
-      in_vain_ = 0;
-      if (spheres_.is_worn()) spheres_.sort();
-    } else {
-      ++place;
-      ++in_vain_;
-    }
-  }
-  return accepted;
+  return spheres_.insert(
+      batch_, random_, [&](const Vector<D>& c, double r) { return spheres_.is_free(c, r); },
+      [&](const Vector<D>&) {
+        if (spheres_.is_worn()) spheres_.sort();
+      });
 }
 
 template <int D>
@@ -156,7 +145,9 @@ void PatentFlight<D>::fly() {
     spheres_.update();
     return;
   }
-  for (Id i = 0; i < spheres_.size(); ++i) spheres_.set_velocity(i, spheres_.thermal(i, random_));
+  // Several at the same time: one after the other, without a move.
+  Hit found[2];
+  if (hits(next_, found) > 0) collide(found[0]);
 }
 
 StageEnd fly_by_patent(PeriodicWork& work, const FlyOptions& options) {

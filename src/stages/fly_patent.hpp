@@ -18,10 +18,10 @@ namespace bernal {
 /// Mended: a pair counts once, however many of its images overlap (one at a face would count four times and
 /// halve Δt for ever); a pair that rounding leaves overlapping after its collision, and that separates, is
 /// none; a centre beyond a face gets the velocity that leads back, where a flip of the sign would chatter; Δt
-/// is cut to half the smallest radius, so that nothing tunnels; where no Δt will do, all get new velocities;
-/// it ends `full` after `patience` places in vain for each sphere that is wanted. Of new spheres that overlap
-/// each other the first stays. Overlaps are looked for in lists of near pairs and not among all pairs, new
-/// places in the grid of PartialGrid. A wall is one more thing to collide with.
+/// is cut to half the smallest radius, so that nothing tunnels; collisions at the same time happen one after
+/// the other, without a move; it ends `full` after `patience` places in vain for each sphere that is wanted.
+/// Of new spheres that overlap each other the first stays. Overlaps are looked for in lists of near pairs and
+/// not among all pairs, new places in the grid of PartialGrid. A wall is one more thing to collide with.
 ///
 /// A step passes one collision at most, and costs O(N): the time to a packing fraction grows as N² at least.
 template <int D>
@@ -35,8 +35,6 @@ class PatentFlight {
   std::size_t insert();
   /// One step of flight.
   void fly();
-  /// Places tried since the last that was free.
-  double in_vain() const { return in_vain_; }
   std::uint64_t collisions() const { return collisions_; }
   std::uint64_t steps() const { return steps_; }
 
@@ -59,7 +57,6 @@ class PatentFlight {
   Random random_;
   typename FlyingSpheres<D>::Columns next_;
   double flown_ = 0;  // since the pairs were listed
-  double in_vain_ = 0;
   std::uint64_t collisions_ = 0, steps_ = 0;
 };
 

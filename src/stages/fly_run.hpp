@@ -19,7 +19,7 @@ StageEnd fly_until_full(PeriodicWork& work, const FlyOptions& options) {
       break;
     }
     flight.insert();
-    if (flight.in_vain() > options.patience * static_cast<double>(spheres.wanted())) {
+    if (spheres.in_vain() > options.patience * static_cast<double>(spheres.wanted())) {
       end = StageEnd::full;
       break;
     }

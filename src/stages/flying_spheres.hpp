@@ -169,6 +169,37 @@ class FlyingSpheres {
       }
     }
   }
+  /// Tries `batch` random places, in turn for the largest that wait: those within a tenth of the very
+  /// largest, so that no smaller one takes their room. find_room(c, r) says whether a sphere has room at c,
+  /// which it may move; placed(c) is called when it has been put there.
+  template <class FindRoom, class Placed>
+  std::size_t insert(std::size_t batch, Random& random, FindRoom&& find_room, Placed&& placed) {
+    const std::size_t before = size();
+    std::size_t place = 0, eligible = 0;
+    for (; batch > 0 && !queue_.empty(); --batch) {
+      if (eligible == 0) {
+        const double least = 0.9 * drawn_[queue_.front()];
+        eligible = static_cast<std::size_t>(
+            std::ranges::partition_point(queue_, [&](Id tag) { return drawn_[tag] >= least; }) -
+            queue_.begin());
+      }
+      if (place >= eligible) place = 0;
+      const double r = drawn_[queue_[place]];
+      Vector<D> c = random_place(r, random);
+      if (find_room(c, r)) {
+        accept(place, c, random);
+        placed(c);
+        --eligible;
+        in_vain_ = 0;
+      } else {
+        ++place;
+        ++in_vain_;
+      }
+    }
+    return size() - before;
+  }
+  /// Places tried since the last that was free.
+  double in_vain() const { return in_vain_; }
   /// Puts the sphere at `place` of the queue where it has room, flying.
   void accept(std::size_t place, const Vector<D>& c, Random& random) {
     const Id tag = queue_[place], i = static_cast<Id>(size());
@@ -221,6 +252,7 @@ class FlyingSpheres {
   std::vector<Id> tags_;  // which of the drawn ones each is
   std::vector<double> r_, mass_;
   double volume_ = 0, whole_volume_ = 0;  // in balls of the mean radius
+  double in_vain_ = 0;
   std::optional<PartialGrid<D>> grid_;
   std::vector<Pair> pairs_;
 };

@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, HardFlight, ::testing::Values("patent", "fligh
 TEST_P(HardFlight, ConservesEnergyToRounding) {
   std::vector<double> radii;
   for (int i = 0; i < 60; ++i) radii.push_back(1 + i / 60.0);
-  Flyers<3> flyers(radii, 14);
+  Flyers<3> flyers(radii, 17);
   const FlyOptions options{.batch = 2000};
   while (!flyers.spheres->queue().empty())
     PatentFlight<3>(*flyers.spheres, options, flyers.work.random(Stream::fly)).insert();
@@ -187,8 +187,9 @@ TEST_P(HardFlight, WithALongStepDoesNotTunnel) {
 
 TEST_P(HardFlight, OfAnUnreachableTargetEndsAndSaysHowFarItCame) {
   for (const int dimension : {1, 2, 3, 5}) {
-    const Packing packing = packed(scene(fmt::format("dimension = {}\nedge = 10.0", dimension),
-                                         "packing_fraction = 0.99\nradius = 1.0", "patience = 2"));
+    const Packing packing =
+        packed(scene(fmt::format("dimension = {}\nedge = {}", dimension, dimension == 5 ? 4.0 : 10.0),
+                     "packing_fraction = 0.99\nradius = 1.0", "patience = 2"));
     EXPECT_EQ(packing.outcome, Outcome::full);
     EXPECT_GT(packing.spheres.size(), 0u);
     EXPECT_NE(packing.reason.find("in a row"), std::string::npos) << packing.reason;
