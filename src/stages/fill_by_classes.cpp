@@ -92,7 +92,7 @@ class Insertion {
       if (found == waiting || work_.monitor.stop()) return;
       failures = static_cast<double>(found) < worthwhile * static_cast<double>(waiting) ? failures + 1 : 0;
       for (int k = 0; k < sweeps_a_round; ++k) move_at_random(members, step);
-      work_.milestone("fill", 0.5, 0);
+      work_.milestone("fill", static_cast<double>(count_) / static_cast<double>(placed_.size()), 0);
     }
   }
 
@@ -137,6 +137,7 @@ class Insertion {
     spheres_.set_center(i, c);
     grid_.insert(i, c, spheres_.r[i]);
     placed_[i] = true;
+    ++count_;
   }
 
   /// Moves those of a class that have places, by up to `step` radii on each axis, where nothing is in the
@@ -174,6 +175,7 @@ class Insertion {
   const double smallest_, reach_share_;
   CellGrid<D> grid_;
   std::vector<bool> placed_;
+  std::size_t count_ = 0;  // of those
   std::vector<Id> order_;
   std::uint64_t trials_ = 0;
 };
