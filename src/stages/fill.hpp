@@ -17,7 +17,7 @@ bool fits_box(const PeriodicWork& work);
 
 /// Puts all spheres, whose radii are prescribed, into the box `*work.target_edges`, which is so too, in 1 to
 /// 8 dimensions, by pushing apart what overlaps. They start where they are, relative to the box, or at random
-/// where they have no places yet.
+/// where they have no places yet; in one dimension one after the other. Where nothing overlaps they stay.
 ///
 /// On `converged` all are there and no two images overlap by more than `work.allowed_overlap`, whatever the
 /// rounding. Otherwise, `full` where stirring does not help any more and `hit_limit` or `cancelled` where it
