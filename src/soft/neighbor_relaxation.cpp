@@ -1,3 +1,6 @@
+// Registers of eight numbers never cross a call that is not inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 #include "soft/neighbor_relaxation.hpp"
 
 #include <immintrin.h>
@@ -8,9 +11,6 @@
 #include <numeric>
 
 #include "bernal/domain/boundary.hpp"
-
-// Registers of eight numbers never cross a call that is not inlined.
-#pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace bernal {
 namespace {

@@ -42,7 +42,7 @@ class NeighborRelaxation {
 
   /// Every sphere is moved once, by min(omega / n, 1) Σ w (ri + rj - d) u over those that it overlaps, with u
   /// the unit vector away from the other, w = 2 rj / (ri + rj) and n = Σ w: of a pair the larger one gives
-  /// way less. Cost: about 1 ns a neighbour, 1.5 from five dimensions on.
+  /// way less. Cost: 45 ns a sphere in two dimensions, 65 ns in four, 130 ns in eight.
   void sweep(float omega);
   /// The same; returns the largest overlap ratio that was met.
   double sweep_and_measure(float omega);

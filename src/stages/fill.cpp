@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -35,19 +37,51 @@ constexpr double jitter = 1e-6;
 /// In place of the number of overlaps of a sphere that has been taken away.
 constexpr auto gone = static_cast<std::size_t>(-1);
 
+/// Rods along a line, in random order, with gaps between them as they come by chance but none of which is
+/// less than half of the mean. They overlap where they have to.
+Spheres<1> in_line(Spheres<1> spheres, double edge, double allowed, Random& random) {
+  const std::size_t n = spheres.size();
+  double room = edge;
+  for (const double r : spheres.r) room -= 2 * (1 - allowed) * r;
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = n; i > 1; --i)
+    std::swap(order[i - 1], order[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
+  std::vector<double> offsets(n);
+  for (double& offset : offsets) offset = 0.5 * room * random.uniform();
+  std::ranges::sort(offsets);
+  double end = 0;  // of the rod before
+  for (std::size_t k = 0; k < n; ++k) {
+    const double r = (1 - allowed) * spheres.r[order[k]],
+                 even = 0.5 * room * static_cast<double>(k) / static_cast<double>(n);
+    spheres.set_center(order[k], Boundary<1>{Vector<1>(edge)}.wrap(Vector<1>(end + r + even + offsets[k])));
+    end += 2 * r;
+  }
+  return spheres;
+}
+
 template <int D>
-Spheres<D> starting_places(PeriodicWork& work, Random& random) {
+Spheres<D> starting_places(const PeriodicWork& work, Random& random) {
   Spheres<D> spheres = work.spheres.in<D>();
   const Vector<D> edges = *work.target_edges;
-  const Boundary<D> boundary{edges};
   if (work.placed) {
     Vector<D> now = work.edges;
     resize_box<D>(spheres, now, edges);
+    return spheres;
   }
+  if constexpr (D == 1) return in_line(std::move(spheres), edges[0], work.allowed_overlap, random);
+  const Bounds<D> box{Vector<D>::Zero(), edges};
+  for (std::size_t i = 0; i < spheres.size(); ++i) spheres.set_center(i, uniform_point(random, box));
+  return spheres;
+}
+
+/// Moves by nothing that matters, so that a lattice or a line of spheres does not last for ever.
+template <int D>
+Spheres<D> shaken(Spheres<D> spheres, const Vector<D>& edges, Random& random) {
+  const Boundary<D> boundary{edges};
   const double step = jitter * std::ranges::min(spheres.r);
   for (std::size_t i = 0; i < spheres.size(); ++i)
-    spheres.set_center(i, work.placed ? boundary.wrap(spheres.center(i) + step * uniform_direction<D>(random))
-                                      : uniform_point(random, Bounds<D>{Vector<D>::Zero(), edges}));
+    spheres.set_center(i, boundary.wrap(spheres.center(i) + step * uniform_direction<D>(random)));
   return spheres;
 }
 
@@ -88,23 +122,19 @@ Spheres<D> without_overlap(const Spheres<D>& spheres, const Vector<D>& edges, do
 template <int D>
 class Filling {
  public:
-  Filling(PeriodicWork& work, const FillOptions& options)
+  Filling(PeriodicWork& work, const FillOptions& options, Spheres<D> spheres, const Random& random)
       : work_(work),
         options_(options),
         most_sweeps_(options.sweeps),
-        random_(work.random(Stream::relax)),
+        random_(random),
         edges_(*work.target_edges),
-        crowd_(starting_places<D>(work, random_), edges_, work.allowed_overlap) {
-    work_.edges = edges_;
-  }
+        crowd_(shaken<D>(std::move(spheres), edges_, random_), edges_, work.allowed_overlap) {}
 
   StageEnd run() {
     const StageEnd end = relax(options_.patience);
     if (end != StageEnd::converged && end != StageEnd::cancelled) take_out(end);
     work_.effects["neighbour lists"].calls += crowd_.list_builds();
     work_.spheres = without_overlap<D>(crowd_.spheres(), edges_, work_.allowed_overlap);
-    work_.needed_volume = edges_.prod();
-    work_.placed = true;
     return end;
   }
 
@@ -164,6 +194,19 @@ class Filling {
   PeriodicCrowd<D> crowd_;
 };
 
+template <int D>
+StageEnd fill_box(PeriodicWork& work, const FillOptions& options) {
+  Random random = work.random(Stream::relax);
+  Spheres<D> spheres = starting_places<D>(work, random);
+  work.edges = *work.target_edges;
+  work.needed_volume = work.edges.prod();
+  work.placed = true;
+  if (!overlapping<D>(spheres, work.edges, work.allowed_overlap).empty())
+    return Filling<D>(work, options, std::move(spheres), random).run();
+  work.spheres = std::move(spheres);
+  return StageEnd::converged;
+}
+
 }  // namespace
 
 bool fits_box(const PeriodicWork& work) {
@@ -180,9 +223,8 @@ StageEnd fill_by_relaxation(PeriodicWork& work, const FillOptions& options) {
                     "more or smaller spheres",
                     2 * std::ranges::max(work.spheres.r) / work.target_edges->minCoeff()));
   const EffectTimer timer(work.effects["relaxation"]);
-  return with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
-    return Filling<decltype(dimension)::value>(work, options).run();
-  });
+  return with_dimension(work.dimension(), EveryDimension{},
+                        [&](auto dimension) { return fill_box<decltype(dimension)::value>(work, options); });
 }
 
 StageEnd fill(PeriodicWork& work, const FillOptions& options) {

@@ -46,8 +46,9 @@ class Insertion {
     std::ranges::stable_sort(order_, std::greater<>(), [&](Id i) { return spheres_.r[i]; });
   }
 
-  /// Returns whether all found a place. Otherwise those that did not are put into holes, where they overlap.
-  bool run() {
+  /// `full` where not all found a place: then the others are put into holes, where they overlap. Where it is
+  /// cancelled only those that found one are left.
+  StageEnd run() {
     if (work_.placed) keep_places();
     for (std::size_t first = 0; first < order_.size();) {
       const double least = least_of_class * spheres_.r[order_[first]];
@@ -56,22 +57,31 @@ class Insertion {
       insert_class({order_.begin() + static_cast<std::ptrdiff_t>(first),
                     order_.begin() + static_cast<std::ptrdiff_t>(last)});
       first = last;
-      if (work_.monitor.stop()) break;
+      cancelled_ = cancelled_ || work_.monitor.stop();
+      if (cancelled_) break;
     }
+    if (cancelled_) forget_those_without_places();
     std::vector<Id> waiting;
     std::ranges::copy_if(order_, std::back_inserter(waiting), [&](Id i) { return !placed_[i]; });
     const bool all = waiting.empty();
-    if (!all) move_to_holes<D>(spheres_, edges_, std::move(waiting), random_);
+    if (!all && !cancelled_) move_to_holes<D>(spheres_, edges_, std::move(waiting), random_);
     work_.effects["trial places"].calls += trials_;
     work_.spheres = std::move(spheres_);
     work_.edges = edges_;
     work_.needed_volume = edges_.prod();
     work_.placed = true;
-    return all;
+    return cancelled_ ? StageEnd::cancelled : all ? StageEnd::converged : StageEnd::full;
   }
 
  private:
   using Id = typename CellGrid<D>::Id;
+
+  void forget_those_without_places() {
+    Spheres<D> placed;
+    for (std::size_t i = 0; i < spheres_.size(); ++i)
+      if (placed_[i]) placed.push_back(spheres_.center(i), spheres_.r[i]);
+    spheres_ = std::move(placed);
+  }
 
   void keep_places() {
     Vector<D> edges = work_.edges;
@@ -89,10 +99,10 @@ class Insertion {
         ++waiting;
         if (find_place(i)) ++found;
       }
-      if (found == waiting || work_.monitor.stop()) return;
+      if (found == waiting || (cancelled_ = work_.monitor.stop())) return;
       failures = static_cast<double>(found) < worthwhile * static_cast<double>(waiting) ? failures + 1 : 0;
       for (int k = 0; k < sweeps_a_round; ++k) move_at_random(members, step);
-      work_.milestone("fill", 0.5, 0);
+      work_.milestone("fill", static_cast<double>(count_) / static_cast<double>(placed_.size()), 0);
     }
   }
 
@@ -137,6 +147,7 @@ class Insertion {
     spheres_.set_center(i, c);
     grid_.insert(i, c, spheres_.r[i]);
     placed_[i] = true;
+    ++count_;
   }
 
   /// Moves those of a class that have places, by up to `step` radii on each axis, where nothing is in the
@@ -174,6 +185,8 @@ class Insertion {
   const double smallest_, reach_share_;
   CellGrid<D> grid_;
   std::vector<bool> placed_;
+  bool cancelled_ = false;
+  std::size_t count_ = 0;  // of those
   std::vector<Id> order_;
   std::uint64_t trials_ = 0;
 };
@@ -183,10 +196,10 @@ class Insertion {
 StageEnd fill_by_classes(PeriodicWork& work, const FillOptions& options) {
   if (!work.spheres.empty() && fits_box(work)) {
     const EffectTimer timer(work.effects["insertion"]);
-    const bool all = with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
+    const StageEnd end = with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
       return Insertion<decltype(dimension)::value>(work).run();
     });
-    if (all) return StageEnd::converged;
+    if (end != StageEnd::full) return end;
   }
   return fill_by_relaxation(work, options);
 }

@@ -143,6 +143,12 @@ TEST(Fill, TheSameSeedGivesTheSameBitsAndAnotherDoesNot) {
   }
 }
 
+TEST(Fill, RodsFillALineWhoseLengthIsHardlyMore) {
+  const std::vector<double> radii = lognormal_radii(1000, 0.3);
+  FillCase filled(radii, cube_filled_to(1 - 1e-6, radii, 1));
+  expect_filled(filled, fill_by_relaxation(filled.work, {}), radii);
+}
+
 TEST(Fill, NoSpheresAreAllThere) {
   FillCase filled({}, Vector<dynamic>::Ones(3));
   EXPECT_EQ(fill_by_relaxation(filled.work, {}), StageEnd::converged);
