@@ -467,6 +467,7 @@ std::string sample(const Key& key, int choice) {
 }
 
 std::string sample_of(const Entry& entry, const Key& key, int choice) {
+  if (key.name == "walls" && key.type == Type::amounts) return "[0]";  // axes, not any numbers
   return key.type == Type::file && !entry.columns.empty() ? file_of_columns() : sample(key, choice);
 }
 
