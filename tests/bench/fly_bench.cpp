@@ -110,9 +110,12 @@ void every_count(benchmark::internal::Benchmark* bench) {
 BENCHMARK_CAPTURE(scaling, patent, true)->Apply(every_count);
 BENCHMARK_CAPTURE(scaling, events, false)->Apply(every_count);
 
-BENCHMARK_CAPTURE(fill<2>, patent_2d, true, 2000, 0.64, 0)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(fill<3>, patent_3d, true, 2000, 0.42, 0)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(fill<2>, events_2d, false, 2000, 0.70, 0)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(fill<3>, events_3d, false, 2000, 0.48, 0)->Unit(benchmark::kMillisecond)->Iterations(1);
+void in_the_plane(benchmark::State& state, bool patent, double phi) { fill<2>(state, patent, 2000, phi, 0); }
+void in_space(benchmark::State& state, bool patent, double phi) { fill<3>(state, patent, 2000, phi, 0); }
+void once(benchmark::internal::Benchmark* bench) { bench->Unit(benchmark::kMillisecond)->Iterations(1); }
+BENCHMARK_CAPTURE(in_the_plane, patent, true, 0.64)->Apply(once);
+BENCHMARK_CAPTURE(in_space, patent, true, 0.42)->Apply(once);
+BENCHMARK_CAPTURE(in_the_plane, events, false, 0.70)->Apply(once);
+BENCHMARK_CAPTURE(in_space, events, false, 0.48)->Apply(once);
 
 }  // namespace
