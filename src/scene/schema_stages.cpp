@@ -199,6 +199,43 @@ Entry grow_entry() {
                     .otherwise = 0.0,
                     .range = {0, 0.5}}},
           .complete = complete_grow};
+Entry fly_entry() {
+  return {
+      .name = "fly",
+      .help = "fill a box of given size with spheres of given radii that fly and collide",
+      .keys = {{.name = "method",
+                .type = Type::word,
+                .help = "auto: by target and sizes; flight: from collision to collision; patent: in steps of "
+                        "one collision; classes: large ones first, small ones between them; relaxation: "
+                        "all at once, pushed apart",
+                .otherwise = "auto",
+                .words = {"auto", "flight", "patent", "classes", "relaxation"}},
+               {.name = "packing_fraction",
+                .type = Type::number,
+                .help = "where [spheres] does not say it: the one to fill the box to",
+                .optional = true,
+                .range = {0, 1, true, true}},
+               {.name = "batch",
+                .type = Type::integer,
+                .help = "flight, patent: new spheres tried between two steps; 0: half of all",
+                .otherwise = 0,
+                .range = {0, 1e9}},
+               {.name = "dt",
+                .type = Type::number,
+                .help = "flight, patent: way between two batches in mean diameters; if absent 0.25, for the "
+                        "patent's procedure 0.01",
+                .optional = true,
+                .range = {0, 1e6, true}},
+               {.name = "patience",
+                .type = Type::number,
+                .help = "flight, patent: full when so many places in a row, for each sphere, were not free",
+                .otherwise = 1000.0,
+                .range = {0, 1e9, true}},
+               {.name = "sweeps",
+                .type = Type::integer,
+                .help = "classes, relaxation: of all spheres, after which it stops",
+                .otherwise = 20000,
+                .range = {1, 1e9}}}};
 }
 
 }  // namespace
@@ -208,6 +245,7 @@ std::vector<Entry> stages(bool in_container) {
   all.insert(in_container ? all.end() : all.begin(),
              in_container ? relax_in_container_entry() : relax_in_periodic_box_entry());
   if (!in_container) all.push_back(grow_entry());
+  if (!in_container) all.insert(all.begin() + 1, fly_entry());
   return all;
 }
 

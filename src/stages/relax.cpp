@@ -71,10 +71,8 @@ void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Period
 
 template <int D>
 StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
-  if constexpr (D <= 3) {
-    if (!options.reference && fast_path_exists<D>(spheres, edges))
-      return relax_fast<D>(spheres, edges, work, options);
-  }
+  if (!options.reference && fast_path_exists<D>(spheres, edges))
+    return relax_fast<D>(spheres, edges, work, options);
   return relax_by_the_book<D>(spheres, edges, work, options);
 }
 

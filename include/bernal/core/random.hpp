@@ -53,6 +53,7 @@ enum class Stream : std::uint64_t {
   relax = 7,
   measure = 8,
   grow = 9,
+  fly = 10,
   test = 255
 };
 constexpr std::uint64_t stream(Stream purpose, std::uint64_t index = 0) {
