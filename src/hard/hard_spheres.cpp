@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "bernal/core/tolerance.hpp"
 #include "bernal/domain/boundary.hpp"
 
 namespace bernal {
@@ -20,6 +21,8 @@ constexpr double fastest_change_of_duration = 4;
 constexpr double most_growth = 0.1;
 /// Events between two looks at whether to stop.
 constexpr std::uint64_t events_a_look = 4096;
+/// Of the thermal speed: what a collision changes at least.
+constexpr double least_kick = 1e-14;
 /// Events in the calendar for each collision: sphere that look again, sphere that leave.
 constexpr double events_a_collision = 1.8;
 constexpr double events_a_bin = 2;
@@ -38,6 +41,22 @@ double normal(Random& random) {
   return std::sqrt(-2 * std::log(u)) * std::cos(2 * M_PI * v);
 }
 
+/// Where each sphere lies on a Z-order curve through the box: spheres that are near each other in space come
+/// to lie near each other in memory.
+template <int D>
+std::vector<std::uint64_t> places_on_curve(const Spheres<D>& spheres, const Vector<D>& edges) {
+  constexpr int bits = 63 / D;
+  std::vector<std::uint64_t> places(spheres.size(), 0);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    for (std::size_t k = 0; k < D; ++k) {
+      const auto at =
+          static_cast<std::uint64_t>(std::ldexp(spheres.x[k][i] / edges[static_cast<int>(k)], bits));
+      for (std::size_t bit = 0; bit < bits; ++bit) places[i] |= (at >> bit & 1) << (bit * D + k);
+    }
+  }
+  return places;
+}
+
 }  // namespace
 
 template <int D>
@@ -45,16 +64,20 @@ HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, R
                             const CollisionKernel<D>& kernel)
     : spheres_(spheres.size()), original_(spheres.size()), edges_(edges), kernel_(kernel) {
   const std::size_t n = spheres.size();
-  std::iota(original_.begin(), original_.end(), 0u);
+  std::vector<FlyingSphere<D>> given(n);
   Vector<D> drift = Vector<D>::Zero();
   for (std::size_t i = 0; i < n; ++i) {
     for (int k = 0; k < D; ++k) {
-      spheres_[i].x[k] = spheres.x[static_cast<std::size_t>(k)][i];
-      spheres_[i].v[k] = normal(random);
-      drift[k] += spheres_[i].v[k];
+      given[i].x[k] = spheres.x[static_cast<std::size_t>(k)][i];
+      given[i].v[k] = normal(random);
+      drift[k] += given[i].v[k];
     }
-    spheres_[i].r = spheres.r[i];
+    given[i].r = spheres.r[i];
   }
+  const std::vector<std::uint64_t> places = places_on_curve(spheres, edges);
+  std::iota(original_.begin(), original_.end(), 0u);
+  std::ranges::stable_sort(original_, [&](Id i, Id j) { return places[i] < places[j]; });
+  for (std::size_t i = 0; i < n; ++i) spheres_[i] = given[original_[i]];
   for (FlyingSphere<D>& s : spheres_)
     for (int k = 0; k < D; ++k) s.v[k] -= drift[k] / static_cast<double>(n);
   rescale_velocities();
@@ -106,15 +129,21 @@ double HardSpheres<D>::duration(double growth, double largest) const {
   return time;
 }
 
+/// Shells that are left too often cost renewals, those that are hardly left cost long lists.
 template <int D>
-void HardSpheres<D>::build_shells(double largest) {
-  if (listed_collisions_ > count() / 2) {
-    const double departures =
-        static_cast<double>(listed_departures_) / static_cast<double>(listed_collisions_);
-    if (departures > many_departures) freedom_ *= change_of_freedom;
-    if (departures < few_departures) freedom_ /= change_of_freedom;
-    freedom_ = std::clamp(freedom_, least_freedom * mean_diameter_, most_freedom * mean_diameter_);
-  }
+double HardSpheres<D>::wanted_freedom() const {
+  if (2 * listed_collisions_ < count()) return freedom_;
+  const double departures = static_cast<double>(listed_departures_) / static_cast<double>(listed_collisions_);
+  if (departures > many_departures)
+    return std::min(freedom_ * change_of_freedom, most_freedom * mean_diameter_);
+  if (departures < few_departures)
+    return std::max(freedom_ / change_of_freedom, least_freedom * mean_diameter_);
+  return freedom_;
+}
+
+template <int D>
+void HardSpheres<D>::build_shells(double freedom, double largest) {
+  freedom_ = freedom;
   listed_collisions_ = listed_departures_ = 0;
   largest_listed_ = std::max(
       largest, std::min(size_ + room_to_grow * freedom_ / mean_diameter_, (1 + most_growth) * size_));
@@ -138,12 +167,8 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   growth_ = growth / mean_diameter_;
   horizon_ = duration(growth, largest);
   const double size_then = std::min(largest, size_ + growth_ * horizon_);
-  const double departures =
-      static_cast<double>(listed_departures_) / std::max(1.0, static_cast<double>(listed_collisions_));
-  const bool tune = listed_collisions_ > count() / 2 &&
-                    (departures > many_departures ||
-                     (departures < few_departures && freedom_ > least_freedom * mean_diameter_));
-  if (size_then > largest_listed_ || tune) build_shells(size_then);
+  const double freedom = wanted_freedom();
+  if (size_then > largest_listed_ || freedom != freedom_) build_shells(freedom, size_then);
 
   const double energy = kinetic_energy();
   const double expected_collisions = period_.time > 0
@@ -191,7 +216,8 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
     s.fly_to(horizon_);
     s.time = 0;
   }
-  size_ = std::min(largest, size_ + growth_ * horizon_);
+  size_ += growth_ * horizon_;
+  if (growth > 0 && size_ > largest * (1 - 4 * tolerance::roundoff)) size_ = largest;
   listed_collisions_ += period_.collisions;
   listed_departures_ += period_.departures;
   period_.time = horizon_;
@@ -271,9 +297,10 @@ void HardSpheres<D>::collide(Id i, Id j) {
     dw += d[k] * (b.v[k] - a.v[k]);
   }
   const double distance = std::sqrt(squared);
-  const double kick = radii * growth_ - dw / distance;
+  // Above 0 exactly where the scan saw them come closer; never so small that it gets lost in the velocities.
+  const double contact = radii * (size_ + growth_ * now_);
+  const double kick = std::max(least_kick, (contact * radii * growth_ - dw) / distance);
   ++period_.collisions;
-  if (!(kick > 0)) return;  // they part already
   for (int k = 0; k < D; ++k) {
     const double along = kick * d[k] / distance;
     a.v[k] -= along;

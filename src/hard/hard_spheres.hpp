@@ -68,7 +68,8 @@ class HardSpheres {
   static bool is_partner(Id what) { return what < leave; }
 
   double duration(double growth, double largest) const;
-  void build_shells(double largest);
+  double wanted_freedom() const;
+  void build_shells(double freedom, double largest);
   void predict(Id i);
   void forget_partner(Id i);
   double time_to_leave(Id i) const;
@@ -76,7 +77,7 @@ class HardSpheres {
   void rescale_velocities();
 
   std::vector<FlyingSphere<D>> spheres_;
-  std::vector<Id> original_;  // place in the caller's order
+  std::vector<Id> original_;  // the place of each in the caller's order
   Vector<D> edges_;
   CollisionKernel<D> kernel_;
   Shells<D> shells_;

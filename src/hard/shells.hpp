@@ -29,7 +29,6 @@ class Shells {
 
   std::span<const Id> neighbors(Id i) const { return lists_.of(i); }
   std::size_t longest_list() const { return lists_.longest(); }
-  double mean_list() const { return lists_.mean(); }
   const Vector<D>& home(Id i) const { return homes_[i]; }
   double freedom(Id i) const { return freedoms_[i]; }
 

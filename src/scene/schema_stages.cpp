@@ -199,6 +199,8 @@ Entry grow_entry() {
                     .otherwise = 0.0,
                     .range = {0, 0.5}}},
           .complete = complete_grow};
+}
+
 Entry fly_entry() {
   return {
       .name = "fly",
