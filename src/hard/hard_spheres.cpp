@@ -17,6 +17,8 @@ constexpr double collisions_a_period = 16;
 /// A period after one that gained more kinetic energy than this is shorter.
 constexpr double most_heating = 0.1;
 constexpr double fastest_change_of_duration = 4;
+/// Of the first period, a mean diameter: short enough for spheres that are jammed from the start.
+constexpr double first_duration = 1e-6;
 /// Of the size, in a period.
 constexpr double most_growth = 0.1;
 /// Events between two looks at whether to stop.
@@ -114,7 +116,7 @@ void HardSpheres<D>::write_to(Spheres<D>& spheres) const {
 
 template <int D>
 double HardSpheres<D>::duration(double growth, double largest) const {
-  double time = 0.05 * mean_diameter_ * size_;
+  double time = first_duration * mean_diameter_ * size_;
   if (period_.time > 0) {
     const double rate =
         2 * static_cast<double>(period_.collisions) / (static_cast<double>(count()) * period_.time);

@@ -34,7 +34,7 @@ double volume_of_spheres(const PeriodicWork& work) {
 
 /// Random sequential insertion, the largest first. Returns whether all have found places.
 template <int D>
-bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random random, const Monitor& monitor) {
+bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random random) {
   std::vector<std::uint32_t> order(spheres.size());
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::stable_sort(order, [&](auto i, auto j) { return spheres.r[i] > spheres.r[j]; });
@@ -44,7 +44,7 @@ bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random random
   for (const std::uint32_t i : order) {
     const double r = spheres.r[i];
     for (int trial = 0;; ++trial) {
-      if (trial == most_trials || monitor.stop()) return false;
+      if (trial == most_trials) return false;
       const Vector<D> c = uniform_point(random, bounds);
       const bool taken = grid.any_near(c, r, [&](std::uint32_t j) {
         const double sum = r + spheres.r[j];
@@ -101,8 +101,7 @@ void start(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, double phi
   if (work.target_edges) volume = std::max(volume, work.target_edges->prod());
   edges *= std::pow(volume / edges.prod(), 1.0 / D);
   require_room<D>(spheres, edges);
-  if (insert_at_random<D>(spheres, edges, work.random(Stream::grow), work.monitor)) return;
-  if (!work.monitor.stop())
+  if (!insert_at_random<D>(spheres, edges, work.random(Stream::grow)))
     throw Error(ErrorCode::bad_scene,
                 fmt::format("grow cannot start at phi_init = {}: random insertion found no place for one of "
                             "the spheres; take a smaller one",
@@ -114,10 +113,6 @@ StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
   start<D>(spheres, edges, work, options.phi_init);
-  if (work.monitor.stop() && !work.placed) {
-    work.edges = edges;
-    return StageEnd::cancelled;
-  }
 
   HardSpheres<D> flight(spheres, edges, work.random(Stream::grow));
   const double volume = edges.prod();

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bernal/core/random.hpp"
-#include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "hard/calendar.hpp"
@@ -122,7 +121,7 @@ void events(benchmark::State& state) {
 BENCHMARK(events<Calendar>)->Arg(10000)->Arg(1000000)->Unit(benchmark::kMillisecond)->MinTime(0.5);
 BENCHMARK(events<BinaryHeap>)->Arg(10000)->Arg(1000000)->Unit(benchmark::kMillisecond)->MinTime(0.5);
 
-/// A packing; the coordination number counts gaps below 0.002.
+/// A packing, from the scene to the jammed spheres.
 void grow(benchmark::State& state, const std::string& box, const std::string& spheres,
           const std::string& stage) {
   const Plan plan = build(parse_scene("[container]\nkind = \"periodic\"\n" + box + "[spheres]\n" + spheres +

@@ -152,7 +152,7 @@ TEST(Growth, PolishedIsIsostatic) {
 TEST(Growth, EndsWhenCancelled) {
   int asked = 0;
   const Packing packing = grown(scene("", "count = 1000\nradius = 1.0"),
-                                {.on_progress = {}, .cancelled = [&] { return ++asked > 1200; }});
+                                {.on_progress = {}, .cancelled = [&] { return ++asked > 20; }});
   EXPECT_EQ(packing.outcome, Outcome::cancelled);
   EXPECT_EQ(packing.spheres.size(), 1000u);
 }
