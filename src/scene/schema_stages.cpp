@@ -168,37 +168,39 @@ Entry relax_in_periodic_box_entry() {
 }
 
 Entry grow_entry() {
-  return {.name = "grow",
-          .help = "hard spheres fly, collide and grow until they jam; in 2 to 6 dimensions",
-          .keys = {{.name = "delta",
-                    .type = Type::number,
-                    .help = "as published: growth of the radii, relative to those at the start, in the time "
-                            "that a sphere of thermal speed takes across the box; if absent see rate",
-                    .optional = true,
-                    .range = {0, 100, true}},
-                   {.name = "phi_init",
-                    .type = Type::number,
-                    .help = "packing fraction of the random insertion at the start; if absent 0.2, in other "
-                            "than three dimensions half of what insertion reaches",
-                    .optional = true,
-                    .range = {0, 0.5, true}},
-                   {.name = "rate",
-                    .type = Type::number,
-                    .help = "growth of the mean diameter over the thermal speed where the packing forms; "
-                            "slower is denser; ten times that while the spheres are a fluid",
-                    .otherwise = 0.01,
-                    .range = {1e-6, 1}},
-                   {.name = "pressure",
-                    .type = Type::number,
-                    .help = "compressibility factor P V / N k T at which the spheres count as jammed",
-                    .otherwise = 1e6,
-                    .range = {10, 1e13}},
-                   {.name = "polish",
-                    .type = Type::number,
-                    .help = "close the gaps and overlaps of all contacts to this ratio; 0: do not",
-                    .otherwise = 0.0,
-                    .range = {0, 0.5}}},
-          .complete = complete_grow};
+  return {
+      .name = "grow",
+      .help = "hard spheres fly, collide and grow until they jam; in 2 to 6 dimensions",
+      .keys = {{.name = "delta",
+                .type = Type::number,
+                .help = "as published: growth of the radii, relative to those at the start, in the time "
+                        "that a sphere of thermal speed takes across the box; if absent see rate",
+                .optional = true,
+                .range = {0, 100, true}},
+               {.name = "phi_init",
+                .type = Type::number,
+                .help = "packing fraction of the random insertion at the start; if absent 0.2, in other "
+                        "than three dimensions half of what insertion reaches",
+                .optional = true,
+                .range = {0, 0.5, true}},
+               {.name = "rate",
+                .type = Type::number,
+                .help =
+                    "growth of the mean diameter by volume over the thermal speed where the packing forms; "
+                    "slower is denser; ten times that while the spheres are a fluid",
+                .otherwise = 0.01,
+                .range = {1e-6, 1}},
+               {.name = "pressure",
+                .type = Type::number,
+                .help = "compressibility factor P V / N k T at which the spheres count as jammed",
+                .otherwise = 1e6,
+                .range = {10, 1e13}},
+               {.name = "polish",
+                .type = Type::number,
+                .help = "close the gaps and overlaps of all contacts to this ratio; 0: do not",
+                .otherwise = 0.0,
+                .range = {0, 0.5}}},
+      .complete = complete_grow};
 }
 
 Entry fly_entry() {

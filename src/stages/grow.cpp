@@ -32,6 +32,23 @@ double volume_of_spheres(const PeriodicWork& work) {
   return sum;
 }
 
+struct MeanDiameters {
+  double by_number, by_volume;
+};
+
+template <int D>
+MeanDiameters mean_diameters(const Spheres<D>& spheres) {
+  double number = 0, volume = 0, by_number = 0, by_volume = 0;
+  for (const double r : spheres.r) {
+    const double v = ball_volume(D, r);
+    number += 1;
+    volume += v;
+    by_number += 2 * r;
+    by_volume += v * 2 * r;
+  }
+  return {by_number / number, by_volume / volume};
+}
+
 /// Random sequential insertion, the largest first. Returns whether all have found places.
 template <int D>
 bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random random) {
@@ -119,9 +136,9 @@ StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
   double largest = std::numeric_limits<double>::infinity();
   if (work.target_edges)
     largest = std::max(1.0, std::pow(volume / work.target_edges->prod(), 1.0 / D)) * (1 + room_for_rounding);
-  const double mean_diameter =
-      2 * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / static_cast<double>(spheres.size());
-  const double as_published = options.delta.value_or(0) * mean_diameter / std::pow(volume, 1.0 / D);
+  const MeanDiameters mean = mean_diameters<D>(spheres);
+  const double as_published = options.delta.value_or(0) * mean.by_number / std::pow(volume, 1.0 / D);
+  const double by_schedule = options.rate * mean.by_number / mean.by_volume;
 
   Effect& collisions = work.effects["collisions"];
   Effect& departures = work.effects["neighbour shells"];
@@ -138,7 +155,7 @@ StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
       break;
     }
     const bool fluid = period.compressibility < fluid_compressibility * D;
-    const double rate = options.delta ? as_published : options.rate * (fluid ? haste_of_fluid : 1);
+    const double rate = options.delta ? as_published : by_schedule * (fluid ? haste_of_fluid : 1);
     period = flight.fly(rate, largest, work.monitor);
     collisions.calls += period.collisions;
     departures.calls += period.departures;

@@ -11,7 +11,8 @@ struct GrowOptions {
   std::optional<double> delta = {};
   /// Where spheres that have no places start: random sequential insertion up to this packing fraction.
   double phi_init = 0.2;
-  /// Of the default schedule, where the packing forms: growth of the mean diameter over the thermal speed.
+  /// Of the default schedule, where the packing forms: growth of the mean diameter by volume over the thermal
+  /// speed. By volume, because it is the large spheres that must not grow too fast for the others.
   double rate = 0.01;
   /// Compressibility factor P V / N k T at which spheres count as jammed.
   double pressure = 1e6;
