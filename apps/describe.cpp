@@ -41,7 +41,8 @@ std::string shown(const Spec& sizes) {
 std::string describe_container(const Plan& plan) {
   const std::string& unit = plan.scene.unit;
   const Vector<dynamic> size = extent_of(plan.domain);
-  std::string text(kind_of(plan.domain));
+  const auto* box = std::get_if<PeriodicBox>(&plan.domain);
+  std::string text(box && box->has_walls() ? name_of(plan.domain) : std::string(kind_of(plan.domain)));
   if (plan.scene.container.has("file")) text += fmt::format(" {}", plan.scene.container.text("file"));
   if (plan.box_follows) text += ", as large as the packing needs: about";
   return fmt::format("{}, {:.6g} {}, volume {:.6g} {}^{}", text, fmt::join(size, " x "), unit,

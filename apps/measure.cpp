@@ -217,8 +217,7 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
 
 void print(const Packing& packing, const Measurements& measured) {
   fmt::print("spheres           {}, in a {} of {:.6g} {}\n", grouped(packing.spheres.size()),
-             std::holds_alternative<PeriodicBox>(packing.domain) ? "periodic box" : kind_of(packing.domain),
-             fmt::join(extent_of(packing.domain), " x "), packing.scene.unit);
+             name_of(packing.domain), fmt::join(extent_of(packing.domain), " x "), packing.scene.unit);
   fmt::print("packing fraction  {:.6f}\n", measured.packing_fraction);
   if (measured.chambers) print_chambers(packing, *measured.chambers);
   print_contacts(packing, measured);

@@ -7,6 +7,20 @@ std::string_view kind_of(const Domain& domain) {
   return shape ? kind_of(*shape) : "periodic";
 }
 
+std::string name_of(const Domain& domain) {
+  const PeriodicBox* box = std::get_if<PeriodicBox>(&domain);
+  if (!box) return std::string(kind_of(domain));
+  if (!box->has_walls()) return "periodic box";
+  std::string axes;
+  int walls = 0;
+  for (int k = 0; k < box->dimension(); ++k) {
+    if (!box->has_wall(k)) continue;
+    axes += (walls++ > 0 ? ", " : "") + std::to_string(k);
+  }
+  if (walls == box->dimension()) return "box with walls all around";
+  return "box periodic but along " + std::string(walls > 1 ? "axes " : "axis ") + axes;
+}
+
 int dimension_of(const Domain& domain) {
   const PeriodicBox* box = std::get_if<PeriodicBox>(&domain);
   return box ? box->dimension() : 3;

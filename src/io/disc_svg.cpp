@@ -60,6 +60,7 @@ std::string disc_svg(const Spheres<dynamic>& spheres, const PeriodicBox& box, st
     const double r = spheres.r[i];
     const auto colour = static_cast<std::size_t>(sizes.colour_class(r));
     for (int image = 0; image < 9; ++image) {
+      if ((box.has_wall(0) && image % 3 != 1) || (box.has_wall(1) && image / 3 != 1)) continue;
       const Vector<2> c(spheres.x[0][i] + (image % 3 - 1) * box.edges[0],
                         spheres.x[1][i] + (image / 3 - 1) * box.edges[1]);
       if ((c.array() + r <= 0).any() || (c.array() - r >= window.array()).any()) continue;

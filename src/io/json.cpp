@@ -81,8 +81,12 @@ Json drawn_json(const SizeComparison& sizes) {
 
 Json::object_t::value_type domain_json(const Domain& domain) {
   if (const PeriodicBox* box = std::get_if<PeriodicBox>(&domain)) {
+    std::vector<int> walls;
+    for (int k = 0; k < box->dimension(); ++k)
+      if (box->has_wall(k)) walls.push_back(k);
     return {"box",
             {{"edges", std::vector<double>(box->edges.begin(), box->edges.end())},
+             {"walls", walls},
              {"volume", volume_of(domain)}}};
   }
   const Bounds<3> bounds = bounds_of(std::get<Shape>(domain));

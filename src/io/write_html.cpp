@@ -15,10 +15,6 @@
 namespace bernal {
 namespace {
 
-std::string_view domain_name(const Domain& domain) {
-  return std::holds_alternative<PeriodicBox>(domain) ? "periodic box" : kind_of(domain);
-}
-
 /// "mm³", "mm²", and so on.
 std::string volume_unit(const Packing& packing) {
   const int dimension = packing.spheres.dimension();
@@ -72,9 +68,12 @@ void write_scene(Page& page, const Report& report, std::string_view scene) {
   const std::string unit = escaped(packing.scene.unit);
   const Vector<dynamic> extent = extent_of(packing.domain);
   const bool periodic = std::holds_alternative<PeriodicBox>(packing.domain);
-  page.add("<h2>What was asked</h2>\n<p>A {} of {} {:.6g} {}, {:.4g} {}{}", domain_name(packing.domain),
+  page.add("<h2>What was asked</h2>\n<p>A {} of {} {:.6g} {}, {:.4g} {}{}", name_of(packing.domain),
            volume_word(packing), packing.volume, volume_unit(packing), fmt::join(extent, " × "), unit,
-           periodic ? ", repeated without end in all directions" : " over all");
+           !periodic ? " over all"
+           : std::get<PeriodicBox>(packing.domain).has_walls()
+               ? ", repeated without end along the axes that have no walls"
+               : ", repeated without end in all directions");
   if (const Shape* shape = std::get_if<Shape>(&packing.domain)) {
     if (const auto* mesh = std::get_if<Mesh>(shape))
       page.add(", with {} triangles", grouped(mesh->triangles.size()));
@@ -93,6 +92,13 @@ void write_history(Page& page, const Report& report) {
     const bool periodic = std::holds_alternative<PeriodicBox>(packing.domain);
     const bool relaxed =
         std::ranges::any_of(packing.history, [](const Milestone& m) { return m.max_overlap > 0; });
+    if (periodic && !relaxed) {
+      page.add(
+          "<h2>How the run went</h2>\n{}<p class=\"dim\">Spheres come from large to small, in a box of "
+          "given size; those that are there make room.</p>\n",
+          history_chart(packing.history, &Milestone::packing_fraction, "packing fraction"));
+      return;
+    }
     page.add("<h2>How the run went</h2>\n<div class=\"pair\"><div>{}</div><div>{}</div></div>\n",
              history_chart(packing.history, &Milestone::packing_fraction, "packing fraction"),
              relaxed ? overlap_chart(packing.history)
@@ -102,9 +108,8 @@ void write_history(Page& page, const Report& report) {
         relaxed && !periodic
             ? "<p class=\"dim\">Spheres that overlap push each other apart, and the wall pushes too. What "
               "is stuck is shaken with larger radii or put into holes, where the overlap jumps.</p>\n"
-        : periodic ? "<p class=\"dim\">The run starts in a box that is too small, where spheres overlap; "
-                     "they push each "
-                     "other apart while the box grows.</p>\n"
+        : periodic ? "<p class=\"dim\">The run starts with spheres that overlap; they push each other "
+                     "apart, in a box that grows or has its size already.</p>\n"
                    : "<p class=\"dim\">The height is measured against the direction in which the spheres "
                      "are pushed; it "
                      "falls as they settle and rises as new ones are put on top.</p>\n");
@@ -161,7 +166,7 @@ void write_certificate(Page& page, const Report& report) {
 std::string html_of(const Report& report, std::string_view picture, std::string_view scene) {
   const Packing& packing = report.packing;
   std::string title =
-      fmt::format("{} spheres in a {}", grouped(packing.spheres.size()), domain_name(packing.domain));
+      fmt::format("{} spheres in a {}", grouped(packing.spheres.size()), name_of(packing.domain));
   if (packing.scene.container.has("file")) {
     title += ", " + std::filesystem::path(packing.scene.container.text("file")).filename().string();
   }

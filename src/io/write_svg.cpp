@@ -177,7 +177,10 @@ void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const Vie
 /// What has to fit on the canvas: the domain, and for a periodic box the spheres that stick out of it.
 std::vector<Vector<3>> corners_of(const Mesh& mesh, const Domain& domain, const Spheres<dynamic>& spheres) {
   if (!std::holds_alternative<PeriodicBox>(domain) || spheres.empty()) return mesh.vertices;
-  const Vector<3> edges(extent_of(domain)), out = Vector<3>::Constant(std::ranges::max(spheres.r));
+  const Vector<3> edges(extent_of(domain));
+  Vector<3> out = Vector<3>::Constant(std::ranges::max(spheres.r));
+  for (int k = 0; k < 3; ++k)
+    if (std::get<PeriodicBox>(domain).has_wall(k)) out[k] = 0;
   std::vector<Vector<3>> corners;
   for (const Vector<3>& v : mesh.vertices)
     corners.push_back((v.array() > 0.5 * edges.array()).select(v + out, v - out));

@@ -152,7 +152,7 @@ void find_peaks(RadialDistribution& radial) {
 std::optional<RadialDistribution> radial_distribution(const Packing& packing, const RadialOptions& options) {
   const PeriodicBox* box = std::get_if<PeriodicBox>(&packing.domain);
   const std::vector<double>& radii = packing.spheres.r;
-  if (!box || radii.size() < 2) return {};
+  if (!box || box->has_walls() || radii.size() < 2) return {};
   const auto n = static_cast<double>(radii.size());
   const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / n;
   double squares = 0;

@@ -108,8 +108,8 @@ std::vector<NearPair> near_pairs(const Packing& packing, double widest_gap) {
     return pairs_among<NearPair, 3>(localised(packing.spheres, frame_of(*shape)), {}, widest_gap);
   return with_dimension(packing.spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
-    return pairs_among<NearPair, D>(packing.spheres.in<D>(), {std::get<PeriodicBox>(packing.domain).edges},
-                                    widest_gap);
+    return pairs_among<NearPair, D>(packing.spheres.in<D>(),
+                                    std::get<PeriodicBox>(packing.domain).boundary<D>(), widest_gap);
   });
 }
 
@@ -117,13 +117,35 @@ std::vector<NearBond> near_bonds(const Packing& packing, double widest_gap) {
   if (packing.spheres.empty()) return {};
   if (const Shape* shape = std::get_if<Shape>(&packing.domain))
     return pairs_among<NearBond, 3>(localised(packing.spheres, frame_of(*shape)), {}, widest_gap);
-  return pairs_among<NearBond, 3>(packing.spheres.in<3>(), {std::get<PeriodicBox>(packing.domain).edges},
-                                  widest_gap);
+  return pairs_among<NearBond, 3>(packing.spheres.in<3>(),
+                                  std::get<PeriodicBox>(packing.domain).boundary<3>(), widest_gap);
 }
 
+namespace {
+
+/// Those on the axes of a periodic box that have walls.
+std::vector<NearWall> near_walls_of(const PeriodicBox& box, const Spheres<dynamic>& spheres,
+                                    double widest_gap) {
+  std::vector<NearWall> near;
+  for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+    const double r = spheres.r[i];
+    for (int k = 0; k < box.dimension(); ++k) {
+      if (!box.has_wall(k)) continue;
+      const double c = spheres.x[static_cast<std::size_t>(k)][i];
+      for (const double clearance : {c, box.edges[k] - c})
+        if (clearance < (1 + widest_gap) * r) near.push_back({i, (clearance - r) / r});
+    }
+  }
+  return near;
+}
+
+}  // namespace
+
 std::vector<NearWall> near_walls(const Packing& packing, double widest_gap) {
+  if (packing.spheres.empty()) return {};
+  if (const PeriodicBox* box = std::get_if<PeriodicBox>(&packing.domain))
+    return near_walls_of(*box, packing.spheres, widest_gap);
   const Shape* shape = std::get_if<Shape>(&packing.domain);
-  if (!shape || packing.spheres.empty()) return {};
   const Frame frame = frame_of(*shape);
   const std::unique_ptr<Container> container = localised(*shape, frame);
   const Spheres<3> spheres = localised(packing.spheres, frame);

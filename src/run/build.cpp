@@ -33,6 +33,23 @@ void require_possible(const Scene& scene) {
                     scene.is_periodic() ? "periodic box" : "container with walls", fmt::join(able, "\", \"")),
         stage.where);
   }
+  if (scene.container.has("walls"))
+    for (const Spec& stage : scene.stages)
+      if (stage.name != "fly")
+        throw Error(
+            ErrorCode::bad_scene,
+            fmt::format("\"{}\" does not know the walls of a box that is periodic along other axes; there, "
+                        "the stage is \"fly\"",
+                        stage.name),
+            stage.where);
+  const bool flies = std::ranges::find(scene.stages, "fly", &Spec::name) != scene.stages.end();
+  const Target& target = scene.target;
+  if (flies && !target.packing_fraction && (!target.count || scene.container.flag("scalable")))
+    throw Error(
+        ErrorCode::bad_scene,
+        "\"fly\" fills a box of given size to a given end: give \"packing_fraction\" in [spheres], or "
+        "\"count\" and the size of the box",
+        target.where);
 }
 
 }  // namespace
@@ -150,7 +167,10 @@ Plan build(const Scene& scene) {
   }
 
   for (const Spec& stage : scene.stages) {
-    for (const PlanItem& item : find_entry(stage_catalogue(), stage).effects_in(scene)) {
+    const StageEntry& entry = find_entry(stage_catalogue(), stage);
+    const auto all = entry.effects_in(scene);
+    for (const PlanItem& item : entry.chosen_effects ? entry.chosen_effects(stage, plan)
+                                                     : std::vector<PlanItem>(all.begin(), all.end())) {
       const auto same = [&](const PlanItem& other) { return other.name == item.name; };
       if (std::ranges::none_of(plan.items, same)) plan.items.push_back(item);
     }

@@ -4,8 +4,11 @@
 #include <fmt/ranges.h>
 
 #include "bernal/cad/read_mesh.hpp"
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/unit.hpp"
 #include "stages/compress.hpp"
+#include "stages/fly.hpp"
+#include "stages/grow.hpp"
 #include "stages/insert.hpp"
 #include "stages/refill.hpp"
 #include "stages/relax.hpp"
@@ -53,6 +56,10 @@ Domain make_periodic(const Scene& scene, std::string&) {
   PeriodicBox box{Vector<dynamic>::Constant(scene.dimension(), c.has("edge") ? c.number("edge") : 1.0)};
   if (c.has("size"))
     box.edges = Eigen::Map<const Eigen::VectorXd>(c.numbers("size").data(), scene.dimension());
+  if (c.has("walls")) {
+    box.walls.assign(static_cast<std::size_t>(scene.dimension()), false);
+    for (const double axis : c.numbers("walls")) box.walls.at(static_cast<std::size_t>(axis)) = true;
+  }
   return box;
 }
 
@@ -124,6 +131,53 @@ StageEnd run_relax(const Spec& s, PeriodicWork& work) {
                       .settle = s.flag("settle")});
 }
 
+StageEnd run_grow(const Spec& s, PeriodicWork& work) {
+  GrowOptions options{.phi_init = s.number("phi_init"),
+                      .rate = s.number("rate"),
+                      .pressure = s.number("pressure"),
+                      .polish = s.number("polish")};
+  if (s.has("delta")) options.delta = s.number("delta");
+  return grow(work, options);
+}
+
+StageEnd run_fly(const Spec& s, PeriodicWork& work) {
+  const FillChoice choice = choose_filling(s.text("method"), work.fill_task);
+  const double dt = choice.method == FillMethod::patent ? 0.01 : 0.25;
+  return fly(work, choice,
+             {.batch = static_cast<int>(s.integer("batch")),
+              .dt = s.has("dt") ? s.number("dt") : dt,
+              .patience = s.number("patience"),
+              .sweeps = s.number("sweeps")});
+}
+
+const PlanItem flying[] = {
+    {"flight", "new spheres at random places, from large to small, while those that are there fly",
+     "O(N) a batch"},
+    {"collisions", "elastic, between spheres and at walls", "O(log N) each"},
+    {"insertion", "from large to small, between those that are there", "O(1) a trial"},
+    {"trial places", "random, and pushed out of what they overlap", "O(1) each"},
+    {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+    {"relaxation", "overlapping spheres push each other apart; what is stuck is stirred",
+     "some 1,000 sweeps of O(N)"}};
+
+/// The method and why it, at the first of its effects.
+std::vector<PlanItem> chosen_effects_of_fly(const Spec& stage, const Plan& plan) {
+  FillChoice choice;
+  try {
+    choice = choose_filling(stage.text("method"), fill_task_of(plan));
+  } catch (const Error& error) {
+    throw Error(ErrorCode::bad_scene, error.what(), stage.location("method"));
+  }
+  std::vector<PlanItem> items;
+  if (choice.method == FillMethod::patent || choice.method == FillMethod::flight)
+    items.assign(flying, flying + 2);
+  else
+    items.assign(flying + (choice.method == FillMethod::classes ? 2 : 4), std::end(flying));
+  if (choice.method == FillMethod::patent) items[1].cost = "O(N) each";
+  items.insert(items.begin(), {"fly", fmt::format("by {}, {}", name_of(choice.method), choice.reason), ""});
+  return items;
+}
+
 const PlanItem relaxing_in_container[] = {
     {"insertion", "random places, where so few are asked for that these are enough", "O(1) a trial"},
     {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
@@ -134,13 +188,36 @@ const PlanItem relaxing[] = {
     {"relaxation", "overlapping spheres push each other apart while the box grows",
      "some 1,000 sweeps of O(N)"}};
 
+const PlanItem growing[] = {{"insertion", "random places at the start, the largest first", "O(1) a trial"},
+                            {"neighbour shells", "each sphere renews its own list", "about 0.5 µs"},
+                            {"collisions", "of growing spheres, from a calendar of events", "about 0.5 µs"},
+                            {"growth", "until the spheres jam", "some 2,000 collisions a sphere"}};
+
 const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},
                              {"compress", run_compress, nullptr, compression},
                              {"shake", run_shake, nullptr, shaking},
                              {"refill", run_refill, nullptr, refilling},
-                             {"relax", run_relax_in_container, run_relax, relaxing_in_container, relaxing}};
+                             {"relax", run_relax_in_container, run_relax, relaxing_in_container, relaxing},
+                             {"grow", nullptr, run_grow, {}, growing},
+                             {"fly", nullptr, run_fly, {}, flying, chosen_effects_of_fly}};
 
 }  // namespace
+
+FillTask fill_task_of(const Plan& plan) {
+  constexpr double rare = 1e-4;
+  const int dimension = plan.scene.dimension();
+  const Target& target = plan.scene.target;
+  FillTask task{.dimension = dimension,
+                .attainable = plan.attainable_packing_fraction,
+                .size_ratio = plan.radii->quantile(1 - rare) / plan.radii->quantile(rare),
+                .has_walls = std::get<PeriodicBox>(plan.domain).has_walls()};
+  if (target.packing_fraction)
+    task.packing_fraction = *target.packing_fraction;
+  else if (target.count)
+    task.packing_fraction = static_cast<double>(*target.count) * ball_volume(dimension, 1) *
+                            plan.radii->moment(dimension) / volume_of(plan.domain);
+  return task;
+}
 
 std::span<const ContainerEntry> container_catalogue() { return containers; }
 std::span<const StageEntry> stage_catalogue() { return stages; }

@@ -37,6 +37,8 @@ struct StageEntry {
   StageEnd (*run_periodic)(const Spec&, PeriodicWork&);
   /// Effects that it brings with it in a container and in a periodic box, for `Plan::items`.
   std::span<const PlanItem> effects, periodic_effects = {};
+  /// Of a stage that chooses among methods in a periodic box: those of its effects that the plan calls for.
+  std::vector<PlanItem> (*chosen_effects)(const Spec&, const Plan&) = nullptr;
 
   std::span<const PlanItem> effects_in(const Scene& scene) const {
     return scene.is_periodic() ? periodic_effects : effects;
@@ -46,6 +48,9 @@ struct StageEntry {
 std::span<const ContainerEntry> container_catalogue();
 std::span<const SizesEntry> sizes_catalogue();
 std::span<const StageEntry> stage_catalogue();
+
+/// What a stage that fills a box of given edges has to do, by the plan's box, sizes and target.
+FillTask fill_task_of(const Plan& plan);
 
 /// The entry of that name. Throws Error{bad_scene} at the spec's place for an unknown one, which only a scene
 /// made in C++ can contain.

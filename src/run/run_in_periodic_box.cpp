@@ -46,9 +46,17 @@ std::optional<Vector<dynamic>> asked_edges(const Plan& plan, double volume_of_sp
   return edges * std::pow(volume_of_spheres / *phi / edges.prod(), 1.0 / static_cast<double>(edges.size()));
 }
 
-void conclude(Packing& packing, const PeriodicWork& work, StageEnd end, bool fits) {
+void conclude(Packing& packing, const PeriodicWork& work, StageEnd end, bool fits, std::size_t wanted) {
   const auto n = grouped(packing.spheres.size());
-  if (end == StageEnd::cancelled) {
+  const std::string account = work.account.empty() ? "" : " " + work.account;
+  if (packing.spheres.size() < wanted) {
+    packing.outcome = end == StageEnd::cancelled ? Outcome::cancelled
+                      : end == StageEnd::full    ? Outcome::full
+                                                 : Outcome::hit_limit;
+    packing.reason = fmt::format("{}{} of {} spheres are placed, packing fraction {:.4f}{}",
+                                 end == StageEnd::cancelled ? "stopped by the user: " : "", n,
+                                 grouped(wanted), packing.packing_fraction(), account);
+  } else if (end == StageEnd::cancelled) {
     packing.outcome = Outcome::cancelled;
     packing.reason = fmt::format("stopped by the user with {} spheres", n);
   } else if (!fits) {
@@ -62,7 +70,7 @@ void conclude(Packing& packing, const PeriodicWork& work, StageEnd end, bool fit
     packing.reason = fmt::format("the last stage reached its limit with {} spheres", n);
   } else {
     packing.outcome = Outcome::converged;
-    packing.reason = fmt::format("all {} spheres are placed", n);
+    packing.reason = fmt::format("all {} spheres are placed{}", n, account);
   }
 }
 
@@ -91,6 +99,7 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
 
     PeriodicWork work{.spheres = Spheres<dynamic>(dimension),
                       .edges = std::get<PeriodicBox>(plan.domain).edges / unit,
+                      .walls = std::get<PeriodicBox>(plan.domain).walls,
                       .allowed_overlap = scene.overlap,
                       .seed = packing.seed,
                       .monitor = monitor,
@@ -98,13 +107,15 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
     for (auto& column : work.spheres.x) column.assign(radii.size(), 0);
     work.spheres.r = std::move(radii);
     work.target_edges = asked_edges(plan, volume_of_spheres, work.edges);
+    work.fill_task = fill_task_of(plan);
+    const std::size_t wanted = work.spheres.size();
     work.milestone = [&](std::string_view stage, double done, double max_overlap) {
-      const double phi = volume_of_spheres / work.edges.prod();
-      packing.history.push_back(
-          {std::string(stage), work.spheres.size(), phi, 0, max_overlap, watch.seconds()});
+      const double phi = work.placed_share * volume_of_spheres / work.edges.prod();
+      const std::size_t placed = work.placed_share < 1 ? work.placed_count : work.spheres.size();
+      packing.history.push_back({std::string(stage), placed, phi, 0, max_overlap, watch.seconds()});
       monitor.report({stage, done,
                       fmt::format("{} spheres, packing fraction {:.4f}, largest overlap {:.1e}",
-                                  grouped(work.spheres.size()), phi, max_overlap)});
+                                  grouped(placed), phi, max_overlap)});
     };
 
     StageEnd end = StageEnd::converged;
@@ -123,14 +134,14 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
     for (auto& column : packing.spheres.x)
       for (double& x : column) x *= unit;
     for (double& r : packing.spheres.r) r *= unit;
-    PeriodicBox box{work.edges * unit};
+    PeriodicBox box{work.edges * unit, work.walls};
     packing.domain = box;
     packing.volume = volume_of(packing.domain);
     packing.scene.container.parameters["size"].value =
         std::vector<double>(box.edges.begin(), box.edges.end());
     packing.scene.container.parameters.erase("edge");
     packing.effects = effects.all();
-    conclude(packing, work, end, fits);
+    conclude(packing, work, end, fits, wanted);
     return;
   }
 }

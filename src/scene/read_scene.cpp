@@ -58,6 +58,7 @@ class Reader {
     read_spheres(table_in(root, "spheres"), scene);
     read_accuracy(root, scene);
     read_stages(root, scene);
+    take_target_of_fly(scene);
     if (scene.draw.empty()) scene.draw = default_draw(scene);
     return scene;
   }
@@ -348,6 +349,22 @@ class Reader {
       const toml::table& table = *item.as_table();
       const Entry& entry = choose(table, "do", all_.stages_for(scene), "[[stage]]");
       scene.stages.push_back(read_stage(table, entry, fmt::format("[[stage]] {}", entry.name), scene));
+    }
+  }
+
+  /// What `fly` fills the box to is the scene's target.
+  void take_target_of_fly(Scene& scene) const {
+    Target& target = scene.target;
+    for (Spec& stage : scene.stages) {
+      if (stage.name != "fly" || !stage.has("packing_fraction")) continue;
+      const bool scalable = scene.container.flag("scalable");
+      if (target.packing_fraction || target.fill || (target.count && !scalable))
+        throw Error(ErrorCode::bad_scene,
+                    "\"packing_fraction\" in [[stage]] fly says again what [spheres] says; leave it out",
+                    stage.location("packing_fraction"));
+      target.packing_fraction = stage.number("packing_fraction");
+      target.where = stage.location("packing_fraction");
+      stage.parameters.erase("packing_fraction");
     }
   }
 

@@ -1,6 +1,7 @@
 #include "scene/schema.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -19,6 +20,15 @@ void periodic_rule(const Spec& spec, std::string_view where) {
     refuse(spec, "size",
            fmt::format("\"size\" in {} must have a length for each of {} dimensions, but it has {}", where,
                        dimension, spec.numbers("size").size()));
+  if (!spec.has("walls")) return;
+  std::vector<double> seen;
+  for (const double axis : spec.numbers("walls")) {
+    if (axis != std::floor(axis) || axis >= static_cast<double>(dimension) ||
+        std::ranges::find(seen, axis) != seen.end())
+      refuse(spec, "walls",
+             fmt::format("\"walls\" in {} must name axes, each once, from 0 to {}", where, dimension - 1));
+    seen.push_back(axis);
+  }
 }
 
 Schema make_schema() {
@@ -123,6 +133,11 @@ Schema make_schema() {
                       .range = {1, max_dimension}},
                      {.name = "size", .type = Type::lengths, .help = "its edges"},
                      {.name = "edge", .type = Type::length, .help = "all its edges"},
+                     {.name = "walls",
+                      .type = Type::amounts,
+                      .help = "axes, counted from 0, along which the box does not repeat itself but ends at "
+                              "walls, with whole spheres between them; fly only",
+                      .optional = true},
                      {.name = "scalable",
                       .type = Type::flag,
                       .help = "the packing decides how large the box is; size only gives its proportions",

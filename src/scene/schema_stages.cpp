@@ -40,6 +40,15 @@ void complete_relax(Spec& spec, const Scene& scene) {
   spec.parameters.try_emplace("phi0", Parameter{phi0[scene.dimension() - 1], {scene.file.string()}});
 }
 
+/// The papers' phi_init; in other than three dimensions as far below where random insertion ends.
+void complete_grow(Spec& spec, const Scene& scene) {
+  const int dimension = scene.dimension();
+  if (dimension < 2 || dimension > 6)
+    throw Error(ErrorCode::bad_scene, "\"grow\" works in two to six dimensions; use \"relax\"", spec.where);
+  constexpr double phi_init[] = {0.28, 0.2, 0.135, 0.089, 0.057};
+  spec.parameters.try_emplace("phi_init", Parameter{phi_init[dimension - 2], {scene.file.string()}});
+}
+
 /// `insert` and all that compression needs.
 std::vector<Entry> compression_stages() {
   return {
@@ -158,12 +167,89 @@ Entry relax_in_periodic_box_entry() {
           .complete = complete_relax};
 }
 
+Entry grow_entry() {
+  return {
+      .name = "grow",
+      .help = "hard spheres fly, collide and grow until they jam; in 2 to 6 dimensions",
+      .keys = {{.name = "delta",
+                .type = Type::number,
+                .help = "as published: growth of the radii, relative to those at the start, in the time "
+                        "that a sphere of thermal speed takes across the box; if absent see rate",
+                .optional = true,
+                .range = {0, 100, true}},
+               {.name = "phi_init",
+                .type = Type::number,
+                .help = "packing fraction of the random insertion at the start; if absent 0.2, in other "
+                        "than three dimensions half of what insertion reaches",
+                .optional = true,
+                .range = {0, 0.5, true}},
+               {.name = "rate",
+                .type = Type::number,
+                .help =
+                    "growth of the mean diameter by volume over the thermal speed where the packing forms; "
+                    "slower is denser; ten times that while the spheres are a fluid",
+                .otherwise = 0.01,
+                .range = {1e-6, 1}},
+               {.name = "pressure",
+                .type = Type::number,
+                .help = "compressibility factor P V / N k T at which the spheres count as jammed",
+                .otherwise = 1e6,
+                .range = {10, 1e13}},
+               {.name = "polish",
+                .type = Type::number,
+                .help = "close the gaps and overlaps of all contacts to this ratio; 0: do not",
+                .otherwise = 0.0,
+                .range = {0, 0.5}}},
+      .complete = complete_grow};
+}
+
+Entry fly_entry() {
+  return {
+      .name = "fly",
+      .help = "fill a box of given size with spheres of given radii that fly and collide",
+      .keys = {{.name = "method",
+                .type = Type::word,
+                .help = "auto: by target and sizes; flight: from collision to collision; patent: in steps of "
+                        "one collision; classes: large ones first, small ones between them; relaxation: "
+                        "all at once, pushed apart",
+                .otherwise = "auto",
+                .words = {"auto", "flight", "patent", "classes", "relaxation"}},
+               {.name = "packing_fraction",
+                .type = Type::number,
+                .help = "where [spheres] does not say it: the one to fill the box to",
+                .optional = true,
+                .range = {0, 1, true, true}},
+               {.name = "batch",
+                .type = Type::integer,
+                .help = "flight, patent: new spheres tried between two steps; 0: half of all",
+                .otherwise = 0,
+                .range = {0, 1e9}},
+               {.name = "dt",
+                .type = Type::number,
+                .help = "flight, patent: way between two batches in mean diameters; if absent 0.25, for the "
+                        "patent's procedure 0.01",
+                .optional = true,
+                .range = {0, 1e6, true}},
+               {.name = "patience",
+                .type = Type::number,
+                .help = "flight, patent: full when so many places in a row, for each sphere, were not free",
+                .otherwise = 1000.0,
+                .range = {0, 1e9, true}},
+               {.name = "sweeps",
+                .type = Type::integer,
+                .help = "classes, relaxation: of all spheres, after which it stops",
+                .otherwise = 20000,
+                .range = {1, 1e9}}}};
+}
+
 }  // namespace
 
 std::vector<Entry> stages(bool in_container) {
   std::vector<Entry> all = compression_stages();
   all.insert(in_container ? all.end() : all.begin(),
              in_container ? relax_in_container_entry() : relax_in_periodic_box_entry());
+  if (!in_container) all.push_back(grow_entry());
+  if (!in_container) all.insert(all.begin() + 1, fly_entry());
   return all;
 }
 

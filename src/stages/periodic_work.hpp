@@ -4,11 +4,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
 #include "stages/effect_log.hpp"
+#include "stages/fill_task.hpp"
 #include "stages/stage_end.hpp"
 
 namespace bernal {
@@ -22,8 +24,18 @@ struct PeriodicWork {
   /// Of the box; before the spheres are placed only its proportions mean something.
   Vector<dynamic> edges;
   bool placed = false;
+  /// Axes on which the box ends at walls, with whole spheres between them; empty: none.
+  std::vector<bool> walls = {};
   /// Those that the box is to end with, where the scene says so.
   std::optional<Vector<dynamic>> target_edges = {};
+  /// While a stage puts spheres in their places one after the other: how many have them, and their share of
+  /// the volume of all. Otherwise all do.
+  std::size_t placed_count = 0;
+  double placed_share = 1;
+  /// By the plan, for stages that choose their method.
+  FillTask fill_task = {};
+  /// How a stage went about it, for people: follows "all 200 spheres are placed".
+  std::string account = {};
   /// Volume of the box that the spheres needed, before it grew to the one that was asked for.
   double needed_volume = 0;
   /// Largest overlap ratio that the result may keep; 0 for none.
@@ -40,6 +52,7 @@ struct PeriodicWork {
   /// A fresh stream of random numbers for one round of a stage.
   Random random(Stream purpose) { return {seed, stream(purpose, streams_used++)}; }
   int dimension() const { return spheres.dimension(); }
+  bool has_wall(int axis) const { return !walls.empty() && walls[static_cast<std::size_t>(axis)]; }
 };
 
 }  // namespace bernal

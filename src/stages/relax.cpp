@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "bernal/core/dimension.hpp"
-#include "stages/free_of_overlap.hpp"
-#include "stages/polish.hpp"
+#include "bernal/core/tolerance.hpp"
+#include "stages/finish_in_periodic_box.hpp"
 #include "stages/relax_fast.hpp"
 #include "stages/relax_reference.hpp"
 #include "stages/resize_box.hpp"
@@ -56,13 +56,6 @@ void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random random)
   for (std::size_t i = 0; i < spheres.size(); ++i) spheres.set_center(i, uniform_point(random, bounds));
 }
 
-template <int D>
-void shake(Spheres<D>& spheres, const Vector<D>& edges, double length, Random random) {
-  const Boundary<D> boundary{edges};
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    spheres.set_center(i, boundary.wrap(spheres.center(i) + length * uniform_direction<D>(random)));
-}
-
 /// Places for spheres that have none. Those of others are moved by nothing that matters, so that a lattice or
 /// a line of spheres does not last for ever.
 template <int D>
@@ -76,30 +69,10 @@ void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Period
   }
 }
 
-/// Grows the box, or shrinks it, until nothing overlaps more than is allowed.
-template <int D>
-void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work) {
-  Vector<D> free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap);
-  while (!free.allFinite()) {  // cancelled while centres coincide
-    shake<D>(spheres, edges, 1e-3 * std::ranges::max(spheres.r), work.random(Stream::relax));
-    free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap);
-  }
-  resize_box<D>(spheres, edges, free);
-}
-
-/// The edges that are asked for have room for the box at hand, and for the rounding of moving to them.
-template <int D>
-bool fits(const Spheres<D>& spheres, const Vector<D>& edges, const Vector<D>& target) {
-  const double rounding = tolerance::growth(target.maxCoeff() / std::ranges::min(spheres.r));
-  return (target.array() >= edges.array() * (1 + rounding)).all();
-}
-
 template <int D>
 StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
-  if constexpr (D <= 3) {
-    if (!options.reference && fast_path_exists<D>(spheres, edges))
-      return relax_fast<D>(spheres, edges, work, options);
-  }
+  if (!options.reference && fast_path_exists<D>(spheres, edges))
+    return relax_fast<D>(spheres, edges, work, options);
   return relax_by_the_book<D>(spheres, edges, work, options);
 }
 
@@ -121,18 +94,8 @@ StageEnd relax_in(PeriodicWork& work, const RelaxOptions& options) {
     resize_box<D>(spheres, edges, start);
   }
 
-  if (options.polish > 0 && end == StageEnd::converged && !is_loose(work)) {
-    end = polish<D>(spheres, edges, options.polish, work).end;
-    free_of_overlap<D>(spheres, edges, work);
-  }
-
-  work.needed_volume = edges.prod();
-  if (work.target_edges && fits<D>(spheres, edges, *work.target_edges))
-    resize_box<D>(spheres, edges, *work.target_edges);
-  work.spheres = std::move(spheres);
-  work.edges = edges;
-  work.placed = true;
-  return end;
+  const double polish_to = is_loose(work) ? 0 : options.polish;
+  return finish_in_periodic_box<D>(std::move(spheres), edges, end, polish_to, work);
 }
 
 }  // namespace

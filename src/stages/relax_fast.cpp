@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "soft/neighbor_relaxation.hpp"
 #include "soft/soft_packing.hpp"
 
 namespace bernal {
@@ -43,16 +44,9 @@ class Growth {
   double last_growth_ = 0;
 };
 
-}  // namespace
-
-template <int D>
-bool fast_path_exists(const Spheres<D>& spheres, const Vector<D>& edges) {
-  return edges.minCoeff() >= SoftPacking::smallest_edge(spheres.r);
-}
-
-template <int D>
-StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
-  SoftPacking packing(spheres, edges, soft_kernels().front());
+template <int D, class Packing>
+StageEnd relax_with(Packing&& packing, Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work,
+                    const RelaxOptions& options) {
   const int sweeps = sweeps_a_cycle(options.alpha, std::min(spheres.size(), enough));
   const double stop =
       std::max({share_of_stop * options.stop, std::min(work.allowed_overlap, options.stop), least_overlap});
@@ -79,11 +73,32 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, c
   return end;
 }
 
+}  // namespace
+
+template <int D>
+bool fast_path_exists(const Spheres<D>& spheres, const Vector<D>& edges) {
+  return D > 3 || edges.minCoeff() >= SoftPacking::smallest_edge(spheres.r);
+}
+
+template <int D>
+StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
+  if constexpr (D <= 3) {
+    return relax_with<D>(SoftPacking(spheres, edges, soft_kernels().front()), spheres, edges, work, options);
+  } else {
+    return relax_with<D>(NeighborRelaxation<D>(spheres, edges), spheres, edges, work, options);
+  }
+}
+
 #define BERNAL_INSTANTIATE(D)                                             \
   template bool fast_path_exists<D>(const Spheres<D>&, const Vector<D>&); \
   template StageEnd relax_fast<D>(Spheres<D>&, Vector<D>&, PeriodicWork&, const RelaxOptions&);
 BERNAL_INSTANTIATE(1)
 BERNAL_INSTANTIATE(2)
 BERNAL_INSTANTIATE(3)
+BERNAL_INSTANTIATE(4)
+BERNAL_INSTANTIATE(5)
+BERNAL_INSTANTIATE(6)
+BERNAL_INSTANTIATE(7)
+BERNAL_INSTANTIATE(8)
 
 }  // namespace bernal

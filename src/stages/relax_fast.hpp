@@ -4,8 +4,7 @@
 
 namespace bernal {
 
-/// Whether `relax_fast` can work: in up to three dimensions, in a box at least four of the largest radii
-/// wide.
+/// Whether `relax_fast` can work: up to three dimensions take a box at least four of the largest radii wide.
 template <int D>
 bool fast_path_exists(const Spheres<D>& spheres, const Vector<D>& edges);
 
@@ -21,8 +20,9 @@ bool fast_path_exists(const Spheres<D>& spheres, const Vector<D>& edges);
 ///  - Beyond 10,000 spheres the number of sweeps between two growths stays what it is there: the packing
 ///    fraction does so too.
 ///  - It ends with overlaps far below `options.stop`.
+/// From four dimensions on spheres are swept one after the other, on lists for one size (NeighborRelaxation).
 /// Preconditions and results are those of `relax_by_the_book`. Cost: about 13 ns a sphere and sweep, lists
-/// included.
+/// included; 0.07 µs in four dimensions and 0.13 µs in eight, lists not included.
 template <int D>
 StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options);
 

@@ -69,6 +69,10 @@ verify::Tally judge(const Spheres<dynamic>& spheres, const Domain& domain, doubl
 std::string what_was_decided(const Certificate& c, const Domain& domain, const std::string& limit) {
   const std::string pairs = counted(c.pairs_tested, "near pair", "near pairs");
   const Shape* shape = std::get_if<Shape>(&domain);
+  if (!shape && std::get<PeriodicBox>(domain).has_walls())
+    return fmt::format("{} in a {}, {} and {} decided exactly, no overlap{}, no protrusion",
+                       counted_spheres(c.spheres), name_of(domain), pairs,
+                       counted(c.walls_tested, "wall", "walls"), limit);
   if (!shape)
     return fmt::format("{} in a periodic box, {} decided exactly, no overlap{}", counted_spheres(c.spheres),
                        pairs, limit);

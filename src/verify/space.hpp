@@ -46,8 +46,8 @@ bool touch(const Box<D>& box, const RepeatedBox<D>& other) {
   return all;
 }
 
-/// Space that repeats itself with the period edges[k] along axis k. Every ball has an image in each period
-/// and is represented by that with -edge/2 <= c <= edge/2 on every axis.
+/// Space that repeats itself with the period edges[k] along axis k, or does not where that is infinite. Every
+/// ball has an image in each period and is represented by that with -edge/2 <= c <= edge/2 on every axis.
 ///
 /// Squared distances add up over the axes, and the image of a ball may be chosen for each axis by itself: so
 /// the nearest of all images of a ball is the one that is nearest along every axis, and |ci - cj + k·L| >= d
@@ -60,19 +60,25 @@ struct PeriodicSpace {
 
   /// The representative coordinate. Exact: IEEE 754's remainder has no rounding error. Precondition: finite.
   double representative(int k, double x) const {
-    return 2 * std::abs(x) <= edges[k] ? x : std::remainder(x, edges[k]);
+    return 2 * std::abs(x) <= edges[k] ? x : std::remainder(x, edges[k]);  // x where the edge is infinite
   }
 
   /// The smallest |a - b + n edge| over all integers n: |a - b| or edge - |a - b|, because |a - b| <= edge.
   template <class Number>
   Number offset(int k, double a, double b) const {
     const Number direct = magnitude(Number(a) - Number(b));
+    if (edges[k] == Box<D>::infinity) return direct;
     return smaller(direct, Number(edges[k]) - direct);
   }
 
   RepeatedBox<D> reach_of(const Box<D>& box) const {
     RepeatedBox<D> reach{box, {}, {}};
     for (int k = 0; k < D; ++k) {
+      if (edges[k] == Box<D>::infinity) {
+        reach.lower_of_next[k] = Box<D>::infinity;
+        reach.upper_of_previous[k] = -Box<D>::infinity;
+        continue;
+      }
       reach.lower_of_next[k] = rounded_down(box.lower[k] + edges[k]);
       reach.upper_of_previous[k] = rounded_up(box.upper[k] - edges[k]);
     }

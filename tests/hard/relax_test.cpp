@@ -26,7 +26,8 @@ void expect_free_of_overlap(const Spheres<dynamic>& spheres, const Vector<dynami
   });
 }
 
-/// Every law holds for every method; the fast one leaves small boxes and high dimensions to the reference.
+/// Every law holds for every method; the fast one leaves small boxes of up to three dimensions to the
+/// reference.
 class HardRelaxation : public ::testing::TestWithParam<const char*> {
  protected:
   static std::string scene(const std::string& box, const std::string& spheres,

@@ -244,6 +244,8 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
       {with_container("kind = \"periodic\""), 4, {"needs a \"count\"", "\"size\""}},
       {with_container("kind = \"periodic\"\nsize = [1.0, 2.0]"), 4, {"\"size\"", "3 dimensions", "has 2"}},
       {with_container("kind = \"periodic\"\nsize = [1, 2, 3]\nedge = 2"), 5, {"exclude each other"}},
+      {with_container("kind = \"periodic\"\nsize = [1, 2, 3]\nwalls = [3]"), 5, {"axes", "from 0 to 2"}},
+      {with_container("kind = \"periodic\"\nsize = [1, 2, 3]\nwalls = [1, 1]"), 5, {"each once"}},
       {with_container(box + "size = [1, 1, 1]\nradius = 1"), 5, {"unknown key \"radius\" in [container]"}},
       {with_stage("do = \"squeeze\""), 5, {"unknown stage \"squeeze\"", "\"insert\""}},
       {with_stage("do = \"shake\"\nround = 3"), 6, {"[[stage]] shake", "did you mean \"rounds\"?"}},
@@ -466,6 +468,7 @@ std::string sample(const Key& key, int choice) {
 }
 
 std::string sample_of(const Entry& entry, const Key& key, int choice) {
+  if (key.name == "walls" && key.type == Type::amounts) return "[0]";  // axes, not any numbers
   return key.type == Type::file && !entry.columns.empty() ? file_of_columns() : sample(key, choice);
 }
 

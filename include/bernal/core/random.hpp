@@ -52,6 +52,8 @@ enum class Stream : std::uint64_t {
   room = 6,
   relax = 7,
   measure = 8,
+  grow = 9,
+  fly = 10,
   test = 255
 };
 constexpr std::uint64_t stream(Stream purpose, std::uint64_t index = 0) {

@@ -26,8 +26,8 @@ struct Contacts {
   std::uint64_t backbone_walls = 0;
   double backbone_coordination = 0;  ///< 2 backbone_pairs / backbone
   /// Contacts that just hold the backbone of a frictionless packing in a periodic box: D (backbone - 1)
-  /// displacements and the size of the box, D (backbone - 1) + 1. Absent in a container, where it depends on
-  /// what the walls and the weight do, and where there is no backbone.
+  /// displacements and the size of the box, D (backbone - 1) + 1. Absent in a container and in a
+  /// box with walls, where it depends on what the walls and the weight do, and where there is no backbone.
   std::optional<std::uint64_t> isostatic;
 };
 

@@ -1,0 +1,320 @@
+#include "hard/hard_spheres.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "bernal/core/tolerance.hpp"
+#include "bernal/domain/boundary.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// Of a sphere. Fewer: more is spent on starting periods; more: velocities drift from their unit.
+constexpr double collisions_a_period = 16;
+/// A period after one that gained more kinetic energy than this is shorter.
+constexpr double most_heating = 0.1;
+constexpr double fastest_change_of_duration = 4;
+/// Of the first period, a mean diameter: short enough for spheres that are jammed from the start.
+constexpr double first_duration = 1e-6;
+/// Of the size, in a period.
+constexpr double most_growth = 0.1;
+/// Events between two looks at whether to stop.
+constexpr std::uint64_t events_a_look = 4096;
+/// Of the thermal speed: what a collision changes at least.
+constexpr double least_kick = 1e-14;
+/// Events in the calendar for each collision: sphere that look again, sphere that leave.
+constexpr double events_a_collision = 1.8;
+constexpr double events_a_bin = 2;
+
+/// Of the mean diameter: the shells to begin with, and their limits.
+constexpr double first_freedom = 0.15, least_freedom = 0.02, most_freedom = 1.0;
+/// Departures for each collision between which the shells are as large as they should be.
+constexpr double few_departures = 0.06, many_departures = 0.15;
+constexpr double change_of_freedom = 1.3;
+/// What lists leave for growth, of the shells.
+constexpr double room_to_grow = 0.25;
+
+double normal(Random& random) {
+  // Box & Muller; 1 - uniform() is never 0.
+  const double u = 1 - random.uniform(), v = random.uniform();
+  return std::sqrt(-2 * std::log(u)) * std::cos(2 * M_PI * v);
+}
+
+/// Where each sphere lies on a Z-order curve through the box: spheres that are near each other in space come
+/// to lie near each other in memory.
+template <int D>
+std::vector<std::uint64_t> places_on_curve(const Spheres<D>& spheres, const Vector<D>& edges) {
+  constexpr int bits = 63 / D;
+  std::vector<std::uint64_t> places(spheres.size(), 0);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    for (std::size_t k = 0; k < D; ++k) {
+      const auto at =
+          static_cast<std::uint64_t>(std::ldexp(spheres.x[k][i] / edges[static_cast<int>(k)], bits));
+      for (std::size_t bit = 0; bit < bits; ++bit) places[i] |= (at >> bit & 1) << (bit * D + k);
+    }
+  }
+  return places;
+}
+
+}  // namespace
+
+template <int D>
+HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, Random random,
+                            const CollisionKernel<D>& kernel)
+    : spheres_(spheres.size()), original_(spheres.size()), edges_(edges), kernel_(kernel) {
+  const std::size_t n = spheres.size();
+  std::vector<FlyingSphere<D>> given(n);
+  Vector<D> drift = Vector<D>::Zero();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int k = 0; k < D; ++k) {
+      given[i].x[k] = spheres.x[static_cast<std::size_t>(k)][i];
+      given[i].v[k] = normal(random);
+      drift[k] += given[i].v[k];
+    }
+    given[i].r = spheres.r[i];
+  }
+  const std::vector<std::uint64_t> places = places_on_curve(spheres, edges);
+  std::iota(original_.begin(), original_.end(), 0u);
+  std::ranges::stable_sort(original_, [&](Id i, Id j) { return places[i] < places[j]; });
+  for (std::size_t i = 0; i < n; ++i) spheres_[i] = given[original_[i]];
+  for (FlyingSphere<D>& s : spheres_)
+    for (int k = 0; k < D; ++k) s.v[k] -= drift[k] / static_cast<double>(n);
+  rescale_velocities();
+  mean_diameter_ = 2 * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / static_cast<double>(n);
+  largest_radius_ = std::ranges::max(spheres.r);
+  freedom_ = first_freedom * mean_diameter_;
+  for (int k = 0; k < D; ++k) {
+    scan_.edges[k] = edges[k];
+    scan_.inverse_edges[k] = 1 / edges[k];
+  }
+}
+
+template <int D>
+double HardSpheres<D>::kinetic_energy() const {
+  double sum = 0;
+  for (const FlyingSphere<D>& s : spheres_)
+    for (int k = 0; k < D; ++k) sum += s.v[k] * s.v[k];
+  return 0.5 * sum;
+}
+
+template <int D>
+void HardSpheres<D>::rescale_velocities() {
+  const double factor = std::sqrt(0.5 * D * static_cast<double>(spheres_.size()) / kinetic_energy());
+  for (FlyingSphere<D>& s : spheres_)
+    for (int k = 0; k < D; ++k) s.v[k] *= factor;
+}
+
+template <int D>
+void HardSpheres<D>::write_to(Spheres<D>& spheres) const {
+  const Boundary<D> boundary{edges_};
+  for (std::size_t i = 0; i < spheres_.size(); ++i)
+    spheres.set_center(original_[i], boundary.wrap(spheres_[i].position()));
+}
+
+template <int D>
+double HardSpheres<D>::duration(double growth, double largest) const {
+  double time = first_duration * mean_diameter_ * size_;
+  if (period_.time > 0) {
+    const double rate =
+        2 * static_cast<double>(period_.collisions) / (static_cast<double>(count()) * period_.time);
+    time = rate > 0 ? collisions_a_period / rate : infinite;
+    if (period_.heating > 0) time = std::min(time, period_.time * most_heating / period_.heating);
+    time = std::clamp(time, period_.time / fastest_change_of_duration,
+                      period_.time * fastest_change_of_duration);
+  }
+  if (growth > 0)
+    time = std::min(
+        {time, (largest - size_) * mean_diameter_ / growth, most_growth * size_ * mean_diameter_ / growth});
+  return time;
+}
+
+/// Shells that are left too often cost renewals, those that are hardly left cost long lists.
+template <int D>
+double HardSpheres<D>::wanted_freedom() const {
+  if (2 * listed_collisions_ < count()) return freedom_;
+  const double departures = static_cast<double>(listed_departures_) / static_cast<double>(listed_collisions_);
+  if (departures > many_departures)
+    return std::min(freedom_ * change_of_freedom, most_freedom * mean_diameter_);
+  if (departures < few_departures)
+    return std::max(freedom_ / change_of_freedom, least_freedom * mean_diameter_);
+  return freedom_;
+}
+
+template <int D>
+void HardSpheres<D>::build_shells(double freedom, double largest) {
+  freedom_ = freedom;
+  listed_collisions_ = listed_departures_ = 0;
+  largest_listed_ = std::max(
+      largest, std::min(size_ + room_to_grow * freedom_ / mean_diameter_, (1 + most_growth) * size_));
+  std::vector<Vector<D>> homes(count());
+  std::vector<double> radii(count()), freedoms(count());
+  // Two spheres whose shells touch are still nearer than half an edge.
+  const double most = (edges_.minCoeff() / 2 - 2 * largest_radius_ * largest_listed_) / 4;
+  const Boundary<D> boundary{edges_};
+  for (std::size_t i = 0; i < count(); ++i) {
+    homes[i] = boundary.wrap(spheres_[i].position());
+    for (int k = 0; k < D; ++k) spheres_[i].x[k] = homes[i][k];
+    radii[i] = spheres_[i].r * largest_listed_;
+    freedoms[i] = std::min(most, freedom_ / std::sqrt(2 * spheres_[i].r / mean_diameter_));
+  }
+  shells_.build(std::move(homes), radii, std::move(freedoms), edges_);
+}
+
+template <int D>
+FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& monitor) {
+  if (growth > 0) rescale_velocities();
+  growth_ = growth / mean_diameter_;
+  horizon_ = duration(growth, largest);
+  const double size_then = std::min(largest, size_ + growth_ * horizon_);
+  const double freedom = wanted_freedom();
+  if (size_then > largest_listed_ || freedom != freedom_) build_shells(freedom, size_then);
+
+  const double energy = kinetic_energy();
+  const double expected_collisions = period_.time > 0
+                                         ? static_cast<double>(period_.collisions) * horizon_ / period_.time
+                                         : static_cast<double>(count());
+  calendar_.start_period(count(), horizon_,
+                         static_cast<std::size_t>(expected_collisions * events_a_collision / events_a_bin +
+                                                  static_cast<double>(count()) / 4));
+  period_ = {};
+  virial_ = 0;
+  now_ = 0;
+  scan_.size = size_;
+  scan_.growth = growth_;
+  for (Id i = 0; i < count(); ++i) predict(i);
+
+  std::uint64_t events = 0;
+  for (Id i; (i = calendar_.next()) != Calendar::none;) {
+    if (++events % events_a_look == 0 && monitor.stop()) {
+      horizon_ = now_;
+      break;
+    }
+    now_ = calendar_.time(i);
+    const Id what = calendar_.what(i);
+    spheres_[i].fly_to(now_);
+    if (is_partner(what)) {
+      spheres_[what].fly_to(now_);
+      collide(i, what);
+      calendar_.schedule(i, infinite, look_again);
+      calendar_.schedule(what, infinite, look_again);
+      for (const Id m : shells_.neighbors(what)) __builtin_prefetch(&spheres_[m]);
+      predict(i);
+      predict(what);
+    } else {
+      if (what == leave) {
+        ++period_.departures;
+        const Vector<D> home = Boundary<D>{edges_}.wrap(spheres_[i].position());
+        for (int k = 0; k < D; ++k) spheres_[i].x[k] = home[k];
+        shells_.settle(i, home);
+      }
+      predict(i);
+    }
+  }
+
+  for (FlyingSphere<D>& s : spheres_) {
+    s.fly_to(horizon_);
+    s.time = 0;
+  }
+  size_ += growth_ * horizon_;
+  if (growth > 0 && size_ > largest * (1 - 4 * tolerance::roundoff)) size_ = largest;
+  listed_collisions_ += period_.collisions;
+  listed_departures_ += period_.departures;
+  period_.time = horizon_;
+  period_.heating = kinetic_energy() / energy - 1;
+  if (horizon_ > 0) period_.compressibility = 1 + virial_ / (2 * energy * horizon_);
+  return period_;
+}
+
+template <int D>
+double HardSpheres<D>::time_to_leave(Id i) const {
+  const FlyingSphere<D>& s = spheres_[i];
+  const Vector<D>& home = shells_.home(i);
+  const double freedom = shells_.freedom(i);
+  double qq = 0, qv = 0, vv = 0;
+  for (int k = 0; k < D; ++k) {
+    const double q = s.x[k] - home[k];
+    qq += q * q;
+    qv += q * s.v[k];
+    vv += s.v[k] * s.v[k];
+  }
+  const double c = qq - freedom * freedom;
+  const double root = std::sqrt(std::max(0.0, qv * qv - vv * c));
+  return std::max(0.0, qv > 0 ? -c / (qv + root) : (root - qv) / vv);
+}
+
+template <int D>
+void HardSpheres<D>::forget_partner(Id i) {
+  const Id partner = calendar_.what(i);
+  if (is_partner(partner) && calendar_.what(partner) == i) calendar_.change(partner, look_again);
+}
+
+/// The next event of sphere i, which is where it is now. A collision is only taken if the other has nothing
+/// earlier to do: otherwise that comes first, and then the other looks again.
+template <int D>
+void HardSpheres<D>::predict(Id i) {
+  ++period_.predictions;
+  forget_partner(i);
+  const std::span<const Id> neighbors = shells_.neighbors(i);
+  if (scratch_.size() < (2 * D + 3) * (shells_.longest_list() + 2 * widest)) {
+    scan_.stride = (shells_.longest_list() + 2 * widest) / widest * widest;
+    scratch_.resize((2 * D + 3) * (scan_.stride + widest));
+  }
+  scan_.columns = scratch_.data();
+  scan_.delays = scratch_.data() + (2 * D + 2) * scan_.stride;
+  scan_.spheres = spheres_.data();
+  scan_.self = &spheres_[i];
+  scan_.neighbors = neighbors.data();
+  scan_.count = neighbors.size();
+  scan_.now = now_;
+  const double leaves = time_to_leave(i);
+  const double limit = std::min(leaves, horizon_ - now_);
+  for (FirstCollision first = kernel_.scan(scan_); first.delay < limit;) {
+    const Id j = neighbors[first.neighbor];
+    const double time = now_ + first.delay;
+    if (time <= calendar_.time(j)) {
+      forget_partner(j);
+      calendar_.schedule(j, time, i);
+      calendar_.schedule(i, time, j);
+      return;
+    }
+    scan_.delays[first.neighbor] = infinite;
+    const double* const next = std::min_element(scan_.delays, scan_.delays + scan_.count);
+    first = {*next, static_cast<std::size_t>(next - scan_.delays)};
+  }
+  calendar_.schedule(i, now_ + leaves, leave);
+}
+
+template <int D>
+void HardSpheres<D>::collide(Id i, Id j) {
+  FlyingSphere<D>&a = spheres_[i], &b = spheres_[j];
+  const double radii = a.r + b.r;
+  double d[D], squared = 0, dw = 0;
+  for (int k = 0; k < D; ++k) {
+    d[k] = b.x[k] - a.x[k];
+    d[k] -= edges_[k] * std::nearbyint(d[k] * scan_.inverse_edges[k]);
+    squared += d[k] * d[k];
+    dw += d[k] * (b.v[k] - a.v[k]);
+  }
+  const double distance = std::sqrt(squared);
+  // Above 0 exactly where the scan saw them come closer; never so small that it gets lost in the velocities.
+  const double contact = radii * (size_ + growth_ * now_);
+  const double kick = std::max(least_kick, (contact * radii * growth_ - dw) / distance);
+  ++period_.collisions;
+  for (int k = 0; k < D; ++k) {
+    const double along = kick * d[k] / distance;
+    a.v[k] -= along;
+    b.v[k] += along;
+  }
+  virial_ += kick * distance;
+}
+
+template class HardSpheres<2>;
+template class HardSpheres<3>;
+template class HardSpheres<4>;
+template class HardSpheres<5>;
+template class HardSpheres<6>;
+
+}  // namespace bernal

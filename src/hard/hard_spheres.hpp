@@ -1,0 +1,101 @@
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "bernal/core/monitor.hpp"
+#include "bernal/core/random.hpp"
+#include "bernal/core/spheres.hpp"
+#include "hard/calendar.hpp"
+#include "hard/collision_kernels.hpp"
+#include "hard/shells.hpp"
+
+namespace bernal {
+
+/// What happened in a period of `HardSpheres`.
+struct FlightPeriod {
+  double time = 0;                ///< the caller's length over the thermal speed
+  std::uint64_t collisions = 0;   ///< of pairs
+  std::uint64_t departures = 0;   ///< of spheres from their shells
+  std::uint64_t predictions = 0;  ///< scans of all neighbours of a sphere
+  /// P V / N k T, from the momentum that collisions carried over, by the temperature at the start.
+  double compressibility = 1;
+  double heating = 0;  ///< relative growth of the kinetic energy
+};
+
+/// Event-driven dynamics of hard spheres that grow in a periodic box (Lubachevsky & Stillinger; Kansal,
+/// Torquato & Stillinger): all have the same mass and fly freely until two touch; then they exchange momentum
+/// along the line of centres, elastically with respect to their growing surfaces, v_n -> 2 s' - v_n for the
+/// relative velocity v_n of centres and the growth s' of the sum of radii.
+///
+/// All radii are the given ones times `size()`, which grows linearly in time: the size distribution stays
+/// what it is. Lengths are the caller's; the unit of velocity is the thermal speed √(k T / m), to which a
+/// period starts by rescaling all velocities wherever spheres grow. Time starts anew with each period, so
+/// that nothing is lost to the rounding of long times.
+///
+/// Invariant: at the end of a period no two spheres overlap by more than rounding, about 1e-15 edges.
+/// Precondition: 2 spheres or more, and `has_room`; no period may start without.
+/// Cost: about 0.5 µs a collision, the more the wider the sizes; memory about 500 bytes a sphere. One thread;
+/// the same bits on every x86-64.
+template <int D>
+class HardSpheres {
+ public:
+  /// Centres in [0, edge), free of overlap at size 1; velocities are drawn, without drift.
+  HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, Random random,
+              const CollisionKernel<D>& kernel = collision_kernels<D>().front());
+
+  /// Lets the spheres fly for some 16 collisions each, or until they have reached the size `largest`, or are
+  /// told to stop. `growth` is that of the mean diameter over the thermal speed.
+  FlightPeriod fly(double growth, double largest = std::numeric_limits<double>::infinity(),
+                   const Monitor& monitor = {});
+
+  std::size_t count() const { return spheres_.size(); }
+  double size() const { return size_; }
+  /// Of all spheres, in units of m k T / m = 1.
+  double kinetic_energy() const;
+  /// Centres in [0, edge), in the order given; radii are left as they are.
+  void write_to(Spheres<D>& spheres) const;
+
+  /// Of a box, in largest diameters: so that no sphere meets two images of a neighbour.
+  static constexpr double smallest_edge = 2.5;
+  /// Whether the box is still that large.
+  bool has_room() const { return edges_.minCoeff() >= smallest_edge * 2 * largest_radius_ * size_; }
+
+ private:
+  using Id = std::uint32_t;
+  /// Events that are no collisions.
+  static constexpr Id look_again = Calendar::none, leave = Calendar::none - 1;
+  static bool is_partner(Id what) { return what < leave; }
+
+  double duration(double growth, double largest) const;
+  double wanted_freedom() const;
+  void build_shells(double freedom, double largest);
+  void predict(Id i);
+  void forget_partner(Id i);
+  double time_to_leave(Id i) const;
+  void collide(Id i, Id j);
+  void rescale_velocities();
+
+  std::vector<FlyingSphere<D>> spheres_;
+  std::vector<Id> original_;  // the place of each in the caller's order
+  Vector<D> edges_;
+  CollisionKernel<D> kernel_;
+  Shells<D> shells_;
+  Calendar calendar_;
+  CollisionScan<D> scan_{};
+  std::vector<double> scratch_;
+
+  double mean_diameter_, largest_radius_;  // at size 1
+  double size_ = 1;
+  double growth_ = 0;  // of the size, a unit of time
+  double horizon_ = 0;
+  double freedom_;             // radius of the shells
+  double largest_listed_ = 0;  // size up to which the lists hold
+  double now_ = 0;
+
+  FlightPeriod period_;                                          // the last one, or the one at hand
+  double virial_ = 0;                                            // sum over the period's collisions
+  std::uint64_t listed_collisions_ = 0, listed_departures_ = 0;  // since the lists were built
+};
+
+}  // namespace bernal

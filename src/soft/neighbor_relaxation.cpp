@@ -1,0 +1,405 @@
+// Registers of eight numbers never cross a call that is not inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+#include "soft/neighbor_relaxation.hpp"
+
+#include <immintrin.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "bernal/domain/boundary.hpp"
+
+namespace bernal {
+namespace {
+
+/// In mean diameters, by dimension: lists become longer by its D-th power.
+constexpr double relative_skin[] = {0.4, 0.4, 0.4, 0.3, 0.25, 0.2, 0.17, 0.15};
+/// Of lists, in sweeps, and the thinnest skin in the thickest.
+constexpr int long_life = 80, short_life = 20;
+constexpr double thinnest = 0.125;
+/// Looking at a cell costs as much as looking at so many spheres.
+constexpr double cost_of_a_cell = 1.5;
+constexpr double most_cells_a_sphere = 4;
+/// In a box of fewer of the largest radii spheres may overlap in several images; and a little more, for
+/// rounding.
+constexpr double narrow = 4.001;
+/// Places are read four at a time.
+constexpr std::size_t block = 4;
+/// A move by this share of the box is as good as any longer one.
+constexpr float longest_move = 0x1p30f;
+/// In sums of radii, of spheres whose centres coincide.
+constexpr float least_distance = 1e-3f;
+
+std::uint32_t to_fixed(double x, double edge) {
+  const double share = x / edge;
+  return static_cast<std::uint32_t>(
+      static_cast<std::int64_t>(std::llround((share - std::floor(share)) * 0x1p32)));
+}
+
+/// The sums of the components of four vectors.
+inline __m128 sums(__m128 a, __m128 b, __m128 c, __m128 d) {
+  const __m128 ab = _mm_add_ps(_mm_unpacklo_ps(a, b), _mm_unpackhi_ps(a, b));
+  const __m128 cd = _mm_add_ps(_mm_unpacklo_ps(c, d), _mm_unpackhi_ps(c, d));
+  return _mm_add_ps(_mm_movelh_ps(ab, cd), _mm_movehl_ps(cd, ab));
+}
+
+inline __m128 folded(const __m128& v) { return v; }
+struct Pair {
+  __m128 low, high;
+};
+inline __m128 folded(const Pair& v) { return _mm_add_ps(v.low, v.high); }
+
+/// Four components, of which those four apart are added.
+template <class Floats>
+inline __m128 to_four(const Floats& v) {
+  if constexpr (sizeof(Floats) == sizeof(__m128))
+    return folded(__builtin_bit_cast(__m128, v));
+  else
+    return folded(__builtin_bit_cast(Pair, v));
+}
+
+}  // namespace
+
+template <int D>
+NeighborRelaxation<D>::NeighborRelaxation(const Spheres<D>& spheres, const Vector<D>& edges)
+    : count_(spheres.size()),
+      edges_(edges),
+      thickest_skin_(2 * relative_skin[D - 1] * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) /
+                     static_cast<double>(spheres.size())),
+      skin_(thickest_skin_),
+      places_(spheres.size() + block, Place{}),
+      radii_(spheres.size() + block, std::numeric_limits<float>::quiet_NaN()),
+      ids_(spheres.size()),
+      stress_(spheres.size(), 0.0f) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    for (int k = 0; k < D; ++k)
+      places_[i].x[k] = to_fixed(spheres.x[static_cast<std::size_t>(k)][i], edges[k]);
+    radii_[i] = static_cast<float>(spheres.r[i]);
+    largest_radius_ = std::max(largest_radius_, radii_[i]);
+    ids_[i] = static_cast<Id>(i);
+  }
+  set_scale();
+}
+
+template <int D>
+void NeighborRelaxation<D>::set_scale() {
+  for (int k = 0; k < D; ++k) {
+    scale_[k] = static_cast<float>(edges_[k] * 0x1p-32);
+    inverse_scale_[k] = static_cast<float>(0x1p32 / edges_[k]);
+  }
+}
+
+template <int D>
+void NeighborRelaxation<D>::grow(double factor) {
+  edges_ *= factor;
+  set_scale();
+  if (factor < 1) stale_ = true;
+}
+
+template <int D>
+inline typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::away(const Place& from,
+                                                                          const Place& to) const {
+  return __builtin_convertvector(__builtin_bit_cast(Ints, Whole(to.x - from.x)), Floats) * scale_;
+}
+
+template <int D>
+void NeighborRelaxation<D>::sweep(float omega) {
+  move_all(omega);
+}
+
+template <int D>
+double NeighborRelaxation<D>::sweep_and_measure(float omega) {
+  return move_all(omega);
+}
+
+template <int D>
+float NeighborRelaxation<D>::move_all(float omega) {
+  keep_lists_valid();
+  const bool in_images = edges_.minCoeff() < narrow * largest_radius_;
+  float largest = 0;
+  for (Id i = 0; i < count_; ++i) {
+    const Id* end = find_overlapping(i);
+    stress_[i] = 0;
+    if (end == hits_.data()) continue;
+    const Push push = in_images ? push_from_images(i, end) : push_from_nearest(i, end);
+    stress_[i] = push.stress;
+    largest = std::max(largest, push.largest);
+    const Floats step = push.sum * std::min(omega / push.contacts, 1.0f) * inverse_scale_;
+    const Floats limit = Floats{} + longest_move;
+    const Floats capped = step < limit ? (step > -limit ? step : -limit) : limit;
+    places_[i].x += __builtin_bit_cast(Whole, __builtin_convertvector(capped, Ints));
+  }
+  ++age_;
+  return largest;
+}
+
+/// Those of its list, by the nearest image: none of the others can be nearer.
+template <int D>
+const typename NeighborRelaxation<D>::Id* NeighborRelaxation<D>::find_overlapping(Id i) {
+  const Place me = places_[i];
+  const __m128 r = _mm_set1_ps(radii_[i]);
+  Id* end = hits_.data();
+  for (std::size_t n = list_[i]; n < list_[i + 1]; n += block) {
+    const Id* j = &neighbors_[n];
+    const auto square = [&](Id k) {
+      const Floats d = away(places_[k], me);
+      return to_four(Floats(d * d));
+    };
+    const __m128 squared = sums(square(j[0]), square(j[1]), square(j[2]), square(j[3]));
+    const __m128 reach = _mm_add_ps(r, _mm_setr_ps(radii_[j[0]], radii_[j[1]], radii_[j[2]], radii_[j[3]]));
+    const int near = _mm_movemask_ps(_mm_cmplt_ps(squared, _mm_mul_ps(reach, reach)));
+    for (std::size_t k = 0; k < block; ++k) {
+      *end = j[k];
+      end += near >> k & 1;
+    }
+  }
+  return end;
+}
+
+template <int D>
+typename NeighborRelaxation<D>::Push NeighborRelaxation<D>::push_from_nearest(Id i, const Id* end) const {
+  Push push;
+  for (const Id* j = hits_.data(); j < end; ++j) {
+    Floats d = away(places_[*j], places_[i]);
+    const __m128 four = to_four(Floats(d * d));
+    float distance = std::sqrt((four[0] + four[1]) + (four[2] + four[3]));
+    const float reach = radii_[i] + radii_[*j];
+    push.measure(1 - distance / reach);
+    if (!(distance > 0)) {
+      distance = least_distance * reach;
+      d = any_direction(i, *j) * distance;
+    }
+    const float weight = 2 * radii_[*j] / reach;
+    push.sum += d * (weight * (reach / distance - 1));
+    push.contacts += weight;
+  }
+  return push;
+}
+
+template <int D>
+typename NeighborRelaxation<D>::Push NeighborRelaxation<D>::push_from_images(Id i, const Id* end) const {
+  const Boundary<D> boundary{edges_};
+  Push push;
+  push.contacts =
+      std::numeric_limits<float>::min();  // in case the nearest image is a contact to rounding only
+  for (const Id* j = hits_.data(); j < end; ++j) {
+    const float reach = radii_[i] + radii_[*j], weight = 2 * radii_[*j] / reach;
+    const Floats nearest = away(places_[*j], places_[i]);
+    Vector<D> displacement;
+    for (int k = 0; k < D; ++k) displacement[k] = nearest[k];
+    boundary.for_each_image(displacement, reach, [&](const Vector<D>& image) {
+      auto distance = static_cast<float>(image.norm());
+      if (!(distance < reach)) return;
+      push.measure(1 - distance / reach);
+      Floats d{};
+      for (int k = 0; k < D; ++k) d[k] = static_cast<float>(image[k]);
+      if (!(distance > 0)) {
+        distance = least_distance * reach;
+        d = any_direction(i, *j) * distance;
+      }
+      push.sum += d * (weight * (reach / distance - 1));
+      push.contacts += weight;
+    });
+  }
+  return push;
+}
+
+/// Away from a sphere with the same centre; a different one for each pair.
+template <int D>
+typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::any_direction(Id i, Id j) const {
+  const Id a = std::min(ids_[i], ids_[j]), b = std::max(ids_[i], ids_[j]);
+  Vector<D> v;
+  std::uint32_t state = a * 2654435761u ^ (b + 1) * 2246822519u;
+  for (int k = 0; k < D; ++k) {
+    state = (state ^ (state >> 15)) * 2654435769u + 1;
+    v[k] = static_cast<double>(state >> 8) * 0x1p-23 - 1 + 0x1p-25;
+  }
+  v.normalize();
+  Floats direction{};
+  for (int k = 0; k < D; ++k) direction[k] = static_cast<float>(a == ids_[i] ? v[k] : -v[k]);
+  return direction;
+}
+
+template <int D>
+bool NeighborRelaxation<D>::moved_too_far() const {
+  const auto limit = static_cast<float>(0.25 * wear_ * wear_ * skin_ * skin_);
+  __m128 largest = _mm_setzero_ps();
+  for (std::size_t i = 0; i < count_; i += block) {
+    const auto squares = [&](std::size_t k) {
+      const Floats d = away(built_at_[k], places_[k]);
+      return to_four(Floats(d * d));
+    };
+    largest = _mm_max_ps(largest, sums(squares(i), squares(i + 1), squares(i + 2), squares(i + 3)));
+  }
+  return std::max({largest[0], largest[1], largest[2], largest[3]}) > limit;
+}
+
+template <int D>
+void NeighborRelaxation<D>::keep_lists_valid() {
+  if (!stale_ && !moved_too_far()) return;
+  if (builds_ > 0 && !stale_) {  // where lists last long, shorter ones that do not last so long cost less
+    if (age_ > long_life) skin_ = std::max(thinnest * thickest_skin_, skin_ / 1.4);
+    if (age_ < short_life) skin_ = std::min(thickest_skin_, skin_ * 1.4);
+  }
+  build_lists();
+  built_at_ = places_;
+  stale_ = false;
+  age_ = 0;
+  ++builds_;
+}
+
+/// Chooses the axes, those with the most cells, that are worth cutting: with k of them a sphere looks at 3^k
+/// cells, and at the share Π (3 / cells) of all spheres.
+template <int D>
+void NeighborRelaxation<D>::sort_into_cells(double reach) {
+  std::vector<Axis> axes;
+  for (int k = 0; k < D; ++k) axes.push_back({k, static_cast<int>(std::min(edges_[k] / reach, 1e6))});
+  std::ranges::stable_sort(axes, std::greater<>(), &Axis::cells);
+  const double count = static_cast<double>(count_);
+  double share = 1, looked_at = 1, cells = 1, least_cost = cost_of_a_cell + count;
+  gridded_.clear();
+  for (Axis axis : axes) {
+    axis.cells =
+        static_cast<int>(std::min<double>(axis.cells, std::max(1.0, most_cells_a_sphere * count / cells)));
+    if (axis.cells < 4) break;
+    share *= 3.0 / axis.cells;
+    looked_at *= 3;
+    cells *= axis.cells;
+    const double cost = cost_of_a_cell * looked_at + count * share;
+    if (cost > least_cost) break;
+    least_cost = cost;
+    gridded_.push_back(axis);
+  }
+  cell_start_.assign(1, 0);
+  if (gridded_.empty()) return;
+
+  std::size_t all = 1;
+  for (const Axis& axis : gridded_) all *= static_cast<std::size_t>(axis.cells);
+  std::vector<Id> cell(count_);
+  cell_start_.assign(all + 1, 0);
+  for (std::size_t i = 0; i < count_; ++i) {
+    std::uint64_t c = 0;
+    for (const Axis& axis : gridded_) {
+      const auto n = static_cast<std::uint64_t>(axis.cells);
+      c = c * n + (places_[i].x[axis.axis] * n >> 32);
+    }
+    cell[i] = static_cast<Id>(c);
+    ++cell_start_[c + 1];
+  }
+  std::partial_sum(cell_start_.begin(), cell_start_.end(), cell_start_.begin());
+  std::vector<Id> next(cell_start_.begin(), cell_start_.end() - 1);
+  const std::vector<Place> places = places_;
+  const std::vector<float> radii = radii_;
+  const std::vector<Id> ids = ids_;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Id to = next[cell[i]]++;
+    places_[to] = places[i];
+    radii_[to] = radii[i];
+    ids_[to] = ids[i];
+  }
+}
+
+template <int D>
+void NeighborRelaxation<D>::rows_near(Id i, std::vector<Row>& rows) const {
+  rows.clear();
+  if (gridded_.empty()) {
+    rows.push_back({0, static_cast<Id>(count_)});
+    return;
+  }
+  const auto coordinate = [&](const Axis& axis) {
+    return static_cast<int>(places_[i].x[axis.axis] * static_cast<std::uint64_t>(axis.cells) >> 32);
+  };
+  const int across = static_cast<int>(gridded_.size()) - 1;
+  int combinations = 1;
+  for (int a = 0; a < across; ++a) combinations *= 3;
+  const Axis fast = gridded_.back();
+  const int at = coordinate(fast);
+  for (int n = 0; n < combinations; ++n) {
+    std::size_t cell = 0;
+    for (int a = 0, digits = n; a < across; ++a, digits /= 3) {
+      const Axis& axis = gridded_[static_cast<std::size_t>(a)];
+      const int c = (coordinate(axis) + digits % 3 - 1 + axis.cells) % axis.cells;
+      cell = cell * static_cast<std::size_t>(axis.cells) + static_cast<std::size_t>(c);
+    }
+    const Id* start = &cell_start_[cell * static_cast<std::size_t>(fast.cells)];
+    if (at == 0) {
+      rows.push_back({start[0], start[2]});
+      rows.push_back({start[fast.cells - 1], start[fast.cells]});
+    } else if (at == fast.cells - 1) {
+      rows.push_back({start[at - 1], start[at + 1]});
+      rows.push_back({start[0], start[1]});
+    } else {
+      rows.push_back({start[at - 1], start[at + 2]});
+    }
+  }
+}
+
+template <int D>
+void NeighborRelaxation<D>::build_lists() {
+  sort_into_cells(2.0 * largest_radius_ + skin_);
+  list_.resize(count_ + 1);
+  std::vector<Row> rows;
+  std::size_t used = 0, longest = 0;
+  for (Id i = 0; i < count_; ++i) {
+    list_[i] = used;
+    rows_near(i, rows);
+    std::size_t candidates = 0;
+    for (const Row& row : rows) candidates += row.last - row.first;
+    if (neighbors_.size() < used + candidates + 2 * block)
+      neighbors_.resize(2 * (used + candidates + 2 * block));
+    Id* end = &neighbors_[used];
+    const Place me = places_[i];
+    const __m128 blown_up = _mm_set1_ps(radii_[i] + static_cast<float>(skin_));
+    for (const Row& row : rows) {
+      for (Id j = row.first; j < row.last; j += block) {
+        const auto squares = [&](Id k) {
+          const Floats d = away(places_[k], me);
+          return to_four(Floats(d * d));
+        };
+        const __m128 squared = sums(squares(j), squares(j + 1), squares(j + 2), squares(j + 3));
+        const __m128 reach = _mm_add_ps(blown_up, _mm_loadu_ps(&radii_[j]));
+        int near = _mm_movemask_ps(_mm_cmplt_ps(squared, _mm_mul_ps(reach, reach)));
+        if (row.last - j < block) near &= (1 << (row.last - j)) - 1;
+        if (i - j < block) near &= ~(1 << (i - j));
+        for (Id k = 0; k < block; ++k) {
+          *end = j + k;
+          end += near >> k & 1;
+        }
+      }
+    }
+    longest = std::max(longest, static_cast<std::size_t>(end - &neighbors_[used]));
+    used = static_cast<std::size_t>(end - neighbors_.data());
+    while (used % block != 0) neighbors_[used++] = static_cast<Id>(count_);
+  }
+  list_[count_] = used;
+  hits_.resize(longest + 2 * block);
+}
+
+template <int D>
+std::vector<float> NeighborRelaxation<D>::stress() const {
+  std::vector<float> of_sphere(count_);
+  for (std::size_t i = 0; i < count_; ++i) of_sphere[ids_[i]] = stress_[i];
+  return of_sphere;
+}
+
+template <int D>
+void NeighborRelaxation<D>::write_to(Spheres<D>& spheres, Vector<D>& edges) const {
+  edges = edges_;
+  for (std::size_t i = 0; i < count_; ++i)
+    for (int k = 0; k < D; ++k)
+      spheres.x[static_cast<std::size_t>(k)][ids_[i]] = places_[i].x[k] * (edges_[k] * 0x1p-32);
+}
+
+template class NeighborRelaxation<1>;
+template class NeighborRelaxation<2>;
+template class NeighborRelaxation<3>;
+template class NeighborRelaxation<4>;
+template class NeighborRelaxation<5>;
+template class NeighborRelaxation<6>;
+template class NeighborRelaxation<7>;
+template class NeighborRelaxation<8>;
+
+}  // namespace bernal

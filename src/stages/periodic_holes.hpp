@@ -1,0 +1,65 @@
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "bernal/core/random.hpp"
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/boundary.hpp"
+#include "neighbors/cell_grid.hpp"
+
+namespace bernal {
+
+/// Puts some of the spheres of a periodic box into holes between the others: the largest first, each into the
+/// next roomiest of so many random places that none of those before it covers by half; at random where there
+/// are no more holes. Room is what is left to the nearest surface. Cost: two random places for each sphere in
+/// the box and a thousand more, each about 1 µs in three dimensions.
+template <int D>
+void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std::uint32_t> ids,
+                   Random& random) {
+  constexpr double probes_a_sphere = 2, least_probes = 1000;
+  const Boundary<D> boundary{edges};
+  const Bounds<D> box{Vector<D>::Zero(), edges};
+  const auto [least, most] = std::ranges::minmax(spheres.r);
+  std::ranges::stable_sort(ids, std::greater<>(), [&](auto i) { return spheres.r[i]; });
+  std::vector<bool> moves(spheres.size(), false);
+  for (const std::uint32_t i : ids) moves[i] = true;
+  CellGrid<D> grid(boundary, least, most, spheres.size());
+  for (std::uint32_t i = 0; i < spheres.size(); ++i)
+    if (!moves[i]) grid.insert(i, spheres.center(i), spheres.r[i]);
+
+  struct Hole {
+    Vector<D> place;
+    double room;
+  };
+  std::vector<Hole> holes;
+  const auto probes =
+      static_cast<std::size_t>(least_probes + probes_a_sphere * static_cast<double>(spheres.size()));
+  for (std::size_t n = 0; n < probes; ++n) {
+    const Vector<D> p = uniform_point(random, box);
+    double room = most;
+    const auto lower = [&](double reach) {
+      grid.for_each_near(p, reach, [&](std::uint32_t j) {
+        room = std::min(room, boundary.minimum_image(spheres.center(j) - p).norm() - spheres.r[j]);
+      });
+    };
+    lower(0);
+    if (room > 0) lower(room);
+    holes.push_back({p, room});
+  }
+  std::ranges::stable_sort(holes, std::greater<>(), &Hole::room);
+  auto hole = holes.begin();
+  for (const std::uint32_t i : ids) {
+    const double r = spheres.r[i], apart = 0.5 * (r + least);
+    const auto taken = [&] {
+      return grid.any_near(hole->place, r, [&](std::uint32_t j) {
+        return moves[j] &&
+               boundary.minimum_image(hole->place - spheres.center(j)).squaredNorm() < apart * apart;
+      });
+    };
+    while (hole != holes.end() && taken()) ++hole;
+    spheres.set_center(i, hole != holes.end() ? (hole++)->place : uniform_point(random, box));
+    grid.insert(i, spheres.center(i), r);
+  }
+}
+
+}  // namespace bernal

@@ -1,0 +1,121 @@
+// Collision filling in n dimensions: the search for neighbours among all pairs against grids over the first k
+// axes, and where they cross; accepted insertions per second against the size of a batch; how the patent's
+// procedure grows with N.
+#include <cmath>
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include "bernal/core/dimension.hpp"
+#include "stages/fly_events.hpp"
+#include "stages/fly_patent.hpp"
+
+namespace {
+
+using namespace bernal;
+
+/// About random-sequential saturation, by dimension.
+constexpr double saturated[] = {0.74, 0.54, 0.38, 0.25, 0.16, 0.09, 0.05, 0.028};
+
+/// All neighbours of all of N unit spheres at random in a periodic box, within a surface distance of 0.3; the
+/// grid's time to sort is part of it.
+template <int D>
+void neighbours(benchmark::State& state) {
+  const auto n = static_cast<std::size_t>(state.range(0));
+  const auto axes = static_cast<int>(state.range(1));
+  const double edge = std::pow(static_cast<double>(n) * ball_volume(D, 1) / saturated[D - 1], 1.0 / D);
+  const Vector<D> edges = Vector<D>::Constant(edge);
+  std::array<bool, D> repeats;
+  repeats.fill(true);
+  Random random(1, stream(Stream::test));
+  Spheres<D> spheres;
+  for (std::size_t i = 0; i < n; ++i)
+    spheres.push_back(uniform_point(random, Bounds<D>{Vector<D>::Zero(), edges}), 1);
+  std::size_t found = 0;
+  int used = 0;
+  for (auto _ : state) {
+    PartialGrid<D> grid(edges, repeats, 2.3, 0, n, axes);
+    grid.set_largest(1);
+    grid.sort(spheres.x, spheres.r, n);
+    used = grid.axes();
+    found = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      grid.for_each_near(spheres.center(i), 1.3, [&](std::uint32_t, double) { ++found; });
+  }
+  benchmark::DoNotOptimize(found);
+  state.SetLabel(axes < 0 ? fmt::format("chosen: {} axes", used) : axes == 0 ? "all pairs" : "grid");
+  state.counters["s/sphere"] = benchmark::Counter(
+      static_cast<double>(n), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+template <int D>
+void every_number_of_axes(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"N", "axes"})->Unit(benchmark::kMicrosecond);
+  for (const int n : {64, 256, 1000, 4000, 16000})
+    for (int axes = -1; axes <= std::min(D, 5); ++axes) bench->Args({n, axes});
+}
+BENCHMARK(neighbours<2>)->Apply(every_number_of_axes<2>);
+BENCHMARK(neighbours<3>)->Apply(every_number_of_axes<3>);
+BENCHMARK(neighbours<4>)->Apply(every_number_of_axes<4>);
+BENCHMARK(neighbours<5>)->Apply(every_number_of_axes<5>);
+BENCHMARK(neighbours<6>)->Apply(every_number_of_axes<6>);
+BENCHMARK(neighbours<7>)->Apply(every_number_of_axes<7>);
+BENCHMARK(neighbours<8>)->Apply(every_number_of_axes<8>);
+
+/// Fills a cube with N unit spheres to the packing fraction.
+template <int D>
+void fill(benchmark::State& state, bool patent, std::size_t n, double phi, int batch) {
+  const Monitor monitor;
+  std::size_t placed = 0;
+  std::uint64_t collisions = 0;
+  for (auto _ : state) {
+    EffectLog effects;
+    PeriodicWork work{.spheres = Spheres<dynamic>(D),
+                      .edges = Vector<dynamic>::Constant(
+                          D, std::pow(static_cast<double>(n) * ball_volume(D, 1) / phi, 1.0 / D)),
+                      .seed = 1,
+                      .monitor = monitor,
+                      .effects = effects,
+                      .milestone = [](std::string_view, double, double) {}};
+    for (auto& column : work.spheres.x) column.assign(n, 0);
+    work.spheres.r.assign(n, 1);
+    work.target_edges = work.edges;
+    const FlyOptions options{.batch = batch, .dt = patent ? 0.01 : 0.25, .patience = 1e5};
+    patent ? fly_by_patent(work, options) : fly_by_events(work, options);
+    placed = work.spheres.size();
+    collisions = effects["collisions"].calls;
+  }
+  state.counters["phi"] = phi * static_cast<double>(placed) / static_cast<double>(n);
+  state.counters["collisions"] = static_cast<double>(collisions);
+  state.counters["insertions/s"] =
+      benchmark::Counter(static_cast<double>(placed), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void batches(benchmark::State& state, bool patent) {
+  fill<3>(state, patent, 2000, patent ? 0.40 : 0.45, static_cast<int>(state.range(0)));
+}
+void every_batch(benchmark::internal::Benchmark* bench) {
+  bench->ArgName("batch")->Unit(benchmark::kMillisecond)->Iterations(1);
+  for (const int batch : {1, 10, 100, 1000, 10000}) bench->Arg(batch);
+}
+BENCHMARK_CAPTURE(batches, patent, true)->Apply(every_batch);
+BENCHMARK_CAPTURE(batches, events, false)->Apply(every_batch);
+
+void scaling(benchmark::State& state, bool patent) {
+  fill<3>(state, patent, static_cast<std::size_t>(state.range(0)), 0.40, 0);
+}
+void every_count(benchmark::internal::Benchmark* bench) {
+  bench->ArgName("N")->Unit(benchmark::kMillisecond)->Iterations(1)->RangeMultiplier(2)->Range(250, 4000);
+}
+BENCHMARK_CAPTURE(scaling, patent, true)->Apply(every_count);
+BENCHMARK_CAPTURE(scaling, events, false)->Apply(every_count);
+
+void in_the_plane(benchmark::State& state, bool patent, double phi) { fill<2>(state, patent, 2000, phi, 0); }
+void in_space(benchmark::State& state, bool patent, double phi) { fill<3>(state, patent, 2000, phi, 0); }
+void once(benchmark::internal::Benchmark* bench) { bench->Unit(benchmark::kMillisecond)->Iterations(1); }
+BENCHMARK_CAPTURE(in_the_plane, patent, true, 0.64)->Apply(once);
+BENCHMARK_CAPTURE(in_space, patent, true, 0.42)->Apply(once);
+BENCHMARK_CAPTURE(in_the_plane, events, false, 0.70)->Apply(once);
+BENCHMARK_CAPTURE(in_space, events, false, 0.48)->Apply(once);
+
+}  // namespace

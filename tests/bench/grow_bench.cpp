@@ -1,0 +1,161 @@
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "bernal/core/random.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "hard/calendar.hpp"
+#include "support/flights.hpp"
+
+// What growth costs: a collision in a fluid, by number and sizes of spheres; the queue of events, against a
+// binary heap; a packing from the scene to the jammed spheres.
+namespace bernal {
+namespace {
+
+using testing::equal_radii;
+using testing::Gas;
+using testing::lognormal_radii;
+
+/// A fluid at packing fraction 0.49, grown there from 0.2.
+void collide(benchmark::State& state, const std::vector<double>& radii) {
+  const Gas<3> gas(radii, 0.2);
+  HardSpheres<3> flight(gas.spheres, gas.edges, Random(1, stream(Stream::test, 2)));
+  const double size = std::cbrt(0.49 / 0.2);
+  while (flight.size() < size) flight.fly(0.1, size);
+  for (int k = 0; k < 12; ++k) flight.fly(0);  // shells find their size
+  std::uint64_t collisions = 0, departures = 0, predictions = 0;
+  for (auto _ : state) {
+    const FlightPeriod period = flight.fly(0);
+    collisions += period.collisions;
+    departures += period.departures;
+    predictions += period.predictions;
+  }
+  const auto all = static_cast<double>(collisions);
+  state.counters["collisions_per_second"] = benchmark::Counter(all, benchmark::Counter::kIsRate);
+  state.counters["scans_a_collision"] = static_cast<double>(predictions) / all;
+  state.counters["departures_a_collision"] = static_cast<double>(departures) / all;
+}
+
+void collide_equal(benchmark::State& state) {
+  collide(state, equal_radii(static_cast<std::size_t>(state.range(0))));
+}
+BENCHMARK(collide_equal)->Arg(1000)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond)->MinTime(1);
+
+void collide_lognormal(benchmark::State& state) {
+  collide(state, lognormal_radii(static_cast<std::size_t>(state.range(0)), 0.5));
+}
+BENCHMARK(collide_lognormal)->Arg(10000)->Unit(benchmark::kMillisecond)->MinTime(1);
+
+void collide_one_to_five(benchmark::State& state) {
+  std::vector<double> radii(static_cast<std::size_t>(state.range(0)), 0.5);
+  std::fill_n(radii.begin(), radii.size() / 126, 2.5);  // half of the volume
+  collide(state, radii);
+}
+BENCHMARK(collide_one_to_five)->Arg(10000)->Unit(benchmark::kMillisecond)->MinTime(1);
+
+/// The other queue that was tried: a binary heap that knows where each event stands.
+class BinaryHeap {
+ public:
+  using Id = Calendar::Id;
+
+  void start_period(std::size_t ids, double, std::size_t) {
+    times_.assign(ids, Calendar::never);
+    heap_.resize(ids);
+    place_.resize(ids);
+    for (Id id = 0; id < ids; ++id) heap_[id] = place_[id] = id;
+  }
+  double time(Id id) const { return times_[id]; }
+  void schedule(Id id, double time, Id) {
+    times_[id] = time;
+    std::size_t at = place_[id];
+    while (at > 0 && times_[heap_[(at - 1) / 2]] > time) at = put(at, heap_[(at - 1) / 2], (at - 1) / 2);
+    for (std::size_t child; (child = 2 * at + 1) < heap_.size();) {
+      if (child + 1 < heap_.size() && times_[heap_[child + 1]] < times_[heap_[child]]) ++child;
+      if (times_[heap_[child]] >= time) break;
+      at = put(at, heap_[child], child);
+    }
+    put(at, id, at);
+  }
+  Id next() const { return heap_[0]; }
+
+ private:
+  std::size_t put(std::size_t at, Id id, std::size_t next) {
+    heap_[at] = id;
+    place_[id] = static_cast<Id>(at);
+    return next;
+  }
+
+  std::vector<double> times_;
+  std::vector<Id> heap_, place_;
+};
+
+/// The queue alone, used as collisions use it: of the one that comes up and of one other, the event is
+/// replaced by one to come.
+template <class Queue>
+void events(benchmark::State& state) {
+  const auto n = static_cast<Calendar::Id>(state.range(0));
+  Random random(1, stream(Stream::test));
+  std::vector<double> waits(1 << 16);
+  for (double& wait : waits) wait = -std::log(1 - random.uniform());
+  std::vector<Calendar::Id> others(1 << 16);
+  for (Calendar::Id& other : others) other = static_cast<Calendar::Id>(random.uniform() * n);
+  std::size_t count = 0;
+  Queue queue;
+  for (auto _ : state) {
+    queue.start_period(n, 8, 8 * n);
+    for (Calendar::Id id = 0; id < n; ++id) queue.schedule(id, waits[(count + id) & 0xFFFF], 0);
+    for (std::uint32_t k = 0; k < 6 * n; ++k) {
+      const Calendar::Id id = queue.next();
+      const double now = queue.time(id);
+      queue.schedule(id, now + waits[++count & 0xFFFF], 0);
+      queue.schedule(others[count & 0xFFFF], now + waits[++count & 0xFFFF], 0);
+    }
+  }
+  state.counters["ns_per_event"] = benchmark::Counter(
+      6e-9 * n, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(events<Calendar>)->Arg(10000)->Arg(1000000)->Unit(benchmark::kMillisecond)->MinTime(0.5);
+BENCHMARK(events<BinaryHeap>)->Arg(10000)->Arg(1000000)->Unit(benchmark::kMillisecond)->MinTime(0.5);
+
+/// A packing, from the scene to the jammed spheres.
+void grow(benchmark::State& state, const std::string& box, const std::string& spheres,
+          const std::string& stage) {
+  const Plan plan = build(parse_scene("[container]\nkind = \"periodic\"\n" + box + "[spheres]\n" + spheres +
+                                          "[[stage]]\ndo = \"grow\"\n" + stage,
+                                      "bench.toml"));
+  RunOptions options;
+  options.threads = 1;
+  Packing packing;
+  for (auto _ : state) packing = run(plan, options);
+  state.counters["packing_fraction"] = packing.packing_fraction();
+  state.counters["spheres"] = static_cast<double>(packing.spheres.size());
+}
+#define BERNAL_GROW(name, box, spheres, stage)       \
+  BENCHMARK_CAPTURE(grow, name, box, spheres, stage) \
+      ->Unit(benchmark::kSecond)                     \
+      ->Iterations(1)                                \
+      ->MeasureProcessCPUTime()
+BERNAL_GROW(equal_to_0_64, "scalable = true\n", "count = 10000\npacking_fraction = 0.64\nradius = 1.0\n", "");
+BERNAL_GROW(equal_to_0_6435, "scalable = true\n", "count = 10000\npacking_fraction = 0.6435\nradius = 1.0\n",
+            "");
+BERNAL_GROW(equal_jammed, "", "count = 10000\nradius = 1.0\n", "");
+BERNAL_GROW(four_dimensions, "dimension = 4\n", "count = 2000\nradius = 1.0\n", "pressure = 1e4\n");
+BERNAL_GROW(five_dimensions, "dimension = 5\n", "count = 2000\nradius = 1.0\n", "pressure = 1e4\n");
+BERNAL_GROW(six_dimensions, "dimension = 6\n", "count = 2000\nradius = 1.0\n", "pressure = 1e3\n");
+BERNAL_GROW(lognormal_0_5, "",
+            "count = 10000\nradius = { distribution = \"lognormal\", median = 1.0, sigma = 0.5 }\ndraw = "
+            "\"quantiles\"\n",
+            "pressure = 1e4\n");
+BERNAL_GROW(
+    one_to_five, "",
+    "count = 10000\nradius = { distribution = \"classes\", values = [5.0, 1.0], shares = [79, 21], basis = "
+    "\"volume\" }\ndraw = \"quantiles\"\n",
+    "pressure = 1e4\n");
+BERNAL_GROW(isostatic, "", "count = 1000\nradius = 1.0\n", "pressure = 1e4\npolish = 1e-10\n");
+
+}  // namespace
+}  // namespace bernal
