@@ -46,6 +46,16 @@ std::optional<Vector<dynamic>> asked_edges(const Plan& plan, double volume_of_sp
   return edges * std::pow(volume_of_spheres / *phi / edges.prod(), 1.0 / static_cast<double>(edges.size()));
 }
 
+/// What a stage cannot do, only it knows; where the scene asks for it, only the run.
+StageEnd run_stage(const Spec& stage, PeriodicWork& work) {
+  try {
+    return find_entry(stage_catalogue(), stage).run_periodic(stage, work);
+  } catch (const Error& error) {
+    if (!error.location().file.empty()) throw;
+    throw Error(error.code(), error.what(), stage.where);
+  }
+}
+
 void conclude(Packing& packing, const PeriodicWork& work, StageEnd end, bool fits, std::size_t wanted) {
   const auto n = grouped(packing.spheres.size());
   const std::string account = work.account.empty() ? "" : " " + work.account;
@@ -120,7 +130,7 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
 
     StageEnd end = StageEnd::converged;
     for (const Spec& stage : scene.stages) {
-      end = find_entry(stage_catalogue(), stage).run_periodic(stage, work);
+      end = run_stage(stage, work);
       if (end == StageEnd::cancelled) break;
     }
 
