@@ -44,7 +44,6 @@ std::vector<Population> populations_of(const MaximiseCall& call) {
                             "neighbouring sizes together, or see bernal design best --help",
                             populations.size(), most_populations_to_mix));
   const auto [least, most] = std::ranges::minmax(populations, {}, &Population::d43);
-  require_usable_lengths(least.d43, most.d43);
   if (most.d43 / least.d43 > widest_ratio(call.output.rods))
     throw Error(
         ErrorCode::bad_argument,
@@ -53,6 +52,7 @@ std::vector<Population> populations_of(const MaximiseCall& call) {
             "reach farther",
             grouped(static_cast<std::uint64_t>(call.output.rods)), widest_ratio(call.output.rods),
             number(least.d43), number(most.d43)));
+  require_usable_lengths(least.d43, most.d43);
   return populations;
 }
 

@@ -38,10 +38,11 @@ Optimum densest(double second, double third, const std::vector<std::vector<doubl
   return best;
 }
 
-/// Where a neighbour ended; and two sizes and three, for either can be a local maximum, some 0.002 below the
-/// other, that a search which only follows its neighbours does not leave.
+/// Where a neighbour ended; and three sizes if that has two, else two, for either can be a local maximum, some
+/// 0.002 below the other, that a search which only follows its neighbours does not leave.
 std::vector<std::vector<double>> starts_beside(const std::vector<double>& neighbour) {
-  return {neighbour, {0.22, 0, 0.78}, {0.15, 0.15, 0.7}};
+  const bool has_three = neighbour[1] > 0;
+  return {neighbour, has_three ? std::vector{0.22, 0.0, 0.78} : std::vector{0.15, 0.15, 0.7}};
 }
 
 Spec sizes_of(double second, double third, const std::vector<double>& shares) {
@@ -68,7 +69,7 @@ std::string csv_line(std::string_view source, double second, double third, doubl
 
 /// Farr's figure 6: the packing fraction of the densest mixture of three sizes D1 <= D2 <= D3, over both
 /// ratios. Each row of the grid begins with a search from many starts; then every point begins where its
-/// neighbour ended, and at two places more.
+/// neighbour ended, and at one place more.
 Files figure_6(const FigureOptions& options) {
   Field field{spread(1, largest_ratio, steps, true), spread(1, largest_ratio, steps, true), {}};
   const std::size_t width = field.xs.size();

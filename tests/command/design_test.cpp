@@ -168,6 +168,8 @@ TEST(DesignCommand, RefusesAbsurdInputInOneLine) {
       {{"maximise", "--diameters", "1:2,3:4"}, "number"},
       {{"maximise", "--diameters", "1,1e6"}, "--rods"},
       {{"maximise", "--diameters", "1e-300,1e300"}, "--rods"},
+      {{"maximise", "--diameters", "1e-200,2e-200"}, "another unit"},
+      {{"best", "--min", "1e-40", "--max", "2e-40"}, "another unit"},
       {{"maximise", "--lognormal", "1,2", "--diameters", "3"}, "swapped"},
       {{"maximise", "--lognormal", "1", "--diameters", "3"}, "D43,D32"},
       {{"maximise", "--lognormal", "1,1e-300", "--diameters", "3"}, "sigma"},

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -19,10 +20,19 @@ TEST(DensestOfThreeSizes, PacksAsDenselyAsTheRodModelSays) {
   const std::string csv = testing::text_of(folder.path() / "fig6.csv");
   int packed = 0;
   double corner = 0;
+  std::map<long, double> two_sizes;  // the densest of D1 and D3 alone, by 1e4 ln D3 / D1, from the first row
   for (std::size_t at = 0; at < csv.size(); at = csv.find('\n', at) + 1) {
     const std::string line = csv.substr(at, csv.find('\n', at) - at);
     double second = 0, third = 0, phi = 0, shares[3], predicted = 0;
-    if (std::sscanf(line.c_str(), "rods,%lf,%lf,%lf", &second, &third, &phi) == 3) corner = phi;
+    if (std::sscanf(line.c_str(), "rods,%lf,%lf,%lf", &second, &third, &phi) == 3) {
+      corner = phi;
+      const long ratio = std::lround(1e4 * std::log(second * third));
+      if (third == 1) two_sizes[ratio] = phi;
+      // The digits of the ratios are six, so that equal ones may round apart.
+      for (const long k : {ratio - 1, ratio, ratio + 1})
+        if (two_sizes.contains(k))
+          EXPECT_GT(phi, two_sizes[k] - 1e-4) << "D2 / D1 " << second << ", D3 / D2 " << third;
+    }
     if (std::sscanf(line.c_str(), "relax,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &second, &third, &phi, &shares[0],
                     &shares[1], &shares[2], &predicted) != 7)
       continue;
