@@ -31,9 +31,10 @@ TEST(DensestOfThreeSizes, PacksAsDenselyAsTheRodModelSays) {
       const long ratio = std::lround(1e4 * std::log(second * third));
       if (third == 1) two_sizes[ratio] = phi;
       // The digits of the ratios are six, so that equal ones may round apart.
-      for (const long k : {ratio - 1, ratio, ratio + 1})
-        if (two_sizes.contains(k))
-          EXPECT_GT(phi, two_sizes[k] - 1e-4) << "D2 / D1 " << second << ", D3 / D2 " << third;
+      for (const long k : {ratio - 1, ratio, ratio + 1}) {
+        if (!two_sizes.contains(k)) continue;
+        EXPECT_GT(phi, two_sizes[k] - 1e-4) << "D2 / D1 " << second << ", D3 / D2 " << third;
+      }
     }
     if (std::sscanf(line.c_str(), "relax,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &second, &third, &phi, &shares[0],
                     &shares[1], &shares[2], &predicted) != 7)
