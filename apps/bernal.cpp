@@ -29,10 +29,18 @@ constexpr const char* examples = R"(Examples:
 Exit codes: 0 done; 1 not certified, or not usable; 2 bad input; 3 ended without reaching what the scene asks.
 Messages go to standard error, results to files or standard output.)";
 
+/// In one line, whatever the input had in it: control characters would also move a terminal's cursor.
 int complain(std::string what) {
-  std::ranges::replace(what, '\n', ' ');
+  std::ranges::replace_if(
+      what, [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
   fmt::print(stderr, "bernal: {}\n", what);
   return exit_code::bad_input;
+}
+
+/// "bernal design target": the command that was asked for, as far as it is known.
+std::string asked_for(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? app.get_name() : app.get_name() + " " + asked_for(*commands.front());
 }
 
 }  // namespace
@@ -58,7 +66,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& asked) {  // --help, --version
     app.exit(asked);
   } catch (const CLI::ParseError& wrong) {
-    return complain(fmt::format("{}; see bernal --help", wrong.what()));
+    return complain(fmt::format("{}; see {} --help", wrong.what(), asked_for(app)));
   } catch (const std::bad_alloc&) {
     return complain("out of memory");
   } catch (const std::exception& error) {

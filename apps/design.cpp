@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -22,6 +23,13 @@ void add_output(CLI::App& command, DesignOutput& output) {
 }
 
 std::string number(double value) { return fmt::format("{}", std::stod(fmt::format("{:.10g}", value))); }
+
+void require_usable_lengths(double smallest, double largest) {
+  if (!(smallest >= 1e-20 && largest <= 1e20))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("diameters must lie from 1e-20 to 1e20, but are {} and {}; choose another unit",
+                            smallest, largest));
+}
 
 double rounded_share(double share) { return std::round(share * 1e6) / 1e6; }
 

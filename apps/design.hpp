@@ -24,6 +24,9 @@ void add_output(CLI::App& command, DesignOutput& output);
 
 /// A length or an amount in the fewest digits, at most ten, that are good to 1e-10.
 std::string number(double value);
+/// Refuses diameters that the scene of the answer could not hold: below 1e-20 or above 1e20, so that medians
+/// of wide sizes, far below the mean, still fit.
+void require_usable_lengths(double smallest, double largest);
 /// A share of the volume to a millionth.
 double rounded_share(double share);
 

@@ -139,8 +139,7 @@ SizeLimits limits_of(std::optional<double> min, std::optional<double> max, std::
     refuse(fmt::format("--min {} is not below --max {}", *limits.min, *limits.max));
   if (!(*limits.max / *limits.min <= most_ratio * (1 + 1e-9)))
     refuse(fmt::format("the limits are farther apart than 1 : {:g}", most_ratio));
-  if (!std::isnormal(*limits.min) || !std::isfinite(*limits.max))
-    refuse("the limits are out of the range of numbers");
+  require_usable_lengths(*limits.min, *limits.max);
   return limits;
 }
 

@@ -52,6 +52,7 @@ std::vector<Population> populations_of(const MaximiseCall& call) {
             "reach farther",
             grouped(static_cast<std::uint64_t>(call.output.rods)), widest_ratio(call.output.rods),
             number(least.d43), number(most.d43)));
+  require_usable_lengths(least.d43, most.d43);
   return populations;
 }
 

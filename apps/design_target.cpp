@@ -144,7 +144,7 @@ void add_design_target(CLI::App& design, int& status) {
     else if (answer.match.found)
       print(answer);
     if (!answer.match.found)
-      fmt::print(stderr, "bernal: no {} pack to {}: they reach from {:.4f} to {:.4f}{}\n", answer.what,
+      fmt::print(stderr, "bernal: no {} pack to {}: they reach from {:.6f} to {:.6f}{}\n", answer.what,
                  call->phi, answer.match.least, answer.match.most,
                  call->phi > answer.match.most && answer.can_be_wider ? "; wider limits reach farther" : "");
     status = answer.match.found ? exit_code::done : exit_code::not_reached;

@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -6,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/figures/figures.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "commands.hpp"
@@ -40,7 +42,8 @@ int map(MapCall& call) {
   if (!call.quiet)
     fmt::print(stderr,
                "densest    {:.4f} at R {:.4g}, w {:.4g}\nerror      {:.1g} at most, from having {} rods\n",
-               written.phi, written.ratio, written.share, written.error, call.options.rods);
+               written.phi, written.ratio, written.share, written.error,
+               grouped(static_cast<std::uint64_t>(call.options.rods)));
   for (const auto& file : written.files) fmt::print("{}\n", file.string());
   return exit_code::done;
 }

@@ -64,7 +64,7 @@ Population checked(Population p, const std::string& where) {
   if (!(p.sigma >= 0 && p.sigma <= widest))
     refuse(where, fmt::format("sigma must lie from 0 to {}, not {}", widest, p.sigma));
   if (!(p.volume >= 0 && std::isfinite(p.volume)))
-    refuse(where, fmt::format("a volume must not be negative, not {}", p.volume));
+    refuse(where, fmt::format("a volume must be finite and not negative, but is {}", p.volume));
   return p;
 }
 

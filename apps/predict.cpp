@@ -217,11 +217,13 @@ void add_predict(CLI::App& app, int& status) {
       ->check(CLI::Range(2, 10'000'000))
       ->type_name("N");
   command->add_flag("--fit", call->fit, "Farr's formula for one lognormal population, sigma up to 3");
-  command
-      ->add_option("--solids", call->solids,
-                   "Also the viscosity of a suspension with this volume fraction of spheres")
-      ->type_name("PHI");
+  CLI::Option* solids =
+      command
+          ->add_option("--solids", call->solids,
+                       "Also the viscosity of a suspension with this volume fraction of spheres")
+          ->type_name("PHI");
   command->add_option("--intrinsic", call->intrinsic, "Intrinsic viscosity; 2.5, that of spheres, if absent")
+      ->needs(solids)
       ->type_name("ETA");
   command->add_flag("--json", call->json, "One JSON object on standard output");
   CLI::Option* check = command->add_flag(

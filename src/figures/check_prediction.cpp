@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/core/error.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
@@ -43,6 +44,19 @@ Spec population(double mean, double sigma) {
                                  {"basis", std::string("volume")}});
 }
 
+/// Of a text that no user has seen, so that errors name no line of it.
+Scene scene_of(const std::string& text) {
+  try {
+    Scene scene = parse_scene(text, {});
+    scene.stages.front().where = {};
+    return scene;
+  } catch (const Error& error) {
+    const std::string place = error.location().text();
+    throw Error(ErrorCode::bad_argument,
+                std::string(error.what()).substr(place.empty() ? 0 : place.size() + 2));
+  }
+}
+
 }  // namespace
 
 std::int64_t spheres_for(const SizeDistribution& radii) {
@@ -65,10 +79,9 @@ Spec sizes_of(const TwoPopulations& p) {
 
 Scene scene_to_check(const Spec& sizes, bool sizes_are_diameters, const CheckOptions& options) {
   Scene scene =
-      parse_scene(fmt::format("[container]\nkind = \"periodic\"\n[spheres]\ncount = {}\nradius = 1\n"
-                              "draw = \"quantiles\"\n[[stage]]\ndo = {}\n",
-                              std::max<std::int64_t>(options.spheres, 1), toml_string(options.stage)),
-                  {});
+      scene_of(fmt::format("[container]\nkind = \"periodic\"\n[spheres]\ncount = {}\nradius = 1\n"
+                           "draw = \"quantiles\"\n[[stage]]\ndo = {}\n",
+                           std::max<std::int64_t>(options.spheres, 1), toml_string(options.stage)));
   scene.seed = options.seed;
   scene.sizes = sizes;
   scene.sizes_are_diameters = sizes_are_diameters;

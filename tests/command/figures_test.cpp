@@ -1,5 +1,8 @@
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
+#include <sstream>
+#include <string>
 
 #include "check.hpp"
 
@@ -17,6 +20,18 @@ TEST(ReproduceCommand, WritesAFigureAndSaysWhere) {
   EXPECT_TRUE(text_of(out + "/table2.csv").starts_with("ratio,sigma_a,"));
   const Ended table = bernal({"reproduce", "table1", "-o", out});
   EXPECT_EQ(table.out, out + "/table1.csv\n");
+  // The printed digits come out with the erfc that the published program uses.
+  std::istringstream lines(text_of(out + "/table1.csv"));
+  std::string line;
+  int rows = 0;
+  for (std::getline(lines, line); std::getline(lines, line); ++rows) {
+    double sigma = 0, phi = 0, again = 0, printed = -1;
+    int rods = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%d,%lf,%lf,%lf", &sigma, &rods, &phi, &again, &printed), 5);
+    EXPECT_NEAR(again, printed, 1e-9) << line;
+    EXPECT_NEAR(phi, printed, 1.3e-5) << line;
+  }
+  EXPECT_EQ(rows, 6);
 }
 
 TEST(ReproduceCommand, RefusesAbsurdInputInOneLine) {

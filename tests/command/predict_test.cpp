@@ -116,6 +116,11 @@ TEST(PredictCommand, RefusesAbsurdInputInOneLine) {
       {{"--lognormal", "0.5", "--solids", "0.8"}, "jams"},
       {{"--lognormal", "0.5", "--solids", "nan"}, "jams"},
       {{"--lognormal", "0.5", "--solids", "0.3", "--intrinsic", "-1"}, "intrinsic"},
+      {{"--lognormal", "0.5", "--intrinsic", "3"}, "--solids"},
+      // Of the packing's scene, which the user never saw, no line is named.
+      {{"--lognormal", "0.5", "--check", "--stage", "shuffle"}, "bernal: unknown stage"},
+      {{"--lognormal", "0.5", "--check", "--stage", "insert"}, "bernal: \"insert\""},
+      {{"--wide", "1"}, "bernal predict --help"},
       {{"--stdin", "x"}, "stdin"},
       {{"--stdin", "d"}, "no population"},
   };
@@ -141,6 +146,7 @@ TEST(PredictCommand, RefusesAbsurdTablesAtTheirLine) {
   refuses("w", "1 50 1\n", "sigma");
   refuses("w", "1 nan 1\n", "sigma");
   refuses("d", "1 one\n", "\"one\"");
+  refuses("d", "\033[2J\a 1\n", "\" [2J \"");  // a terminal is not at the mercy of a file
   refuses("d", std::string("1 1\n\0\0\0\n", 8), "line 2");
   std::string many;
   for (int k = 1; k <= 100'000; ++k) many += std::to_string(k) + " 1\n";

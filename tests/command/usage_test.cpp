@@ -51,7 +51,7 @@ TEST(Usage, WrongOnesAreOneLineAndExitTwo) {
     std::string call;
     for (const std::string& word : words) call += word + " ";
     SCOPED_TRACE(call);
-    expect_refused_in_one_line(bernal(words), {"see bernal --help"});
+    expect_refused_in_one_line(bernal(words), {"see bernal", "--help"});
     EXPECT_EQ(std::filesystem::remove_all(out), 0u) << "something was written";
   }
 }
