@@ -84,15 +84,16 @@ FillChoice choose_filling(std::string_view method, const FillTask& task) {
   const double reached =
       share_of_flight[task.dimension - 1] * task.attainable * (task.has_walls ? share_between_walls : 1);
   const auto phi = task.packing_fraction;
+  const char* between = task.has_walls ? " between walls surely" : "";
   if (task.size_ratio > wide_sizes && !task.has_walls)
     return {FillMethod::classes, fmt::format("as the largest sphere is {:.3g} times the smallest: small ones "
                                              "find room between the large",
                                              task.size_ratio)};
   if (phi <= reached)
     return {FillMethod::flight,
-            fmt::format("as flight reaches {:.3f}, and {:.3f} is asked for", reached, phi)};
+            fmt::format("as flight{} reaches {:.3f}, and {:.3f} is asked for", between, reached, phi)};
   return {FillMethod::relaxation,
-          fmt::format("as {:.3f} is more than the {:.3f} that flight reaches", phi, reached)};
+          fmt::format("as {:.3f} is more than the {:.3f} that flight{} reaches", phi, reached, between)};
 }
 
 StageEnd fly(PeriodicWork& work, const FillChoice& choice, const FlyOptions& options) {
