@@ -44,9 +44,9 @@ std::string describe_container(const Plan& plan) {
   const auto* box = std::get_if<PeriodicBox>(&plan.domain);
   std::string text(box && box->has_walls() ? name_of(plan.domain) : std::string(kind_of(plan.domain)));
   if (plan.scene.container.has("file")) text += fmt::format(" {}", plan.scene.container.text("file"));
-  if (plan.box_follows) text += ", as large as the packing needs: about";
-  return fmt::format("{}, {:.6g} {}, volume {:.6g} {}^{}", text, fmt::join(size, " x "), unit,
-                     volume_of(plan.domain), unit, size.size());
+  if (plan.box_follows) text += ", as large as the packing needs";
+  return fmt::format("{}{} {:.6g} {}, volume {:.6g} {}^{}", text, plan.box_follows ? ": about" : ",",
+                     fmt::join(size, " x "), unit, volume_of(plan.domain), unit, size.size());
 }
 
 std::string describe_sizes(const Scene& scene) {

@@ -165,12 +165,14 @@ void HardSpheres<D>::build_shells(double freedom, double largest) {
 
 template <int D>
 FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& monitor) {
+  if (monitor.stop()) return {.stopped = true};
   if (growth > 0) rescale_velocities();
   growth_ = growth / mean_diameter_;
   horizon_ = duration(growth, largest);
   const double size_then = std::min(largest, size_ + growth_ * horizon_);
   const double freedom = wanted_freedom();
-  if (size_then > largest_listed_ || freedom != freedom_) build_shells(freedom, size_then);
+  const bool rebuild = size_then > largest_listed_ || freedom != freedom_;
+  if (rebuild) build_shells(freedom, size_then);
 
   const double energy = kinetic_energy();
   const double expected_collisions = period_.time > 0
@@ -179,7 +181,7 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   calendar_.start_period(count(), horizon_,
                          static_cast<std::size_t>(expected_collisions * events_a_collision / events_a_bin +
                                                   static_cast<double>(count()) / 4));
-  period_ = {};
+  period_ = {.builds = rebuild};
   virial_ = 0;
   now_ = 0;
   scan_.size = size_;
@@ -190,6 +192,7 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   for (Id i; (i = calendar_.next()) != Calendar::none;) {
     if (++events % events_a_look == 0 && monitor.stop()) {
       horizon_ = now_;
+      period_.stopped = true;
       break;
     }
     now_ = calendar_.time(i);

@@ -17,10 +17,12 @@ struct FlightPeriod {
   double time = 0;                ///< the caller's length over the thermal speed
   std::uint64_t collisions = 0;   ///< of pairs
   std::uint64_t departures = 0;   ///< of spheres from their shells
+  std::uint64_t builds = 0;       ///< of the lists of all spheres
   std::uint64_t predictions = 0;  ///< scans of all neighbours of a sphere
   /// P V / N k T, from the momentum that collisions carried over, by the temperature at the start.
   double compressibility = 1;
-  double heating = 0;  ///< relative growth of the kinetic energy
+  double heating = 0;    ///< relative growth of the kinetic energy
+  bool stopped = false;  ///< it was told to stop
 };
 
 /// Event-driven dynamics of hard spheres that grow in a periodic box (Lubachevsky & Stillinger; Kansal,

@@ -221,7 +221,8 @@ Entry fly_entry() {
                 .range = {0, 1, true, true}},
                {.name = "batch",
                 .type = Type::integer,
-                .help = "flight, patent: new spheres tried between two steps; 0: half of all",
+                .help = "flight, patent: new spheres tried between two steps; 0: half of all, for the "
+                        "patent's procedure a tenth",
                 .otherwise = 0,
                 .range = {0, 1e9}},
                {.name = "dt",

@@ -100,6 +100,39 @@ void NeighborRelaxation<D>::grow(double factor) {
 }
 
 template <int D>
+void NeighborRelaxation<D>::keep_between_walls(const std::vector<bool>& walls, double share) {
+  walled_.clear();
+  wall_share_ = share;
+  for (int k = 0; k < D && !walls.empty(); ++k)
+    if (walls[static_cast<std::size_t>(k)]) walled_.push_back(k);
+  for (Id i = 0; i < count_; ++i) stop_at_walls(i);
+  stale_ = true;
+}
+
+/// Whole steps of 2^-32 are beyond the radius in single precision: what that is rounded by is added twice.
+template <int D>
+void NeighborRelaxation<D>::stop_at_walls(Id i) {
+  constexpr double rounding = 1 + 0x1p-23;
+  for (const int k : walled_) {
+    const double low = std::min(rounding * wall_share_ * radii_[i] / edges_[k], 0.5);
+    const auto lowest = static_cast<std::uint32_t>(std::ceil(low * 0x1p32));
+    places_[i].x[k] = std::clamp<std::uint32_t>(places_[i].x[k], lowest, 0u - lowest);
+  }
+}
+
+/// A step that would end beyond a wall ends at it, and not at the other one.
+template <int D>
+void NeighborRelaxation<D>::move_between_walls(Id i, const Ints& step) {
+  const Place before = places_[i];
+  places_[i].x += __builtin_bit_cast(Whole, step);
+  for (const int k : walled_) {
+    const std::int64_t to = static_cast<std::int64_t>(before.x[k]) + step[k];
+    places_[i].x[k] = static_cast<std::uint32_t>(std::clamp<std::int64_t>(to, 0, 0xffffffff));
+  }
+  stop_at_walls(i);
+}
+
+template <int D>
 inline typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::away(const Place& from,
                                                                           const Place& to) const {
   return __builtin_convertvector(__builtin_bit_cast(Ints, Whole(to.x - from.x)), Floats) * scale_;
@@ -130,7 +163,10 @@ float NeighborRelaxation<D>::move_all(float omega) {
     const Floats step = push.sum * std::min(omega / push.contacts, 1.0f) * inverse_scale_;
     const Floats limit = Floats{} + longest_move;
     const Floats capped = step < limit ? (step > -limit ? step : -limit) : limit;
-    places_[i].x += __builtin_bit_cast(Whole, __builtin_convertvector(capped, Ints));
+    if (walled_.empty())
+      places_[i].x += __builtin_bit_cast(Whole, __builtin_convertvector(capped, Ints));
+    else
+      move_between_walls(i, __builtin_convertvector(capped, Ints));
   }
   ++age_;
   return largest;

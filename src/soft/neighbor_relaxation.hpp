@@ -36,6 +36,10 @@ class NeighborRelaxation {
   /// Centres in [0, edge). Precondition: every edge is at least the largest diameter.
   NeighborRelaxation(const Spheres<D>& spheres, const Vector<D>& edges);
 
+  /// Along axes that have walls, centres are kept `share` times their radius away from 0 and from the edge,
+  /// or in the middle where there is no room for that. So no sphere reaches an image of another there.
+  void keep_between_walls(const std::vector<bool>& walls, double share);
+
   /// Lists are built anew when a sphere has moved by `wear` times half of the skin. Above 1, neighbours may
   /// be missed until then. 0.9 where nothing is said.
   void wear_lists(double wear) { wear_ = wear; }
@@ -94,12 +98,16 @@ class NeighborRelaxation {
   void sort_into_cells(double reach);
   void rows_near(Id i, std::vector<Row>& rows) const;
   void set_scale();
+  void stop_at_walls(Id i);
+  void move_between_walls(Id i, const Ints& step);
   Floats away(const Place& from, const Place& to) const;
 
   std::size_t count_;
   Vector<D> edges_;
   Floats scale_{}, inverse_scale_{};  // of a unit of the coordinates
   float largest_radius_ = 0;
+  std::vector<int> walled_;  // axes
+  double wall_share_ = 1;
   double thickest_skin_, skin_;  // spheres are neighbours where the gap between them is less
   std::vector<Place> places_;    // sorted by cell; behind them some that touch nothing
   std::vector<float> radii_;

@@ -21,7 +21,7 @@ struct FillChoice {
   std::string reason;  ///< a clause: "as …"
 };
 
-/// `method` is "auto" or a method's name. With walls, which flight alone knows, it chooses among its own two.
+/// `method` is "auto" or a method's name. All know walls but "classes".
 /// Throws Error{bad_argument} where the method that is named cannot do it.
 FillChoice choose_filling(std::string_view method, const FillTask& task);
 

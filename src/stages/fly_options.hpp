@@ -3,7 +3,7 @@
 namespace bernal {
 
 struct FlyOptions {
-  /// New spheres that are tried between two steps; 0: half of all that are wanted.
+  /// New spheres that are tried between two steps; 0: as many as suit the procedure.
   int batch = 0;
   /// How far a sphere of the mean radius flies between two batches, in mean diameters.
   double dt = 0.01;

@@ -11,6 +11,11 @@
 namespace bernal {
 namespace {
 
+/// Of all spheres, one is tried for so many in a batch where nothing is said. 2,000 to 0.42 in three
+/// dimensions take 8.7 s, with batches of a hundredth 22 s. With half of all, in two dimensions, so many
+/// places are tried between two short steps that the box counts as full at 0.622; with a tenth it takes 0.64
+/// in 6 s.
+constexpr std::size_t spheres_for_each_tried = 10;
 /// So often Δt is halved before what is left of it counts as no time.
 constexpr int most_halvings = 40;
 
@@ -20,7 +25,7 @@ template <int D>
 PatentFlight<D>::PatentFlight(FlyingSpheres<D>& spheres, const FlyOptions& options, Random random)
     : spheres_(spheres),
       batch_(options.batch > 0 ? static_cast<std::size_t>(options.batch)
-                               : std::max<std::size_t>(1, spheres.wanted() / 2)),
+                               : std::max<std::size_t>(1, spheres.wanted() / spheres_for_each_tried)),
       dt_(options.dt * 2 * spheres.mean_radius()),
       random_(random) {
   next_.resize(static_cast<Eigen::Index>(spheres.wanted()), D);

@@ -141,15 +141,11 @@ StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
   const double by_schedule = options.rate * mean.by_number / mean.by_volume;
 
   Effect& collisions = work.effects["collisions"];
-  Effect& departures = work.effects["neighbour shells"];
+  Effect& shells = work.effects["neighbour shells"];
   Milestones milestones(work, options.pressure);
   StageEnd end = StageEnd::converged;
   FlightPeriod period;
   while (flight.size() < largest && period.compressibility < options.pressure) {
-    if (work.monitor.stop()) {
-      end = StageEnd::cancelled;
-      break;
-    }
     if (!flight.has_room()) {
       end = StageEnd::hit_limit;
       break;
@@ -158,7 +154,11 @@ StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
     const double rate = options.delta ? as_published : by_schedule * (fluid ? haste_of_fluid : 1);
     period = flight.fly(rate, largest, work.monitor);
     collisions.calls += period.collisions;
-    departures.calls += period.departures;
+    shells.calls += period.departures + period.builds;
+    if (period.stopped) {
+      end = StageEnd::cancelled;
+      break;
+    }
     const double filled = std::isfinite(largest) ? std::pow(flight.size() / largest, D) : 0;
     milestones.pass(edges / flight.size(), filled, period);
   }

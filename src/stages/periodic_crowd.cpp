@@ -30,8 +30,9 @@ constexpr float severe_squeeze = 0.05f;
 }  // namespace
 
 template <int D>
-PeriodicCrowd<D>::PeriodicCrowd(Spheres<D> spheres, const Vector<D>& edges, double allowed)
-    : spheres_(std::move(spheres)), edges_(edges), allowed_(allowed) {
+PeriodicCrowd<D>::PeriodicCrowd(Spheres<D> spheres, const Vector<D>& edges, double allowed,
+                                std::vector<bool> walls)
+    : spheres_(std::move(spheres)), edges_(edges), allowed_(allowed), walls_(std::move(walls)) {
   const double resolution = 0x1p-32 * edges.maxCoeff() / std::ranges::min(spheres_.r);
   margin_ = std::clamp(resolutions_a_margin * resolution, least_margin, largest_margin);
   prepare();
@@ -57,10 +58,12 @@ void PeriodicCrowd<D>::prepare() {
   wide_ = nullptr;
   any_ = nullptr;
   if constexpr (D <= 3) {
-    if (edges.minCoeff() > swelling(D) * SoftPacking::smallest_edge(shrunk.r))
+    if (walls_.empty() && edges.minCoeff() > swelling(D) * SoftPacking::smallest_edge(shrunk.r))
       wide_ = std::make_unique<SoftPacking>(shrunk, edges, soft_kernels().front());
   }
-  if (!wide_) any_ = std::make_unique<NeighborRelaxation<D>>(shrunk, edges);
+  if (wide_) return;
+  any_ = std::make_unique<NeighborRelaxation<D>>(shrunk, edges);
+  if (!walls_.empty()) any_->keep_between_walls(walls_, 1 / (1 - allowed_));
 }
 
 template <int D>
@@ -150,7 +153,7 @@ void PeriodicCrowd<D>::move_to_holes(std::size_t count, Random& random) {
   std::iota(most_squeezed.begin(), most_squeezed.end(), 0u);
   std::ranges::stable_sort(most_squeezed, std::greater<>(), [&](std::uint32_t i) { return stress_[i]; });
   most_squeezed.resize(std::min(count, size() - 1));
-  bernal::move_to_holes<D>(spheres_, edges_, std::move(most_squeezed), random);
+  bernal::move_to_holes<D>(spheres_, edges_, std::move(most_squeezed), random, walls_);
   prepare();
 }
 

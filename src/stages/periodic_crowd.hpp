@@ -28,8 +28,9 @@ class PeriodicCrowd {
   };
 
   /// Centres are in [0, edge), and every edge is at least the largest diameter less what overlap is allowed:
-  /// the spheres are relaxed with the share 1 - `allowed` of their radii.
-  PeriodicCrowd(Spheres<D> spheres, const Vector<D>& edges, double allowed);
+  /// the spheres are relaxed with the share 1 - `allowed` of their radii. Axes with `walls` keep whole
+  /// spheres between them; none: empty.
+  PeriodicCrowd(Spheres<D> spheres, const Vector<D>& edges, double allowed, std::vector<bool> walls = {});
 
   /// Where they were at the end of the last `settle`, with the radii as given.
   const Spheres<D>& spheres() const { return spheres_; }
@@ -74,8 +75,9 @@ class PeriodicCrowd {
   Spheres<D> spheres_;
   const Vector<D> edges_;
   const double allowed_;
+  const std::vector<bool> walls_;
   double margin_;
-  std::unique_ptr<SoftPacking> wide_;           // where it can be used
+  std::unique_ptr<SoftPacking> wide_;           // where it can be used; it knows no walls of a periodic box
   std::unique_ptr<NeighborRelaxation<D>> any_;  // elsewhere
   std::vector<float> stress_;
   double largest_overlap_ = 1, strain_ = 1;

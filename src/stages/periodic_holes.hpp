@@ -11,11 +11,12 @@ namespace bernal {
 
 /// Puts some of the spheres of a periodic box into holes between the others: the largest first, each into the
 /// next roomiest of so many random places that none of those before it covers by half; at random where there
-/// are no more holes. Room is what is left to the nearest surface. Cost: two random places for each sphere in
-/// the box and a thousand more, each about 1 µs in three dimensions.
+/// are no more holes. Room is what is left to the nearest surface, which is a wall on axes that have `walls`.
+/// Cost: two random places for each sphere in the box and a thousand more, each about 1 µs in three
+/// dimensions.
 template <int D>
 void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std::uint32_t> ids,
-                   Random& random) {
+                   Random& random, const std::vector<bool>& walls = {}) {
   constexpr double probes_a_sphere = 2, least_probes = 1000;
   const Boundary<D> boundary{edges};
   const Bounds<D> box{Vector<D>::Zero(), edges};
@@ -37,6 +38,8 @@ void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std:
   for (std::size_t n = 0; n < probes; ++n) {
     const Vector<D> p = uniform_point(random, box);
     double room = most;
+    for (int k = 0; k < D && !walls.empty(); ++k)
+      if (walls[static_cast<std::size_t>(k)]) room = std::min({room, p[k], edges[k] - p[k]});
     const auto lower = [&](double reach) {
       grid.for_each_near(p, reach, [&](std::uint32_t j) {
         room = std::min(room, boundary.minimum_image(spheres.center(j) - p).norm() - spheres.r[j]);

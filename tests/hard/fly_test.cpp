@@ -239,9 +239,11 @@ TEST(FillChoice, GoesByTargetAndSizes) {
   EXPECT_EQ(method({.packing_fraction = 0.4, .attainable = 0.64}), FillMethod::flight);
   EXPECT_EQ(method({.packing_fraction = 0.6, .attainable = 0.64}), FillMethod::relaxation);
   EXPECT_EQ(method({.packing_fraction = 0.6, .attainable = 0.8, .size_ratio = 10}), FillMethod::classes);
-  EXPECT_EQ(method({.packing_fraction = 0.6, .attainable = 0.64, .has_walls = true}), FillMethod::flight);
+  EXPECT_EQ(method({.packing_fraction = 0.6, .attainable = 0.64, .has_walls = true}), FillMethod::relaxation);
+  EXPECT_EQ(method({.packing_fraction = 0.2, .attainable = 0.64, .has_walls = true}), FillMethod::flight);
+  EXPECT_EQ(method({.packing_fraction = 0.4, .attainable = 0.64, .has_walls = true}), FillMethod::relaxation);
   EXPECT_EQ(choose_filling("patent", {.packing_fraction = 0.9}).method, FillMethod::patent);
-  EXPECT_THROW(choose_filling("relaxation", {.has_walls = true}), Error);
+  EXPECT_THROW(choose_filling("classes", {.has_walls = true}), Error);
   EXPECT_THROW(choose_filling("levitation", {}), Error);
 }
 

@@ -84,7 +84,7 @@ std::vector<SceneUnderTest> scenes_under_test() {
   add("FlightBetweenWalls", periodic +
                                 "size = [1.0, 1.2, 0.9]\nwalls = [1]\n[spheres]\npacking_fraction = 0.3\n"
                                 "radius = { distribution = \"uniform\", min = 0.05, max = 0.07 }\n" +
-                                fly);
+                                fly + "method = \"flight\"\n");
   add("PatentInThePlane",
       periodic + "dimension = 2\nedge = 1.0\n[spheres]\npacking_fraction = 0.5\nradius = 0.03\n" + fly +
           "method = \"patent\"\n");

@@ -212,6 +212,34 @@ TEST(Fill, CancelledItLeavesWhatIsFree) {
 
 // ---- classes
 
+TEST(FillByRelaxation, KeepsWholeSpheresBetweenWalls) {
+  const double reached[] = {0.9, 0.72, 0.5, 0.25, 0.11, 0.045, 0.015, 0.005};
+  for (int dimension = 1; dimension <= 8; ++dimension) {
+    SCOPED_TRACE(dimension);
+    const std::vector<double> radii = lognormal_radii(200, 0.1);
+    FillCase filled(radii, cube_filled_to(reached[dimension - 1], radii, dimension));
+    filled.work.walls.assign(static_cast<std::size_t>(dimension), true);
+    filled.work.walls.back() = dimension == 1;  // one axis is periodic where there are several
+    expect_filled(filled, fill_by_relaxation(filled.work, {}), radii);
+    for (int k = 0; k < dimension; ++k) {
+      if (!filled.work.has_wall(k)) continue;
+      const std::vector<double>& x = filled.work.spheres.x[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < radii.size(); ++i) {
+        EXPECT_GE(x[i], radii[i]);
+        EXPECT_LE(x[i] + radii[i], filled.work.edges[k]);
+      }
+    }
+  }
+}
+
+TEST(FillByRelaxation, ABoxAskedToHoldManyTimesItsFillIsFilledNevertheless) {
+  const std::vector<double> radii(1000, 1.0);
+  FillCase filled(radii, cube_filled_to(4, radii, 3));
+  EXPECT_EQ(fill_by_relaxation(filled.work, {}), StageEnd::full);
+  expect_free_of_overlap(filled.work);
+  EXPECT_GT(filled.work.spheres.size(), 120u);  // 0.48 of the box, well above what random places reach
+}
+
 TEST(FillByClasses, WidelyDifferentSizesFillABox) {
   const std::vector<double> radii = testing::three_classes(1000);
   FillCase filled(radii, cube_filled_to(0.65, radii, 3));

@@ -112,8 +112,9 @@ TEST(HardSpheres, EndAPeriodWhenToldTo) {
   while (flight.fly(0).collisions < 7 * 3000) continue;  // periods find their length
   int asked = 0;
   const FlightPeriod period =
-      flight.fly(0, 10, {.on_progress = {}, .cancelled = [&] { return ++asked > 2; }});
-  EXPECT_EQ(asked, 3);
+      flight.fly(0, 10, {.on_progress = {}, .cancelled = [&] { return ++asked > 3; }});
+  EXPECT_EQ(asked, 4);
+  EXPECT_TRUE(period.stopped);
   EXPECT_LT(period.collisions, 3 * 4096u);
   EXPECT_LT(overlap(flight, gas), 1e-14);
 }
