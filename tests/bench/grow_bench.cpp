@@ -111,8 +111,9 @@ void events(benchmark::State& state) {
     for (std::uint32_t k = 0; k < 6 * n; ++k) {
       const Calendar::Id id = queue.next();
       const double now = queue.time(id);
-      queue.schedule(id, now + waits[++count & 0xFFFF], 0);
-      queue.schedule(others[count & 0xFFFF], now + waits[++count & 0xFFFF], 0);
+      queue.schedule(id, now + waits[count & 0xFFFF], 0);
+      queue.schedule(others[count & 0xFFFF], now + waits[(count + 1) & 0xFFFF], 0);
+      count += 2;
     }
   }
   state.counters["ns_per_event"] = benchmark::Counter(
