@@ -48,6 +48,11 @@ class Calendar {
   /// The event stays where it is and becomes another.
   void change(Id id, Id what) { events_[id].what = what; }
 
+  /// One of those whose events come up so many bins after the present one, or `none`: for who wants to ask
+  /// the memory for it.
+  Id ahead(std::size_t bins) const { return current_ + bins < bins_.size() ? bins_[current_ + bins] : none; }
+  void prefetch(Id id) const { __builtin_prefetch(&events_[id]); }
+
   /// Whose event is the earliest, or `none` if there is none before the horizon. It stays scheduled.
   Id next() {
     while (current_ < bins_.size() && bins_[current_] == none) ++current_;

@@ -1,8 +1,16 @@
 #include "hard/collision_kernels.hpp"
 
+#include <immintrin.h>
+
 #include <cmath>
 #include <limits>
 #include <vector>
+
+// GCC 12 takes the "undefined" operands in its own avx512 headers for uninitialised variables.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
+// The types of the wider instruction sets never cross a call that is not inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace bernal {
 namespace {
@@ -15,25 +23,60 @@ constexpr double never = std::numeric_limits<double>::infinity();
   return (v + shift) - shift;
 }
 
-template <int D>
-[[gnu::always_inline]] inline void gather(const CollisionScan<D>& task, std::size_t padded) {
-  const std::size_t stride = task.stride;
-  double* __restrict columns = task.columns;
-  for (std::size_t m = 0; m < padded; ++m) {
-    const FlyingSphere<D>& other = task.spheres[task.neighbors[m < task.count ? m : task.count - 1]];
-    for (int k = 0; k < D; ++k) columns[static_cast<std::size_t>(k) * stride + m] = other.x[k];
-    for (int k = 0; k < D; ++k) columns[static_cast<std::size_t>(D + k) * stride + m] = other.v[k];
-    columns[2 * D * stride + m] = other.time;
-    columns[(2 * D + 1) * stride + m] = other.r;
+/// Fills the columns: all first components of the neighbours, all second ones, and so on. What is beyond
+/// `count` repeats the last one.
+struct OneByOne {
+  template <int D>
+  [[gnu::always_inline]] static void gather(const CollisionScan<D>& task, std::size_t padded) {
+    const std::size_t stride = task.stride;
+    double* __restrict columns = task.columns;
+    for (std::size_t m = 0; m < padded; ++m) {
+      const FlyingSphere<D>& other = task.spheres[task.neighbors[m < task.count ? m : task.count - 1]];
+      for (int k = 0; k < D; ++k) columns[static_cast<std::size_t>(k) * stride + m] = other.x[k];
+      for (int k = 0; k < D; ++k) columns[static_cast<std::size_t>(D + k) * stride + m] = other.v[k];
+      columns[2 * D * stride + m] = other.time;
+      columns[(2 * D + 1) * stride + m] = other.r;
+    }
   }
-}
+};
 
+/// The same in three dimensions, where a sphere is eight numbers: eight spheres are transposed in registers.
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")
+struct EightByEight {
+  [[gnu::always_inline]] static inline void gather(const CollisionScan<3>& task, std::size_t padded) {
+    static_assert(sizeof(FlyingSphere<3>) == 8 * sizeof(double));
+    const std::size_t stride = task.stride;
+    for (std::size_t m = 0; m < padded; m += 8) {
+      const auto row = [&](std::size_t k) __attribute__((always_inline)) {
+        const std::size_t at = m + k < task.count ? m + k : task.count - 1;
+        return _mm512_load_pd(task.spheres[task.neighbors[at]].x);
+      };
+      const __m512d r0 = row(0), r1 = row(1), r2 = row(2), r3 = row(3), r4 = row(4), r5 = row(5), r6 = row(6),
+                    r7 = row(7);
+      const auto store = [&](std::size_t first, __m512d a, __m512d b, __m512d c, __m512d d)
+          __attribute__((always_inline)) {
+        const __m512d ab_even = _mm512_shuffle_f64x2(a, b, 0x88), ab_odd = _mm512_shuffle_f64x2(a, b, 0xdd),
+                      cd_even = _mm512_shuffle_f64x2(c, d, 0x88), cd_odd = _mm512_shuffle_f64x2(c, d, 0xdd);
+        double* const column = task.columns + first * stride + m;
+        _mm512_storeu_pd(column, _mm512_shuffle_f64x2(ab_even, cd_even, 0x88));
+        _mm512_storeu_pd(column + 2 * stride, _mm512_shuffle_f64x2(ab_odd, cd_odd, 0x88));
+        _mm512_storeu_pd(column + 4 * stride, _mm512_shuffle_f64x2(ab_even, cd_even, 0xdd));
+        _mm512_storeu_pd(column + 6 * stride, _mm512_shuffle_f64x2(ab_odd, cd_odd, 0xdd));
+      };
+      store(0, _mm512_unpacklo_pd(r0, r1), _mm512_unpacklo_pd(r2, r3), _mm512_unpacklo_pd(r4, r5),
+            _mm512_unpacklo_pd(r6, r7));
+      store(1, _mm512_unpackhi_pd(r0, r1), _mm512_unpackhi_pd(r2, r3), _mm512_unpackhi_pd(r4, r5),
+            _mm512_unpackhi_pd(r6, r7));
+    }
+  }
+};
+#pragma GCC pop_options
+
+/// Of the gathered columns.
 template <int D>
-[[gnu::always_inline]] inline FirstCollision scan(const CollisionScan<D>& task) {
-  if (task.count == 0) return {never, 0};
-  const std::size_t padded = (task.count + widest - 1) / widest * widest;
-  gather(task, padded);
-
+[[gnu::always_inline]] inline FirstCollision first_collision(const CollisionScan<D>& task,
+                                                             std::size_t padded) {
   const std::size_t stride = task.stride;
   const double* __restrict columns = task.columns;
   double* __restrict delays = task.delays;
@@ -87,17 +130,32 @@ template <int D>
 }
 
 template <int D>
+std::size_t padded_count(const CollisionScan<D>& task) {
+  return (task.count + widest - 1) / widest * widest;
+}
+
+template <int D>
 [[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")]] FirstCollision scan_avx512(
     const CollisionScan<D>& task) {
-  return scan<D>(task);
+  if (task.count == 0) return {never, 0};
+  if constexpr (D == 3) {
+    EightByEight::gather(task, padded_count(task));
+  } else {
+    OneByOne::gather(task, padded_count(task));
+  }
+  return first_collision(task, padded_count(task));
 }
 template <int D>
 [[gnu::target("avx2")]] FirstCollision scan_avx2(const CollisionScan<D>& task) {
-  return scan<D>(task);
+  if (task.count == 0) return {never, 0};
+  OneByOne::gather(task, padded_count(task));
+  return first_collision(task, padded_count(task));
 }
 template <int D>
 FirstCollision scan_sse2(const CollisionScan<D>& task) {
-  return scan<D>(task);
+  if (task.count == 0) return {never, 0};
+  OneByOne::gather(task, padded_count(task));
+  return first_collision(task, padded_count(task));
 }
 
 template <int D>

@@ -160,7 +160,7 @@ void HardSpheres<D>::build_shells(double freedom, double largest) {
     radii[i] = spheres_[i].r * largest_listed_;
     freedoms[i] = std::min(most, freedom_ / std::sqrt(2 * spheres_[i].r / mean_diameter_));
   }
-  shells_.build(std::move(homes), radii, std::move(freedoms), edges_);
+  shells_.build(homes, radii, freedoms, edges_);
 }
 
 template <int D>
@@ -195,6 +195,7 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
       period_.stopped = true;
       break;
     }
+    prefetch();
     now_ = calendar_.time(i);
     const Id what = calendar_.what(i);
     spheres_[i].fly_to(now_);
@@ -203,7 +204,6 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
       collide(i, what);
       calendar_.schedule(i, infinite, look_again);
       calendar_.schedule(what, infinite, look_again);
-      for (const Id m : shells_.neighbors(what)) __builtin_prefetch(&spheres_[m]);
       predict(i);
       predict(what);
     } else {
@@ -229,6 +229,33 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   period_.heating = kinetic_energy() / energy - 1;
   if (horizon_ > 0) period_.compressibility = 1 + virial_ / (2 * energy * horizon_);
   return period_;
+}
+
+/// With many spheres most of the time goes into waiting for the memory; what the next events will need can be
+/// known some events ahead, in steps, as each step tells where the next one finds its data.
+template <int D>
+void HardSpheres<D>::prefetch() const {
+  if (const Id id = calendar_.ahead(8); id != Calendar::none) {
+    calendar_.prefetch(id);
+    __builtin_prefetch(&spheres_[id]);
+    shells_.prefetch(id);
+  }
+  if (const Id id = calendar_.ahead(6); id != Calendar::none) {
+    shells_.prefetch_list(id);
+    if (const Id partner = calendar_.what(id); is_partner(partner)) {
+      calendar_.prefetch(partner);
+      __builtin_prefetch(&spheres_[partner]);
+      shells_.prefetch(partner);
+    }
+  }
+  if (const Id id = calendar_.ahead(4); id != Calendar::none) {
+    for (const Id j : shells_.neighbors(id)) __builtin_prefetch(&spheres_[j]);
+    if (const Id partner = calendar_.what(id); is_partner(partner)) shells_.prefetch_list(partner);
+  }
+  if (const Id id = calendar_.ahead(2); id != Calendar::none) {
+    if (const Id partner = calendar_.what(id); is_partner(partner))
+      for (const Id j : shells_.neighbors(partner)) __builtin_prefetch(&spheres_[j]);
+  }
 }
 
 template <int D>

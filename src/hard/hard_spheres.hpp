@@ -72,6 +72,7 @@ class HardSpheres {
   double duration(double growth, double largest) const;
   double wanted_freedom() const;
   void build_shells(double freedom, double largest);
+  void prefetch() const;
   void predict(Id i);
   void forget_partner(Id i);
   double time_to_leave(Id i) const;

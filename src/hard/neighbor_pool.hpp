@@ -29,10 +29,16 @@ class NeighborPool {
     return static_cast<double>(sum) / static_cast<double>(std::max<std::size_t>(1, lists_.size()));
   }
 
-  bool is_full(Id i) const { return lists_[i].count == lists_[i].room; }
+  void prefetch(Id i) const { __builtin_prefetch(&lists_[i]); }
+  void prefetch_list(Id i) const {
+    const Id* const begin = pool_.data() + lists_[i].begin;
+    __builtin_prefetch(begin);
+    __builtin_prefetch(begin + 16);
+  }
+
   void append(Id to, Id id) {
-    if (is_full(to)) grow(lists_[to]);
     List& list = lists_[to];
+    if (list.count == list.room) grow(list);
     pool_[list.begin + list.count++] = id;
     longest_ = std::max<std::size_t>(longest_, list.count);
   }
@@ -42,13 +48,6 @@ class NeighborPool {
     Id* const begin = pool_.data() + list.begin;
     *std::find(begin, begin + list.count, id) = begin[list.count - 1];
     --list.count;
-  }
-  template <class Stays>
-  void keep_only(Id i, Stays&& stays) {
-    List& list = lists_[i];
-    Id* const begin = pool_.data() + list.begin;
-    list.count = static_cast<std::uint32_t>(
-        std::remove_if(begin, begin + list.count, [&](Id id) { return !stays(id); }) - begin);
   }
   void clear(Id i) { lists_[i].count = 0; }
 

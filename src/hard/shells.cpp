@@ -5,22 +5,25 @@
 namespace bernal {
 
 template <int D>
-void Shells<D>::build(std::vector<Vector<D>> homes, const std::vector<double>& radii,
-                      std::vector<double> freedoms, const Vector<D>& edges) {
+void Shells<D>::build(const std::vector<Vector<D>>& homes, const std::vector<double>& radii,
+                      const std::vector<double>& freedoms, const Vector<D>& edges) {
   const std::size_t n = homes.size();
-  homes_ = std::move(homes);
-  freedoms_ = std::move(freedoms);
-  reach_.resize(n);
-  for (std::size_t i = 0; i < n; ++i) reach_[i] = radii[i] + freedoms_[i];
-  const auto [least, most] = std::ranges::minmax(reach_);
+  places_.resize(n);
+  double least = radii[0] + freedoms[0], most = least;
+  for (std::size_t i = 0; i < n; ++i) {
+    places_[i] = {homes[i], freedoms[i], radii[i] + freedoms[i]};
+    least = std::min(least, places_[i].reach);
+    most = std::max(most, places_[i].reach);
+  }
   lists_.start(n, lists_.mean());
   grid_.start(edges, least, most, n);
   for (Id i = 0; i < n; ++i) {
-    grid_.for_each_near(homes_[i], reach_[i], [&](Id j) {
+    const Place& place = places_[i];
+    grid_.for_each_near(place.home, place.reach, [&](Id j) {
       lists_.append(i, j);
       lists_.append(j, i);
     });
-    grid_.insert(i, homes_[i], reach_[i]);
+    grid_.insert(i, place.home, place.reach);
   }
 }
 
@@ -28,9 +31,10 @@ template <int D>
 void Shells<D>::settle(Id i, const Vector<D>& home) {
   for (const Id j : lists_.of(i)) lists_.remove(j, i);
   lists_.clear(i);
-  homes_[i] = home;
-  grid_.move(i, home, reach_[i]);
-  grid_.for_each_near(home, reach_[i], [&](Id j) {
+  Place& place = places_[i];
+  place.home = home;
+  grid_.move(i, home, place.reach);
+  grid_.for_each_near(home, place.reach, [&](Id j) {
     if (j == i) return;
     lists_.append(i, j);
     lists_.append(j, i);

@@ -24,21 +24,32 @@ class Shells {
   using Id = std::uint32_t;
 
   /// `radii` are the largest that the spheres grow to while these lists last; homes lie in [0, edge).
-  void build(std::vector<Vector<D>> homes, const std::vector<double>& radii, std::vector<double> freedoms,
-             const Vector<D>& edges);
+  void build(const std::vector<Vector<D>>& homes, const std::vector<double>& radii,
+             const std::vector<double>& freedoms, const Vector<D>& edges);
 
   std::span<const Id> neighbors(Id i) const { return lists_.of(i); }
   std::size_t longest_list() const { return lists_.longest(); }
-  const Vector<D>& home(Id i) const { return homes_[i]; }
-  double freedom(Id i) const { return freedoms_[i]; }
+  const Vector<D>& home(Id i) const { return places_[i].home; }
+  double freedom(Id i) const { return places_[i].freedom; }
+
+  /// Ask the memory for where sphere i and its list are described, and then for the list.
+  void prefetch(Id i) const {
+    __builtin_prefetch(&places_[i]);
+    lists_.prefetch(i);
+  }
+  void prefetch_list(Id i) const { lists_.prefetch_list(i); }
 
   /// A new home, in [0, edge).
   void settle(Id i, const Vector<D>& home);
 
  private:
-  std::vector<Vector<D>> homes_;
-  std::vector<double> freedoms_;
-  std::vector<double> reach_;  // radius and freedom
+  struct Place {
+    Vector<D> home;
+    double freedom;
+    double reach;  ///< radius and freedom
+  };
+
+  std::vector<Place> places_;
   NeighborPool lists_;
   HomeGrid<D> grid_;
 };
