@@ -37,12 +37,6 @@ constexpr double change_of_freedom = 1.3;
 /// What lists leave for growth, of the shells.
 constexpr double room_to_grow = 0.25;
 
-double normal(Random& random) {
-  // Box & Muller; 1 - uniform() is never 0.
-  const double u = 1 - random.uniform(), v = random.uniform();
-  return std::sqrt(-2 * std::log(u)) * std::cos(2 * M_PI * v);
-}
-
 /// Where each sphere lies on a Z-order curve through the box: spheres that are near each other in space come
 /// to lie near each other in memory.
 template <int D>
@@ -71,7 +65,7 @@ HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, R
   for (std::size_t i = 0; i < n; ++i) {
     for (int k = 0; k < D; ++k) {
       given[i].x[k] = spheres.x[static_cast<std::size_t>(k)][i];
-      given[i].v[k] = normal(random);
+      given[i].v[k] = random.uniform(-1, 1);
       drift[k] += given[i].v[k];
     }
     given[i].r = spheres.r[i];

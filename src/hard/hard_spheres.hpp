@@ -37,12 +37,14 @@ struct FlightPeriod {
 ///
 /// Invariant: at the end of a period no two spheres overlap by more than rounding, about 1e-15 edges.
 /// Precondition: 2 spheres or more, and `has_room`; no period may start without.
-/// Cost: about 0.5 µs a collision, the more the wider the sizes; memory about 500 bytes a sphere. One thread;
-/// the same bits on every x86-64.
+/// Cost: for 10,000 equal spheres 0.8 µs a collision in a fluid, 0.5 near jamming; twice that for lognormal
+/// sizes of sigma 0.5, three times for 100,000 spheres, which wait for the memory. Memory about 400 bytes a
+/// sphere. One thread; the same bits on every x86-64.
 template <int D>
 class HardSpheres {
  public:
-  /// Centres in [0, edge), free of overlap at size 1; velocities are drawn, without drift.
+  /// Centres in [0, edge), free of overlap at size 1; velocities are drawn uniformly, without drift: after a
+  /// few collisions they have Maxwell's distribution.
   HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, Random random,
               const CollisionKernel<D>& kernel = collision_kernels<D>().front());
 

@@ -15,7 +15,7 @@ namespace bernal {
 /// the others.
 ///
 /// Invariant: two spheres are neighbours, each in the list of the other, if and only if their homes are
-/// nearer than the sum of their radii and freedoms, minimum image. Cost: `build` and `settle` about 0.5 µs a
+/// nearer than the sum of their radii and freedoms, minimum image. Cost: `build` and `settle` about 1 µs a
 /// sphere where sizes are alike; memory about 300 bytes a sphere. Source: Donev, Torquato & Stillinger, J.
 /// Comput. Phys. 202, 737 (2005), with shells of their own size.
 template <int D>

@@ -189,8 +189,8 @@ const PlanItem relaxing[] = {
      "some 1,000 sweeps of O(N)"}};
 
 const PlanItem growing[] = {{"insertion", "random places at the start, the largest first", "O(1) a trial"},
-                            {"neighbour shells", "each sphere renews its own list", "about 0.5 µs"},
-                            {"collisions", "of growing spheres, from a calendar of events", "about 0.5 µs"},
+                            {"neighbour shells", "each sphere renews its own list", "about 1 µs"},
+                            {"collisions", "of growing spheres, from a calendar of events", "0.5 to 0.8 µs"},
                             {"growth", "until the spheres jam", "some 2,000 collisions a sphere"}};
 
 const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},

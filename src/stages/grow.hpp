@@ -27,13 +27,14 @@ struct GrowOptions {
 /// another stage left.
 ///
 /// Schedule: ten times faster than `rate` while the spheres are a fluid (compressibility below 4 D), which
-/// costs no packing fraction (10,000 equal spheres: 0.6447 with it, 0.6443 at `rate` throughout); then `rate`,
-/// which decides how dense the packing becomes. At compressibility Z gaps are about D / Z of a diameter.
+/// costs no packing fraction (10,000 equal spheres: 0.6447 with it, 0.6443 at `rate` throughout); then
+/// `rate`, which decides how dense the packing becomes. At compressibility Z gaps are about D / Z of a
+/// diameter.
 ///
 /// Ends `converged` jammed or where the target is reached; `hit_limit` where the box has become too narrow
 /// for the minimum image: 2.5 of the largest diameters. Throws Error{bad_scene} if it is that from the start,
 /// or if phi_init is denser than random insertion reaches. Precondition: 2 to 6 dimensions. Cost: some 2,000
-/// collisions a sphere at about 0.5 µs. One thread.
+/// collisions a sphere at 0.5 to 0.8 µs. One thread.
 StageEnd grow(PeriodicWork& work, const GrowOptions& options);
 
 }  // namespace bernal
