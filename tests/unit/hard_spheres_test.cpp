@@ -64,7 +64,7 @@ void grow_until_jammed(const std::vector<double>& radii, double phi, double grow
   HardSpheres<D> flight(gas.spheres, gas.edges, velocities());
   double most = -1;
   FlightPeriod period;
-  for (int k = 0; k < 400 && period.compressibility < 1e8 && flight.has_room(); ++k) {
+  for (int k = 0; k < 1000 && period.compressibility < 1e8 && flight.has_room(); ++k) {
     period = flight.fly(growth);
     most = std::max(most, overlap(flight, gas));
   }
