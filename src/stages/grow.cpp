@@ -26,12 +26,6 @@ constexpr double room_for_rounding = 1e-12;
 /// A milestone for each growth by this much of the logarithm of the compressibility.
 constexpr double milestone_every = 0.1;
 
-double volume_of_spheres(const PeriodicWork& work) {
-  double sum = 0;
-  for (const double r : work.spheres.r) sum += ball_volume(work.dimension(), r);
-  return sum;
-}
-
 struct MeanDiameters {
   double by_number, by_volume;
 };
@@ -114,7 +108,7 @@ void start(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, double phi
     return;
   }
   const EffectTimer timer(work.effects["insertion"]);
-  double volume = volume_of_spheres(work) / phi_init;
+  double volume = work.volume_of_spheres() / phi_init;
   if (work.target_edges) volume = std::max(volume, work.target_edges->prod());
   edges *= std::pow(volume / edges.prod(), 1.0 / D);
   require_room<D>(spheres, edges);

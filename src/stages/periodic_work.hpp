@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
@@ -52,6 +53,11 @@ struct PeriodicWork {
   /// A fresh stream of random numbers for one round of a stage.
   Random random(Stream purpose) { return {seed, stream(purpose, streams_used++)}; }
   int dimension() const { return spheres.dimension(); }
+  double volume_of_spheres() const {
+    double sum = 0;
+    for (const double r : spheres.r) sum += ball_volume(dimension(), r);
+    return sum;
+  }
   bool has_wall(int axis) const { return !walls.empty() && walls[static_cast<std::size_t>(axis)]; }
 };
 

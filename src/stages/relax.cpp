@@ -24,15 +24,9 @@ constexpr int most_starts_in_a_loose_box = 20;
 /// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
 constexpr double jitter = 1e-6;
 
-double volume_of_spheres(const PeriodicWork& work) {
-  double sum = 0;
-  for (const double r : work.spheres.r) sum += ball_volume(work.dimension(), r);
-  return sum;
-}
-
 bool is_loose(const PeriodicWork& work) {
   return work.target_edges &&
-         volume_of_spheres(work) < loose * close_packing[work.dimension() - 1] * work.target_edges->prod();
+         work.volume_of_spheres() < loose * close_packing[work.dimension() - 1] * work.target_edges->prod();
 }
 
 /// Those of phi0, or about those that are asked for; never so small that a sphere overlaps its own image.
@@ -41,7 +35,7 @@ Vector<dynamic> edges_to_start_from(const PeriodicWork& work, double phi0) {
   const auto with_volume = [&](double volume) -> Vector<dynamic> {
     return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
   };
-  Vector<dynamic> edges = with_volume(volume_of_spheres(work) / phi0);
+  Vector<dynamic> edges = with_volume(work.volume_of_spheres() / phi0);
   if (work.target_edges) {
     const double asked = work.target_edges->prod();
     if (is_loose(work) || edges.prod() > asked) edges = with_volume((1 - room_to_grow) * asked);
