@@ -11,7 +11,6 @@
 #include "hard/hard_spheres.hpp"
 #include "neighbors/cell_grid.hpp"
 #include "stages/finish_in_periodic_box.hpp"
-#include "stages/resize_box.hpp"
 
 namespace bernal {
 namespace {
