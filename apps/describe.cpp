@@ -65,7 +65,7 @@ std::string describe_target(const Scene& scene) {
   }
   if (!fraction.empty()) return "up to " + fraction;
   if (scene.target.fill) return "as many as can be made to fit";
-  const bool relaxed =
-      std::ranges::any_of(scene.stages, [](const Spec& stage) { return stage.name == "relax"; });
-  return relaxed && !scene.is_periodic() ? "as many as are expected to fit" : "as many as fit";
+  const bool expects = std::ranges::any_of(
+      scene.stages, [](const Spec& stage) { return stage.name == "relax" || stage.name == "grow"; });
+  return expects && !scene.is_periodic() ? "as many as are expected to fit" : "as many as fit";
 }

@@ -19,6 +19,7 @@ struct alignas(D == 3 ? 64 : 16) FlyingSphere {
     time = t;
   }
   Vector<D> position() const { return Eigen::Map<const Vector<D>>(x); }
+  Vector<D> velocity() const { return Eigen::Map<const Vector<D>>(v); }
 };
 
 }  // namespace bernal

@@ -58,7 +58,16 @@ std::vector<std::uint64_t> places_on_curve(const Spheres<D>& spheres, const Vect
 template <int D>
 HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, Random random,
                             const CollisionKernel<D>& kernel)
-    : spheres_(spheres.size()), original_(spheres.size()), edges_(edges), kernel_(kernel) {
+    : HardSpheres(spheres, edges, {}, random, kernel) {}
+
+template <int D>
+HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, std::vector<Wall<D>> walls,
+                            Random random, const CollisionKernel<D>& kernel)
+    : spheres_(spheres.size()),
+      original_(spheres.size()),
+      edges_(edges),
+      kernel_(kernel),
+      walls_(std::move(walls), edges) {
   const std::size_t n = spheres.size();
   std::vector<FlyingSphere<D>> given(n);
   Vector<D> drift = Vector<D>::Zero();
@@ -74,8 +83,9 @@ HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, R
   std::iota(original_.begin(), original_.end(), 0u);
   std::ranges::stable_sort(original_, [&](Id i, Id j) { return places[i] < places[j]; });
   for (std::size_t i = 0; i < n; ++i) spheres_[i] = given[original_[i]];
-  for (FlyingSphere<D>& s : spheres_)
-    for (int k = 0; k < D; ++k) s.v[k] -= drift[k] / static_cast<double>(n);
+  if (walls_.empty())
+    for (FlyingSphere<D>& s : spheres_)
+      for (int k = 0; k < D; ++k) s.v[k] -= drift[k] / static_cast<double>(n);
   rescale_velocities();
   mean_diameter_ = 2 * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / static_cast<double>(n);
   largest_radius_ = std::ranges::max(spheres.r);
@@ -112,8 +122,8 @@ template <int D>
 double HardSpheres<D>::duration(double growth, double largest) const {
   double time = first_duration * mean_diameter_ * size_;
   if (period_.time > 0) {
-    const double rate =
-        2 * static_cast<double>(period_.collisions) / (static_cast<double>(count()) * period_.time);
+    const double rate = static_cast<double>(2 * period_.collisions + period_.reflections) /
+                        (static_cast<double>(count()) * period_.time);
     time = rate > 0 ? collisions_a_period / rate : infinite;
     if (period_.heating > 0) time = std::min(time, period_.time * most_heating / period_.heating);
     time = std::clamp(time, period_.time / fastest_change_of_duration,
@@ -155,6 +165,9 @@ void HardSpheres<D>::build_shells(double freedom, double largest) {
     freedoms[i] = std::min(most, freedom_ / std::sqrt(2 * spheres_[i].r / mean_diameter_));
   }
   shells_.build(homes, radii, freedoms, edges_);
+  if (walls_.empty()) return;
+  walls_.start(count(), largest_radius_ * largest_listed_ + std::ranges::max(freedoms));
+  for (Id i = 0; i < count(); ++i) walls_.settle(i, homes[i], radii[i] + freedoms[i]);
 }
 
 template <int D>
@@ -169,9 +182,10 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   if (rebuild) build_shells(freedom, size_then);
 
   const double energy = kinetic_energy();
-  const double expected_collisions = period_.time > 0
-                                         ? static_cast<double>(period_.collisions) * horizon_ / period_.time
-                                         : static_cast<double>(count());
+  const double expected_collisions =
+      period_.time > 0
+          ? static_cast<double>(period_.collisions + period_.reflections) * horizon_ / period_.time
+          : static_cast<double>(count());
   calendar_.start_period(count(), horizon_,
                          static_cast<std::size_t>(expected_collisions * events_a_collision / events_a_bin +
                                                   static_cast<double>(count()) / 4));
@@ -206,6 +220,9 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
         const Vector<D> home = Boundary<D>{edges_}.wrap(spheres_[i].position());
         for (int k = 0; k < D; ++k) spheres_[i].x[k] = home[k];
         shells_.settle(i, home);
+        if (!walls_.empty()) walls_.settle(i, home, spheres_[i].r * largest_listed_ + shells_.freedom(i));
+      } else if (what == touch_wall) {
+        reflect(i);
       }
       predict(i);
     }
@@ -294,7 +311,11 @@ void HardSpheres<D>::predict(Id i) {
   scan_.count = neighbors.size();
   scan_.now = now_;
   const double leaves = time_to_leave(i);
-  const double limit = std::min(leaves, horizon_ - now_);
+  const double touches = walls_.empty()
+                             ? infinite
+                             : walls_.time_to_touch(i, spheres_[i], spheres_[i].r * (size_ + growth_ * now_),
+                                                    spheres_[i].r * growth_);
+  const double limit = std::min({leaves, touches, horizon_ - now_});
   for (FirstCollision first = kernel_.scan(scan_); first.delay < limit;) {
     const Id j = neighbors[first.neighbor];
     const double time = now_ + first.delay;
@@ -308,7 +329,10 @@ void HardSpheres<D>::predict(Id i) {
     const double* const next = std::min_element(scan_.delays, scan_.delays + scan_.count);
     first = {*next, static_cast<std::size_t>(next - scan_.delays)};
   }
-  calendar_.schedule(i, now_ + leaves, leave);
+  if (touches < leaves)
+    calendar_.schedule(i, now_ + touches, touch_wall);
+  else
+    calendar_.schedule(i, now_ + leaves, leave);
 }
 
 template <int D>
@@ -333,6 +357,15 @@ void HardSpheres<D>::collide(Id i, Id j) {
     b.v[k] += along;
   }
   virial_ += kick * distance;
+}
+
+template <int D>
+void HardSpheres<D>::reflect(Id i) {
+  FlyingSphere<D>& s = spheres_[i];
+  const double kick = walls_.reflect(i, s, s.r * growth_, 2 * least_kick);
+  ++period_.reflections;
+  period_.wall_momentum += kick;
+  virial_ += kick * s.r * (size_ + growth_ * now_);
 }
 
 template class HardSpheres<2>;

@@ -9,6 +9,7 @@
 #include "stages/compress.hpp"
 #include "stages/fly.hpp"
 #include "stages/grow.hpp"
+#include "stages/grow_in_container.hpp"
 #include "stages/insert.hpp"
 #include "stages/refill.hpp"
 #include "stages/relax.hpp"
@@ -131,12 +132,18 @@ StageEnd run_relax(const Spec& s, PeriodicWork& work) {
                       .settle = s.flag("settle")});
 }
 
-StageEnd run_grow(const Spec& s, PeriodicWork& work) {
-  GrowOptions options{.phi_init = s.number("phi_init"),
-                      .rate = s.number("rate"),
-                      .pressure = s.number("pressure"),
-                      .polish = s.number("polish")};
+GrowOptions grow_options(const Spec& s) {
+  GrowOptions options{
+      .phi_init = s.number("phi_init"), .rate = s.number("rate"), .pressure = s.number("pressure")};
   if (s.has("delta")) options.delta = s.number("delta");
+  return options;
+}
+
+StageEnd run_grow_in_container(const Spec& s, Work& work) { return grow_in_container(work, grow_options(s)); }
+
+StageEnd run_grow(const Spec& s, PeriodicWork& work) {
+  GrowOptions options = grow_options(s);
+  options.polish = s.number("polish");
   return grow(work, options);
 }
 
@@ -193,12 +200,20 @@ const PlanItem growing[] = {{"insertion", "random places at the start, the large
                             {"collisions", "of growing spheres, from a calendar of events", "0.5 to 0.8 µs"},
                             {"growth", "until the spheres jam", "some 2,000 collisions a sphere"}};
 
+const PlanItem growing_in_container[] = {
+    {"insertion", "random places at the start, the largest first", "O(1) a trial"},
+    {"neighbour shells", "each sphere renews its own list, and that of its walls", "about 1 µs"},
+    {"collisions", "of growing spheres, from a calendar of events", "0.5 to 0.8 µs"},
+    {"reflections", "of growing spheres from the walls, from the same calendar", "0.5 to 0.8 µs"},
+    {"growth", "until the spheres have their radii; what jams before loses the last of the drawn sequence",
+     "some 2,000 collisions a sphere"}};
+
 const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},
                              {"compress", run_compress, nullptr, compression},
                              {"shake", run_shake, nullptr, shaking},
                              {"refill", run_refill, nullptr, refilling},
                              {"relax", run_relax_in_container, run_relax, relaxing_in_container, relaxing},
-                             {"grow", nullptr, run_grow, {}, growing},
+                             {"grow", run_grow_in_container, run_grow, growing_in_container, growing},
                              {"fly", nullptr, run_fly, {}, flying, chosen_effects_of_fly}};
 
 }  // namespace

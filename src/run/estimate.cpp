@@ -116,7 +116,7 @@ double close_packing_fraction(const SizeDistribution& radii, int dimension) {
 
 double error_of_expectation(const Scene& scene) {
   if (scene.is_periodic()) return 0.01;
-  return has_stage(scene, "relax") ? 0.016 : 0.03;
+  return has_stage(scene, "relax") || has_stage(scene, "grow") ? 0.016 : 0.03;
 }
 
 /// Compression leaves a share of close packing that falls with x = A d / V, for a wall of area A, a volume V
@@ -124,7 +124,7 @@ double error_of_expectation(const Scene& scene) {
 /// only two spheres thick), all of them met within 0.03.
 double expected_packing_fraction(const Scene& scene, const Shape& shape, const SizeDistribution& radii) {
   const auto runs = [&](std::string_view name) { return has_stage(scene, name); };
-  if (runs("relax")) return reached_by_relaxation(shape, radii);
+  if (runs("relax") || runs("grow")) return reached_by_relaxation(shape, radii);
   if (!runs("refill")) {
     double fraction = 0;
     for (const Spec& s : scene.stages) {

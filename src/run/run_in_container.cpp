@@ -36,6 +36,19 @@ Frame working_frame(const Plan& plan) {
   return frame;
 }
 
+/// Whether the stage places as many spheres as are expected to fit where the scene says nothing.
+bool meets_expectation(const Spec& stage) { return stage.name == "relax" || stage.name == "grow"; }
+
+/// What a stage cannot do, only it knows; where the scene asks for it, only the run.
+StageEnd run_stage(const Spec& stage, Work& work) {
+  try {
+    return find_entry(stage_catalogue(), stage).run(stage, work);
+  } catch (const Error& error) {
+    if (!error.location().file.empty()) throw;
+    throw Error(error.code(), error.what(), stage.where);
+  }
+}
+
 /// How the last stage's end, and what the scene asked for, make the outcome of the run.
 void conclude(Packing& packing, const Supply& supply, StageEnd end) {
   const Target& target = packing.scene.target;
@@ -51,9 +64,10 @@ void conclude(Packing& packing, const Supply& supply, StageEnd end) {
     packing.reason = fmt::format("the last stage reached its limit with {} spheres", n);
   } else if (target.is_open()) {
     packing.outcome = Outcome::converged;
-    packing.reason = end == StageEnd::converged && !target.fill && packing.scene.stages.back().name == "relax"
-                         ? fmt::format("{} spheres are placed, as many as were expected to fit", n)
-                         : fmt::format("the stages of the scene place {} spheres and no more", n);
+    packing.reason =
+        end == StageEnd::converged && !target.fill && meets_expectation(packing.scene.stages.back())
+            ? fmt::format("{} spheres are placed, as many as were expected to fit", n)
+            : fmt::format("the stages of the scene place {} spheres and no more", n);
   } else {
     packing.outcome = Outcome::full;
     packing.reason =
@@ -81,8 +95,9 @@ void conclude(Packing& packing, const Supply& supply, StageEnd end) {
 void run_in_container(const Plan& plan, const Monitor& monitor, const Stopwatch& watch, Packing& packing) {
   const Shape& shape = std::get<Shape>(plan.domain);
   const Frame frame = working_frame(plan);
+  const Shape local = to_local(shape, frame);
   const std::unique_ptr<Container> container =
-      make_container(to_local(shape, frame), arithmetic_of(plan.scene), frame.resolution);
+      make_container(local, arithmetic_of(plan.scene), frame.resolution);
   const double unbounded = std::numeric_limits<double>::infinity();
   const double cut =
       plan.radii->max() < unbounded ? unbounded : radius_with_hardly_any_room(*container, packing.seed);
@@ -102,26 +117,21 @@ void run_in_container(const Plan& plan, const Monitor& monitor, const Stopwatch&
                     fmt::format("{} spheres, packing fraction {:.4f}", grouped(bed.size()), fraction)});
   };
   const auto crowd_milestone = [&](std::string_view stage, std::size_t spheres, double volume,
-                                   double max_overlap) {
+                                   double max_overlap, double done) {
     const double fraction = volume / container->volume();
     packing.history.push_back({std::string(stage), spheres, fraction, 0, max_overlap, watch.seconds()});
-    monitor.report({stage, std::clamp(std::log(max_overlap) / std::log(1e-4), 0.0, 0.99),
-                    fmt::format("{} spheres, packing fraction {:.4f}, largest overlap {:.1e}",
-                                grouped(spheres), fraction, max_overlap)});
+    const std::string overlap =
+        max_overlap > 0 ? fmt::format(", largest overlap {:.1e}", max_overlap) : std::string();
+    monitor.report(
+        {stage, std::clamp(done, 0.0, 0.99),
+         fmt::format("{} spheres, packing fraction {:.4f}{}", grouped(spheres), fraction, overlap)});
   };
-  Work work{bed,
-            supply,
-            packing.seed,
-            monitor,
-            effects,
-            milestone,
-            crowd_milestone,
-            plan.scene.target,
-            plan.attainable_packing_fraction};
+  Work work{bed,       supply,          packing.seed,      monitor, effects,
+            milestone, crowd_milestone, plan.scene.target, local,   plan.attainable_packing_fraction};
 
   StageEnd end = StageEnd::converged;
   for (const Spec& stage : plan.scene.stages) {
-    end = find_entry(stage_catalogue(), stage).run(stage, work);
+    end = run_stage(stage, work);
     milestone(stage.name);
     if (end == StageEnd::cancelled) break;
   }

@@ -368,10 +368,12 @@ class Reader {
     }
   }
 
-  /// Relaxation in a container keeps the sizes exactly as they are drawn: then these may as well be exact.
+  /// Relaxation and growth in a container keep the sizes exactly as they are drawn: then these may as well be
+  /// exact.
   static std::string default_draw(const Scene& scene) {
-    const bool relaxes = std::ranges::find(scene.stages, "relax", &Spec::name) != scene.stages.end();
-    return relaxes && !scene.is_periodic() ? "quantiles" : "random";
+    const bool keeps_sizes = std::ranges::any_of(
+        scene.stages, [](const Spec& stage) { return stage.name == "relax" || stage.name == "grow"; });
+    return keeps_sizes && !scene.is_periodic() ? "quantiles" : "random";
   }
 
   Spec read_stage(const toml::table& table, const Entry& entry, const std::string& where,

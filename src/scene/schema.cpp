@@ -66,7 +66,7 @@ Schema make_schema() {
                            {.name = "draw",
                             .type = Type::word,
                             .help = "sizes at random, or quantiles: evenly over the distribution; if absent "
-                                    "quantiles where relax packs a container, else random",
+                                    "quantiles where relax or grow packs a container, else random",
                             .optional = true,
                             .words = {"random", "quantiles"}}},
                   .choices = {{{"count"}, {"packing_fraction"}, {"fill"}, {"count", "packing_fraction"}, {}},

@@ -167,40 +167,68 @@ Entry relax_in_periodic_box_entry() {
           .complete = complete_relax};
 }
 
-Entry grow_entry() {
-  return {
-      .name = "grow",
-      .help = "hard spheres fly, collide and grow until they jam; in 2 to 6 dimensions",
-      .keys = {{.name = "delta",
-                .type = Type::number,
-                .help = "as published: growth of the radii, relative to those at the start, in the time "
-                        "that a sphere of thermal speed takes across the box; if absent see rate",
-                .optional = true,
-                .range = {0, 100, true}},
-               {.name = "phi_init",
-                .type = Type::number,
-                .help = "packing fraction of the random insertion at the start; if absent 0.2, in other "
-                        "than three dimensions half of what insertion reaches",
-                .optional = true,
-                .range = {0, 0.5, true}},
-               {.name = "rate",
-                .type = Type::number,
-                .help =
-                    "growth of the mean diameter by volume over the thermal speed where the packing forms; "
-                    "slower is denser; ten times that while the spheres are a fluid",
-                .otherwise = 0.01,
-                .range = {1e-6, 1}},
-               {.name = "pressure",
-                .type = Type::number,
-                .help = "compressibility factor P V / N k T at which the spheres count as jammed",
-                .otherwise = 1e6,
-                .range = {10, 1e13}},
-               {.name = "polish",
-                .type = Type::number,
-                .help = "close the gaps and overlaps of all contacts to this ratio; 0: do not",
-                .otherwise = 0.0,
-                .range = {0, 0.5}}},
-      .complete = complete_grow};
+Key growth_rate() {
+  return {.name = "rate",
+          .type = Type::number,
+          .help =
+              "growth of the mean diameter by volume over the thermal speed where the packing forms; "
+              "slower is denser; ten times that while the spheres are a fluid",
+          .otherwise = 0.01,
+          .range = {1e-6, 1}};
+}
+
+Key jamming_pressure() {
+  return {.name = "pressure",
+          .type = Type::number,
+          .help = "compressibility factor P V / N k T at which the spheres count as jammed",
+          .otherwise = 1e6,
+          .range = {10, 1e13}};
+}
+
+Entry grow_in_container_entry() {
+  return {.name = "grow",
+          .help = "hard spheres fly, collide and grow to their radii, in convex containers",
+          .keys = {
+              {.name = "delta",
+               .type = Type::number,
+               .help = "as published: growth of the radii, relative to those at the start, in the time "
+                       "that a sphere of thermal speed takes for the cube root of the container's volume; if "
+                       "absent see rate",
+               .optional = true,
+               .range = {0, 100, true}},
+              {.name = "phi_init",
+               .type = Type::number,
+               .help = "packing fraction of the random insertion at the start, half of it where spheres "
+                       "find no places",
+               .otherwise = 0.2,
+               .range = {0, 0.5, true}},
+              growth_rate(),
+              jamming_pressure()}};
+}
+
+Entry grow_in_periodic_box_entry() {
+  return {.name = "grow",
+          .help = "hard spheres fly, collide and grow until they jam; in 2 to 6 dimensions",
+          .keys = {{.name = "delta",
+                    .type = Type::number,
+                    .help = "as published: growth of the radii, relative to those at the start, in the time "
+                            "that a sphere of thermal speed takes across the box; if absent see rate",
+                    .optional = true,
+                    .range = {0, 100, true}},
+                   {.name = "phi_init",
+                    .type = Type::number,
+                    .help = "packing fraction of the random insertion at the start; if absent 0.2, in other "
+                            "than three dimensions half of what insertion reaches",
+                    .optional = true,
+                    .range = {0, 0.5, true}},
+                   growth_rate(),
+                   jamming_pressure(),
+                   {.name = "polish",
+                    .type = Type::number,
+                    .help = "close the gaps and overlaps of all contacts to this ratio; 0: do not",
+                    .otherwise = 0.0,
+                    .range = {0, 0.5}}},
+          .complete = complete_grow};
 }
 
 Entry fly_entry() {
@@ -249,7 +277,7 @@ std::vector<Entry> stages(bool in_container) {
   std::vector<Entry> all = compression_stages();
   all.insert(in_container ? all.end() : all.begin(),
              in_container ? relax_in_container_entry() : relax_in_periodic_box_entry());
-  if (!in_container) all.push_back(grow_entry());
+  all.push_back(in_container ? grow_in_container_entry() : grow_in_periodic_box_entry());
   if (!in_container) all.insert(all.begin() + 1, fly_entry());
   return all;
 }

@@ -11,36 +11,17 @@
 #include "hard/hard_spheres.hpp"
 #include "neighbors/cell_grid.hpp"
 #include "stages/finish_in_periodic_box.hpp"
+#include "stages/growth_schedule.hpp"
 
 namespace bernal {
 namespace {
 
-/// Spheres below this compressibility, a dimension, are a fluid that forgets how fast it was compressed.
-constexpr double fluid_compressibility = 4;
-constexpr double haste_of_fluid = 10;
 /// Random places tried for a sphere before the insertion counts as stuck.
 constexpr int most_trials = 100000;
 /// Spheres grow by this much beyond the size that was asked for, so that the box has room for rounding.
 constexpr double room_for_rounding = 1e-12;
 /// A milestone for each growth by this much of the logarithm of the compressibility.
 constexpr double milestone_every = 0.1;
-
-struct MeanDiameters {
-  double by_number, by_volume;
-};
-
-template <int D>
-MeanDiameters mean_diameters(const Spheres<D>& spheres) {
-  double number = 0, volume = 0, by_number = 0, by_volume = 0;
-  for (const double r : spheres.r) {
-    const double v = ball_volume(D, r);
-    number += 1;
-    volume += v;
-    by_number += 2 * r;
-    by_volume += v * 2 * r;
-  }
-  return {by_number / number, by_volume / volume};
-}
 
 /// Random sequential insertion, the largest first. Returns whether all have found places.
 template <int D>
@@ -129,9 +110,7 @@ StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
   double largest = std::numeric_limits<double>::infinity();
   if (work.target_edges)
     largest = std::max(1.0, std::pow(volume / work.target_edges->prod(), 1.0 / D)) * (1 + room_for_rounding);
-  const MeanDiameters mean = mean_diameters<D>(spheres);
-  const double as_published = options.delta.value_or(0) * mean.by_number / std::pow(volume, 1.0 / D);
-  const double by_schedule = options.rate * mean.by_number / mean.by_volume;
+  const GrowthSchedule<D> schedule(spheres, volume, options);
 
   Effect& collisions = work.effects["collisions"];
   Effect& shells = work.effects["neighbour shells"];
@@ -143,9 +122,7 @@ StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
       end = StageEnd::hit_limit;
       break;
     }
-    const bool fluid = period.compressibility < fluid_compressibility * D;
-    const double rate = options.delta ? as_published : by_schedule * (fluid ? haste_of_fluid : 1);
-    period = flight.fly(rate, largest, work.monitor);
+    period = flight.fly(schedule.at(period.compressibility), largest, work.monitor);
     collisions.calls += period.collisions;
     shells.calls += period.departures + period.builds;
     if (period.stopped) {

@@ -35,6 +35,9 @@ constexpr int most_hand_overs = 20;
 /// Tries to find a place where a sphere clears the wall.
 constexpr int tries = 100;
 
+/// Overlap ratio of spheres that are as good as free.
+constexpr double small_overlap = 1e-4;
+
 double volume_of_ball(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
 
 class Relaxation {
@@ -72,11 +75,7 @@ class Relaxation {
  private:
   /// So many of the drawn sequence fill this share of the container.
   std::size_t count_for(double packing_fraction) const {
-    double volume = packing_fraction * work_.bed.container().volume();
-    std::size_t count = 0;
-    while (count < work_.supply.wanted() && volume > 0)
-      volume -= volume_of_ball(work_.supply.radius(static_cast<std::uint32_t>(count++)));
-    return count;
+    return work_.supply.count_filling(packing_fraction * work_.bed.container().volume());
   }
 
   std::size_t target_count() const {
@@ -176,7 +175,9 @@ class Relaxation {
   void report() {
     double volume = 0;
     for (const double r : crowd_.spheres().r) volume += volume_of_ball(r);
-    work_.crowd_milestone("relax", crowd_.size(), volume, crowd_.largest_overlap());
+    const double overlap = crowd_.largest_overlap();
+    work_.crowd_milestone("relax", crowd_.size(), volume, overlap,
+                          std::log(overlap) / std::log(small_overlap));
   }
 
   double seconds() const {

@@ -71,6 +71,12 @@ void Supply::set_placed(const std::vector<bool>& placed) {
   open_window();
 }
 
+std::size_t Supply::count_filling(double volume) const {
+  std::size_t count = 0;
+  while (count < radii_.size() && volume > 0) volume -= volume_of_ball(radii_[count++]);
+  return count;
+}
+
 std::size_t Supply::passed_over() const {
   // The window is ascending and ends in spheres that nothing later was placed after.
   std::size_t untouched = 0;

@@ -41,6 +41,8 @@ class Supply {
   bool trimming_is_cheap() const;
   /// How many spheres the target asks for; for `fill` an upper bound.
   std::size_t wanted() const { return radii_.size(); }
+  /// So many of the sequence, from its start, fill this volume; at most all.
+  std::size_t count_filling(double volume) const;
   /// How many draws were above the cut.
   std::size_t cut_off() const { return cut_off_; }
   double smallest() const { return smallest_; }

@@ -1,0 +1,110 @@
+#include "hard/walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace bernal {
+namespace {
+
+/// With no more walls than these all are looked at for each sphere.
+constexpr std::size_t few_walls = 16;
+/// The grid of others is divided in two along each edge so many times.
+constexpr int divisions = 4;
+/// What cells are prepared for beyond the reach at hand, so that they last while shells grow.
+constexpr double spare_reach = 1.25;
+/// Of half a cell's diagonal: what rounding cannot be as large as.
+constexpr double slack = 1.001;
+
+}  // namespace
+
+template <int D>
+void Walls<D>::start(std::size_t count, double most) {
+  near_.start(count, 0);
+  next_.assign(count, 0);
+  if (most <= reach_) return;
+  reach_ = spare_reach * most;
+  const int levels = walls_.size() > few_walls ? divisions : 0;
+  cells_an_edge_ = 1 << levels;
+  cells_.assign(std::size_t{1} << (levels * D), {});
+  std::vector<Id> all(walls_.size());
+  std::iota(all.begin(), all.end(), Id{0});
+  if (levels == 0)
+    cells_[0] = std::move(all);
+  else
+    fill_cells(Vector<D>::Zero(), edges_, levels, 0, all);
+}
+
+/// The cells of the part of the box that is divided `level` times more, which are numbered from `first` on.
+template <int D>
+void Walls<D>::fill_cells(const Vector<D>& lower, const Vector<D>& size, int level, std::size_t first,
+                          const std::vector<Id>& near) {
+  const Vector<D> middle = lower + 0.5 * size;
+  const double half_diagonal = slack * 0.5 * size.norm();
+  std::vector<Id> nearer;
+  for (const Id w : near) {
+    const double clearance = walls_[w].clearance(middle);
+    if (clearance < -half_diagonal) return;  // all of it is outside
+    if (clearance < half_diagonal + reach_) nearer.push_back(w);
+  }
+  if (level == 0) {
+    cells_[first] = std::move(nearer);
+    return;
+  }
+  const std::size_t cells_a_part = std::size_t{1} << ((level - 1) * D);
+  for (std::size_t part = 0; part < (std::size_t{1} << D); ++part) {
+    Vector<D> corner = lower;
+    for (int k = 0; k < D; ++k)
+      if (part >> k & 1) corner[k] = middle[k];
+    fill_cells(corner, 0.5 * size, level - 1, first + part * cells_a_part, nearer);
+  }
+}
+
+template <int D>
+std::size_t Walls<D>::cell_at(const Vector<D>& home) const {
+  std::size_t index = 0;
+  std::size_t at[D];
+  for (int k = 0; k < D; ++k)
+    at[k] = static_cast<std::size_t>(
+        std::clamp(static_cast<int>(home[k] / edges_[k] * cells_an_edge_), 0, cells_an_edge_ - 1));
+  for (int bit = cells_an_edge_ / 2; bit > 0; bit /= 2)
+    for (int k = D - 1; k >= 0; --k) index = 2 * index + ((at[k] & static_cast<std::size_t>(bit)) != 0);
+  return index;
+}
+
+template <int D>
+void Walls<D>::settle(Id i, const Vector<D>& home, double reach) {
+  near_.clear(i);
+  for (const Id w : cells_[cell_at(home)])
+    if (walls_[w].clearance(home) < reach) near_.append(i, w);
+}
+
+template <int D>
+double Walls<D>::time_to_touch(Id i, const FlyingSphere<D>& sphere, double radius, double growth) {
+  double first = std::numeric_limits<double>::infinity();
+  for (const Id w : near_.of(i)) {
+    const double time = walls_[w].time_to_touch(sphere.position(), sphere.velocity(), radius, growth);
+    if (time < first) {
+      first = time;
+      next_[i] = w;
+    }
+  }
+  return first;
+}
+
+template <int D>
+double Walls<D>::reflect(Id i, FlyingSphere<D>& sphere, double growth, double least) const {
+  const Vector<D> n = walls_[next_[i]].outward(sphere.position());
+  const double kick = std::max(least, 2 * (n.dot(sphere.velocity()) + growth));
+  for (int k = 0; k < D; ++k) sphere.v[k] -= kick * n[k];
+  return kick;
+}
+
+template class Walls<2>;
+template class Walls<3>;
+template class Walls<4>;
+template class Walls<5>;
+template class Walls<6>;
+
+}  // namespace bernal
