@@ -8,6 +8,7 @@
 #include "run/catalogue.hpp"
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
+#include "stages/grow_in_container.hpp"
 
 namespace bernal {
 namespace {
@@ -120,6 +121,22 @@ void expect_in_container(Plan& plan) {
                         std::holds_alternative<Mesh>(container) ? "O(log faces) a query" : "O(1) a query"});
 }
 
+/// Throws where growth would find that the container is not convex.
+void require_convex_for_growth(const Plan& plan) {
+  const Shape& shape = std::get<Shape>(plan.domain);
+  const double rarest = std::min(0.5, 1 / std::max(1.0, plan.expected_count));
+  const double smallest = std::max(plan.radii->min(), plan.radii->quantile(rarest));
+  for (const Spec& stage : plan.scene.stages) {
+    if (stage.name != "grow") continue;
+    try {
+      const Frame frame = frame_of(shape);
+      walls_for_growth(to_local(shape, frame), smallest / frame.scale);
+    } catch (const Error& error) {
+      throw Error(error.code(), error.what(), stage.where);
+    }
+  }
+}
+
 /// What a size means that only gives the proportions of a box: each edge over the longest, to 44 bits. So all
 /// sizes in proportion make the same plan, and the one that a run wrote down, rounded, makes that run again.
 Vector<dynamic> proportions_of(const Vector<dynamic>& edges) {
@@ -164,6 +181,7 @@ Plan build(const Scene& scene) {
     expect_in_periodic_box(plan);
   } else {
     expect_in_container(plan);
+    require_convex_for_growth(plan);
   }
 
   for (const Spec& stage : scene.stages) {

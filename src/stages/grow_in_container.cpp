@@ -27,10 +27,11 @@ constexpr double least_phi_init = 1e-6;
 /// More than what is likely to fit, in shares of it, is not tried at once.
 constexpr double most_of_attainable = 1.1;
 /// What is left free of the volume that jammed spheres take up when the tail is taken out, so that the rest
-/// fits; every further time twice as much. And how much they shrink then, so that none touch any more.
+/// fits; every further time twice as much. And how much they shrink then, so that they are a fluid again:
+/// with less they jam before they are as dense as the first time.
 constexpr double caution = 5e-4;
 constexpr int most_trims = 8;
-constexpr double shrinkage = 0.01;
+constexpr double shrinkage = 0.07;
 /// Of the skin: room for rounding beyond it.
 constexpr double room_for_rounding = 0.01;
 /// Room beside the container in the periodic box around it, in largest diameters: no sphere meets an image
@@ -60,7 +61,7 @@ class Growth {
         options_(options),
         random_(work.random(Stream::grow)),
         full_size_(1 + (1 + room_for_rounding) * work.bed.skin() / work.supply.smallest()),
-        walls_(convex_walls(work.shape, flatness * work.supply.smallest())) {
+        walls_(walls_for_growth(work.shape, work.supply.smallest())) {
     const Bounds<3> bounds = work.bed.container().bounds();
     edges_ = bounds.size().array() + margin * 2 * work.supply.largest();
     to_box_ = 0.5 * edges_ - bounds.center();
@@ -266,6 +267,10 @@ class Growth {
 };
 
 }  // namespace
+
+std::vector<Wall<3>> walls_for_growth(const Shape& shape, double smallest_radius) {
+  return convex_walls(shape, flatness * smallest_radius);
+}
 
 StageEnd grow_in_container(Work& work, const GrowOptions& options) { return Growth(work, options).run(); }
 

@@ -1,4 +1,7 @@
 #pragma once
+#include <vector>
+
+#include "hard/wall.hpp"
 #include "stages/grow.hpp"
 #include "stages/work.hpp"
 
@@ -25,5 +28,8 @@ namespace bernal {
 /// insertion finds no places at all. Cost: that of growth in a periodic box, some 2,000 collisions a sphere
 /// at 0.5 to 0.8 µs; as much again after spheres were taken out. One thread.
 StageEnd grow_in_container(Work& work, const GrowOptions& options);
+
+/// The walls that growth takes the shape to have. Throws Error{bad_scene} if it is not convex.
+std::vector<Wall<3>> walls_for_growth(const Shape& shape, double smallest_radius);
 
 }  // namespace bernal
