@@ -46,11 +46,17 @@ double volume_of(const Spheres<3>& spheres) {
   return sum;
 }
 
-/// Spheres on their way to their radii: `size` is the share of them that they have reached.
+/// Spheres on their way to their radii.
 struct Growing {
   Spheres<3> spheres;
-  double size = 0;
+  std::vector<bool> placed;  ///< whether each has a place
+  double size = 1;           ///< the share of their radii that they have
+  bool grown = false;        ///< they have reached them
 
+  void add(double r) {
+    spheres.push_back(Vector<3>::Zero(), r);
+    placed.push_back(false);
+  }
   double volume() const { return size * size * size * volume_of(spheres); }
 };
 
@@ -72,10 +78,18 @@ class Growth {
     const std::size_t wanted = target_count();
     if (work_.bed.size() >= wanted) return StageEnd::converged;
     require_fitting();
-    Growing growing = spheres_to_start_from(wanted);
-    double spare = caution;
-    for (int trims = 0; !grow(growing) && !cancelled_ && trims < most_trims; ++trims, spare *= 2)
-      trim(growing, spare);
+    Growing growing = from_bed();
+    std::size_t count = std::min(wanted, count_for(most_of_attainable * work_.attainable));
+    for (bool first = true;;
+         first = false, count = std::min(wanted, count + std::max<std::size_t>(1, count / 10))) {
+      Growing more = growing;
+      while (more.spheres.size() < count) more.add(radius_of(more.spheres.size()));
+      insert_at_random(more);
+      const bool jammed = !grow(more);
+      if (jammed) trim_and_grow(more);
+      if (first || (more.grown && more.spheres.size() > growing.spheres.size())) growing = std::move(more);
+      if (jammed || growing.spheres.size() >= wanted) break;
+    }
     const bool all_there = hand_over(growing.spheres);
     if (cancelled_) return StageEnd::cancelled;
     if (!all_there) return StageEnd::hit_limit;
@@ -93,13 +107,15 @@ class Growth {
     return work_.supply.wanted();
   }
 
+  double radius_of(std::size_t tag) const { return work_.supply.radius(static_cast<std::uint32_t>(tag)); }
+
   /// A sphere alone grows until it touches the walls on all sides: then it is the largest that fits, as the
   /// container is convex. Of analytic containers that is known beforehand.
   void require_fitting() {
     if (!std::holds_alternative<Mesh>(work_.shape)) return;
     Growing largest;
-    largest.spheres.push_back(Vector<3>::Zero(), work_.supply.largest());
-    insert_at_random(largest, {false});
+    largest.add(work_.supply.largest());
+    insert_at_random(largest);
     if (grow(largest) || cancelled_) return;
     throw Error(
         ErrorCode::bad_scene,
@@ -108,31 +124,25 @@ class Growth {
                     largest.size));
   }
 
-  /// The first of the drawn sequence, as many as are asked for, or a few more than are likely to fit.
-  Growing spheres_to_start_from(std::size_t wanted) {
+  /// The first of the drawn sequence, up to the last one that is in the bed.
+  Growing from_bed() const {
     const Bed& bed = work_.bed;
-    std::size_t count =
-        std::max<std::size_t>(1, std::min(wanted, count_for(most_of_attainable * work_.attainable)));
-    for (Bed::Id i = 0; i < bed.size(); ++i) count = std::max<std::size_t>(count, bed.tag(i) + 1);
     Growing growing;
-    for (std::uint32_t tag = 0; tag < count; ++tag)
-      growing.spheres.push_back(Vector<3>::Zero(), work_.supply.radius(tag));
-    std::vector<bool> placed(count, false);
     for (Bed::Id i = 0; i < bed.size(); ++i) {
+      while (growing.spheres.size() <= bed.tag(i)) growing.add(radius_of(growing.spheres.size()));
       growing.spheres.set_center(bed.tag(i), bed[i].center);
-      placed[bed.tag(i)] = true;
+      growing.placed[bed.tag(i)] = true;
     }
-    insert_at_random(growing, placed);
     return growing;
   }
 
   /// Finds places for all spheres that have none, and the size at which they do.
-  void insert_at_random(Growing& growing, const std::vector<bool>& placed) {
+  void insert_at_random(Growing& growing) {
     const EffectTimer timer(work_.effects["insertion"]);
     const double filled = volume_of(growing.spheres) / volume_of_container();
     for (double phi = options_.phi_init; phi > least_phi_init; phi /= 2) {
       growing.size = std::min(largest_start, std::cbrt(phi / filled));
-      if (try_to_insert(growing, placed)) return;
+      if (try_to_insert(growing)) return;
     }
     throw Error(
         ErrorCode::bad_scene,
@@ -141,7 +151,7 @@ class Growth {
   }
 
   /// Random sequential insertion, the largest first.
-  bool try_to_insert(Growing& growing, const std::vector<bool>& placed) {
+  bool try_to_insert(Growing& growing) {
     const Container& container = work_.bed.container();
     Spheres<3>& spheres = growing.spheres;
     const double clear_of_walls = inset * flatness * work_.supply.smallest();
@@ -149,7 +159,7 @@ class Growth {
     CellGrid<3> grid(container.bounds(), growing.size * least, growing.size * most, spheres.size());
     std::vector<std::uint32_t> order;
     for (std::uint32_t i = 0; i < spheres.size(); ++i) {
-      if (placed[i])
+      if (growing.placed[i])
         grid.insert(i, spheres.center(i), growing.size * spheres.r[i]);
       else
         order.push_back(i);
@@ -172,6 +182,7 @@ class Growth {
       spheres.set_center(i, c);
       grid.insert(i, c, r);
     }
+    growing.placed.assign(spheres.size(), true);
     return true;
   }
 
@@ -183,7 +194,7 @@ class Growth {
       flying.r[i] *= growing.size;
       flying.set_center(i, flying.center(i) + to_box_);
     }
-    if (flying.empty()) return true;
+    if (flying.empty()) return growing.grown = true;
     const GrowthSchedule<3> schedule(flying, volume_of_container(), options_);
     HardSpheres<3> flight(flying, edges_, walls_, work_.random(Stream::grow));
     const double largest = full_size_ / growing.size;
@@ -198,14 +209,19 @@ class Growth {
     flight.write_to(flying);
     for (std::size_t i = 0; i < flying.size(); ++i) growing.spheres.set_center(i, flying.center(i) - to_box_);
     growing.size *= flight.size();
-    return flight.size() == largest;
+    return growing.grown = flight.size() == largest;
   }
 
-  /// Takes out what the jammed spheres had no room for, and a little more.
-  void trim(Growing& growing, double spare) const {
-    const std::size_t fitting = work_.supply.count_filling((1 - spare) * growing.volume());
-    growing.spheres.resize(std::min(fitting, growing.spheres.size()) - 1);
-    growing.size *= 1 - shrinkage;
+  /// As often as it takes, or a few times: takes out what the jammed spheres had no room for, and a little
+  /// more, and lets the others grow.
+  void trim_and_grow(Growing& growing) {
+    double spare = caution;
+    for (int k = 0; k < most_trims && !growing.grown && !cancelled_; ++k, spare *= 2) {
+      const std::size_t fitting = work_.supply.count_filling((1 - spare) * growing.volume());
+      growing.spheres.resize(std::min(fitting, growing.spheres.size()) - 1);
+      growing.size *= 1 - shrinkage;
+      grow(growing);
+    }
   }
 
   void log(const FlightPeriod& period) {

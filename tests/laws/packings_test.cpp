@@ -90,6 +90,17 @@ std::vector<SceneUnderTest> scenes_under_test() {
           "method = \"patent\"\n");
   add("FlightThenRelaxation",
       periodic + "edge = 1.0\n[spheres]\npacking_fraction = 0.4\nradius = 0.08\n" + fly + relax);
+  const std::string grow = "[[stage]]\ndo = \"grow\"\nrate = 0.1\npressure = 1e4\n";
+  add("GrowthInABox", box +
+                          "[spheres]\n"
+                          "radius = { distribution = \"lognormal\", median = 0.06, sigma = 0.3 }\n" +
+                          grow);
+  add("GrowthInASphere",
+      "[container]\nkind = \"sphere\"\nradius = 1.0\n[spheres]\nfill = true\nradius = 0.12\n" + grow);
+  scenes.push_back({"GrowthInAPrism", [=] {
+                      return plan_of(box + "[spheres]\npacking_fraction = 0.5\nradius = 0.12\n" + grow,
+                                     test::prism_mesh(8, 1, 2));
+                    }});
   scenes.push_back({"LShapeMesh", [] {
                       return plan_of("unit = \"m\"\n" + box + "[spheres]\nfill = true\nradius = 0.1\n",
                                      test::translated(test::l_shape_mesh(), {0, 0, -7}));
