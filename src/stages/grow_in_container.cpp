@@ -52,6 +52,7 @@ struct Growing {
   std::vector<bool> placed;  ///< whether each has a place
   double size = 1;           ///< the share of their radii that they have
   bool grown = false;        ///< they have reached them
+  bool is_told = true;       ///< the run's history is told of them
 
   void add(double r) {
     spheres.push_back(Vector<3>::Zero(), r);
@@ -78,6 +79,7 @@ class Growth {
     const std::size_t wanted = target_count();
     if (work_.bed.size() >= wanted) return StageEnd::converged;
     require_fitting();
+    if (cancelled_) return StageEnd::cancelled;
     Growing growing = from_bed();
     std::size_t count = std::min(wanted, count_for(most_of_attainable * work_.attainable));
     for (bool first = true;;
@@ -114,6 +116,7 @@ class Growth {
   void require_fitting() {
     if (!std::holds_alternative<Mesh>(work_.shape)) return;
     Growing largest;
+    largest.is_told = false;
     largest.add(work_.supply.largest());
     insert_at_random(largest);
     if (grow(largest) || cancelled_) return;
@@ -198,6 +201,7 @@ class Growth {
     const GrowthSchedule<3> schedule(flying, volume_of_container(), options_);
     HardSpheres<3> flight(flying, edges_, walls_, work_.random(Stream::grow));
     const double largest = full_size_ / growing.size;
+    next_volume_ = next_squeeze_ = 0;
     FlightPeriod period;
     while (flight.size() < largest && period.compressibility < options_.pressure) {
       period = flight.fly(schedule.at(period.compressibility), largest, work_.monitor);
@@ -237,7 +241,7 @@ class Growth {
   void report(const Growing& growing, double grown, const FlightPeriod& period) {
     const double size = growing.size * grown;
     const double squeezed = std::log(std::max(1.0, period.compressibility));
-    if (size * size * size < next_volume_ && squeezed < next_squeeze_) return;
+    if (!growing.is_told || (size * size * size < next_volume_ && squeezed < next_squeeze_)) return;
     next_volume_ = size * size * size + volume_a_milestone;
     next_squeeze_ = squeezed + squeeze_a_milestone;
     work_.crowd_milestone("grow", growing.spheres.size(), size * size * size * volume_of(growing.spheres), 0,

@@ -438,6 +438,7 @@ std::string sample(const Key& key, int choice) {
                  ? "3"
                  : fmt::format("{}", static_cast<std::int64_t>(key.range.min));
     case Type::number:
+      if (key.range.min > 0.1) return fmt::format("{}", key.range.min + 0.1);
       return choice == 0 ? "0.1" : "0.30000000000000004";
     case Type::length:  // keys come in the order min, max and d43, d32
       return key.name == "max" || key.name == "d43" ? "2.5e3" : "0.1";
