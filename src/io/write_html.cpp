@@ -86,39 +86,39 @@ void write_scene(Page& page, const Report& report, std::string_view scene) {
 }
 
 /// Where spheres are relaxed overlaps go away; where they are compressed they settle.
-void write_history(Page& page, const Report& report) {
-  const Packing& packing = report.packing;
-  if (packing.history.size() >= 2) {
-    const bool periodic = std::holds_alternative<PeriodicBox>(packing.domain);
-    const bool relaxed =
-        std::ranges::any_of(packing.history, [](const Milestone& m) { return m.max_overlap > 0; });
-    if (periodic && !relaxed) {
-      page.add(
-          "<h2>How the run went</h2>\n{}<p class=\"dim\">Spheres come from large to small, in a box of "
-          "given size; those that are there make room.</p>\n",
-          history_chart(packing.history, &Milestone::packing_fraction, "packing fraction"));
-      return;
-    }
-    page.add("<h2>How the run went</h2>\n<div class=\"pair\"><div>{}</div><div>{}</div></div>\n",
-             history_chart(packing.history, &Milestone::packing_fraction, "packing fraction"),
-             relaxed ? overlap_chart(packing.history)
-                     : history_chart(packing.history, &Milestone::potential,
-                                     fmt::format("mean height of the spheres ({})", packing.scene.unit)));
-    page.raw(
-        relaxed && !periodic
-            ? "<p class=\"dim\">Spheres that overlap push each other apart, and the wall pushes too. What "
-              "is stuck is shaken with larger radii or put into holes, where the overlap jumps.</p>\n"
-        : periodic ? "<p class=\"dim\">The run starts with spheres that overlap; they push each other "
-                     "apart, in a box that grows or has its size already.</p>\n"
-                   : "<p class=\"dim\">The height is measured against the direction in which the spheres "
-                     "are pushed; it "
-                     "falls as they settle and rises as new ones are put on top.</p>\n");
+void write_course(Page& page, const Packing& packing) {
+  if (packing.history.size() < 2) return;
+  const bool periodic = std::holds_alternative<PeriodicBox>(packing.domain);
+  const auto all = [&](auto is) { return std::ranges::all_of(packing.history, is); };
+  const bool relaxed = !all([](const Milestone& m) { return m.max_overlap == 0; });
+  const bool grown = all([](const Milestone& m) { return m.stage == "grow"; });
+  const std::string filling =
+      history_chart(packing.history, &Milestone::packing_fraction, "packing fraction");
+  if (grown || (periodic && !relaxed)) {
+    page.add(
+        "<h2>How the run went</h2>\n{}<p class=\"dim\">{}</p>\n", filling,
+        grown ? "Hard spheres fly, collide and grow until they jam or are as large as asked."
+              : "Spheres come from large to small, in a box of given size; those that are there make room.");
+    return;
   }
+  page.add("<h2>How the run went</h2>\n<div class=\"pair\"><div>{}</div><div>{}</div></div>\n", filling,
+           relaxed ? overlap_chart(packing.history)
+                   : history_chart(packing.history, &Milestone::potential,
+                                   fmt::format("mean height of the spheres ({})", packing.scene.unit)));
+  page.raw(relaxed && !periodic
+               ? "<p class=\"dim\">Spheres that overlap push each other apart, and the wall pushes too. What "
+                 "is stuck is shaken with larger radii or put into holes, where the overlap jumps.</p>\n"
+           : periodic ? "<p class=\"dim\">The run starts with spheres that overlap; they push each other "
+                        "apart, in a box that grows or has its size already.</p>\n"
+                      : "<p class=\"dim\">The height is measured against the direction in which the spheres "
+                        "are pushed; it falls as they settle and rises as new ones are put on top.</p>\n");
+}
+
+void write_effects(Page& page, const Packing& packing) {
   if (packing.effects.empty()) return;
   page.raw(
       "<h2>What the time went into</h2>\n<p>Only what the scene calls for is built and run. Entries may "
-      "contain "
-      "each other.</p>\n<div class=\"wide\"><table><tr><th>effect</th><th class=\"n\">calls</th>"
+      "contain each other.</p>\n<div class=\"wide\"><table><tr><th>effect</th><th class=\"n\">calls</th>"
       "<th class=\"n\">seconds</th></tr>\n");
   for (const Effect& effect : packing.effects) {
     page.add("<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{:.3f}</td></tr>\n", escaped(effect.name),
@@ -192,7 +192,8 @@ std::string html_of(const Report& report, std::string_view picture, std::string_
   write_contacts(page, report);
   write_chambers(page, report);
   write_walls(page, report);
-  write_history(page, report);
+  write_course(page, report.packing);
+  write_effects(page, report.packing);
   write_certificate(page, report);
   page.add(
       "<p class=\"dim\">bernal {} · seed {} · hash of the spheres <code>{}</code>: the same scene, seed and "
