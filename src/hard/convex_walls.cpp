@@ -3,10 +3,11 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,72 +29,153 @@ struct Plane {
   double offset;
 };
 
+/// The corners of a mesh in a tree of boxes, to find those that a plane leaves outside.
+class CornerTree {
+ public:
+  explicit CornerTree(const std::vector<Vector<3>>& corners) : corners_(corners), order_(corners.size()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    build(0, order_.size());
+  }
+
+  /// Calls visit(corner, normal·corner) for those where that is `level` or more.
+  template <class Visit>
+  void for_each_above(const Vector<3>& normal, double level, Visit visit) const {
+    const Vector<3> size = normal.cwiseAbs();
+    for (std::size_t n = 0; n < nodes_.size();) {
+      const Node& node = nodes_[n];
+      if (normal.dot(node.center) + size.dot(node.half) < level) {
+        n = node.next;
+        continue;
+      }
+      if (node.is_leaf)
+        for (std::size_t k = node.first; k < node.last; ++k)
+          if (const double height = normal.dot(corners_[order_[k]]); height >= level)
+            visit(order_[k], height);
+      ++n;
+    }
+  }
+
+ private:
+  static constexpr std::size_t corners_a_leaf = 8;
+  /// In depth-first order; `next` is what follows when all below this one is left out.
+  struct Node {
+    Vector<3> center, half;
+    std::size_t first, last, next;
+    bool is_leaf;
+  };
+
+  void build(std::size_t first, std::size_t last) {
+    Vector<3> lower = corners_[order_[first]], upper = lower;
+    for (std::size_t k = first; k < last; ++k) {
+      lower = lower.cwiseMin(corners_[order_[k]]);
+      upper = upper.cwiseMax(corners_[order_[k]]);
+    }
+    // A little wider than the corners, as the centre is rounded.
+    const Vector<3> half =
+        (0.5 * (upper - lower)).array() + 1e-15 * upper.cwiseAbs().cwiseMax(lower.cwiseAbs()).sum();
+    const std::size_t at = nodes_.size();
+    nodes_.push_back({0.5 * (lower + upper), half, first, last, 0, last - first <= corners_a_leaf});
+    if (!nodes_[at].is_leaf) {
+      int axis;
+      half.maxCoeff(&axis);
+      const std::size_t middle = (first + last) / 2;
+      const auto begin = order_.begin();
+      std::nth_element(
+          begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(middle),
+          begin + static_cast<std::ptrdiff_t>(last),
+          [&](auto a, auto b) { return std::pair(corners_[a][axis], a) < std::pair(corners_[b][axis], b); });
+      build(first, middle);
+      build(middle, last);
+    }
+    nodes_[at].next = nodes_.size();
+  }
+
+  const std::vector<Vector<3>>& corners_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Node> nodes_;
+};
+
 /// Finds one plane after the other, each from the largest facet that has none yet.
 class Planes {
  public:
   Planes(const Mesh& mesh, double tolerance)
-      : mesh_(mesh), tolerance_(tolerance), covered_(mesh.triangles.size()), height_(mesh.vertices.size()) {}
+      : mesh_(mesh),
+        tolerance_(tolerance),
+        tree_(mesh.vertices),
+        facets_at_(mesh.vertices.size()),
+        covered_(mesh.triangles.size()),
+        height_(mesh.vertices.size(), below) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      for (const auto v : mesh.triangles[t]) facets_at_[v].push_back(t);
+  }
 
   std::vector<Wall<3>> find() {
-    const std::size_t facets = mesh_.triangles.size();
+    const auto facets = static_cast<std::uint32_t>(mesh_.triangles.size());
     std::vector<Vector<3>> normals(facets);
-    for (std::size_t t = 0; t < facets; ++t) {
+    for (std::uint32_t t = 0; t < facets; ++t) {
       const auto& [i, j, k] = mesh_.triangles[t];
       const Vector<3>& a = mesh_.vertices[i];
       normals[t] = (mesh_.vertices[j] - a).cross(mesh_.vertices[k] - a);
     }
-    std::vector<std::size_t> order(facets);
-    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::vector<std::uint32_t> order(facets);
+    std::iota(order.begin(), order.end(), 0u);
     std::ranges::stable_sort(
         order, [&](auto s, auto t) { return normals[s].squaredNorm() > normals[t].squaredNorm(); });
     std::vector<Wall<3>> walls;
-    for (const std::size_t t : order)
+    for (const auto t : order)
       if (!covered_[t] && normals[t].squaredNorm() > 0) walls.push_back(wall_of(t, normals[t].normalized()));
     return walls;
   }
 
  private:
-  Wall<3> wall_of(std::size_t facet, const Vector<3>& normal) {
-    const auto& corners = mesh_.triangles[facet];
-    Plane best{normal, 0};
-    for (const auto v : corners) best.offset += normal.dot(mesh_.vertices[v]) / 3;
-    std::size_t known = corners.size();
-    for (int k = 0; k < most_fits; ++k) {
-      const std::vector<std::uint32_t> near = corners_near(best);
-      if (near.size() <= known) break;
-      known = near.size();
-      best = fit(near, normal);
-    }
+  static constexpr double below = -std::numeric_limits<double>::infinity();
 
+  Wall<3> wall_of(std::uint32_t facet, const Vector<3>& normal) {
+    const Plane best = plane_about(facet, normal);
     double highest = best.offset;
-    for (std::size_t v = 0; v < height_.size(); ++v) {
-      height_[v] = best.normal.dot(mesh_.vertices[v]);
-      highest = std::max(highest, height_[v]);
-    }
+    std::vector<std::uint32_t> near;
+    const auto note = [&](std::uint32_t v, double height) {
+      near.push_back(v);
+      height_[v] = height;
+      highest = std::max(highest, height);
+    };
+    tree_.for_each_above(best.normal, best.offset - band * tolerance_, note);
     if (highest - best.offset > outside * tolerance_)
       throw Error(
           ErrorCode::bad_scene,
           fmt::format("\"grow\" packs convex containers, and this one is not: a corner of the mesh lies "
                       "{:.1g} of its diameter outside of the plane of a facet; \"relax\" packs any",
                       (highest - best.offset) / bounds_of(Shape(mesh_)).diagonal()));
+    for (const auto v : mesh_.triangles[facet]) note(v, best.normal.dot(mesh_.vertices[v]));
     double innermost = best.offset;
-    covered_[facet] = true;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      const auto& [i, j, k] = mesh_.triangles[t];
-      const double lowest = std::min({height_[i], height_[j], height_[k]});
-      if (t != facet && !(lowest >= best.offset - band * tolerance_)) continue;
-      covered_[t] = true;
-      innermost = std::min(innermost, lowest);
-    }
+    for (const auto v : near)
+      for (const auto t : facets_at_[v]) {
+        const auto& [i, j, k] = mesh_.triangles[t];
+        const double lowest = std::min({height_[i], height_[j], height_[k]});
+        if (lowest == below) continue;
+        covered_[t] = true;
+        innermost = std::min(innermost, lowest);
+      }
+    for (const auto v : near) height_[v] = below;
     return {.along = best.normal, .extent = innermost};
   }
 
-  std::vector<std::uint32_t> corners_near(const Plane& plane) const {
-    std::vector<std::uint32_t> near;
-    for (std::size_t v = 0; v < mesh_.vertices.size(); ++v)
-      if (std::abs(plane.normal.dot(mesh_.vertices[v]) - plane.offset) <= tolerance_)
-        near.push_back(static_cast<std::uint32_t>(v));
-    return near;
+  /// The plane of the facet, and then the best one through all corners near it as long as these become more.
+  Plane plane_about(std::uint32_t facet, const Vector<3>& normal) const {
+    const auto& corners = mesh_.triangles[facet];
+    Plane best{normal, 0};
+    for (const auto v : corners) best.offset += normal.dot(mesh_.vertices[v]) / 3;
+    std::size_t known = corners.size();
+    for (int k = 0; k < most_fits; ++k) {
+      std::vector<std::uint32_t> near;
+      tree_.for_each_above(best.normal, best.offset - tolerance_, [&](std::uint32_t v, double height) {
+        if (height <= best.offset + tolerance_) near.push_back(v);
+      });
+      if (near.size() <= known) break;
+      known = near.size();
+      best = fit(near, normal);
+    }
+    return best;
   }
 
   /// Through their centre, across the direction in which they scatter least.
@@ -113,8 +195,10 @@ class Planes {
 
   const Mesh& mesh_;
   const double tolerance_;
+  const CornerTree tree_;
+  std::vector<std::vector<std::uint32_t>> facets_at_;  // of each corner
   std::vector<bool> covered_;
-  std::vector<double> height_;
+  std::vector<double> height_;  // over the plane at hand, of corners near it
 };
 
 struct WallsOf {
