@@ -36,11 +36,11 @@ void require_possible(const Scene& scene) {
   }
   if (scene.container.has("walls"))
     for (const Spec& stage : scene.stages)
-      if (stage.name != "fly")
+      if (stage.name != "fly" && stage.name != "grow")
         throw Error(
             ErrorCode::bad_scene,
             fmt::format("\"{}\" does not know the walls of a box that is periodic along other axes; there, "
-                        "the stage is \"fly\"",
+                        "the stages are \"fly\" and \"grow\"",
                         stage.name),
             stage.where);
   const bool flies = std::ranges::find(scene.stages, "fly", &Spec::name) != scene.stages.end();

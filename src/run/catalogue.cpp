@@ -198,6 +198,7 @@ const PlanItem relaxing[] = {
 const PlanItem growing[] = {{"insertion", "random places at the start, the largest first", "O(1) a trial"},
                             {"neighbour shells", "each sphere renews its own list", "about 1 µs"},
                             {"collisions", "of growing spheres, from a calendar of events", "0.5 to 0.8 µs"},
+                            {"reflections", "of growing spheres from the walls", "0.5 to 0.8 µs"},
                             {"growth", "until the spheres jam", "some 2,000 collisions a sphere"}};
 
 const PlanItem growing_in_container[] = {
@@ -208,13 +209,23 @@ const PlanItem growing_in_container[] = {
     {"growth", "until the spheres have their radii; what jams before loses the last of the drawn sequence",
      "some 2,000 collisions a sphere"}};
 
-const StageEntry stages[] = {{"insert", run_insert, nullptr, insertion},
-                             {"compress", run_compress, nullptr, compression},
-                             {"shake", run_shake, nullptr, shaking},
-                             {"refill", run_refill, nullptr, refilling},
-                             {"relax", run_relax_in_container, run_relax, relaxing_in_container, relaxing},
-                             {"grow", run_grow_in_container, run_grow, growing_in_container, growing},
-                             {"fly", nullptr, run_fly, {}, flying, chosen_effects_of_fly}};
+/// In a periodic box there are reflections only if it ends at walls along some axis.
+std::vector<PlanItem> chosen_effects_of_grow(const Spec&, const Plan& plan) {
+  if (!plan.scene.is_periodic()) return {std::begin(growing_in_container), std::end(growing_in_container)};
+  std::vector<PlanItem> items(std::begin(growing), std::end(growing));
+  if (!std::get<PeriodicBox>(plan.domain).has_walls())
+    std::erase_if(items, [](const PlanItem& item) { return item.name == "reflections"; });
+  return items;
+}
+
+const StageEntry stages[] = {
+    {"insert", run_insert, nullptr, insertion},
+    {"compress", run_compress, nullptr, compression},
+    {"shake", run_shake, nullptr, shaking},
+    {"refill", run_refill, nullptr, refilling},
+    {"relax", run_relax_in_container, run_relax, relaxing_in_container, relaxing},
+    {"grow", run_grow_in_container, run_grow, growing_in_container, growing, chosen_effects_of_grow},
+    {"fly", nullptr, run_fly, {}, flying, chosen_effects_of_fly}};
 
 }  // namespace
 

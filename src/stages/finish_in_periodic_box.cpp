@@ -17,10 +17,10 @@ void shake(Spheres<D>& spheres, const Vector<D>& edges, double length, Random ra
 
 template <int D>
 void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work) {
-  Vector<D> free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap);
+  Vector<D> free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap, work.walls);
   while (!free.allFinite()) {  // cancelled while centres coincide
     shake<D>(spheres, edges, 1e-3 * std::ranges::max(spheres.r), work.random(Stream::relax));
-    free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap);
+    free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap, work.walls);
   }
   resize_box<D>(spheres, edges, free);
 }

@@ -11,7 +11,8 @@ template <int D>
 StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish,
                                 PeriodicWork& work);
 
-/// Grows or shrinks the box until nothing overlaps more than is allowed. Centres that coincide are parted.
+/// Grows or shrinks the box until nothing overlaps more than is allowed, or crosses its walls. Centres that
+/// coincide are parted.
 template <int D>
 void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work);
 

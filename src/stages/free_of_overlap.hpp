@@ -42,14 +42,39 @@ double contact_factor(const Spheres<D>& spheres, const Vector<D>& edges) {
   return factor;
 }
 
+/// The edges of a periodic box around one that ends at walls along some axes, so large that no sphere between
+/// these meets an image of another, and is nearer to the walls than to images.
+template <int D>
+Vector<D> edges_around_walls(Vector<D> edges, const std::vector<bool>& walls) {
+  for (int k = 0; k < D; ++k)
+    if (!walls.empty() && walls[static_cast<std::size_t>(k)]) edges[k] *= 2.5;
+  return edges;
+}
+
+/// The same as `contact_factor` for walls at 0 and at the edge: the largest r / distance of a sphere.
+template <int D>
+double wall_contact_factor(const Spheres<D>& spheres, const Vector<D>& edges,
+                           const std::vector<bool>& walls) {
+  double factor = 0;
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    for (std::size_t i = 0; i < spheres.size() && walls[k]; ++i) {
+      const double x = spheres.x[k][i];
+      factor = std::max(factor, spheres.r[i] / std::min(x, edges[static_cast<int>(k)] - x));
+    }
+  return factor;
+}
+
 /// The edges, in the proportions of these, of about the smallest box in which the spheres certainly do not
 /// overlap, whatever the rounding, after `resize_box`; with `allowed` > 0, in which no overlap ratio is
 /// larger than that, but no smaller than the box at hand unless it has room to spare. Infinite or NaN where
-/// two centres coincide. Cost: as `contact_factor`.
+/// two centres coincide. `walls` says along which axes the box ends at walls, which no sphere may cross;
+/// empty: none. Cost: as `contact_factor`.
 template <int D>
-Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edges, double allowed = 0) {
-  const double touching = contact_factor(spheres, edges);
-  const double factor = std::clamp(1.0, touching * (1 - allowed), touching);
+Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edges, double allowed = 0,
+                                const std::vector<bool>& walls = {}) {
+  const double touching = contact_factor(spheres, edges_around_walls(edges, walls));
+  const double factor = std::max(std::clamp(1.0, touching * (1 - allowed), touching),
+                                 wall_contact_factor(spheres, edges, walls));
   const double smallest = *std::ranges::min_element(spheres.r);
   return edges * (factor * (1 + tolerance::growth(factor * edges.maxCoeff() / smallest)));
 }

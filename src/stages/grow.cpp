@@ -11,6 +11,7 @@
 #include "hard/hard_spheres.hpp"
 #include "neighbors/cell_grid.hpp"
 #include "stages/finish_in_periodic_box.hpp"
+#include "stages/free_of_overlap.hpp"
 #include "stages/growth_schedule.hpp"
 
 namespace bernal {
@@ -25,15 +26,18 @@ constexpr double milestone_every = 0.1;
 
 /// Random sequential insertion, the largest first. Returns whether all have found places.
 template <int D>
-bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random random) {
+bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls,
+                      Random random) {
   std::vector<std::uint32_t> order(spheres.size());
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::stable_sort(order, [&](auto i, auto j) { return spheres.r[i] > spheres.r[j]; });
-  const Boundary<D> boundary{edges};
-  const Bounds<D> bounds{Vector<D>::Zero(), edges};
+  const Boundary<D> boundary{edges_around_walls(edges, walls)};
   CellGrid<D> grid(boundary, std::ranges::min(spheres.r), std::ranges::max(spheres.r), spheres.size());
   for (const std::uint32_t i : order) {
     const double r = spheres.r[i];
+    Bounds<D> bounds{Vector<D>::Zero(), edges};
+    for (int k = 0; k < D; ++k)
+      if (!walls.empty() && walls[static_cast<std::size_t>(k)]) bounds.lower[k] += r, bounds.upper[k] -= r;
     for (int trial = 0;; ++trial) {
       if (trial == most_trials) return false;
       const Vector<D> c = uniform_point(random, bounds);
@@ -71,8 +75,21 @@ class Milestones {
   double next_ = 0, next_filled_ = 0;
 };
 
+/// Those of the box, in its coordinates.
 template <int D>
-void require_room(const Spheres<D>& spheres, const Vector<D>& edges) {
+std::vector<Wall<D>> walls_of(const PeriodicWork& work, const Vector<D>& edges) {
+  std::vector<Wall<D>> walls;
+  for (int k = 0; k < D; ++k) {
+    if (!work.has_wall(k)) continue;
+    walls.push_back({.along = -Vector<D>::Unit(k), .extent = 0});
+    walls.push_back({.along = Vector<D>::Unit(k), .extent = edges[k]});
+  }
+  return walls;
+}
+
+template <int D>
+void require_room(const Spheres<D>& spheres, const Vector<D>& box, const std::vector<bool>& walls) {
+  const Vector<D> edges = edges_around_walls(box, walls);
   const double diameters = edges.minCoeff() / (2 * std::ranges::max(spheres.r));
   if (diameters < HardSpheres<D>::smallest_edge)
     throw Error(ErrorCode::bad_scene,
@@ -84,15 +101,15 @@ void require_room(const Spheres<D>& spheres, const Vector<D>& edges) {
 template <int D>
 void start(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, double phi_init) {
   if (work.placed) {
-    require_room<D>(spheres, edges);
+    require_room<D>(spheres, edges, work.walls);
     return;
   }
   const EffectTimer timer(work.effects["insertion"]);
   double volume = work.volume_of_spheres() / phi_init;
   if (work.target_edges) volume = std::max(volume, work.target_edges->prod());
   edges *= std::pow(volume / edges.prod(), 1.0 / D);
-  require_room<D>(spheres, edges);
-  if (!insert_at_random<D>(spheres, edges, work.random(Stream::grow)))
+  require_room<D>(spheres, edges, work.walls);
+  if (!insert_at_random<D>(spheres, edges, work.walls, work.random(Stream::grow)))
     throw Error(ErrorCode::bad_scene,
                 fmt::format("grow cannot start at phi_init = {}: random insertion found no place for one of "
                             "the spheres; take a smaller one",
@@ -101,11 +118,14 @@ void start(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, double phi
 
 template <int D>
 StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
+  if (options.polish > 0 && !work.walls.empty())
+    throw Error(ErrorCode::bad_scene, "\"polish\" knows no walls; leave it out");
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
   start<D>(spheres, edges, work, options.phi_init);
 
-  HardSpheres<D> flight(spheres, edges, work.random(Stream::grow));
+  HardSpheres<D> flight(spheres, edges_around_walls(edges, work.walls), walls_of(work, edges),
+                        work.random(Stream::grow));
   const double volume = edges.prod();
   double largest = std::numeric_limits<double>::infinity();
   if (work.target_edges)
@@ -125,6 +145,7 @@ StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
     period = flight.fly(schedule.at(period.compressibility), largest, work.monitor);
     collisions.calls += period.collisions;
     shells.calls += period.departures + period.builds;
+    if (period.reflections > 0) work.effects["reflections"].calls += period.reflections;
     if (period.stopped) {
       end = StageEnd::cancelled;
       break;

@@ -142,6 +142,28 @@ TEST(GrowthBetweenWalls, KeepsWhatWasThereWhereItDoesWorse) {
   EXPECT_GE(packing.spheres.size(), inserted);
 }
 
+/// Boxes that end at walls along some axes or all of them: as thin as a sphere, jammed, in two to four
+/// dimensions.
+TEST(GrowthBetweenWalls, KnowsTheWallsOfPeriodicBoxes) {
+  const auto box = [](const std::string& size, const std::string& lines, const std::string& more = "") {
+    return plan_of(
+        fmt::format("[container]\nkind = \"periodic\"\n{}\n[spheres]\n{}\n[[stage]]\ndo = \"grow\"\n{}", size,
+                    lines, more));
+  };
+  const Packing slab = certified(box("size = [10.0, 10.0, 1.001]\nwalls = [2]", "count = 70\nradius = 0.5"));
+  EXPECT_EQ(slab.outcome, Outcome::converged) << slab.reason;
+  const Packing disc_pack = certified(
+      box("dimension = 2\nsize = [10.0, 10.0]\nwalls = [0, 1]", "count = 85\nradius = 0.5", "rate = 0.001"));
+  EXPECT_EQ(disc_pack.outcome, Outcome::converged) << disc_pack.reason;
+  const Packing four = certified(box("dimension = 4\nsize = [4.0, 4.0, 4.0, 4.0]\nwalls = [3]",
+                                     "packing_fraction = 0.3\nradius = 0.5", "rate = 0.1"));
+  EXPECT_EQ(four.outcome, Outcome::converged) << four.reason;
+  const Packing jammed = certified(box("size = [4.0, 5.0, 4.0]\nwalls = [0, 2]",
+                                       "packing_fraction = 0.7\nradius = 0.5", "rate = 0.1\npressure = 1e8"));
+  EXPECT_EQ(jammed.outcome, Outcome::full);
+  EXPECT_GT(jammed.packing_fraction(), 0.45);
+}
+
 TEST(GrowthBetweenWalls, RefusesWhatItCannotDo) {
   const auto in_mesh = [](const Mesh& mesh, const std::string& lines) {
     try {

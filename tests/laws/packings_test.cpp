@@ -97,6 +97,10 @@ std::vector<SceneUnderTest> scenes_under_test() {
                           grow);
   add("GrowthInASphere",
       "[container]\nkind = \"sphere\"\nradius = 1.0\n[spheres]\nfill = true\nradius = 0.12\n" + grow);
+  add("GrowthBetweenTwoWalls", periodic +
+                                   "size = [1.0, 1.2, 0.9]\nwalls = [1]\n[spheres]\npacking_fraction = 0.5\n"
+                                   "radius = { distribution = \"uniform\", min = 0.06, max = 0.08 }\n" +
+                                   grow);
   scenes.push_back({"GrowthInAPrism", [=] {
                       return plan_of(box + "[spheres]\npacking_fraction = 0.5\nradius = 0.12\n" + grow,
                                      test::prism_mesh(8, 1, 2));
