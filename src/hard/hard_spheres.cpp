@@ -311,11 +311,8 @@ void HardSpheres<D>::predict(Id i) {
   scan_.count = neighbors.size();
   scan_.now = now_;
   const double leaves = time_to_leave(i);
-  const double touches = walls_.empty()
-                             ? infinite
-                             : walls_.time_to_touch(i, spheres_[i], spheres_[i].r * (size_ + growth_ * now_),
-                                                    spheres_[i].r * growth_);
-  const double limit = std::min({leaves, touches, horizon_ - now_});
+  const double touches = walls_.empty() ? infinite : time_to_touch_wall(i);
+  const double limit = std::min(std::min(leaves, horizon_ - now_), touches);
   for (FirstCollision first = kernel_.scan(scan_); first.delay < limit;) {
     const Id j = neighbors[first.neighbor];
     const double time = now_ + first.delay;
@@ -357,6 +354,12 @@ void HardSpheres<D>::collide(Id i, Id j) {
     b.v[k] += along;
   }
   virial_ += kick * distance;
+}
+
+template <int D>
+double HardSpheres<D>::time_to_touch_wall(Id i) {
+  const FlyingSphere<D>& s = spheres_[i];
+  return walls_.time_to_touch(i, s, s.r * (size_ + growth_ * now_), s.r * growth_);
 }
 
 template <int D>

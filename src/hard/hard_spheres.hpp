@@ -25,8 +25,8 @@ struct FlightPeriod {
   /// momenta q that were exchanged, along b: the line of centres of a pair, the radius at a wall. On average
   /// it is the pressure on the walls, but scatters less.
   double compressibility = 1;
-  double wall_momentum =
-      0;                 ///< that walls took, sum of magnitudes: on average P times their area and the time
+  /// That walls took, sum of magnitudes: on average P times their area and the time.
+  double wall_momentum = 0;
   double heating = 0;    ///< relative growth of the kinetic energy
   bool stopped = false;  ///< it was told to stop
 };
@@ -89,6 +89,7 @@ class HardSpheres {
   void predict(Id i);
   void forget_partner(Id i);
   double time_to_leave(Id i) const;
+  double time_to_touch_wall(Id i);
   void collide(Id i, Id j);
   void reflect(Id i);
   void rescale_velocities();
@@ -98,10 +99,10 @@ class HardSpheres {
   Vector<D> edges_;
   CollisionKernel<D> kernel_;
   Shells<D> shells_;
-  Walls<D> walls_;
   Calendar calendar_;
   CollisionScan<D> scan_{};
   std::vector<double> scratch_;
+  Walls<D> walls_;
 
   double mean_diameter_, largest_radius_;  // at size 1
   double size_ = 1;

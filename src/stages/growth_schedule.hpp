@@ -14,15 +14,18 @@ class GrowthSchedule {
   /// Of spheres as they are at the start, in a box or container of this volume.
   GrowthSchedule(const Spheres<D>& spheres, double volume, const GrowOptions& options)
       : as_published_(options.delta.has_value()) {
-    double by_number = 0, total = 0, by_volume = 0;
+    double number = 0, volumes = 0, by_number = 0, by_volume = 0;
     for (const double r : spheres.r) {
       const double v = ball_volume(D, r);
-      by_number += 2 * r / static_cast<double>(spheres.size());
-      total += v;
+      number += 1;
+      volumes += v;
+      by_number += 2 * r;
       by_volume += v * 2 * r;
     }
+    by_number /= number;
+    by_volume /= volumes;
     rate_ = as_published_ ? *options.delta * by_number / std::pow(volume, 1.0 / D)
-                          : options.rate * by_number * total / by_volume;
+                          : options.rate * by_number / by_volume;
   }
 
   double at(double compressibility) const {
