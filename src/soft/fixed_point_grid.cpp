@@ -4,6 +4,8 @@
 #include <functional>
 #include <numeric>
 
+#include "core/every_dimension.hpp"
+
 namespace bernal {
 namespace {
 
@@ -96,13 +98,7 @@ void FixedPointGrid<D>::rows_near(const FixedPlace<D>& place, std::vector<Row>& 
   }
 }
 
-template class FixedPointGrid<1>;
-template class FixedPointGrid<2>;
-template class FixedPointGrid<3>;
-template class FixedPointGrid<4>;
-template class FixedPointGrid<5>;
-template class FixedPointGrid<6>;
-template class FixedPointGrid<7>;
-template class FixedPointGrid<8>;
+#define BERNAL_INSTANTIATE(D) template class FixedPointGrid<D>;
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "bernal/domain/boundary.hpp"
+#include "core/every_dimension.hpp"
 
 namespace bernal {
 namespace {
@@ -323,13 +324,7 @@ void NeighborRelaxation<D>::write_to(Spheres<D>& spheres, Vector<D>& edges) cons
       spheres.x[static_cast<std::size_t>(k)][ids_[i]] = places_[i].x[k] * (edges_[k] * 0x1p-32);
 }
 
-template class NeighborRelaxation<1>;
-template class NeighborRelaxation<2>;
-template class NeighborRelaxation<3>;
-template class NeighborRelaxation<4>;
-template class NeighborRelaxation<5>;
-template class NeighborRelaxation<6>;
-template class NeighborRelaxation<7>;
-template class NeighborRelaxation<8>;
+#define BERNAL_INSTANTIATE(D) template class NeighborRelaxation<D>;
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal
