@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 
+#include "bernal/core/dimension.hpp"
 #include "stages/crowd.hpp"
 #include "stages/insert.hpp"
 
@@ -34,8 +34,6 @@ constexpr InsertOptions insertion = {.attempts = 1000, .packing_fraction = 1};
 constexpr int most_hand_overs = 20;
 /// Tries to find a place where a sphere clears the wall.
 constexpr int tries = 100;
-
-double volume_of_ball(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
 
 class Relaxation {
  public:
@@ -75,7 +73,7 @@ class Relaxation {
     double volume = packing_fraction * work_.bed.container().volume();
     std::size_t count = 0;
     while (count < work_.supply.wanted() && volume > 0)
-      volume -= volume_of_ball(work_.supply.radius(static_cast<std::uint32_t>(count++)));
+      volume -= ball_volume(3, work_.supply.radius(static_cast<std::uint32_t>(count++)));
     return count;
   }
 
@@ -175,7 +173,7 @@ class Relaxation {
 
   void report() {
     double volume = 0;
-    for (const double r : crowd_.spheres().r) volume += volume_of_ball(r);
+    for (const double r : crowd_.spheres().r) volume += ball_volume(3, r);
     work_.crowd_milestone("relax", crowd_.size(), volume, crowd_.largest_overlap());
   }
 
@@ -218,7 +216,7 @@ bool is_dilute(const Work& work) {
   if (work.target.is_open()) return false;
   double volume = 0;
   for (std::uint32_t tag = 0; tag < work.supply.wanted(); ++tag) {
-    volume += volume_of_ball(work.supply.radius(tag));
+    volume += ball_volume(3, work.supply.radius(tag));
     if (volume > share * work.bed.container().volume()) return false;
   }
   return true;
