@@ -132,8 +132,8 @@ void add_design_target(CLI::App& design, int& status) {
       ->type_name("NAME");
   command->add_option("--max-ratio", call->ratio, "The largest over the smallest diameter, at most")
       ->type_name("R");
-  command->add_option("--min", call->min, "No diameter is smaller")->type_name("D");
-  command->add_option("--max", call->max, "No diameter is larger")->type_name("D");
+  command->add_option("--min", call->min, "No diameter is smaller than this, in any unit")->type_name("D");
+  command->add_option("--max", call->max, "No diameter is larger, in the same unit")->type_name("D");
   command->add_option("--exponent", call->exponent, "Of fuller; 0.5 if absent")->type_name("Q");
   add_output(*command, call->output);
   command->footer(footer);

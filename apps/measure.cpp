@@ -15,6 +15,7 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "commands.hpp"
+#include "threads.hpp"
 
 using namespace bernal;
 
@@ -254,22 +255,14 @@ void add_measure(CLI::App& app, int& status) {
                    "Spheres touch below this gap over the sum of their radii; 0.002 if absent")
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("RATIO");
-  command
-      ->add_option("--threads", call->threads, "As many as the machine has if absent; the answer is the same")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N");
+  add_threads(*command, call->threads, "the answer");
   command->add_flag("--json", call->json, "One JSON object on standard output");
   command->footer(
       "Rattlers are taken out one after the other until every sphere left is held by D + 1 contacts.\n"
-      "In a container: the chambers that the smallest spheres cannot leave, with the packing fraction of "
-      "each, "
-      "and\n"
-      "what no sphere can cover; porosity over the distance from the wall, the packing fraction of the core "
-      "(more "
-      "than\n"
-      "3 mean diameters from it) and near it, and whether small spheres gather there. In three dimensions: "
-      "the\n"
-      "share of the spheres whose neighbours lie as in a crystal.\n"
+      "In a container: the chambers that the smallest spheres cannot leave, with the packing fraction of\n"
+      "each, and what no sphere can cover; porosity over the distance from the wall, the packing fraction\n"
+      "of the core (more than 3 mean diameters from it) and near it; whether small spheres gather there.\n"
+      "In three dimensions: the share of the spheres whose neighbours lie as in a crystal.\n"
       "Exit codes: 0 done; 2 bad input.");
   command->callback([call, &status] {
     measure_folder(*call);

@@ -14,6 +14,7 @@
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
 #include "seed.hpp"
+#include "threads.hpp"
 
 using namespace bernal;
 
@@ -80,13 +81,11 @@ void add_pack(CLI::App& app, int& status) {
       ->type_name("DIR");
   add_seed(*command, "Instead of the scene's; one seed gives one packing, bit for bit",
            [call](std::uint64_t seed) { call->seed = seed; });
-  command
-      ->add_option("--threads", call->threads, "As many as the machine has if absent; the result is the same")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N");
+  add_threads(*command, call->threads, "the result");
   command->add_flag("--quiet", call->quiet, "Print nothing but errors");
   command->footer(
-      "Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html and packing.svg, all or none.\n"
+      "Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html and, in two and three\n"
+      "dimensions, packing.svg: all or none.\n"
       "Ctrl-C ends the run at the next safe point and writes what is there, certified.\n"
       "Exit codes: 0 done; 2 bad input, nothing written; 3 ended without reaching what the scene asks.");
   command->callback([call, &status] { status = pack(*call); });

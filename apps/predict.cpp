@@ -234,7 +234,7 @@ void add_predict(CLI::App& app, int& status) {
       ->needs(check)
       ->check(CLI::Range(1, 10'000'000))
       ->type_name("N");
-  command->add_option("--stage", call->packing.stage, "What packs them; relax if absent")
+  command->add_option("--stage", call->packing.stage, "What packs them, relax or grow; relax if absent")
       ->needs(check)
       ->type_name("NAME");
   add_seed(*command, "Of that packing; 1 if absent", [call](std::uint64_t seed) {

@@ -52,13 +52,13 @@ void add_reproduce(CLI::App& app, int& status) {
     names.emplace_back(figure.name);
     footer += fmt::format("  {:<8}{}{}\n", figure.name, figure.what, figure.packs ? " *" : "");
   }
-  command->add_option("NAME", call->name, "Which")->required()->check(CLI::IsMember(names));
+  command->add_option("NAME", call->name, "Which of those below")->required()->check(CLI::IsMember(names));
   command
       ->add_option("-o,--output", call->folder, "Folder for NAME.svg and NAME.csv; made if it does not exist")
       ->required()
       ->type_name("DIR");
   command->add_flag("--pack", call->pack, "Also pack some of the sizes in three dimensions: minutes");
-  add_seed(*command, "Of the packings", [call](std::uint64_t seed) { call->seed = seed; });
+  add_seed(*command, "Of the packings; 1 if absent", [call](std::uint64_t seed) { call->seed = seed; });
   command->add_flag("--quiet", call->quiet, "Print nothing but the files and errors");
   command->footer(footer + R"(  * with --pack also packings of its own
 

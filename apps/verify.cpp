@@ -15,6 +15,7 @@
 #include "bernal/verify/certificate.hpp"
 #include "commands.hpp"
 #include "describe.hpp"
+#include "threads.hpp"
 
 using namespace bernal;
 
@@ -77,10 +78,7 @@ void add_verify(CLI::App& app, int& status) {
       ->type_name("DIR|FILE.csv");
   command->add_option("--scene", call->scene, "The scene that names the container, if not DIR/scene.toml")
       ->type_name("SCENE.toml");
-  command
-      ->add_option("--threads", call->threads, "As many as the machine has if absent; the answer is the same")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N");
+  add_threads(*command, call->threads, "the answer");
   command->add_flag("--json", call->json, "One JSON object on standard output");
   command->footer(
       "Every near pair and every near wall is decided: in double arithmetic where a proven error bound "

@@ -81,4 +81,9 @@ std::unique_ptr<Container> make_container(const Shape& shape, WallArithmetic ari
   return make_analytic_container(shape, arithmetic, resolution);
 }
 
+std::unique_ptr<Container> make_local_container(const Shape& of_scene, const Frame& frame,
+                                                WallArithmetic arithmetic) {
+  return make_container(to_local(of_scene, frame), arithmetic, frame.resolution);
+}
+
 }  // namespace bernal

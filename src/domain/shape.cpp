@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 
 namespace bernal {
@@ -85,12 +86,11 @@ Bounds<3> bounds_of(const Shape& shape) {
 
 double volume_of(const Shape& shape) {
   using std::numbers::pi;
-  return std::visit(
-      Overloaded{[](const BoxShape& s) { return bounds_of(s).volume(); },
-                 [](const CylinderShape& s) { return pi * s.radius * s.radius * s.height; },
-                 [](const SphereShape& s) { return 4.0 / 3.0 * pi * s.radius * s.radius * s.radius; },
-                 [](const Mesh& s) { return volume_of_mesh(s); }},
-      shape);
+  return std::visit(Overloaded{[](const BoxShape& s) { return bounds_of(s).volume(); },
+                               [](const CylinderShape& s) { return pi * s.radius * s.radius * s.height; },
+                               [](const SphereShape& s) { return ball_volume(3, s.radius); },
+                               [](const Mesh& s) { return volume_of_mesh(s); }},
+                    shape);
 }
 
 double area_of(const Shape& shape) {

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "hard/prefetch.hpp"
+
 namespace bernal {
 
 /// The events to come of a number of things, one for each: a calendar queue over one period.
@@ -48,10 +50,11 @@ class Calendar {
   /// The event stays where it is and becomes another.
   void change(Id id, Id what) { events_[id].what = what; }
 
-  /// One of those whose events come up so many bins after the present one, or `none`: for who wants to ask
-  /// the memory for it.
-  Id ahead(std::size_t bins) const { return current_ + bins < bins_.size() ? bins_[current_ + bins] : none; }
-  void prefetch(Id id) const { __builtin_prefetch(&events_[id]); }
+  /// The bin of the event that came up last, and one of those in a later bin, or `none`: for who wants to ask
+  /// the memory for what they will need.
+  std::size_t bin() const { return current_; }
+  Id one_of(std::size_t bin) const { return bin < bins_.size() ? bins_[bin] : none; }
+  void prefetch(Id id) const { bernal::prefetch(&events_[id]); }
 
   /// Whose event is the earliest, or `none` if there is none before the horizon. It stays scheduled.
   Id next() {

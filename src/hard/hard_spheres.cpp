@@ -6,6 +6,7 @@
 
 #include "bernal/core/tolerance.hpp"
 #include "bernal/domain/boundary.hpp"
+#include "hard/prefetch.hpp"
 
 namespace bernal {
 namespace {
@@ -27,7 +28,9 @@ constexpr std::uint64_t events_a_look = 4096;
 constexpr double least_kick = 1e-14;
 /// Events in the calendar for each collision: sphere that look again, sphere that leave.
 constexpr double events_a_collision = 1.8;
-constexpr double events_a_bin = 2;
+constexpr double events_a_bin = 1;
+/// Bins of the calendar between two steps of asking the memory for what events will need.
+constexpr std::size_t step_ahead = 2;
 
 /// Of the mean diameter: the shells to begin with, and their limits.
 constexpr double first_freedom = 0.15, least_freedom = 0.02, most_freedom = 1.0;
@@ -37,20 +40,17 @@ constexpr double change_of_freedom = 1.3;
 /// What lists leave for growth, of the shells.
 constexpr double room_to_grow = 0.25;
 
-/// Where each sphere lies on a Z-order curve through the box: spheres that are near each other in space come
-/// to lie near each other in memory.
+/// Where a point lies on a Z-order curve through the box: points that are near each other in space come to
+/// lie near each other on it.
 template <int D>
-std::vector<std::uint64_t> places_on_curve(const Spheres<D>& spheres, const Vector<D>& edges) {
+std::uint64_t place_on_curve(const Vector<D>& point, const Vector<D>& edges) {
   constexpr int bits = 63 / D;
-  std::vector<std::uint64_t> places(spheres.size(), 0);
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    for (std::size_t k = 0; k < D; ++k) {
-      const auto at =
-          static_cast<std::uint64_t>(std::ldexp(spheres.x[k][i] / edges[static_cast<int>(k)], bits));
-      for (std::size_t bit = 0; bit < bits; ++bit) places[i] |= (at >> bit & 1) << (bit * D + k);
-    }
+  std::uint64_t place = 0;
+  for (int k = 0; k < D; ++k) {
+    const auto at = static_cast<std::uint64_t>(std::ldexp(point[k] / edges[k], bits));
+    for (int bit = 0; bit < bits; ++bit) place |= (at >> bit & 1) << (bit * D + k);
   }
-  return places;
+  return place;
 }
 
 }  // namespace
@@ -69,20 +69,16 @@ HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, s
       kernel_(kernel),
       walls_(std::move(walls), edges) {
   const std::size_t n = spheres.size();
-  std::vector<FlyingSphere<D>> given(n);
   Vector<D> drift = Vector<D>::Zero();
   for (std::size_t i = 0; i < n; ++i) {
     for (int k = 0; k < D; ++k) {
-      given[i].x[k] = spheres.x[static_cast<std::size_t>(k)][i];
-      given[i].v[k] = random.uniform(-1, 1);
-      drift[k] += given[i].v[k];
+      spheres_[i].x[k] = spheres.x[static_cast<std::size_t>(k)][i];
+      spheres_[i].v[k] = random.uniform(-1, 1);
+      drift[k] += spheres_[i].v[k];
     }
-    given[i].r = spheres.r[i];
+    spheres_[i].r = spheres.r[i];
   }
-  const std::vector<std::uint64_t> places = places_on_curve(spheres, edges);
   std::iota(original_.begin(), original_.end(), 0u);
-  std::ranges::stable_sort(original_, [&](Id i, Id j) { return places[i] < places[j]; });
-  for (std::size_t i = 0; i < n; ++i) spheres_[i] = given[original_[i]];
   if (walls_.empty())
     for (FlyingSphere<D>& s : spheres_)
       for (int k = 0; k < D; ++k) s.v[k] -= drift[k] / static_cast<double>(n);
@@ -147,8 +143,25 @@ double HardSpheres<D>::wanted_freedom() const {
   return freedom_;
 }
 
+/// So that spheres which meet lie near each other in memory.
+template <int D>
+void HardSpheres<D>::sort_along_curve() {
+  const Boundary<D> boundary{edges_};
+  std::vector<std::pair<std::uint64_t, Id>> places(count());
+  for (Id i = 0; i < count(); ++i)
+    places[i] = {place_on_curve<D>(boundary.wrap(spheres_[i].position()), edges_), i};
+  std::ranges::sort(places);
+  const std::vector<FlyingSphere<D>> spheres = spheres_;
+  const std::vector<Id> original = original_;
+  for (Id i = 0; i < count(); ++i) {
+    spheres_[i] = spheres[places[i].second];
+    original_[i] = original[places[i].second];
+  }
+}
+
 template <int D>
 void HardSpheres<D>::build_shells(double freedom, double largest) {
+  sort_along_curve();
   freedom_ = freedom;
   listed_collisions_ = listed_departures_ = 0;
   largest_listed_ = std::max(
@@ -192,6 +205,7 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   period_ = {.builds = rebuild};
   virial_ = 0;
   now_ = 0;
+  prefetched_ = 0;
   scan_.size = size_;
   scan_.growth = growth_;
   for (Id i = 0; i < count(); ++i) predict(i);
@@ -245,27 +259,38 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
 /// With many spheres most of the time goes into waiting for the memory; what the next events will need can be
 /// known some events ahead, in steps, as each step tells where the next one finds its data.
 template <int D>
-void HardSpheres<D>::prefetch() const {
-  if (const Id id = calendar_.ahead(8); id != Calendar::none) {
-    calendar_.prefetch(id);
-    __builtin_prefetch(&spheres_[id]);
-    shells_.prefetch(id);
-  }
-  if (const Id id = calendar_.ahead(6); id != Calendar::none) {
-    shells_.prefetch_list(id);
-    if (const Id partner = calendar_.what(id); is_partner(partner)) {
-      calendar_.prefetch(partner);
-      __builtin_prefetch(&spheres_[partner]);
-      shells_.prefetch(partner);
+void HardSpheres<D>::prefetch() {
+  const auto prefetch_neighbors = [&](Id i) {
+    for (const Id j : shells_.neighbors(i)) {
+      calendar_.prefetch(j);
+      bernal::prefetch(&spheres_[j]);
     }
-  }
-  if (const Id id = calendar_.ahead(4); id != Calendar::none) {
-    for (const Id j : shells_.neighbors(id)) __builtin_prefetch(&spheres_[j]);
-    if (const Id partner = calendar_.what(id); is_partner(partner)) shells_.prefetch_list(partner);
-  }
-  if (const Id id = calendar_.ahead(2); id != Calendar::none) {
-    if (const Id partner = calendar_.what(id); is_partner(partner))
-      for (const Id j : shells_.neighbors(partner)) __builtin_prefetch(&spheres_[j]);
+  };
+  for (; prefetched_ <= calendar_.bin(); ++prefetched_) {
+    if (const Id id = calendar_.one_of(prefetched_ + 4 * step_ahead); id != Calendar::none) {
+      calendar_.prefetch(id);
+      bernal::prefetch(&spheres_[id]);
+      shells_.prefetch(id);
+    }
+    if (const Id id = calendar_.one_of(prefetched_ + 3 * step_ahead); id != Calendar::none) {
+      shells_.prefetch_list(id);
+      if (const Id what = calendar_.what(id); is_partner(what)) {
+        calendar_.prefetch(what);
+        bernal::prefetch(&spheres_[what]);
+        shells_.prefetch(what);
+      } else if (what == leave) {
+        FlyingSphere<D> s = spheres_[id];
+        s.fly_to(calendar_.time(id));
+        shells_.prefetch_settling(id, Boundary<D>{edges_}.wrap(s.position()));
+      }
+    }
+    if (const Id id = calendar_.one_of(prefetched_ + 2 * step_ahead); id != Calendar::none) {
+      prefetch_neighbors(id);
+      if (const Id partner = calendar_.what(id); is_partner(partner)) shells_.prefetch_list(partner);
+    }
+    if (const Id id = calendar_.one_of(prefetched_ + step_ahead); id != Calendar::none) {
+      if (const Id partner = calendar_.what(id); is_partner(partner)) prefetch_neighbors(partner);
+    }
   }
 }
 

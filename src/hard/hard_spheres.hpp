@@ -44,7 +44,7 @@ struct FlightPeriod {
 /// Invariant: at the end of a period no two spheres overlap by more than rounding, about 1e-15 edges.
 /// Precondition: `has_room`, no period may start without; 2 spheres or more, or one between walls.
 /// Cost: for 10,000 equal spheres 0.8 µs a collision in a fluid, 0.5 near jamming; twice that for lognormal
-/// sizes of sigma 0.5, three times for 100,000 spheres, which wait for the memory. Memory about 400 bytes a
+/// sizes of sigma 0.5 and for 100,000 spheres, which wait for the memory. Memory about 400 bytes a
 /// sphere. One thread; the same bits on every x86-64.
 template <int D>
 class HardSpheres {
@@ -84,8 +84,9 @@ class HardSpheres {
 
   double duration(double growth, double largest) const;
   double wanted_freedom() const;
+  void sort_along_curve();
   void build_shells(double freedom, double largest);
-  void prefetch() const;
+  void prefetch();
   void predict(Id i);
   void forget_partner(Id i);
   double time_to_leave(Id i) const;
@@ -111,6 +112,7 @@ class HardSpheres {
   double freedom_;             // radius of the shells
   double largest_listed_ = 0;  // size up to which the lists hold
   double now_ = 0;
+  std::size_t prefetched_ = 0;  // bins of the calendar for which the memory was asked
 
   FlightPeriod period_;                                          // the last one, or the one at hand
   double virial_ = 0;                                            // sum over the period's collisions

@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "bernal/core/vector.hpp"
+#include "hard/prefetch.hpp"
 
 namespace bernal {
 
 /// A background grid of a periodic box that keeps, unlike `CellGrid`, the points and reaches themselves, cell
-/// by cell in one piece of memory: for points that move now and then and are asked for their neighbours as
-/// often. Where sizes differ lists are renewed in 0.7 of the time (lognormal, sigma 0.5); equal ones gain
-/// nothing.
+/// by cell in one piece of memory and in single precision: for points that move now and then and are asked
+/// for their neighbours as often, when nothing of it is in the caches.
 ///
 /// Level l holds the points with reaches in (R_l / 2, R_l], R_l = R / 2^l, in cells of edge 2 R_l or more.
-/// Cost: `insert` and `move` O(1), a query the points of some 3^D cells a level. Memory: 8 D + 16 bytes a
-/// point and as much again unused.
+/// Cost: `insert` and `move` O(1), a query the points of some 3^D cells a level. Memory: 8 (4 D + 8) + 16
+/// bytes a cell, of which there are at most as many as points on each level.
 template <int D>
 class HomeGrid {
  public:
@@ -28,6 +28,7 @@ class HomeGrid {
     edges_ = edges;
     for (int k = 0; k < D; ++k) inverse_edges_[k] = 1 / edges[k];
     most_ = most;
+    margin_ = rounding * edges.sum();
     cell_of_.assign(count, 0);
     levels_.clear();
     std::size_t cells = 0;
@@ -36,7 +37,6 @@ class HomeGrid {
       if (largest / 2 < least || levels_.size() == most_levels) break;
     }
     cells_.resize(cells);
-    const auto room = static_cast<std::uint32_t>(8);
     for (std::size_t c = 0; c < cells; ++c) cells_[c] = {c * room, 0, room};
     points_.resize(cells * room);
   }
@@ -55,47 +55,31 @@ class HomeGrid {
     append(id, cell_at(level_of(reach), home), home, reach);
   }
 
-  /// Calls visit(id) for every point whose distance, minimum image, is less than the sum of the two reaches.
-  template <class Visit>
-  void for_each_near(const Vector<D>& home, double reach, Visit&& visit) const {
-    for (const Level& level : levels_) {
-      if (level.points == 0) continue;
-      const double half = reach + level.largest;
-      std::array<int, D> first, count, at, step{};
-      for (int k = 0; k < D; ++k) {
-        const int n = level.cells[k];
-        const double from = std::floor((home[k] - half) * level.inverse[k]);
-        const double to = std::floor((home[k] + half) * level.inverse[k]);
-        count[k] = to - from + 1 < n ? static_cast<int>(to - from) + 1 : n;
-        first[k] = to - from + 1 < n ? static_cast<int>(from - n * std::floor(from / n)) : 0;
-        at[k] = first[k];
-      }
-      for (;;) {
-        std::size_t index = 0;
-        for (int k = D - 1; k >= 0; --k)
-          index = index * static_cast<std::size_t>(level.cells[k]) + static_cast<std::size_t>(at[k]);
-        visit_cell(cells_[level.begin + index], home, reach, visit);
-        int k = 0;
-        for (; k < D; ++k) {
-          if (++step[k] < count[k]) {
-            if (++at[k] == level.cells[k]) at[k] = 0;
-            break;
-          }
-          step[k] = 0;
-          at[k] = first[k];
-        }
-        if (k == D) break;
-      }
-    }
+  /// Appends every point whose distance, minimum image, is less than the sum of the two reaches, and none
+  /// that is farther by more than 3e-7 of the sum of all edges.
+  void find_near(const Vector<D>& home, double reach, std::vector<Id>& found) const {
+    for_each_cell_near(home, reach, [&](std::size_t c) { find_in(cells_[c], home, reach, found); });
+  }
+  /// Asks the memory for all that such a query will look at.
+  void prefetch_near(const Vector<D>& home, double reach) const {
+    for_each_cell_near(home, reach, [&](std::size_t c) {
+      bernal::prefetch(&cells_[c]);
+      bernal::prefetch(&points_[c * room]);
+      bernal::prefetch(&points_[c * room + 3]);
+    });
   }
 
  private:
   static constexpr std::size_t most_levels = 30;
   static constexpr double cells_a_point = 1;
+  static constexpr std::uint32_t room = 8;  // of a cell, to begin with
+  /// What a reach is longer by, of the sum of all edges: more than rounding to single precision takes from
+  /// the distance and from the reach.
+  static constexpr double rounding = 1.2e-7;
 
   struct Point {
-    double x[D];
-    double reach;
+    float x[D];
+    float reach;
     Id id;
   };
   struct Cell {
@@ -148,30 +132,72 @@ class HomeGrid {
       cell = {begin, cell.count, 2 * cell.room};
     }
     Point& point = points_[cell.begin + cell.count++];
-    for (int k = 0; k < D; ++k) point.x[k] = home[k];
-    point.reach = reach;
+    for (int k = 0; k < D; ++k) point.x[k] = static_cast<float>(home[k]);
+    point.reach = static_cast<float>(reach + margin_);
     point.id = id;
     cell_of_[id] = static_cast<std::uint32_t>(c);
   }
+  /// Calls visit(c) for all cells that such points may lie in, row by row.
   template <class Visit>
-  void visit_cell(const Cell& cell, const Vector<D>& home, double reach, Visit& visit) const {
+  void for_each_cell_near(const Vector<D>& home, double reach, Visit&& visit) const {
+    for (const Level& level : levels_) {
+      if (level.points == 0) continue;
+      const double half = reach + level.largest;
+      std::array<int, D> first, count, at, step{};
+      for (int k = 0; k < D; ++k) {
+        const int n = level.cells[k];
+        const double from = std::floor((home[k] - half) * level.inverse[k]);
+        const double to = std::floor((home[k] + half) * level.inverse[k]);
+        count[k] = to - from + 1 < n ? static_cast<int>(to - from) + 1 : n;
+        first[k] = to - from + 1 < n ? static_cast<int>(from - n * std::floor(from / n)) : 0;
+        at[k] = first[k];
+      }
+      const int beyond = first[0] + count[0] - level.cells[0];
+      for (;;) {
+        std::size_t row = 0;
+        for (int k = D - 1; k > 0; --k)
+          row = (row + static_cast<std::size_t>(at[k])) * static_cast<std::size_t>(level.cells[k - 1]);
+        row += level.begin;
+        for (int m = first[0]; m < std::min(first[0] + count[0], level.cells[0]); ++m)
+          visit(row + static_cast<std::size_t>(m));
+        for (int m = 0; m < beyond; ++m) visit(row + static_cast<std::size_t>(m));
+        int k = 1;
+        for (; k < D; ++k) {
+          if (++step[k] < count[k]) {
+            if (++at[k] == level.cells[k]) at[k] = 0;
+            break;
+          }
+          step[k] = 0;
+          at[k] = first[k];
+        }
+        if (k == D) break;
+      }
+    }
+  }
+  /// Without a branch for each point: about half of them are near.
+  void find_in(const Cell& cell, const Vector<D>& home, double reach, std::vector<Id>& found) const {
     constexpr double shift = 0x1.8p52;  // rounds to the nearest whole number
+    std::size_t count = found.size();
+    found.resize(count + cell.count);
     for (std::size_t m = cell.begin; m < cell.begin + cell.count; ++m) {
       const Point& point = points_[m];
       double squared = 0;
       for (int k = 0; k < D; ++k) {
-        double d = point.x[k] - home[k];
+        double d = double{point.x[k]} - home[k];
         d -= edges_[k] * ((d * inverse_edges_[k] + shift) - shift);
         squared += d * d;
       }
       const double near = reach + point.reach;
-      if (squared < near * near) visit(point.id);
+      found[count] = point.id;
+      count += squared < near * near ? 1 : 0;
     }
+    found.resize(count);
   }
 
   Vector<D> edges_ = Vector<D>::Zero();
   std::array<double, D> inverse_edges_{};
   double most_ = 0;
+  double margin_ = 0;  // in all reaches
   std::vector<Level> levels_;
   std::vector<Cell> cells_;
   std::vector<Point> points_;

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "hard/prefetch.hpp"
+
 namespace bernal {
 
 /// Lists of neighbours without order, one behind the other; one that needs more room moves to the end.
@@ -14,14 +16,15 @@ class NeighborPool {
 
   /// Empty lists, with room for about `expected` neighbours each.
   void start(std::size_t count, double expected) {
-    const std::uint32_t room = std::max(8u, static_cast<std::uint32_t>(1.5 * expected));
+    const std::size_t lines = std::max(std::size_t{1}, static_cast<std::size_t>(1.5 * expected / a_line));
     lists_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) lists_[i] = {i * room, 0, room};
-    pool_.resize(count * room);
+    for (std::size_t i = 0; i < count; ++i)
+      lists_[i] = {i * lines * a_line, 0, static_cast<std::uint32_t>(lines * a_line)};
+    pool_.resize(count * lines);
     longest_ = 0;
   }
 
-  std::span<const Id> of(Id i) const { return {pool_.data() + lists_[i].begin, lists_[i].count}; }
+  std::span<const Id> of(Id i) const { return {ids() + lists_[i].begin, lists_[i].count}; }
   std::size_t longest() const { return longest_; }
   double mean() const {
     std::size_t sum = 0;
@@ -29,27 +32,33 @@ class NeighborPool {
     return static_cast<double>(sum) / static_cast<double>(std::max<std::size_t>(1, lists_.size()));
   }
 
-  void prefetch(Id i) const { __builtin_prefetch(&lists_[i]); }
+  void prefetch(Id i) const { bernal::prefetch(&lists_[i]); }
   void prefetch_list(Id i) const {
-    const Id* const begin = pool_.data() + lists_[i].begin;
-    __builtin_prefetch(begin);
-    __builtin_prefetch(begin + 16);
+    const Id* const begin = ids() + lists_[i].begin;
+    bernal::prefetch(begin);
+    bernal::prefetch(begin + 16);
   }
 
   void append(Id to, Id id) {
     List& list = lists_[to];
     if (list.count == list.room) grow(list);
-    pool_[list.begin + list.count++] = id;
+    ids()[list.begin + list.count++] = id;
     longest_ = std::max<std::size_t>(longest_, list.count);
   }
   /// Precondition: it is in the list.
   void remove(Id from, Id id) {
     List& list = lists_[from];
-    Id* const begin = pool_.data() + list.begin;
+    Id* const begin = ids() + list.begin;
     *std::find(begin, begin + list.count, id) = begin[list.count - 1];
     --list.count;
   }
-  void clear(Id i) { lists_[i].count = 0; }
+  void replace(Id of, std::span<const Id> others) {
+    List& list = lists_[of];
+    while (list.room < others.size()) grow(list);
+    std::ranges::copy(others, ids() + list.begin);
+    list.count = static_cast<std::uint32_t>(others.size());
+    longest_ = std::max<std::size_t>(longest_, list.count);
+  }
 
  private:
   struct List {
@@ -57,16 +66,23 @@ class NeighborPool {
     std::uint32_t count = 0, room = 0;
   };
 
+  static constexpr std::size_t a_line = 16;
+  struct alignas(64) Line {
+    Id ids[a_line];
+  };
+
+  const Id* ids() const { return pool_.data()->ids; }
+  Id* ids() { return pool_.data()->ids; }
+
   void grow(List& list) {
-    const std::size_t begin = pool_.size();
-    pool_.resize(begin + 2 * std::size_t{list.room});
-    std::copy_n(pool_.begin() + static_cast<std::ptrdiff_t>(list.begin), list.count,
-                pool_.begin() + static_cast<std::ptrdiff_t>(begin));
+    const std::size_t begin = pool_.size() * a_line;
+    pool_.resize(pool_.size() + 2 * std::size_t{list.room} / a_line);
+    std::copy_n(ids() + list.begin, list.count, ids() + begin);
     list = {begin, list.count, 2 * list.room};
   }
 
   std::vector<List> lists_;
-  std::vector<Id> pool_;
+  std::vector<Line> pool_;
   std::size_t longest_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include "bernal/core/vector.hpp"
 #include "hard/home_grid.hpp"
 #include "hard/neighbor_pool.hpp"
+#include "hard/prefetch.hpp"
 
 namespace bernal {
 
@@ -14,9 +15,10 @@ namespace bernal {
 /// left its shell. Leaving is an event: `settle` gives the sphere a new home and mends its list and those of
 /// the others.
 ///
-/// Invariant: two spheres are neighbours, each in the list of the other, if and only if their homes are
-/// nearer than the sum of their radii and freedoms, minimum image. Cost: `build` and `settle` about 1 µs a
-/// sphere where sizes are alike; memory about 300 bytes a sphere. Source: Donev, Torquato & Stillinger, J.
+/// Invariant: two spheres are neighbours, each in the list of the other, if their homes are nearer than the
+/// sum of their radii and freedoms, minimum image, and only if they are not farther than that by more than
+/// rounding to single precision. Cost: `build` and `settle` about 1 µs a sphere where sizes are alike; memory
+/// about 300 bytes a sphere. Source: Donev, Torquato & Stillinger, J.
 /// Comput. Phys. 202, 737 (2005), with shells of their own size.
 template <int D>
 class Shells {
@@ -34,24 +36,27 @@ class Shells {
 
   /// Ask the memory for where sphere i and its list are described, and then for the list.
   void prefetch(Id i) const {
-    __builtin_prefetch(&places_[i]);
+    bernal::prefetch(&places_[i]);
     lists_.prefetch(i);
   }
   void prefetch_list(Id i) const { lists_.prefetch_list(i); }
+  /// Ask it for what `settle` will look at.
+  void prefetch_settling(Id i, const Vector<D>& home) const { grid_.prefetch_near(home, reaches_[i]); }
 
   /// A new home, in [0, edge).
   void settle(Id i, const Vector<D>& home);
 
  private:
-  struct Place {
+  struct alignas(D == 3 ? 32 : 16) Place {
     Vector<D> home;
     double freedom;
-    double reach;  ///< radius and freedom
   };
 
   std::vector<Place> places_;
+  std::vector<double> reaches_;  // radius and freedom
   NeighborPool lists_;
   HomeGrid<D> grid_;
+  std::vector<Id> before_, after_;  // neighbours of the one that settles, sorted
 };
 
 }  // namespace bernal

@@ -75,9 +75,10 @@ std::size_t Walls<D>::cell_at(const Vector<D>& home) const {
 
 template <int D>
 void Walls<D>::settle(Id i, const Vector<D>& home, double reach) {
-  near_.clear(i);
+  found_.clear();
   for (const Id w : cells_[cell_at(home)])
-    if (walls_[w].clearance(home) < reach) near_.append(i, w);
+    if (walls_[w].clearance(home) < reach) found_.push_back(w);
+  near_.replace(i, found_);
 }
 
 template <int D>

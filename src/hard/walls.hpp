@@ -15,7 +15,7 @@ namespace bernal {
 /// Invariant: those are all walls, and no others, nearer to its home than its reach. Those that come near a
 /// cell of a coarse grid are known once and for all, so that a container of thousands of planes costs a
 /// sphere no more than the planes about it. Cost: 4 ns a wall near enough; a sphere far from all walls looks
-/// at one empty list. Memory: 32 bytes a sphere and more at the wall.
+/// at one empty list. Memory: about 80 bytes a sphere.
 template <int D>
 class Walls {
  public:
@@ -49,6 +49,7 @@ class Walls {
   int cells_an_edge_ = 1;
   std::vector<std::vector<Id>> cells_;  // walls nearer to a cell than reach_
   NeighborPool near_;
+  std::vector<Id> found_;
   std::vector<Id> next_;  // the wall that a sphere meets
 };
 

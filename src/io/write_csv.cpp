@@ -4,12 +4,14 @@
 #include <charconv>
 #include <string>
 
+#include <fmt/format.h>
+
 namespace bernal {
 
 std::string csv_header(int dimension) {
   if (dimension == 3) return "x,y,z,r";
   std::string header;
-  for (int k = 0; k < dimension; ++k) header += "x" + std::to_string(k) + ",";
+  for (int k = 0; k < dimension; ++k) header += fmt::format("x{},", k);
   return header + "r";
 }
 

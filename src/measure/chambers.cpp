@@ -8,6 +8,7 @@
 #include <numeric>
 #include <span>
 
+#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "measure/convex.hpp"
 #include "measure/even_points.hpp"
@@ -186,7 +187,7 @@ void sort(Chambers& found) {
 Chambers chambers_in(const Shape& shape, const Packing* packing, double radius, double mean_radius,
                      const ChamberOptions& options) {
   const Frame frame = frame_of(shape);
-  const std::unique_ptr<Container> container = localised(shape, frame);
+  const auto container = make_local_container(shape, frame, WallArithmetic::plain);
   const FreeSpace space(*container, radius / frame.scale);
   const Components components(shape, space, options.cells);
   const Spheres<3> spheres = packing ? localised(packing->spheres, frame) : Spheres<3>{};

@@ -1,7 +1,5 @@
 #include "measure/localised.hpp"
 
-#include "bernal/cad/mesh_container.hpp"
-
 namespace bernal {
 
 Spheres<3> localised(const Spheres<dynamic>& spheres, const Frame& frame) {
@@ -11,10 +9,6 @@ Spheres<3> localised(const Spheres<dynamic>& spheres, const Frame& frame) {
     local.push_back(frame.to_local(spheres.center(i)), spheres.r[i] / frame.scale);
   }
   return local;
-}
-
-std::unique_ptr<Container> localised(const Shape& scene_shape, const Frame& frame) {
-  return make_container(to_local(scene_shape, frame), WallArithmetic::plain, frame.resolution);
 }
 
 }  // namespace bernal

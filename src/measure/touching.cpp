@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 
+#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/domain/container.hpp"
 #include "measure/localised.hpp"
@@ -147,7 +148,7 @@ std::vector<NearWall> near_walls(const Packing& packing, double widest_gap) {
     return near_walls_of(*box, packing.spheres, widest_gap);
   const Shape* shape = std::get_if<Shape>(&packing.domain);
   const Frame frame = frame_of(*shape);
-  const std::unique_ptr<Container> container = localised(*shape, frame);
+  const auto container = make_local_container(*shape, frame, WallArithmetic::plain);
   const Spheres<3> spheres = localised(packing.spheres, frame);
   std::vector<NearWall> near;
   std::vector<WallPoint> points;

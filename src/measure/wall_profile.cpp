@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/random.hpp"
 #include "measure/depths.hpp"
@@ -176,7 +177,7 @@ std::optional<WallProfile> wall_profile(const Packing& packing, const WallOption
   const Shape* shape = std::get_if<Shape>(&packing.domain);
   if (!shape || packing.spheres.empty()) return {};
   const Frame frame = frame_of(*shape);
-  const std::unique_ptr<Container> container = localised(*shape, frame);
+  const auto container = make_local_container(*shape, frame, WallArithmetic::plain);
   const Spheres<3> spheres = localised(packing.spheres, frame);
   const double volume = container->volume();
   const double diameter =

@@ -55,8 +55,13 @@ class PartialGrid {
     axes_ = std::min(axes, D);
     if (axes == automatic) {
       axes_ = 0;
-      for (int k = 1; k <= D; ++k)
-        if (cost_of(k, opened, cells, spheres) < cost_of(axes_, opened, cells, spheres)) axes_ = k;
+      double least = cost_of(0, opened, cells, spheres);
+      for (int k = 1; k <= D; ++k) {
+        const double cost = cost_of(k, opened, cells, spheres);
+        if (cost >= least) continue;
+        axes_ = k;
+        least = cost;
+      }
     }
     // A box that is almost empty: cells of no use are not made.
     double all = 1;

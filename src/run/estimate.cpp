@@ -68,8 +68,7 @@ std::vector<double> radii_by_volume(const SizeDistribution& radii) {
 /// ones have no more room than what they can cover, which in thin parts is less than their share.
 double reached_by_relaxation(const Shape& shape, const SizeDistribution& radii) {
   const Frame frame = frame_of(shape);
-  const std::unique_ptr<Container> container =
-      make_container(to_local(shape, frame), WallArithmetic::plain, frame.resolution);
+  const auto container = make_local_container(shape, frame, WallArithmetic::plain);
   const std::vector<double> by_volume = radii_by_volume(radii);
   const double n = static_cast<double>(by_volume.size());
   double mean = 0, tightest = 2;

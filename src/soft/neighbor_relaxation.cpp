@@ -3,14 +3,13 @@
 
 #include "soft/neighbor_relaxation.hpp"
 
-#include <immintrin.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "bernal/domain/boundary.hpp"
+#include "core/every_dimension.hpp"
 
 namespace bernal {
 namespace {
@@ -20,9 +19,6 @@ constexpr double relative_skin[] = {0.4, 0.4, 0.4, 0.3, 0.25, 0.2, 0.17, 0.15};
 /// Of lists, in sweeps, and the thinnest skin in the thickest.
 constexpr int long_life = 80, short_life = 20;
 constexpr double thinnest = 0.125;
-/// Looking at a cell costs as much as looking at so many spheres.
-constexpr double cost_of_a_cell = 1.5;
-constexpr double most_cells_a_sphere = 4;
 /// In a box of fewer of the largest radii spheres may overlap in several images; and a little more, for
 /// rounding.
 constexpr double narrow = 4.001;
@@ -32,34 +28,6 @@ constexpr std::size_t block = 4;
 constexpr float longest_move = 0x1p30f;
 /// In sums of radii, of spheres whose centres coincide.
 constexpr float least_distance = 1e-3f;
-
-std::uint32_t to_fixed(double x, double edge) {
-  const double share = x / edge;
-  return static_cast<std::uint32_t>(
-      static_cast<std::int64_t>(std::llround((share - std::floor(share)) * 0x1p32)));
-}
-
-/// The sums of the components of four vectors.
-inline __m128 sums(__m128 a, __m128 b, __m128 c, __m128 d) {
-  const __m128 ab = _mm_add_ps(_mm_unpacklo_ps(a, b), _mm_unpackhi_ps(a, b));
-  const __m128 cd = _mm_add_ps(_mm_unpacklo_ps(c, d), _mm_unpackhi_ps(c, d));
-  return _mm_add_ps(_mm_movelh_ps(ab, cd), _mm_movehl_ps(cd, ab));
-}
-
-inline __m128 folded(const __m128& v) { return v; }
-struct Pair {
-  __m128 low, high;
-};
-inline __m128 folded(const Pair& v) { return _mm_add_ps(v.low, v.high); }
-
-/// Four components, of which those four apart are added.
-template <class Floats>
-inline __m128 to_four(const Floats& v) {
-  if constexpr (sizeof(Floats) == sizeof(__m128))
-    return folded(__builtin_bit_cast(__m128, v));
-  else
-    return folded(__builtin_bit_cast(Pair, v));
-}
 
 }  // namespace
 
@@ -287,89 +255,16 @@ void NeighborRelaxation<D>::keep_lists_valid() {
   ++builds_;
 }
 
-/// Chooses the axes, those with the most cells, that are worth cutting: with k of them a sphere looks at 3^k
-/// cells, and at the share Π (3 / cells) of all spheres.
 template <int D>
 void NeighborRelaxation<D>::sort_into_cells(double reach) {
-  std::vector<Axis> axes;
-  for (int k = 0; k < D; ++k) axes.push_back({k, static_cast<int>(std::min(edges_[k] / reach, 1e6))});
-  std::ranges::stable_sort(axes, std::greater<>(), &Axis::cells);
-  const double count = static_cast<double>(count_);
-  double share = 1, looked_at = 1, cells = 1, least_cost = cost_of_a_cell + count;
-  gridded_.clear();
-  for (Axis axis : axes) {
-    axis.cells =
-        static_cast<int>(std::min<double>(axis.cells, std::max(1.0, most_cells_a_sphere * count / cells)));
-    if (axis.cells < 4) break;
-    share *= 3.0 / axis.cells;
-    looked_at *= 3;
-    cells *= axis.cells;
-    const double cost = cost_of_a_cell * looked_at + count * share;
-    if (cost > least_cost) break;
-    least_cost = cost;
-    gridded_.push_back(axis);
-  }
-  cell_start_.assign(1, 0);
-  if (gridded_.empty()) return;
-
-  std::size_t all = 1;
-  for (const Axis& axis : gridded_) all *= static_cast<std::size_t>(axis.cells);
-  std::vector<Id> cell(count_);
-  cell_start_.assign(all + 1, 0);
-  for (std::size_t i = 0; i < count_; ++i) {
-    std::uint64_t c = 0;
-    for (const Axis& axis : gridded_) {
-      const auto n = static_cast<std::uint64_t>(axis.cells);
-      c = c * n + (places_[i].x[axis.axis] * n >> 32);
-    }
-    cell[i] = static_cast<Id>(c);
-    ++cell_start_[c + 1];
-  }
-  std::partial_sum(cell_start_.begin(), cell_start_.end(), cell_start_.begin());
-  std::vector<Id> next(cell_start_.begin(), cell_start_.end() - 1);
+  const std::vector<Id> to = grid_.sort(edges_, reach, places_, count_);
   const std::vector<Place> places = places_;
   const std::vector<float> radii = radii_;
   const std::vector<Id> ids = ids_;
   for (std::size_t i = 0; i < count_; ++i) {
-    const Id to = next[cell[i]]++;
-    places_[to] = places[i];
-    radii_[to] = radii[i];
-    ids_[to] = ids[i];
-  }
-}
-
-template <int D>
-void NeighborRelaxation<D>::rows_near(Id i, std::vector<Row>& rows) const {
-  rows.clear();
-  if (gridded_.empty()) {
-    rows.push_back({0, static_cast<Id>(count_)});
-    return;
-  }
-  const auto coordinate = [&](const Axis& axis) {
-    return static_cast<int>(places_[i].x[axis.axis] * static_cast<std::uint64_t>(axis.cells) >> 32);
-  };
-  const int across = static_cast<int>(gridded_.size()) - 1;
-  int combinations = 1;
-  for (int a = 0; a < across; ++a) combinations *= 3;
-  const Axis fast = gridded_.back();
-  const int at = coordinate(fast);
-  for (int n = 0; n < combinations; ++n) {
-    std::size_t cell = 0;
-    for (int a = 0, digits = n; a < across; ++a, digits /= 3) {
-      const Axis& axis = gridded_[static_cast<std::size_t>(a)];
-      const int c = (coordinate(axis) + digits % 3 - 1 + axis.cells) % axis.cells;
-      cell = cell * static_cast<std::size_t>(axis.cells) + static_cast<std::size_t>(c);
-    }
-    const Id* start = &cell_start_[cell * static_cast<std::size_t>(fast.cells)];
-    if (at == 0) {
-      rows.push_back({start[0], start[2]});
-      rows.push_back({start[fast.cells - 1], start[fast.cells]});
-    } else if (at == fast.cells - 1) {
-      rows.push_back({start[at - 1], start[at + 1]});
-      rows.push_back({start[0], start[1]});
-    } else {
-      rows.push_back({start[at - 1], start[at + 2]});
-    }
+    places_[to[i]] = places[i];
+    radii_[to[i]] = radii[i];
+    ids_[to[i]] = ids[i];
   }
 }
 
@@ -377,19 +272,19 @@ template <int D>
 void NeighborRelaxation<D>::build_lists() {
   sort_into_cells(2.0 * largest_radius_ + skin_);
   list_.resize(count_ + 1);
-  std::vector<Row> rows;
+  std::vector<typename FixedPointGrid<D>::Row> rows;
   std::size_t used = 0, longest = 0;
   for (Id i = 0; i < count_; ++i) {
     list_[i] = used;
-    rows_near(i, rows);
+    grid_.rows_near(places_[i], rows);
     std::size_t candidates = 0;
-    for (const Row& row : rows) candidates += row.last - row.first;
+    for (const auto& row : rows) candidates += row.last - row.first;
     if (neighbors_.size() < used + candidates + 2 * block)
       neighbors_.resize(2 * (used + candidates + 2 * block));
     Id* end = &neighbors_[used];
     const Place me = places_[i];
     const __m128 blown_up = _mm_set1_ps(radii_[i] + static_cast<float>(skin_));
-    for (const Row& row : rows) {
+    for (const auto& row : rows) {
       for (Id j = row.first; j < row.last; j += block) {
         const auto squares = [&](Id k) {
           const Floats d = away(places_[k], me);
@@ -429,13 +324,7 @@ void NeighborRelaxation<D>::write_to(Spheres<D>& spheres, Vector<D>& edges) cons
       spheres.x[static_cast<std::size_t>(k)][ids_[i]] = places_[i].x[k] * (edges_[k] * 0x1p-32);
 }
 
-template class NeighborRelaxation<1>;
-template class NeighborRelaxation<2>;
-template class NeighborRelaxation<3>;
-template class NeighborRelaxation<4>;
-template class NeighborRelaxation<5>;
-template class NeighborRelaxation<6>;
-template class NeighborRelaxation<7>;
-template class NeighborRelaxation<8>;
+#define BERNAL_INSTANTIATE(D) template class NeighborRelaxation<D>;
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

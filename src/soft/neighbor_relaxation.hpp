@@ -1,27 +1,12 @@
 #pragma once
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
+#include "soft/fixed_point.hpp"
+#include "soft/fixed_point_grid.hpp"
 
 namespace bernal {
-
-/// Registers of 4 or 8 numbers.
-template <int width>
-struct Registers;
-template <>
-struct Registers<4> {
-  using Floats = float __attribute__((vector_size(16)));
-  using Ints = std::int32_t __attribute__((vector_size(16)));
-  using Whole = std::uint32_t __attribute__((vector_size(16)));
-};
-template <>
-struct Registers<8> {
-  using Floats = float __attribute__((vector_size(32)));
-  using Ints = std::int32_t __attribute__((vector_size(32)));
-  using Whole = std::uint32_t __attribute__((vector_size(32)));
-};
 
 /// Overlapping spheres that push each other apart in a periodic box of 1 to 8 dimensions: the state of a
 /// relaxation. What `SoftPacking` is in a wide box of up to three dimensions, this is in any other: one
@@ -64,18 +49,11 @@ class NeighborRelaxation {
   std::uint64_t builds() const { return builds_; }
 
  private:
-  /// Axes in a place: whole registers; what is beyond D is always 0.
-  static constexpr int width = D <= 4 ? 4 : 8;
-  using Floats = typename Registers<width>::Floats;
-  using Ints = typename Registers<width>::Ints;
-  using Whole = typename Registers<width>::Whole;
-  struct Place {
-    Whole x;
-  };
+  using Floats = typename RegistersFor<D>::Floats;
+  using Ints = typename RegistersFor<D>::Ints;
+  using Whole = typename RegistersFor<D>::Whole;
+  using Place = FixedPlace<D>;
   using Id = std::uint32_t;
-  struct Row {  // of cells: places [first, last)
-    Id first, last;
-  };
 
   /// What the overlaps of a sphere do to it.
   struct Push {
@@ -96,7 +74,6 @@ class NeighborRelaxation {
   bool moved_too_far() const;
   void build_lists();
   void sort_into_cells(double reach);
-  void rows_near(Id i, std::vector<Row>& rows) const;
   void set_scale();
   void stop_at_walls(Id i);
   void move_between_walls(Id i, const Ints& step);
@@ -114,11 +91,7 @@ class NeighborRelaxation {
   std::vector<Id> ids_;
   std::vector<float> stress_;
 
-  struct Axis {
-    int axis, cells;
-  };
-  std::vector<Axis> gridded_;      // the axes that are cut into cells, the last the fastest
-  std::vector<Id> cell_start_;     // of each cell in places_
+  FixedPointGrid<D> grid_;
   std::vector<Id> neighbors_;      // four by four; padded with count_
   std::vector<std::size_t> list_;  // where the list of each begins in neighbors_; one more than spheres
   std::vector<Place> built_at_;

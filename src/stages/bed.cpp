@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/tolerance.hpp"
 
 namespace bernal {
@@ -86,7 +87,7 @@ void Bed::insert(const Vector<3>& c, double r, std::uint32_t tag) {
   far_from_wall_.push_back(0);
   far_from_wall_at_.push_back(c);
   sum_of_radii_ += r;
-  sum_of_volumes_ += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  sum_of_volumes_ += ball_volume(3, r);
 }
 
 void Bed::remove_tags_from(std::uint32_t first) {
@@ -134,7 +135,7 @@ void Bed::reorder(const std::vector<Id>& order) {
     const double r = balls_[i].r;
     grid_.insert(i, balls_[i].center, r);
     sum_of_radii_ += r;
-    sum_of_volumes_ += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    sum_of_volumes_ += ball_volume(3, r);
   }
 }
 

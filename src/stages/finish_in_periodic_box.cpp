@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/every_dimension.hpp"
 #include "stages/free_of_overlap.hpp"
 #include "stages/polish.hpp"
 #include "stages/resize_box.hpp"
@@ -52,13 +53,6 @@ StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd en
   template void free_of_overlap<D>(Spheres<D>&, Vector<D>&, PeriodicWork&);                            \
   template bool fits<D>(const Spheres<D>&, const Vector<D>&, const Vector<D>&);                        \
   template void shake<D>(Spheres<D>&, const Vector<D>&, double, Random);
-BERNAL_INSTANTIATE(1)
-BERNAL_INSTANTIATE(2)
-BERNAL_INSTANTIATE(3)
-BERNAL_INSTANTIATE(4)
-BERNAL_INSTANTIATE(5)
-BERNAL_INSTANTIATE(6)
-BERNAL_INSTANTIATE(7)
-BERNAL_INSTANTIATE(8)
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

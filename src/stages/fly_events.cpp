@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bernal/core/dimension.hpp"
+#include "core/every_dimension.hpp"
 #include "stages/fly_run.hpp"
 
 namespace bernal {
@@ -226,13 +227,6 @@ StageEnd fly_by_events(PeriodicWork& work, const FlyOptions& options) {
 }
 
 #define BERNAL_INSTANTIATE(D) template class EventFlight<D>;
-BERNAL_INSTANTIATE(1)
-BERNAL_INSTANTIATE(2)
-BERNAL_INSTANTIATE(3)
-BERNAL_INSTANTIATE(4)
-BERNAL_INSTANTIATE(5)
-BERNAL_INSTANTIATE(6)
-BERNAL_INSTANTIATE(7)
-BERNAL_INSTANTIATE(8)
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bernal/core/dimension.hpp"
+#include "core/every_dimension.hpp"
 #include "stages/fly_run.hpp"
 
 namespace bernal {
@@ -163,13 +164,6 @@ StageEnd fly_by_patent(PeriodicWork& work, const FlyOptions& options) {
 }
 
 #define BERNAL_INSTANTIATE(D) template class PatentFlight<D>;
-BERNAL_INSTANTIATE(1)
-BERNAL_INSTANTIATE(2)
-BERNAL_INSTANTIATE(3)
-BERNAL_INSTANTIATE(4)
-BERNAL_INSTANTIATE(5)
-BERNAL_INSTANTIATE(6)
-BERNAL_INSTANTIATE(7)
-BERNAL_INSTANTIATE(8)
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

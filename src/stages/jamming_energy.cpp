@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "bernal/domain/boundary.hpp"
+#include "core/every_dimension.hpp"
 
 namespace bernal {
 namespace {
@@ -262,13 +263,7 @@ void JammingEnergy<D>::write(Spheres<D>& spheres) const {
     spheres.set_center(order_[i], box.wrap(state_.centers.template segment<D>(at<D>(i))));
 }
 
-template class JammingEnergy<1>;
-template class JammingEnergy<2>;
-template class JammingEnergy<3>;
-template class JammingEnergy<4>;
-template class JammingEnergy<5>;
-template class JammingEnergy<6>;
-template class JammingEnergy<7>;
-template class JammingEnergy<8>;
+#define BERNAL_INSTANTIATE(D) template class JammingEnergy<D>;
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/every_dimension.hpp"
 #include "stages/periodic_holes.hpp"
 #include "stages/resize_box.hpp"
 
@@ -157,13 +158,7 @@ void PeriodicCrowd<D>::move_to_holes(std::size_t count, Random& random) {
   prepare();
 }
 
-template class PeriodicCrowd<1>;
-template class PeriodicCrowd<2>;
-template class PeriodicCrowd<3>;
-template class PeriodicCrowd<4>;
-template class PeriodicCrowd<5>;
-template class PeriodicCrowd<6>;
-template class PeriodicCrowd<7>;
-template class PeriodicCrowd<8>;
+#define BERNAL_INSTANTIATE(D) template class PeriodicCrowd<D>;
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

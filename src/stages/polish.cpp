@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bernal/core/tolerance.hpp"
+#include "core/every_dimension.hpp"
 #include "stages/jamming_energy.hpp"
 #include "stages/trust_region.hpp"
 
@@ -225,13 +226,6 @@ Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Periodi
 }
 
 #define BERNAL_INSTANTIATE(D) template Polished polish<D>(Spheres<D>&, Vector<D>&, double, PeriodicWork&);
-BERNAL_INSTANTIATE(1)
-BERNAL_INSTANTIATE(2)
-BERNAL_INSTANTIATE(3)
-BERNAL_INSTANTIATE(4)
-BERNAL_INSTANTIATE(5)
-BERNAL_INSTANTIATE(6)
-BERNAL_INSTANTIATE(7)
-BERNAL_INSTANTIATE(8)
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

@@ -1,7 +1,8 @@
 #include "stages/refill.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "bernal/core/dimension.hpp"
 
 namespace bernal {
 namespace {
@@ -28,7 +29,7 @@ std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
   Random random = work.random(Stream::refill);
   const double radius = bed.size() > 0 ? bed.mean_radius() : work.supply.radius(work.supply.window().front());
   const double smallest = work.supply.smallest() + bed.skin();
-  const double capacity = container.volume() / (4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3));
+  const double capacity = container.volume() / ball_volume(3, radius);
   const double wanted = std::min(most_probes, 1000 + probes_a_sphere * capacity);
   std::vector<Probe> probes;
   for (double trial = 0; trial < std::max(least_trials, most_trials * wanted); ++trial) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/every_dimension.hpp"
 #include "soft/neighbor_relaxation.hpp"
 #include "soft/soft_packing.hpp"
 
@@ -92,13 +93,6 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, c
 #define BERNAL_INSTANTIATE(D)                                             \
   template bool fast_path_exists<D>(const Spheres<D>&, const Vector<D>&); \
   template StageEnd relax_fast<D>(Spheres<D>&, Vector<D>&, PeriodicWork&, const RelaxOptions&);
-BERNAL_INSTANTIATE(1)
-BERNAL_INSTANTIATE(2)
-BERNAL_INSTANTIATE(3)
-BERNAL_INSTANTIATE(4)
-BERNAL_INSTANTIATE(5)
-BERNAL_INSTANTIATE(6)
-BERNAL_INSTANTIATE(7)
-BERNAL_INSTANTIATE(8)
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

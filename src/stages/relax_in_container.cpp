@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 
+#include "bernal/core/dimension.hpp"
 #include "stages/crowd.hpp"
 #include "stages/insert.hpp"
 
@@ -37,8 +37,6 @@ constexpr int tries = 100;
 
 /// Overlap ratio of spheres that are as good as free.
 constexpr double small_overlap = 1e-4;
-
-double volume_of_ball(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
 
 class Relaxation {
  public:
@@ -174,7 +172,7 @@ class Relaxation {
 
   void report() {
     double volume = 0;
-    for (const double r : crowd_.spheres().r) volume += volume_of_ball(r);
+    for (const double r : crowd_.spheres().r) volume += ball_volume(3, r);
     const double overlap = crowd_.largest_overlap();
     work_.crowd_milestone("relax", crowd_.size(), volume, overlap,
                           std::log(overlap) / std::log(small_overlap));
@@ -219,7 +217,7 @@ bool is_dilute(const Work& work) {
   if (work.target.is_open()) return false;
   double volume = 0;
   for (std::uint32_t tag = 0; tag < work.supply.wanted(); ++tag) {
-    volume += volume_of_ball(work.supply.radius(tag));
+    volume += ball_volume(3, work.supply.radius(tag));
     if (volume > share * work.bed.container().volume()) return false;
   }
   return true;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bernal/domain/boundary.hpp"
+#include "core/every_dimension.hpp"
 #include "neighbors/cell_grid.hpp"
 #include "stages/resize_box.hpp"
 
@@ -141,13 +142,6 @@ StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& 
 
 #define BERNAL_INSTANTIATE(D) \
   template StageEnd relax_by_the_book<D>(Spheres<D>&, Vector<D>&, PeriodicWork&, const RelaxOptions&);
-BERNAL_INSTANTIATE(1)
-BERNAL_INSTANTIATE(2)
-BERNAL_INSTANTIATE(3)
-BERNAL_INSTANTIATE(4)
-BERNAL_INSTANTIATE(5)
-BERNAL_INSTANTIATE(6)
-BERNAL_INSTANTIATE(7)
-BERNAL_INSTANTIATE(8)
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

@@ -1,9 +1,8 @@
 #include "stages/supply.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 
 namespace bernal {
@@ -17,13 +16,11 @@ constexpr double window_share = 0.002;
 constexpr double trim_share = 0.002;
 constexpr double most_spheres = 2147483647.0;
 
-double volume_of_ball(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
-
 }  // namespace
 
 Supply::Supply(const SizeDistribution& radii, double scale, double volume, double cut, const Target& target,
                std::uint64_t seed, Draw draw) {
-  const double mean_volume = 4.0 / 3.0 * std::numbers::pi * radii.moment(3) / (scale * scale * scale);
+  const double mean_volume = ball_volume(3, 1) * radii.moment(3) / (scale * scale * scale);
   const double fraction = target.packing_fraction.value_or(densest);
   const double expected = target.count ? static_cast<double>(*target.count) : fraction * volume / mean_volume;
   if (!(expected < most_spheres)) {
@@ -43,7 +40,7 @@ Supply::Supply(const SizeDistribution& radii, double scale, double volume, doubl
       continue;
     }
     radii_.push_back(r);
-    filled += volume_of_ball(radii_.back());
+    filled += ball_volume(3, radii_.back());
   }
   const auto [smallest, largest] = std::minmax_element(radii_.begin(), radii_.end());
   smallest_ = *smallest;
@@ -73,7 +70,7 @@ void Supply::set_placed(const std::vector<bool>& placed) {
 
 std::size_t Supply::count_filling(double volume) const {
   std::size_t count = 0;
-  while (count < radii_.size() && volume > 0) volume -= volume_of_ball(radii_[count++]);
+  while (count < radii_.size() && volume > 0) volume -= ball_volume(3, radii_[count++]);
   return count;
 }
 

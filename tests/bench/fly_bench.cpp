@@ -2,6 +2,8 @@
 // axes, and where they cross; accepted insertions per second against the size of a batch; how the patent's
 // procedure grows with N.
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -29,9 +31,7 @@ double edge_for(std::size_t n) {
 /// All neighbours of all of N unit spheres at random in a periodic box, within a surface distance of 0.3; the
 /// grid's time to sort is part of it.
 template <int D>
-void near_pairs(benchmark::State& state) {
-  const auto n = static_cast<std::size_t>(state.range(0));
-  const auto axes = static_cast<int>(state.range(1));
+void near_pairs(benchmark::State& state, std::size_t n, int axes) {
   const Vector<D> edges = Vector<D>::Constant(edge_for<D>(n));
   std::array<bool, D> repeats;
   repeats.fill(true);
@@ -51,28 +51,32 @@ void near_pairs(benchmark::State& state) {
       grid.for_each_near(spheres.center(i), 1.3, [&](std::uint32_t, double) { ++found; });
   }
   benchmark::DoNotOptimize(found);
-  state.SetLabel(fmt::format("{}{}", axes < 0 ? "chosen: " : "", used == 0 ? "all pairs" : "grid"));
+  state.SetLabel(used == 0 ? "all pairs" : "grid");
   state.counters["s/sphere"] = benchmark::Counter(
       static_cast<double>(n), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
+/// With the number of axes that the grid chooses, and with every number to hold that against.
 template <int D>
-void every_number_of_axes(benchmark::internal::Benchmark* bench) {
-  bench->ArgNames({"N", "axes"})->Unit(benchmark::kMicrosecond)->MinTime(0.02);
-  for (const int n : {64, 256, 1000, 4000, 16000}) {
-    const int most = edge_for<D>(static_cast<std::size_t>(n)) < 4 * reach
-                         ? 0
-                         : std::min(D, 4);  // no grid has less than four cells
-    for (int axes = -1; axes <= most; ++axes) bench->Args({n, axes});
+void on_every_number_of_axes() {
+  for (const std::size_t n : {64, 256, 1000, 4000, 16000}) {
+    const int most = edge_for<D>(n) < 4 * reach ? 0 : std::min(D, 4);  // no grid has less than four cells
+    for (int axes = PartialGrid<D>::automatic; axes <= most; ++axes) {
+      const std::string grid = axes == PartialGrid<D>::automatic ? "chosen" : std::to_string(axes);
+      const std::string name = fmt::format("near_pairs<{}>/N:{}/axes:{}", D, n, grid);
+      benchmark::RegisterBenchmark(name.c_str(), near_pairs<D>, n, axes)
+          ->Unit(benchmark::kMicrosecond)
+          ->MinTime(0.02);
+    }
   }
 }
-BENCHMARK(near_pairs<2>)->Apply(every_number_of_axes<2>);
-BENCHMARK(near_pairs<3>)->Apply(every_number_of_axes<3>);
-BENCHMARK(near_pairs<4>)->Apply(every_number_of_axes<4>);
-BENCHMARK(near_pairs<5>)->Apply(every_number_of_axes<5>);
-BENCHMARK(near_pairs<6>)->Apply(every_number_of_axes<6>);
-BENCHMARK(near_pairs<7>)->Apply(every_number_of_axes<7>);
-BENCHMARK(near_pairs<8>)->Apply(every_number_of_axes<8>);
+template <int... D>
+bool in_every_dimension(std::integer_sequence<int, D...>) {
+  (on_every_number_of_axes<D>(), ...);
+  return true;
+}
+[[maybe_unused]] const bool registered =
+    in_every_dimension(std::integer_sequence<int, 2, 3, 4, 5, 6, 7, 8>{});
 
 /// Fills a cube with N unit spheres to the packing fraction.
 template <int D>

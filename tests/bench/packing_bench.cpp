@@ -68,10 +68,7 @@ class SettledBed {
     const Packing packing = run(plan);
     const auto& shape = std::get<Shape>(plan.domain);
     const Frame frame = frame_of(shape);
-    const Shape local = to_local(shape, frame);
-    const auto* mesh = std::get_if<Mesh>(&local);
-    container_ = mesh ? make_mesh_container(*mesh, WallArithmetic::filtered, frame.resolution)
-                      : make_analytic_container(local, WallArithmetic::filtered, frame.resolution);
+    container_ = make_local_container(shape, frame, WallArithmetic::filtered);
     const auto [smallest, largest] = std::ranges::minmax(packing.spheres.r);
     bed_ = std::make_unique<Bed>(*container_, smallest / frame.scale, largest / frame.scale,
                                  packing.spheres.size(), effects_);

@@ -1,7 +1,6 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -23,23 +22,16 @@ struct ContainerUnderTest {
   std::string name;
   Shape shape;
   double resolution;
-  std::function<std::unique_ptr<Container>(const Shape&, WallArithmetic, double resolution)> make;
 
   std::unique_ptr<Container> container(WallArithmetic arithmetic = WallArithmetic::filtered) const {
-    return make(shape, arithmetic, resolution);
+    return make_container(shape, arithmetic, resolution);
   }
   friend void PrintTo(const ContainerUnderTest& tested, std::ostream* out) { *out << tested.name; }
 };
 
-inline ContainerUnderTest localized(std::string name, const Shape& scene,
-                                    decltype(ContainerUnderTest::make) make = make_analytic_container) {
+inline ContainerUnderTest localized(std::string name, const Shape& scene) {
   const Frame frame = frame_of(scene);
-  return {std::move(name), to_local(scene, frame), frame.resolution, std::move(make)};
-}
-
-inline std::unique_ptr<Container> mesh_container(const Shape& shape, WallArithmetic arithmetic,
-                                                 double resolution) {
-  return make_mesh_container(std::get<Mesh>(shape), arithmetic, resolution);
+  return {std::move(name), to_local(scene, frame), frame.resolution};
 }
 
 /// A new container is held to every law by one line here. Meshes are small, because the oracle looks at every
@@ -53,14 +45,13 @@ inline std::vector<ContainerUnderTest> containers_under_test() {
       localized("FlatCylinderFarAway", CylinderShape{{2e4, 1e4, 0}, {1e-3, 2e-3, 1e-3}, 3, 0.5}),
       localized("Sphere", SphereShape{{0, 0, 0}, 1}),
       localized("SphereFarAway", SphereShape{{-7e3, 123.456, 1e4}, 0.6}),
-      localized("CubeMesh", box_mesh({0, 0, 0}, {1, 1, 1}), mesh_container),
-      localized("PrismMesh", prism_mesh(8, 1, 2), mesh_container),
-      localized("LShapeMeshFarAway", translated(l_shape_mesh(), {1e4, -2e4, 3e4}), mesh_container),
-      localized("IcosphereMesh", icosphere_mesh(1, 1), mesh_container),
-      localized("TorusMesh", torus_mesh(1, 0.4, 12, 6, 0.05), mesh_container),
-      localized("HelixMesh", helix_mesh(20, 3), mesh_container),
-      localized("SphereWithCavityMesh", joined(icosphere_mesh(1, 1), inverted(icosphere_mesh(0.5, 0))),
-                mesh_container),
+      localized("CubeMesh", box_mesh({0, 0, 0}, {1, 1, 1})),
+      localized("PrismMesh", prism_mesh(8, 1, 2)),
+      localized("LShapeMeshFarAway", translated(l_shape_mesh(), {1e4, -2e4, 3e4})),
+      localized("IcosphereMesh", icosphere_mesh(1, 1)),
+      localized("TorusMesh", torus_mesh(1, 0.4, 12, 6, 0.05)),
+      localized("HelixMesh", helix_mesh(20, 3)),
+      localized("SphereWithCavityMesh", joined(icosphere_mesh(1, 1), inverted(icosphere_mesh(0.5, 0)))),
   };
 }
 

@@ -80,7 +80,8 @@ inline Mesh square_tube_mesh(const std::vector<std::array<double, 2>>& rings) {
   return mesh;
 }
 
-/// Two cubes of edge 2 whose centres lie on the x axis, joined by a neck of length 1 and half width `half`.
+/// Two cubes of edge 2 whose centres lie on the x axis, joined by a neck of length 1 and half width `half`:
+/// from x = 0 to 2 and from 3 to 5.
 inline Mesh two_cubes_mesh(double half) {
   return square_tube_mesh({{0, 1}, {2, 1}, {2, half}, {3, half}, {3, 1}, {5, 1}});
 }
@@ -89,33 +90,6 @@ inline Mesh two_cubes_mesh(double half) {
 inline Mesh baffle_mesh(double gap, double height) {
   return extrude({{0, 0}, {4, 0}, {4, 2}, {2.01, 2}, {2.01, gap}, {1.99, gap}, {1.99, 2}, {0, 2}}, height,
                  {{0, 5, 6}, {0, 6, 7}, {1, 2, 3}, {1, 3, 4}, {0, 1, 4}, {0, 4, 5}});
-}
-
-/// Two chambers of 1 x 1 x 1 that a slit of 0.2 x 0.1 x 1 joins.
-inline Mesh two_chambers_mesh() {
-  return extrude({{0, 0},
-                  {1, 0},
-                  {1, 0.45},
-                  {1.2, 0.45},
-                  {1.2, 0},
-                  {2.2, 0},
-                  {2.2, 1},
-                  {1.2, 1},
-                  {1.2, 0.55},
-                  {1, 0.55},
-                  {1, 1},
-                  {0, 1}},
-                 1,
-                 {{0, 1, 2},
-                  {0, 2, 9},
-                  {0, 9, 11},
-                  {9, 10, 11},
-                  {2, 3, 8},
-                  {2, 8, 9},
-                  {3, 4, 5},
-                  {3, 5, 6},
-                  {3, 6, 8},
-                  {6, 7, 8}});
 }
 
 /// A closed tube about the closed curve `center(u)`, u in [0, 1), with rings of `radius(u, v)`; the rings are

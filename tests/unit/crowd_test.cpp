@@ -130,14 +130,14 @@ TEST(Crowd, IsPutBackAsItWas) {
 }
 
 TEST(Crowd, MovesFromAChamberThatIsTooFullToOneThatIsEmpty) {
-  // No sphere is as small as the slit.
-  const Mesh mesh = test::two_chambers_mesh();
-  ASSERT_NEAR(volume_of(Shape(mesh)), 2.02, 1e-12);
-  const Spheres<3> spheres = random_spheres({{0.01, 0.01, 0.01}, {0.99, 0.99, 0.99}}, 0.12, 0.9);
+  // No sphere is as small as the neck between two cubes of edge 1.
+  const Mesh mesh = test::scaled(test::two_cubes_mesh(0.1), 0.5);
+  ASSERT_NEAR(volume_of(Shape(mesh)), 2.005, 1e-12);
+  const Spheres<3> spheres = random_spheres({{0.01, -0.49, -0.49}, {0.99, 0.49, 0.49}}, 0.12, 0.9);
   CrowdUnderTest tested(make_mesh_container(mesh, WallArithmetic::filtered, 0x1p-50), spheres);
   ASSERT_EQ(tested.settle(), Crowd::Rest::stuck);
   const auto on_the_right = [&] {
-    return std::ranges::count_if(tested.crowd.spheres().x[0], [](double x) { return x > 1.2; });
+    return std::ranges::count_if(tested.crowd.spheres().x[0], [](double x) { return x > 1.5; });
   };
   EXPECT_EQ(on_the_right(), 0);
   Crowd::Rest rest = Crowd::Rest::stuck;

@@ -18,9 +18,7 @@ using std::numbers::pi;
 double error_of(double share) { return 0.001 + 3 * std::sqrt(share * (1 - share) / 5000); }
 
 double share_of(const Shape& shape, double r) {
-  if (const auto* mesh = std::get_if<Mesh>(&shape))
-    return coverable_share(*make_mesh_container(*mesh, WallArithmetic::plain, 0x1p-50), r);
-  return coverable_share(*make_analytic_container(shape, WallArithmetic::plain, 0x1p-50), r);
+  return coverable_share(*make_container(shape, WallArithmetic::plain, 0x1p-50), r);
 }
 
 /// What a ball covers that rolls about in a cube of edge 1: the volume of the cube of its centres, with the

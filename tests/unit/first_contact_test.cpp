@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <ostream>
 #include <string>
 
 #include "bernal/core/random.hpp"
@@ -195,6 +196,7 @@ using MakeObstacle = Obstacle (*)(Random&);
 struct NamedKernel {
   const char* name;
   MakeObstacle make;
+  friend void PrintTo(const NamedKernel& kernel, std::ostream* out) { *out << kernel.name; }
 };
 
 class FirstContact : public testing::TestWithParam<NamedKernel> {

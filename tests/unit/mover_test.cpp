@@ -67,14 +67,14 @@ class RandomBed {
 
 class BedInContainer : public ::testing::TestWithParam<ContainerUnderTest> {};
 
-INSTANTIATE_TEST_SUITE_P(
-    , BedInContainer,
-    ::testing::Values(test::localized("Box", BoxShape{{0, 0, 0}, {1, 0.8, 0.9}}),
-                      test::localized("ObliqueCylinder", CylinderShape{{1, 2, 3}, {1, -2, 0.5}, 0.7, 1.9}),
-                      test::localized("Sphere", SphereShape{{0, 0, 0}, 1}),
-                      test::localized("PrismMesh", test::prism_mesh(12, 1, 2), test::mesh_container),
-                      test::localized("LShapeMesh", test::l_shape_mesh(), test::mesh_container)),
-    [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(, BedInContainer,
+                         ::testing::Values(test::localized("Box", BoxShape{{0, 0, 0}, {1, 0.8, 0.9}}),
+                                           test::localized("ObliqueCylinder",
+                                                           CylinderShape{{1, 2, 3}, {1, -2, 0.5}, 0.7, 1.9}),
+                                           test::localized("Sphere", SphereShape{{0, 0, 0}, 1}),
+                                           test::localized("PrismMesh", test::prism_mesh(12, 1, 2)),
+                                           test::localized("LShapeMesh", test::l_shape_mesh())),
+                         [](const auto& tested) { return tested.param.name; });
 
 /// The length that the sphere's bounding box leaves, whose half-width is `buffer` about `box_center`.
 double way_out_of_box(const Vector<3>& box_center, double buffer, const Vector<3>& c, const Vector<3>& u) {

@@ -16,10 +16,7 @@ namespace bernal {
 namespace {
 
 std::unique_ptr<Container> container_of(const Shape& shape) {
-  constexpr double resolution = 0x1p-50;
-  if (const auto* mesh = std::get_if<Mesh>(&shape))
-    return make_mesh_container(*mesh, WallArithmetic::filtered, resolution);
-  return make_analytic_container(shape, WallArithmetic::filtered, resolution);
+  return make_container(shape, WallArithmetic::filtered, 0x1p-50);
 }
 
 Mesh cube_with_cubic_void() {

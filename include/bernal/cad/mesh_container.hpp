@@ -16,4 +16,8 @@ std::unique_ptr<Container> make_mesh_container(const Mesh& mesh, WallArithmetic 
 /// The container of any shape: analytic where there is one, else that of the mesh. Throws as these do.
 std::unique_ptr<Container> make_container(const Shape& shape, WallArithmetic arithmetic, double resolution);
 
+/// The container of a shape of the scene in the frame where the packer works.
+std::unique_ptr<Container> make_local_container(const Shape& of_scene, const Frame& frame,
+                                                WallArithmetic arithmetic);
+
 }  // namespace bernal

@@ -1,0 +1,166 @@
+#include "scene/schema.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "bernal/scene/read_scene.hpp"
+#include "support/folder.hpp"
+#include "support/scene_texts.hpp"
+
+namespace bernal {
+namespace {
+
+using schema::Entry;
+using schema::Key;
+using schema::Type;
+using testing::expect_equal;
+using testing::with_spheres;
+using testing::with_stage;
+
+/// A file that any distribution accepts whose columns may stand in one.
+std::string file_of_columns() {
+  static const testing::Folder folder;
+  static const auto file = folder.write("columns.csv", "1, 0\n2, 50\n3, 100\n");
+  return fmt::format("\"{}\"", file.string());
+}
+
+/// TOML that a key accepts.
+std::string sample(const Key& key, int choice) {
+  switch (key.type) {
+    case Type::flag:
+      return "true";
+    case Type::integer:
+      return choice == 0 || key.name == "dimension"
+                 ? "3"
+                 : fmt::format("{}", static_cast<std::int64_t>(key.range.min));
+    case Type::number:
+      if (key.range.min > 0.1) return fmt::format("{}", key.range.min + 0.1);
+      return choice == 0 ? "0.1" : "0.30000000000000004";
+    case Type::length:  // keys come in the order min, max and d43, d32
+      return key.name == "max" || key.name == "d43" ? "2.5e3" : "0.1";
+    case Type::word:
+      return fmt::format("\"{}\"", key.words[choice % key.words.size()]);
+    case Type::unit:
+      return choice == 0 ? "\"in\"" : "\"mm\"";
+    case Type::file:
+      return choice == 0 ? "\"part.stl\"" : "'''/tmp/a \"strange\" \\ name.stl'''";
+    case Type::direction:
+    case Type::position:
+      return choice == 0 ? "[0, -1, 1e-5]" : "[3, 4.000000000000001, 0]";
+    case Type::extents:
+      return "[1, 2.5, 1e-9]";
+    case Type::lengths:
+      return "[1, 2, 0.3]";
+    case Type::shares:
+      return "[30, 70, 1e3]";
+    case Type::amounts:  // of the sizes 1, 2, 0.3: a sieve's passing may not fall
+      return "[25.5, 100, 0]";
+    case Type::parts:
+      return choice == 0 ? "[1, { distribution = \"fuller\", max = 2, min = 0.1 }, 3]"
+                         : "[1, 2, { distribution = \"mixture\", of = [1, 2], shares = [1, 2] }]";
+    case Type::distribution:
+      return "1";
+  }
+  return "";
+}
+
+std::string sample_of(const Entry& entry, const Key& key, int choice) {
+  if (key.name == "walls" && key.type == Type::amounts) return "[0]";  // axes, not any numbers
+  return key.type == Type::file && !entry.columns.empty() ? file_of_columns() : sample(key, choice);
+}
+
+/// All keys of an entry that go with the n-th set of its choices.
+std::vector<Key> keys_of(const Entry& entry, std::size_t n) {
+  std::vector<Key> keys = entry.keys;
+  for (const schema::Choice& choice : entry.choices)
+    for (std::size_t i = 0; i < choice.size(); ++i)
+      if (i != n % choice.size())
+        for (const std::string_view name : choice[i])
+          std::erase_if(keys, [&](const Key& k) { return k.name == name; });
+  return keys;
+}
+
+/// Calls `visit(keys, text_of_value → scene)` for every entry of the schema and every set of its choices.
+template <class Visit>
+void for_every_entry(Visit visit) {
+  const auto joined = [](const std::vector<std::string>& parts, const char* with) {
+    return fmt::format("{}", fmt::join(parts, with));
+  };
+  const auto& all = schema::schema();
+  for (std::size_t n = 0; n < 3; ++n) {
+    for (const Entry& e : all.containers)
+      visit(e, keys_of(e, n), [&](const std::vector<std::string>& lines) {
+        return fmt::format(
+            "unit = \"mm\"\n[container]\nkind = \"{}\"\n{}\n[spheres]\ncount = 5\nradius = 1\n", e.name,
+            joined(lines, "\n"));
+      });
+    for (const Entry& e : all.distributions)
+      visit(e, keys_of(e, n), [&](const std::vector<std::string>& lines) {
+        return with_spheres(
+            fmt::format("diameter = {{ distribution = \"{}\", {} }}", e.name, joined(lines, ", ")));
+      });
+    for (const Entry& e : all.stages_in_containers)
+      visit(e, keys_of(e, n), [&](const std::vector<std::string>& lines) {
+        return with_stage(fmt::format("do = \"{}\"\n", e.name) + joined(lines, "\n"));
+      });
+    visit(all.scene, keys_of(all.scene, n), [&](const std::vector<std::string>& lines) {
+      return joined(lines, "\n") + "\n" + with_spheres("radius = 1");
+    });
+    visit(all.spheres, keys_of(all.spheres, n),
+          [&](const std::vector<std::string>& lines) { return with_spheres(joined(lines, "\n")); });
+    visit(all.accuracy, keys_of(all.accuracy, n), [&](const std::vector<std::string>& lines) {
+      return with_spheres("radius = 1\n[accuracy]\n" + joined(lines, "\n"));
+    });
+  }
+}
+
+TEST(SchemaLaw, EveryKeyIsReadAndSurvivesBeingWritten) {
+  int scenes = 0;
+  for_every_entry([&](const Entry& entry, const std::vector<Key>& keys, const auto& scene_with) {
+    for (const int choice : {0, 1}) {
+      std::vector<std::string> lines;
+      for (const Key& key : keys)
+        lines.push_back(fmt::format("{} = {}", key.name, sample_of(entry, key, choice)));
+      SCOPED_TRACE(scene_with(lines));
+      const Scene scene = parse_scene(scene_with(lines), "s.toml");
+      EXPECT_FALSE(entry.help.empty());
+      const std::string written = scene_as_toml(scene);
+      expect_equal(scene, parse_scene(written, "s.toml"));
+      EXPECT_EQ(scene_as_toml(parse_scene(written, "s.toml")), written);
+      ++scenes;
+    }
+  });
+  EXPECT_GT(scenes, 60);
+}
+
+TEST(SchemaLaw, EveryKeyRefusesAWrongTypeByName) {
+  for_every_entry([&](const Entry& entry, const std::vector<Key>& keys, const auto& scene_with) {
+    for (const Key& wrong : keys) {
+      std::vector<std::string> lines;
+      for (const Key& key : keys)
+        lines.push_back(
+            fmt::format("{} = {}", key.name, &key == &wrong ? "1979-05-27" : sample_of(entry, key, 0)));
+      SCOPED_TRACE(scene_with(lines));
+      try {
+        parse_scene(scene_with(lines), "s.toml");
+        ADD_FAILURE() << "was accepted";
+      } catch (const Error& error) {
+        const std::string what = error.what();
+        EXPECT_NE(what.find(fmt::format("\"{}\"", wrong.name)), std::string::npos) << what;
+        EXPECT_NE(what.find("not a date or time"), std::string::npos) << what;
+        EXPECT_FALSE(wrong.help.empty());
+      }
+    }
+  });
+}
+
+TEST(SchemaLaw, EveryDefaultIsAcceptedByItsKey) {
+  for_every_entry([](const Entry& entry, const std::vector<Key>& keys, const auto&) {
+    for (const Key& key : keys)
+      EXPECT_TRUE(!key.otherwise || schema::accepts(key, *key.otherwise)) << entry.name << " " << key.name;
+  });
+}
+
+}  // namespace
+}  // namespace bernal
