@@ -60,6 +60,22 @@ INSTANTIATE_TEST_SUITE_P(
                       Row{"TwoLognormals", 2048, MIXTURE(ONE, TWO), 0.15, 0.6931, 0.0002}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
+/// In containers growth reaches what relaxation is expected to, and a hundredth more.
+TEST(GrowthInContainers, GoesBeyondWhatIsExpected) {
+  for (const char* container :
+       {"kind = \"cylinder\"\nradius = 1.0\nheight = 2.0", "kind = \"box\"\nsize = [1.4, 1.4, 1.4]",
+        "kind = \"sphere\"\nradius = 0.9"}) {
+    SCOPED_TRACE(container);
+    const std::string scene = fmt::format("[container]\n{}\n[spheres]\nradius = 0.07\n", container);
+    const std::string grow = "[[stage]]\ndo = \"grow\"\n";
+    const double expected = testing::plan_of(scene + grow).attainable_packing_fraction;
+    const Packing packing =
+        run(testing::plan_of(fmt::format("{}packing_fraction = {}\n{}", scene, expected + 0.01, grow)));
+    EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+    EXPECT_GE(packing.packing_fraction(), expected + 0.01);
+  }
+}
+
 /// Carnahan & Starling, J. Chem. Phys. 51, 635 (1969), is within 0.3 % of simulations up to 0.49. 2,000
 /// spheres, 1,600 collisions each: the mean pressure has a standard error of about 0.05 %.
 TEST(Fluid, HasThePressureOfCarnahanAndStarling) {
