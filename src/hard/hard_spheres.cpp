@@ -53,35 +53,44 @@ std::uint64_t place_on_curve(const Vector<D>& point, const Vector<D>& edges) {
   return place;
 }
 
+template <int D>
+double power(double r) {
+  double product = 1;
+  for (int k = 0; k < D; ++k) product *= r;
+  return product;
+}
+
 }  // namespace
 
 template <int D>
 HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, Random random,
-                            const CollisionKernel<D>& kernel)
-    : HardSpheres(spheres, edges, {}, random, kernel) {}
-
-template <int D>
-HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, std::vector<Wall<D>> walls,
-                            Random random, const CollisionKernel<D>& kernel)
+                            HardSphereOptions<D> options)
     : spheres_(spheres.size()),
       original_(spheres.size()),
       edges_(edges),
-      kernel_(kernel),
-      walls_(std::move(walls), edges) {
+      kernel_(options.kernel ? *options.kernel : collision_kernels<D>().front()),
+      walls_(std::move(options.walls), edges) {
   const std::size_t n = spheres.size();
-  Vector<D> drift = Vector<D>::Zero();
+  if (options.masses == Masses::by_volume) {
+    double volumes = 0;
+    for (const double r : spheres.r) volumes += power<D>(r);
+    density_ = static_cast<double>(n) / volumes;
+  }
+  Vector<D> momentum = Vector<D>::Zero();
   for (std::size_t i = 0; i < n; ++i) {
+    FlyingSphere<D>& s = spheres_[i];
+    s.r = spheres.r[i];
+    const double speed = 1 / std::sqrt(mass(s));
     for (int k = 0; k < D; ++k) {
-      spheres_[i].x[k] = spheres.x[static_cast<std::size_t>(k)][i];
-      spheres_[i].v[k] = random.uniform(-1, 1);
-      drift[k] += spheres_[i].v[k];
+      s.x[k] = spheres.x[static_cast<std::size_t>(k)][i];
+      s.v[k] = speed * random.uniform(-1, 1);
+      momentum[k] += mass(s) * s.v[k];
     }
-    spheres_[i].r = spheres.r[i];
   }
   std::iota(original_.begin(), original_.end(), 0u);
   if (walls_.empty())
     for (FlyingSphere<D>& s : spheres_)
-      for (int k = 0; k < D; ++k) s.v[k] -= drift[k] / static_cast<double>(n);
+      for (int k = 0; k < D; ++k) s.v[k] -= momentum[k] / static_cast<double>(n);
   rescale_velocities();
   mean_diameter_ = 2 * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / static_cast<double>(n);
   largest_radius_ = std::ranges::max(spheres.r);
@@ -93,10 +102,15 @@ HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, s
 }
 
 template <int D>
+double HardSpheres<D>::mass(const FlyingSphere<D>& sphere) const {
+  return density_ > 0 ? density_ * power<D>(sphere.r) : 1;
+}
+
+template <int D>
 double HardSpheres<D>::kinetic_energy() const {
   double sum = 0;
   for (const FlyingSphere<D>& s : spheres_)
-    for (int k = 0; k < D; ++k) sum += s.v[k] * s.v[k];
+    for (int k = 0; k < D; ++k) sum += mass(s) * s.v[k] * s.v[k];
   return 0.5 * sum;
 }
 
@@ -369,16 +383,19 @@ void HardSpheres<D>::collide(Id i, Id j) {
     dw += d[k] * (b.v[k] - a.v[k]);
   }
   const double distance = std::sqrt(squared);
-  // Above 0 exactly where the scan saw them come closer; never so small that it gets lost in the velocities.
+  // Half the change of the relative velocity: above 0 exactly where the scan saw them come closer, and never
+  // so small that it gets lost in the velocities.
   const double contact = radii * (size_ + growth_ * now_);
   const double kick = std::max(least_kick, (contact * radii * growth_ - dw) / distance);
+  const double mass_a = mass(a), mass_b = mass(b), share_a = 2 * mass_b / (mass_a + mass_b),
+               share_b = 2 * mass_a / (mass_a + mass_b);
   ++period_.collisions;
   for (int k = 0; k < D; ++k) {
     const double along = kick * d[k] / distance;
-    a.v[k] -= along;
-    b.v[k] += along;
+    a.v[k] -= share_a * along;
+    b.v[k] += share_b * along;
   }
-  virial_ += kick * distance;
+  virial_ += mass_a * share_a * kick * distance;
 }
 
 template <int D>
@@ -392,8 +409,8 @@ void HardSpheres<D>::reflect(Id i) {
   FlyingSphere<D>& s = spheres_[i];
   const double kick = walls_.reflect(i, s, s.r * growth_, 2 * least_kick);
   ++period_.reflections;
-  period_.wall_momentum += kick;
-  virial_ += kick * s.r * (size_ + growth_ * now_);
+  period_.wall_momentum += mass(s) * kick;
+  virial_ += mass(s) * kick * s.r * (size_ + growth_ * now_);
 }
 
 template class HardSpheres<2>;

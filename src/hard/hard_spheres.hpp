@@ -31,13 +31,29 @@ struct FlightPeriod {
   bool stopped = false;  ///< it was told to stop
 };
 
+enum class Masses {
+  equal,     ///< as in the papers
+  by_volume  ///< of one material
+};
+
+/// What `HardSpheres` may be told.
+template <int D>
+struct HardSphereOptions {
+  /// No sphere leaves the region within. Precondition: along an axis that they close, the region and a
+  /// largest diameter, at the size that spheres grow to, are no longer than the edge.
+  std::vector<Wall<D>> walls = {};
+  Masses masses = Masses::equal;
+  const CollisionKernel<D>* kernel = nullptr;  ///< the fastest if absent
+};
+
 /// Event-driven dynamics of hard spheres that grow in a periodic box or between walls in it (Lubachevsky &
-/// Stillinger; Kansal, Torquato & Stillinger): all have the same mass and fly freely until two touch; then
-/// they exchange momentum along the line of centres, elastically with respect to their growing surfaces, v_n
-/// -> 2 s' - v_n for the relative velocity v_n of centres and the growth s' of the sum of radii.
+/// Stillinger; Kansal, Torquato & Stillinger): they fly freely until two touch; then they exchange momentum
+/// along the line of centres, elastically with respect to their growing surfaces, v_n -> 2 s' - v_n for the
+/// relative velocity v_n of centres and the growth s' of the sum of radii.
 ///
 /// All radii are the given ones times `size()`, which grows linearly in time: the size distribution stays
-/// what it is. Lengths are the caller's; the unit of velocity is the thermal speed √(k T / m), to which a
+/// what it is. Lengths are the caller's; the unit of mass is the mean mass m, that of
+/// velocity the thermal speed √(k T / m), to which a
 /// period starts by rescaling all velocities wherever spheres grow. Time starts anew with each period, so
 /// that nothing is lost to the rounding of long times.
 ///
@@ -49,14 +65,10 @@ struct FlightPeriod {
 template <int D>
 class HardSpheres {
  public:
-  /// Centres in [0, edge), free of overlap at size 1; velocities are drawn uniformly, without drift: after a
-  /// few collisions they have Maxwell's distribution.
+  /// Centres in [0, edge), free of overlap at size 1 and within the walls; velocities are drawn uniformly,
+  /// without drift: after a few collisions they have Maxwell's distribution.
   HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, Random random,
-              const CollisionKernel<D>& kernel = collision_kernels<D>().front());
-  /// The same within walls that no sphere crosses at the start. Precondition: along an axis that they close,
-  /// the region and a largest diameter, at the size that spheres grow to, are no longer than the edge.
-  HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, std::vector<Wall<D>> walls, Random random,
-              const CollisionKernel<D>& kernel = collision_kernels<D>().front());
+              HardSphereOptions<D> options = {});
 
   /// Lets the spheres fly for some 16 collisions each, or until they have reached the size `largest`, or are
   /// told to stop. `growth` is that of the mean diameter over the thermal speed.
@@ -94,6 +106,7 @@ class HardSpheres {
   void collide(Id i, Id j);
   void reflect(Id i);
   void rescale_velocities();
+  double mass(const FlyingSphere<D>& sphere) const;
 
   std::vector<FlyingSphere<D>> spheres_;
   std::vector<Id> original_;  // the place of each in the caller's order
@@ -106,6 +119,7 @@ class HardSpheres {
   Walls<D> walls_;
 
   double mean_diameter_, largest_radius_;  // at size 1
+  double density_ = 0;                     // mass over radius to the power D; 0: all masses are 1
   double size_ = 1;
   double growth_ = 0;  // of the size, a unit of time
   double horizon_ = 0;

@@ -136,6 +136,7 @@ GrowOptions grow_options(const Spec& s) {
   GrowOptions options{
       .phi_init = s.number("phi_init"), .rate = s.number("rate"), .pressure = s.number("pressure")};
   if (s.has("delta")) options.delta = s.number("delta");
+  if (s.text("masses") == "volume") options.masses = Masses::by_volume;
   return options;
 }
 

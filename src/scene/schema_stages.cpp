@@ -185,6 +185,16 @@ Key jamming_pressure() {
           .range = {10, 1e13}};
 }
 
+Key masses_of_spheres() {
+  return {.name = "masses",
+          .type = Type::word,
+          .help =
+              "equal, as published; volume: as of one material, which packs denser where sizes differ "
+              "several times, if the rate is low",
+          .otherwise = "equal",
+          .words = {"equal", "volume"}};
+}
+
 Entry grow_in_container_entry() {
   return {.name = "grow",
           .help = "hard spheres fly, collide and grow to their radii, in convex containers",
@@ -203,7 +213,8 @@ Entry grow_in_container_entry() {
                .otherwise = 0.2,
                .range = {0, 0.5, true}},
               growth_rate(),
-              jamming_pressure()}};
+              jamming_pressure(),
+              masses_of_spheres()}};
 }
 
 Entry grow_in_periodic_box_entry() {
@@ -223,6 +234,7 @@ Entry grow_in_periodic_box_entry() {
                     .range = {0, 0.5, true}},
                    growth_rate(),
                    jamming_pressure(),
+                   masses_of_spheres(),
                    {.name = "polish",
                     .type = Type::number,
                     .help = "close the gaps and overlaps of all contacts to this ratio; 0: do not",

@@ -124,8 +124,8 @@ StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
   Vector<D> edges = work.edges;
   start<D>(spheres, edges, work, options.phi_init);
 
-  HardSpheres<D> flight(spheres, edges_around_walls(edges, work.walls), walls_of(work, edges),
-                        work.random(Stream::grow));
+  HardSpheres<D> flight(spheres, edges_around_walls(edges, work.walls), work.random(Stream::grow),
+                        {.walls = walls_of(work, edges), .masses = options.masses});
   const double volume = edges.prod();
   double largest = std::numeric_limits<double>::infinity();
   if (work.target_edges)

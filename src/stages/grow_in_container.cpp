@@ -199,7 +199,8 @@ class Growth {
     }
     if (flying.empty()) return growing.grown = true;
     const GrowthSchedule<3> schedule(flying, volume_of_container(), options_);
-    HardSpheres<3> flight(flying, edges_, walls_, work_.random(Stream::grow));
+    HardSpheres<3> flight(flying, edges_, work_.random(Stream::grow),
+                          {.walls = walls_, .masses = options_.masses});
     const double largest = full_size_ / growing.size;
     next_volume_ = next_squeeze_ = 0;
     FlightPeriod period;

@@ -129,7 +129,7 @@ struct Flight {
     return least;
   }
   HardSpheres<3> start(std::uint64_t seed = 1) const {
-    return {spheres, edges, walls, Random(seed, stream(Stream::test, 2))};
+    return {spheres, edges, Random(seed, stream(Stream::test, 2)), {.walls = walls}};
   }
   /// How far the worst sphere is across a wall, in radii, at the size that they have now.
   double protrusion(const HardSpheres<3>& flight) const {
