@@ -70,8 +70,8 @@ class HardSpheres {
   HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, Random random,
               HardSphereOptions<D> options = {});
 
-  /// Lets the spheres fly for some 16 collisions each, or until they have reached the size `largest`, or are
-  /// told to stop. `growth` is that of the mean diameter over the thermal speed.
+  /// Lets the spheres fly for some 16 collisions each, or until they have reached the size `largest`, have
+  /// jammed, or are told to stop. `growth` is that of the mean diameter over the thermal speed.
   FlightPeriod fly(double growth, double largest = std::numeric_limits<double>::infinity(),
                    const Monitor& monitor = {});
 

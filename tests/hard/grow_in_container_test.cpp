@@ -122,6 +122,16 @@ TEST(GrowthBetweenWalls, SurvivesSurfacesFasterThanTheSpheres) {
   EXPECT_GT(packing.packing_fraction(), 0.05);  // they have no time to make room
 }
 
+/// A handful of spheres can jam within a period that was made for a fluid; pressures scatter that much.
+TEST(GrowthBetweenWalls, ComesToAnEndWithAHandfulOfSpheres) {
+  for (int seed = 1; seed <= 10; ++seed) {
+    const Packing packing = certified(plan_of(
+        fmt::format("seed = {}\n[container]\nkind = \"cylinder\"\nradius = 1.0\nheight = 1.0\n", seed) +
+        spheres("packing_fraction = 0.5\nradius = 0.3") + grow + "rate = 0.3\npressure = 1e3"));
+    EXPECT_GT(packing.spheres.size(), 3u);
+  }
+}
+
 TEST(GrowthBetweenWalls, TakesAContainerFarFromTheOrigin) {
   const Packing packing = certified(
       plan_of("[container]\nkind = \"cylinder\"\nradius = 2.0\nheight = 5.0\naxis = [1.0, 2.0, 3.0]\n"
