@@ -91,7 +91,7 @@ HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, R
     }
   }
   std::iota(original_.begin(), original_.end(), 0u);
-  if (walls_.empty())
+  if (walls_.empty() && n > 1)
     for (FlyingSphere<D>& s : spheres_)
       for (int k = 0; k < D; ++k) s.v[k] -= momentum[k] / static_cast<double>(n);
   rescale_velocities();

@@ -52,21 +52,21 @@ struct HardSphereOptions {
 /// relative velocity v_n of centres and the growth s' of the sum of radii.
 ///
 /// All radii are the given ones times `size()`, which grows linearly in time: the size distribution stays
-/// what it is. Lengths are the caller's; the unit of mass is the mean mass m, that of
-/// velocity the thermal speed √(k T / m), to which a
-/// period starts by rescaling all velocities wherever spheres grow. Time starts anew with each period, so
-/// that nothing is lost to the rounding of long times.
+/// what it is. Lengths are the caller's; the unit of mass is the mean mass m, that of velocity the thermal
+/// speed √(k T / m), to which a period starts by rescaling all velocities wherever spheres grow. Time starts
+/// anew with each period, so that nothing is lost to the rounding of long times.
 ///
 /// Invariant: at the end of a period no two spheres overlap by more than rounding, about 1e-15 edges.
-/// Precondition: `has_room`, no period may start without; 2 spheres or more, or one between walls.
+/// Precondition: `has_room`, no period may start without; there are spheres.
 /// Cost: for 10,000 equal spheres 0.8 µs a collision in a fluid, 0.5 near jamming; twice that for lognormal
-/// sizes of sigma 0.5 and for 100,000 spheres, which wait for the memory. Memory about 400 bytes a
-/// sphere. One thread; the same bits on every x86-64.
+/// sizes of sigma 0.5 and for 100,000 spheres, which wait for the memory. Memory about 400 bytes a sphere.
+/// One thread; the same bits on every x86-64.
 template <int D>
 class HardSpheres {
  public:
   /// Centres in [0, edge), free of overlap at size 1 and within the walls; velocities are drawn uniformly,
-  /// without drift: after a few collisions they have Maxwell's distribution.
+  /// without drift unless there are walls or only one sphere: after a few collisions they have Maxwell's
+  /// distribution.
   HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, Random random,
               HardSphereOptions<D> options = {});
 

@@ -18,8 +18,8 @@ namespace bernal {
 /// Invariant: two spheres are neighbours, each in the list of the other, if their homes are nearer than the
 /// sum of their radii and freedoms, minimum image, and only if they are not farther than that by more than
 /// rounding to single precision. Cost: `build` and `settle` about 1 µs a sphere where sizes are alike; memory
-/// about 300 bytes a sphere. Source: Donev, Torquato & Stillinger, J.
-/// Comput. Phys. 202, 737 (2005), with shells of their own size.
+/// about 300 bytes a sphere. Source: Donev, Torquato & Stillinger, J. Comput. Phys. 202, 737 (2005), with
+/// shells of their own size.
 template <int D>
 class Shells {
  public:

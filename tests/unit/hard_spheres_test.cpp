@@ -103,6 +103,14 @@ TEST(HardSpheres, NeverOverlapWhereTheyGrowFasterThanTheyFly) {
   grow_until_jammed<3>(lognormal_radii(300, 0.3), 0.1, 3.0);
 }
 
+/// It meets nobody, but has to get to the size, or to where the box has no more room.
+TEST(HardSpheres, LetOneSphereGrowAlone) {
+  const Gas<3> gas(equal_radii(1), 0.001);
+  HardSpheres<3> flight(gas.spheres, gas.edges, velocities());
+  for (int k = 0; k < 100 && flight.size() < 2; ++k) flight.fly(0.1, 2);
+  EXPECT_EQ(flight.size(), 2);
+}
+
 TEST(HardSpheres, StopAtTheSizeThatIsAskedFor) {
   const Gas<3> gas(equal_radii(300), 0.2);
   HardSpheres<3> flight(gas.spheres, gas.edges, velocities());
