@@ -18,8 +18,9 @@ constexpr double collisions_a_period = 16;
 /// A period after one that gained more kinetic energy than this is shorter.
 constexpr double most_heating = 0.1;
 constexpr double fastest_change_of_duration = 4;
-/// Of the first period, a mean diameter: short enough for spheres that are jammed from the start.
-constexpr double first_duration = 1e-6;
+/// Of the first period, a mean diameter, for each sphere: a few collisions in all, so that it hardly matters
+/// to spheres that are jammed from the start, but not so short that a single collision looks like pressure.
+constexpr double first_duration = 1;
 /// Of the size, in a period.
 constexpr double most_growth = 0.1;
 /// Of a sphere, some thirty times what a period is made for: few spheres that jam in the midst of one would
@@ -29,7 +30,7 @@ constexpr std::uint64_t most_events_a_period = 400;
 constexpr std::uint64_t events_a_look = 4096;
 /// Of the thermal speed: what a collision changes at least.
 constexpr double least_kick = 1e-14;
-/// Events in the calendar for each collision: sphere that look again, sphere that leave.
+/// Events in the calendar for each collision: spheres that look again, spheres that leave.
 constexpr double events_a_collision = 1.8;
 constexpr double events_a_bin = 1;
 /// Bins of the calendar between two steps of asking the memory for what events will need.
@@ -133,7 +134,7 @@ void HardSpheres<D>::write_to(Spheres<D>& spheres) const {
 
 template <int D>
 double HardSpheres<D>::duration(double growth, double largest) const {
-  double time = first_duration * mean_diameter_ * size_;
+  double time = first_duration * mean_diameter_ * size_ / static_cast<double>(count());
   if (period_.time > 0) {
     const double rate = static_cast<double>(2 * period_.collisions + period_.reflections) /
                         (static_cast<double>(count()) * period_.time);
