@@ -32,6 +32,8 @@ constexpr double most_of_attainable = 1.1;
 constexpr double caution = 5e-4;
 constexpr int most_trims = 8;
 constexpr double shrinkage = 0.07;
+/// Compressibility at which a sphere alone has no room left: it is within 1e-12 of the largest that fits.
+constexpr double until_it_is_tight = 1e13;
 /// Of the skin: room for rounding beyond it.
 constexpr double room_for_rounding = 0.01;
 /// Room beside the container in the periodic box around it, in largest diameters: no sphere meets an image
@@ -87,7 +89,7 @@ class Growth {
       Growing more = growing;
       while (more.spheres.size() < count) more.add(radius_of(more.spheres.size()));
       insert_at_random(more);
-      const bool jammed = !grow(more);
+      const bool jammed = !grow(more, options_);
       if (jammed) trim_and_grow(more);
       if (first || (more.grown && more.spheres.size() > growing.spheres.size())) growing = std::move(more);
       if (jammed || growing.spheres.size() >= wanted) break;
@@ -112,14 +114,15 @@ class Growth {
   double radius_of(std::size_t tag) const { return work_.supply.radius(static_cast<std::uint32_t>(tag)); }
 
   /// A sphere alone grows until it touches the walls on all sides: then it is the largest that fits, as the
-  /// container is convex. Of analytic containers that is known beforehand.
+  /// container is convex, whatever the pressure at which the stage is to end. Of analytic containers that is
+  /// known beforehand.
   void require_fitting() {
     if (!std::holds_alternative<Mesh>(work_.shape)) return;
     Growing largest;
     largest.is_told = false;
     largest.add(work_.supply.largest());
     insert_at_random(largest);
-    if (grow(largest) || cancelled_) return;
+    if (grow(largest, {.pressure = until_it_is_tight}) || cancelled_) return;
     throw Error(
         ErrorCode::bad_scene,
         fmt::format("a sphere does not fit into the container even if it is only {:.6g} times as large "
@@ -190,7 +193,7 @@ class Growth {
   }
 
   /// Lets them fly and grow until they have their radii, or jam. Returns whether they have.
-  bool grow(Growing& growing) {
+  bool grow(Growing& growing, const GrowOptions& options) {
     const EffectTimer timer(work_.effects["growth"]);
     Spheres<3> flying = growing.spheres;
     for (std::size_t i = 0; i < flying.size(); ++i) {
@@ -198,13 +201,13 @@ class Growth {
       flying.set_center(i, flying.center(i) + to_box_);
     }
     if (flying.empty()) return growing.grown = true;
-    const GrowthSchedule<3> schedule(flying, volume_of_container(), options_);
+    const GrowthSchedule<3> schedule(flying, volume_of_container(), options);
     HardSpheres<3> flight(flying, edges_, work_.random(Stream::grow),
-                          {.walls = walls_, .masses = options_.masses});
+                          {.walls = walls_, .masses = options.masses});
     const double largest = full_size_ / growing.size;
     next_volume_ = next_squeeze_ = 0;
     FlightPeriod period;
-    while (flight.size() < largest && period.compressibility < options_.pressure) {
+    while (flight.size() < largest && period.compressibility < options.pressure) {
       period = flight.fly(schedule.at(period.compressibility), largest, work_.monitor);
       log(period);
       cancelled_ = period.stopped;
@@ -225,7 +228,7 @@ class Growth {
       const std::size_t fitting = work_.supply.count_filling((1 - spare) * growing.volume());
       growing.spheres.resize(std::min(fitting, growing.spheres.size()) - 1);
       growing.size *= 1 - shrinkage;
-      grow(growing);
+      grow(growing, options_);
     }
   }
 

@@ -175,9 +175,9 @@ TEST(GrowthBetweenWalls, KnowsTheWallsOfPeriodicBoxes) {
 }
 
 TEST(GrowthBetweenWalls, RefusesWhatItCannotDo) {
-  const auto in_mesh = [](const Mesh& mesh, const std::string& lines) {
+  const auto in_mesh = [](const Mesh& mesh, const std::string& lines, const std::string& more = "") {
     try {
-      run(plan_of(cube + spheres(lines) + grow, mesh));
+      run(plan_of(cube + spheres(lines) + grow + more, mesh));
     } catch (const Error& error) {
       return std::string(error.what());
     }
@@ -189,6 +189,7 @@ TEST(GrowthBetweenWalls, RefusesWhatItCannotDo) {
   EXPECT_NE(in_mesh(test::prism_mesh(3, 1, 2), "count = 10\nradius = 0.51").find("does not fit"),
             std::string::npos);
   EXPECT_EQ(in_mesh(test::prism_mesh(3, 1, 2), "count = 2\nradius = 0.49"), "");
+  EXPECT_EQ(in_mesh(test::prism_mesh(3, 1, 2), "count = 2\nradius = 0.49", "pressure = 10"), "");
   EXPECT_NE(error_of(cube + spheres("fill = true\nradius = 0.1") + grow + "polish = 1e-9").find("polish"),
             std::string::npos);
 }
