@@ -146,10 +146,12 @@ class Growth {
   void insert_at_random(Growing& growing) {
     const EffectTimer timer(work_.effects["insertion"]);
     const double filled = volume_of(growing.spheres) / volume_of_container();
-    for (double phi = options_.phi_init; phi > least_phi_init; phi /= 2) {
+    double phi = options_.phi_init;
+    do {
       growing.size = std::min(largest_start, std::cbrt(phi / filled));
       if (try_to_insert(growing)) return;
-    }
+      phi /= 2;
+    } while (phi > least_phi_init);
     throw Error(
         ErrorCode::bad_scene,
         "grow cannot start: random insertion found no place for one of the spheres even where they are "

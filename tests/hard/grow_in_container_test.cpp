@@ -116,6 +116,13 @@ TEST(GrowthBetweenWalls, GoesOnFromWhatIsThere) {
   EXPECT_EQ(again.spheres, packing.spheres);
 }
 
+/// Spheres that start as specks find places.
+TEST(GrowthBetweenWalls, StartsAsThinAsItIsTold) {
+  const Packing packing =
+      certified(plan_of(cube + spheres("count = 50\nradius = 0.1") + grow + "phi_init = 1e-7"));
+  EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+}
+
 TEST(GrowthBetweenWalls, SurvivesSurfacesFasterThanTheSpheres) {
   const Packing packing =
       certified(plan_of(cube + spheres("fill = true\nradius = 0.06") + grow + "delta = 100"));
