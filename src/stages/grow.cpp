@@ -13,6 +13,7 @@
 #include "stages/finish_in_periodic_box.hpp"
 #include "stages/free_of_overlap.hpp"
 #include "stages/growth_schedule.hpp"
+#include "stages/resize_box.hpp"
 
 namespace bernal {
 namespace {
@@ -101,6 +102,10 @@ void require_room(const Spheres<D>& spheres, const Vector<D>& box, const std::ve
 template <int D>
 void start(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, double phi_init) {
   if (work.placed) {
+    if (work.allowed_overlap > 0) {  // other stages may leave some
+      const Vector<D> free = edges_free_of_overlap<D>(spheres, edges, 0, work.walls);
+      if (free[0] > edges[0]) resize_box<D>(spheres, edges, free);
+    }
     require_room<D>(spheres, edges, work.walls);
     return;
   }

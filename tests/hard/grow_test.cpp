@@ -106,6 +106,15 @@ TEST(Growth, CompressesWhatRelaxationLeaves) {
   EXPECT_LT(packing.packing_fraction(), relaxed.packing_fraction() + 0.01);
 }
 
+/// Hard spheres cannot start where others left them overlapping, as the scene allows: the box makes room.
+TEST(Growth, StartsFromSpheresThatOverlap) {
+  const Packing packing = grown("[accuracy]\noverlap = 1e-3\n" +
+                                scene("", "count = 300\nradius = 0.5", "rate = 0.1\npressure = 1e4",
+                                      "[[stage]]\ndo = \"relax\"\nalpha = 2\n"));
+  EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+  EXPECT_GT(packing.packing_fraction(), 0.6);
+}
+
 /// Jammed to the last digits: many gaps are zero, and some are negative by rounding.
 TEST(Growth, StartsFromSpheresThatTouch) {
   const Packing packing = grown(scene("", "count = 216\nradius = 1.0", "pressure = 1e8",
