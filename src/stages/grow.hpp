@@ -45,8 +45,8 @@ struct GrowOptions {
 /// | by volume, rate 0.01    |        | -0.015 | -0.021 | -0.014 |        |        |        |
 /// | by volume, rate 0.0025  |        | -0.011 | -0.015 | -0.010 |        |        |        |
 ///
-/// Up to 0.15 the model's value is what large spheres alone at random close packing would leave, 0.6435 / (1
-/// - small): no small sphere may then keep two large ones apart.
+/// At 0.15 a rate of 0.0006 gives -0.014. Up to there the model's value is what large spheres alone at random
+/// close packing would leave, 0.6435 over their share: no small sphere may then keep two large ones apart.
 ///
 /// Ends `converged` jammed or where the target is reached; `hit_limit` where the box has become too narrow
 /// for the minimum image: 2.5 of the largest diameters, but along axes with walls. Throws Error{bad_scene} if

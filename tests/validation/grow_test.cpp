@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 #include <string>
 
 #include <fmt/format.h>
@@ -22,6 +23,8 @@ struct Row {
   const char* diameter;
   double phi_init;
   double phi, error;  ///< of the paper's KTS, and three repeats' standard error
+
+  friend std::ostream& operator<<(std::ostream& out, const Row& row) { return out << row.diameter; }
 };
 
 class FarrTable2 : public ::testing::TestWithParam<Row> {};
@@ -69,6 +72,8 @@ struct Mixture {
   const char* name;
   const char* radius;
   const char* stage;
+
+  friend std::ostream& operator<<(std::ostream& out, const Mixture& mixture) { return out << mixture.radius; }
 };
 
 class RodModel : public ::testing::TestWithParam<Mixture> {};
