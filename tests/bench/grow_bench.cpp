@@ -151,11 +151,13 @@ BERNAL_GROW(lognormal_0_5, "",
             "count = 10000\nradius = { distribution = \"lognormal\", median = 1.0, sigma = 0.5 }\ndraw = "
             "\"quantiles\"\n",
             "pressure = 1e4\n");
-BERNAL_GROW(
-    one_to_five, "",
-    "count = 10000\nradius = { distribution = \"classes\", values = [5.0, 1.0], shares = [79, 21], basis = "
-    "\"volume\" }\ndraw = \"quantiles\"\n",
-    "pressure = 1e4\n");
+#define ONE_TO_FIVE(large, small)                                                                          \
+  "count = 10000\nradius = { distribution = \"classes\", values = [5.0, 1.0], shares = [" large ", " small \
+  "], basis = \"volume\" }\ndraw = \"quantiles\"\n"
+BERNAL_GROW(one_to_five_half_small, "", ONE_TO_FIVE("50", "50"), "pressure = 1e4\n");
+BERNAL_GROW(one_to_five_a_fifth_small, "", ONE_TO_FIVE("79", "21"), "pressure = 1e4\n");
+BERNAL_GROW(one_to_five_a_fifth_small_with_patience, "", ONE_TO_FIVE("79", "21"),
+            "pressure = 1e4\nmasses = \"volume\"\nrate = 0.0025\n");
 BERNAL_GROW(isostatic, "", "count = 1000\nradius = 1.0\n", "pressure = 1e4\npolish = 1e-10\n");
 
 }  // namespace
