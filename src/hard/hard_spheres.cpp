@@ -6,6 +6,7 @@
 
 #include "bernal/core/tolerance.hpp"
 #include "bernal/domain/boundary.hpp"
+#include "hard/place_on_curve.hpp"
 #include "hard/prefetch.hpp"
 
 namespace bernal {
@@ -44,26 +45,6 @@ constexpr double change_of_freedom = 1.3;
 /// What lists leave for growth, of the shells.
 constexpr double room_to_grow = 0.25;
 
-/// Where a point lies on a Z-order curve through the box: points that are near each other in space come to
-/// lie near each other on it.
-template <int D>
-std::uint64_t place_on_curve(const Vector<D>& point, const Vector<D>& edges) {
-  constexpr int bits = 63 / D;
-  std::uint64_t place = 0;
-  for (int k = 0; k < D; ++k) {
-    const auto at = static_cast<std::uint64_t>(std::ldexp(point[k] / edges[k], bits));
-    for (int bit = 0; bit < bits; ++bit) place |= (at >> bit & 1) << (bit * D + k);
-  }
-  return place;
-}
-
-template <int D>
-double power(double r) {
-  double product = 1;
-  for (int k = 0; k < D; ++k) product *= r;
-  return product;
-}
-
 }  // namespace
 
 template <int D>
@@ -76,19 +57,20 @@ HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, R
       walls_(std::move(options.walls), edges) {
   const std::size_t n = spheres.size();
   if (options.masses == Masses::by_volume) {
+    density_ = 1;
     double volumes = 0;
-    for (const double r : spheres.r) volumes += power<D>(r);
+    for (const double r : spheres.r) volumes += mass(r);
     density_ = static_cast<double>(n) / volumes;
   }
   Vector<D> momentum = Vector<D>::Zero();
   for (std::size_t i = 0; i < n; ++i) {
     FlyingSphere<D>& s = spheres_[i];
     s.r = spheres.r[i];
-    const double speed = 1 / std::sqrt(mass(s));
+    const double speed = 1 / std::sqrt(mass(s.r));
     for (int k = 0; k < D; ++k) {
       s.x[k] = spheres.x[static_cast<std::size_t>(k)][i];
       s.v[k] = speed * random.uniform(-1, 1);
-      momentum[k] += mass(s) * s.v[k];
+      momentum[k] += mass(s.r) * s.v[k];
     }
   }
   std::iota(original_.begin(), original_.end(), 0u);
@@ -106,15 +88,10 @@ HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, R
 }
 
 template <int D>
-double HardSpheres<D>::mass(const FlyingSphere<D>& sphere) const {
-  return density_ > 0 ? density_ * power<D>(sphere.r) : 1;
-}
-
-template <int D>
 double HardSpheres<D>::kinetic_energy() const {
   double sum = 0;
   for (const FlyingSphere<D>& s : spheres_)
-    for (int k = 0; k < D; ++k) sum += mass(s) * s.v[k] * s.v[k];
+    for (int k = 0; k < D; ++k) sum += mass(s.r) * s.v[k] * s.v[k];
   return 0.5 * sum;
 }
 
@@ -274,7 +251,10 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   listed_departures_ += period_.departures;
   period_.time = horizon_;
   period_.heating = kinetic_energy() / energy - 1;
-  if (horizon_ > 0) period_.compressibility = 1 + virial_ / (2 * energy * horizon_);
+  if (horizon_ > 0)
+    period_.compressibility = 1 + virial_ / (2 * energy * horizon_);
+  else if (period_.collisions + period_.reflections > 0)
+    period_.compressibility = infinite;  // they cannot get apart
   return period_;
 }
 
@@ -395,7 +375,7 @@ void HardSpheres<D>::collide(Id i, Id j) {
   // so small that it gets lost in the velocities.
   const double contact = radii * (size_ + growth_ * now_);
   const double kick = std::max(least_kick, (contact * radii * growth_ - dw) / distance);
-  const double mass_a = mass(a), mass_b = mass(b), share_a = 2 * mass_b / (mass_a + mass_b),
+  const double mass_a = mass(a.r), mass_b = mass(b.r), share_a = 2 * mass_b / (mass_a + mass_b),
                share_b = 2 * mass_a / (mass_a + mass_b);
   ++period_.collisions;
   for (int k = 0; k < D; ++k) {
@@ -417,8 +397,8 @@ void HardSpheres<D>::reflect(Id i) {
   FlyingSphere<D>& s = spheres_[i];
   const double kick = walls_.reflect(i, s, s.r * growth_, 2 * least_kick);
   ++period_.reflections;
-  period_.wall_momentum += mass(s) * kick;
-  virial_ += mass(s) * kick * s.r * (size_ + growth_ * now_);
+  period_.wall_momentum += mass(s.r) * kick;
+  virial_ += mass(s.r) * kick * s.r * (size_ + growth_ * now_);
 }
 
 template class HardSpheres<2>;

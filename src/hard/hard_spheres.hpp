@@ -106,7 +106,12 @@ class HardSpheres {
   void collide(Id i, Id j);
   void reflect(Id i);
   void rescale_velocities();
-  double mass(const FlyingSphere<D>& sphere) const;
+  double mass(double r) const {
+    if (density_ == 0) return 1;
+    double mass = density_;
+    for (int k = 0; k < D; ++k) mass *= r;
+    return mass;
+  }
 
   std::vector<FlyingSphere<D>> spheres_;
   std::vector<Id> original_;  // the place of each in the caller's order
