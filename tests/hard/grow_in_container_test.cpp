@@ -9,12 +9,14 @@
 #include "bernal/verify/certificate.hpp"
 #include "support/meshes.hpp"
 #include "support/plans.hpp"
+#include "support/refusals.hpp"
 
 // Growth in containers where there is hardly room, very little to hold on to, or too much asked for: what is
 // there is certified by rational arithmetic, and what is not is said.
 namespace bernal {
 namespace {
 
+using testing::error_of;
 using testing::plan_of;
 
 const std::string grow = "\n[[stage]]\ndo = \"grow\"\n";
@@ -30,16 +32,6 @@ Packing certified(const Plan& plan, Monitor monitor = {}) {
   const Certificate certificate = certify(packing.spheres, packing.domain, 0, Arithmetic::exact);
   EXPECT_TRUE(certificate.certified) << certificate.statement;
   return packing;
-}
-
-std::string error_of(const std::string& toml) {
-  try {
-    run(plan_of(toml));
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_scene);
-    return error.what();
-  }
-  return "";
 }
 
 TEST(GrowthBetweenWalls, FillsAContainerWithOneSphere) {

@@ -11,6 +11,7 @@
 #include "bernal/measure/measure.hpp"
 #include "support/nearest_images.hpp"
 #include "support/plans.hpp"
+#include "support/refusals.hpp"
 
 // Growth where there are few spheres, narrow boxes, spheres that touch from the start, extreme sizes or
 // extreme speeds: it ends by itself, radii are the drawn ones to the bit, and nothing overlaps by rational
@@ -18,6 +19,7 @@
 namespace bernal {
 namespace {
 
+using testing::error_of;
 using testing::plan_of;
 
 std::string scene(const std::string& box, const std::string& spheres, const std::string& stage = "",
@@ -38,16 +40,6 @@ Packing grown(const std::string& toml, Monitor monitor = {}) {
     EXPECT_EQ(oracle::overlapping_pairs<D>(packing.spheres.in<D>(), edges), 0u);
   });
   return packing;
-}
-
-std::string error_of(const std::string& toml) {
-  try {
-    run(plan_of(toml));
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_scene);
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Growth, JamsInEveryDimensionThatItKnows) {
