@@ -8,7 +8,7 @@
 #include "run/catalogue.hpp"
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
-#include "stages/grow_in_container.hpp"
+#include "hard/grow_in_container.hpp"
 
 namespace bernal {
 namespace {

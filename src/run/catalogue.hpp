@@ -9,8 +9,8 @@
 #include "bernal/run/run.hpp"
 #include "bernal/scene/scene.hpp"
 #include "bernal/sizes/size_distribution.hpp"
-#include "stages/periodic_work.hpp"
-#include "stages/work.hpp"
+#include "work/periodic_work.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 

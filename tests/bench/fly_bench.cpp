@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
-#include "stages/fly_events.hpp"
-#include "stages/fly_patent.hpp"
+#include "fly/fly_events.hpp"
+#include "fly/fly_patent.hpp"
 
 namespace {
 

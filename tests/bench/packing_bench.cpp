@@ -6,7 +6,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/random.hpp"
-#include "stages/slide.hpp"
+#include "settle/slide.hpp"
 #include "support/meshes.hpp"
 #include "support/plans.hpp"
 #include "support/scenes.hpp"

@@ -8,9 +8,9 @@
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/verify/certificate.hpp"
-#include "stages/fly.hpp"
-#include "stages/fly_events.hpp"
-#include "stages/fly_patent.hpp"
+#include "fly/fly.hpp"
+#include "fly/fly_events.hpp"
+#include "fly/fly_patent.hpp"
 #include "support/nearest_images.hpp"
 #include "support/plans.hpp"
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
-#include "stages/relax.hpp"
+#include "soft/relax.hpp"
 #include "support/nearest_images.hpp"
 #include "support/plans.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bernal/core/dimension.hpp"
-#include "stages/fill.hpp"
+#include "fly/fill_by_classes.hpp"
 
 namespace bernal::testing {
 

@@ -1,4 +1,4 @@
-#include "stages/crowd.hpp"
+#include "soft/crowd.hpp"
 
 #include <gtest/gtest.h>
 

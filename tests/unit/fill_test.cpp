@@ -1,4 +1,4 @@
-#include "stages/fill.hpp"
+#include "fly/fill_by_classes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "stages/free_of_overlap.hpp"
+#include "work/free_of_overlap.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <type_traits>
 
-#include "stages/resize_box.hpp"
+#include "work/resize_box.hpp"
 #include "support/nearest_images.hpp"
 
 // How far a box must grow: against all pairs, and proved with rational numbers.

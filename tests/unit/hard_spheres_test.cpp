@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "stages/free_of_overlap.hpp"
+#include "work/free_of_overlap.hpp"
 #include "support/flights.hpp"
 
 namespace bernal {

@@ -1,4 +1,4 @@
-#include "stages/holes.hpp"
+#include "work/holes.hpp"
 
 #include <gtest/gtest.h>
 

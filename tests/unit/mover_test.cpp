@@ -1,11 +1,11 @@
-#include "stages/mover.hpp"
+#include "settle/mover.hpp"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
 #include "bernal/core/random.hpp"
 #include "kernels/first_contact.hpp"
-#include "stages/slide.hpp"
+#include "settle/slide.hpp"
 #include "support/containers.hpp"
 
 // Bed and Mover against brute force: every sphere, every facet, no list, no grid, no box.

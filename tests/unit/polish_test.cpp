@@ -3,7 +3,7 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
-#include "stages/polish.hpp"
+#include "jam/polish.hpp"
 #include "support/plans.hpp"
 
 // What a polish promises: contacts that are closed to its tolerance, and no more of them than hold the

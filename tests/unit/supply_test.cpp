@@ -1,4 +1,4 @@
-#include "stages/supply.hpp"
+#include "work/supply.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "stages/trust_region.hpp"
+#include "jam/trust_region.hpp"
 
 // The step of a quadratic function whose Hessian is so badly conditioned that conjugate gradients take
 // hundreds of products.

@@ -1,0 +1,260 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "bernal/core/random.hpp"
+#include "bernal/core/tolerance.hpp"
+#include "neighbors/partial_grid.hpp"
+#include "work/periodic_work.hpp"
+
+namespace bernal {
+
+/// Spheres that fly through a box and the queue of those that have no place in it yet, sorted from large to
+/// small: what the patent's procedure and the event-driven one share. Whole arrays, one column an axis.
+///
+/// Spheres keep a distance of (1 + margin)(ri + rj), so that rounding, which is far smaller than the margin,
+/// leaves none overlapping at its own radius. Between two walls a sphere keeps (1 + margin) r from each.
+///
+/// Pairs whose surfaces are nearer than `skin` are listed; the list holds until a sphere has flown half of
+/// that. A pair stands once, however many of its images meet.
+template <int D>
+class FlyingSpheres {
+ public:
+  using Id = std::uint32_t;
+  using Columns = Eigen::Array<double, Eigen::Dynamic, D>;
+  struct Pair {
+    Id first, second;
+  };
+
+  /// Precondition: every sphere has room in the box for itself. `axes` as PartialGrid's.
+  FlyingSpheres(const PeriodicWork& work, int axes = PartialGrid<D>::automatic)
+      : edges_(*work.target_edges),
+        drawn_(work.spheres.r),
+        margin_(std::max(1e-10, 4 * tolerance::growth(edges_.maxCoeff() / std::ranges::min(drawn_)))),
+        queue_(drawn_.size()),
+        mean_radius_(std::accumulate(drawn_.begin(), drawn_.end(), 0.0) / static_cast<double>(drawn_.size())),
+        smallest_(std::ranges::min(drawn_)),
+        largest_(std::ranges::max(drawn_)),
+        skin_(std::min(0.3, 0.6 / D) * 2 * mean_radius_),
+        axes_(axes) {
+    for (int k = 0; k < D; ++k) repeats_[k] = !work.has_wall(k);
+    std::iota(queue_.begin(), queue_.end(), Id{0});
+    std::ranges::stable_sort(queue_, [&](Id a, Id b) { return drawn_[a] > drawn_[b]; });
+    for (const double r : drawn_) whole_volume_ += std::pow(r / mean_radius_, D);
+    const auto n = static_cast<Eigen::Index>(drawn_.size());
+    x.resize(n, D);
+    v.resize(n, D);
+    sort();
+  }
+
+  std::size_t size() const { return tags_.size(); }
+  std::size_t wanted() const { return drawn_.size(); }
+  /// Sizes that wait, from large to small.
+  const std::vector<Id>& queue() const { return queue_; }
+  double waiting_radius(std::size_t place) const { return drawn_[queue_[place]]; }
+  double volume() const { return volume_; }
+
+  double radius(Id i) const { return r_[i]; }
+  double mass(Id i) const { return mass_[i]; }
+  double mean_radius() const { return mean_radius_; }
+  double smallest_radius() const { return smallest_; }
+  double skin() const { return skin_; }
+  double margin() const { return margin_; }
+  double edge(int k) const { return edges_[k]; }
+  bool repeats(int k) const { return repeats_[k]; }
+  /// Where the centre of sphere i can be between two walls.
+  double low(double r) const { return (1 + margin_) * r; }
+  double high(int k, double r) const { return edges_[k] - (1 + margin_) * r; }
+  double contact(Id i, Id j) const { return (1 + margin_) * (r_[i] + r_[j]); }
+
+  auto places() { return x.topRows(static_cast<Eigen::Index>(size())); }
+  auto velocities() { return v.topRows(static_cast<Eigen::Index>(size())); }
+  Vector<D> center(Id i) const { return x.row(i).transpose().matrix(); }
+  Vector<D> velocity(Id i) const { return v.row(i).transpose().matrix(); }
+  void set_velocity(Id i, const Vector<D>& w) { v.row(i) = w.transpose().array(); }
+  /// Of a displacement within the box, the nearest image.
+  Vector<D> nearest(Vector<D> d) const {
+    for (int k = 0; k < D; ++k)
+      if (repeats_[k] && std::abs(d[k]) > 0.5 * edges_[k]) d[k] -= std::copysign(edges_[k], d[k]);
+    return d;
+  }
+  /// Whether a pair can meet in more than one place at a time.
+  bool is_small() const {
+    for (int k = 0; k < D; ++k)
+      if (repeats_[k] && edges_[k] < 4 * largest_ + 2 * skin_) return true;
+    return false;
+  }
+  /// Two that touch rebound elastically, in proportion to their volumes.
+  void collide(Id i, Id j) { collide(i, j, nearest(center(i) - center(j))); }
+  /// The same for an image, `d` being the way from j to i.
+  void collide(Id i, Id j, const Vector<D>& d) {
+    const double approach = d.dot(velocity(i) - velocity(j));
+    const Vector<D> impulse = d * (2 * approach / (d.squaredNorm() * (mass_[i] + mass_[j])));
+    set_velocity(i, velocity(i) - mass_[j] * impulse);
+    set_velocity(j, velocity(j) + mass_[i] * impulse);
+  }
+  double kinetic_energy() const {
+    double sum = 0;
+    for (Id i = 0; i < size(); ++i) sum += 0.5 * mass_[i] * v.row(i).square().sum();
+    return sum;
+  }
+
+  const std::vector<Pair>& pairs() const { return pairs_; }
+  /// Takes centres that have left the box to their images in it.
+  void wrap_all() {
+    for (std::size_t i = 0; i < size(); ++i)
+      for (int k = 0; k < D; ++k) wrap(x(static_cast<Eigen::Index>(i), k), k);
+  }
+  /// Lists the near pairs of all. Centres are at most half an edge outside the box.
+  void sort() {
+    grid_.emplace(edges_, repeats_, 2 * largest_ + skin_, 0.5 * skin_, std::max<std::size_t>(size(), 64),
+                  axes_);
+    grid_->set_largest(largest_);
+    grid_->sort(x, r_, size());
+    pairs_.clear();
+    for (Id i = 0; i < size(); ++i) {
+      grid_->for_each_near(center(i), r_[i] + skin_, [&](Id j, double) {
+        if (j > i) pairs_.push_back({i, j});
+      });
+    }
+  }
+  /// Tells the grid where all are now; to be called before places are looked for.
+  void update() {
+    if (is_worn()) sort();
+    grid_->update(x);
+  }
+  /// Whether so many are new that all should be sorted again.
+  bool is_worn() const { return grid_->unsorted() > 64 + size() / 16; }
+
+  Vector<D> random_place(double r, Random& random) const {
+    Vector<D> c;
+    for (int k = 0; k < D; ++k)
+      c[k] = repeats_[k] ? random.uniform(0, edges_[k]) : random.uniform(low(r), high(k, r));
+    return c;
+  }
+  /// Whether a sphere has room there.
+  bool is_free(const Vector<D>& c, double r) const {
+    return !grid_->any_near(c, r + 2 * margin_ * largest_, [&](Id j, double squared) {
+      const double limit = (1 + margin_) * (r + r_[j]);
+      return squared < limit * limit;
+    });
+  }
+  /// Moves the centre away from what it overlaps, a few times. Returns whether it has room then.
+  bool push_into_room(Vector<D>& c, double r, int pushes) const {
+    const double wide = (1 + 1e-6) * r;  // so that a push ends beyond contact and not in it
+    for (int push = 0;; ++push) {
+      Vector<D> way = Vector<D>::Zero();
+      int met = 0;
+      double deepest = 0;
+      grid_->for_each_near(c, wide + 2e-6 * largest_, [&](Id j, double squared) {
+        const double limit = (1 + 1e-6) * (r + r_[j]);
+        if (!(squared < limit * limit)) return;
+        const double d = std::sqrt(squared);
+        deepest = std::max(deepest, limit - d);
+        ++met;
+        if (d > 0) way += nearest(c - center(j)) * (limit / d - 1);
+      });
+      if (met == 0) return is_free(c, r);
+      if (push == pushes || !(way.squaredNorm() > 1e-4 * deepest * deepest)) return false;
+      c += way;
+      for (int k = 0; k < D; ++k) {
+        wrap(c[k], k);
+        if (!repeats_[k]) c[k] = std::clamp(c[k], low(r), high(k, r));
+      }
+    }
+  }
+  /// Tries `batch` random places, in turn for the largest that wait: those within a tenth of the very
+  /// largest, so that no smaller one takes their room. find_room(c, r) says whether a sphere has room at c,
+  /// which it may move; placed(c) is called when it has been put there.
+  template <class FindRoom, class Placed>
+  std::size_t insert(std::size_t batch, Random& random, FindRoom&& find_room, Placed&& placed) {
+    const std::size_t before = size();
+    std::size_t place = 0, eligible = 0;
+    for (; batch > 0 && !queue_.empty(); --batch) {
+      if (eligible == 0) {
+        const double least = 0.9 * drawn_[queue_.front()];
+        eligible = static_cast<std::size_t>(
+            std::ranges::partition_point(queue_, [&](Id tag) { return drawn_[tag] >= least; }) -
+            queue_.begin());
+      }
+      if (place >= eligible) place = 0;
+      const double r = drawn_[queue_[place]];
+      Vector<D> c = random_place(r, random);
+      if (find_room(c, r)) {
+        accept(place, c, random);
+        placed(c);
+        --eligible;
+        in_vain_ = 0;
+      } else {
+        ++place;
+        ++in_vain_;
+      }
+    }
+    return size() - before;
+  }
+  /// Places tried since the last that was free.
+  double in_vain() const { return in_vain_; }
+  /// Puts the sphere at `place` of the queue where it has room, flying.
+  void accept(std::size_t place, const Vector<D>& c, Random& random) {
+    const Id tag = queue_[place], i = static_cast<Id>(size());
+    const double r = drawn_[tag];
+    grid_->for_each_near(c, r + skin_, [&](Id j, double) { pairs_.push_back({j, i}); });
+    queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(place));
+    tags_.push_back(tag);
+    r_.push_back(r);
+    mass_.push_back(std::pow(r / mean_radius_, D));
+    volume_ += mass_.back();
+    grid_->add(c, r);
+    x.row(i) = c.transpose().array();
+    set_velocity(i, thermal(i, random));
+  }
+  /// In a random direction with the kinetic energy of all.
+  Vector<D> thermal(Id i, Random& random) const { return uniform_direction<D>(random) / std::sqrt(mass_[i]); }
+  /// Share of the volume that is to be placed which has been.
+  double share() const { return volume_ / whole_volume_; }
+
+  /// Those that are placed, in the order in which they were drawn, with centres in [0, edges).
+  Spheres<dynamic> result() const {
+    std::vector<Id> order(size());
+    std::iota(order.begin(), order.end(), Id{0});
+    std::ranges::sort(order, [&](Id a, Id b) { return tags_[a] < tags_[b]; });
+    Spheres<D> spheres;
+    for (const Id i : order) {
+      Vector<D> c = center(i);
+      for (int k = 0; k < D; ++k) wrap(c[k], k);
+      spheres.push_back(c, r_[i]);
+    }
+    return spheres;
+  }
+
+  Columns x, v;
+
+ private:
+  void wrap(double& c, int k) const {
+    if (!repeats_[k] || (c >= 0 && c < edges_[k])) return;
+    c -= edges_[k] * std::floor(c / edges_[k]);
+    if (!(c < edges_[k])) c = 0;
+  }
+
+  Vector<D> edges_;
+  std::array<bool, D> repeats_{};
+  std::vector<double> drawn_;
+  double margin_;
+  std::vector<Id> queue_;
+  double mean_radius_, smallest_, largest_, skin_;
+  int axes_;
+  std::vector<Id> tags_;  // which of the drawn ones each is
+  std::vector<double> r_, mass_;
+  double volume_ = 0, whole_volume_ = 0;  // in balls of the mean radius
+  double in_vain_ = 0;
+  std::optional<PartialGrid<D>> grid_;
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace bernal

@@ -1,0 +1,269 @@
+#include "jam/jamming_energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Cholesky>
+
+#include "bernal/domain/boundary.hpp"
+#include "core/every_dimension.hpp"
+
+namespace bernal {
+namespace {
+
+/// Of the pair lists, in smallest radii: pairs are found anew when spheres have moved that far.
+constexpr double skin = 0.3;
+/// Where the smoothed force is cut off: gap in units of the smoothing, and as a ratio at most.
+constexpr double cutoff = 30;
+constexpr double widest = 0.1;
+/// Of a sphere's block of the preconditioner: what is added in all directions, in stiffnesses of a contact
+/// with a sphere of its size.
+constexpr double least_stiffness = 1;
+
+/// Spheres in the order of cells that hold about one each, so that what touches lies close in memory.
+template <int D>
+std::vector<std::uint32_t> spatial_order(const Spheres<D>& spheres, const Vector<D>& edges) {
+  const double cells = std::max(1.0, std::floor(std::pow(static_cast<double>(spheres.size()), 1.0 / D)));
+  const Boundary<D> box{edges};
+  std::vector<std::uint64_t> cell(spheres.size(), 0);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const Vector<D> c = box.wrap(spheres.center(i));
+    for (int k = 0; k < D; ++k)
+      cell[i] =
+          cell[i] * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(c[k] / edges[k] * cells);
+  }
+  std::vector<std::uint32_t> order(spheres.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return cell[i]; });
+  return order;
+}
+
+/// s^(D - 2)
+template <int D>
+double stiffness_of(double s) {
+  if constexpr (D == 1) return 1 / s;
+  double k = 1;
+  for (int i = 2; i < D; ++i) k *= s;
+  return k;
+}
+
+/// The smoothed overlap x, x (x - o) = t²; t > 0.
+double smoothed(double overlap, double t) {
+  const double root = std::sqrt(overlap * overlap + 4 * t * t);
+  return overlap > 0 ? 0.5 * (overlap + root) : 2 * t * t / (root - overlap);
+}
+
+template <int D>
+Eigen::Index at(std::size_t i) {
+  return static_cast<Eigen::Index>(D * i);
+}
+
+}  // namespace
+
+template <int D>
+JammingEnergy<D>::JammingEnergy(const Spheres<D>& spheres, const Vector<D>& edges)
+    : order_(spatial_order(spheres, edges)) {
+  state_.centers.resize(at<D>(spheres.size()));
+  state_.edges = edges;
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    radius_.push_back(spheres.r[order_[i]]);
+    state_.centers.template segment<D>(at<D>(i)) = spheres.center(order_[i]);
+    load_per_overlap_ += D * std::pow(2 * radius_[i], D);
+  }
+  least_radius_ = std::ranges::min(radius_);
+  largest_radius_ = std::ranges::max(radius_);
+}
+
+template <int D>
+void JammingEnergy<D>::set_level(double overlap, double smoothing) {
+  load_ = overlap * load_per_overlap_;
+  smoothing_ = smoothing;
+  if (!held_) find_pairs();
+  evaluate();
+}
+
+/// Ratio of gap to s up to which two spheres feel each other.
+template <int D>
+double JammingEnergy<D>::width() const {
+  return std::min(cutoff * smoothing_, widest);
+}
+
+/// Whether every pair that feels each other is among the pairs: what was d apart when they were found is at
+/// least scale · d - 2 · way apart now.
+template <int D>
+bool JammingEnergy<D>::pairs_are_complete() const {
+  if (held_) return true;
+  const double scale = state_.edges[0] / at_finding_.edges[0];
+  double squared = 0;
+  for (Eigen::Index i = 0; i < state_.centers.size(); i += D)
+    squared = std::max(
+        squared, (state_.centers.template segment<D>(i) - scale * at_finding_.centers.template segment<D>(i))
+                     .squaredNorm());
+  const double slack = scale * (1 + width_at_finding_) - (1 + width());
+  const double s = 2 * (slack < 0 ? largest_radius_ : least_radius_);
+  return 2 * std::sqrt(squared) <= scale * skin * least_radius_ + slack * s;
+}
+
+template <int D>
+void JammingEnergy<D>::find_pairs() {
+  width_at_finding_ = width();
+  at_finding_ = state_;
+  pairs_.find(state_.centers.data(), radius_, state_.edges, width_at_finding_, skin * least_radius_);
+}
+
+template <int D>
+void JammingEnergy<D>::hold(const std::vector<char>& bears) {
+  pairs_.keep_if([&](const typename PeriodicPairs<D>::Pair& pair) {
+    const double s = radius_[pair.first] + radius_[pair.second];
+    return bears[pair.first] && bears[pair.second] && away_of(pair).squaredNorm() < s * s;
+  });
+  held_ = true;
+}
+
+/// From the second to the first.
+template <int D>
+Vector<D> JammingEnergy<D>::away_of(const typename PeriodicPairs<D>::Pair& pair) const {
+  return state_.centers.template segment<D>(at<D>(pair.first)) -
+         state_.centers.template segment<D>(at<D>(pair.second)) -
+         pairs_.images()[pair.image].cwiseProduct(state_.edges);
+}
+
+template <int D>
+void JammingEnergy<D>::evaluate() {
+  now_.contacts.clear();
+  now_.gradient.setZero(unknowns());
+  now_.energy = now_.elastic = now_.largest_overlap = 0;
+  const double reach = 1 + width();
+  for (const auto& pair : pairs_.pairs()) {
+    if (is_fixed(pair.first) && is_fixed(pair.second)) continue;
+    const Vector<D> away = away_of(pair);
+    const double most = reach * (radius_[pair.first] + radius_[pair.second]);
+    if (held_ || away.squaredNorm() < most * most) meet(pair.first, pair.second, away);
+  }
+  double virial = 0;
+  for (const Contact& c : now_.contacts) {
+    const double force = c.tension * c.distance;
+    now_.gradient.template segment<D>(at<D>(c.first)) -= force * c.normal;
+    now_.gradient.template segment<D>(at<D>(c.second)) += force * c.normal;
+    virial += force * c.distance;
+  }
+  now_.gradient[unknowns() - 1] = load_ - virial;
+  still(now_.gradient);
+}
+
+/// Leaves of a motion or a gradient what is not fixed.
+template <int D>
+void JammingEnergy<D>::still(Eigen::VectorXd& v) const {
+  if (fixed_.empty()) return;
+  for (std::size_t i = 0; i < size(); ++i)
+    if (fixed_[i]) v.template segment<D>(at<D>(i)).setZero();
+  v[unknowns() - 1] = 0;
+}
+
+template <int D>
+void JammingEnergy<D>::meet(std::uint32_t first, std::uint32_t second, const Vector<D>& away) {
+  const double s = radius_[first] + radius_[second], d = away.norm();
+  if (!(d > 0)) return;  // coincident centres push in no direction
+  const double overlap = s - d, k = stiffness_of<D>(s), t = smoothing_ * s;
+  Contact contact{away / d, k, 0, d, first, second};
+  double x = overlap;
+  if (t > 0) {
+    const double range = width() * s, most = smoothed(overlap, t), least = smoothed(-range, t);
+    x = most - least;
+    contact.stiffness = k * most * most / (most * most + t * t);
+    now_.energy += k * (0.5 * (most * most - least * least) + t * t * std::log(most / least) -
+                        least * (overlap + range));
+  } else {
+    now_.energy += 0.5 * k * x * x;
+  }
+  contact.tension = k * x / d;
+  now_.elastic += 0.5 * k * x * x;
+  now_.largest_overlap = std::max(now_.largest_overlap, overlap / s);
+  now_.contacts.push_back(contact);
+}
+
+template <int D>
+void JammingEnergy<D>::hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& out) const {
+  out.setZero();
+  const double* in = v.data();
+  double* result = out.data();
+  const double dilation = v[unknowns() - 1];
+  double sum = 0;
+  for (const Contact& c : now_.contacts) {
+    const double* a = in + D * std::size_t{c.first};
+    const double* b = in + D * std::size_t{c.second};
+    Vector<D> w;
+    double along = 0;
+    for (int k = 0; k < D; ++k) {
+      w[k] = a[k] - b[k];
+      along += c.normal[k] * w[k];
+    }
+    const double spring = c.stiffness * (along + dilation * c.distance);
+    sum += spring * c.distance;
+    const double normal_part = spring + c.tension * along;
+    double* to_a = result + D * std::size_t{c.first};
+    double* to_b = result + D * std::size_t{c.second};
+    for (int k = 0; k < D; ++k) {
+      const double h = normal_part * c.normal[k] - c.tension * w[k];
+      to_a[k] += h;
+      to_b[k] -= h;
+    }
+  }
+  out[unknowns() - 1] = sum - load_ * dilation;
+  still(out);
+}
+
+template <int D>
+void JammingEnergy<D>::factor_preconditioner() {
+  inverse_blocks_.resize(size());
+  for (std::size_t i = 0; i < size(); ++i)
+    inverse_blocks_[i] = least_stiffness * stiffness_of<D>(2 * radius_[i]) * Block::Identity();
+  double dilation = 1e-3 * load_per_overlap_;
+  for (const Contact& c : now_.contacts) {
+    dilation += c.stiffness * c.distance * c.distance;
+    if (c.first == c.second) continue;
+    const Block block = c.stiffness * c.normal * c.normal.transpose();
+    inverse_blocks_[c.first] += block;
+    inverse_blocks_[c.second] += block;
+  }
+  for (Block& block : inverse_blocks_) block = block.llt().solve(Block::Identity()).eval();
+  inverse_dilation_ = 1 / dilation;
+}
+
+template <int D>
+void JammingEnergy<D>::precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const {
+  for (std::size_t i = 0; i < size(); ++i)
+    out.template segment<D>(at<D>(i)).noalias() = inverse_blocks_[i] * v.template segment<D>(at<D>(i));
+  out[unknowns() - 1] = inverse_dilation_ * v[unknowns() - 1];
+}
+
+template <int D>
+double JammingEnergy<D>::move(const Eigen::VectorXd& motion) {
+  state_before_ = state_;
+  std::swap(before_, now_);
+  const double e = motion[unknowns() - 1];
+  state_.centers = (1 + e) * (state_.centers + motion.head(unknowns() - 1));
+  state_.edges *= 1 + e;
+  if (!pairs_are_complete()) find_pairs();
+  evaluate();
+  return now_.energy - before_.energy + load_ * std::log1p(e);
+}
+
+template <int D>
+void JammingEnergy<D>::take_back() {
+  std::swap(state_, state_before_);
+  std::swap(now_, before_);
+}
+
+template <int D>
+void JammingEnergy<D>::write(Spheres<D>& spheres) const {
+  const Boundary<D> box{state_.edges};
+  for (std::size_t i = 0; i < size(); ++i)
+    spheres.set_center(order_[i], box.wrap(state_.centers.template segment<D>(at<D>(i))));
+}
+
+#define BERNAL_INSTANTIATE(D) template class JammingEnergy<D>;
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+
+}  // namespace bernal

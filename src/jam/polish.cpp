@@ -1,0 +1,231 @@
+#include "jam/polish.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bernal/core/tolerance.hpp"
+#include "core/every_dimension.hpp"
+#include "jam/jamming_energy.hpp"
+#include "jam/trust_region.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr double fall_of_pressure = 0.1;
+/// Mean overlap ratio at the first level: at least the first, so that a network comes to bear the load; at
+/// most the second.
+constexpr double gentlest_start = 1e-4, hardest_start = 0.1;
+constexpr std::size_t solved_closely = 3000;
+constexpr double close_balance = 1e-5, loose_balance = 1e-3;
+constexpr int most_steps_a_level = 500;
+/// How many contacts beyond the isostatic number are let go at most.
+constexpr std::ptrdiff_t most_let_go = 20;
+/// Rattlers keep away from their cages, where these are wide enough, by some of this, a gap ratio.
+constexpr double room = 1e-4;
+/// How far spheres may move, in diameters, while their contacts are held.
+constexpr double held_way = 0.01;
+/// Up to this imbalance the end counts as equilibrium.
+constexpr double balanced = 1e-2;
+
+template <int D>
+class Polish {
+ public:
+  Polish(const Spheres<D>& spheres, const Vector<D>& edges, double tolerance, PeriodicWork& work)
+      : soft_(spheres, edges), tolerance_(tolerance), work_(work) {
+    const auto n = static_cast<double>(spheres.size());
+    balance_ = spheres.size() <= solved_closely ? close_balance : loose_balance;
+    settled_ = std::min(1e-6, 0.1 / (n * n));
+    slenderness_ = edges.maxCoeff() / *std::ranges::min_element(spheres.r);
+  }
+
+  Polished run() {
+    soft_.set_level(gentlest_start, 0);
+    start_ = std::clamp(soft_.largest_overlap(), gentlest_start, hardest_start);
+    double overlap = start_;
+    for (;; overlap = std::max(settled_, overlap * fall_of_pressure)) {
+      if (!settle({overlap, overlap, balance_})) return result();
+      if (overlap == settled_) break;
+    }
+    for (;; overlap *= fall_of_pressure) {
+      if (!sharpen(overlap) || soft_.largest_overlap() <= tolerance_ || close_contacts(overlap)) break;
+      if (overlap * fall_of_pressure < resolution()) break;  // the coordinates allow no better
+      if (!settle({overlap * fall_of_pressure, overlap * fall_of_pressure, balance_})) break;
+    }
+    return result();
+  }
+
+  void write(Spheres<D>& spheres, Vector<D>& edges) const {
+    soft_.write(spheres);
+    edges = soft_.edges();
+  }
+
+ private:
+  struct Level {
+    double overlap, smoothing;
+    double balance;
+    double radius = 0;  // of the trust region: a ratio; 0 for ten overlaps
+    double forcing = 0.03;
+  };
+
+  /// Takes the smoothing away. Returns false if cancelled.
+  bool sharpen(double overlap) {
+    for (const double smoothing : {0.1, 0.01, 0.0})
+      if (!settle({overlap, smoothing * overlap, 0.1 * balance_})) return false;
+    return true;
+  }
+
+  /// Where the contacts suffice: holds them and takes their overlaps to half the tolerance; those beyond the
+  /// isostatic number are let go, each time the one that would be the first to pull. Returns whether that
+  /// gave a packing under pressure everywhere; else all is as it was, at `overlap`.
+  bool close_contacts(double overlap) {
+    count_contacts();
+    if (excess() < 0 || excess() > most_let_go) return false;
+    std::ptrdiff_t spare = excess();
+    const JammingEnergy<D> before = soft_;
+    const Polished reached_before = reached_;
+    const double fall = 0.5 * tolerance_ / soft_.largest_overlap();
+    soft_.hold(bears_);
+    for (;;) {
+      const JammingEnergy<D> held = soft_;
+      settle({overlap * fall, 0, 0.1 * balance_, held_way, 1e-4});
+      const auto first = first_to_pull(held.contacts(), soft_.contacts());
+      if (first < 0) break;
+      soft_ = held;
+      if (spare-- == 0) break;
+      soft_.let_go(static_cast<std::size_t>(first));
+    }
+    soft_.release();
+    make_room_for_rattlers();
+    soft_.set_level(overlap * fall, 0);
+    count_contacts();
+    if (excess() >= 0 && soft_.largest_overlap() <= tolerance_ && imbalance_ < balanced) return true;
+    soft_ = before;
+    reached_ = reached_before;
+    return false;
+  }
+
+  /// Moves rattlers that the others have come to overlap back into their cages.
+  void make_room_for_rattlers() {
+    const double imbalance = imbalance_;
+    soft_.fix(bears_);
+    for (double gap = room; gap > 1e-3 * tolerance_; gap *= 1e-2) {
+      settle({gap, gap, loose_balance});
+      if (soft_.largest_overlap() <= tolerance_) break;
+    }
+    soft_.release();
+    imbalance_ = imbalance;
+  }
+
+  /// Of the same contacts at two levels of pressure: which one's force, linear in between, is the first to
+  /// vanish; -1 if none does.
+  static std::ptrdiff_t first_to_pull(const std::vector<typename JammingEnergy<D>::Contact>& high,
+                                      const std::vector<typename JammingEnergy<D>::Contact>& low) {
+    std::ptrdiff_t first = -1;
+    double least = 0;
+    for (std::size_t c = 0; c < low.size(); ++c) {
+      if (low[c].tension > 0) continue;
+      const double remaining =
+          low[c].tension / high[c].tension;  // 0 or less: the smaller, the earlier it was 0
+      if (first < 0 || remaining < least) {
+        first = static_cast<std::ptrdiff_t>(c);
+        least = remaining;
+      }
+    }
+    return first;
+  }
+
+  /// Contacts beyond the isostatic number.
+  std::ptrdiff_t excess() const {
+    return static_cast<std::ptrdiff_t>(reached_.contacts) -
+           static_cast<std::ptrdiff_t>(D * (soft_.size() - reached_.rattlers - 1) + 1);
+  }
+
+  /// Minimises at one level of pressure. Returns false if cancelled.
+  bool settle(const Level& level) {
+    const double overlap = level.overlap;
+    soft_.set_level(overlap, level.smoothing);
+    const double noise = resolution() / overlap;
+    TrustRegion<JammingEnergy<D>> region(
+        soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap), level.forcing, work_.monitor);
+    for (int step = 0; step < most_steps_a_level; ++step) {
+      imbalance_ = region.gradient_length() / std::sqrt(2 * soft_.elastic_energy());
+      if (imbalance_ < std::max(level.balance, 4 * noise)) break;
+      if (work_.monitor.stop()) {
+        cancelled_ = true;
+        return false;
+      }
+      region.step(std::max(1e-6, noise) * soft_.elastic_energy());
+      ++reached_.steps;
+    }
+    reached_.products += region.products();
+    if (work_.milestone)
+      work_.milestone("polish",
+                      std::min(0.99, std::log(overlap / start_) / std::log(0.1 * tolerance_ / start_)),
+                      soft_.largest_overlap());
+    return true;
+  }
+
+  /// An overlap ratio that is lost in the rounding of coordinates.
+  double resolution() const { return 2 * tolerance::roundoff * slenderness_; }
+
+  Polished result() {
+    reached_.largest_overlap = soft_.largest_overlap();
+    reached_.imbalance = imbalance_;
+    count_contacts();
+    if (cancelled_)
+      reached_.end = StageEnd::cancelled;
+    else if (reached_.largest_overlap > tolerance_ || !(imbalance_ < balanced))
+      reached_.end = StageEnd::hit_limit;
+    return reached_;
+  }
+
+  void count_contacts() {
+    std::vector<int> held(soft_.size(), D + 1);
+    bears_.assign(soft_.size(), 1);
+    for (std::size_t loose = 1; loose > 0;) {
+      const std::vector<int> last = held;
+      std::ranges::fill(held, 0);
+      reached_.contacts = 0;
+      for (const auto& c : soft_.contacts()) {
+        if (last[c.first] <= D || last[c.second] <= D || !(c.tension > 0)) continue;
+        ++held[c.first];
+        ++held[c.second];
+        ++reached_.contacts;
+      }
+      loose = 0;
+      reached_.rattlers = 0;
+      for (std::size_t i = 0; i < held.size(); ++i) {
+        if (held[i] > D) continue;
+        ++reached_.rattlers;
+        bears_[i] = 0;
+        if (last[i] > D) ++loose;
+      }
+    }
+  }
+
+  JammingEnergy<D> soft_;
+  double tolerance_, balance_, settled_, slenderness_;
+  double start_ = gentlest_start;
+  double imbalance_ = 0;
+  bool cancelled_ = false;
+  PeriodicWork& work_;
+  std::vector<char> bears_;  // force, by place in soft_
+  Polished reached_;
+};
+
+}  // namespace
+
+template <int D>
+Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, PeriodicWork& work) {
+  if (spheres.empty()) return {};
+  Polish<D> act(spheres, edges, tolerance, work);
+  const Polished reached = act.run();
+  act.write(spheres, edges);
+  return reached;
+}
+
+#define BERNAL_INSTANTIATE(D) template Polished polish<D>(Spheres<D>&, Vector<D>&, double, PeriodicWork&);
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+
+}  // namespace bernal

@@ -1,0 +1,131 @@
+#include "settle/compress.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "settle/slide.hpp"
+
+namespace bernal {
+namespace {
+
+/// Sweeps along the global direction between two buildings of the lists, at most; fewer once a sweep gains
+/// less than `little` of the first.
+constexpr int global_sweeps = 8;
+constexpr double little = 0.3;
+/// The bed is at rest when the spheres' mean way along the global direction in an iteration is less than
+/// this, in mean radii. Until then local directions would only disturb the fall. (Potential energy does not
+/// tell: it may be that of a few large spheres, at rest while the small ones still fall.)
+constexpr double at_rest = 0.1;
+/// Where there is little to meet and far to go, bounding boxes double: while the mean way is more than
+/// `moving` of the box and a box holds fewer neighbours than `few_neighbors` on average.
+constexpr double moving = 0.02;
+constexpr double few_neighbors = 20;
+/// Sweeps along local directions between two buildings of the lists.
+constexpr int local_sweeps = 10;
+/// A sphere that moves less than this, in radii, rests; one that moves more wakes its neighbours.
+constexpr double resting = 1e-4;
+constexpr double waking = 1e-3;
+
+/// Sweeps along the global direction over the spheres that are awake: those that moved when last visited, or
+/// next to which something moved. A sphere whose surroundings have not changed cannot move.
+class GlobalSweeps {
+ public:
+  GlobalSweeps(Bed& bed, const Vector<3>& direction) : bed_(bed), mover_(bed), direction_(direction) {}
+
+  /// To be called after every `Bed::enclose`.
+  void wake_all() { awake_.assign(bed_.size(), 1); }
+
+  /// Sweeps until one lowers the potential by little compared with the first. Returns the mean way.
+  double settle() {
+    ways_ = 0;
+    double height = bed_.potential(direction_);
+    double first_fall = 0;
+    for (int k = 0; k < global_sweeps; ++k) {
+      sweep();
+      const double now = bed_.potential(direction_);
+      const double fall = height - now;
+      height = now;
+      if (k == 0) first_fall = fall;
+      if (k > 0 && fall < little * first_fall) break;
+    }
+    return ways_ / static_cast<double>(bed_.size());
+  }
+
+ private:
+  void sweep() {
+    for (Bed::Id i = 0; i < bed_.size(); ++i) {
+      if (!awake_[i]) continue;
+      const double way = slide(mover_, i, direction_, std::numeric_limits<double>::infinity());
+      ways_ += way;
+      awake_[i] = way > resting * bed_[i].r;
+      if (way <= waking * bed_[i].r) continue;
+      for (const Bed::Id j : bed_.neighbors(i)) awake_[j] = 1;
+    }
+  }
+
+  Bed& bed_;
+  Mover mover_;
+  Vector<3> direction_;
+  std::vector<char> awake_;
+  double ways_ = 0;  // summed over the spheres since settle began
+};
+
+/// The lowest height against `direction` in the container's bounds: where potential energy counts from.
+double floor_of(const Bounds<3>& bounds, const Vector<3>& direction) {
+  double height = 0;
+  for (int k = 0; k < 3; ++k) {
+    height -= direction[k] * (direction[k] > 0 ? bounds.upper[k] : bounds.lower[k]);
+  }
+  return height;
+}
+
+}  // namespace
+
+void sweep_at_random(Bed& bed, const Vector<3>& pull, double tilt, const Vector<3>& across, double limit,
+                     Random& random) {
+  Mover mover(bed);
+  for (Bed::Id i = 0; i < bed.size(); ++i) {
+    Vector<3> u = uniform_direction<3>(random);
+    u -= u.dot(across) * across;
+    u = pull + tilt * u;
+    const double length = u.norm();
+    if (length > 1e-6) slide(mover, i, u / length, limit);
+  }
+}
+
+StageEnd compress(Work& work, const CompressOptions& options) {
+  Bed& bed = work.bed;
+  if (bed.size() == 0) return StageEnd::converged;
+  const EffectTimer timer(work.effects["compression"]);
+  const double floor = floor_of(bed.container().bounds(), options.direction);
+  const double radius = bed.mean_radius();
+  Random random = work.random(Stream::compress);
+  bed.sort_by_height(options.direction);
+  GlobalSweeps global(bed, options.direction);
+
+  double box = options.buffer * radius;
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    if (work.monitor.stop()) return StageEnd::cancelled;
+    bed.enclose(box);
+    global.wake_all();  // the ends of the old boxes held some
+    const double before = bed.potential(options.direction);
+    const double way = global.settle();
+    const bool resting_bed = way < at_rest * radius;
+    const double factor = bed.mean_neighbors() < few_neighbors ? 2 : 0.5;
+    const double least_box = options.buffer * radius;
+    box = way > moving * box ? std::max(least_box, factor * box) : least_box;
+    if (resting_bed && options.tilt > 0) {
+      for (int k = 0; k < local_sweeps; ++k) {
+        sweep_at_random(bed, options.direction, options.tilt, Vector<3>::Zero(), 2 * radius, random);
+      }
+      global.wake_all();
+      global.settle();
+    }
+    const double after = bed.potential(options.direction);
+    work.milestone("compress");
+    if (resting_bed && before - after < options.tolerance * (before - floor)) return StageEnd::converged;
+  }
+  return StageEnd::hit_limit;
+}
+
+}  // namespace bernal

@@ -1,0 +1,37 @@
+#include "settle/insert.hpp"
+
+namespace bernal {
+namespace {
+
+/// A milestone, and a look at whether the user wants to stop, every so many spheres.
+constexpr std::size_t milestone_every = 8192;
+
+}  // namespace
+
+StageEnd insert(Work& work, const InsertOptions& options) {
+  const EffectTimer timer(work.effects["insertion"]);
+  Bed& bed = work.bed;
+  Supply& supply = work.supply;
+  Random random = work.random(Stream::insert);
+  // Trials are counted inside the container; places are drawn a little beyond it, too.
+  const double attempts = options.attempts * std::max(1.0, bed.places().volume() / bed.container().volume());
+  std::size_t waiting = 0;  // so many at the head of the window found no place
+  while (waiting < supply.window().size() && bed.packing_fraction() < options.packing_fraction) {
+    if (work.monitor.stop()) return StageEnd::cancelled;
+    const std::uint32_t tag = supply.window()[waiting];
+    const double r = supply.radius(tag);
+    bool placed = false;
+    for (double trial = 0; trial < attempts && !placed; ++trial) {
+      const Vector<3> c = bed.places().draw(random);
+      if (!bed.fits(c, r)) continue;
+      bed.insert(c, r, tag);
+      supply.take(waiting);
+      placed = true;
+    }
+    if (!placed) ++waiting;
+    if (placed && bed.size() % milestone_every == 0) work.milestone("insert");
+  }
+  return waiting > 0 && waiting == supply.window().size() ? StageEnd::full : StageEnd::converged;
+}
+
+}  // namespace bernal

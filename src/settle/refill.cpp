@@ -1,0 +1,105 @@
+#include "settle/refill.hpp"
+
+#include <cmath>
+
+#include "bernal/core/dimension.hpp"
+
+namespace bernal {
+namespace {
+
+/// A random place, its clearance from the wall, and the radius of the largest sphere that fits there now.
+struct Probe {
+  Vector<3> place;
+  double clearance;
+  double room;
+};
+
+/// More probes would take more memory than the spheres do.
+constexpr double most_probes = 4e6;
+/// Where a sphere's centre has hardly any room, only so many places are tried for each probe that is wanted.
+constexpr double most_trials = 4;
+constexpr double least_trials = 3e5;
+
+/// Places in the container where a sphere of radius `smallest` clears the wall: drawn once a stage, since the
+/// wall stays where it is.
+std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
+  const EffectTimer timer(work.effects["refilling"]);
+  const Bed& bed = work.bed;
+  const Container& container = bed.container();
+  Random random = work.random(Stream::refill);
+  const double radius = bed.size() > 0 ? bed.mean_radius() : work.supply.radius(work.supply.window().front());
+  const double smallest = work.supply.smallest() + bed.skin();
+  const double capacity = container.volume() / ball_volume(3, radius);
+  const double wanted = std::min(most_probes, 1000 + probes_a_sphere * capacity);
+  std::vector<Probe> probes;
+  for (double trial = 0; trial < std::max(least_trials, most_trials * wanted); ++trial) {
+    if (static_cast<double>(probes.size()) >= wanted) break;
+    const Vector<3> place = bed.places().draw(random);
+    if (!container.contains(place, smallest)) continue;
+    probes.push_back({place, container.clearance(place) - bed.skin(), 0});
+  }
+  return probes;
+}
+
+/// Puts spheres of the window into the free space.
+void fill_free_space(Work& work, std::vector<Probe>& probes) {
+  const EffectTimer timer(work.effects["refilling"]);
+  Bed& bed = work.bed;
+  Supply& supply = work.supply;
+  const double smallest = supply.smallest();
+  bed.update_grid();
+  std::vector<Probe*> open;
+  for (Probe& p : probes) {
+    p.room = bed.room_between_spheres(p.place, smallest, std::min(p.clearance, supply.largest()));
+    if (p.room >= smallest) open.push_back(&p);
+  }
+
+  std::size_t waiting = 0;  // so many at the head of the window found no place
+  while (waiting < supply.window().size()) {
+    const std::uint32_t tag = supply.window()[waiting];
+    const double r = supply.radius(tag);
+    bool placed = false;
+    for (std::size_t k = 0; k < open.size() && !placed;) {
+      Probe& probe = *open[k];
+      if (probe.room < r) {
+        ++k;
+        continue;
+      }
+      placed = bed.fits(probe.place, r);
+      if (placed) {
+        bed.insert(probe.place, r, tag);
+        supply.take(waiting);
+        probe.room = 0;
+      } else {
+        // A sphere has come near since the place was probed.
+        probe.room = std::min(std::nextafter(r, 0.0), bed.room_between_spheres(probe.place, smallest, r));
+      }
+      if (probe.room < smallest) {
+        open[k] = open.back();
+        open.pop_back();
+      }
+    }
+    if (!placed) ++waiting;
+  }
+}
+
+}  // namespace
+
+StageEnd refill(Work& work, const RefillOptions& options) {
+  if (work.supply.exhausted()) return StageEnd::converged;
+  std::vector<Probe> probes = draw_probes(work, options.probes);
+  for (int round = 0; round < options.max_rounds; ++round) {
+    if (work.monitor.stop()) return StageEnd::cancelled;
+    const double before = work.bed.packing_fraction();
+    fill_free_space(work, probes);
+    const double after = work.bed.packing_fraction();
+    work.milestone("refill");
+    if (compress(work, options.shake.compress) == StageEnd::cancelled) return StageEnd::cancelled;
+    if (work.supply.exhausted()) return StageEnd::converged;
+    if (after - before <= options.patience * after) return StageEnd::full;
+    if (shake(work, options.shake) == StageEnd::cancelled) return StageEnd::cancelled;
+  }
+  return StageEnd::hit_limit;
+}
+
+}  // namespace bernal

@@ -1,0 +1,248 @@
+#include "soft/fill_by_relaxation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bernal/core/dimension.hpp"
+#include "bernal/core/error.hpp"
+#include "work/overlapping.hpp"
+#include "soft/periodic_crowd.hpp"
+#include "work/resize_box.hpp"
+
+namespace bernal {
+namespace {
+
+/// Stirring helps as long as the strain falls below this share of the least so far.
+constexpr double progress = 0.9;
+/// Strain at which there are so many spheres too many that stirring is of no use.
+constexpr double hopeless = 0.02;
+constexpr int patience_when_hopeless = 3;
+/// The share of the spheres that is put elsewhere at a time.
+constexpr double relocated = 0.002;
+/// Largest overlap ratio, in strains, above which it is only a few spheres that are stuck.
+constexpr double local_jam = 40;
+/// What is taken out when not all fit, in strains times spheres; and the factor from one time to the next.
+constexpr double taken_out = 0.7, taken_out_faster = 1.25;
+/// Of the spheres, at most, at a time: strain says little where a box is asked to hold several times its
+/// fill.
+constexpr double most_taken_out = 0.2;
+/// For that there are so many sweeps more, in those of the limit.
+constexpr double more_sweeps = 1;
+/// Moves, in radii of the smallest, that break the symmetry of spheres which come in a lattice or in line.
+constexpr double jitter = 1e-6;
+/// Radii that centres stay away from walls, for the rounding of who adds them up.
+constexpr double before_wall = 1 + 1e-12;
+/// In place of the number of overlaps of a sphere that has been taken away.
+constexpr auto gone = static_cast<std::size_t>(-1);
+
+/// Rods along a line, in random order, with gaps between them as they come by chance but none of which is
+/// less than half of the mean. They overlap where they have to.
+Spheres<1> in_line(Spheres<1> spheres, double edge, double allowed, Random& random) {
+  const std::size_t n = spheres.size();
+  double room = edge;
+  for (const double r : spheres.r) room -= 2 * (1 - allowed) * r;
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = n; i > 1; --i)
+    std::swap(order[i - 1], order[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
+  std::vector<double> offsets(n);
+  for (double& offset : offsets) offset = 0.5 * room * random.uniform();
+  std::ranges::sort(offsets);
+  double end = 0;  // of the rod before
+  for (std::size_t k = 0; k < n; ++k) {
+    const double r = (1 - allowed) * spheres.r[order[k]],
+                 even = 0.5 * room * static_cast<double>(k) / static_cast<double>(n);
+    spheres.set_center(order[k], Boundary<1>{Vector<1>(edge)}.wrap(Vector<1>(end + r + even + offsets[k])));
+    end += 2 * r;
+  }
+  return spheres;
+}
+
+/// What reaches beyond a wall goes back to just before it.
+template <int D>
+void move_between_walls(Spheres<D>& spheres, const Vector<D>& edges, const PeriodicWork& work) {
+  for (int k = 0; k < D; ++k) {
+    if (!work.has_wall(k)) continue;
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const double low = std::min(before_wall * spheres.r[i], 0.5 * edges[k]);
+      double& x = spheres.x[static_cast<std::size_t>(k)][i];
+      x = std::clamp(x, low, edges[k] - low);
+    }
+  }
+}
+
+template <int D>
+Spheres<D> starting_places(const PeriodicWork& work, Random& random) {
+  Spheres<D> spheres = work.spheres.in<D>();
+  const Vector<D> edges = *work.target_edges;
+  if (work.placed) {
+    Vector<D> now = work.edges;
+    resize_box<D>(spheres, now, edges);
+  } else if constexpr (D == 1) {
+    spheres = in_line(std::move(spheres), edges[0], work.allowed_overlap, random);
+  } else {
+    const Bounds<D> box{Vector<D>::Zero(), edges};
+    for (std::size_t i = 0; i < spheres.size(); ++i) spheres.set_center(i, uniform_point(random, box));
+  }
+  move_between_walls<D>(spheres, edges, work);
+  return spheres;
+}
+
+/// Moves by nothing that matters, so that a lattice or a line of spheres does not last for ever.
+template <int D>
+Spheres<D> shaken(Spheres<D> spheres, const Vector<D>& edges, Random& random) {
+  const Boundary<D> boundary{edges};
+  const double step = jitter * std::ranges::min(spheres.r);
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    spheres.set_center(i, boundary.wrap(spheres.center(i) + step * uniform_direction<D>(random)));
+  return spheres;
+}
+
+/// Those that are left when, again and again, the one that overlaps most others has gone, the last of those.
+template <int D>
+Spheres<D> without_overlap(const Spheres<D>& spheres, const Vector<D>& edges, double allowed) {
+  const auto pairs = overlapping<D>(spheres, edges, allowed);
+  std::vector<std::vector<std::uint32_t>> others(spheres.size());
+  for (const auto& [i, j] : pairs) {
+    others[i].push_back(j);
+    others[j].push_back(i);
+  }
+  std::vector<std::size_t> overlaps(spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) overlaps[i] = others[i].size();
+  // By number of overlaps; an entry is outdated where that has fallen since.
+  std::vector<std::pair<std::size_t, std::size_t>> heap;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    if (overlaps[i] > 0) heap.emplace_back(overlaps[i], i);
+  std::ranges::make_heap(heap);
+  while (!heap.empty()) {
+    std::ranges::pop_heap(heap);
+    const auto [count, i] = heap.back();
+    heap.pop_back();
+    if (count != overlaps[i]) continue;
+    overlaps[i] = gone;
+    for (const std::uint32_t j : others[i]) {
+      if (overlaps[j] == gone || --overlaps[j] == 0) continue;
+      heap.emplace_back(overlaps[j], j);
+      std::ranges::push_heap(heap);
+    }
+  }
+  Spheres<D> left;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    if (overlaps[i] == 0) left.push_back(spheres.center(i), spheres.r[i]);
+  return left;
+}
+
+template <int D>
+class Filling {
+ public:
+  Filling(PeriodicWork& work, const FillOptions& options, Spheres<D> spheres, const Random& random)
+      : work_(work),
+        options_(options),
+        most_sweeps_(options.sweeps),
+        random_(random),
+        edges_(*work.target_edges),
+        crowd_(shaken<D>(std::move(spheres), edges_, random_), edges_, work.allowed_overlap, work.walls) {}
+
+  StageEnd run() {
+    const StageEnd end = relax(options_.patience);
+    if (end != StageEnd::converged && end != StageEnd::cancelled) take_out(end);
+    work_.effects["neighbour lists"].calls += crowd_.list_builds();
+    work_.spheres = without_overlap<D>(crowd_.spheres(), edges_, work_.allowed_overlap);
+    return end;
+  }
+
+ private:
+  using Rest = typename PeriodicCrowd<D>::Rest;
+
+  /// Settles and stirs.
+  StageEnd relax(int patience) {
+    double least_strain = 1e300;
+    for (int failures = 0;;) {
+      const Rest rest = crowd_.settle(work_.monitor, most_sweeps_);
+      report();
+      if (rest == Rest::cancelled) return StageEnd::cancelled;
+      if (rest == Rest::free && overlapping<D>(crowd_.spheres(), edges_, work_.allowed_overlap).empty())
+        return StageEnd::converged;
+      if (crowd_.sweeps() > most_sweeps_) return StageEnd::hit_limit;
+      if (crowd_.strain() < progress * least_strain) {
+        least_strain = crowd_.strain();
+        failures = 0;
+      } else if (++failures >
+                 (crowd_.strain() > hopeless ? std::min(patience, patience_when_hopeless) : patience)) {
+        return StageEnd::full;
+      }
+      // Bursts do most; what they do not help to is where there is no room.
+      const bool local =
+          crowd_.severely_squeezed() > 0 || crowd_.largest_overlap() > local_jam * crowd_.strain();
+      if (failures % 2 == 0 && !local)
+        crowd_.burst();
+      else
+        crowd_.relocate(relocated, random_);
+    }
+  }
+
+  /// Fewer and fewer, the last ones first, until the others are free of overlap.
+  void take_out(StageEnd end) {
+    most_sweeps_ = crowd_.sweeps() + more_sweeps * options_.sweeps;
+    double share = taken_out;
+    while (end != StageEnd::converged && end != StageEnd::cancelled && crowd_.size() > 1 &&
+           crowd_.sweeps() <= most_sweeps_) {
+      const double count =
+          std::min(share * crowd_.strain(), most_taken_out) * static_cast<double>(crowd_.size());
+      crowd_.drop_last(std::max<std::size_t>(1, static_cast<std::size_t>(count)), random_);
+      share *= taken_out_faster;
+      end = relax(0);
+    }
+  }
+
+  void report() {
+    const double done = std::log(crowd_.largest_overlap()) / std::log(crowd_.margin());
+    work_.milestone("fill", std::clamp(done, 0.0, 0.99), crowd_.largest_overlap());
+  }
+
+  PeriodicWork& work_;
+  const FillOptions options_;
+  double most_sweeps_;
+  Random random_;
+  const Vector<D> edges_;
+  PeriodicCrowd<D> crowd_;
+};
+
+template <int D>
+StageEnd fill_box(PeriodicWork& work, const FillOptions& options) {
+  Random random = work.random(Stream::relax);
+  Spheres<D> spheres = starting_places<D>(work, random);
+  work.edges = *work.target_edges;
+  work.needed_volume = work.edges.prod();
+  work.placed = true;
+  if (!overlapping<D>(spheres, work.edges, work.allowed_overlap).empty())
+    return Filling<D>(work, options, std::move(spheres), random).run();
+  work.spheres = std::move(spheres);
+  return StageEnd::converged;
+}
+
+}  // namespace
+
+bool fits_box(const PeriodicWork& work) {
+  const double largest = std::ranges::max(work.spheres.r);
+  return 2 * largest * (1 - work.allowed_overlap) <= work.target_edges->minCoeff();
+}
+
+StageEnd fill_by_relaxation(PeriodicWork& work, const FillOptions& options) {
+  if (work.spheres.empty()) return StageEnd::converged;
+  if (!fits_box(work))
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("the largest sphere is {:.4g} times as wide as the box that is to be filled; give "
+                    "more or smaller spheres",
+                    2 * std::ranges::max(work.spheres.r) / work.target_edges->minCoeff()));
+  const EffectTimer timer(work.effects["relaxation"]);
+  return with_dimension(work.dimension(), EveryDimension{},
+                        [&](auto dimension) { return fill_box<decltype(dimension)::value>(work, options); });
+}
+
+}  // namespace bernal

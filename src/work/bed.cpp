@@ -1,0 +1,211 @@
+#include "work/bed.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "bernal/core/dimension.hpp"
+#include "bernal/core/tolerance.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr std::size_t block_size = 1024;
+
+template <class T>
+void permute(std::vector<T>& values, const std::vector<Bed::Id>& order) {
+  std::vector<T> sorted;
+  sorted.reserve(values.size());
+  for (const Bed::Id i : order) sorted.push_back(values[i]);
+  values.swap(sorted);
+}
+
+/// Concatenates one list a sphere, built in blocks, into `all`, with `first[i]` the start of sphere i's.
+template <class T>
+void concatenate(const std::vector<std::vector<T>>& blocks, std::vector<std::uint32_t>& first,
+                 std::vector<T>& all) {
+  // first[i + 1] holds the length of list i.
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  all.resize(first.back());
+  std::size_t at = 0;
+  for (const auto& block : blocks) {
+    std::copy(block.begin(), block.end(), all.begin() + static_cast<std::ptrdiff_t>(at));
+    at += block.size();
+  }
+}
+
+}  // namespace
+
+Bed::Bed(const Container& container, double r_min, double r_max, std::size_t expected, EffectLog& effects)
+    : container_(container),
+      effects_(effects),
+      skin_(tolerance::skin(r_min, container.resolution())),
+      places_(container),
+      grid_(container.bounds(), r_min, r_max, expected) {}
+
+double Bed::potential(const Vector<3>& direction) const {
+  double sum = 0, weight = 0;
+  for (const Ball& b : balls_) {
+    const double mass = b.r * b.r * b.r;
+    sum -= mass * direction.dot(b.center);
+    weight += mass;
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+bool Bed::fits(const Vector<3>& c, double r) const {
+  const bool overlaps = grid_.any_near(c, r + skin_, [&](Id j) {
+    const double s = r + balls_[j].r + skin_;
+    return (balls_[j].center - c).squaredNorm() < s * s;
+  });
+  if (overlaps) return false;
+  const EffectTimer wall_timer(walls_);
+  return container_.contains(c, r + skin_);
+}
+
+double Bed::room_between_spheres(const Vector<3>& c, double enough, double limit) const {
+  double gap = limit;
+  const auto lower_gap = [&](double reach) {
+    return grid_.any_near(c, reach + skin_, [&](Id j) {
+      const double s = gap + balls_[j].r + skin_;
+      const double squared = (balls_[j].center - c).squaredNorm();
+      if (squared < s * s) gap = std::sqrt(squared) - balls_[j].r - skin_;
+      return gap < enough;
+    });
+  };
+  // Most places are inside some sphere: look near by before looking far around.
+  if (!lower_gap(enough)) lower_gap(gap);
+  return gap;
+}
+
+void Bed::insert(const Vector<3>& c, double r, std::uint32_t tag) {
+  grid_.insert(static_cast<Id>(balls_.size()), c, r);
+  balls_.push_back({c, r});
+  tags_.push_back(tag);
+  far_from_wall_.push_back(0);
+  far_from_wall_at_.push_back(c);
+  sum_of_radii_ += r;
+  sum_of_volumes_ += ball_volume(3, r);
+}
+
+void Bed::remove_tags_from(std::uint32_t first) {
+  std::vector<Id> kept;
+  for (Id i = 0; i < balls_.size(); ++i) {
+    if (tags_[i] < first) kept.push_back(i);
+  }
+  reorder(kept);
+}
+
+void Bed::sort_by_height(const Vector<3>& direction) {
+  if (balls_.empty()) return;
+  // Two axes across the direction; within a layer, rows, so that neighbours lie close in memory.
+  const Vector<3> across = direction.unitOrthogonal();
+  const Vector<3> along_row = direction.cross(across);
+  const double layer = 2 * mean_radius();
+  struct Key {
+    double height, row, place;
+    Id id;
+  };
+  std::vector<Key> keys;
+  keys.reserve(balls_.size());
+  for (Id i = 0; i < balls_.size(); ++i) {
+    const Vector<3>& c = balls_[i].center;
+    keys.push_back(
+        {std::floor(-direction.dot(c) / layer), std::floor(across.dot(c) / layer), along_row.dot(c), i});
+  }
+  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+    return std::tie(a.height, a.row, a.place, a.id) < std::tie(b.height, b.row, b.place, b.id);
+  });
+  std::vector<Id> order;
+  order.reserve(keys.size());
+  for (const Key& k : keys) order.push_back(k.id);
+  reorder(order);
+}
+
+void Bed::reorder(const std::vector<Id>& order) {
+  permute(balls_, order);
+  permute(tags_, order);
+  permute(far_from_wall_, order);
+  permute(far_from_wall_at_, order);
+  grid_.clear();
+  sum_of_radii_ = sum_of_volumes_ = 0;
+  for (Id i = 0; i < balls_.size(); ++i) {
+    const double r = balls_[i].r;
+    grid_.insert(i, balls_[i].center, r);
+    sum_of_radii_ += r;
+    sum_of_volumes_ += ball_volume(3, r);
+  }
+}
+
+void Bed::update_grid() {
+  for (Id i = 0; i < balls_.size(); ++i) grid_.move(i, balls_[i].center);
+}
+
+void Bed::enclose(double buffer) {
+  const EffectTimer timer(effects_["neighbour lists"]);
+  update_grid();
+  buffer_ = buffer;
+  const std::size_t n = balls_.size();
+  const std::size_t blocks = (n + block_size - 1) / block_size;
+  std::vector<std::vector<Id>> near_spheres(blocks);
+  std::vector<std::vector<NearFacet>> near_facets(blocks);
+  std::vector<Effect> walls(blocks);
+  box_centers_.resize(n);
+  first_neighbor_.assign(n + 1, 0);
+  first_facet_.assign(n + 1, 0);
+
+  oneapi::tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+    std::vector<NearFacet> facets;
+    const auto end = static_cast<Id>(std::min(n, (block + 1) * block_size));
+    for (auto i = static_cast<Id>(block * block_size); i < end; ++i) {
+      const Ball& ball = balls_[i];
+      box_centers_[i] = ball.center;
+
+      const double boxes = ball.r + 2 * buffer + 2 * skin_;
+      const std::size_t before = near_spheres[block].size();
+      grid_.for_each_near(ball.center, boxes, [&](Id j) {
+        const Ball& other = balls_[j];
+        const bool boxes_meet = (other.center - ball.center).cwiseAbs().maxCoeff() <= boxes + other.r;
+        if (j != i && boxes_meet) near_spheres[block].push_back(j);
+      });
+      first_neighbor_[i + 1] = static_cast<std::uint32_t>(near_spheres[block].size() - before);
+
+      // The clearance is 1-Lipschitz: a wall that was far when last asked is still far after a small move.
+      const double reach = ball.r + std::numbers::sqrt3 * buffer + 2 * skin_;
+      if (far_from_wall_[i] - (ball.center - far_from_wall_at_[i]).norm() > reach) continue;
+      const double wide_reach = reach + 2 * buffer;
+      facets.clear();
+      {
+        const EffectTimer wall_timer(walls[block]);
+        container_.facets_near(ball.center, wide_reach, facets);
+      }
+      far_from_wall_[i] = facets.empty() ? wide_reach : facets.front().distance;
+      far_from_wall_at_[i] = ball.center;
+      for (const NearFacet& f : facets) {
+        if (f.distance > reach) break;
+        near_facets[block].push_back(f);
+        ++first_facet_[i + 1];
+      }
+    }
+  });
+  concatenate(near_spheres, first_neighbor_, neighbors_);
+  concatenate(near_facets, first_facet_, facets_);
+  for (const Effect& w : walls) {
+    walls_.calls += w.calls;
+    walls_.seconds += w.seconds;
+  }
+}
+
+Spheres<3> Bed::spheres() const {
+  std::vector<Id> order(balls_.size());
+  std::iota(order.begin(), order.end(), Id{0});
+  std::sort(order.begin(), order.end(), [&](Id a, Id b) { return tags_[a] < tags_[b]; });
+  Spheres<3> result;
+  result.reserve(order.size());
+  for (const Id i : order) result.push_back(balls_[i].center, balls_[i].r);
+  return result;
+}
+
+}  // namespace bernal

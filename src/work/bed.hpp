@@ -1,0 +1,113 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/container.hpp"
+#include "neighbors/cell_grid.hpp"
+#include "work/effect_log.hpp"
+#include "work/places.hpp"
+
+namespace bernal {
+
+/// The bed: spheres in their container while they are being packed, in the packer's frame.
+///
+/// Every stage obeys walls and neighbours through the same two calls: `fits` for a sphere that appears,
+/// `Mover::free_path` for one that moves. Both keep every gap at or above skin/2 (core/tolerance.hpp), so
+/// that nothing ever overlaps.
+///
+/// Between two calls of `enclose` each sphere may move within its own bounding box, a cube around its place
+/// at the time of the call; neighbours and near walls are those that the boxes allow (Han, Feng & Owen 2005,
+/// section 2.1: the lists of all spheres are built together).
+class Bed {
+ public:
+  using Id = std::uint32_t;
+
+  struct Ball {
+    Vector<3> center;
+    double r;
+  };
+
+  /// Radii to come lie in [r_min, r_max]; `expected` is about how many spheres will come.
+  Bed(const Container& container, double r_min, double r_max, std::size_t expected, EffectLog& effects);
+
+  const Container& container() const { return container_; }
+  const Places& places() const { return places_; }
+  std::size_t size() const { return balls_.size(); }
+  const Ball& operator[](Id i) const { return balls_[i]; }
+  std::uint32_t tag(Id i) const { return tags_[i]; }
+  double skin() const { return skin_; }
+  double mean_radius() const { return balls_.empty() ? 0 : sum_of_radii_ / static_cast<double>(size()); }
+  double packing_fraction() const { return sum_of_volumes_ / container_.volume(); }
+  /// Mean of the volume-weighted height of the spheres against `direction`: potential energy a volume.
+  double potential(const Vector<3>& direction) const;
+
+  /// Whether a sphere may appear at c: no neighbour and no wall nearer than the skin. O(1) besides the wall.
+  bool fits(const Vector<3>& c, double r) const;
+
+  /// The radius, at most `limit`, of the largest sphere at c that overlaps no other; any value below `enough`
+  /// where it is below that. Walls are not asked.
+  double room_between_spheres(const Vector<3>& c, double enough, double limit) const;
+
+  /// Adds a sphere that fits. `tag` is the caller's name for it: its place in the drawn sequence.
+  void insert(const Vector<3>& c, double r, std::uint32_t tag);
+
+  /// Removes all spheres whose tag is `first` or greater.
+  void remove_tags_from(std::uint32_t first);
+
+  /// Puts the spheres in ascending order of height against `direction`, layer by layer, which is the order
+  /// in which sweeps visit them and in which they lie in memory.
+  void sort_by_height(const Vector<3>& direction);
+
+  /// Tells the background grid where the spheres have moved to; `fits` and `room_between_spheres` need it
+  /// after spheres have moved.
+  void update_grid();
+
+  /// Gives every sphere a bounding box with `buffer` to move in on each side, and builds the neighbour lists
+  /// and near walls of all spheres together. Parallel; the same lists for any number of threads. O(N).
+  void enclose(double buffer);
+
+  /// The spheres that sphere i may meet within their bounding boxes.
+  std::span<const Id> neighbors(Id i) const {
+    return {neighbors_.data() + first_neighbor_[i], first_neighbor_[i + 1] - first_neighbor_[i]};
+  }
+
+  /// What asking the container cost: near facets and whether spheres may appear.
+  const Effect& wall_queries() const { return walls_; }
+
+  /// How many neighbours the lists hold for a sphere, on average.
+  double mean_neighbors() const {
+    return balls_.empty() ? 0 : static_cast<double>(neighbors_.size()) / static_cast<double>(size());
+  }
+
+  /// The spheres in the order of their tags.
+  Spheres<3> spheres() const;
+
+ private:
+  friend class Mover;
+  void reorder(const std::vector<Id>& order);
+
+  const Container& container_;
+  EffectLog& effects_;
+  double skin_;
+  std::vector<Ball> balls_;
+  std::vector<std::uint32_t> tags_;
+  Places places_;
+  CellGrid<3> grid_;
+  double sum_of_radii_ = 0;
+  double sum_of_volumes_ = 0;
+  mutable Effect walls_{"walls", 0, 0};  // one thread asks `fits`
+
+  double buffer_ = 0;
+  std::vector<Vector<3>> box_centers_;
+  std::vector<std::uint32_t> first_neighbor_;  // CSR: neighbours of i start here
+  std::vector<Id> neighbors_;
+  std::vector<std::uint32_t> first_facet_;  // CSR: walls near i start here, nearest first
+  std::vector<NearFacet> facets_;
+  std::vector<double>
+      far_from_wall_;  // clearance of the centre is at least this much, less what it moved since
+  std::vector<Vector<3>> far_from_wall_at_;
+};
+
+}  // namespace bernal

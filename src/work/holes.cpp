@@ -1,0 +1,98 @@
+#include "work/holes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "neighbors/cell_grid.hpp"
+
+namespace bernal {
+namespace {
+
+/// Of the probes so many for each hole that is wanted are looked at closely: neighbouring ones find the same.
+constexpr std::size_t candidates_a_hole = 8;
+/// Of radii that look for holes among themselves.
+constexpr std::size_t most_groups = 4;
+
+double room_between(const CellGrid<3>& grid, const Spheres<3>& spheres, const Vector<3>& p, double enough,
+                    double limit) {
+  double room = limit;
+  const auto lower = [&](double reach) {
+    return grid.any_near(p, reach, [&](CellGrid<3>::Id j) {
+      room = std::min(room, (spheres.center(j) - p).norm() - spheres.r[j]);
+      return room < enough;
+    });
+  };
+  // Most places are inside some sphere: look near by before looking far around.
+  if (!lower(0)) lower(room);
+  return room;
+}
+
+}  // namespace
+
+std::vector<Hole> holes_for(std::span<const double> radii, const Container& container, const Places& places,
+                            const Spheres<3>& spheres, std::size_t probes, Random& random) {
+  const auto [least, most] = std::ranges::minmax(spheres.r);
+  CellGrid<3> grid(container.bounds(), least, most, spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    grid.insert(static_cast<CellGrid<3>::Id>(i), spheres.center(i), spheres.r[i]);
+
+  // Of a hole a sphere needs to clear the wall first of all; the roomiest places may all be too near to it.
+  const auto roomier = [](const Hole& a, const Hole& b) { return a.room > b.room; };
+  struct Group {
+    double least_clearance;
+    std::size_t candidates;
+    std::vector<Hole> best = {};  // a heap, the least roomy on top
+    double enough(double none) const { return best.size() < candidates ? none : best.front().room; }
+  };
+  std::vector<Group> groups;
+  for (std::size_t g = 0; g < most_groups; ++g) {
+    const std::size_t first = radii.size() * g / most_groups, last = radii.size() * (g + 1) / most_groups;
+    if (last > first) groups.push_back({radii[first], candidates_a_hole * (last - first)});
+  }
+  // A centre stays clear of the wall, as it will not pass it; that is the last resort.
+  groups.push_back({0.5 * radii.back(), groups.back().candidates});
+  for (std::size_t n = 0; n < probes; ++n) {
+    const Vector<3> p = places.draw(random);
+    double enough = most;
+    for (const Group& group : groups) enough = std::min(enough, group.enough(-most));
+    const double room = room_between(grid, spheres, p, enough, most);
+    if (room <= enough) continue;
+    const double clearance = container.clearance_within(p, radii.front());
+    for (Group& group : groups) {
+      if (clearance < group.least_clearance || room <= group.enough(-most)) continue;
+      if (group.best.size() == group.candidates) {
+        std::ranges::pop_heap(group.best, roomier);
+        group.best.pop_back();
+      }
+      group.best.push_back({p, room, clearance});
+      std::ranges::push_heap(group.best, roomier);
+      break;
+    }
+  }
+  std::vector<Hole> best;
+  for (const Group& group : groups) best.insert(best.end(), group.best.begin(), group.best.end());
+  std::ranges::sort(best, roomier);
+
+  std::vector<Hole> holes;
+  std::vector<bool> given(best.size(), false);
+  std::vector<double> squared_apart(best.size(),
+                                    std::numeric_limits<double>::infinity());  // from those given
+  for (const double r : radii) {
+    std::size_t chosen = best.size();
+    for (std::size_t k = 0; k < best.size(); ++k) {
+      if (given[k] || (chosen < best.size() && best[k].clearance <= best[chosen].clearance)) continue;
+      if (squared_apart[k] < 0.25 * (r + least) * (r + least)) continue;
+      chosen = k;
+      if (best[k].clearance >= r) break;
+    }
+    if (chosen == best.size()) break;
+    given[chosen] = true;
+    holes.push_back(best[chosen]);
+    for (std::size_t k = 0; k < best.size(); ++k)
+      squared_apart[k] = std::min(squared_apart[k], (best[k].place - best[chosen].place).squaredNorm());
+  }
+  return holes;
+}
+
+}  // namespace bernal

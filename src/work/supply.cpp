@@ -1,0 +1,93 @@
+#include "work/supply.hpp"
+
+#include <algorithm>
+
+#include "bernal/core/dimension.hpp"
+#include "bernal/core/error.hpp"
+
+namespace bernal {
+namespace {
+
+/// No stage packs denser than this, so a `fill` never needs more spheres than make up so much of the volume.
+constexpr double densest = 0.95;
+/// The window's share of the spheres that may come.
+constexpr double window_share = 0.002;
+/// Taking out no more than this share makes the result exactly the drawn sequence less its tail.
+constexpr double trim_share = 0.002;
+constexpr double most_spheres = 2147483647.0;
+
+}  // namespace
+
+Supply::Supply(const SizeDistribution& radii, double scale, double volume, double cut, const Target& target,
+               std::uint64_t seed, Draw draw) {
+  const double mean_volume = ball_volume(3, 1) * radii.moment(3) / (scale * scale * scale);
+  const double fraction = target.packing_fraction.value_or(densest);
+  const double expected = target.count ? static_cast<double>(*target.count) : fraction * volume / mean_volume;
+  if (!(expected < most_spheres)) {
+    throw Error(
+        ErrorCode::bad_scene,
+        "the container would hold more than 2^31 spheres of these sizes; use larger ones or ask for a count",
+        target.where);
+  }
+  radii_.reserve(static_cast<std::size_t>(expected * 1.01) + 16);
+  RadiusSequence sequence(radii, seed, draw);
+  double filled = 0;
+  while (target.count ? radii_.size() < static_cast<std::size_t>(*target.count)
+                      : filled < fraction * volume) {
+    const double r = sequence.next() / scale;
+    if (r > cut) {
+      ++cut_off_;
+      continue;
+    }
+    radii_.push_back(r);
+    filled += ball_volume(3, radii_.back());
+  }
+  const auto [smallest, largest] = std::minmax_element(radii_.begin(), radii_.end());
+  smallest_ = *smallest;
+  largest_ = *largest;
+  width_ = smallest_ == largest_
+               ? 1
+               : std::max<std::size_t>(16, static_cast<std::size_t>(window_share * expected));
+  open_window();
+}
+
+void Supply::open_window() {
+  while (window_.size() < width_ && next_ < radii_.size()) window_.push_back(next_++);
+}
+
+void Supply::take(std::size_t k) {
+  window_.erase(window_.begin() + static_cast<std::ptrdiff_t>(k));
+  open_window();
+}
+
+void Supply::set_placed(const std::vector<bool>& placed) {
+  window_.clear();
+  next_ = static_cast<std::uint32_t>(placed.size());
+  for (std::uint32_t tag = 0; tag < next_; ++tag)
+    if (!placed[tag]) window_.push_back(tag);
+  open_window();
+}
+
+std::size_t Supply::count_filling(double volume) const {
+  std::size_t count = 0;
+  while (count < radii_.size() && volume > 0) volume -= ball_volume(3, radii_[count++]);
+  return count;
+}
+
+std::size_t Supply::passed_over() const {
+  // The window is ascending and ends in spheres that nothing later was placed after.
+  std::size_t untouched = 0;
+  while (untouched < window_.size() &&
+         window_[window_.size() - 1 - untouched] == next_ - 1 - static_cast<std::uint32_t>(untouched)) {
+    ++untouched;
+  }
+  return window_.size() - untouched;
+}
+
+bool Supply::trimming_is_cheap() const {
+  const std::size_t placed = next_ - window_.size();
+  const std::size_t beyond = placed - std::min<std::size_t>(placed, first_missing());
+  return static_cast<double>(beyond) <= trim_share * static_cast<double>(placed);
+}
+
+}  // namespace bernal
