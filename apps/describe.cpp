@@ -40,9 +40,9 @@ std::string shown(const Spec& sizes) {
 
 std::string describe_container(const Plan& plan) {
   const std::string& unit = plan.scene.unit;
-  const Vector<dynamic> size = extent_of(plan.domain);
-  const auto* box = std::get_if<PeriodicBox>(&plan.domain);
-  std::string text(box && box->has_walls() ? name_of(plan.domain) : std::string(kind_of(plan.domain)));
+  const Vector<dynamic> size = bounds_of<dynamic>(plan.domain).size();
+  std::string text(is_periodic(plan.domain) && has_walls(plan.domain) ? name_of(plan.domain)
+                                                                      : std::string(kind_of(plan.domain)));
   if (plan.scene.container.has("file")) text += fmt::format(" {}", plan.scene.container.text("file"));
   if (plan.box_follows) text += ", as large as the packing needs";
   return fmt::format("{}{} {:.6g} {}, volume {:.6g} {}^{}", text, plan.box_follows ? ": about" : ",",

@@ -46,11 +46,11 @@ nlohmann::ordered_json as_json(const Plan& plan) {
   using nlohmann::ordered_json;
   const auto point = [](const Vector<3>& p) { return ordered_json{p[0], p[1], p[2]}; };
   ordered_json container = {{"kind", kind_of(plan.domain)}, {"volume", volume_of(plan.domain)}};
-  if (const Shape* shape = std::get_if<Shape>(&plan.domain)) {
-    const Bounds<3> bounds = bounds_of(*shape);
+  if (!plan.scene.is_periodic()) {
+    const Bounds<3> bounds = bounds_of(plan.domain);
     container["bounds"] = {point(bounds.lower), point(bounds.upper)};
   } else {
-    const Vector<dynamic> edges = extent_of(plan.domain);
+    const Vector<dynamic> edges = bounds_of<dynamic>(plan.domain).size();
     container["edges"] = std::vector<double>(edges.begin(), edges.end());
     container["scalable"] = plan.box_follows;
   }

@@ -30,7 +30,7 @@ struct MeasureCall {
 
 void print_contacts(const Packing& packing, const Measurements& measured) {
   const Contacts& c = measured.contacts;
-  const bool walls = std::holds_alternative<Shape>(packing.domain);
+  const bool walls = has_walls(packing.domain);
   fmt::print("contacts          {} pairs", grouped(c.pairs));
   if (walls) fmt::print(", {} with the wall", grouped(c.walls));
   fmt::print(", at a gap below {:g} of the sum of the radii\n", c.contact_gap);
@@ -218,7 +218,8 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
 
 void print(const Packing& packing, const Measurements& measured) {
   fmt::print("spheres           {}, in a {} of {:.6g} {}\n", grouped(packing.spheres.size()),
-             name_of(packing.domain), fmt::join(extent_of(packing.domain), " x "), packing.scene.unit);
+             name_of(packing.domain), fmt::join(bounds_of<dynamic>(packing.domain).size(), " x "),
+             packing.scene.unit);
   fmt::print("packing fraction  {:.6f}\n", measured.packing_fraction);
   if (measured.chambers) print_chambers(packing, *measured.chambers);
   print_contacts(packing, measured);

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 #include "cad/polygon_soup.hpp"
 
 namespace bernal::cad {

@@ -76,12 +76,12 @@ std::unique_ptr<Container> make_mesh_container(const Mesh& mesh, WallArithmetic 
   return std::make_unique<MeshContainer>(mesh, arithmetic, resolution);
 }
 
-std::unique_ptr<Container> make_container(const Shape& shape, WallArithmetic arithmetic, double resolution) {
+std::unique_ptr<Container> make_container(const Domain& shape, WallArithmetic arithmetic, double resolution) {
   if (const auto* mesh = std::get_if<Mesh>(&shape)) return make_mesh_container(*mesh, arithmetic, resolution);
   return make_analytic_container(shape, arithmetic, resolution);
 }
 
-std::unique_ptr<Container> make_local_container(const Shape& of_scene, const Frame& frame,
+std::unique_ptr<Container> make_local_container(const Domain& of_scene, const Frame& frame,
                                                 WallArithmetic arithmetic) {
   return make_container(to_local(of_scene, frame), arithmetic, frame.resolution);
 }

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal::cad {
 

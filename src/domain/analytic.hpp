@@ -8,9 +8,9 @@ namespace bernal {
 // One factory for each analytic container; the classes are in their own files. Each decides `contains` as
 // follows: plain by the clearance in double; filtered by the clearance and a bound on its error, exactly
 // where that cannot tell; exact always exactly (exact_analytic.hpp).
-std::unique_ptr<Container> make_box(const BoxShape&, WallArithmetic, double resolution);
-std::unique_ptr<Container> make_cylinder(const CylinderShape&, WallArithmetic, double resolution);
-std::unique_ptr<Container> make_sphere(const SphereShape&, WallArithmetic, double resolution);
+std::unique_ptr<Container> make_box(const Box&, WallArithmetic, double resolution);
+std::unique_ptr<Container> make_cylinder(const Cylinder&, WallArithmetic, double resolution);
+std::unique_ptr<Container> make_sphere(const Sphere&, WallArithmetic, double resolution);
 
 /// Decides `clearance >= r` as the arithmetic promises; `error` bounds the rounding error of clearance - r
 /// and `exactly` is asked where the double cannot or must not decide.

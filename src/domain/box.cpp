@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "domain/analytic.hpp"
 #include "domain/exact_analytic.hpp"
@@ -7,14 +8,24 @@
 namespace bernal {
 namespace {
 
-class Box final : public Container {
+class BoxContainer final : public Container {
  public:
-  Box(const BoxShape& shape, WallArithmetic arithmetic, double resolution)
-      : Container(resolution), shape_(shape), bounds_(bounds_of(shape)), arithmetic_(arithmetic) {
+  BoxContainer(const Box& shape, WallArithmetic arithmetic, double resolution)
+      : Container(resolution, boundary_of<3>(shape)),
+        shape_(shape),
+        bounds_(bounds_of(shape)),
+        arithmetic_(arithmetic) {
     for (int side = 0; side < 6; ++side) {
       const int axis = side / 2;
+      if (shape.repeats(axis)) {
+        walls_.lower[axis] = -std::numeric_limits<double>::infinity();
+        walls_.upper[axis] = std::numeric_limits<double>::infinity();
+        continue;
+      }
+      walls_.lower[axis] = bounds_.lower[axis];
+      walls_.upper[axis] = bounds_.upper[axis];
       const bool upper = side % 2 == 1;
-      Facet& f = facets_[side];
+      Facet& f = facets_.emplace_back();
       f.kind = Facet::Kind::plane;
       f.id = static_cast<std::uint32_t>(side);
       f.a = upper ? bounds_.upper : bounds_.lower;
@@ -24,10 +35,10 @@ class Box final : public Container {
 
   std::string_view kind() const override { return "box"; }
   Bounds<3> bounds() const override { return bounds_; }
-  double volume() const override { return bounds_.volume(); }
+  double volume() const override { return volume_of(shape_); }
 
   double clearance(const Vector<3>& p) const override {
-    const Vector<3> depth = (p - bounds_.lower).cwiseMin(bounds_.upper - p);
+    const Vector<3> depth = (p - walls_.lower).cwiseMin(walls_.upper - p);
     const double least = depth.minCoeff();
     return least >= 0 ? least : -depth.cwiseMin(0).norm();
   }
@@ -43,16 +54,17 @@ class Box final : public Container {
   }
 
  private:
-  BoxShape shape_;
+  Box shape_;
   Bounds<3> bounds_;
+  Bounds<3> walls_;  // infinite along an axis that has none
   WallArithmetic arithmetic_;
-  std::array<Facet, 6> facets_;
+  std::vector<Facet> facets_;
 };
 
 }  // namespace
 
-std::unique_ptr<Container> make_box(const BoxShape& shape, WallArithmetic arithmetic, double resolution) {
-  return std::make_unique<Box>(shape, arithmetic, resolution);
+std::unique_ptr<Container> make_box(const Box& shape, WallArithmetic arithmetic, double resolution) {
+  return std::make_unique<BoxContainer>(shape, arithmetic, resolution);
 }
 
 }  // namespace bernal

@@ -74,22 +74,25 @@ void Container::walls_near(const Vector<3>& c, double reach, std::vector<WallPoi
   }
 }
 
-std::unique_ptr<Container> make_analytic_container(const Shape& shape, WallArithmetic arithmetic,
+std::unique_ptr<Container> make_analytic_container(const Domain& shape, WallArithmetic arithmetic,
                                                    double resolution) {
-  if (const auto* box = std::get_if<BoxShape>(&shape)) {
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    require(box->dimension() == 3, "a container has three dimensions");
     require(box->corner.allFinite() && is_length(box->size[0]) && is_length(box->size[1]) &&
                 is_length(box->size[2]),
             "a box needs three positive edges and a finite corner");
     return make_box(*box, arithmetic, resolution);
   }
-  if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     require(is_length(cylinder->radius) && is_length(cylinder->height) && cylinder->base.allFinite(),
             "a cylinder needs a positive radius and height and a finite base");
     require(cylinder->axis.allFinite() && !cylinder->axis.isZero(0),
             "a cylinder needs an axis that is finite and not zero");
+    require(!cylinder->periodic || cylinder->coordinate_axis() >= 0,
+            "a cylinder that repeats itself needs an axis along x, y or z");
     return make_cylinder(*cylinder, arithmetic, resolution);
   }
-  if (const auto* sphere = std::get_if<SphereShape>(&shape)) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     require(is_length(sphere->radius) && sphere->center.allFinite(),
             "a sphere needs a positive radius and a finite center");
     return make_sphere(*sphere, arithmetic, resolution);

@@ -9,15 +9,20 @@
 namespace bernal {
 namespace {
 
-class Cylinder final : public Container {
+class CylinderContainer final : public Container {
  public:
-  Cylinder(const CylinderShape& shape, WallArithmetic arithmetic, double resolution)
-      : Container(resolution), shape_(shape), axis_(shape.axis.stableNormalized()), arithmetic_(arithmetic) {
+  CylinderContainer(const Cylinder& shape, WallArithmetic arithmetic, double resolution)
+      : Container(resolution, boundary_of<3>(shape)),
+        shape_(shape),
+        axis_(shape.axis.stableNormalized()),
+        arithmetic_(arithmetic) {
+    facets_.resize(shape.periodic ? 1 : 3);
     Facet& lateral = facets_[0];
     lateral.kind = Facet::Kind::cylinder;
     lateral.a = shape.base;
     lateral.b = axis_;
     lateral.radius = shape.radius;
+    if (shape.periodic) return;
     Facet& bottom = facets_[1];
     bottom.a = shape.base;
     bottom.b = axis_;
@@ -35,6 +40,7 @@ class Cylinder final : public Container {
     const Vector<3> w = p - shape_.base;
     const double height = w.dot(axis_);
     const double lateral = shape_.radius - (w - height * axis_).norm();
+    if (shape_.periodic) return lateral;
     const double axial = std::min(height, shape_.height - height);
     const double least = std::min(lateral, axial);
     return least >= 0 ? least : -std::hypot(std::min(lateral, 0.0), std::min(axial, 0.0));
@@ -54,17 +60,17 @@ class Cylinder final : public Container {
   }
 
  private:
-  CylinderShape shape_;
+  Cylinder shape_;
   Vector<3> axis_;
   WallArithmetic arithmetic_;
-  std::array<Facet, 3> facets_;
+  std::vector<Facet> facets_;
 };
 
 }  // namespace
 
-std::unique_ptr<Container> make_cylinder(const CylinderShape& shape, WallArithmetic arithmetic,
+std::unique_ptr<Container> make_cylinder(const Cylinder& shape, WallArithmetic arithmetic,
                                          double resolution) {
-  return std::make_unique<Cylinder>(shape, arithmetic, resolution);
+  return std::make_unique<CylinderContainer>(shape, arithmetic, resolution);
 }
 
 }  // namespace bernal

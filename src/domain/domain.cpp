@@ -1,39 +1,240 @@
 #include "bernal/domain/domain.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <type_traits>
+
+#include "bernal/core/dimension.hpp"
+#include "bernal/core/error.hpp"
+#include "core/every_dimension.hpp"
+
 namespace bernal {
+namespace {
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+
+Bounds<3> bounds_of_sphere(const Sphere& s) {
+  const Vector<3> half = Vector<3>::Constant(s.radius);
+  return {s.center - half, s.center + half};
+}
+
+Bounds<3> bounds_of_points(const std::vector<Vector<3>>& points) {
+  if (points.empty()) return {};
+  Bounds<3> bounds{points.front(), points.front()};
+  for (const Vector<3>& p : points) {
+    bounds.lower = bounds.lower.cwiseMin(p);
+    bounds.upper = bounds.upper.cwiseMax(p);
+  }
+  return bounds;
+}
+
+/// The two discs' bounds: a disc of radius R with the unit normal a has the half extents R·sqrt(1 - a_k²),
+/// written as the sum of the two other squares, which does not cancel.
+Bounds<3> bounds_of_cylinder(const Cylinder& s) {
+  const Vector<3> axis = s.axis.stableNormalized();
+  const Vector<3> top = s.base + s.height * axis;
+  Vector<3> half;
+  for (int k = 0; k < 3; ++k) half[k] = s.radius * std::hypot(axis[(k + 1) % 3], axis[(k + 2) % 3]);
+  return {s.base.cwiseMin(top) - half, s.base.cwiseMax(top) + half};
+}
+
+double volume_of_mesh(const Mesh& mesh) {
+  const Vector<3> origin = bounds_of_points(mesh.vertices).center();
+  double six_volumes = 0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vector<3> a = mesh.vertices[i] - origin, b = mesh.vertices[j] - origin,
+                    c = mesh.vertices[k] - origin;
+    six_volumes += a.dot(b.cross(c));
+  }
+  return six_volumes / 6;
+}
+
+double area_of_mesh(const Mesh& mesh) {
+  double twice_area = 0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vector<3>& a = mesh.vertices[i];
+    twice_area += (mesh.vertices[j] - a).cross(mesh.vertices[k] - a).norm();
+  }
+  return twice_area / 2;
+}
+
+double spacing(double x) {
+  x = std::abs(x);
+  return std::nextafter(x, std::numeric_limits<double>::infinity()) - x;
+}
+
+}  // namespace
+
+Box periodic_box(const Vector<dynamic>& edges, const std::vector<bool>& walls) {
+  Box box{Vector<dynamic>::Zero(edges.size()), edges, walls};
+  box.periodic.resize(static_cast<std::size_t>(edges.size()), false);
+  box.periodic.flip();
+  return box;
+}
+
+int Cylinder::coordinate_axis() const {
+  for (int k = 0; k < 3; ++k)
+    if (axis[k] != 0 && axis[(k + 1) % 3] == 0 && axis[(k + 2) % 3] == 0) return k;
+  return -1;
+}
 
 std::string_view kind_of(const Domain& domain) {
-  const Shape* shape = std::get_if<Shape>(&domain);
-  return shape ? kind_of(*shape) : "periodic";
+  return std::visit(
+      Overloaded{[](const Box& s) -> std::string_view { return s.repeats() ? "periodic" : "box"; },
+                 [](const Cylinder&) -> std::string_view { return "cylinder"; },
+                 [](const Sphere&) -> std::string_view { return "sphere"; },
+                 [](const Mesh&) -> std::string_view { return "mesh"; }},
+      domain);
 }
 
 std::string name_of(const Domain& domain) {
-  const PeriodicBox* box = std::get_if<PeriodicBox>(&domain);
-  if (!box) return std::string(kind_of(domain));
+  const auto* cylinder = std::get_if<Cylinder>(&domain);
+  if (cylinder && cylinder->periodic) return "endless cylinder";
+  const auto* box = std::get_if<Box>(&domain);
+  if (!box || !box->repeats()) return std::string(kind_of(domain));
   if (!box->has_walls()) return "periodic box";
   std::string axes;
   int walls = 0;
-  for (int k = 0; k < box->dimension(); ++k) {
-    if (!box->has_wall(k)) continue;
-    axes += (walls++ > 0 ? ", " : "") + std::to_string(k);
-  }
-  if (walls == box->dimension()) return "box with walls all around";
+  for (int k = 0; k < box->dimension(); ++k)
+    if (box->has_wall(k)) axes += (walls++ > 0 ? ", " : "") + std::to_string(k);
   return "box periodic but along " + std::string(walls > 1 ? "axes " : "axis ") + axes;
 }
 
 int dimension_of(const Domain& domain) {
-  const PeriodicBox* box = std::get_if<PeriodicBox>(&domain);
+  const auto* box = std::get_if<Box>(&domain);
   return box ? box->dimension() : 3;
 }
 
-double volume_of(const Domain& domain) {
-  const PeriodicBox* box = std::get_if<PeriodicBox>(&domain);
-  return box ? box->edges.prod() : volume_of(std::get<Shape>(domain));
+bool has_walls(const Domain& domain) {
+  const auto* box = std::get_if<Box>(&domain);
+  return !box || box->has_walls();
 }
 
-Vector<dynamic> extent_of(const Domain& domain) {
-  if (const PeriodicBox* box = std::get_if<PeriodicBox>(&domain)) return box->edges;
-  return bounds_of(std::get<Shape>(domain)).size();
+bool is_periodic(const Domain& domain) {
+  return std::visit(
+      Overloaded{[](const Box& s) { return s.repeats(); }, [](const Cylinder& s) { return s.periodic; },
+                 [](const auto&) { return false; }},
+      domain);
+}
+
+template <int D>
+Bounds<D> bounds_of(const Domain& domain) {
+  return std::visit(Overloaded{[](const Box& s) {
+                                 return Bounds<D>{s.corner, s.corner + s.size};
+                               },
+                               [](const auto& s) {
+                                 Bounds<3> bounds;
+                                 if constexpr (std::is_same_v<decltype(s), const Cylinder&>)
+                                   bounds = bounds_of_cylinder(s);
+                                 else if constexpr (std::is_same_v<decltype(s), const Sphere&>)
+                                   bounds = bounds_of_sphere(s);
+                                 else
+                                   bounds = bounds_of_points(s.vertices);
+                                 return Bounds<D>{bounds.lower, bounds.upper};
+                               }},
+                    domain);
+}
+template Bounds<3> bounds_of(const Domain&);
+template Bounds<dynamic> bounds_of(const Domain&);
+
+double volume_of(const Domain& domain) {
+  using std::numbers::pi;
+  return std::visit(Overloaded{[](const Box& s) {
+                                 return s.repeats() || s.dimension() != 3 ? s.size.prod()
+                                                                          : bounds_of(s).volume();
+                               },
+                               [](const Cylinder& s) { return pi * s.radius * s.radius * s.height; },
+                               [](const Sphere& s) { return ball_volume(3, s.radius); },
+                               [](const Mesh& s) { return volume_of_mesh(s); }},
+                    domain);
+}
+
+double area_of(const Domain& domain) {
+  using std::numbers::pi;
+  return std::visit(Overloaded{[](const Box& s) {
+                                 const Vector<3> e = bounds_of(s).size();
+                                 double area = 0;
+                                 for (const int k : {2, 0, 1})
+                                   if (s.has_wall(k)) area += 2 * (e[(k + 1) % 3] * e[(k + 2) % 3]);
+                                 return area;
+                               },
+                               [](const Cylinder& s) {
+                                 return 2 * pi * s.radius * ((s.periodic ? 0 : s.radius) + s.height);
+                               },
+                               [](const Sphere& s) { return 4 * pi * s.radius * s.radius; },
+                               [](const Mesh& s) { return area_of_mesh(s); }},
+                    domain);
+}
+
+template <int D>
+Boundary<D> boundary_of(const Domain& domain) {
+  Boundary<D> metric;
+  if (const auto* box = std::get_if<Box>(&domain)) {
+    for (int k = 0; k < D; ++k) {
+      if (!box->repeats(k)) continue;
+      metric.edges[k] = box->size[k];
+      metric.origin[k] = box->corner[k];
+    }
+  }
+  if constexpr (D == 3) {
+    const auto* cylinder = std::get_if<Cylinder>(&domain);
+    if (cylinder && cylinder->periodic) {
+      const int k = cylinder->coordinate_axis();
+      metric.edges[k] = cylinder->height;
+      metric.origin[k] = bounds_of_cylinder(*cylinder).lower[k];
+    }
+  }
+  return metric;
+}
+#define BERNAL_INSTANTIATE(D) template Boundary<D> boundary_of(const Domain&);
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+
+Frame frame_of(const Domain& shape) {
+  const Bounds<3> bounds = bounds_of(shape);
+  const double diagonal = bounds.diagonal();
+  if (!(diagonal > 0) || !std::isfinite(diagonal))
+    throw Error(ErrorCode::bad_argument,
+                "the container has no extent or is not finite: check its size and coordinates");
+  Frame frame;
+  frame.scale = std::exp2(std::ilogb(diagonal));
+  // On a grid of sixteenths of the scale, the origin has few bits: subtracting it is exact for coordinates of
+  // that size or larger.
+  const double grid = frame.scale / 16;
+  const Vector<3> center = bounds.center();
+  for (int k = 0; k < 3; ++k) frame.origin[k] = std::nearbyint(center[k] / grid) * grid;
+
+  const double farthest = std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff());
+  frame.resolution = std::max(spacing(farthest) / frame.scale, spacing(2.0));
+  return frame;
+}
+
+Domain to_local(const Domain& shape, const Frame& frame) {
+  return std::visit(Overloaded{[&](const Box& s) -> Domain {
+                                 const Vector<3> lower = frame.to_local(s.corner);
+                                 const Vector<3> upper = frame.to_local(s.corner + s.size);
+                                 return Box{lower, upper - lower, s.periodic};
+                               },
+                               [&](Cylinder s) -> Domain {
+                                 s.base = frame.to_local(s.base);
+                                 s.radius /= frame.scale;
+                                 s.height /= frame.scale;
+                                 return s;
+                               },
+                               [&](Sphere s) -> Domain {
+                                 s.center = frame.to_local(s.center);
+                                 s.radius /= frame.scale;
+                                 return s;
+                               },
+                               [&](Mesh s) -> Domain {
+                                 for (Vector<3>& v : s.vertices) v = frame.to_local(v);
+                                 return s;
+                               }},
+                    shape);
 }
 
 }  // namespace bernal

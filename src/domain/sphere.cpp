@@ -10,7 +10,7 @@ namespace {
 
 class SphereContainer final : public Container {
  public:
-  SphereContainer(const SphereShape& shape, WallArithmetic arithmetic, double resolution)
+  SphereContainer(const Sphere& shape, WallArithmetic arithmetic, double resolution)
       : Container(resolution), shape_(shape), arithmetic_(arithmetic) {
     wall_[0].kind = Facet::Kind::sphere;
     wall_[0].a = shape.center;
@@ -36,15 +36,14 @@ class SphereContainer final : public Container {
   }
 
  private:
-  SphereShape shape_;
+  Sphere shape_;
   WallArithmetic arithmetic_;
   std::array<Facet, 1> wall_;
 };
 
 }  // namespace
 
-std::unique_ptr<Container> make_sphere(const SphereShape& shape, WallArithmetic arithmetic,
-                                       double resolution) {
+std::unique_ptr<Container> make_sphere(const Sphere& shape, WallArithmetic arithmetic, double resolution) {
   return std::make_unique<SphereContainer>(shape, arithmetic, resolution);
 }
 

@@ -145,7 +145,7 @@ class Planes {
           ErrorCode::bad_scene,
           fmt::format("\"grow\" packs convex containers, and this one is not: a corner of the mesh lies "
                       "{:.1g} of its diameter outside of the plane of a facet; \"relax\" packs any",
-                      (highest - best.offset) / bounds_of(Shape(mesh_)).diagonal()));
+                      (highest - best.offset) / bounds_of(Domain(mesh_)).diagonal()));
     for (const auto v : mesh_.triangles[facet]) note(v, best.normal.dot(mesh_.vertices[v]));
     double innermost = best.offset;
     for (const auto v : near)
@@ -204,7 +204,7 @@ class Planes {
 struct WallsOf {
   double tolerance;
 
-  std::vector<Wall<3>> operator()(const BoxShape& box) const {
+  std::vector<Wall<3>> operator()(const Box& box) const {
     const Bounds<3> bounds = bounds_of(box);
     std::vector<Wall<3>> walls;
     for (int k = 0; k < 3; ++k) {
@@ -213,13 +213,13 @@ struct WallsOf {
     }
     return walls;
   }
-  std::vector<Wall<3>> operator()(const CylinderShape& cylinder) const {
+  std::vector<Wall<3>> operator()(const Cylinder& cylinder) const {
     const Vector<3> axis = cylinder.axis.stableNormalized();
     return {{.round = true, .along = axis, .center = cylinder.base, .extent = cylinder.radius},
             plane(-axis, cylinder.base),
             plane(axis, cylinder.base + cylinder.height * axis)};
   }
-  std::vector<Wall<3>> operator()(const SphereShape& sphere) const {
+  std::vector<Wall<3>> operator()(const Sphere& sphere) const {
     return {{.round = true, .center = sphere.center, .extent = sphere.radius}};
   }
   std::vector<Wall<3>> operator()(const Mesh& mesh) const { return Planes(mesh, tolerance).find(); }
@@ -227,7 +227,7 @@ struct WallsOf {
 
 }  // namespace
 
-std::vector<Wall<3>> convex_walls(const Shape& shape, double tolerance) {
+std::vector<Wall<3>> convex_walls(const Domain& shape, double tolerance) {
   return std::visit(WallsOf{tolerance}, shape);
 }
 

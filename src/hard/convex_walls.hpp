@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 #include "hard/wall.hpp"
 
 namespace bernal {
@@ -19,6 +19,6 @@ namespace bernal {
 /// Throws Error{bad_scene} for a mesh that is not convex: with a corner more than 4 tolerances outside of a
 /// facet's plane. Precondition: meshes are closed and oriented outwards. Cost: about 10 µs a
 /// wall.
-std::vector<Wall<3>> convex_walls(const Shape& shape, double tolerance);
+std::vector<Wall<3>> convex_walls(const Domain& shape, double tolerance);
 
 }  // namespace bernal

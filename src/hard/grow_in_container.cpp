@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "hard/convex_walls.hpp"
+#include "hard/growth_schedule.hpp"
 #include "hard/hard_spheres.hpp"
 #include "neighbors/cell_grid.hpp"
-#include "hard/growth_schedule.hpp"
 
 namespace bernal {
 namespace {
@@ -294,7 +294,7 @@ class Growth {
 
 }  // namespace
 
-std::vector<Wall<3>> walls_for_growth(const Shape& shape, double smallest_radius) {
+std::vector<Wall<3>> walls_for_growth(const Domain& shape, double smallest_radius) {
   return convex_walls(shape, flatness * smallest_radius);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "hard/wall.hpp"
 #include "hard/grow.hpp"
+#include "hard/wall.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
@@ -32,6 +32,6 @@ namespace bernal {
 StageEnd grow_in_container(Work& work, const GrowOptions& options);
 
 /// The walls that growth takes the shape to have. Throws Error{bad_scene} if it is not convex.
-std::vector<Wall<3>> walls_for_growth(const Shape& shape, double smallest_radius);
+std::vector<Wall<3>> walls_for_growth(const Domain& shape, double smallest_radius);
 
 }  // namespace bernal

@@ -42,11 +42,11 @@ void append_discs(std::string& out, const ByColour& discs, double rim) {
 
 }  // namespace
 
-std::string disc_svg(const Spheres<dynamic>& spheres, const PeriodicBox& box, std::string_view unit) {
+std::string disc_svg(const Spheres<dynamic>& spheres, const Box& box, std::string_view unit) {
   const SizeScale sizes(spheres.r);
   const auto n = static_cast<double>(spheres.size());
   const double part = n > most_discs ? std::sqrt(most_discs / n) : 1;
-  const Vector<2> window = part * Vector<2>(box.edges);
+  const Vector<2> window = part * Vector<2>(box.size);
   const double largest = spheres.empty() ? 0 : std::ranges::max(spheres.r);
 
   const double border = std::min(farthest_out, largest / window.maxCoeff()) * canvas_size + canvas_margin;
@@ -61,8 +61,8 @@ std::string disc_svg(const Spheres<dynamic>& spheres, const PeriodicBox& box, st
     const auto colour = static_cast<std::size_t>(sizes.colour_class(r));
     for (int image = 0; image < 9; ++image) {
       if ((box.has_wall(0) && image % 3 != 1) || (box.has_wall(1) && image / 3 != 1)) continue;
-      const Vector<2> c(spheres.x[0][i] + (image % 3 - 1) * box.edges[0],
-                        spheres.x[1][i] + (image / 3 - 1) * box.edges[1]);
+      const Vector<2> c(spheres.x[0][i] + (image % 3 - 1) * box.size[0],
+                        spheres.x[1][i] + (image / 3 - 1) * box.size[1]);
       if ((c.array() + r <= 0).any() || (c.array() - r >= window.array()).any()) continue;
       const Disc disc{corner + scale * Vector<2>(c[0], window[1] - c[1]), scale * r};
       inside[colour].push_back(disc);

@@ -54,7 +54,7 @@ void write_radial(Page& page, const RadialDistribution& radial) {
 
 void write_contacts(Page& page, const Report& report) {
   const Contacts& c = report.measured.contacts;
-  const bool walls = std::holds_alternative<Shape>(report.packing.domain);
+  const bool walls = has_walls(report.packing.domain);
   page.add(
       "<h2>Contacts</h2>\n<p>Two spheres count as touching when the gap between them is below {:g} times the "
       "sum of their radii{}.</p>\n",

@@ -80,16 +80,17 @@ Json drawn_json(const SizeComparison& sizes) {
 }
 
 Json::object_t::value_type domain_json(const Domain& domain) {
-  if (const PeriodicBox* box = std::get_if<PeriodicBox>(&domain)) {
+  const Box* box = std::get_if<Box>(&domain);
+  if (box && (box->repeats() || box->dimension() != 3)) {
     std::vector<int> walls;
     for (int k = 0; k < box->dimension(); ++k)
       if (box->has_wall(k)) walls.push_back(k);
     return {"box",
-            {{"edges", std::vector<double>(box->edges.begin(), box->edges.end())},
+            {{"edges", std::vector<double>(box->size.begin(), box->size.end())},
              {"walls", walls},
              {"volume", volume_of(domain)}}};
   }
-  const Bounds<3> bounds = bounds_of(std::get<Shape>(domain));
+  const Bounds<3> bounds = bounds_of(domain);
   return {"container",
           {{"kind", kind_of(domain)},
            {"volume", volume_of(domain)},

@@ -34,18 +34,18 @@ std::vector<Vector<3>> ring(const Vector<3>& center, const Vector<3>& axis, doub
   return points;
 }
 
-Mesh drawable(const BoxShape& box) {
+Mesh drawable(const Box& box) {
   Mesh mesh;
   for (int corner = 0; corner < 8; ++corner) {
     const Vector<3> side(corner & 1, corner >> 1 & 1, corner >> 2);
-    mesh.vertices.push_back(box.corner + side.cwiseProduct(box.size));
+    mesh.vertices.push_back(box.corner + side.cwiseProduct(Vector<3>(box.size)));
   }
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return mesh;
 }
 
-Mesh drawable(const CylinderShape& cylinder) {
+Mesh drawable(const Cylinder& cylinder) {
   const Vector<3> axis = cylinder.axis.normalized();
   const Vector<3> top = cylinder.base + cylinder.height * axis;
   Mesh mesh;
@@ -64,7 +64,7 @@ Mesh drawable(const CylinderShape& cylinder) {
   return mesh;
 }
 
-Mesh drawable(const SphereShape& sphere) {
+Mesh drawable(const Sphere& sphere) {
   Mesh mesh;
   mesh.vertices = ring(sphere.center, View::towards_eye(), sphere.radius);
   mesh.vertices.push_back(sphere.center + sphere.radius * View::towards_eye());
@@ -147,9 +147,7 @@ void split_where_hidden(const CanvasPoint& a, const CanvasPoint& b, const DepthB
 }  // namespace
 
 Mesh drawable_mesh(const Domain& domain) {
-  if (const auto* box = std::get_if<PeriodicBox>(&domain))
-    return drawable(BoxShape{Vector<3>::Zero(), Vector<3>(box->edges)});
-  return std::visit([](const auto& shape) { return drawable(shape); }, std::get<Shape>(domain));
+  return std::visit([](const auto& shape) { return drawable(shape); }, domain);
 }
 
 std::vector<Stroke> outline_of(const Mesh& mesh, const View& view) {

@@ -50,8 +50,8 @@ void write_headline(Page& page, const Report& report) {
             fmt::format("{}: {}", name_of(packing.outcome), escaped(packing.reason)));
   page.card(fmt::format("{:.4f}", packing.packing_fraction()), "Packing fraction",
             fmt::format("the share of the {}’s {} that is sphere{}",
-                        std::holds_alternative<PeriodicBox>(packing.domain) ? "box" : "container",
-                        volume_word(packing), expected_text(packing)));
+                        is_periodic(packing.domain) ? "box" : "container", volume_word(packing),
+                        expected_text(packing)));
   page.card(certified ? "yes" : "no", "Certified",
             certified ? "no overlap, nothing sticks out; proven on the written file"
                       : "see the certificate below for what is wrong",
@@ -66,18 +66,15 @@ void write_headline(Page& page, const Report& report) {
 void write_scene(Page& page, const Report& report, std::string_view scene) {
   const Packing& packing = report.packing;
   const std::string unit = escaped(packing.scene.unit);
-  const Vector<dynamic> extent = extent_of(packing.domain);
-  const bool periodic = std::holds_alternative<PeriodicBox>(packing.domain);
+  const Vector<dynamic> extent = bounds_of<dynamic>(packing.domain).size();
+  const bool periodic = is_periodic(packing.domain);
   page.add("<h2>What was asked</h2>\n<p>A {} of {} {:.6g} {}, {:.4g} {}{}", name_of(packing.domain),
            volume_word(packing), packing.volume, volume_unit(packing), fmt::join(extent, " × "), unit,
-           !periodic ? " over all"
-           : std::get<PeriodicBox>(packing.domain).has_walls()
-               ? ", repeated without end along the axes that have no walls"
-               : ", repeated without end in all directions");
-  if (const Shape* shape = std::get_if<Shape>(&packing.domain)) {
-    if (const auto* mesh = std::get_if<Mesh>(shape))
-      page.add(", with {} triangles", grouped(mesh->triangles.size()));
-  }
+           !periodic                   ? " over all"
+           : has_walls(packing.domain) ? ", repeated without end along the axes that have no walls"
+                                       : ", repeated without end in all directions");
+  if (const auto* mesh = std::get_if<Mesh>(&packing.domain))
+    page.add(", with {} triangles", grouped(mesh->triangles.size()));
   page.add(". Seed {}. Every length is in {}.</p>\n", packing.seed, unit);
   page.add(
       "<details><summary>The scene as it was run, with every default written out</summary><pre>{}</pre>"
@@ -88,7 +85,7 @@ void write_scene(Page& page, const Report& report, std::string_view scene) {
 /// Where spheres are relaxed overlaps go away; where they are compressed they settle.
 void write_course(Page& page, const Packing& packing) {
   if (packing.history.size() < 2) return;
-  const bool periodic = std::holds_alternative<PeriodicBox>(packing.domain);
+  const bool periodic = is_periodic(packing.domain);
   const auto all = [&](auto is) { return std::ranges::all_of(packing.history, is); };
   const bool relaxed = !all([](const Milestone& m) { return m.max_overlap == 0; });
   const bool grown = all([](const Milestone& m) { return m.stage == "grow"; });
@@ -129,7 +126,7 @@ void write_effects(Page& page, const Packing& packing) {
 
 void write_certificate(Page& page, const Report& report) {
   const Certificate& c = report.certificate;
-  const bool walls = std::holds_alternative<Shape>(report.packing.domain);
+  const bool walls = has_walls(report.packing.domain);
   page.add(
       "<h2>The certificate</h2>\n<p>After writing, <code>spheres.csv</code> was read back, and every "
       "question of "

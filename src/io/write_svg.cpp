@@ -176,14 +176,15 @@ void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const Vie
 
 /// What has to fit on the canvas: the domain, and for a periodic box the spheres that stick out of it.
 std::vector<Vector<3>> corners_of(const Mesh& mesh, const Domain& domain, const Spheres<dynamic>& spheres) {
-  if (!std::holds_alternative<PeriodicBox>(domain) || spheres.empty()) return mesh.vertices;
-  const Vector<3> edges(extent_of(domain));
+  if (!is_periodic(domain) || spheres.empty()) return mesh.vertices;
+  const Vector<3> middle = bounds_of(domain).center();
+  const Boundary<3> boundary = boundary_of<3>(domain);
   Vector<3> out = Vector<3>::Constant(std::ranges::max(spheres.r));
   for (int k = 0; k < 3; ++k)
-    if (std::get<PeriodicBox>(domain).has_wall(k)) out[k] = 0;
+    if (!boundary.repeats(k)) out[k] = 0;
   std::vector<Vector<3>> corners;
   for (const Vector<3>& v : mesh.vertices)
-    corners.push_back((v.array() > 0.5 * edges.array()).select(v + out, v - out));
+    corners.push_back((v.array() > middle.array()).select(v + out, v - out));
   return corners;
 }
 
@@ -192,7 +193,7 @@ std::string solid_svg(const Spheres<dynamic>& spheres, const Domain& domain, std
   const View view(corners_of(mesh, domain, spheres), canvas_size, canvas_margin, narrowest_canvas);
   const SizeScale sizes(spheres.r);
   const std::vector<Stroke> strokes = outline_of(mesh, view);
-  const bool periodic = std::holds_alternative<PeriodicBox>(domain);  // spheres stick out and hide its edges
+  const bool periodic = is_periodic(domain);  // spheres stick out and hide its edges
 
   std::string out = svg_head(view.width(), view.height(), spheres.size());
   append_gradients(out);
@@ -210,7 +211,7 @@ std::string solid_svg(const Spheres<dynamic>& spheres, const Domain& domain, std
 std::string svg_of(const Spheres<dynamic>& spheres, const Domain& domain, std::string_view unit) {
   switch (spheres.dimension()) {
     case 2:
-      return disc_svg(spheres, std::get<PeriodicBox>(domain), unit);
+      return disc_svg(spheres, std::get<Box>(domain), unit);
     case 3:
       return solid_svg(spheres, domain, unit);
     default:

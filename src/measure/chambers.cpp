@@ -40,7 +40,7 @@ std::vector<Place> deepest_of_coarse_cells(const FreeSpace& space, double size) 
 /// The components of the places in a container; where it is convex there is one, or none.
 class Components {
  public:
-  Components(const Shape& shape, const FreeSpace& space, int cells) {
+  Components(const Domain& shape, const FreeSpace& space, int cells) {
     const Bounds<3> bounds = space.container().bounds();
     const auto* mesh = std::get_if<Mesh>(&shape);
     if (mesh && is_convex(*mesh)) deepest_ = deepest_of_coarse_cells(space, bounds.size().maxCoeff());
@@ -184,7 +184,7 @@ void sort(Chambers& found) {
     if (chamber != none) chamber = place[chamber];
 }
 
-Chambers chambers_in(const Shape& shape, const Packing* packing, double radius, double mean_radius,
+Chambers chambers_in(const Domain& shape, const Packing* packing, double radius, double mean_radius,
                      const ChamberOptions& options) {
   const Frame frame = frame_of(shape);
   const auto container = make_local_container(shape, frame, WallArithmetic::plain);
@@ -250,14 +250,13 @@ Chambers chambers_in(const Shape& shape, const Packing* packing, double radius, 
 }  // namespace
 
 std::optional<Chambers> chambers(const Packing& packing, const ChamberOptions& options) {
-  const Shape* shape = std::get_if<Shape>(&packing.domain);
-  if (!shape || packing.spheres.empty()) return {};
+  if (is_periodic(packing.domain) || dimension_of(packing.domain) != 3 || packing.spheres.empty()) return {};
   const std::vector<double>& radii = packing.spheres.r;
   const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
-  return chambers_in(*shape, &packing, *std::ranges::min_element(radii), mean, options);
+  return chambers_in(packing.domain, &packing, *std::ranges::min_element(radii), mean, options);
 }
 
-Chambers chambers_for(const Shape& shape, double radius, const ChamberOptions& options) {
+Chambers chambers_for(const Domain& shape, double radius, const ChamberOptions& options) {
   return chambers_in(shape, nullptr, radius, radius, options);
 }
 

@@ -72,7 +72,7 @@ Contacts count(const Packing& packing, const std::vector<NearPair>& pairs, const
   if (contacts.backbone == 0) return contacts;
   contacts.backbone_coordination =
       2.0 * static_cast<double>(contacts.backbone_pairs) / static_cast<double>(contacts.backbone);
-  if (const PeriodicBox* box = std::get_if<PeriodicBox>(&packing.domain); box && !box->has_walls())
+  if (!has_walls(packing.domain))
     contacts.isostatic = static_cast<std::uint64_t>(dimension) * (contacts.backbone - 1) + 1;
   return contacts;
 }

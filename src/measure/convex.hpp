@@ -1,5 +1,5 @@
 #pragma once
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal {
 

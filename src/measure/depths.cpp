@@ -15,22 +15,20 @@ namespace {
 constexpr double most_in_vain = 16;
 
 /// Volume of the points deeper than z, over a constant factor.
-double inner_volume(const BoxShape& box, double z) {
+double inner_volume(const Box& box, double z) {
   const Vector<3> inner = bounds_of(box).size() - Vector<3>::Constant(2 * z);
   return inner.minCoeff() > 0 ? inner.prod() : 0;
 }
-double inner_volume(const CylinderShape& cylinder, double z) {
+double inner_volume(const Cylinder& cylinder, double z) {
   const double radius = cylinder.radius - z, height = cylinder.height - 2 * z;
   return radius > 0 && height > 0 ? radius * radius * height : 0;
 }
-double inner_volume(const SphereShape& sphere, double z) {
-  return std::pow(std::max(0.0, sphere.radius - z), 3);
-}
+double inner_volume(const Sphere& sphere, double z) { return std::pow(std::max(0.0, sphere.radius - z), 3); }
 double inner_volume(const Mesh&, double) { return 0; }
 
-double deepest_of(const BoxShape& box) { return 0.5 * bounds_of(box).size().minCoeff(); }
-double deepest_of(const CylinderShape& cylinder) { return std::min(cylinder.radius, 0.5 * cylinder.height); }
-double deepest_of(const SphereShape& sphere) { return sphere.radius; }
+double deepest_of(const Box& box) { return 0.5 * bounds_of(box).size().minCoeff(); }
+double deepest_of(const Cylinder& cylinder) { return std::min(cylinder.radius, 0.5 * cylinder.height); }
+double deepest_of(const Sphere& sphere) { return sphere.radius; }
 double deepest_of(const Mesh&) { return 0; }
 
 /// One point in each cell of a grid over the bounds, at random in it: what is known of the error of
@@ -61,7 +59,7 @@ std::vector<double> sample(const Container& container, double reach, std::size_t
 
 }  // namespace
 
-Depths::Depths(const Shape& shape, const Container& container, double reach, std::size_t points) {
+Depths::Depths(const Domain& shape, const Container& container, double reach, std::size_t points) {
   if (std::holds_alternative<Mesh>(shape)) {
     shape_ = Mesh{};
     sampled_ = sample(container, reach, points);

@@ -13,7 +13,7 @@ class Depths {
  public:
   /// Looks at about `points` points inside a mesh, and no deeper than `reach`. Cost: up to 16 times as many
   /// questions to the container where it fills little of its bounds.
-  Depths(const Shape&, const Container&, double reach, std::size_t points);
+  Depths(const Domain&, const Container&, double reach, std::size_t points);
 
   /// 1 for z <= 0, and falling.
   double deeper(double z) const;
@@ -23,7 +23,7 @@ class Depths {
   double deepest() const { return deepest_; }
 
  private:
-  Shape shape_;                  // a mesh is left out
+  Domain shape_;                 // a mesh is left out
   std::vector<double> sampled_;  // of the points in a mesh, ascending
   double deepest_ = 0;
 };

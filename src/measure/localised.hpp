@@ -1,6 +1,6 @@
 #pragma once
 #include "bernal/core/spheres.hpp"
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal {
 

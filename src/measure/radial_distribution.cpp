@@ -150,9 +150,8 @@ void find_peaks(RadialDistribution& radial) {
 }  // namespace
 
 std::optional<RadialDistribution> radial_distribution(const Packing& packing, const RadialOptions& options) {
-  const PeriodicBox* box = std::get_if<PeriodicBox>(&packing.domain);
   const std::vector<double>& radii = packing.spheres.r;
-  if (!box || box->has_walls() || radii.size() < 2) return {};
+  if (has_walls(packing.domain) || radii.size() < 2) return {};
   const auto n = static_cast<double>(radii.size());
   const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / n;
   double squares = 0;
@@ -162,14 +161,16 @@ std::optional<RadialDistribution> radial_distribution(const Packing& packing, co
   radial.mean_diameter = 2 * mean;
   radial.radius_spread = std::sqrt(squares / n);
   radial.bin_width = options.bin * radial.mean_diameter;
-  const double reach = std::min(options.reach * radial.mean_diameter, 0.5 * box->edges.minCoeff());
+  const double reach = std::min(options.reach * radial.mean_diameter,
+                                0.5 * bounds_of<dynamic>(packing.domain).size().minCoeff());
   const double bins = std::floor(reach / radial.bin_width + slack);
   if (!(bins >= 1)) return {};
   const Histogram empty(static_cast<std::size_t>(bins), radial.bin_width);
   Histogram found = empty;
   with_dimension(packing.spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
-    found = count_distances<D>(packing.spheres.in<D>(), {box->edges}, empty, options.work, radial.references);
+    found = count_distances<D>(packing.spheres.in<D>(), boundary_of<D>(packing.domain), empty, options.work,
+                               radial.references);
   });
   normalise(found.counts(), packing, radial);
   find_peaks(radial);

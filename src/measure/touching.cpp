@@ -101,39 +101,39 @@ std::vector<Found> pairs_among(const Spheres<D>& spheres, const Boundary<D>& bou
   return pairs;
 }
 
+/// Whether it is a container that ends everywhere.
+bool is_bounded(const Domain& domain) { return !is_periodic(domain) && dimension_of(domain) == 3; }
+
 }  // namespace
 
 std::vector<NearPair> near_pairs(const Packing& packing, double widest_gap) {
   if (packing.spheres.empty()) return {};
-  if (const Shape* shape = std::get_if<Shape>(&packing.domain))
-    return pairs_among<NearPair, 3>(localised(packing.spheres, frame_of(*shape)), {}, widest_gap);
+  if (is_bounded(packing.domain))
+    return pairs_among<NearPair, 3>(localised(packing.spheres, frame_of(packing.domain)), {}, widest_gap);
   return with_dimension(packing.spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
-    return pairs_among<NearPair, D>(packing.spheres.in<D>(),
-                                    std::get<PeriodicBox>(packing.domain).boundary<D>(), widest_gap);
+    return pairs_among<NearPair, D>(packing.spheres.in<D>(), boundary_of<D>(packing.domain), widest_gap);
   });
 }
 
 std::vector<NearBond> near_bonds(const Packing& packing, double widest_gap) {
   if (packing.spheres.empty()) return {};
-  if (const Shape* shape = std::get_if<Shape>(&packing.domain))
-    return pairs_among<NearBond, 3>(localised(packing.spheres, frame_of(*shape)), {}, widest_gap);
-  return pairs_among<NearBond, 3>(packing.spheres.in<3>(),
-                                  std::get<PeriodicBox>(packing.domain).boundary<3>(), widest_gap);
+  if (is_bounded(packing.domain))
+    return pairs_among<NearBond, 3>(localised(packing.spheres, frame_of(packing.domain)), {}, widest_gap);
+  return pairs_among<NearBond, 3>(packing.spheres.in<3>(), boundary_of<3>(packing.domain), widest_gap);
 }
 
 namespace {
 
 /// Those on the axes of a periodic box that have walls.
-std::vector<NearWall> near_walls_of(const PeriodicBox& box, const Spheres<dynamic>& spheres,
-                                    double widest_gap) {
+std::vector<NearWall> near_walls_of(const Box& box, const Spheres<dynamic>& spheres, double widest_gap) {
   std::vector<NearWall> near;
   for (std::uint32_t i = 0; i < spheres.size(); ++i) {
     const double r = spheres.r[i];
     for (int k = 0; k < box.dimension(); ++k) {
       if (!box.has_wall(k)) continue;
       const double c = spheres.x[static_cast<std::size_t>(k)][i];
-      for (const double clearance : {c, box.edges[k] - c})
+      for (const double clearance : {c - box.corner[k], box.corner[k] + box.size[k] - c})
         if (clearance < (1 + widest_gap) * r) near.push_back({i, (clearance - r) / r});
     }
   }
@@ -144,11 +144,10 @@ std::vector<NearWall> near_walls_of(const PeriodicBox& box, const Spheres<dynami
 
 std::vector<NearWall> near_walls(const Packing& packing, double widest_gap) {
   if (packing.spheres.empty()) return {};
-  if (const PeriodicBox* box = std::get_if<PeriodicBox>(&packing.domain))
-    return near_walls_of(*box, packing.spheres, widest_gap);
-  const Shape* shape = std::get_if<Shape>(&packing.domain);
-  const Frame frame = frame_of(*shape);
-  const auto container = make_local_container(*shape, frame, WallArithmetic::plain);
+  const Box* box = std::get_if<Box>(&packing.domain);
+  if (box && !is_bounded(packing.domain)) return near_walls_of(*box, packing.spheres, widest_gap);
+  const Frame frame = frame_of(packing.domain);
+  const auto container = make_local_container(packing.domain, frame, WallArithmetic::plain);
   const Spheres<3> spheres = localised(packing.spheres, frame);
   std::vector<NearWall> near;
   std::vector<WallPoint> points;

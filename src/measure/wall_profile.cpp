@@ -174,17 +174,16 @@ Region region_of(double clearance, double r, const Zones& zones) {
 }  // namespace
 
 std::optional<WallProfile> wall_profile(const Packing& packing, const WallOptions& options) {
-  const Shape* shape = std::get_if<Shape>(&packing.domain);
-  if (!shape || packing.spheres.empty()) return {};
-  const Frame frame = frame_of(*shape);
-  const auto container = make_local_container(*shape, frame, WallArithmetic::plain);
+  if (is_periodic(packing.domain) || dimension_of(packing.domain) != 3 || packing.spheres.empty()) return {};
+  const Frame frame = frame_of(packing.domain);
+  const auto container = make_local_container(packing.domain, frame, WallArithmetic::plain);
   const Spheres<3> spheres = localised(packing.spheres, frame);
   const double volume = container->volume();
   const double diameter =
       2 * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / static_cast<double>(spheres.size());
   const double thickness = options.layer * diameter;
   const double reach = std::max(options.reach, least_reach) * diameter;
-  const Depths depths(to_local(*shape, frame), *container, reach,
+  const Depths depths(to_local(packing.domain, frame), *container, reach,
                       static_cast<std::size_t>(mesh_share * options.work));
 
   WallProfile profile;
@@ -197,7 +196,8 @@ std::optional<WallProfile> wall_profile(const Packing& packing, const WallOption
   const std::vector<double> clearance = clearances(*container, spheres, reach);
   double within_reach = 0;
   for (std::size_t i = 0; i < spheres.size(); ++i) within_reach += clearance[i] - spheres.r[i] < reach;
-  const double work = options.work * (std::holds_alternative<Mesh>(*shape) ? mesh_share : analytic_share);
+  const double work =
+      options.work * (std::holds_alternative<Mesh>(packing.domain) ? mesh_share : analytic_share);
   const auto points =
       static_cast<std::uint32_t>(std::clamp(work / std::max(1.0, within_reach), fewest_points, most_points));
   const std::vector<Filling> filling = fill(*container, spheres, clearance, zones, reach, points);

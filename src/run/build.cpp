@@ -5,10 +5,10 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/dimension.hpp"
+#include "hard/grow_in_container.hpp"
 #include "run/catalogue.hpp"
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
-#include "hard/grow_in_container.hpp"
 
 namespace bernal {
 namespace {
@@ -102,7 +102,7 @@ void resolve_predicted(Plan& plan) {
 
 void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
-  const Shape& container = std::get<Shape>(plan.domain);
+  const Domain& container = plan.domain;
   require_fitting(scene, container, plan.radii->min());
   if (std::isfinite(plan.radii->max())) require_fitting(scene, container, plan.radii->max());
 
@@ -123,7 +123,7 @@ void expect_in_container(Plan& plan) {
 
 /// Throws where growth would find that the container is not convex.
 void require_convex_for_growth(const Plan& plan) {
-  const Shape& shape = std::get<Shape>(plan.domain);
+  const Domain& shape = plan.domain;
   const double rarest = std::min(0.5, 1 / std::max(1.0, plan.expected_count));
   const double smallest = std::max(plan.radii->min(), plan.radii->quantile(rarest));
   for (const Spec& stage : plan.scene.stages) {
@@ -158,7 +158,7 @@ void expect_in_periodic_box(Plan& plan) {
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   if (plan.box_follows) {
     plan.expected_count = static_cast<double>(*scene.target.count);
-    Vector<dynamic>& edges = std::get<PeriodicBox>(plan.domain).edges;
+    Vector<dynamic>& edges = std::get<Box>(plan.domain).size;
     edges = proportions_of(edges);
     edges *= std::pow(plan.expected_count * mean_volume / attainable / edges.prod(), 1.0 / dimension);
   } else {

@@ -6,15 +6,15 @@
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/unit.hpp"
-#include "settle/compress.hpp"
 #include "fly/fly.hpp"
 #include "hard/grow.hpp"
 #include "hard/grow_in_container.hpp"
+#include "settle/compress.hpp"
 #include "settle/insert.hpp"
 #include "settle/refill.hpp"
+#include "settle/shake.hpp"
 #include "soft/relax.hpp"
 #include "soft/relax_in_container.hpp"
-#include "settle/shake.hpp"
 
 namespace bernal {
 namespace {
@@ -27,17 +27,16 @@ Vector<3> vector_of(const Spec& spec, std::string_view key) {
 // ---- containers
 
 Domain make_box(const Scene& scene, std::string&) {
-  return Shape(BoxShape{vector_of(scene.container, "corner"), vector_of(scene.container, "size")});
+  return Box{vector_of(scene.container, "corner"), vector_of(scene.container, "size")};
 }
 
 Domain make_cylinder(const Scene& scene, std::string&) {
   const Spec& c = scene.container;
-  return Shape(
-      CylinderShape{vector_of(c, "base"), vector_of(c, "axis"), c.number("radius"), c.number("height")});
+  return Cylinder{vector_of(c, "base"), vector_of(c, "axis"), c.number("radius"), c.number("height")};
 }
 
 Domain make_sphere(const Scene& scene, std::string&) {
-  return Shape(SphereShape{vector_of(scene.container, "center"), scene.container.number("radius")});
+  return Sphere{vector_of(scene.container, "center"), scene.container.number("radius")};
 }
 
 Domain make_mesh(const Scene& scene, std::string& notes) {
@@ -48,20 +47,19 @@ Domain make_mesh(const Scene& scene, std::string& notes) {
       fmt::format("{} faces; {}; coordinates are {}", imported.report.faces, imported.report.reader, unit);
   if (!imported.report.repairs.empty())
     notes += fmt::format("; {}", fmt::join(imported.report.repairs, ", "));
-  return Shape(std::move(imported.mesh));
+  return std::move(imported.mesh);
 }
 
 /// The unit cube where the scene gives no size.
 Domain make_periodic(const Scene& scene, std::string&) {
   const Spec& c = scene.container;
-  PeriodicBox box{Vector<dynamic>::Constant(scene.dimension(), c.has("edge") ? c.number("edge") : 1.0)};
-  if (c.has("size"))
-    box.edges = Eigen::Map<const Eigen::VectorXd>(c.numbers("size").data(), scene.dimension());
-  if (c.has("walls")) {
-    box.walls.assign(static_cast<std::size_t>(scene.dimension()), false);
-    for (const double axis : c.numbers("walls")) box.walls.at(static_cast<std::size_t>(axis)) = true;
-  }
-  return box;
+  Vector<dynamic> edges =
+      Vector<dynamic>::Constant(scene.dimension(), c.has("edge") ? c.number("edge") : 1.0);
+  if (c.has("size")) edges = Eigen::Map<const Eigen::VectorXd>(c.numbers("size").data(), scene.dimension());
+  std::vector<bool> walls(static_cast<std::size_t>(scene.dimension()), false);
+  if (c.has("walls"))
+    for (const double axis : c.numbers("walls")) walls.at(static_cast<std::size_t>(axis)) = true;
+  return periodic_box(edges, walls);
 }
 
 constexpr ContainerEntry containers[] = {{"box", make_box},
@@ -214,7 +212,7 @@ const PlanItem growing_in_container[] = {
 std::vector<PlanItem> chosen_effects_of_grow(const Spec&, const Plan& plan) {
   if (!plan.scene.is_periodic()) return {std::begin(growing_in_container), std::end(growing_in_container)};
   std::vector<PlanItem> items(std::begin(growing), std::end(growing));
-  if (!std::get<PeriodicBox>(plan.domain).has_walls())
+  if (!has_walls(plan.domain))
     std::erase_if(items, [](const PlanItem& item) { return item.name == "reflections"; });
   return items;
 }
@@ -237,7 +235,7 @@ FillTask fill_task_of(const Plan& plan) {
   FillTask task{.dimension = dimension,
                 .attainable = plan.attainable_packing_fraction,
                 .size_ratio = plan.radii->quantile(1 - rare) / plan.radii->quantile(rare),
-                .has_walls = std::get<PeriodicBox>(plan.domain).has_walls()};
+                .has_walls = has_walls(plan.domain)};
   if (target.packing_fraction)
     task.packing_fraction = *target.packing_fraction;
   else if (target.count)

@@ -66,7 +66,7 @@ std::vector<double> radii_by_volume(const SizeDistribution& radii) {
 
 /// Random close packing, less a deficit at the wall, of what spheres of each size can cover. And the larger
 /// ones have no more room than what they can cover, which in thin parts is less than their share.
-double reached_by_relaxation(const Shape& shape, const SizeDistribution& radii) {
+double reached_by_relaxation(const Domain& shape, const SizeDistribution& radii) {
   const Frame frame = frame_of(shape);
   const auto container = make_local_container(shape, frame, WallArithmetic::plain);
   const std::vector<double> by_volume = radii_by_volume(radii);
@@ -122,7 +122,7 @@ double error_of_expectation(const Scene& scene) {
 /// Compression leaves a share of close packing that falls with x = A d / V, for a wall of area A, a volume V
 /// and the surface-weighted mean diameter d. Fitted to fills with x from 0.18 (Han's cylinder) to 1.6 (a part
 /// only two spheres thick), all of them met within 0.03.
-double expected_packing_fraction(const Scene& scene, const Shape& shape, const SizeDistribution& radii) {
+double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii) {
   const auto runs = [&](std::string_view name) { return has_stage(scene, name); };
   if (runs("relax") || runs("grow")) return reached_by_relaxation(shape, radii);
   if (!runs("refill")) {

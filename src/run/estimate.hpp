@@ -15,7 +15,7 @@ namespace bernal {
 double coverable_share(const Container& container, double r);
 
 /// The packing fraction that the scene's stages are likely to reach in a container when they may fill it.
-double expected_packing_fraction(const Scene& scene, const Shape& shape, const SizeDistribution& radii);
+double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii);
 
 /// How far below the one of the two functions here that is for the scene's domain a result may lie: 0.01, the
 /// error of the rod model, in a periodic box; 0.016 and 0.03 in a container, where relaxation and compression

@@ -15,9 +15,16 @@ namespace bernal {
 namespace {
 
 struct LargestRadius {
-  double operator()(const BoxShape& b) const { return 0.5 * b.size.minCoeff(); }
-  double operator()(const CylinderShape& c) const { return std::min(c.radius, 0.5 * c.height); }
-  double operator()(const SphereShape& s) const { return s.radius; }
+  double operator()(const Box& b) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < b.dimension(); ++k)
+      if (b.has_wall(k)) least = std::min(least, 0.5 * b.size[k]);
+    return least;
+  }
+  double operator()(const Cylinder& c) const {
+    return c.periodic ? c.radius : std::min(c.radius, 0.5 * c.height);
+  }
+  double operator()(const Sphere& s) const { return s.radius; }
   double operator()(const Mesh& m) const {
     const double by_volume = std::cbrt(3 * volume_of(m) / (4 * std::numbers::pi));
     return std::min(0.5 * bounds_of(m).size().minCoeff(), by_volume);
@@ -26,9 +33,9 @@ struct LargestRadius {
 
 }  // namespace
 
-double largest_fitting_radius(const Shape& shape) { return std::visit(LargestRadius{}, shape); }
+double largest_fitting_radius(const Domain& shape) { return std::visit(LargestRadius{}, shape); }
 
-void require_fitting(const Scene& scene, const Shape& container, double radius) {
+void require_fitting(const Scene& scene, const Domain& container, double radius) {
   const double largest = largest_fitting_radius(container);
   if (radius <= largest) return;
   const double shown = scene.sizes_are_diameters ? 2 : 1;

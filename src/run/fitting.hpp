@@ -8,10 +8,10 @@ namespace bernal {
 
 /// No sphere larger than this fits into the shape: exact for the analytic ones; for a mesh an upper bound
 /// from its bounds and its volume.
-double largest_fitting_radius(const Shape& shape);
+double largest_fitting_radius(const Domain& shape);
 
 /// Throws Error{bad_scene} at the scene's sizes, with the remedy, if a sphere of that radius cannot fit.
-void require_fitting(const Scene& scene, const Shape& container, double radius);
+void require_fitting(const Scene& scene, const Domain& container, double radius);
 
 /// Where to cut an unbounded tail of sizes: the radius for whose spheres' centres only one hundredth of the
 /// container has room; single larger ones would wait for a place for ever. From 10,000 random points.

@@ -23,7 +23,7 @@ WallArithmetic arithmetic_of(const Scene& scene) {
 /// The frame in which the packer works. Throws where coordinates are so large that neighbouring spheres could
 /// not be told apart.
 Frame working_frame(const Plan& plan) {
-  Frame frame = frame_of(std::get<Shape>(plan.domain));
+  Frame frame = frame_of(plan.domain);
   const double smallest = plan.radii->min() > 0 ? plan.radii->min() : plan.radii->quantile(1e-9);
   if (1e6 * frame.resolution * frame.scale > smallest) {
     throw Error(
@@ -93,9 +93,9 @@ void conclude(Packing& packing, const Supply& supply, StageEnd end) {
 }  // namespace
 
 void run_in_container(const Plan& plan, const Monitor& monitor, const Stopwatch& watch, Packing& packing) {
-  const Shape& shape = std::get<Shape>(plan.domain);
+  const Domain& shape = plan.domain;
   const Frame frame = working_frame(plan);
-  const Shape local = to_local(shape, frame);
+  const Domain local = to_local(shape, frame);
   const std::unique_ptr<Container> container =
       make_container(local, arithmetic_of(plan.scene), frame.resolution);
   const double unbounded = std::numeric_limits<double>::infinity();

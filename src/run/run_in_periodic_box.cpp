@@ -90,6 +90,10 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
   const Scene& scene = plan.scene;
   const int dimension = scene.dimension();
   const Target& target = scene.target;
+  const Box& box = std::get<Box>(plan.domain);
+  std::vector<bool> walls = box.periodic;
+  walls.flip();
+  if (!box.has_walls()) walls.clear();
   const double asked_volume = volume_of(plan.domain);
   EffectLog effects;
 
@@ -108,8 +112,8 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
     }
 
     PeriodicWork work{.spheres = Spheres<dynamic>(dimension),
-                      .edges = std::get<PeriodicBox>(plan.domain).edges / unit,
-                      .walls = std::get<PeriodicBox>(plan.domain).walls,
+                      .edges = box.size / unit,
+                      .walls = walls,
                       .allowed_overlap = scene.overlap,
                       .seed = packing.seed,
                       .monitor = monitor,
@@ -144,11 +148,10 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
     for (auto& column : packing.spheres.x)
       for (double& x : column) x *= unit;
     for (double& r : packing.spheres.r) r *= unit;
-    PeriodicBox box{work.edges * unit, work.walls};
-    packing.domain = box;
+    const Vector<dynamic> edges = work.edges * unit;
+    packing.domain = periodic_box(edges, work.walls);
     packing.volume = volume_of(packing.domain);
-    packing.scene.container.parameters["size"].value =
-        std::vector<double>(box.edges.begin(), box.edges.end());
+    packing.scene.container.parameters["size"].value = std::vector<double>(edges.begin(), edges.end());
     packing.scene.container.parameters.erase("edge");
     packing.effects = effects.all();
     conclude(packing, work, end, fits, wanted);

@@ -58,25 +58,26 @@ std::vector<verify::Ball<3>> balls_of(const Spheres<dynamic>& spheres) {
 
 verify::Tally judge(const Spheres<dynamic>& spheres, const Domain& domain, double allowed_overlap,
                     Arithmetic arithmetic) {
-  if (const auto* box = std::get_if<PeriodicBox>(&domain))
-    return verify::judge_pairs(spheres, *box, allowed_overlap, arithmetic);
+  if (is_periodic(domain) || dimension_of(domain) != 3) {
+    verify::Tally tally = verify::judge_pairs(spheres, domain, allowed_overlap, arithmetic);
+    return tally += verify::judge_walls(spheres, domain, arithmetic);
+  }
   const verify::BallTree<3> balls(balls_of(spheres));
   verify::Tally tally = verify::judge_pairs(balls, allowed_overlap, arithmetic);
-  return tally += verify::judge_walls(balls, std::get<Shape>(domain), arithmetic);
+  return tally += verify::judge_walls(balls, domain, arithmetic);
 }
 
 /// "1,200 spheres, 7,000 near pairs and 7,200 walls decided exactly, no overlap, no protrusion"
 std::string what_was_decided(const Certificate& c, const Domain& domain, const std::string& limit) {
   const std::string pairs = counted(c.pairs_tested, "near pair", "near pairs");
-  const Shape* shape = std::get_if<Shape>(&domain);
-  if (!shape && std::get<PeriodicBox>(domain).has_walls())
+  if (!has_walls(domain))
+    return fmt::format("{} in a {}, {} decided exactly, no overlap{}", counted_spheres(c.spheres),
+                       name_of(domain), pairs, limit);
+  if (is_periodic(domain))
     return fmt::format("{} in a {}, {} and {} decided exactly, no overlap{}, no protrusion",
                        counted_spheres(c.spheres), name_of(domain), pairs,
                        counted(c.walls_tested, "wall", "walls"), limit);
-  if (!shape)
-    return fmt::format("{} in a periodic box, {} decided exactly, no overlap{}", counted_spheres(c.spheres),
-                       pairs, limit);
-  const bool mesh = std::holds_alternative<Mesh>(*shape);
+  const bool mesh = std::holds_alternative<Mesh>(domain);
   return fmt::format(
       "{}, {} and {} decided exactly, no overlap{}, no protrusion", counted_spheres(c.spheres), pairs,
       counted(c.walls_tested, mesh ? "near triangle" : "wall", mesh ? "near triangles" : "walls"), limit);

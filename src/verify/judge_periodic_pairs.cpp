@@ -1,5 +1,7 @@
 #include "verify/judge_pairs.hpp"
 
+#include <cmath>
+#include <variant>
 #include <vector>
 
 #include "bernal/core/dimension.hpp"
@@ -8,6 +10,30 @@
 
 namespace bernal::verify {
 namespace {
+
+/// What repeats is said here once more, from the plain data: the packer's own metric is not trusted.
+template <int D>
+PeriodicSpace<D> space_of(const Domain& domain) {
+  PeriodicSpace<D> space{Vector<D>::Constant(Box<D>::infinity)};
+  const auto repeat = [&](int axis, double period) {
+    if (!std::isfinite(period) || !(period > 0))
+      throw Error(ErrorCode::bad_argument, "what repeats itself needs a positive finite period");
+    space.edges[axis] = period;
+  };
+  if (const auto* box = std::get_if<bernal::Box>(&domain)) {
+    if (!box->periodic.empty() && box->periodic.size() != static_cast<std::size_t>(D))
+      throw Error(ErrorCode::bad_argument, "a box repeats itself or ends on each of its axes");
+    for (int k = 0; k < D; ++k)
+      if (box->repeats(k)) repeat(k, box->size[k]);
+  }
+  if (const auto* cylinder = std::get_if<Cylinder>(&domain); cylinder && cylinder->periodic && D == 3) {
+    const int axis = cylinder->coordinate_axis();
+    if (axis < 0)
+      throw Error(ErrorCode::bad_argument, "a cylinder that repeats itself needs an axis along x, y or z");
+    repeat(axis, cylinder->height);
+  }
+  return space;
+}
 
 template <int D>
 std::vector<Ball<D>> representatives(const Spheres<dynamic>& spheres, const PeriodicSpace<D>& space) {
@@ -21,44 +47,15 @@ std::vector<Ball<D>> representatives(const Spheres<dynamic>& spheres, const Peri
   return balls;
 }
 
-/// The two walls of every axis that has them, for every ball. Nothing is allowed to stick out.
-Tally judge_walls_of(const Spheres<dynamic>& spheres, const PeriodicBox& box, Arithmetic arithmetic) {
-  Tally tally;
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    bool inside = true;
-    const auto judge = [&](double clearance, double r, const auto& predicate) {
-      ++tally.walls;
-      const bool holds = decide(arithmetic, tally, predicate) == Truth::yes;
-      inside = inside && holds;
-      tally.add_wall_ratio(i, with_sign((clearance - r) / r, holds));
-    };
-    for (int k = 0; k < box.dimension(); ++k) {
-      if (!box.has_wall(k)) continue;
-      const double c = spheres.x[static_cast<std::size_t>(k)][i], r = spheres.r[i], edge = box.edges[k];
-      judge(c, r, [=]<class Number>() { return above<Number>(c, r, 0); });
-      judge(edge - c, r, [=]<class Number>() { return below<Number>(c, r, edge); });
-    }
-    if (!inside) ++tally.protruding;
-  }
-  return tally;
-}
-
 }  // namespace
 
-Tally judge_pairs(const Spheres<dynamic>& spheres, const PeriodicBox& box, double allowed,
+Tally judge_pairs(const Spheres<dynamic>& spheres, const Domain& domain, double allowed,
                   Arithmetic arithmetic) {
-  if (!box.edges.allFinite() || !(box.edges.array() > 0).all())
-    throw Error(ErrorCode::bad_argument, "a periodic box needs positive finite edges");
-  if (!box.walls.empty() && box.walls.size() != static_cast<std::size_t>(box.dimension()))
-    throw Error(ErrorCode::bad_argument, "a periodic box has walls or none on each of its axes");
-  return with_dimension(box.dimension(), EveryDimension{}, [&](auto dimension) {
+  return with_dimension(dimension_of(domain), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
-    PeriodicSpace<D> space{box.edges};
-    for (int k = 0; k < D; ++k)
-      if (box.has_wall(k)) space.edges[k] = Box<D>::infinity;
+    const PeriodicSpace<D> space = space_of<D>(domain);
     const BallTree<D> balls(representatives<D>(spheres, space));
-    Tally tally = PairJudge(balls, space, allowed, arithmetic).judge_all();
-    return tally += judge_walls_of(spheres, box, arithmetic);
+    return PairJudge(balls, space, allowed, arithmetic).judge_all();
   });
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 #include "verify/ball.hpp"
 #include "verify/predicates.hpp"
 #include "verify/tally.hpp"

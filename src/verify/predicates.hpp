@@ -2,7 +2,7 @@
 #include <array>
 #include <utility>
 
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 #include "verify/ball.hpp"
 #include "verify/sign.hpp"
 
@@ -79,7 +79,7 @@ Truth below(double c, double r, double upper) {
 
 /// The ball lies in the ball of radius R around `center`: |c - center| <= R - r.
 template <class Number>
-Truth ball_in_ball(const Vector<3>& c, double r, const SphereShape& s) {
+Truth ball_in_ball(const Vector<3>& c, double r, const Sphere& s) {
   if (s.radius < r) return Truth::no;
   return at_least(square(Number(s.radius) - Number(r)), squared_norm(difference<Number>(c, s.center)));
 }
@@ -89,14 +89,14 @@ Truth ball_in_ball(const Vector<3>& c, double r, const SphereShape& s) {
 
 /// h >= r |a|
 template <class Number>
-Truth above_base(const Vector<3>& c, double r, const CylinderShape& s) {
+Truth above_base(const Vector<3>& c, double r, const Cylinder& s) {
   const Triple<Number> a = vector<Number>(s.axis);
   const Number h = dot(difference<Number>(c, s.base), a);
   return at_least(h, Number(0)) & at_least(square(h), square(Number(r)) * squared_norm(a));
 }
 /// h <= (height - r) |a|
 template <class Number>
-Truth below_top(const Vector<3>& c, double r, const CylinderShape& s) {
+Truth below_top(const Vector<3>& c, double r, const Cylinder& s) {
   const Triple<Number> a = vector<Number>(s.axis);
   const Number h = dot(difference<Number>(c, s.base), a);
   const Number limit_squared = square(Number(s.height) - Number(r)) * squared_norm(a);
@@ -106,7 +106,7 @@ Truth below_top(const Vector<3>& c, double r, const CylinderShape& s) {
 }
 /// |w × a| <= (R - r) |a|
 template <class Number>
-Truth inside_side(const Vector<3>& c, double r, const CylinderShape& s) {
+Truth inside_side(const Vector<3>& c, double r, const Cylinder& s) {
   if (s.radius < r) return Truth::no;
   const Triple<Number> a = vector<Number>(s.axis);
   const Number limit_squared = square(Number(s.radius) - Number(r)) * squared_norm(a);

@@ -26,7 +26,7 @@ struct Work {
       crowd_milestone;
   const Target& target;
   /// What the bed's container is, in the same coordinates.
-  const Shape& shape;
+  const Domain& shape;
   /// The packing fraction that the stages are likely to reach.
   const double attainable;
   std::uint64_t streams_used = 0;

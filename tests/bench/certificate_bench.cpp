@@ -38,8 +38,8 @@ Spheres<3> close_packing(double n, double jitter) {
   return s;
 }
 
-const Shape cylinder = CylinderShape{.base = {0, 0, 0}, .axis = {0, 0, 1}, .radius = 1, .height = 2};
-const Shape prism = meshes::regular_prism(50, 1, 2);  // 196 triangles
+const Domain cylinder = Cylinder{.base = {0, 0, 0}, .axis = {0, 0, 1}, .radius = 1, .height = 2};
+const Domain prism = meshes::regular_prism(50, 1, 2);  // 196 triangles
 
 void certificate_of(benchmark::State& state, const Spheres<dynamic>& s, const Domain& container,
                     Arithmetic arithmetic) {
@@ -57,7 +57,7 @@ void certificate_of(benchmark::State& state, const Spheres<dynamic>& s, const Do
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void certificate(benchmark::State& state, const Shape& container, double jitter, Arithmetic arithmetic) {
+void certificate(benchmark::State& state, const Domain& container, double jitter, Arithmetic arithmetic) {
   certificate_of(state, close_packing(static_cast<double>(state.range(0)), jitter), container, arithmetic);
 }
 
@@ -100,7 +100,7 @@ void periodic(benchmark::State& state) {
     for (double& x : c) x = random.uniform();
     s.push_back(c, r);
   }
-  certificate_of(state, s, PeriodicBox{Vector<dynamic>::Ones(dimension)}, Arithmetic::filtered);
+  certificate_of(state, s, Box{Vector<dynamic>::Ones(dimension)}, Arithmetic::filtered);
 }
 BENCHMARK(periodic)
     ->Args({2, 10'000})

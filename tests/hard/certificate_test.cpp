@@ -13,7 +13,7 @@
 namespace bernal {
 namespace {
 
-Certificate expect_truth(const Spheres<3>& s, const Shape& shape) {
+Certificate expect_truth(const Spheres<3>& s, const Domain& shape) {
   const Certificate filtered = certify(s, shape, 0, Arithmetic::filtered);
   const Certificate exact = certify(s, shape, 0, Arithmetic::exact);
   const oracle::Verdict truth = oracle::judge(s, shape);
@@ -71,7 +71,7 @@ TEST(HardCertificate, OneUlpDecidesFarFromTheOrigin) {
     const Vector<3> o{offset, -offset, 2 * offset};
     Spheres<3> s;
     for (int i = 0; i < 4; ++i) s.push_back(o + Vector<3>{2.0 * i + 1, 1, 1}, 1);
-    const BoxShape box{.corner = o, .size = {8, 2, 2}};
+    const Box box{.corner = o, .size = {8, 2, 2}};
     EXPECT_TRUE(expect_truth(s, box).certified);
     const Mesh mesh = meshes::moved(meshes::cube(), 1, o);
     EXPECT_TRUE(expect_truth(s, mesh).certified);
@@ -95,11 +95,11 @@ TEST(HardCertificate, ScaleDoesNotMatter) {
                   scale * random.uniform(0.1, 2.0));
     s.push_back(scale * Vector<3>{1, 1, 1}, scale);
     s.push_back(scale * Vector<3>{3, 1, 1}, scale);
-    const BoxShape box{.corner = {0, 0, 0}, .size = Vector<3>::Constant(8 * scale)};
-    const CylinderShape cylinder{
+    const Box box{.corner = {0, 0, 0}, .size = Vector<3>::Constant(8 * scale)};
+    const Cylinder cylinder{
         .base = {0, 0, 0}, .axis = scale * Vector<3>{1, 1, 1}, .radius = 4 * scale, .height = 10 * scale};
     expect_truth(s, box);
-    expect_truth(s, SphereShape{.center = Vector<3>::Constant(4 * scale), .radius = 4 * scale});
+    expect_truth(s, Sphere{.center = Vector<3>::Constant(4 * scale), .radius = 4 * scale});
     expect_truth(s, cylinder);
     expect_truth(s, meshes::moved(meshes::l_shape(), scale, {0, 0, 0}));
   }
@@ -108,7 +108,7 @@ TEST(HardCertificate, ScaleDoesNotMatter) {
 TEST(HardCertificate, AllCoincident) {
   Spheres<3> s;
   for (int i = 0; i < 1000; ++i) s.push_back({0.1, 0.2, 0.3}, 0.01);
-  const Certificate c = certify(s, BoxShape{});
+  const Certificate c = certify(s, Box{});
   EXPECT_EQ(c.pairs_tested, 999u * 1000 / 2);
   EXPECT_EQ(c.overlapping_pairs, c.pairs_tested);
   EXPECT_EQ(c.max_overlap, 1);
@@ -125,7 +125,7 @@ TEST(HardCertificate, DustAroundABoulder) {
     const Vector<3> c = 1.001 * uniform_direction<3>(random);
     s.push_back(c, 0.001);
   }
-  const Certificate c = certify(s, BoxShape{.corner = {-2, -2, -2}, .size = {4, 4, 4}});
+  const Certificate c = certify(s, Box{.corner = {-2, -2, -2}, .size = {4, 4, 4}});
   std::uint64_t overlapping = 0;
   for (std::size_t j = 1; j < s.size(); ++j) overlapping += oracle::overlap(s, 0, j) ? 1 : 0;
   std::uint64_t among_dust = 0;
@@ -138,8 +138,8 @@ TEST(HardCertificate, DustAroundABoulder) {
 }
 
 TEST(HardCertificate, SphereLargerThanItsContainer) {
-  for (const Shape& shape :
-       {Shape{BoxShape{}}, Shape{SphereShape{}}, Shape{CylinderShape{}}, Shape{meshes::cube(0, 1)}}) {
+  for (const Domain& shape :
+       {Domain{Box{}}, Domain{Sphere{}}, Domain{Cylinder{}}, Domain{meshes::cube(0, 1)}}) {
     EXPECT_FALSE(expect_truth(one({0.5, 0.5, 0.5}, 100), shape).certified);
     EXPECT_FALSE(expect_truth(one({0.5, 0.5, 0.5}, 1e300), shape).certified);
     EXPECT_FALSE(expect_truth(one({0.5, 0.5, 1e300}, 1e-300), shape).certified);
@@ -150,7 +150,7 @@ TEST(HardCertificate, FarOutsideIsFarBelowZero) {
   // Ten units beside a cube of eight: clearance -2, radius 0.5.
   const Certificate c = expect_truth(one({10, 4, 4}, 0.5), meshes::cube());
   EXPECT_DOUBLE_EQ(c.min_wall_gap, -5);
-  EXPECT_DOUBLE_EQ(expect_truth(one({10, 4, 4}, 0.5), BoxShape{.size = {8, 8, 8}}).min_wall_gap, -5);
+  EXPECT_DOUBLE_EQ(expect_truth(one({10, 4, 4}, 0.5), Box{.size = {8, 8, 8}}).min_wall_gap, -5);
 }
 
 TEST(HardCertificate, NeedlesSliversAndFacesWithoutArea) {

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-std::size_t count(const Shape& shape, double r, int cells = 128) {
+std::size_t count(const Domain& shape, double r, int cells = 128) {
   return chambers_for(shape, r, {.cells = cells, .points = 1000}).chambers.size();
 }
 
@@ -88,8 +88,8 @@ TEST(HardChambers, SpheresFindTheWayThatTheCellsMiss) {
   for (int i = 0; i < 54; ++i)
     for (int j = 0; j < 54; ++j)
       spheres.push_back((1 + 1.05 * i) * turned + (1 + 1.05 * j) * across + 0.505 * up, r);
-  Packing packing = testing::packing_of(spheres, BoxShape{});
-  packing.domain.emplace<Shape>(mesh);
+  Packing packing = testing::packing_of(spheres, Box{});
+  packing.domain.emplace<Domain>(mesh);
   packing.volume = volume_of(packing.domain);
   const Chambers found = chambers(packing, {.cells = 12, .points = 1000}).value();
   EXPECT_EQ(found.misplaced, 0u);

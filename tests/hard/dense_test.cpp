@@ -20,7 +20,7 @@ using testing::plan_of;
 const std::string container = "[container]\nkind = \"box\"\nsize = [1e3, 1e3, 1e3]\n[spheres]\n";
 const std::string relax = "[[stage]]\ndo = \"relax\"\n";
 
-Plan plan_in(const Shape& shape, const std::string& spheres, const std::string& stages = relax) {
+Plan plan_in(const Domain& shape, const std::string& spheres, const std::string& stages = relax) {
   return plan_of(container + spheres + stages, shape);
 }
 
@@ -36,7 +36,7 @@ Packing certified(const Plan& plan) {
   return packing;
 }
 
-Packing certified(const Shape& shape, const std::string& spheres, const std::string& stages = relax) {
+Packing certified(const Domain& shape, const std::string& spheres, const std::string& stages = relax) {
   return certified(plan_in(shape, spheres, stages));
 }
 
@@ -64,7 +64,7 @@ TEST(DenseRelaxation, FillsBothChambersThatANarrowNeckJoins) {
 }
 
 TEST(DenseRelaxation, FillsBothSidesOfABaffle) {
-  const double whole = certified(BoxShape{{0, 0, 0}, {1, 1, 1}}, fill + "0.07\n").packing_fraction();
+  const double whole = certified(Box{{0, 0, 0}, {1, 1, 1}}, fill + "0.07\n").packing_fraction();
   for (const double thickness : {0.0, 1e-4}) {
     SCOPED_TRACE(thickness);
     const Mesh mesh =
@@ -95,9 +95,9 @@ TEST(DenseRelaxation, InSharpTips) {
 }
 
 TEST(DenseRelaxation, OfOneSphere) {
-  for (const Shape& shape :
-       {Shape(BoxShape{{0, 0, 0}, {1, 1, 1}}), Shape(SphereShape{{0, 0, 0}, 0.5}),
-        Shape(test::box_mesh({0, 0, 0}, {1, 1, 1})), Shape(test::icosphere_mesh(0.6, 1))}) {
+  for (const Domain& shape :
+       {Domain(Box{{0, 0, 0}, {1, 1, 1}}), Domain(Sphere{{0, 0, 0}, 0.5}),
+        Domain(test::box_mesh({0, 0, 0}, {1, 1, 1})), Domain(test::icosphere_mesh(0.6, 1))}) {
     for (const double r : {0.1, 0.4, 0.48}) {
       const Packing packing = certified(shape, "count = 1\nradius = " + std::to_string(r) + "\n");
       EXPECT_EQ(packing.spheres.size(), 1u) << r;
@@ -107,8 +107,8 @@ TEST(DenseRelaxation, OfOneSphere) {
 }
 
 TEST(DenseRelaxation, OfTwoSpheresThatFillAPipe) {
-  for (const Shape& shape :
-       {Shape(CylinderShape{{0, 0, 0}, {0, 0, 1}, 0.5, 2}), Shape(test::box_mesh({0, 0, 0}, {1, 1, 2}))}) {
+  for (const Domain& shape :
+       {Domain(Cylinder{{0, 0, 0}, {0, 0, 1}, 0.5, 2}), Domain(test::box_mesh({0, 0, 0}, {1, 1, 2}))}) {
     const Packing packing = certified(shape, "count = 2\nradius = 0.49\n");
     EXPECT_EQ(packing.spheres.size(), 2u) << packing.reason;
     EXPECT_EQ(certified(shape, "count = 3\nradius = 0.49\n").spheres.size(), 2u);
@@ -126,7 +126,7 @@ TEST(DenseRelaxation, OfSizesThatDifferTwentyfold) {
 
 TEST(DenseRelaxation, OfFarMoreThanFitIsFull) {
   const std::string sizes = "radius = { distribution = \"uniform\", min = 0.04, max = 0.08 }\n";
-  for (const Shape& shape : {Shape(BoxShape{{0, 0, 0}, {1, 1, 1}}), Shape(test::l_shape_mesh())}) {
+  for (const Domain& shape : {Domain(Box{{0, 0, 0}, {1, 1, 1}}), Domain(test::l_shape_mesh())}) {
     const Packing packing = certified(shape, "count = 20000\n" + sizes);
     EXPECT_EQ(packing.outcome, Outcome::full) << packing.reason;
     EXPECT_GT(packing.packing_fraction(), 0.56);
@@ -137,8 +137,7 @@ TEST(DenseRelaxation, OfFarMoreThanFitIsFull) {
 TEST(DenseRelaxation, OfACompressedBedLeavesNoLess) {
   const std::string compressed = "[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"compress\"\n";
   const std::string refilled = compressed + "[[stage]]\ndo = \"refill\"\n";
-  for (const Shape& shape :
-       {Shape(CylinderShape{{0, 0, 0}, {0, 0, 1}, 0.5, 1}), Shape(test::l_shape_mesh())}) {
+  for (const Domain& shape : {Domain(Cylinder{{0, 0, 0}, {0, 0, 1}, 0.5, 1}), Domain(test::l_shape_mesh())}) {
     for (const std::string& stages : {compressed, refilled}) {
       const Plan plan = plan_in(shape, fill + "0.07\n", stages);
       const Packing before = run(plan);
@@ -150,14 +149,14 @@ TEST(DenseRelaxation, OfACompressedBedLeavesNoLess) {
 }
 
 TEST(DenseRelaxation, OfAFewSpecksInAHugeContainerIsInsertion) {
-  const Packing packing = certified(BoxShape{{0, 0, 0}, {1, 1, 1}}, "count = 100\nradius = 1e-5\n");
+  const Packing packing = certified(Box{{0, 0, 0}, {1, 1, 1}}, "count = 100\nradius = 1e-5\n");
   EXPECT_EQ(packing.outcome, Outcome::converged);
   EXPECT_EQ(packing.spheres.size(), 100u);
   EXPECT_TRUE(std::ranges::none_of(packing.effects, [](const Effect& e) { return e.name == "relaxation"; }));
 }
 
 TEST(DenseRelaxation, OfDustThatFillsAHugeContainerIsRefused) {
-  const Plan plan = plan_in(BoxShape{{0, 0, 0}, {1, 1, 1}}, fill + "1e-5\n");
+  const Plan plan = plan_in(Box{{0, 0, 0}, {1, 1, 1}}, fill + "1e-5\n");
   try {
     run(plan);
     FAIL() << "10^14 spheres";
@@ -169,7 +168,7 @@ TEST(DenseRelaxation, OfDustThatFillsAHugeContainerIsRefused) {
 
 TEST(DenseRelaxation, ThatIsOutOfTimeLeavesWhatIsFreeAndSaysSo) {
   for (const char* limit : {"seconds = 1e-3\n", "sweeps = 100\n"}) {
-    const Packing packing = certified(BoxShape{{0, 0, 0}, {1, 1, 1}}, fill + "0.04\n", relax + limit);
+    const Packing packing = certified(Box{{0, 0, 0}, {1, 1, 1}}, fill + "0.04\n", relax + limit);
     EXPECT_EQ(packing.outcome, Outcome::hit_limit) << packing.reason;
     EXPECT_GT(packing.packing_fraction(), 0.4);
   }

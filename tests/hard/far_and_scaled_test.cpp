@@ -16,29 +16,28 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-bool contains_exactly(const Shape& shape, const Vector<3>& c, double r) {
-  if (const auto* box = std::get_if<BoxShape>(&shape)) return bernal::contains_exactly(*box, c, r);
-  if (const auto* cylinder = std::get_if<CylinderShape>(&shape))
-    return bernal::contains_exactly(*cylinder, c, r);
-  return bernal::contains_exactly(std::get<SphereShape>(shape), c, r);
+bool contains_exactly(const Domain& shape, const Vector<3>& c, double r) {
+  if (const auto* box = std::get_if<Box>(&shape)) return bernal::contains_exactly(*box, c, r);
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return bernal::contains_exactly(*cylinder, c, r);
+  return bernal::contains_exactly(std::get<Sphere>(shape), c, r);
 }
 
 class FarAndScaled : public testing::TestWithParam<std::tuple<double, double>> {
  protected:
   double size = std::get<0>(GetParam());
   Vector<3> offset = size * std::get<1>(GetParam()) * Vector<3>(0.48, -0.6, 0.64);
-  std::vector<Shape> shapes = {
-      BoxShape{offset, size* Vector<3>(1, 0.7, 1.9)},
-      CylinderShape{offset, {1, 2, -2}, 0.7 * size, 1.3 * size},
-      CylinderShape{offset, {0, 0, 1e-5}, 0.3 * size, 1.3 * size},
-      SphereShape{offset, 0.77 * size},
+  std::vector<Domain> shapes = {
+      Box{offset, size* Vector<3>(1, 0.7, 1.9)},
+      Cylinder{offset, {1, 2, -2}, 0.7 * size, 1.3 * size},
+      Cylinder{offset, {0, 0, 1e-5}, 0.3 * size, 1.3 * size},
+      Sphere{offset, 0.77 * size},
   };
 };
 
 // A sphere wanders from wall to wall; wherever it stops, it lies inside the container of the scene, at its
 // own radius, in exact arithmetic. This is what the skin is for: it outlasts the rounding of the way back.
 TEST_P(FarAndScaled, WhereverASphereStopsItLiesInsideExactly) {
-  for (const Shape& shape : shapes) {
+  for (const Domain& shape : shapes) {
     SCOPED_TRACE(kind_of(shape));
     const Frame frame = frame_of(shape);
     const auto container =
@@ -67,7 +66,7 @@ TEST_P(FarAndScaled, WhereverASphereStopsItLiesInsideExactly) {
 }
 
 TEST_P(FarAndScaled, FilteredIsExactNearTheWall) {
-  for (const Shape& shape : shapes) {
+  for (const Domain& shape : shapes) {
     SCOPED_TRACE(kind_of(shape));
     const Frame frame = frame_of(shape);
     // In the scene's own coordinates, without a frame: the filter's bound has to know where it stands.

@@ -23,7 +23,7 @@ namespace {
 using testing::plan_of;
 
 void expect_free_of_overlap(const Packing& packing) {
-  const PeriodicBox& box = std::get<PeriodicBox>(packing.domain);
+  const Box& box = std::get<Box>(packing.domain);
   for (const Arithmetic arithmetic : {Arithmetic::filtered, Arithmetic::exact}) {
     const Certificate c = certify(packing.spheres, packing.domain, 0, arithmetic);
     EXPECT_TRUE(c.certified) << c.statement;
@@ -31,8 +31,8 @@ void expect_free_of_overlap(const Packing& packing) {
   if (box.has_walls()) return;
   with_dimension(packing.spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
-    EXPECT_TRUE(oracle::centers_in_box<D>(packing.spheres.in<D>(), box.edges));
-    EXPECT_EQ(oracle::overlapping_pairs<D>(packing.spheres.in<D>(), box.edges), 0u);
+    EXPECT_TRUE(oracle::centers_in_box<D>(packing.spheres.in<D>(), box.size));
+    EXPECT_EQ(oracle::overlapping_pairs<D>(packing.spheres.in<D>(), box.size), 0u);
   });
 }
 
@@ -67,7 +67,7 @@ struct Flyers {
   void expect_apart() const {
     Packing packing;
     packing.spheres = spheres->result();
-    packing.domain = PeriodicBox{work.edges, work.walls};
+    packing.domain = periodic_box(work.edges, work.walls);
     expect_free_of_overlap(packing);
   }
 
@@ -212,12 +212,12 @@ TEST_P(HardFlight, FillsBoxesThatAreMixedByAxis) {
     const Packing packing = packed(
         scene(fmt::format("size = [10.0, 12.0, 9.0]\n{}", walls), "packing_fraction = 0.25\nradius = 0.9"));
     EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
-    const PeriodicBox& box = std::get<PeriodicBox>(packing.domain);
+    const Box& box = std::get<Box>(packing.domain);
     for (std::size_t k = 0; k < 3; ++k)
       for (const double x : packing.spheres.x[k]) {
         if (!box.has_wall(static_cast<int>(k))) continue;
         EXPECT_GE(x, 0.9);
-        EXPECT_LE(x, box.edges[static_cast<int>(k)] - 0.9);
+        EXPECT_LE(x, box.size[static_cast<int>(k)] - 0.9);
       }
   }
 }

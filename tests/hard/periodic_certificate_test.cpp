@@ -53,7 +53,7 @@ TEST(HardPeriodicCertificate, EdgesAndRadiiOfWildlyDifferentSize) {
 TEST(HardPeriodicCertificate, CentresFarAwayAreTakenModuloTheBoxWithoutRounding) {
   // 2^60 + 2^8 k is a double; modulo 3 it is 1 + k (2^60 = 4^30 and 2^8 = 4^4 are 1).
   const double far = 0x1p60;
-  const PeriodicBox box = periodic_box({3});
+  const Box box = periodic_box({3});
   EXPECT_TRUE(certify(rows({{far, 0.5}, {far + 0x1p8, 0.5}, {far + 0x1p9, 0.5}}), box).certified);
   EXPECT_EQ(certify(rows({{far, 0.5}, {far + 0x1p8, up(0.5)}, {far + 0x1p9, 0.5}}), box).overlapping_pairs,
             2u);
@@ -65,7 +65,7 @@ TEST(HardPeriodicCertificate, CentresFarAwayAreTakenModuloTheBoxWithoutRounding)
 }
 
 TEST(HardPeriodicCertificate, JustOutsideOrOnTheFace) {
-  const PeriodicBox box = periodic_box({4, 4});
+  const Box box = periodic_box({4, 4});
   for (const double x : {-5e-324, -0.0, 0.0, 4.0, down(4.0), up(4.0), 2.0, up(2.0), down(2.0), -2.0, 6.0}) {
     SCOPED_TRACE(x);
     for (const double r : {1.0, up(1.0), down(1.0)}) expect_truth(rows({{x, 1, r}, {2, 1, 1}}), box);
@@ -111,13 +111,13 @@ TEST(HardPeriodicCertificate, ABoulderAcrossEveryFaceAndItsDust) {
   Spheres<dynamic> s(3);
   s.push_back(Vector<3>::Zero(), 0.5);
   for (int i = 0; i < 100; ++i) s.push_back(0.501 * uniform_direction<3>(random), 0.001);
-  const PeriodicBox box = periodic_box({1, 1, 1});
+  const Box box = periodic_box({1, 1, 1});
   const Certificate c = certify(s, box);
   std::uint64_t overlapping = 0;
   for (std::size_t i = 0; i < s.size(); ++i)
     for (std::size_t j = i + 1; j < s.size(); ++j) {
       const oracle::Rational reach = oracle::Rational(s.r[i]) + oracle::Rational(s.r[j]);
-      overlapping += oracle::least_squared_distance(s, i, j, box.edges) < reach * reach ? 1 : 0;
+      overlapping += oracle::least_squared_distance(s, i, j, box.size) < reach * reach ? 1 : 0;
     }
   EXPECT_EQ(c.overlapping_pairs, overlapping);
   EXPECT_GT(overlapping, 20u);

@@ -44,7 +44,7 @@ class HardRelaxation : public ::testing::TestWithParam<const char*> {
     options.threads = 1;
     options.monitor = std::move(monitor);
     Packing packing = run(plan_of(toml), options);
-    expect_free_of_overlap(packing.spheres, std::get<PeriodicBox>(packing.domain).edges);
+    expect_free_of_overlap(packing.spheres, std::get<Box>(packing.domain).size);
     return packing;
   }
 
@@ -134,7 +134,7 @@ TEST_P(HardRelaxation, InALongBoxKeepsItsProportions) {
       relaxed(scene("size = [1.0, 1.0, 10.0]\nscalable = true", "count = 100\nradius = 1.0"));
   EXPECT_EQ(packing.outcome, Outcome::converged);
   EXPECT_GT(packing.packing_fraction(), 0.55);
-  const Vector<dynamic>& edges = std::get<PeriodicBox>(packing.domain).edges;
+  const Vector<dynamic>& edges = std::get<Box>(packing.domain).size;
   EXPECT_NEAR(edges[2] / edges[0], 10, 1e-10);  // thousands of growths, each rounded
 }
 
@@ -142,7 +142,7 @@ TEST_P(HardRelaxation, InALongBoxKeepsItsProportions) {
 TEST_P(HardRelaxation, InAThinBoxGrowsToTwoRadii) {
   const Packing packing =
       relaxed(scene("size = [1.0, 1.0, 1000.0]\nscalable = true", "count = 20\nradius = 1.0"));
-  EXPECT_NEAR(std::get<PeriodicBox>(packing.domain).edges.minCoeff(), 2, 1e-9);
+  EXPECT_NEAR(std::get<Box>(packing.domain).size.minCoeff(), 2, 1e-9);
 }
 
 // All lengths are relative to the largest radius, taken to [1, 2) by a power of two.
@@ -197,7 +197,7 @@ TEST_P(HardRelaxation, MeetsTheBoxThatIsAskedForBitForBit) {
           relaxed(scene(fmt::format("size = [{0}, {1}, {2}]", edge, 0.9 * edge, edge / 0.9),
                         "count = 100\nradius = 0.7", fmt::format("alpha = {}", alpha)));
       EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
-      const Vector<dynamic>& edges = std::get<PeriodicBox>(packing.domain).edges;
+      const Vector<dynamic>& edges = std::get<Box>(packing.domain).size;
       EXPECT_EQ(edges[0], edge);
       EXPECT_EQ(edges[1], 0.9 * edge);
       EXPECT_EQ(edges[2], edge / 0.9);
@@ -223,7 +223,7 @@ TEST_P(HardRelaxation, MeetsThePackingFractionThatIsAskedFor) {
 TEST_P(HardRelaxation, FillsABoxWithAsManyAsFit) {
   const Packing packing = relaxed(scene("edge = 10.0", "fill = true\nradius = 1.0", "alpha = 3.0"));
   EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
-  EXPECT_EQ(std::get<PeriodicBox>(packing.domain).edges, Vector<dynamic>::Constant(3, 10.0));
+  EXPECT_EQ(std::get<Box>(packing.domain).size, Vector<dynamic>::Constant(3, 10.0));
   EXPECT_GT(packing.packing_fraction(), 0.60);
 }
 

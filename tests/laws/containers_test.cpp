@@ -287,25 +287,25 @@ INSTANTIATE_TEST_SUITE_P(All, ContainerLaws, testing::ValuesIn(test::containers_
                          [](const auto& tested) { return tested.param.name; });
 
 TEST(AnalyticContainer, AbsurdShapesAreRefused) {
-  const Shape absurd[] = {
+  const Domain absurd[] = {
       Mesh{},
-      BoxShape{{0, 0, 0}, {1, 0, 1}},
-      BoxShape{{0, infinity, 0}, {1, 1, 1}},
-      CylinderShape{{0, 0, 0}, {0, 0, 0}, 1, 1},
-      CylinderShape{{0, 0, 0}, {0, 0, 1}, -1, 1},
-      CylinderShape{{0, 0, 0}, {0, 0, 1}, 1, std::nan("")},
-      SphereShape{{0, 0, 0}, 0},
+      Box{{0, 0, 0}, {1, 0, 1}},
+      Box{{0, infinity, 0}, {1, 1, 1}},
+      Cylinder{{0, 0, 0}, {0, 0, 0}, 1, 1},
+      Cylinder{{0, 0, 0}, {0, 0, 1}, -1, 1},
+      Cylinder{{0, 0, 0}, {0, 0, 1}, 1, std::nan("")},
+      Sphere{{0, 0, 0}, 0},
   };
-  for (const Shape& shape : absurd)
+  for (const Domain& shape : absurd)
     EXPECT_THROW(make_analytic_container(shape, WallArithmetic::plain, 1e-16), Error) << kind_of(shape);
 }
 
 // Only the direction of the axis counts, of whatever length.
 TEST(AnalyticContainer, AnAxisOfAnyLengthGivesTheSameCylinder) {
   const auto unit =
-      make_analytic_container(CylinderShape{{0, 0, 0}, {0.6, 0, 0.8}, 1, 2}, WallArithmetic::filtered, 1e-15);
+      make_analytic_container(Cylinder{{0, 0, 0}, {0.6, 0, 0.8}, 1, 2}, WallArithmetic::filtered, 1e-15);
   for (const double length : {1e-200, 1e-9, 7.0, 1e200}) {
-    const CylinderShape shape{{0, 0, 0}, length * Vector<3>(0.6, 0, 0.8), 1, 2};
+    const Cylinder shape{{0, 0, 0}, length * Vector<3>(0.6, 0, 0.8), 1, 2};
     const auto same = make_analytic_container(shape, WallArithmetic::filtered, 1e-15);
     Random random(5, stream(Stream::test));
     for (int i = 0; i < 100; ++i) {

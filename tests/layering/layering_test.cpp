@@ -43,8 +43,8 @@ std::vector<std::string> violations_of(const std::string& file, const std::strin
 
 TEST(Layering, PlantedViolationsAreFound) {
   const std::pair<const char*, const char*> planted[] = {
-      {"src/core/a.cpp", "#include \"bernal/domain/shape.hpp\""},
-      {"src/core/a.cpp", "#  include <bernal/domain/shape.hpp>"},
+      {"src/core/a.cpp", "#include \"bernal/domain/domain.hpp\""},
+      {"src/core/a.cpp", "#  include <bernal/domain/domain.hpp>"},
       {"src/kernels/a.hpp", "#include \"bernal/domain/facet.hpp\""},
       {"src/domain/a.cpp", "#include \"cad/tree.hpp\""},
       {"src/verify/a.cpp", "#include \"bernal/domain/container.hpp\""},
@@ -52,7 +52,7 @@ TEST(Layering, PlantedViolationsAreFound) {
       {"src/verify/a.cpp", "#include \"neighbors/cell_grid.hpp\""},
       {"src/settle/a.cpp", "#include \"bernal/run/run.hpp\""},
       {"src/run/a.cpp", "#include \"bernal/verify/certificate.hpp\""},
-      {"src/predict/a.cpp", "#include \"bernal/domain/shape.hpp\""},
+      {"src/predict/a.cpp", "#include \"bernal/domain/domain.hpp\""},
       {"src/domain/a.cpp", "#include <CGAL/AABB_tree.h>"},
       {"src/cad/a.hpp", "#include <assimp/scene.h>"},
       {"include/bernal/cad/a.hpp", "#include <CGAL/AABB_tree.h>"},
@@ -76,7 +76,7 @@ TEST(Layering, AllowedIncludesAreNotFound) {
        "#include \"kernels/first_contact.hpp\"\n#include <boost/multiprecision/cpp_int.hpp>"},
       {"src/cad/a.cpp", "#include <CGAL/AABB_tree.h>\n#include <assimp/scene.h>"},
       {"src/settle/a.cpp", "#include \"bernal/run/packing.hpp\""},
-      {"src/verify/a.cpp", "#include \"bernal/domain/shape.hpp\""},
+      {"src/verify/a.cpp", "#include \"bernal/domain/domain.hpp\""},
       {"src/run/a.cpp", "#include \"work/bed.hpp\"\n#include \"bernal/cad/read_mesh.hpp\""},
       {"apps/a.cpp",
        "#include <CLI/CLI.hpp>\n#include \"bernal/verify/certificate.hpp\"\n#include \"a.cpp\""},

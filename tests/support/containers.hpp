@@ -20,7 +20,7 @@ namespace bernal::test {
 /// is in [1, 2).
 struct ContainerUnderTest {
   std::string name;
-  Shape shape;
+  Domain shape;
   double resolution;
 
   std::unique_ptr<Container> container(WallArithmetic arithmetic = WallArithmetic::filtered) const {
@@ -29,7 +29,7 @@ struct ContainerUnderTest {
   friend void PrintTo(const ContainerUnderTest& tested, std::ostream* out) { *out << tested.name; }
 };
 
-inline ContainerUnderTest localized(std::string name, const Shape& scene) {
+inline ContainerUnderTest localized(std::string name, const Domain& scene) {
   const Frame frame = frame_of(scene);
   return {std::move(name), to_local(scene, frame), frame.resolution};
 }
@@ -38,13 +38,13 @@ inline ContainerUnderTest localized(std::string name, const Shape& scene) {
 /// triangle.
 inline std::vector<ContainerUnderTest> containers_under_test() {
   return {
-      localized("Cube", BoxShape{{0, 0, 0}, {1, 1, 1}}),
-      localized("FlatBoxFarAway", BoxShape{{1e4, -3e4, 5e4}, {5, 0.3, 2}}),
-      localized("UprightCylinder", CylinderShape{{0, 0, 0}, {0, 0, 1}, 1, 2}),
-      localized("ObliqueCylinder", CylinderShape{{1, 2, 3}, {1, -2, 0.5}, 0.7, 1.9}),
-      localized("FlatCylinderFarAway", CylinderShape{{2e4, 1e4, 0}, {1e-3, 2e-3, 1e-3}, 3, 0.5}),
-      localized("Sphere", SphereShape{{0, 0, 0}, 1}),
-      localized("SphereFarAway", SphereShape{{-7e3, 123.456, 1e4}, 0.6}),
+      localized("Cube", Box{{0, 0, 0}, {1, 1, 1}}),
+      localized("FlatBoxFarAway", Box{{1e4, -3e4, 5e4}, {5, 0.3, 2}}),
+      localized("UprightCylinder", Cylinder{{0, 0, 0}, {0, 0, 1}, 1, 2}),
+      localized("ObliqueCylinder", Cylinder{{1, 2, 3}, {1, -2, 0.5}, 0.7, 1.9}),
+      localized("FlatCylinderFarAway", Cylinder{{2e4, 1e4, 0}, {1e-3, 2e-3, 1e-3}, 3, 0.5}),
+      localized("Sphere", Sphere{{0, 0, 0}, 1}),
+      localized("SphereFarAway", Sphere{{-7e3, 123.456, 1e4}, 0.6}),
       localized("CubeMesh", box_mesh({0, 0, 0}, {1, 1, 1})),
       localized("PrismMesh", prism_mesh(8, 1, 2)),
       localized("LShapeMeshFarAway", translated(l_shape_mesh(), {1e4, -2e4, 3e4})),
@@ -57,10 +57,10 @@ inline std::vector<ContainerUnderTest> containers_under_test() {
 
 /// Signed distance to the wall by the plainest definition, in long double: for a mesh over all its triangles,
 /// the side by the sum of their solid angles.
-inline long double precise_clearance(const Shape& shape, const Vector<3>& point) {
+inline long double precise_clearance(const Domain& shape, const Vector<3>& point) {
   using Real = long double;
   const Point<Real> p(point);
-  if (const auto* box = std::get_if<BoxShape>(&shape)) {
+  if (const auto* box = std::get_if<Box>(&shape)) {
     const Bounds<3> bounds = bounds_of(*box);
     Real least = std::numeric_limits<Real>::infinity(), squared_outside = 0;
     for (int k = 0; k < 3; ++k) {
@@ -71,9 +71,9 @@ inline long double precise_clearance(const Shape& shape, const Vector<3>& point)
     }
     return least >= 0 ? least : -std::sqrt(squared_outside);
   }
-  if (const auto* sphere = std::get_if<SphereShape>(&shape))
+  if (const auto* sphere = std::get_if<Sphere>(&shape))
     return sphere->radius - norm(p - Point<Real>(sphere->center));
-  if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     const Point<Real> axis(cylinder->axis), w = p - Point<Real>(cylinder->base);
     const Real along = dot(w, axis) / norm(axis);
     const Real lateral = cylinder->radius - norm(cross(w, axis)) / norm(axis);

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/vector.hpp"
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal::testing {
 

@@ -3,7 +3,7 @@
 #include <numbers>
 #include <span>
 
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 
 // Small closed meshes with integer vertices, outward orientation.
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 
 // Meshes to test with, all closed and oriented outwards, and writers that keep every double.
 namespace bernal::test {

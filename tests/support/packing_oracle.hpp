@@ -8,7 +8,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "bernal/core/spheres.hpp"
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 
 // What is true of a packing, from the definitions in shape.hpp: all pairs, all triangles, rational arithmetic
 // with divisions. Slow and simple; it shares nothing with what it judges, neither search nor formula.
@@ -86,22 +86,22 @@ inline int winding(const Point& p, const Mesh& mesh) {
 }
 
 /// The ball lies in the closed container.
-inline bool inside(const Vector<3>& center, double radius, const Shape& shape) {
+inline bool inside(const Vector<3>& center, double radius, const Domain& shape) {
   const Point c = point(center);
   const Rational r(radius);
-  if (const auto* box = std::get_if<BoxShape>(&shape)) {
+  if (const auto* box = std::get_if<Box>(&shape)) {
     for (int k = 0; k < 3; ++k) {
       const double upper = box->corner[k] + box->size[k];
       if (c[k] - r < Rational(box->corner[k]) || c[k] + r > Rational(upper)) return false;
     }
     return true;
   }
-  if (const auto* sphere = std::get_if<SphereShape>(&shape)) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     const Point w = c - point(sphere->center);
     const Rational room = Rational(sphere->radius) - r;
     return room >= 0 && dot(w, w) <= room * room;
   }
-  if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     // height = h / |a| with h = w·a. All ends are compared as signed squares, s(x) = x |x|.
     const auto signed_square = [](const Rational& x) -> Rational { return x < 0 ? -x * x : x * x; };
     const Point a = point(cylinder->axis), w = c - point(cylinder->base);
@@ -147,7 +147,7 @@ struct Verdict {
   double max_overlap = 0;           ///< over pairs whose boxes meet
 };
 
-inline Verdict judge(const Spheres<3>& s, const Shape& shape, double allowed = 0) {
+inline Verdict judge(const Spheres<3>& s, const Domain& shape, double allowed = 0) {
   Verdict v;
   for (std::size_t i = 0; i < s.size(); ++i) {
     v.protruding += inside(s.center(i), s.r[i], shape) ? 0 : 1;

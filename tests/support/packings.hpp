@@ -33,7 +33,7 @@ inline Spheres<3> scattered(std::size_t n, double r_min, double r_max, const Bou
 }
 
 /// A packing as `run` would return it, for what reads packings and changes nothing.
-inline Packing packing_of(Spheres<3> spheres, const BoxShape& box) {
+inline Packing packing_of(Spheres<3> spheres, const Box& box) {
   Packing packing;
   packing.spheres = std::move(spheres);
   packing.domain = box;

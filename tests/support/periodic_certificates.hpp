@@ -9,10 +9,8 @@
 
 namespace bernal::testing {
 
-inline PeriodicBox periodic_box(std::initializer_list<double> edges) {
-  PeriodicBox box{Vector<dynamic>(static_cast<int>(edges.size()))};
-  std::ranges::copy(edges, box.edges.begin());
-  return box;
+inline Box periodic_box(std::initializer_list<double> edges) {
+  return bernal::periodic_box(Coordinates(edges));
 }
 
 /// Spheres of their coordinates and, last, their radius.
@@ -35,7 +33,7 @@ inline void expect_same_verdict(const Certificate& a, const Certificate& b) {
 
 /// Whatever the packing, the certificate says what the oracle says, in both arithmetics. Without the oracle
 /// (centres too many boxes away for it) only that both arithmetics agree.
-inline Certificate expect_truth(const Spheres<dynamic>& s, const PeriodicBox& box, double allowed = 0,
+inline Certificate expect_truth(const Spheres<dynamic>& s, const Box& box, double allowed = 0,
                                 bool with_oracle = true) {
   const Certificate filtered = certify(s, box, allowed, Arithmetic::filtered);
   const Certificate exact = certify(s, box, allowed, Arithmetic::exact);

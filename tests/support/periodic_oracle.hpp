@@ -56,17 +56,17 @@ inline bool images_touch(const Spheres<dynamic>& s, std::size_t i, std::size_t j
   return true;
 }
 
-inline Verdict judge(const Spheres<dynamic>& s, const PeriodicBox& box, double allowed = 0) {
+inline Verdict judge(const Spheres<dynamic>& s, const Box& box, double allowed = 0) {
   Verdict v;
   v.max_overlap = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < s.size(); ++i)
     for (std::size_t j = i; j < s.size(); ++j) {
-      const Rational squared = least_squared_distance(s, i, j, box.edges);
+      const Rational squared = least_squared_distance(s, i, j, box.size);
       const Rational sum = Rational(s.r[i]) + Rational(s.r[j]), reach = (1 - Rational(allowed)) * sum;
       v.overlapping += squared < reach * reach ? 1 : 0;
-      const bool near = images_touch(s, i, j, box.edges);
+      const bool near = images_touch(s, i, j, box.size);
       v.near_at_least += near ? 1 : 0;
-      v.near_at_most += near || images_touch(s, i, j, box.edges, 0x1p-50) ? 1 : 0;
+      v.near_at_most += near || images_touch(s, i, j, box.size, 0x1p-50) ? 1 : 0;
       const double ratio = std::sqrt(Rational(squared / (sum * sum)).convert_to<double>());
       if (near) v.max_overlap = std::max(v.max_overlap, 1 - ratio);
     }

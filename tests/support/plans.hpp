@@ -34,15 +34,15 @@ class ScaledSizes : public SizeDistribution {
   double factor_;
 };
 
-inline Shape scaled(Shape shape, double factor) {
-  if (auto* box = std::get_if<BoxShape>(&shape)) {
+inline Domain scaled(Domain shape, double factor) {
+  if (auto* box = std::get_if<Box>(&shape)) {
     box->corner *= factor;
     box->size *= factor;
-  } else if (auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+  } else if (auto* cylinder = std::get_if<Cylinder>(&shape)) {
     cylinder->base *= factor;
     cylinder->radius *= factor;
     cylinder->height *= factor;
-  } else if (auto* sphere = std::get_if<SphereShape>(&shape)) {
+  } else if (auto* sphere = std::get_if<Sphere>(&shape)) {
     sphere->center *= factor;
     sphere->radius *= factor;
   } else {
@@ -51,12 +51,12 @@ inline Shape scaled(Shape shape, double factor) {
   return shape;
 }
 
-inline Shape shifted(Shape shape, const Vector<3>& by) {
-  if (auto* box = std::get_if<BoxShape>(&shape)) {
+inline Domain shifted(Domain shape, const Vector<3>& by) {
+  if (auto* box = std::get_if<Box>(&shape)) {
     box->corner += by;
-  } else if (auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+  } else if (auto* cylinder = std::get_if<Cylinder>(&shape)) {
     cylinder->base += by;
-  } else if (auto* sphere = std::get_if<SphereShape>(&shape)) {
+  } else if (auto* sphere = std::get_if<Sphere>(&shape)) {
     sphere->center += by;
   } else {
     for (Vector<3>& v : std::get<Mesh>(shape).vertices) v += by;
@@ -65,19 +65,14 @@ inline Shape shifted(Shape shape, const Vector<3>& by) {
 }
 
 inline Plan scaled(Plan plan, double factor) {
-  if (auto* box = std::get_if<PeriodicBox>(&plan.domain)) {
-    box->edges *= factor;
-  } else {
-    plan.domain = scaled(std::get<Shape>(std::move(plan.domain)), factor);
-  }
+  plan.domain = scaled(std::move(plan.domain), factor);
   plan.radii = std::make_unique<ScaledSizes>(std::move(plan.radii), factor);
   return plan;
 }
 
 /// A periodic box has no place.
 inline Plan shifted(Plan plan, const Vector<3>& by) {
-  if (std::holds_alternative<Shape>(plan.domain))
-    plan.domain = shifted(std::get<Shape>(std::move(plan.domain)), by);
+  if (!is_periodic(plan.domain)) plan.domain = shifted(std::move(plan.domain), by);
   return plan;
 }
 
@@ -85,7 +80,7 @@ inline Plan shifted(Plan plan, const Vector<3>& by) {
 inline Plan plan_of(const std::string& toml) { return build(parse_scene(toml, "test.toml")); }
 
 /// The same with the container replaced, and what is likely to fit into it.
-inline Plan plan_of(const std::string& toml, Shape container) {
+inline Plan plan_of(const std::string& toml, Domain container) {
   Plan plan = plan_of(toml);
   plan.attainable_packing_fraction = expected_packing_fraction(plan.scene, container, *plan.radii);
   plan.domain = std::move(container);

@@ -13,7 +13,7 @@
 namespace bernal::testing {
 
 /// The box of `example`.
-inline const BoxShape example_box{Vector<3>::Zero(), Vector<3>::Constant(10)};
+inline const Box example_box{Vector<3>::Zero(), Vector<3>::Constant(10)};
 
 /// A packing of up to n spheres, a different one for each seed.
 inline Packing example(std::uint64_t seed = 1, std::size_t n = 300) {

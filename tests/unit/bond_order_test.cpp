@@ -85,7 +85,7 @@ TEST(BondOrder, SeesALayerThatAWallHasOrderedUnderARandomPacking) {
 TEST(BondOrder, OfLooseSpheresIsNone) {
   // One or two bonds are always alike, which makes no crystal.
   Spheres<3> spheres;
-  EXPECT_EQ(bond_order(packing_of(spheres, BoxShape{}))->all.fraction(), 0);
+  EXPECT_EQ(bond_order(packing_of(spheres, Box{}))->all.fraction(), 0);
   for (int i = 0; i < 4; ++i) {
     spheres.push_back({2.0 * i + 1, 1, 1}, 1);
     EXPECT_EQ(bond_order(packing_of(spheres, {Vector<3>::Zero(), Vector<3>::Constant(9)}))->all.crystalline,
@@ -98,7 +98,7 @@ TEST(BondOrder, DoesNotDependOnOrientationOrUnit) {
   const std::uint64_t crystalline = bond_order(packing)->all.crystalline;
   EXPECT_GT(crystalline, 0u);
   std::swap(packing.spheres.x[0], packing.spheres.x[2]);
-  for (double& x : packing.spheres.x[1]) x = std::get<PeriodicBox>(packing.domain).edges[1] - x;
+  for (double& x : packing.spheres.x[1]) x = std::get<Box>(packing.domain).size[1] - x;
   EXPECT_EQ(bond_order(packing)->all.crystalline, crystalline);
 }
 

@@ -42,7 +42,7 @@ void expect_same_verdict(const Certificate& a, const Certificate& b) {
 
 /// The law of this file: whatever the packing, the certificate says what the oracle says, in both
 /// arithmetics.
-Certificate expect_truth(const Spheres<3>& s, const Shape& shape, double allowed = 0) {
+Certificate expect_truth(const Spheres<3>& s, const Domain& shape, double allowed = 0) {
   const Certificate filtered = certify(s, shape, allowed, Arithmetic::filtered);
   const Certificate exact = certify(s, shape, allowed, Arithmetic::exact);
   expect_same_verdict(filtered, exact);
@@ -67,7 +67,7 @@ Certificate expect_truth(const Spheres<3>& s, const Shape& shape, double allowed
 }
 
 TEST(Certificate, OfNothingIsTrue) {
-  const Certificate c = expect_truth({}, BoxShape{});
+  const Certificate c = expect_truth({}, Box{});
   EXPECT_TRUE(c.certified);
   EXPECT_EQ(c.statement, "Certified: there are no spheres.");
 }
@@ -78,7 +78,7 @@ TEST(Certificate, AllowsTouchingAndNothingMore) {
   for (int x = 0; x < 3; ++x)
     for (int y = 0; y < 3; ++y)
       for (int z = 0; z < 3; ++z) lattice.push_back({2.0 * x + 1, 2.0 * y + 1, 2.0 * z + 1}, 1);
-  BoxShape box{.corner = {0, 0, 0}, .size = {6, 6, 6}};
+  Box box{.corner = {0, 0, 0}, .size = {6, 6, 6}};
   const Certificate touching = expect_truth(lattice, box);
   EXPECT_TRUE(touching.certified);
   EXPECT_EQ(touching.max_overlap, 0);
@@ -99,7 +99,7 @@ TEST(Certificate, AllowsTouchingAndNothingMore) {
 
 TEST(Certificate, DecidesObliqueTouchesByAnUlp) {
   // Pythagorean quadruples: |(2, 3, 6)| = 7, |(1, 4, 8)| = 9, |(4, 4, 7)| = 9, |(12, 15, 16)| = 25.
-  const SphereShape room{.center = {0, 0, 0}, .radius = 100};
+  const Sphere room{.center = {0, 0, 0}, .radius = 100};
   for (const auto& [x, y, z, d] :
        {std::array{2., 3., 6., 7.}, {1., 4., 8., 9.}, {4., 4., 7., 9.}, {12., 15., 16., 25.}}) {
     const double r = 0.375 * d;
@@ -111,9 +111,9 @@ TEST(Certificate, DecidesObliqueTouchesByAnUlp) {
     EXPECT_TRUE(expect_truth(pair, room).certified);
 
     const Spheres<3> one = spheres({{x, y, z, 1}});
-    EXPECT_TRUE(expect_truth(one, SphereShape{.center = {0, 0, 0}, .radius = d + 1}).certified);
+    EXPECT_TRUE(expect_truth(one, Sphere{.center = {0, 0, 0}, .radius = d + 1}).certified);
     EXPECT_FALSE(
-        expect_truth(one, SphereShape{.center = {0, 0, 0}, .radius = std::nextafter(d + 1, 0.0)}).certified);
+        expect_truth(one, Sphere{.center = {0, 0, 0}, .radius = std::nextafter(d + 1, 0.0)}).certified);
   }
 }
 
@@ -121,8 +121,8 @@ TEST(Certificate, CylinderWallsAreDecidedWithoutARoot) {
   // Axis (2, 3, 6) of length 7, base at its foot: the centre 2a is 14 up; (6, 2, -3) is across the axis,
   // also 7.
   const Vector<3> axis{2, 3, 6}, across{6, 2, -3};
-  const CylinderShape cylinder{.base = {5, -3, 1}, .axis = axis, .radius = 10, .height = 28};
-  const auto certified = [&](const Vector<3>& at, double r, const CylinderShape& c) {
+  const Cylinder cylinder{.base = {5, -3, 1}, .axis = axis, .radius = 10, .height = 28};
+  const auto certified = [&](const Vector<3>& at, double r, const Cylinder& c) {
     Spheres<3> one;
     one.push_back(c.base + at, r);
     return expect_truth(one, c).certified;
@@ -139,14 +139,14 @@ TEST(Certificate, CylinderWallsAreDecidedWithoutARoot) {
   EXPECT_FALSE(certified(2 * axis, 11, cylinder));
   EXPECT_FALSE(certified(2 * axis, 40, cylinder));
   // The length of the axis is no measure of the cylinder.
-  CylinderShape scaled = cylinder;
+  Cylinder scaled = cylinder;
   scaled.axis *= 0x1p-40;
   EXPECT_TRUE(certified(2 * axis + across, 3, scaled));
   EXPECT_FALSE(certified(2 * axis + across, up(3), scaled));
 }
 
 TEST(Certificate, RefusesSpheresThatAreNone) {
-  const BoxShape box{.corner = {0, 0, 0}, .size = {10, 10, 10}};
+  const Box box{.corner = {0, 0, 0}, .size = {10, 10, 10}};
   for (const auto& bad : {std::array{5., 5., 5., 0.},
                           {5., 5., 5., -1.},
                           {5., 5., 5., nan},
@@ -161,10 +161,10 @@ TEST(Certificate, RefusesSpheresThatAreNone) {
 
 TEST(Certificate, RefusesContainersThatAreNone) {
   const Spheres<3> one = spheres({{5, 5, 5, 1}});
-  EXPECT_THROW(certify(one, BoxShape{.corner = {0, 0, 0}, .size = {10, 0, 10}}), Error);
-  EXPECT_THROW(certify(one, BoxShape{.corner = {0, 0, 0}, .size = {10, nan, 10}}), Error);
-  EXPECT_THROW(certify(one, SphereShape{.center = {0, 0, 0}, .radius = -1}), Error);
-  EXPECT_THROW(certify(one, CylinderShape{.axis = {0, 0, 0}}), Error);
+  EXPECT_THROW(certify(one, Box{.corner = {0, 0, 0}, .size = {10, 0, 10}}), Error);
+  EXPECT_THROW(certify(one, Box{.corner = {0, 0, 0}, .size = {10, nan, 10}}), Error);
+  EXPECT_THROW(certify(one, Sphere{.center = {0, 0, 0}, .radius = -1}), Error);
+  EXPECT_THROW(certify(one, Cylinder{.axis = {0, 0, 0}}), Error);
   EXPECT_THROW(certify(one, Mesh{}), Error);
 
   Mesh open = meshes::cube();
@@ -179,11 +179,11 @@ TEST(Certificate, RefusesContainersThatAreNone) {
   Mesh lost = meshes::cube();
   lost.vertices[0][0] = nan;
   EXPECT_THROW(certify(one, lost), Error);
-  EXPECT_THROW(certify(one, BoxShape{}, -1e-3), Error);
-  EXPECT_THROW(certify(one, BoxShape{}, nan), Error);
+  EXPECT_THROW(certify(one, Box{}, -1e-3), Error);
+  EXPECT_THROW(certify(one, Box{}, nan), Error);
   // A container has three dimensions.
-  EXPECT_THROW(certify(Spheres<2>(), BoxShape{}), Error);
-  EXPECT_THROW(certify(Spheres<4>(), SphereShape{}), Error);
+  EXPECT_THROW(certify(Spheres<2>(), Box{}), Error);
+  EXPECT_THROW(certify(Spheres<4>(), Sphere{}), Error);
 }
 
 TEST(Certificate, WeldsATriangleSoup) {
@@ -198,7 +198,7 @@ TEST(Certificate, WeldsATriangleSoup) {
 }
 
 TEST(Certificate, AllowedOverlapIsARatioOfTheSumOfRadii) {
-  const BoxShape box{.corner = {0, 0, 0}, .size = {10, 10, 10}};
+  const Box box{.corner = {0, 0, 0}, .size = {10, 10, 10}};
   const Spheres<3> pair = spheres({{2, 5, 5, 1}, {3.5, 5, 5, 1}});  // d = 1.5 = (1 - 0.25) 2
   EXPECT_FALSE(expect_truth(pair, box).certified);
   EXPECT_FALSE(expect_truth(pair, box, std::nextafter(0.25, 0.0)).certified);
@@ -208,7 +208,7 @@ TEST(Certificate, AllowedOverlapIsARatioOfTheSumOfRadii) {
 }
 
 TEST(Certificate, SaysOneSentence) {
-  const BoxShape box{.corner = {0, 0, 0}, .size = {10, 10, 10}};
+  const Box box{.corner = {0, 0, 0}, .size = {10, 10, 10}};
   EXPECT_EQ(certify(spheres({{2, 5, 5, 1}, {4.5, 5, 5, 1}, {5.5, 8, 8, 0.5}}), box).statement,
             "Certified: 3 spheres, 0 near pairs and 18 walls decided exactly, no overlap, no protrusion.");
   EXPECT_EQ(certify(spheres({{2, 5, 5, 1}, {3.75, 6.75, 5, 1}}), box).statement,
@@ -224,7 +224,7 @@ TEST(Certificate, SaysOneSentence) {
 /// Random packings in every container that the oracle can afford, with planted touches, overlaps and strays.
 struct Case {
   std::string name;
-  Shape shape;
+  Domain shape;
   Vector<3> lower, upper;  // where centres are drawn
 
   friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
@@ -232,18 +232,17 @@ struct Case {
 
 std::vector<Case> cases() {
   const Vector<3> low{-0.5, -0.5, -0.5}, high{8.5, 8.5, 8.5};
-  return {
-      {"box", BoxShape{.corner = {0, 0, 0}, .size = {8, 8, 8}}, low, high},
-      {"sphere", SphereShape{.center = {4, 4, 4}, .radius = 4}, low, high},
-      {"cylinder", CylinderShape{.base = {4, 4, 0}, .axis = {0, 0, 3}, .radius = 4, .height = 8}, low, high},
-      {"oblique_cylinder", CylinderShape{.base = {2, 1, 0}, .axis = {2, 3, 6}, .radius = 3, .height = 7}, low,
-       high},
-      {"tetrahedron", meshes::tetrahedron(), low, {5, 5, 5}},
-      {"cube", meshes::cube(), low, high},
-      {"l_shape", meshes::l_shape(), low, high},
-      {"cube_with_cavity", meshes::cube_with_cavity(), low, high},
-      {"inside_out_cube", meshes::flipped(meshes::cube()), low, high},
-      {"prism", meshes::moved(meshes::regular_prism(7, 4, 8), 1, {4, 4, 0}), low, high}};
+  return {{"box", Box{.corner = {0, 0, 0}, .size = {8, 8, 8}}, low, high},
+          {"sphere", Sphere{.center = {4, 4, 4}, .radius = 4}, low, high},
+          {"cylinder", Cylinder{.base = {4, 4, 0}, .axis = {0, 0, 3}, .radius = 4, .height = 8}, low, high},
+          {"oblique_cylinder", Cylinder{.base = {2, 1, 0}, .axis = {2, 3, 6}, .radius = 3, .height = 7}, low,
+           high},
+          {"tetrahedron", meshes::tetrahedron(), low, {5, 5, 5}},
+          {"cube", meshes::cube(), low, high},
+          {"l_shape", meshes::l_shape(), low, high},
+          {"cube_with_cavity", meshes::cube_with_cavity(), low, high},
+          {"inside_out_cube", meshes::flipped(meshes::cube()), low, high},
+          {"prism", meshes::moved(meshes::regular_prism(7, 4, 8), 1, {4, 4, 0}), low, high}};
 }
 
 class CertificateLaw : public testing::TestWithParam<Case> {};
@@ -313,7 +312,7 @@ TEST(Certificate, FindsEveryNearPair) {
         certain += gap < -margin ? 1 : 0;
         possible += gap < margin ? 1 : 0;
       }
-    const Certificate c = certify(s, BoxShape{.corner = {-2e8, -2e8, -2e8}, .size = {4e8, 4e8, 4e8}});
+    const Certificate c = certify(s, Box{.corner = {-2e8, -2e8, -2e8}, .size = {4e8, 4e8, 4e8}});
     EXPECT_GE(c.pairs_tested, certain);
     EXPECT_LE(c.pairs_tested, possible);
     EXPECT_GT(certain, 100000u);

@@ -17,9 +17,9 @@ namespace {
 using std::numbers::pi;
 using testing::packing_of;
 
-Packing packing_in(Spheres<3> spheres, const Shape& shape) {
-  Packing packing = packing_of(std::move(spheres), BoxShape{});
-  packing.domain.emplace<Shape>(shape);
+Packing packing_in(Spheres<3> spheres, const Domain& shape) {
+  Packing packing = packing_of(std::move(spheres), Box{});
+  packing.domain.emplace<Domain>(shape);
   packing.volume = volume_of(packing.domain);
   return packing;
 }
@@ -56,7 +56,7 @@ TEST(IsConvex, ForPrismsAndNotForWhatHasAnInnerEdgeOrTwoPieces) {
 
 TEST(Chambers, OfABoxAreOneThatLacksItsEdges) {
   const Vector<3> size(3, 4, 5);
-  for (const Shape& shape : {Shape(BoxShape{{1, 2, 3}, size}), Shape(test::box_mesh({1, 2, 3}, size))}) {
+  for (const Domain& shape : {Domain(Box{{1, 2, 3}, size}), Domain(test::box_mesh({1, 2, 3}, size))}) {
     for (const double r : {0.2, 0.7, 1.4}) {
       const Chambers found = chambers_for(shape, r);
       ASSERT_EQ(found.chambers.size(), 1u) << r;
@@ -72,12 +72,12 @@ TEST(Chambers, OfABoxAreOneThatLacksItsEdges) {
 TEST(Chambers, OfACylinderAndASphereAgreeWithSteiner) {
   // What spheres cover of a cylinder is a smaller cylinder and all that is at most r from it.
   const double R = 2, h = 3, r = 0.6, in = R - r, l = h - 2 * r;
-  const Chambers cylinder = chambers_for(CylinderShape{{1, 1, 1}, {1, 2, 3}, R, h}, r);
+  const Chambers cylinder = chambers_for(Cylinder{{1, 1, 1}, {1, 2, 3}, R, h}, r);
   ASSERT_EQ(cylinder.chambers.size(), 1u);
   const double volume = grown(pi * in * in * l, 2 * pi * in * in + 2 * pi * in * l, pi * l + pi * pi * in, r);
   expect_share(cylinder.chambers[0].share, cylinder.chambers[0].share_error, volume / (pi * R * R * h));
 
-  const Chambers sphere = chambers_for(SphereShape{{1, 2, 3}, 2}, 1.9);
+  const Chambers sphere = chambers_for(Sphere{{1, 2, 3}, 2}, 1.9);
   ASSERT_EQ(sphere.chambers.size(), 1u);
   EXPECT_EQ(sphere.chambers[0].share, 1);
   EXPECT_EQ(sphere.chambers[0].position, Vector<3>(1, 2, 3));
@@ -99,7 +99,7 @@ TEST(Chambers, OfAWedgeLackItsTip) {
 
 TEST(Chambers, AreNoneWhereNothingFits) {
   const Vector<3> size(2, 2, 2);
-  for (const Shape& shape : {Shape(BoxShape{{0, 0, 0}, size}), Shape(test::box_mesh({0, 0, 0}, size))}) {
+  for (const Domain& shape : {Domain(Box{{0, 0, 0}, size}), Domain(test::box_mesh({0, 0, 0}, size))}) {
     EXPECT_EQ(chambers_for(shape, 0.999).chambers.size(), 1u);
     for (const double r : {1.01, 1.7, 100.0}) {
       const Chambers found = chambers_for(shape, r);

@@ -29,7 +29,7 @@ struct CrowdUnderTest {
 };
 
 std::unique_ptr<Container> box_of(const Vector<3>& size) {
-  return make_analytic_container(BoxShape{Vector<3>::Zero(), size}, WallArithmetic::filtered, 0x1p-50);
+  return make_analytic_container(Box{Vector<3>::Zero(), size}, WallArithmetic::filtered, 0x1p-50);
 }
 
 /// At random in the bounds, with radii from half of `largest` to it, which take up `phi` of their volume.
@@ -132,7 +132,7 @@ TEST(Crowd, IsPutBackAsItWas) {
 TEST(Crowd, MovesFromAChamberThatIsTooFullToOneThatIsEmpty) {
   // No sphere is as small as the neck between two cubes of edge 1.
   const Mesh mesh = test::scaled(test::two_cubes_mesh(0.1), 0.5);
-  ASSERT_NEAR(volume_of(Shape(mesh)), 2.005, 1e-12);
+  ASSERT_NEAR(volume_of(Domain(mesh)), 2.005, 1e-12);
   const Spheres<3> spheres = random_spheres({{0.01, -0.49, -0.49}, {0.99, 0.49, 0.49}}, 0.12, 0.9);
   CrowdUnderTest tested(make_mesh_container(mesh, WallArithmetic::filtered, 0x1p-50), spheres);
   ASSERT_EQ(tested.settle(), Crowd::Rest::stuck);

@@ -17,7 +17,7 @@ using std::numbers::pi;
 /// Three standard deviations of the share of 5,000 independent points; those of the sequence do better.
 double error_of(double share) { return 0.001 + 3 * std::sqrt(share * (1 - share) / 5000); }
 
-double share_of(const Shape& shape, double r) {
+double share_of(const Domain& shape, double r) {
   return coverable_share(*make_container(shape, WallArithmetic::plain, 0x1p-50), r);
 }
 
@@ -31,7 +31,7 @@ double opening_of_cube(double r) {
 TEST(CoverableShare, OfACubeIsItsOpeningByABall) {
   for (const double r : {0.01, 0.05, 0.1, 0.2, 0.3, 0.45}) {
     const double exact = opening_of_cube(r);
-    EXPECT_NEAR(share_of(BoxShape{{0, 0, 0}, {1, 1, 1}}, r), exact, error_of(exact)) << r;
+    EXPECT_NEAR(share_of(Box{{0, 0, 0}, {1, 1, 1}}, r), exact, error_of(exact)) << r;
     EXPECT_NEAR(share_of(test::box_mesh({0, 0, 0}, {1, 1, 1}), r), exact, error_of(exact)) << r;
   }
 }
@@ -45,12 +45,12 @@ TEST(CoverableShare, OfACylinderLacksOnlyItsRims) {
     const double covered = pi * a * a * h + 2 * pi * a * (a + h) * r + (pi * h + pi * pi * a) * r * r +
                            4.0 / 3.0 * pi * r * r * r;
     const double exact = covered / (pi * R * R * H);
-    EXPECT_NEAR(share_of(CylinderShape{{0, 0, 0}, {0, 0, 1}, R, H}, r), exact, error_of(exact)) << r;
+    EXPECT_NEAR(share_of(Cylinder{{0, 0, 0}, {0, 0, 1}, R, H}, r), exact, error_of(exact)) << r;
   }
 }
 
 TEST(CoverableShare, OfASphereIsAll) {
-  for (const double r : {0.01, 0.1, 0.49}) EXPECT_EQ(share_of(SphereShape{{1, 2, 3}, 0.5}, r), 1) << r;
+  for (const double r : {0.01, 0.1, 0.49}) EXPECT_EQ(share_of(Sphere{{1, 2, 3}, 0.5}, r), 1) << r;
 }
 
 TEST(CoverableShare, LeavesOutWhatIsTooThin) {
@@ -58,7 +58,7 @@ TEST(CoverableShare, LeavesOutWhatIsTooThin) {
   const Mesh mesh =
       test::extrude({{0, 0}, {1, 0}, {1, 0.45}, {2, 0.45}, {2, 0.55}, {1, 0.55}, {1, 1}, {0, 1}}, 1,
                     {{0, 1, 2}, {0, 2, 5}, {0, 5, 7}, {5, 6, 7}, {2, 3, 4}, {2, 4, 5}});
-  ASSERT_NEAR(volume_of(Shape(mesh)), 1.1, 1e-12);
+  ASSERT_NEAR(volume_of(Domain(mesh)), 1.1, 1e-12);
   for (const double r : {0.06, 0.1, 0.2}) {
     const double cube = opening_of_cube(r) / 1.1;
     EXPECT_NEAR(share_of(mesh, r), cube, 0.002 + error_of(cube)) << r;  // it bulges into the fin a little

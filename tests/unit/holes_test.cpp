@@ -10,7 +10,7 @@ namespace {
 constexpr double r = 0.1;  // of the spheres that are there
 
 std::unique_ptr<Container> box_of(const Vector<3>& size) {
-  return make_analytic_container(BoxShape{Vector<3>::Zero(), size}, WallArithmetic::plain, 0x1p-50);
+  return make_analytic_container(Box{Vector<3>::Zero(), size}, WallArithmetic::plain, 0x1p-50);
 }
 
 /// Simple cubic, five spheres along each edge of a box that they just fill, but those for which `missing`.

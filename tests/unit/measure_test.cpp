@@ -14,7 +14,7 @@ namespace {
 using testing::packing_of;
 using testing::scattered;
 
-const BoxShape far_walls{Vector<3>::Constant(-500), Vector<3>::Constant(1000)};
+const Box far_walls{Vector<3>::Constant(-500), Vector<3>::Constant(1000)};
 
 /// n x n x n cubic cells of the face-centred lattice whose spheres of radius 1 touch, the first one at zero.
 Spheres<3> fcc_block(int n) {
@@ -75,7 +75,7 @@ TEST(Contacts, RattlersAreTakenOutUntilNoneIsLeft) {
   }
   EXPECT_EQ(measure_contacts(packing_of(spheres, far_walls)).rattlers, 4u);
 
-  const BoxShape tight{{-2, -2, -h - 1}, {4, 4, 2 * h + 2}};
+  const Box tight{{-2, -2, -h - 1}, {4, 4, 2 * h + 2}};
   const Contacts held = measure_contacts(packing_of(spheres, tight));
   EXPECT_EQ(held.pairs, 6u);
   EXPECT_EQ(held.walls, 8u);  // each: one side, and floor or ceiling
@@ -87,14 +87,14 @@ TEST(Contacts, AChainFallsApartFromItsEnd) {
   // two neighbours, so the ends go first and then everyone.
   Spheres<3> spheres;
   for (int i = 0; i < 50; ++i) spheres.push_back({0, 0, 2.0 * i}, 1);
-  const BoxShape tube{{-1, -1, -1}, {2, 2, 100}}, hall{{-5, -5, -1}, {10, 10, 100}};
+  const Box tube{{-1, -1, -1}, {2, 2, 100}}, hall{{-5, -5, -1}, {10, 10, 100}};
   EXPECT_EQ(measure_contacts(packing_of(spheres, tube)).rattlers, 0u);
   EXPECT_EQ(measure_contacts(packing_of(spheres, tube)).walls, 202u);
   EXPECT_EQ(measure_contacts(packing_of(spheres, hall)).rattlers, 50u);
 }
 
 TEST(Contacts, AgreeWithBruteForceHoweverWideTheSizes) {
-  const BoxShape box{Vector<3>::Zero(), Vector<3>::Constant(10)};
+  const Box box{Vector<3>::Zero(), Vector<3>::Constant(10)};
   for (const double r_min : {0.02, 0.2, 0.45}) {
     for (const double gap : {0.002, 0.2, 1.0}) {
       const Spheres<3> spheres = scattered(700, r_min, 1, bounds_of(box), 7, true);
@@ -119,7 +119,7 @@ TEST(Contacts, AgreeWithBruteForceHoweverWideTheSizes) {
 }
 
 TEST(Contacts, DoNotDependOnWhereTheSceneStandsOrItsUnit) {
-  const BoxShape box{Vector<3>::Zero(), Vector<3>::Constant(10)};
+  const Box box{Vector<3>::Zero(), Vector<3>::Constant(10)};
   const Spheres<3> spheres = scattered(400, 0.2, 1, bounds_of(box), 3, true);
   const Contacts here = measure_contacts(packing_of(spheres, box));
   for (const double scale : {1e-6, 1e6}) {

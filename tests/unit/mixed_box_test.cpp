@@ -20,9 +20,9 @@ double up(double x) { return std::nextafter(x, std::numeric_limits<double>::infi
 double down(double x) { return std::nextafter(x, -std::numeric_limits<double>::infinity()); }
 
 /// 10 along both axes; walls along the second.
-const PeriodicBox mixed{Vector<2>(10, 10), {false, true}};
+const Box mixed = periodic_box(Vector<2>(10, 10), {false, true});
 
-Certificate both_ways(const Spheres<dynamic>& spheres, const PeriodicBox& box = mixed) {
+Certificate both_ways(const Spheres<dynamic>& spheres, const Box& box = mixed) {
   const Certificate filtered = certify(spheres, box, 0, Arithmetic::filtered);
   const Certificate exact = certify(spheres, box, 0, Arithmetic::exact);
   EXPECT_EQ(filtered.certified, exact.certified);
@@ -35,7 +35,7 @@ TEST(MixedBox, HasImagesOnlyAlongAxesWithoutWalls) {
   // Across the face of axis 0 these overlap; across that of axis 1, a wall, they do not.
   EXPECT_EQ(both_ways(rows({{0.5, 5, 1}, {9.5, 5, 1}})).overlapping_pairs, 1u);
   EXPECT_TRUE(both_ways(rows({{5, 1, 1}, {5, 9, 1}})).certified);
-  EXPECT_FALSE(certify(rows({{5, 0.5, 1}, {5, 9.5, 1}}), PeriodicBox{mixed.edges}).certified);
+  EXPECT_FALSE(certify(rows({{5, 0.5, 1}, {5, 9.5, 1}}), periodic_box(mixed.size)).certified);
 }
 
 TEST(MixedBox, IsDecidedAtItsWallsToTheUlp) {
@@ -60,14 +60,14 @@ TEST(MixedBox, TakesCentresModuloTheBoxOnlyWhereItRepeatsItself) {
 }
 
 TEST(MixedBox, LetsASphereTouchItselfOnlyAlongAxesWithoutWalls) {
-  const PeriodicBox thin{Vector<2>(10, 2), {false, true}};
+  const Box thin = periodic_box(Vector<2>(10, 2), {false, true});
   EXPECT_TRUE(both_ways(rows({{5, 1, 1}}), thin).certified);
   EXPECT_EQ(both_ways(rows({{5, 1, 1}}), thin).pairs_tested, 0u);
-  EXPECT_EQ(both_ways(rows({{5, 1, 1}}), PeriodicBox{thin.edges, {true, false}}).pairs_tested, 1u);
+  EXPECT_EQ(both_ways(rows({{5, 1, 1}}), periodic_box(thin.size, {true, false})).pairs_tested, 1u);
 }
 
 TEST(MixedBox, RefusesWallsOnTooManyAxes) {
-  EXPECT_THROW(certify(rows({{5, 5, 1}}), PeriodicBox{mixed.edges, {true}}), Error);
+  EXPECT_THROW(certify(rows({{5, 5, 1}}), Box{{0, 0}, mixed.size, {true}}), Error);
 }
 
 TEST(MixedBox, CountsContactsWithWallsAndImages) {
@@ -81,9 +81,9 @@ TEST(MixedBox, CountsContactsWithWallsAndImages) {
 }
 
 TEST(MixedBox, IsNamedByItsAxes) {
-  EXPECT_EQ(name_of(PeriodicBox{mixed.edges}), "periodic box");
+  EXPECT_EQ(name_of(periodic_box(mixed.size)), "periodic box");
   EXPECT_EQ(name_of(mixed), "box periodic but along axis 1");
-  EXPECT_EQ(name_of(PeriodicBox{mixed.edges, {true, true}}), "box with walls all around");
+  EXPECT_EQ(name_of(periodic_box(mixed.size, {true, true})), "box");
 }
 
 TEST(MixedBox, ComesFromASceneAndGoesIntoIt) {
@@ -94,7 +94,7 @@ TEST(MixedBox, ComesFromASceneAndGoesIntoIt) {
       "test.toml");
   const Packing packing = run(build(scene));
   for (const Domain& domain : {domain_of(scene), packing.domain, domain_of(packing.scene)})
-    EXPECT_EQ(std::get<PeriodicBox>(domain).walls, (std::vector<bool>{true, false, true}));
+    EXPECT_EQ(std::get<Box>(domain).periodic, (std::vector<bool>{false, true, false}));
 }
 
 TEST(MixedBox, IsRefusedByWhatDoesNotKnowWalls) {

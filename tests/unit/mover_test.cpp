@@ -36,7 +36,7 @@ class RandomBed {
 
   Bed& operator*() { return bed_; }
   Bed* operator->() { return &bed_; }
-  const Shape& shape() const { return shape_; }
+  const Domain& shape() const { return shape_; }
 
   std::vector<NearFacet> all_facets(const Vector<3>& c) const {
     std::vector<NearFacet> facets;
@@ -59,7 +59,7 @@ class RandomBed {
   }
 
  private:
-  Shape shape_;
+  Domain shape_;
   std::unique_ptr<Container> container_;
   EffectLog effects_;
   Bed bed_;
@@ -68,10 +68,10 @@ class RandomBed {
 class BedInContainer : public ::testing::TestWithParam<ContainerUnderTest> {};
 
 INSTANTIATE_TEST_SUITE_P(, BedInContainer,
-                         ::testing::Values(test::localized("Box", BoxShape{{0, 0, 0}, {1, 0.8, 0.9}}),
+                         ::testing::Values(test::localized("Box", Box{{0, 0, 0}, {1, 0.8, 0.9}}),
                                            test::localized("ObliqueCylinder",
-                                                           CylinderShape{{1, 2, 3}, {1, -2, 0.5}, 0.7, 1.9}),
-                                           test::localized("Sphere", SphereShape{{0, 0, 0}, 1}),
+                                                           Cylinder{{1, 2, 3}, {1, -2, 0.5}, 0.7, 1.9}),
+                                           test::localized("Sphere", Sphere{{0, 0, 0}, 1}),
                                            test::localized("PrismMesh", test::prism_mesh(12, 1, 2)),
                                            test::localized("LShapeMesh", test::l_shape_mesh())),
                          [](const auto& tested) { return tested.param.name; });
@@ -277,7 +277,7 @@ TEST_P(BedInContainer, TagsThatAreRemovedLeaveRoomForOthers) {
 }
 
 TEST(Bed, PotentialIsTheMeanHeightByVolume) {
-  const ContainerUnderTest cube = test::localized("", BoxShape{{-0.5, -0.5, -0.5}, {1, 1, 1}});
+  const ContainerUnderTest cube = test::localized("", Box{{-0.5, -0.5, -0.5}, {1, 1, 1}});
   const auto container = cube.container();
   EffectLog effects;
   Bed bed(*container, 0.1, 0.2, 2, effects);
@@ -288,7 +288,7 @@ TEST(Bed, PotentialIsTheMeanHeightByVolume) {
 }
 
 TEST(Bed, ListsDoNotDependOnTheNumberOfThreads) {
-  const ContainerUnderTest cube = test::localized("", BoxShape{{0, 0, 0}, {1, 1, 1}});
+  const ContainerUnderTest cube = test::localized("", Box{{0, 0, 0}, {1, 1, 1}});
   std::vector<std::vector<Bed::Id>> lists[2];
   std::vector<double> paths[2];
   for (const std::size_t threads : {std::size_t{1}, std::size_t{2}}) {

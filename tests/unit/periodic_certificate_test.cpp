@@ -46,7 +46,7 @@ TEST(PeriodicCertificate, ALatticeTouchesItselfAcrossEveryFace) {
 TEST(PeriodicCertificate, DecidesTouchesAcrossCornersByAnUlp) {
   // Across the corner of the box the offsets are 2, 3 and 6, the distance 7.
   const Spheres<dynamic> pair = rows({{1, 1, 2, 3}, {19, 28, 36, 4}});
-  const PeriodicBox box = periodic_box({20, 30, 40});
+  const Box box = periodic_box({20, 30, 40});
   EXPECT_TRUE(expect_truth(pair, box).certified);
   for (const std::size_t i : {0, 1}) {
     Spheres<dynamic> swollen = pair;
@@ -64,8 +64,8 @@ TEST(PeriodicCertificate, DecidesTouchesAcrossCornersByAnUlp) {
     EXPECT_FALSE(expect_truth(moved, box).certified) << k;
     moved.x[k][0] = up(pair.x[k][0]);
     EXPECT_TRUE(expect_truth(moved, box).certified) << k;
-    PeriodicBox other = box;
-    other.edges[static_cast<int>(k)] = down(box.edges[static_cast<int>(k)]);
+    Box other = box;
+    other.edges[static_cast<int>(k)] = down(box.size[static_cast<int>(k)]);
     EXPECT_FALSE(expect_truth(pair, other).certified) << k;
   }
 }
@@ -87,7 +87,7 @@ TEST(PeriodicCertificate, TouchesInEveryDimension) {
     pair.push_back(Vector<dynamic>::Constant(dimension, 20) -
                        Eigen::Map<const Eigen::VectorXd>(offset.data(), dimension),
                    0.75 * d);
-    const PeriodicBox box{Vector<dynamic>::Constant(dimension, 20)};
+    const Box box = bernal::periodic_box(Vector<dynamic>::Constant(dimension, 20));
     const Certificate touching = expect_truth(pair, box);
     EXPECT_TRUE(touching.certified);
     EXPECT_EQ(touching.max_overlap, 0);
@@ -116,14 +116,14 @@ TEST(PeriodicCertificate, ASphereMayTouchItsOwnImageAndNoMore) {
 
 TEST(PeriodicCertificate, APairCountsOnceHoweverManyImagesMeet) {
   // Half an edge apart on both axes: four images of either at the same distance. Then a box within a sphere.
-  const PeriodicBox box = periodic_box({2, 2});
+  const Box box = periodic_box({2, 2});
   EXPECT_EQ(expect_truth(rows({{0, 0, 0.5}, {1, 1, 0.95}}), box).overlapping_pairs, 1u);
   EXPECT_TRUE(expect_truth(rows({{0, 0, 0.5}, {1, 1, 0.875}}), box).certified);
   EXPECT_EQ(expect_truth(rows({{0, 0, 0.5}, {1, 1, 40}, {0.5, 1.75, 0.01}}), box).overlapping_pairs, 3u);
 }
 
 TEST(PeriodicCertificate, CentresStandForTheirImagesInTheBox) {
-  const PeriodicBox box = periodic_box({20, 30, 40});
+  const Box box = periodic_box({20, 30, 40});
   for (const double n : {-1.0, 1.0, 3.0, -1024.0, 0x1p40}) {
     const Spheres<dynamic> pair = rows({{1 + 20 * n, 1, 2, 3}, {19, 28 - 60 * n, 36 + 40 * n, 4}});
     EXPECT_TRUE(expect_truth(pair, box, 0, std::abs(n) <= 3).certified) << n;
@@ -185,14 +185,14 @@ TEST_P(PeriodicCertificateLaw, AgreesWithTheOracleOnRandomPackings) {
     // ulp.
     const bool lattice = seed % 3 != 0;
     const double edge = seed % 2 == 0 ? 2 : 8;
-    PeriodicBox box{Vector<dynamic>::Zero(dimension())};
-    for (int k = 0; k < dimension(); ++k) box.edges[k] = edge + (lattice ? 0.5 * (k % 3) : random.uniform());
+    Box box = bernal::periodic_box(Vector<dynamic>::Zero(dimension()));
+    for (int k = 0; k < dimension(); ++k) box.size[k] = edge + (lattice ? 0.5 * (k % 3) : random.uniform());
     Spheres<dynamic> s(dimension());
     for (std::size_t i = 0; i < spheres(); ++i) {
       Vector<dynamic> c(dimension());
       for (int k = 0; k < dimension(); ++k) {
-        c[k] = random.uniform(0, box.edges[k]);
-        if (dimension() <= 3 && i % 4 == 0) c[k] += box.edges[k] * std::floor(random.uniform(-2, 2));
+        c[k] = random.uniform(0, box.size[k]);
+        if (dimension() <= 3 && i % 4 == 0) c[k] += box.size[k] * std::floor(random.uniform(-2, 2));
         if (lattice) c[k] = std::round(4 * c[k]) / 4;
       }
       double r = dimension() < 8 ? random.uniform(0.05, edge / 4) : random.uniform(edge / 4, edge / 2);
@@ -215,7 +215,7 @@ TEST_P(PeriodicCertificateLaw, AgreesWithTheOracleOnRandomPackings) {
 TEST_P(PeriodicCertificateLaw, CatchesAPairPushedIntoOverlapByAnUlp) {
   // Two spheres grow until they touch in double; then the oracle says which ulp is the last that is allowed.
   Random random(21, stream(Stream::test));
-  const PeriodicBox box{Vector<dynamic>::Constant(dimension(), 1.0)};
+  const Box box = bernal::periodic_box(Vector<dynamic>::Constant(dimension(), 1.0));
   for (int trial = 0; trial < (dimension() < 8 ? 4 : 1); ++trial) {
     Spheres<dynamic> s(dimension());
     double squared = 0;
@@ -242,17 +242,17 @@ TEST_P(PeriodicCertificateLaw, CatchesAPairPushedIntoOverlapByAnUlp) {
 
 struct Sample {
   Spheres<dynamic> spheres;
-  PeriodicBox box;
+  Box box;
 };
 
 /// On a lattice, so that translations are exact.
 Sample sample(int dimension, std::size_t n, std::uint64_t seed) {
   Random random(seed, stream(Stream::test));
   Sample sample{Spheres<dynamic>(dimension), {Vector<dynamic>(dimension)}};
-  for (int k = 0; k < dimension; ++k) sample.box.edges[k] = 4 + 0.5 * k;
+  for (int k = 0; k < dimension; ++k) sample.box.size[k] = 4 + 0.5 * k;
   for (std::size_t i = 0; i < n; ++i) {
     Vector<dynamic> c(dimension);
-    for (int k = 0; k < dimension; ++k) c[k] = std::floor(random.uniform(0, 64 * sample.box.edges[k])) / 64;
+    for (int k = 0; k < dimension; ++k) c[k] = std::floor(random.uniform(0, 64 * sample.box.size[k])) / 64;
     sample.spheres.push_back(c, std::round(random.uniform(1, 40)) / (dimension < 8 ? 64 : 32));
   }
   return sample;
@@ -272,7 +272,7 @@ TEST_P(PeriodicCertificateLaw, HasNoPlaceAndNoAxisOfItsOwn) {
   Spheres<dynamic> images = s, moved = s;
   for (std::size_t k = 0; k < s.x.size(); ++k)
     for (std::size_t i = 0; i < s.size(); ++i) {
-      images.x[k][i] += box.edges[static_cast<int>(k)] * (static_cast<double>((i + k) % 7) - 3);
+      images.x[k][i] += box.size[static_cast<int>(k)] * (static_cast<double>((i + k) % 7) - 3);
       moved.x[k][i] += 1.625 + static_cast<double>(k);
     }
   const Certificate of_images = certify(images, box);
@@ -281,9 +281,9 @@ TEST_P(PeriodicCertificateLaw, HasNoPlaceAndNoAxisOfItsOwn) {
   expect_same_counts(c, certify(moved, box));
 
   Spheres<dynamic> turned = s;
-  PeriodicBox turned_box = box;
+  Box turned_box = box;
   std::ranges::reverse(turned.x);
-  turned_box.edges.reverseInPlace();
+  turned_box.size.reverseInPlace();
   expect_same_counts(c, certify(turned, turned_box));
 }
 
@@ -294,7 +294,7 @@ TEST_P(PeriodicCertificateLaw, ScalesByPowersOfTwo) {
     for (auto& column : s.x)
       for (double& x : column) x *= factor;
     for (double& r : s.r) r *= factor;
-    box.edges *= factor;
+    box.size *= factor;
     testing::expect_same_verdict(certify(s, box), c);
   }
 }
@@ -312,7 +312,7 @@ TEST_P(PeriodicCertificateLaw, DoesNotDependOnTheNumberOfThreads) {
 TEST_P(PeriodicCertificateLaw, FindsEveryNearPair) {
   // Against all pairs in double with a margin for the outward rounding; sizes 1:1000, clusters at a corner.
   Random random(8, stream(Stream::test));
-  const PeriodicBox box{Vector<dynamic>::Constant(dimension(), 3.0)};
+  const Box box = bernal::periodic_box(Vector<dynamic>::Constant(dimension(), 3.0));
   Spheres<dynamic> s(dimension());
   for (int i = 0; i < 1500; ++i) {
     Vector<dynamic> c(dimension());
@@ -343,7 +343,7 @@ TEST(PeriodicCertificate, FarFromTheFacesIsTheSameAsInAContainer) {
   for (int i = 0; i < 2000; ++i)
     s.push_back(uniform_point(random, Bounds<3>{{10, 10, 10}, {20, 20, 20}}), random.uniform(0.05, 0.5));
   const Certificate periodic = certify(s, periodic_box({30, 30, 30}));
-  const Certificate open = certify(s, BoxShape{.size = {30, 30, 30}});
+  const Certificate open = certify(s, Box{.size = {30, 30, 30}});
   EXPECT_EQ(periodic.pairs_tested, open.pairs_tested);
   EXPECT_EQ(periodic.overlapping_pairs, open.overlapping_pairs);
   EXPECT_EQ(periodic.worst_pair, open.worst_pair);

@@ -17,7 +17,7 @@ namespace {
 
 using testing::scattered;
 
-const BoxShape box{Vector<3>::Zero(), Vector<3>::Constant(10)};
+const Box box{Vector<3>::Zero(), Vector<3>::Constant(10)};
 
 struct Disc {
   double x, y, r;
@@ -78,7 +78,7 @@ TEST(Picture, LeavesOutWhatCannotBeSeenAndStaysSmall) {
   for (int i = 0; i < 31 * 31 * 31; ++i) {
     spheres.push_back({0.5 + i % 31, 0.5 + i / 31 % 31, 0.5 + i / 961}, 0.5);
   }
-  const std::string svg = svg_of(spheres, BoxShape{Vector<3>::Zero(), Vector<3>::Constant(31)}, "mm");
+  const std::string svg = svg_of(spheres, Box{Vector<3>::Zero(), Vector<3>::Constant(31)}, "mm");
   EXPECT_LT(svg.size(), 1'500'000u);
   const std::size_t drawn = painted(svg).size();
   // Of a simple cubic block one sees the three faces towards the eye and some way down between the spheres.
@@ -107,10 +107,10 @@ TEST(Picture, OutlinesOfABoxAreItsTwelveEdges) {
 }
 
 TEST(Picture, EveryContainerIsClosedAndSeenFromOutside) {
-  for (const Shape& shape :
-       {Shape(box), Shape(CylinderShape{{1, 2, 3}, {1, 1, 2}, 2, 7}), Shape(SphereShape{{5, 5, 5}, 3})}) {
+  for (const Domain& shape :
+       {Domain(box), Domain(Cylinder{{1, 2, 3}, {1, 1, 2}, 2, 7}), Domain(Sphere{{5, 5, 5}, 3})}) {
     const Mesh mesh = drawable_mesh(shape);
-    EXPECT_GT(volume_of(Shape(mesh)), 0) << kind_of(shape);
+    EXPECT_GT(volume_of(Domain(mesh)), 0) << kind_of(shape);
     const View view(mesh.vertices, 1000, 12, 480);
     EXPECT_FALSE(outline_of(mesh, view).empty());
     for (const Vector<3>& vertex : mesh.vertices) {
@@ -130,7 +130,7 @@ TEST(Picture, DoesNotDependOnTheUnitOrThePlace) {
   Spheres<3> moved;
   for (std::size_t i = 0; i < spheres.size(); ++i)
     moved.push_back(scale * spheres.center(i), scale * spheres.r[i]);
-  const std::string there = svg_of(moved, BoxShape{scale * box.corner, scale * box.size}, "mm");
+  const std::string there = svg_of(moved, Box{scale * box.corner, scale * box.size}, "mm");
   EXPECT_EQ(painted(here).size(), painted(there).size());
   EXPECT_EQ(here.substr(0, here.find("<g font-family")), there.substr(0, there.find("<g font-family")));
 }
@@ -142,7 +142,7 @@ TEST(Picture, ShowsDiscsAndTheImagesThatReachIntoTheBox) {
   discs.push_back({5, 5}, 1);
   discs.push_back({0.5, 5}, 1);
   discs.push_back({9.9, 9.9}, 1);
-  const PeriodicBox square{Vector<2>(10, 10)};
+  const Box square = periodic_box(Vector<2>(10, 10));
   const std::string svg = svg_of(discs, square, "mm");
   EXPECT_EQ(painted(svg).size(), 1u + 2 + 4 + 2 + 4);
   const std::string clipped = svg.substr(svg.find("clip-path="));
@@ -156,21 +156,21 @@ TEST(Picture, ShowsDiscsAndTheImagesThatReachIntoTheBox) {
 TEST(Picture, OfVeryManyDiscsShowsAPart) {
   Spheres<2> discs;
   for (int i = 0; i < 400 * 400; ++i) discs.push_back({i % 400 + 0.5, i / 400 + 0.5}, 0.5);
-  const std::string svg = svg_of(discs, PeriodicBox{Vector<2>(400, 400)}, "mm");
+  const std::string svg = svg_of(discs, periodic_box(Vector<2>(400, 400)), "mm");
   EXPECT_LT(svg.size(), 2'000'000u);
   EXPECT_NE(svg.find("a corner of the box"), std::string::npos);
 }
 
 TEST(Picture, ThereIsNoneOfOtherDimensions) {
-  EXPECT_EQ(svg_of(Spheres<1>{}, PeriodicBox{Vector<1>(1)}, "mm"), "");
-  EXPECT_EQ(svg_of(Spheres<4>{}, PeriodicBox{Vector<4>(1, 1, 1, 1)}, "mm"), "");
+  EXPECT_EQ(svg_of(Spheres<1>{}, periodic_box(Vector<1>(1)), "mm"), "");
+  EXPECT_EQ(svg_of(Spheres<4>{}, periodic_box(Vector<4>(1, 1, 1, 1)), "mm"), "");
 }
 
 TEST(Picture, OfAPeriodicBoxHoldsWhatSticksOut) {
   Spheres<3> spheres;
   for (int corner = 0; corner < 8; ++corner)
     spheres.push_back(Vector<3>(corner & 1, corner >> 1 & 1, corner >> 2) * 9.99, 2);
-  const std::string svg = svg_of(spheres, PeriodicBox{Vector<3>(10, 10, 10)}, "mm");
+  const std::string svg = svg_of(spheres, periodic_box(Vector<3>(10, 10, 10)), "mm");
   for (const Disc& d : painted(svg)) {
     EXPECT_GE(d.x - d.r, 0);
     EXPECT_LE(d.x + d.r, 1000);

@@ -55,7 +55,7 @@ StageEnd end_of_polish(int count, double tolerance, const Monitor& monitor) {
                            "\nradius = 1.0\n[[stage]]\ndo = \"relax\"\nalpha = 3.0\n"),
           {.seed = {}, .threads = 1, .monitor = {}});
   Spheres<3> spheres = packing.spheres.in<3>();
-  Vector<3> edges = std::get<PeriodicBox>(packing.domain).edges;
+  Vector<3> edges = std::get<Box>(packing.domain).size;
   EffectLog effects;
   PeriodicWork work{
       .spheres = Spheres<dynamic>(3), .edges = edges, .seed = 1, .monitor = monitor, .effects = effects};

@@ -97,7 +97,7 @@ TEST(RadialDistribution, SaysWhereTheSecondPeakSplits) {
 }
 
 TEST(RadialDistribution, IsOnlyThereWhereItMeansSomething) {
-  const BoxShape box{Vector<3>::Zero(), Vector<3>::Constant(10)};
+  const Box box{Vector<3>::Zero(), Vector<3>::Constant(10)};
   EXPECT_FALSE(
       radial_distribution(testing::packing_of(testing::scattered(50, 0.5, 1, bounds_of(box), 1), box)));
   const Vector<2> edges(10, 10);

@@ -1,4 +1,4 @@
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,23 +18,23 @@ Mesh tetrahedron() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
 
-TEST(Shape, KindVolumeArea) {
-  const Shape box = BoxShape{{1, 2, 3}, {1, 2, 4}};
+TEST(Domain, KindVolumeArea) {
+  const Domain box = Box{{1, 2, 3}, {1, 2, 4}};
   EXPECT_EQ(kind_of(box), "box");
   EXPECT_DOUBLE_EQ(volume_of(box), 8);
   EXPECT_DOUBLE_EQ(area_of(box), 28);
 
-  const Shape cylinder = CylinderShape{{0, 0, 0}, {3, 4, 12}, 2, 5};
+  const Domain cylinder = Cylinder{{0, 0, 0}, {3, 4, 12}, 2, 5};
   EXPECT_EQ(kind_of(cylinder), "cylinder");
   EXPECT_DOUBLE_EQ(volume_of(cylinder), 20 * pi);
   EXPECT_DOUBLE_EQ(area_of(cylinder), 28 * pi);
 
-  const Shape sphere = SphereShape{{0, 0, 0}, 3};
+  const Domain sphere = Sphere{{0, 0, 0}, 3};
   EXPECT_EQ(kind_of(sphere), "sphere");
   EXPECT_DOUBLE_EQ(volume_of(sphere), 36 * pi);
   EXPECT_DOUBLE_EQ(area_of(sphere), 36 * pi);
 
-  const Shape mesh = tetrahedron();
+  const Domain mesh = tetrahedron();
   EXPECT_EQ(kind_of(mesh), "mesh");
   EXPECT_DOUBLE_EQ(volume_of(mesh), 1);
   // Three right triangles and the oblique one: |(−1, 2, 0) × (−1, 0, 3)| / 2 = 7/2.
@@ -42,7 +42,7 @@ TEST(Shape, KindVolumeArea) {
 }
 
 // Summed about the bounds' centre, the volume keeps its digits as far as the vertices themselves do.
-TEST(Shape, VolumeOfAMeshFarAwayKeepsItsDigits) {
+TEST(Domain, VolumeOfAMeshFarAwayKeepsItsDigits) {
   Mesh mesh = tetrahedron();
   for (Vector<3>& v : mesh.vertices) v += Vector<3>(1 << 30, -(1 << 29), 1 << 28);
   EXPECT_DOUBLE_EQ(volume_of(mesh), 1);
@@ -51,10 +51,10 @@ TEST(Shape, VolumeOfAMeshFarAwayKeepsItsDigits) {
 }
 
 // The bounds are those of the two rims.
-TEST(Shape, BoundsOfAnObliqueCylinder) {
+TEST(Domain, BoundsOfAnObliqueCylinder) {
   Random random(1, stream(Stream::test));
   for (int trial = 0; trial < 50; ++trial) {
-    CylinderShape s;
+    Cylinder s;
     s.base = uniform_direction<3>(random);
     s.axis = 7 * uniform_direction<3>(random);
     if (trial < 3) s.axis = Vector<3>::Unit(trial) * -2;
@@ -84,17 +84,17 @@ TEST(Shape, BoundsOfAnObliqueCylinder) {
 }
 
 // At a unit offset along the axis nothing is lost to cancellation: 1 - a² of a = 1 is exactly no extent.
-TEST(Shape, BoundsOfAnUprightCylinderAreExact) {
-  const Bounds<3> bounds = bounds_of(CylinderShape{{0, 0, 0}, {0, 0, 4}, 1, 2});
+TEST(Domain, BoundsOfAnUprightCylinderAreExact) {
+  const Bounds<3> bounds = bounds_of(Cylinder{{0, 0, 0}, {0, 0, 4}, 1, 2});
   EXPECT_EQ(bounds.lower, Vector<3>(-1, -1, 0));
   EXPECT_EQ(bounds.upper, Vector<3>(1, 1, 2));
 }
 
-std::vector<Shape> one_of_each_kind(double size, const Vector<3>& offset) {
+std::vector<Domain> one_of_each_kind(double size, const Vector<3>& offset) {
   Mesh mesh = tetrahedron();
   for (Vector<3>& v : mesh.vertices) v = offset + size * v;
-  return {BoxShape{offset, size * Vector<3>(1, 0.7, 1.9)},
-          CylinderShape{offset, {1, 2, -2}, 0.7 * size, 1.3 * size}, SphereShape{offset, 0.77 * size}, mesh};
+  return {Box{offset, size * Vector<3>(1, 0.7, 1.9)}, Cylinder{offset, {1, 2, -2}, 0.7 * size, 1.3 * size},
+          Sphere{offset, 0.77 * size}, mesh};
 }
 
 double spacing(double x) {
@@ -104,7 +104,7 @@ double spacing(double x) {
 TEST(Frame, AnySizeAnywhereComesToTheSameLocalSize) {
   for (const double size : {1e-9, 1e-3, 1.0, 123.0, 1e9}) {
     for (const double diagonals : {0.0, 1.0, 1e4, 1e8}) {
-      for (const Shape& shape : one_of_each_kind(size, size * diagonals * Vector<3>(0.3, -0.8, 0.6))) {
+      for (const Domain& shape : one_of_each_kind(size, size * diagonals * Vector<3>(0.3, -0.8, 0.6))) {
         SCOPED_TRACE(testing::Message()
                      << kind_of(shape) << " of size " << size << ", " << diagonals << " away");
         const Frame frame = frame_of(shape);
@@ -142,7 +142,7 @@ TEST(Frame, FarAwayTheWayIntoTheFrameIsExact) {
   Random random(2, stream(Stream::test));
   for (const double diagonals : {1e2, 1e4, 1e8}) {
     const Vector<3> offset = diagonals * Vector<3>(0.3, -0.8, 0.6);
-    const Frame frame = frame_of(BoxShape{offset, {1, 1, 1}});
+    const Frame frame = frame_of(Box{offset, {1, 1, 1}});
     for (int i = 0; i < 1000; ++i) {
       const Vector<3> p = uniform_point<3>(random, {offset, offset + Vector<3>::Ones()});
       EXPECT_EQ(frame.to_scene(frame.to_local(p)), p);
@@ -152,9 +152,9 @@ TEST(Frame, FarAwayTheWayIntoTheFrameIsExact) {
 
 TEST(Frame, AShapeWithoutExtentIsRefused) {
   EXPECT_THROW(frame_of(Mesh{}), Error);
-  EXPECT_THROW(frame_of(SphereShape{{0, 0, 0}, 0}), Error);
-  EXPECT_THROW(frame_of(SphereShape{{0, 0, 0}, std::numeric_limits<double>::quiet_NaN()}), Error);
-  EXPECT_THROW(frame_of(BoxShape{{0, 0, 0}, {1, std::numeric_limits<double>::infinity(), 1}}), Error);
+  EXPECT_THROW(frame_of(Sphere{{0, 0, 0}, 0}), Error);
+  EXPECT_THROW(frame_of(Sphere{{0, 0, 0}, std::numeric_limits<double>::quiet_NaN()}), Error);
+  EXPECT_THROW(frame_of(Box{{0, 0, 0}, {1, std::numeric_limits<double>::infinity(), 1}}), Error);
 }
 
 }  // namespace

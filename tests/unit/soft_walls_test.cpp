@@ -15,7 +15,7 @@
 namespace bernal {
 namespace {
 
-std::unique_ptr<Container> container_of(const Shape& shape) {
+std::unique_ptr<Container> container_of(const Domain& shape) {
   return make_container(shape, WallArithmetic::filtered, 0x1p-50);
 }
 
@@ -28,7 +28,7 @@ Mesh cube_with_cubic_void() {
 
 struct Overlapping {
   std::string name;
-  Shape shape;
+  Domain shape;
   Vector<3> center;
   double r;
   Vector<3> nearest;  // point of the wall
@@ -63,14 +63,14 @@ TEST_P(OneContact, PushesByTheOverlapAlongItsNormal) {
 INSTANTIATE_TEST_SUITE_P(
     , OneContact,
     ::testing::Values(
-        Overlapping{"Plane", BoxShape{{0, 0, 0}, {1, 2, 3}}, {0.06, 1, 1}, 0.1, {0, 1, 1}},
-        Overlapping{"Barrel", CylinderShape{{0, 0, 0}, {0, 0, 1}, 1, 2}, {0.57, 0.76, 1}, 0.1, {0.6, 0.8, 1}},
+        Overlapping{"Plane", Box{{0, 0, 0}, {1, 2, 3}}, {0.06, 1, 1}, 0.1, {0, 1, 1}},
+        Overlapping{"Barrel", Cylinder{{0, 0, 0}, {0, 0, 1}, 1, 2}, {0.57, 0.76, 1}, 0.1, {0.6, 0.8, 1}},
         Overlapping{"BarrelFromDeepInside",
-                    CylinderShape{{0, 0, 0}, {0, 0, 1}, 1, 2},
+                    Cylinder{{0, 0, 0}, {0, 0, 1}, 1, 2},
                     {0.03, 0.04, 1},
                     0.99,
                     {0.6, 0.8, 1}},
-        Overlapping{"SphericalWall", SphereShape{{1, 1, 1}, 1}, {1, 1.95, 1}, 0.1, {1, 2, 1}},
+        Overlapping{"SphericalWall", Sphere{{1, 1, 1}, 1}, {1, 1.95, 1}, 0.1, {1, 2, 1}},
         Overlapping{"Face", test::box_mesh({0, 0, 0}, {1, 1, 1}), {0.04, 0.6, 0.5}, 0.1, {0, 0.6, 0.5}},
         // The diagonal of the face, where two triangles are equally near.
         Overlapping{
@@ -93,9 +93,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return tested.param.name; });
 
 TEST(SoftWalls, PushOutOfACornerFromEveryFace) {
-  for (const Shape& shape :
-       {Shape(BoxShape{{0, 0, 0}, {1, 1, 1}}), Shape(test::box_mesh({0, 0, 0}, {1, 1, 1})),
-        Shape(test::divided(test::box_mesh({0, 0, 0}, {1, 1, 1}), 5))}) {
+  for (const Domain& shape : {Domain(Box{{0, 0, 0}, {1, 1, 1}}), Domain(test::box_mesh({0, 0, 0}, {1, 1, 1})),
+                              Domain(test::divided(test::box_mesh({0, 0, 0}, {1, 1, 1}), 5))}) {
     const auto container = container_of(shape);
     Spheres<3> spheres;
     spheres.push_back({0.09, 0.08, 0.07}, 0.1);
@@ -142,8 +141,7 @@ Spheres<3> after_sweeps(Spheres<3> spheres, const Container& container, const So
 }
 
 TEST(SoftWalls, GiveTheSameBitsInEveryInstructionSet) {
-  for (const Shape& shape :
-       {Shape(CylinderShape{{0, 0, 0}, {1, 2, 3}, 0.5, 1}), Shape(test::l_shape_mesh())}) {
+  for (const Domain& shape : {Domain(Cylinder{{0, 0, 0}, {1, 2, 3}, 0.5, 1}), Domain(test::l_shape_mesh())}) {
     const auto container = container_of(shape);
     const Spheres<3> crowd = crowd_in(*container, 0.08, 3, 0.7, 1);
     const Spheres<3> plain = after_sweeps(crowd, *container, soft_kernels().back(), 60);
@@ -154,7 +152,7 @@ TEST(SoftWalls, GiveTheSameBitsInEveryInstructionSet) {
 }
 
 TEST(SoftWalls, GiveTheSameBitsForAnyNumberOfThreads) {
-  for (const Shape& shape : {Shape(BoxShape{{0, 0, 0}, {1, 1, 1}}), Shape(test::l_shape_mesh())}) {
+  for (const Domain& shape : {Domain(Box{{0, 0, 0}, {1, 1, 1}}), Domain(test::l_shape_mesh())}) {
     const auto container = container_of(shape);
     const double r = std::cbrt(container->volume()) / 42;
     const Spheres<3> crowd = crowd_in(*container, r, 1, 0.7, 1);
@@ -169,7 +167,7 @@ TEST(SoftWalls, GiveTheSameBitsForAnyNumberOfThreads) {
 
 struct Enclosed {
   std::string name;
-  Shape shape;
+  Domain shape;
   std::function<int(const Vector<3>&)> chamber;
   double r;      // of the largest
   double range;  // of the radii
@@ -220,10 +218,10 @@ INSTANTIATE_TEST_SUITE_P(
         Enclosed{"InAThinShell",
                  test::joined(test::icosphere_mesh(1, 2), test::inverted(test::icosphere_mesh(0.9, 2))), any,
                  0.1, 10},
-        Enclosed{"InACylinder", CylinderShape{{0, 0, 0}, {1, 2, 3}, 0.5, 1}, any, 0.15, 10},
-        Enclosed{"InASphere", SphereShape{{0, 0, 0}, 0.7}, any, 0.15, 10},
+        Enclosed{"InACylinder", Cylinder{{0, 0, 0}, {1, 2, 3}, 0.5, 1}, any, 0.15, 10},
+        Enclosed{"InASphere", Sphere{{0, 0, 0}, 0.7}, any, 0.15, 10},
         // Not one sphere has room.
-        Enclosed{"InASlabOfHalfARadius", BoxShape{{0, 0, 0}, {1, 1, 0.05}}, any, 0.1, 1}),
+        Enclosed{"InASlabOfHalfARadius", Box{{0, 0, 0}, {1, 1, 0.05}}, any, 0.1, 1}),
     [](const auto& tested) { return tested.param.name; });
 
 }  // namespace

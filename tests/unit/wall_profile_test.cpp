@@ -17,9 +17,9 @@ namespace {
 
 using testing::packing_of;
 
-Packing packing_in(Spheres<3> spheres, const Shape& shape) {
-  Packing packing = packing_of(std::move(spheres), BoxShape{});
-  packing.domain.emplace<Shape>(shape);
+Packing packing_in(Spheres<3> spheres, const Domain& shape) {
+  Packing packing = packing_of(std::move(spheres), Box{});
+  packing.domain.emplace<Domain>(shape);
   packing.volume = volume_of(packing.domain);
   return packing;
 }
@@ -66,7 +66,7 @@ TEST(WallProfile, OfOneSphereOnTheFloorIsThatOfItsSlices) {
 TEST(WallProfile, OfConcentricSpheresIsThatOfTheirShells) {
   Spheres<3> spheres;
   spheres.push_back({1, 2, 3}, 0.5);
-  const WallProfile profile = profile_of(packing_in(spheres, SphereShape{{1, 2, 3}, 3}));
+  const WallProfile profile = profile_of(packing_in(spheres, Sphere{{1, 2, 3}, 3}));
   ASSERT_EQ(profile.layers.size(), 24u);  // deeper than 2.3 there is 1 % left
   for (const auto& layer : profile.layers) {
     const double share = (std::pow(3 - layer.from, 3) - std::pow(3 - layer.to, 3)) / 27;
@@ -82,7 +82,7 @@ TEST(WallProfile, OfConcentricSpheresIsThatOfTheirShells) {
 
 TEST(WallProfile, OfACylinderAgreesWithDenseSampling) {
   // One sphere where side and floor are equally near.
-  const CylinderShape cylinder{{0, 0, 0}, {0, 0, 1}, 4, 9};
+  const Cylinder cylinder{{0, 0, 0}, {0, 0, 1}, 4, 9};
   Spheres<3> spheres;
   spheres.push_back({3, 0, 1}, 1);
   const WallProfile profile = profile_of(packing_in(spheres, cylinder));
@@ -101,7 +101,7 @@ TEST(WallProfile, OfACylinderAgreesWithDenseSampling) {
   const double volume = 4 * std::numbers::pi / 3;
   for (std::size_t k = 0; k < inside.size(); ++k) {
     const auto& layer = profile.layers[k];
-    const double solid = volume * inside[k] / points / (layer.share * volume_of(Shape(cylinder)));
+    const double solid = volume * inside[k] / points / (layer.share * volume_of(Domain(cylinder)));
     EXPECT_NEAR(1 - layer.porosity, solid, 5 * layer.error + 0.01 * solid) << layer.from;
   }
 }
@@ -174,7 +174,7 @@ TEST(WallProfile, HasTheSameBitsForAnyNumberOfThreads) {
 TEST(WallProfile, OfASphereThatFillsItsContainerHasNoPores) {
   Spheres<3> spheres;
   spheres.push_back({0, 0, 0}, 2);
-  const WallProfile profile = profile_of(packing_in(spheres, SphereShape{{0, 0, 0}, 2}));
+  const WallProfile profile = profile_of(packing_in(spheres, Sphere{{0, 0, 0}, 2}));
   EXPECT_NEAR(profile.mean_porosity, 0, 1e-14);
   EXPECT_NEAR(integral_of(profile), 0, 1e-14);
   EXPECT_NEAR(profile.near_wall_packing_fraction, 1, 1e-12);
@@ -197,7 +197,7 @@ TEST(WallProfile, OfAContainerThinnerThanALayerOfSpheresHasNoCore) {
 
   // Even one that is thinner than its first layer: spheres so large can only overlap its walls.
   Packing thin = packing;
-  thin.domain = BoxShape{{0, 0, 0.5}, {10, 2, 0.05}};
+  thin.domain = Box{{0, 0, 0.5}, {10, 2, 0.05}};
   thin.volume = volume_of(thin.domain);
   EXPECT_EQ(profile_of(thin).layers.size(), 1u);
   EXPECT_NEAR(profile_of(thin).layers[0].porosity, 1 - thin.packing_fraction(), 1e-12);

@@ -92,15 +92,15 @@ TEST(TimeToTouch, BringsBackWhatGlidesAlongARoundWall) {
 
 struct Room {
   const char* name;
-  Shape shape;
+  Domain shape;
   double area, volume;
 };
 
 std::vector<Room> rooms() {
   const double pi = M_PI;
-  return {{"box", BoxShape{{0, 0, 0}, {1, 1.2, 0.9}}, 2 * (1.2 + 0.9 + 1.08), 1.08},
-          {"cylinder", CylinderShape{{0.6, 0.6, 0.1}, {0, 0, 1}, 0.5, 1.0}, 1.5 * pi, 0.25 * pi},
-          {"sphere", SphereShape{{0.6, 0.6, 0.6}, 0.6}, 4 * pi * 0.36, 4.0 / 3.0 * pi * 0.216}};
+  return {{"box", Box{{0, 0, 0}, {1, 1.2, 0.9}}, 2 * (1.2 + 0.9 + 1.08), 1.08},
+          {"cylinder", Cylinder{{0.6, 0.6, 0.1}, {0, 0, 1}, 0.5, 1.0}, 1.5 * pi, 0.25 * pi},
+          {"sphere", Sphere{{0.6, 0.6, 0.6}, 0.6}, 4 * pi * 0.36, 4.0 / 3.0 * pi * 0.216}};
 }
 
 /// Spheres of radius r in the middle of a room, in a periodic box around it.
@@ -109,7 +109,7 @@ struct Flight {
   Spheres<3> spheres;
   Vector<3> edges, shift;
 
-  Flight(const Shape& shape, std::size_t n, double r, double most_size = 1)
+  Flight(const Domain& shape, std::size_t n, double r, double most_size = 1)
       : walls(convex_walls(shape, 1e-9)) {
     const Bounds<3> bounds = bounds_of(shape);
     edges = bounds.size().array() + 6 * r * most_size;

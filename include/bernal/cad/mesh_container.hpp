@@ -14,10 +14,10 @@ std::unique_ptr<Container> make_mesh_container(const Mesh& mesh, WallArithmetic 
                                                double resolution);
 
 /// The container of any shape: analytic where there is one, else that of the mesh. Throws as these do.
-std::unique_ptr<Container> make_container(const Shape& shape, WallArithmetic arithmetic, double resolution);
+std::unique_ptr<Container> make_container(const Domain& shape, WallArithmetic arithmetic, double resolution);
 
 /// The container of a shape of the scene in the frame where the packer works.
-std::unique_ptr<Container> make_local_container(const Shape& of_scene, const Frame& frame,
+std::unique_ptr<Container> make_local_container(const Domain& of_scene, const Frame& frame,
                                                 WallArithmetic arithmetic);
 
 }  // namespace bernal

@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "bernal/cad/mesh_report.hpp"
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal {
 

@@ -1,6 +1,8 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>  // cross products
+#include <algorithm>
+#include <initializer_list>
 
 namespace bernal {
 
@@ -13,6 +15,16 @@ inline constexpr int dynamic = Eigen::Dynamic;
 /// max_dimension components, without an allocation.
 template <int D>
 using Vector = Eigen::Matrix<double, D, 1, 0, D == dynamic ? max_dimension : D, 1>;
+
+/// The same for a dimension that is only known when the program runs, written as a list: {1, 2, 3}.
+struct Coordinates : Vector<dynamic> {
+  Coordinates(std::initializer_list<double> values) : Vector<dynamic>(static_cast<int>(values.size())) {
+    std::copy(values.begin(), values.end(), data());
+  }
+  template <class Derived>
+  Coordinates(const Eigen::MatrixBase<Derived>& other) : Vector<dynamic>(other) {}
+  using Vector<dynamic>::operator=;
+};
 
 /// Axis-aligned bounds, `lower <= upper` in every component.
 template <int D>

@@ -5,18 +5,23 @@
 
 namespace bernal {
 
-/// The metric of a box that repeats itself: axis k has the period edges[k] > 0, or none (an open axis) where
+/// The metric of space that repeats itself: axis k has the period edges[k] > 0, or none (an open axis) where
 /// that is 0.
 template <int D>
 struct Boundary {
   Vector<D> edges = Vector<D>::Zero();
+  Vector<D> origin = Vector<D>::Zero();  ///< the lowest corner of the period that centres are wrapped into
 
-  /// The image of p with every periodic component in [0, edge).
+  bool repeats(int axis) const { return edges[axis] > 0; }
+  bool repeats() const { return edges.maxCoeff() > 0; }
+
+  /// The image of p with every periodic component in [origin, origin + edge).
   Vector<D> wrap(Vector<D> p) const {
     for (int k = 0; k < p.size(); ++k) {
-      if (!(edges[k] > 0) || (p[k] >= 0 && p[k] < edges[k])) continue;
-      p[k] -= edges[k] * std::floor(p[k] / edges[k]);
-      if (!(p[k] < edges[k])) p[k] = 0;  // a tiny negative number rounds to the edge itself
+      const double end = origin[k] + edges[k];
+      if (!(edges[k] > 0) || (p[k] >= origin[k] && p[k] < end)) continue;
+      p[k] -= edges[k] * std::floor((p[k] - origin[k]) / edges[k]);
+      if (!(p[k] < end && p[k] >= origin[k])) p[k] = origin[k];  // rounded to the end itself, or past it
     }
     return p;
   }

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "bernal/domain/domain.hpp"
 #include "bernal/domain/facet.hpp"
-#include "bernal/domain/shape.hpp"
 
 namespace bernal {
 
@@ -24,7 +24,8 @@ struct WallPoint {
   double clearance;  ///< signed distance from the centre, positive inside
 };
 
-/// What spheres are packed into: a bounded region of three-dimensional space and its wall.
+/// The walls of a domain of three dimensions: a region that is bounded, or bounded but for the axes along
+/// which it repeats itself.
 ///
 /// Lengths are in the unit of the shape it was made from. All queries are const and may be called from
 /// several threads at once.
@@ -33,6 +34,7 @@ class Container {
   virtual ~Container() = default;
 
   virtual std::string_view kind() const = 0;
+  /// Along an axis that repeats itself, one period.
   virtual Bounds<3> bounds() const = 0;
   virtual double volume() const = 0;
 
@@ -65,18 +67,24 @@ class Container {
   /// Appends the wall points within `reach` of `c`, one a facet, edge or corner (each once), nearest first.
   void walls_near(const Vector<3>& c, double reach, std::vector<WallPoint>& out) const;
 
+  /// The periods. Queries take a point for what it is, not for its image in one period.
+  const Boundary<3>& boundary() const { return boundary_; }
+
   /// Largest rounding error of a coordinate: `Frame::resolution` of the frame the container lives in.
   double resolution() const { return resolution_; }
 
  protected:
-  explicit Container(double resolution) : resolution_(resolution) {}
+  explicit Container(double resolution, const Boundary<3>& boundary = {})
+      : resolution_(resolution), boundary_(boundary) {}
 
  private:
   double resolution_;
+  Boundary<3> boundary_;
 };
 
-/// The container of a box, cylinder or sphere. Throws Error{bad_argument} for lengths that are not positive
-/// and finite or an axis without direction, and for a mesh: see `make_mesh_container` in bernal/cad.
-std::unique_ptr<Container> make_analytic_container(const Shape&, WallArithmetic, double resolution);
+/// The container of a box of three dimensions, cylinder or sphere. Throws Error{bad_argument} for lengths
+/// that are not positive and finite, an axis without direction or a periodic one that is oblique, and for a
+/// mesh: see `make_mesh_container` in bernal/cad.
+std::unique_ptr<Container> make_analytic_container(const Domain&, WallArithmetic, double resolution);
 
 }  // namespace bernal

@@ -1,45 +1,108 @@
 #pragma once
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
+#include "bernal/core/vector.hpp"
 #include "bernal/domain/boundary.hpp"
-#include "bernal/domain/shape.hpp"
 
 namespace bernal {
 
-/// The box [0, edges[k]) on every axis k, repeated without end along each axis that has no walls: there
-/// spheres have images in every box, and a sphere may be its own neighbour. An axis with walls ends at 0 and
-/// at its edge, and holds whole spheres: r <= c <= edge - r.
-struct PeriodicBox {
-  Vector<dynamic> edges;
-  std::vector<bool> walls = {};  ///< whether each axis has them; empty: none
+// What spheres are packed into, as plain data: walls, and periods with which everything repeats itself. A
+// Container answers questions about the walls, a Boundary about the periods, and the certificate decides on
+// the same data by itself. The doubles below *are* the domain: nothing else is meant by them.
 
-  int dimension() const { return static_cast<int>(edges.size()); }
-  bool has_wall(int axis) const { return !walls.empty() && walls[static_cast<std::size_t>(axis)]; }
-  bool has_walls() const { return std::find(walls.begin(), walls.end(), true) != walls.end(); }
-  /// Its metric: open along the axes that have walls.
-  template <int D>
-  Boundary<D> boundary() const {
-    Boundary<D> metric{edges};
-    for (int k = 0; k < D; ++k)
-      if (has_wall(k)) metric.edges[k] = 0;
-    return metric;
+/// The box [corner, corner + size] in any dimension, its upper corner rounded component by component. Every
+/// axis either ends at two walls, with whole spheres between them, or repeats itself without end: there
+/// spheres have images in every box, and a sphere may be its own neighbour.
+struct Box {
+  Coordinates corner = {0, 0, 0};
+  Coordinates size = {1, 1, 1};
+  std::vector<bool> periodic = {};  ///< whether each axis repeats itself; empty: none does
+
+  int dimension() const { return static_cast<int>(size.size()); }
+  bool repeats(int axis) const { return !periodic.empty() && periodic[static_cast<std::size_t>(axis)]; }
+  bool has_wall(int axis) const { return !repeats(axis); }
+  bool repeats() const { return std::find(periodic.begin(), periodic.end(), true) != periodic.end(); }
+  bool has_walls() const {
+    return periodic.empty() || std::find(periodic.begin(), periodic.end(), false) != periodic.end();
   }
 };
 
-/// What spheres are packed into: a container of three dimensions, or a periodic box of any.
-using Domain = std::variant<Shape, PeriodicBox>;
+/// The box [0, edges[k]) that repeats itself along every axis but those with `walls` (empty: none has).
+Box periodic_box(const Vector<dynamic>& edges, const std::vector<bool>& walls = {});
 
-/// "box", "cylinder", "sphere", "mesh" or "periodic".
+/// Points p with 0 <= (p - base)·a <= height for a = axis / |axis|, at most `radius` from the axis line.
+/// `axis` need not be of unit length. A periodic one has no lids: it is an endless column that repeats itself
+/// with the period `height`, and its axis lies along a coordinate axis.
+struct Cylinder {
+  Vector<3> base = Vector<3>::Zero();
+  Vector<3> axis = Vector<3>::UnitZ();
+  double radius = 1;
+  double height = 1;
+  bool periodic = false;
+
+  /// The coordinate axis that the axis lies along, or -1.
+  int coordinate_axis() const;
+};
+
+struct Sphere {
+  Vector<3> center = Vector<3>::Zero();
+  double radius = 1;
+};
+
+/// A closed triangle mesh with outward orientation that does not intersect itself.
+struct Mesh {
+  std::vector<Vector<3>> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+using Domain = std::variant<Box, Cylinder, Sphere, Mesh>;
+
+/// "box", "cylinder", "sphere", "mesh"; "periodic" for a box that repeats itself along some axis.
 std::string_view kind_of(const Domain&);
-/// What to call it in a sentence: "cylinder", "periodic box", "box periodic but along axis 2".
+/// What to call it in a sentence: "cylinder", "endless cylinder", "periodic box", "box periodic but along
+/// axis 2".
 std::string name_of(const Domain&);
+
 int dimension_of(const Domain&);
-/// Enclosed volume, or that of one box, to rounding; an area in two dimensions, and so on.
+/// Whether it ends anywhere.
+bool has_walls(const Domain&);
+/// Whether it repeats itself along some axis.
+bool is_periodic(const Domain&);
+
+/// Smallest axis-aligned bounds, to rounding; along an axis that repeats itself, one period. Precondition: D
+/// is the dimension, or dynamic.
+template <int D = 3>
+Bounds<D> bounds_of(const Domain&);
+/// Enclosed volume, or that of one period, to rounding; an area in two dimensions, and so on. (For a mesh
+/// the sum of signed tetrahedra about its bounds' centre.)
 double volume_of(const Domain&);
-/// Edges of the smallest axis-aligned bounds, or of the periodic box.
-Vector<dynamic> extent_of(const Domain&);
+/// Area of the walls; precondition: three dimensions.
+double area_of(const Domain&);
+/// The metric: the periods of the axes that have one. Precondition: D is the dimension.
+template <int D>
+Boundary<D> boundary_of(const Domain&);
+
+/// A similarity that takes the scene's coordinates to the packer's: local = (scene - origin) / scale, with
+/// `scale` a power of two, so that scaling is exact and the local domain has a diagonal in [1, 2).
+struct Frame {
+  Vector<3> origin = Vector<3>::Zero();
+  double scale = 1;
+  double resolution = 0;  ///< largest rounding error of a coordinate on the way back, in local lengths
+
+  Vector<3> to_local(const Vector<3>& p) const { return (p - origin) / scale; }
+  Vector<3> to_scene(const Vector<3>& p) const { return origin + scale * p; }
+};
+
+/// The frame centred on the bounds of a domain of three dimensions.
+Frame frame_of(const Domain&);
+
+/// The domain in local coordinates; vertices are rounded to within `frame.resolution`.
+Domain to_local(const Domain&, const Frame&);
 
 }  // namespace bernal

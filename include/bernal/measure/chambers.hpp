@@ -46,8 +46,8 @@ struct ChamberOptions {
 
 /// Absent in a periodic box and without spheres.
 ///
-/// Boxes, cylinders, spheres and convex meshes have convex places: one chamber or none. In another mesh the cells
-/// of an octree that clearance, being 1-Lipschitz, does not decide are searched for a place down to the
+/// Boxes, cylinders, spheres and convex meshes have convex places: one chamber or none. In another mesh the
+/// cells of an octree that clearance, being 1-Lipschitz, does not decide are searched for a place down to the
 /// finest; two places belong together where a line of places joins them, see src/measure/free_space.hpp.
 /// Pockets of places much thinner than a cell can be missed, and a neck much thinner than a cell taken for
 /// closed, unless spheres stand in it; a neck counts as open from 0.9999 r on, a short and sharp one from
@@ -57,6 +57,6 @@ struct ChamberOptions {
 std::optional<Chambers> chambers(const Packing&, const ChamberOptions& = {});
 
 /// The same for a radius, without spheres. Precondition: radius > 0.
-Chambers chambers_for(const Shape&, double radius, const ChamberOptions& = {});
+Chambers chambers_for(const Domain&, double radius, const ChamberOptions& = {});
 
 }  // namespace bernal
