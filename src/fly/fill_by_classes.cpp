@@ -36,7 +36,7 @@ constexpr double first_step = 0.3, successful = 0.4, adapted = 1.1, shortest_ste
 template <int D>
 class Insertion {
  public:
-  explicit Insertion(PeriodicWork& work)
+  explicit Insertion(Work& work)
       : work_(work),
         random_(work.random(Stream::insert)),
         spheres_(work.spheres.in<D>()),
@@ -182,7 +182,7 @@ class Insertion {
     });
   }
 
-  PeriodicWork& work_;
+  Work& work_;
   Random random_;
   Spheres<D> spheres_;
   const Vector<D> edges_;
@@ -198,7 +198,7 @@ class Insertion {
 
 }  // namespace
 
-StageEnd fill_by_classes(PeriodicWork& work, const FillOptions& options) {
+StageEnd fill_by_classes(Work& work, const FillOptions& options) {
   if (!work.spheres.empty() && fits_box(work)) {
     const EffectTimer timer(work.effects["insertion"]);
     const StageEnd end = with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
@@ -209,7 +209,7 @@ StageEnd fill_by_classes(PeriodicWork& work, const FillOptions& options) {
   return fill_by_relaxation(work, options);
 }
 
-StageEnd fill(PeriodicWork& work, const FillOptions& options) {
+StageEnd fill(Work& work, const FillOptions& options) {
   if (work.spheres.empty()) return StageEnd::converged;
   const auto [least, most] = std::ranges::minmax(work.spheres.r);
   const bool lists_know_sizes =

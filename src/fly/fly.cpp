@@ -32,7 +32,7 @@ constexpr std::pair<std::string_view, FillMethod> methods[] = {{"patent", FillMe
                                                                {"relaxation", FillMethod::relaxation}};
 
 /// Takes out the spheres that overlap their own image or do not fit between two walls.
-std::size_t drop_too_wide(PeriodicWork& work) {
+std::size_t drop_too_wide(Work& work) {
   Spheres<dynamic> fitting(work.dimension());
   fitting.reserve(work.spheres.size());
   const double skin = 1 + 1e-9;  // more than the margin that flying spheres keep from walls
@@ -47,7 +47,7 @@ std::size_t drop_too_wide(PeriodicWork& work) {
   return dropped;
 }
 
-StageEnd fill(PeriodicWork& work, FillMethod method, const FlyOptions& options) {
+StageEnd fill(Work& work, FillMethod method, const FlyOptions& options) {
   switch (method) {
     case FillMethod::patent:
     case FillMethod::flight: {
@@ -96,7 +96,7 @@ FillChoice choose_filling(std::string_view method, const FillTask& task) {
           fmt::format("as {:.3f} is more than the {:.3f} that flight{} reaches", phi, reached, between)};
 }
 
-StageEnd fly(PeriodicWork& work, const FillChoice& choice, const FlyOptions& options) {
+StageEnd fly(Work& work, const FillChoice& choice, const FlyOptions& options) {
   if (work.placed && work.edges == *work.target_edges) {
     work.account = "all had places in this box before";
     return StageEnd::converged;

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "fly/fly_options.hpp"
-#include "work/periodic_work.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 
@@ -33,6 +33,6 @@ FillChoice choose_filling(std::string_view method, const FillTask& task);
 /// were wider than the box; `hit_limit` and `cancelled` as they say. Then `work.spheres` holds those that are
 /// placed, in the order in which they were drawn. Spheres that have places in that very box already stay
 /// there. Precondition: `work.target_edges`. Deterministic in the seed.
-StageEnd fly(PeriodicWork& work, const FillChoice& choice, const FlyOptions& options);
+StageEnd fly(Work& work, const FillChoice& choice, const FlyOptions& options);
 
 }  // namespace bernal

@@ -219,7 +219,7 @@ void EventFlight<D>::fly() {
   for (Id i = 0; i < n; ++i) move_to(i, end_);
 }
 
-StageEnd fly_by_events(PeriodicWork& work, const FlyOptions& options) {
+StageEnd fly_by_events(Work& work, const FlyOptions& options) {
   return with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
     return fly_until_full<EventFlight<D>, D>(work, options);

@@ -75,6 +75,6 @@ class EventFlight {
 };
 
 /// Fills the box `*work.target_edges` that way. As `fill_by_relaxation` otherwise.
-StageEnd fly_by_events(PeriodicWork& work, const FlyOptions& options);
+StageEnd fly_by_events(Work& work, const FlyOptions& options);
 
 }  // namespace bernal

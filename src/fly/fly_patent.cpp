@@ -156,7 +156,7 @@ void PatentFlight<D>::fly() {
   if (hits(next_, found) > 0) collide(found[0]);
 }
 
-StageEnd fly_by_patent(PeriodicWork& work, const FlyOptions& options) {
+StageEnd fly_by_patent(Work& work, const FlyOptions& options) {
   return with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
     return fly_until_full<PatentFlight<D>, D>(work, options);

@@ -61,6 +61,6 @@ class PatentFlight {
 };
 
 /// Fills the box `*work.target_edges` that way. As `fill_by_relaxation` otherwise.
-StageEnd fly_by_patent(PeriodicWork& work, const FlyOptions& options);
+StageEnd fly_by_patent(Work& work, const FlyOptions& options);
 
 }  // namespace bernal

@@ -58,7 +58,7 @@ bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::ve
 /// Tells the run how far it has come, now and then.
 class Milestones {
  public:
-  Milestones(PeriodicWork& work, double pressure) : work_(work), pressure_(pressure) {}
+  Milestones(Work& work, double pressure) : work_(work), pressure_(pressure) {}
 
   void pass(const Vector<dynamic>& edges, double filled, const FlightPeriod& period) {
     work_.edges = edges;
@@ -71,14 +71,14 @@ class Milestones {
   }
 
  private:
-  PeriodicWork& work_;
+  Work& work_;
   double pressure_;
   double next_ = 0, next_filled_ = 0;
 };
 
 /// Those of the box, in its coordinates.
 template <int D>
-std::vector<Wall<D>> walls_of(const PeriodicWork& work, const Vector<D>& edges) {
+std::vector<Wall<D>> walls_of(const Work& work, const Vector<D>& edges) {
   std::vector<Wall<D>> walls;
   for (int k = 0; k < D; ++k) {
     if (!work.has_wall(k)) continue;
@@ -100,7 +100,7 @@ void require_room(const Spheres<D>& spheres, const Vector<D>& box, const std::ve
 }
 
 template <int D>
-void start(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, double phi_init) {
+void start(Spheres<D>& spheres, Vector<D>& edges, Work& work, double phi_init) {
   if (work.placed) {
     if (work.allowed_overlap > 0) {  // other stages may leave some
       const Vector<D> free = edges_free_of_overlap<D>(spheres, edges, 0, work.walls);
@@ -122,7 +122,7 @@ void start(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, double phi
 }
 
 template <int D>
-StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
+StageEnd grow_in(Work& work, const GrowOptions& options) {
   if (options.polish > 0 && !work.walls.empty())
     throw Error(ErrorCode::bad_scene, "\"polish\" knows no walls; leave it out");
   Spheres<D> spheres = work.spheres.in<D>();
@@ -165,7 +165,7 @@ StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
 
 }  // namespace
 
-StageEnd grow(PeriodicWork& work, const GrowOptions& options) {
+StageEnd grow(Work& work, const GrowOptions& options) {
   EffectTimer timer(work.effects["growth"]);
   return with_dimension(work.dimension(), std::integer_sequence<int, 2, 3, 4, 5, 6>{},
                         [&](auto dimension) { return grow_in<decltype(dimension)::value>(work, options); });

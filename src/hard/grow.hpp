@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "hard/hard_spheres.hpp"
-#include "work/periodic_work.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 
@@ -54,6 +54,6 @@ struct GrowOptions {
 /// for the minimum image: 2.5 of the largest diameters, but along axes with walls. Throws Error{bad_scene} if
 /// it is that from the start, or if phi_init is denser than random insertion reaches. Precondition: 2 to 6
 /// dimensions. Cost: some 2,000 collisions a sphere at 0.5 to 0.8 µs. One thread.
-StageEnd grow(PeriodicWork& work, const GrowOptions& options);
+StageEnd grow(Work& work, const GrowOptions& options);
 
 }  // namespace bernal

@@ -69,17 +69,17 @@ class Growth {
       : work_(work),
         options_(options),
         random_(work.random(Stream::grow)),
-        full_size_(1 + (1 + room_for_rounding) * work.bed.skin() / work.supply.smallest()),
-        walls_(walls_for_growth(work.shape, work.supply.smallest())) {
-    const Bounds<3> bounds = work.bed.container().bounds();
-    edges_ = bounds.size().array() + margin * 2 * work.supply.largest();
+        full_size_(1 + (1 + room_for_rounding) * work.bed().skin() / work.supply->smallest()),
+        walls_(walls_for_growth(work.domain, work.supply->smallest())) {
+    const Bounds<3> bounds = work.bed().container().bounds();
+    edges_ = bounds.size().array() + margin * 2 * work.supply->largest();
     to_box_ = 0.5 * edges_ - bounds.center();
     for (Wall<3>& wall : walls_) wall.shift(to_box_);
   }
 
   StageEnd run() {
     const std::size_t wanted = target_count();
-    if (work_.bed.size() >= wanted) return StageEnd::converged;
+    if (work_.bed().size() >= wanted) return StageEnd::converged;
     require_fitting();
     if (cancelled_) return StageEnd::cancelled;
     Growing growing = from_bed();
@@ -101,26 +101,26 @@ class Growth {
   }
 
  private:
-  double volume_of_container() const { return work_.bed.container().volume(); }
+  double volume_of_container() const { return work_.bed().container().volume(); }
   std::size_t count_for(double packing_fraction) const {
-    return work_.supply.count_filling(packing_fraction * volume_of_container());
+    return work_.supply->count_filling(packing_fraction * volume_of_container());
   }
 
   std::size_t target_count() const {
     if (work_.target.is_open() && !work_.target.fill) return count_for(work_.attainable);
-    return work_.supply.wanted();
+    return work_.supply->wanted();
   }
 
-  double radius_of(std::size_t tag) const { return work_.supply.radius(static_cast<std::uint32_t>(tag)); }
+  double radius_of(std::size_t tag) const { return work_.supply->radius(static_cast<std::uint32_t>(tag)); }
 
   /// A sphere alone grows until it touches the walls on all sides: then it is the largest that fits, as the
   /// container is convex, whatever the pressure at which the stage is to end. Of analytic containers that is
   /// known beforehand.
   void require_fitting() {
-    if (!std::holds_alternative<Mesh>(work_.shape)) return;
+    if (!std::holds_alternative<Mesh>(work_.domain)) return;
     Growing largest;
     largest.is_told = false;
-    largest.add(work_.supply.largest());
+    largest.add(work_.supply->largest());
     insert_at_random(largest);
     if (grow(largest, {.pressure = until_it_is_tight}) || cancelled_) return;
     throw Error(
@@ -132,7 +132,7 @@ class Growth {
 
   /// The first of the drawn sequence, up to the last one that is in the bed.
   Growing from_bed() const {
-    const Bed& bed = work_.bed;
+    const Bed& bed = work_.bed();
     Growing growing;
     for (Bed::Id i = 0; i < bed.size(); ++i) {
       while (growing.spheres.size() <= bed.tag(i)) growing.add(radius_of(growing.spheres.size()));
@@ -160,9 +160,9 @@ class Growth {
 
   /// Random sequential insertion, the largest first.
   bool try_to_insert(Growing& growing) {
-    const Container& container = work_.bed.container();
+    const Container& container = work_.bed().container();
     Spheres<3>& spheres = growing.spheres;
-    const double clear_of_walls = inset * flatness * work_.supply.smallest();
+    const double clear_of_walls = inset * flatness * work_.supply->smallest();
     const auto [least, most] = std::ranges::minmax(spheres.r);
     CellGrid<3> grid(container.bounds(), growing.size * least, growing.size * most, spheres.size());
     std::vector<std::uint32_t> order;
@@ -182,10 +182,10 @@ class Growth {
         });
         return !taken && container.clearance_within(c, r + clear_of_walls) >= r + clear_of_walls;
       };
-      Vector<3> c = work_.bed.places().draw(random_);
+      Vector<3> c = work_.bed().places().draw(random_);
       for (int trial = 1; !is_free(c); ++trial) {
         if (trial == most_trials) return false;
-        c = work_.bed.places().draw(random_);
+        c = work_.bed().places().draw(random_);
       }
       spheres.set_center(i, c);
       grid.insert(i, c, r);
@@ -227,7 +227,7 @@ class Growth {
   void trim_and_grow(Growing& growing) {
     double spare = caution;
     for (int k = 0; k < most_trims && !growing.grown && !cancelled_; ++k, spare *= 2) {
-      const std::size_t fitting = work_.supply.count_filling((1 - spare) * growing.volume());
+      const std::size_t fitting = work_.supply->count_filling((1 - spare) * growing.volume());
       growing.spheres.resize(std::min(fitting, growing.spheres.size()) - 1);
       growing.size *= 1 - shrinkage;
       grow(growing, options_);
@@ -256,7 +256,7 @@ class Growth {
 
   /// Into the bed, in the order of the sequence, unless there were more before. Returns whether all fit.
   bool hand_over(const Spheres<3>& spheres) {
-    Bed& bed = work_.bed;
+    Bed& bed = work_.bed();
     std::vector<std::optional<Bed::Ball>> before(spheres.size());
     const std::size_t count_before = bed.size();
     for (Bed::Id i = 0; i < bed.size(); ++i) {
@@ -278,7 +278,7 @@ class Growth {
         if (placed[tag]) bed.insert(before[tag]->center, before[tag]->r, tag);
       }
     }
-    work_.supply.set_placed(placed);
+    work_.supply->set_placed(placed);
     return all_fit;
   }
 

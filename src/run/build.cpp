@@ -23,7 +23,10 @@ constexpr double bytes_a_relaxed_sphere = 400;
 void require_possible(const Scene& scene) {
   for (const Spec& stage : scene.stages) {
     const StageEntry& entry = find_entry(stage_catalogue(), stage);
-    if (scene.is_periodic() ? entry.run_periodic != nullptr : entry.run != nullptr) continue;
+    const bool between_walls =
+        scene.container.has("walls") && scene.dimension() == 3 && !scene.container.flag("scalable");
+    if (scene.is_periodic() ? entry.run_periodic || (entry.run && between_walls) : entry.run != nullptr)
+      continue;
     std::vector<std::string_view> able;
     for (const StageEntry& other : stage_catalogue())
       if (scene.is_periodic() ? other.run_periodic != nullptr : other.run != nullptr)
@@ -34,15 +37,6 @@ void require_possible(const Scene& scene) {
                     scene.is_periodic() ? "periodic box" : "container with walls", fmt::join(able, "\", \"")),
         stage.where);
   }
-  if (scene.container.has("walls"))
-    for (const Spec& stage : scene.stages)
-      if (stage.name != "fly" && stage.name != "grow")
-        throw Error(
-            ErrorCode::bad_scene,
-            fmt::format("\"{}\" does not know the walls of a box that is periodic along other axes; there, "
-                        "the stages are \"fly\" and \"grow\"",
-                        stage.name),
-            stage.where);
   const bool flies = std::ranges::find(scene.stages, "fly", &Spec::name) != scene.stages.end();
   const Target& target = scene.target;
   if (flies && !target.packing_fraction && (!target.count || scene.container.flag("scalable")))

@@ -120,7 +120,7 @@ StageEnd run_relax_in_container(const Spec& s, Work& work) {
       work, {.patience = s.number("patience"), .sweeps = s.number("sweeps"), .seconds = s.number("seconds")});
 }
 
-StageEnd run_relax(const Spec& s, PeriodicWork& work) {
+StageEnd run_relax(const Spec& s, Work& work) {
   return relax(work, {.alpha = s.number("alpha"),
                       .beta = s.number("beta"),
                       .phi0 = s.number("phi0"),
@@ -140,13 +140,13 @@ GrowOptions grow_options(const Spec& s) {
 
 StageEnd run_grow_in_container(const Spec& s, Work& work) { return grow_in_container(work, grow_options(s)); }
 
-StageEnd run_grow(const Spec& s, PeriodicWork& work) {
+StageEnd run_grow(const Spec& s, Work& work) {
   GrowOptions options = grow_options(s);
   options.polish = s.number("polish");
   return grow(work, options);
 }
 
-StageEnd run_fly(const Spec& s, PeriodicWork& work) {
+StageEnd run_fly(const Spec& s, Work& work) {
   const FillChoice choice = choose_filling(s.text("method"), work.fill_task);
   const double dt = choice.method == FillMethod::patent ? 0.01 : 0.25;
   return fly(work, choice,
@@ -222,11 +222,18 @@ const StageEntry stages[] = {
     {"compress", run_compress, nullptr, compression},
     {"shake", run_shake, nullptr, shaking},
     {"refill", run_refill, nullptr, refilling},
-    {"relax", run_relax_in_container, run_relax, relaxing_in_container, relaxing},
-    {"grow", run_grow_in_container, run_grow, growing_in_container, growing, chosen_effects_of_grow},
+    {"relax", run_relax_in_container, run_relax, relaxing_in_container, relaxing, nullptr, true, true},
+    {"grow", run_grow_in_container, run_grow, growing_in_container, growing, chosen_effects_of_grow, true},
     {"fly", nullptr, run_fly, {}, flying, chosen_effects_of_fly}};
 
 }  // namespace
+
+bool works_in_bed(const Spec& stage, const Plan& plan) {
+  if (!plan.scene.is_periodic()) return true;
+  const StageEntry& entry = find_entry(stage_catalogue(), stage);
+  const bool fixed_walls = has_walls(plan.domain) && dimension_of(plan.domain) == 3 && !plan.box_follows;
+  return entry.run && fixed_walls && (!entry.run_periodic || entry.prefers_bed);
+}
 
 FillTask fill_task_of(const Plan& plan) {
   constexpr double rare = 1e-4;

@@ -9,7 +9,6 @@
 #include "bernal/run/run.hpp"
 #include "bernal/scene/scene.hpp"
 #include "bernal/sizes/size_distribution.hpp"
-#include "work/periodic_work.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
@@ -31,14 +30,18 @@ struct SizesEntry {
 
 struct StageEntry {
   std::string_view name;
-  /// In a container; null where it cannot.
+  /// On spheres in a bed; null where it cannot.
   StageEnd (*run)(const Spec&, Work&);
-  /// In a periodic box; null where it cannot.
-  StageEnd (*run_periodic)(const Spec&, PeriodicWork&);
+  /// On spheres in a box; null where it cannot.
+  StageEnd (*run_periodic)(const Spec&, Work&);
   /// Effects that it brings with it in a container and in a periodic box, for `Plan::items`.
   std::span<const PlanItem> effects, periodic_effects = {};
   /// Of a stage that chooses among methods in a periodic box: those of its effects that the plan calls for.
   std::vector<PlanItem> (*chosen_effects)(const Spec&, const Plan&) = nullptr;
+  /// Whether it places as many spheres as are expected to fit where the scene says nothing.
+  bool meets_expectation = false;
+  /// Of a stage that works in a bed and in a box: where walls leave it the choice.
+  bool prefers_bed = false;
 
   std::span<const PlanItem> effects_in(const Scene& scene) const {
     return scene.is_periodic() ? periodic_effects : effects;
@@ -48,6 +51,10 @@ struct StageEntry {
 std::span<const ContainerEntry> container_catalogue();
 std::span<const SizesEntry> sizes_catalogue();
 std::span<const StageEntry> stage_catalogue();
+
+/// Whether the stage works on spheres that stand in a bed: in containers, and between walls of a box of three
+/// dimensions and given size where it does not need a box that scales.
+bool works_in_bed(const Spec& stage, const Plan& plan);
 
 /// What a stage that fills a box of given edges has to do, by the plan's box, sizes and target.
 FillTask fill_task_of(const Plan& plan);

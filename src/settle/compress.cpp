@@ -94,7 +94,7 @@ void sweep_at_random(Bed& bed, const Vector<3>& pull, double tilt, const Vector<
 }
 
 StageEnd compress(Work& work, const CompressOptions& options) {
-  Bed& bed = work.bed;
+  Bed& bed = work.bed();
   if (bed.size() == 0) return StageEnd::converged;
   const EffectTimer timer(work.effects["compression"]);
   const double floor = floor_of(bed.container().bounds(), options.direction);

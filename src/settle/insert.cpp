@@ -10,8 +10,8 @@ constexpr std::size_t milestone_every = 8192;
 
 StageEnd insert(Work& work, const InsertOptions& options) {
   const EffectTimer timer(work.effects["insertion"]);
-  Bed& bed = work.bed;
-  Supply& supply = work.supply;
+  Bed& bed = work.bed();
+  Supply& supply = *work.supply;
   Random random = work.random(Stream::insert);
   // Trials are counted inside the container; places are drawn a little beyond it, too.
   const double attempts = options.attempts * std::max(1.0, bed.places().volume() / bed.container().volume());

@@ -24,11 +24,11 @@ constexpr double least_trials = 3e5;
 /// wall stays where it is.
 std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
   const EffectTimer timer(work.effects["refilling"]);
-  const Bed& bed = work.bed;
+  const Bed& bed = work.bed();
   const Container& container = bed.container();
   Random random = work.random(Stream::refill);
-  const double radius = bed.size() > 0 ? bed.mean_radius() : work.supply.radius(work.supply.window().front());
-  const double smallest = work.supply.smallest() + bed.skin();
+  const double radius = bed.size() > 0 ? bed.mean_radius() : work.supply->radius(work.supply->window().front());
+  const double smallest = work.supply->smallest() + bed.skin();
   const double capacity = container.volume() / ball_volume(3, radius);
   const double wanted = std::min(most_probes, 1000 + probes_a_sphere * capacity);
   std::vector<Probe> probes;
@@ -44,8 +44,8 @@ std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
 /// Puts spheres of the window into the free space.
 void fill_free_space(Work& work, std::vector<Probe>& probes) {
   const EffectTimer timer(work.effects["refilling"]);
-  Bed& bed = work.bed;
-  Supply& supply = work.supply;
+  Bed& bed = work.bed();
+  Supply& supply = *work.supply;
   const double smallest = supply.smallest();
   bed.update_grid();
   std::vector<Probe*> open;
@@ -86,16 +86,16 @@ void fill_free_space(Work& work, std::vector<Probe>& probes) {
 }  // namespace
 
 StageEnd refill(Work& work, const RefillOptions& options) {
-  if (work.supply.exhausted()) return StageEnd::converged;
+  if (work.supply->exhausted()) return StageEnd::converged;
   std::vector<Probe> probes = draw_probes(work, options.probes);
   for (int round = 0; round < options.max_rounds; ++round) {
     if (work.monitor.stop()) return StageEnd::cancelled;
-    const double before = work.bed.packing_fraction();
+    const double before = work.bed().packing_fraction();
     fill_free_space(work, probes);
-    const double after = work.bed.packing_fraction();
+    const double after = work.bed().packing_fraction();
     work.milestone("refill");
     if (compress(work, options.shake.compress) == StageEnd::cancelled) return StageEnd::cancelled;
-    if (work.supply.exhausted()) return StageEnd::converged;
+    if (work.supply->exhausted()) return StageEnd::converged;
     if (after - before <= options.patience * after) return StageEnd::full;
     if (shake(work, options.shake) == StageEnd::cancelled) return StageEnd::cancelled;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bernal/core/dimension.hpp"
+#include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "jam/finish_in_periodic_box.hpp"
 #include "soft/relax_fast.hpp"
@@ -24,13 +25,13 @@ constexpr int most_starts_in_a_loose_box = 20;
 /// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
 constexpr double jitter = 1e-6;
 
-bool is_loose(const PeriodicWork& work) {
+bool is_loose(const Work& work) {
   return work.target_edges &&
          work.volume_of_spheres() < loose * close_packing[work.dimension() - 1] * work.target_edges->prod();
 }
 
 /// Those of phi0, or about those that are asked for; never so small that a sphere overlaps its own image.
-Vector<dynamic> edges_to_start_from(const PeriodicWork& work, double phi0) {
+Vector<dynamic> edges_to_start_from(const Work& work, double phi0) {
   const int dimension = work.dimension();
   const auto with_volume = [&](double volume) -> Vector<dynamic> {
     return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
@@ -53,10 +54,10 @@ void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random random)
 /// Places for spheres that have none. Those of others are moved by nothing that matters, so that a lattice or
 /// a line of spheres does not last for ever.
 template <int D>
-void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, PeriodicWork& work) {
+void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& work) {
   if (work.placed) {
     resize_box<D>(spheres, edges, start);
-    shake<D>(spheres, edges, jitter * std::ranges::max(spheres.r), work.random(Stream::relax));
+    shake<D>(spheres, edges, work.walls, jitter * std::ranges::max(spheres.r), work.random(Stream::relax));
   } else {
     edges = start;
     place_at_random<D>(spheres, edges, work.random(Stream::relax));
@@ -64,14 +65,18 @@ void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Period
 }
 
 template <int D>
-StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
-  if (!options.reference && fast_path_exists<D>(spheres, edges))
+StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const RelaxOptions& options) {
+  if (!options.reference && (!work.walls.empty() || fast_path_exists<D>(spheres, edges)))
     return relax_fast<D>(spheres, edges, work, options);
   return relax_by_the_book<D>(spheres, edges, work, options);
 }
 
 template <int D>
-StageEnd relax_in(PeriodicWork& work, const RelaxOptions& options) {
+StageEnd relax_in(Work& work, const RelaxOptions& options) {
+  if (!work.walls.empty() && (options.reference || options.polish > 0))
+    throw Error(ErrorCode::bad_scene,
+                options.reference ? "the reference method of relax knows no walls; leave \"method\" out"
+                                  : "\"polish\" knows no walls; leave it out");
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
   const Vector<D> start = edges_to_start_from(work, options.phi0);
@@ -99,7 +104,7 @@ int sweeps_a_cycle(double alpha, std::size_t spheres) {
   return std::max(1, static_cast<int>(std::lround(alpha * decades * decades)));
 }
 
-StageEnd relax(PeriodicWork& work, const RelaxOptions& options) {
+StageEnd relax(Work& work, const RelaxOptions& options) {
   EffectTimer timer(work.effects["relaxation"]);
   return with_dimension(work.dimension(), EveryDimension{},
                         [&](auto dimension) { return relax_in<decltype(dimension)::value>(work, options); });

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 
-#include "work/periodic_work.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 
@@ -31,6 +31,6 @@ int sweeps_a_cycle(double alpha, std::size_t spheres);
 ///
 /// Cost: about alpha (log10 N)² ln(1/stop) sweeps. Cancelled, it leaves the spheres free of overlap in a box
 /// that is larger than it need be.
-StageEnd relax(PeriodicWork& work, const RelaxOptions& options);
+StageEnd relax(Work& work, const RelaxOptions& options);
 
 }  // namespace bernal

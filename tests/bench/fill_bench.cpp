@@ -9,7 +9,7 @@
 namespace bernal {
 namespace {
 
-using Fill = StageEnd (*)(PeriodicWork&, const FillOptions&);
+using Fill = StageEnd (*)(Work&, const FillOptions&);
 
 void run(benchmark::State& state, Fill fill, const std::vector<double>& radii, int dimension,
          double packing_fraction) {

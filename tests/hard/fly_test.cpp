@@ -73,7 +73,7 @@ struct Flyers {
 
   Monitor monitor;
   EffectLog effects;
-  PeriodicWork work;
+  Work work;
   Random random{1, stream(Stream::test)};
   std::optional<FlyingSpheres<D>> spheres;
 };
