@@ -11,8 +11,4 @@ namespace bernal {
 /// trials the spheres of the class move at random. Cost: about 1 µs a trial in three dimensions.
 StageEnd fill_by_classes(Work& work, const FillOptions& options);
 
-/// The one of the two that is likely to be faster: by classes where sizes differ by more than a factor of
-/// three and the box is too narrow, or of too many dimensions, for lists that know sizes.
-StageEnd fill(Work& work, const FillOptions& options);
-
 }  // namespace bernal
