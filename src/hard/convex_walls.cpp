@@ -208,6 +208,7 @@ struct WallsOf {
     const Bounds<3> bounds = bounds_of(box);
     std::vector<Wall<3>> walls;
     for (int k = 0; k < 3; ++k) {
+      if (!box.has_wall(k)) continue;
       walls.push_back(plane(-Vector<3>::Unit(k), bounds.lower));
       walls.push_back(plane(Vector<3>::Unit(k), bounds.upper));
     }
@@ -215,9 +216,12 @@ struct WallsOf {
   }
   std::vector<Wall<3>> operator()(const Cylinder& cylinder) const {
     const Vector<3> axis = cylinder.axis.stableNormalized();
-    return {{.round = true, .along = axis, .center = cylinder.base, .extent = cylinder.radius},
-            plane(-axis, cylinder.base),
-            plane(axis, cylinder.base + cylinder.height * axis)};
+    std::vector<Wall<3>> walls{
+        {.round = true, .along = axis, .center = cylinder.base, .extent = cylinder.radius}};
+    if (cylinder.periodic) return walls;
+    walls.push_back(plane(-axis, cylinder.base));
+    walls.push_back(plane(axis, cylinder.base + cylinder.height * axis));
+    return walls;
   }
   std::vector<Wall<3>> operator()(const Sphere& sphere) const {
     return {{.round = true, .center = sphere.center, .extent = sphere.radius}};

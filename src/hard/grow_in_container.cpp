@@ -10,6 +10,7 @@
 #include "hard/convex_walls.hpp"
 #include "hard/growth_schedule.hpp"
 #include "hard/hard_spheres.hpp"
+#include "hard/largest_sphere.hpp"
 #include "neighbors/cell_grid.hpp"
 
 namespace bernal {
@@ -32,12 +33,10 @@ constexpr double most_of_attainable = 1.1;
 constexpr double caution = 5e-4;
 constexpr int most_trims = 8;
 constexpr double shrinkage = 0.07;
-/// Compressibility at which a sphere alone has no room left: it is within 1e-12 of the largest that fits.
-constexpr double until_it_is_tight = 1e13;
 /// Of the skin: room for rounding beyond it.
 constexpr double room_for_rounding = 0.01;
-/// Room beside the container in the periodic box around it, in largest diameters: no sphere meets an image
-/// of another, and shells are as large as they like.
+/// Room beside the container in the periodic box around it, in largest diameters, along axes that do not
+/// repeat themselves: no sphere meets an image of another, and shells are as large as they like.
 constexpr double margin = 3;
 /// A milestone for each growth by this much of the volume, or of the logarithm of the compressibility.
 constexpr double volume_a_milestone = 0.01, squeeze_a_milestone = 0.1;
@@ -54,7 +53,6 @@ struct Growing {
   std::vector<bool> placed;  ///< whether each has a place
   double size = 1;           ///< the share of their radii that they have
   bool grown = false;        ///< they have reached them
-  bool is_told = true;       ///< the run's history is told of them
 
   void add(double r) {
     spheres.push_back(Vector<3>::Zero(), r);
@@ -72,8 +70,14 @@ class Growth {
         full_size_(1 + (1 + room_for_rounding) * work.bed().skin() / work.supply->smallest()),
         walls_(walls_for_growth(work.domain, work.supply->smallest())) {
     const Bounds<3> bounds = work.bed().container().bounds();
+    const Boundary<3>& boundary = work.bed().container().boundary();
     edges_ = bounds.size().array() + margin * 2 * work.supply->largest();
     to_box_ = 0.5 * edges_ - bounds.center();
+    for (int k = 0; k < 3; ++k) {
+      if (!boundary.repeats(k)) continue;
+      edges_[k] = boundary.edges[k];
+      to_box_[k] = -boundary.origin[k];
+    }
     for (Wall<3>& wall : walls_) wall.shift(to_box_);
   }
 
@@ -81,7 +85,6 @@ class Growth {
     const std::size_t wanted = target_count();
     if (work_.bed().size() >= wanted) return StageEnd::converged;
     require_fitting();
-    if (cancelled_) return StageEnd::cancelled;
     Growing growing = from_bed();
     std::size_t count = std::min(wanted, count_for(most_of_attainable * work_.attainable));
     for (bool first = true;;
@@ -89,7 +92,7 @@ class Growth {
       Growing more = growing;
       while (more.spheres.size() < count) more.add(radius_of(more.spheres.size()));
       insert_at_random(more);
-      const bool jammed = !grow(more, options_);
+      const bool jammed = !grow(more);
       if (jammed) trim_and_grow(more);
       if (first || (more.grown && more.spheres.size() > growing.spheres.size())) growing = std::move(more);
       if (jammed || growing.spheres.size() >= wanted) break;
@@ -113,21 +116,17 @@ class Growth {
 
   double radius_of(std::size_t tag) const { return work_.supply->radius(static_cast<std::uint32_t>(tag)); }
 
-  /// A sphere alone grows until it touches the walls on all sides: then it is the largest that fits, as the
-  /// container is convex, whatever the pressure at which the stage is to end. Of analytic containers that is
-  /// known beforehand.
-  void require_fitting() {
+  /// Of analytic containers that is known beforehand.
+  void require_fitting() const {
     if (!std::holds_alternative<Mesh>(work_.domain)) return;
-    Growing largest;
-    largest.is_told = false;
-    largest.add(work_.supply->largest());
-    insert_at_random(largest);
-    if (grow(largest, {.pressure = until_it_is_tight}) || cancelled_) return;
+    const LargestSphere largest = largest_sphere_between(walls_, {Vector<3>::Zero(), edges_});
+    if (work_.supply->largest() <= largest.radius) return;
     throw Error(
         ErrorCode::bad_scene,
-        fmt::format("a sphere does not fit into the container even if it is only {:.6g} times as large "
-                    "as the largest one here: use smaller ones or check the units",
-                    largest.size));
+        fmt::format(
+            "the largest sphere does not fit into the container, which takes one only {:.6g} times as "
+            "large: use smaller ones or check the units",
+            largest.radius / work_.supply->largest()));
   }
 
   /// The first of the drawn sequence, up to the last one that is in the bed.
@@ -164,7 +163,8 @@ class Growth {
     Spheres<3>& spheres = growing.spheres;
     const double clear_of_walls = inset * flatness * work_.supply->smallest();
     const auto [least, most] = std::ranges::minmax(spheres.r);
-    CellGrid<3> grid(container.bounds(), growing.size * least, growing.size * most, spheres.size());
+    const Boundary<3>& boundary = container.boundary();
+    CellGrid<3> grid(container.bounds(), boundary, growing.size * least, growing.size * most, spheres.size());
     std::vector<std::uint32_t> order;
     for (std::uint32_t i = 0; i < spheres.size(); ++i) {
       if (growing.placed[i])
@@ -178,7 +178,7 @@ class Growth {
       const auto is_free = [&](const Vector<3>& c) {
         const bool taken = grid.any_near(c, r, [&](std::uint32_t j) {
           const double sum = r + growing.size * spheres.r[j];
-          return (c - spheres.center(j)).squaredNorm() < sum * sum;
+          return boundary.minimum_image(c - spheres.center(j)).squaredNorm() < sum * sum;
         });
         return !taken && container.clearance_within(c, r + clear_of_walls) >= r + clear_of_walls;
       };
@@ -195,21 +195,22 @@ class Growth {
   }
 
   /// Lets them fly and grow until they have their radii, or jam. Returns whether they have.
-  bool grow(Growing& growing, const GrowOptions& options) {
+  bool grow(Growing& growing) {
     const EffectTimer timer(work_.effects["growth"]);
     Spheres<3> flying = growing.spheres;
+    const Boundary<3> box{edges_};
     for (std::size_t i = 0; i < flying.size(); ++i) {
       flying.r[i] *= growing.size;
-      flying.set_center(i, flying.center(i) + to_box_);
+      flying.set_center(i, box.wrap(flying.center(i) + to_box_));
     }
     if (flying.empty()) return growing.grown = true;
-    const GrowthSchedule<3> schedule(flying, volume_of_container(), options);
+    const GrowthSchedule<3> schedule(flying, volume_of_container(), options_);
     HardSpheres<3> flight(flying, edges_, work_.random(Stream::grow),
-                          {.walls = walls_, .masses = options.masses});
+                          {.walls = walls_, .masses = options_.masses});
     const double largest = full_size_ / growing.size;
     next_volume_ = next_squeeze_ = 0;
     FlightPeriod period;
-    while (flight.size() < largest && period.compressibility < options.pressure) {
+    while (flight.size() < largest && period.compressibility < options_.pressure) {
       period = flight.fly(schedule.at(period.compressibility), largest, work_.monitor);
       log(period);
       cancelled_ = period.stopped;
@@ -230,7 +231,7 @@ class Growth {
       const std::size_t fitting = work_.supply->count_filling((1 - spare) * growing.volume());
       growing.spheres.resize(std::min(fitting, growing.spheres.size()) - 1);
       growing.size *= 1 - shrinkage;
-      grow(growing, options_);
+      grow(growing);
     }
   }
 
@@ -247,7 +248,7 @@ class Growth {
   void report(const Growing& growing, double grown, const FlightPeriod& period) {
     const double size = growing.size * grown;
     const double squeezed = std::log(std::max(1.0, period.compressibility));
-    if (!growing.is_told || (size * size * size < next_volume_ && squeezed < next_squeeze_)) return;
+    if (size * size * size < next_volume_ && squeezed < next_squeeze_) return;
     next_volume_ = size * size * size + volume_a_milestone;
     next_squeeze_ = squeezed + squeeze_a_milestone;
     work_.crowd_milestone("grow", growing.spheres.size(), size * size * size * volume_of(growing.spheres), 0,

@@ -11,17 +11,18 @@
 
 namespace bernal {
 
-/// A background grid with doubly linked lists, hierarchical in the radius, of bounds or of a periodic box.
+/// A background grid with doubly linked lists, hierarchical in the radius, of a region that is open or
+/// repeats itself along each axis.
 ///
 /// Level l holds the spheres with radii in (R_l / 2, R_l], R_l = r_max / 2^l, in cells of edge 2 R_l, so that
 /// a query looks at a bounded number of cells of each level however widely the radii differ. Levels without
 /// spheres cost nothing. A level never has more than about `cells_per_sphere` cells for each expected sphere:
-/// where the domain is large and sparse its cells grow instead. In a periodic box the cells divide each edge
-/// evenly, and are the longer for it.
+/// where the domain is large and sparse its cells grow instead. Along a periodic axis the cells divide the
+/// period evenly, and are the longer for it.
 ///
 /// The grid stores ids, not coordinates. Invariant: sphere id is in exactly one list, that of the cell
-/// that holds its centre on the level of its radius. Centres beyond bounds count to the border cell; in a
-/// periodic box every image of a centre is in the same cell.
+/// that holds its centre on the level of its radius. Along an open axis centres beyond the bounds count to
+/// the border cell; along a periodic one every image of a centre is in the same cell.
 ///
 /// Cost: insert, remove, move O(1); a query O(levels + spheres met). Memory: 16 bytes a sphere, 4 a cell.
 /// Source: Zhao, Li & Liu 2007, figure 7 (one level).
@@ -33,16 +34,34 @@ class CellGrid {
 
   /// Radii to come lie in [r_min, r_max], 0 < r_min; `expected` is about how many spheres will come.
   CellGrid(const Bounds<D>& bounds, double r_min, double r_max, std::size_t expected)
-      : CellGrid(bounds, r_min, r_max, expected, false) {}
-  /// Of the box [0, edges[k]) that is periodic on every axis k: all edges are above 0.
+      : CellGrid(bounds, {}, r_min, r_max, expected) {}
+  /// Of a box that is periodic on every axis k: all edges are above 0.
   CellGrid(const Boundary<D>& box, double r_min, double r_max, std::size_t expected)
-      : CellGrid({Vector<D>::Zero(), box.edges}, r_min, r_max, expected, true) {}
+      : CellGrid({box.origin, box.origin + box.edges}, box, r_min, r_max, expected) {}
+  /// Of a region within `bounds` along the open axes, and of a period along the others.
+  CellGrid(const Bounds<D>& bounds, const Boundary<D>& boundary, double r_min, double r_max,
+           std::size_t expected)
+      : lower_(bounds.lower), size_(bounds.size()), r_max_(r_max) {
+    for (int k = 0; k < D; ++k) {
+      repeats_[k] = boundary.repeats(k);
+      if (!repeats_[k]) continue;
+      lower_[k] = boundary.origin[k];
+      size_[k] = boundary.edges[k];
+    }
+    const double max_cells = std::max(64.0, cells_per_sphere * static_cast<double>(expected));
+    std::size_t offset = 0;
+    for (double largest = r_max;; largest /= 2) {
+      levels_.push_back(make_level(largest, max_cells, offset));
+      if (largest / 2 < r_min || levels_.size() == max_levels) break;
+    }
+    heads_.assign(offset, none);
+  }
 
-  /// The periodic box and all centres have been multiplied by the same factor on each axis; the box has these
-  /// edges now. Spheres stay in their cells. Radii have not changed: what a query finds is what is near in
-  /// the new box. Cost: O(levels).
+  /// A box [0, edge) that is periodic on every axis and all centres have been multiplied by the same factor
+  /// on each axis; the box has these edges now. Spheres stay in their cells. Radii have not changed: what a
+  /// query finds is what is near in the new box. Cost: O(levels).
   void rescale(const Vector<D>& edges) {
-    bounds_.upper = edges;
+    size_ = edges;
     for (Level& level : levels_) {
       for (int k = 0; k < D; ++k) level.inverse_edge[k] = level.cells[k] / edges[k];
     }
@@ -79,7 +98,7 @@ class CellGrid {
 
   /// Calls visit(id) until it returns true, for every sphere whose bounding cube, blown up by `reach`, may
   /// hold c: at least for all with max_k |c - c_id|_k < reach + r_id, which includes all whose surface is
-  /// nearer than `reach`. In a periodic box that means any image of the sphere; none is visited twice.
+  /// nearer than `reach`. Along periodic axes that means any image of the sphere; none is visited twice.
   /// Returns whether it returned true.
   template <class Visit>
   bool any_near(const Vector<D>& c, double reach, Visit&& visit) const {
@@ -89,7 +108,7 @@ class CellGrid {
       std::array<Range, D> range;
       std::array<int, D> at, step{};
       for (int k = 0; k < D; ++k) {
-        range[k] = periodic_ ? cells_around(level, k, c[k], half) : cells_between(level, k, c[k], half);
+        range[k] = repeats_[k] ? cells_around(level, k, c[k], half) : cells_between(level, k, c[k], half);
         at[k] = range[k].first;
       }
       for (;;) {
@@ -137,7 +156,7 @@ class CellGrid {
     std::size_t offset = 0;   // of its first cell in heads_
     std::size_t spheres = 0;  // how many it holds
   };
-  /// `count` cells of one axis from `first` on, going round where the box is periodic.
+  /// `count` cells of one axis from `first` on, going round where it repeats itself.
   struct Range {
     int first, count;
   };
@@ -148,25 +167,13 @@ class CellGrid {
     std::uint8_t level = 0;
   };
 
-  CellGrid(const Bounds<D>& bounds, double r_min, double r_max, std::size_t expected, bool periodic)
-      : bounds_(bounds), periodic_(periodic), r_max_(r_max) {
-    const double max_cells = std::max(64.0, cells_per_sphere * static_cast<double>(expected));
-    std::size_t offset = 0;
-    for (double largest = r_max;; largest /= 2) {
-      levels_.push_back(make_level(largest, max_cells, offset));
-      if (largest / 2 < r_min || levels_.size() == max_levels) break;
-    }
-    heads_.assign(offset, none);
-  }
-
   /// Appends its cells behind `offset`, and moves that.
   Level make_level(double largest_radius, double max_cells, std::size_t& offset) const {
-    const Vector<D> size = bounds_.size();
     double edge = 2 * largest_radius;
-    // A border cell of bounds holds what is left of an edge; a periodic box has whole cells only.
+    // The border cell of an open axis holds what is left of it; a period has whole cells only.
     const auto cells_along = [&](int k) {
-      const double whole = std::floor(size[k] / edge);
-      return periodic_ ? std::max(1.0, whole) : whole + 1;
+      const double whole = std::floor(size_[k] / edge);
+      return repeats_[k] ? std::max(1.0, whole) : whole + 1;
     };
     const auto all_cells = [&] {
       double cells = 1;
@@ -181,7 +188,7 @@ class CellGrid {
     std::size_t cells = 1;
     for (int k = 0; k < D; ++k) {
       level.cells[k] = static_cast<int>(cells_along(k));
-      level.inverse_edge[k] = periodic_ ? level.cells[k] / size[k] : 1 / edge;
+      level.inverse_edge[k] = repeats_[k] ? level.cells[k] / size_[k] : 1 / edge;
       cells *= static_cast<std::size_t>(level.cells[k]);
     }
     offset += cells;
@@ -194,9 +201,9 @@ class CellGrid {
     return l;
   }
   int coordinate(const Level& level, int k, double x) const {
-    double cell = (x - bounds_.lower[k]) * level.inverse_edge[k];
+    double cell = (x - lower_[k]) * level.inverse_edge[k];
     const double cells = level.cells[k];
-    if (periodic_) cell = std::floor(cell) - cells * std::floor(std::floor(cell) / cells);
+    if (repeats_[k]) cell = std::floor(cell) - cells * std::floor(std::floor(cell) / cells);
     if (!(cell > 0)) return 0;
     return cell < cells ? static_cast<int>(cell) : level.cells[k] - 1;
   }
@@ -205,7 +212,8 @@ class CellGrid {
     return {first, coordinate(level, k, x + half) - first + 1};
   }
   Range cells_around(const Level& level, int k, double x, double half) const {
-    half += drift * bounds_.upper[k];
+    half += drift * size_[k];
+    x -= lower_[k];
     const double first = std::floor((x - half) * level.inverse_edge[k]);
     const double count = std::floor((x + half) * level.inverse_edge[k]) - first + 1;
     if (!(count < level.cells[k])) return {0, level.cells[k]};
@@ -235,8 +243,8 @@ class CellGrid {
     if (l.next != none) links_[l.next].previous = l.previous;
   }
 
-  Bounds<D> bounds_;
-  bool periodic_;
+  Vector<D> lower_, size_;
+  std::array<bool, D> repeats_;
   double r_max_;
   std::vector<Level> levels_;
   std::vector<Id> heads_;

@@ -32,7 +32,12 @@ Domain make_box(const Scene& scene, std::string&) {
 
 Domain make_cylinder(const Scene& scene, std::string&) {
   const Spec& c = scene.container;
-  return Cylinder{vector_of(c, "base"), vector_of(c, "axis"), c.number("radius"), c.number("height")};
+  Cylinder cylinder{vector_of(c, "base"), vector_of(c, "axis"), c.number("radius"), c.number("height"),
+                    c.flag("periodic")};
+  if (cylinder.periodic && cylinder.coordinate_axis() < 0)
+    throw Error(ErrorCode::bad_scene, "a cylinder that repeats itself has its axis along x, y or z",
+                c.location("axis"));
+  return cylinder;
 }
 
 Domain make_sphere(const Scene& scene, std::string&) {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/random.hpp"
+#include "work/bed.hpp"
 
 namespace bernal {
 namespace {
@@ -33,11 +34,29 @@ struct LargestRadius {
 
 }  // namespace
 
+namespace {
+
+void require_long_periods(const Scene& scene, const Domain& container, double radius) {
+  const Boundary<3> boundary = boundary_of<3>(container);
+  for (int k = 0; k < 3; ++k) {
+    const double least = Bed::least_period * 2 * radius;
+    if (!boundary.repeats(k) || boundary.edges[k] >= least) continue;
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("the container repeats itself every {:.6g} {}, in which spheres meet two images of "
+                    "others; for these sizes make that at least {:.6g} {}",
+                    boundary.edges[k], scene.unit, least, scene.unit),
+        scene.container.where);
+  }
+}
+
+}  // namespace
+
 double largest_fitting_radius(const Domain& shape) { return std::visit(LargestRadius{}, shape); }
 
 void require_fitting(const Scene& scene, const Domain& container, double radius) {
   const double largest = largest_fitting_radius(container);
-  if (radius <= largest) return;
+  if (radius <= largest) return require_long_periods(scene, container, radius);
   const double shown = scene.sizes_are_diameters ? 2 : 1;
   const auto [one, many] =
       scene.sizes_are_diameters ? std::pair("diameter", "diameters") : std::pair("radius", "radii");

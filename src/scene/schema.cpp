@@ -106,7 +106,12 @@ Schema make_schema() {
                      {.name = "base",
                       .type = Type::position,
                       .help = "the middle of its base",
-                      .otherwise = std::vector<double>{0, 0, 0}}},
+                      .otherwise = std::vector<double>{0, 0, 0}},
+                     {.name = "periodic",
+                      .type = Type::flag,
+                      .help = "true: an endless column that repeats itself every height; the axis lies along "
+                              "x, y or z",
+                      .otherwise = false}},
             .protocol = {"relax"}},
            {.name = "mesh",
             .help = "a closed surface from a CAD file",

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
 #include "settle/slide.hpp"
 
 namespace bernal {
@@ -93,8 +96,25 @@ void sweep_at_random(Bed& bed, const Vector<3>& pull, double tilt, const Vector<
   }
 }
 
+void require_support(const Boundary<3>& boundary, const Vector<3>& direction) {
+  if (direction.cwiseProduct(boundary.edges).isZero(0)) return;
+  for (int k = 2; k >= 0; --k) {
+    if (boundary.repeats(k)) continue;
+    const Vector<3> valid = -Vector<3>::Unit(k);
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("spheres pressed along an axis that repeats itself fall for ever; take a direction "
+                    "across it, such as [{}, {}, {}]",
+                    valid[0] + 0.0, valid[1] + 0.0, valid[2] + 0.0));
+  }
+  throw Error(ErrorCode::bad_scene,
+              "there is no wall to press spheres against in a box that repeats itself along all axes; use "
+              "\"relax\" or \"grow\"");
+}
+
 StageEnd compress(Work& work, const CompressOptions& options) {
   Bed& bed = work.bed();
+  require_support(bed.container().boundary(), options.direction);
   if (bed.size() == 0) return StageEnd::converged;
   const EffectTimer timer(work.effects["compression"]);
   const double floor = floor_of(bed.container().bounds(), options.direction);
@@ -106,7 +126,7 @@ StageEnd compress(Work& work, const CompressOptions& options) {
   double box = options.buffer * radius;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     if (work.monitor.stop()) return StageEnd::cancelled;
-    bed.enclose(box);
+    box = bed.enclose(box);
     global.wake_all();  // the ends of the old boxes held some
     const double before = bed.potential(options.direction);
     const double way = global.settle();

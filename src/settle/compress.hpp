@@ -16,13 +16,18 @@ struct CompressOptions {
 /// direction to first touch, its neighbours being taken as static, and slides on along its contacts. Once the
 /// bed is at rest along the global direction, chains of spheres that support each other are broken by sweeps
 /// in which every sphere moves along a *local* direction of its own, drawn at random about the global one.
-/// Converged when the potential energy along the direction has stopped falling.
+/// Converged when the potential energy along the direction has stopped falling. The direction leads across
+/// the axes that repeat themselves (else see `require_support`), so that this energy is that of all images.
 ///
 /// What is ours in it: sliding along contacts, which along the global direction alone fills Han's cylinder to
 /// a packing fraction of 0.527 and with local directions to 0.58; the sleeping of spheres whose surroundings
 /// have not changed; and the skin. Cost: about 0.5 µs a sphere and sweep; an iteration makes up to 8 sweeps
 /// along the global direction, over the spheres that are awake, and 10 along local directions.
 StageEnd compress(Work& work, const CompressOptions& options);
+
+/// Throws Error{bad_scene} if spheres that are pressed along `direction` would fall for ever: it must have no
+/// component along an axis that repeats itself.
+void require_support(const Boundary<3>& boundary, const Vector<3>& direction);
 
 /// One sweep: every sphere slides along a random direction of its own, normalised
 /// `pull` + `tilt`·(random unit vector, its part along `across` removed if that is not zero), at most

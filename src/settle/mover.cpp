@@ -61,6 +61,13 @@ void Mover::pick(Bed::Id i) {
     z_[k] = other.center[2] - ball.center[2];
     sum_[k] = other.r + ball.r;
   }
+  if (!bed_.meets_images_[i]) return;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Vector<3> way = bed_.container().boundary().minimum_image({x_[k], y_[k], z_[k]});
+    x_[k] = way[0];
+    y_[k] = way[1];
+    z_[k] = way[2];
+  }
 }
 
 FreePath Mover::free_path(const Vector<3>& u, double limit) {

@@ -86,6 +86,7 @@ void fill_free_space(Work& work, std::vector<Probe>& probes) {
 }  // namespace
 
 StageEnd refill(Work& work, const RefillOptions& options) {
+  require_support(work.bed().container().boundary(), options.shake.compress.direction);
   if (work.supply->exhausted()) return StageEnd::converged;
   std::vector<Probe> probes = draw_probes(work, options.probes);
   for (int round = 0; round < options.max_rounds; ++round) {

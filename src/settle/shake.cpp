@@ -10,6 +10,7 @@ constexpr int sweeps_a_round = 10;
 StageEnd shake(Work& work, const ShakeOptions& options) {
   Bed& bed = work.bed();
   const Vector<3>& direction = options.compress.direction;
+  require_support(bed.container().boundary(), direction);
   for (int round = 0; round < options.rounds; ++round) {
     if (work.monitor.stop()) return StageEnd::cancelled;
     {

@@ -76,14 +76,21 @@ SoftPacking::SoftPacking(const Spheres<3>& spheres, const Container& container, 
       spheres_(spheres.size(), SoftSphere{}),
       ids_(spheres.size()),
       radii_(as_floats(spheres.r)) {
-  // Centres stay inside the bounds, so that images are a margin of this width apart.
+  // Centres stay inside the bounds, so that images are a margin of this width apart; but for those along an
+  // axis that repeats itself, which are meant.
   const double margin = most_swelling * smallest_edge(spheres.r);
   const Bounds<3> bounds = container.bounds();
+  const Boundary<3>& boundary = container.boundary();
   corner_ = bounds.lower - Vector<3>::Constant(0.5 * margin);
   Vector<3> unit;
   for (int k = 0; k < 3; ++k) {
-    edges_[static_cast<std::size_t>(k)] = bounds.size()[k] + margin;
-    unit[k] = edges_[static_cast<std::size_t>(k)] * 0x1p-32;
+    double& edge = edges_[static_cast<std::size_t>(k)];
+    edge = bounds.size()[k] + margin;
+    if (boundary.repeats(k)) {
+      edge = boundary.edges[k];
+      corner_[k] = boundary.origin[k];
+    }
+    unit[k] = edge * 0x1p-32;
   }
   walls_ = std::make_unique<SoftWalls>(container, corner_, unit, spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {

@@ -31,7 +31,8 @@ Pace pace_for(double largest_overlap);
 /// container: the state of the fast relaxation. In single precision and fixed point: overlap ratios are good
 /// to about 1e-6.
 ///
-/// In a container the box is the container's bounds and so much more that no sphere meets an image.
+/// In a container the box is the container's period along the axes that repeat themselves, and along others
+/// its bounds and so much more that no sphere meets an image.
 class SoftPacking {
  public:
   /// How much larger than given the radii may become in a container.
@@ -41,7 +42,8 @@ class SoftPacking {
   template <int D>
   SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels);
 
-  /// Precondition: all centres are inside the container, which outlives this.
+  /// Precondition: all centres are inside the container, which outlives this; its periods are at least
+  /// `most_swelling` times the `smallest_edge` of the radii.
   SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels);
 
   /// The least edge that this way of finding neighbours allows.

@@ -78,7 +78,12 @@ std::size_t leave_distinct(Contact* contacts, std::size_t count, double r) {
 
 SoftWalls::SoftWalls(const Container& container, const Vector<3>& corner, const Vector<3>& unit,
                      std::size_t spheres)
-    : container_(container), corner_(corner), unit_(unit), resolution_(unit.maxCoeff()), views_(spheres) {}
+    : container_(container),
+      repeats_(container.boundary().repeats()),
+      corner_(corner),
+      unit_(unit),
+      resolution_(unit.maxCoeff()),
+      views_(spheres) {}
 
 Vector<3> SoftWalls::place(const SoftSphere& s) const {
   Vector<3> p;
@@ -99,7 +104,7 @@ void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<
     const double length = way.norm();
     if (!(length > 0)) continue;
     const View& view = views_[ids[p]];
-    if (length < view.clearance - (from - view.at).norm()) continue;
+    if (length < view.clearance - way(view.at, from).norm()) continue;
     ++queries_;
     const double free = container_.first_contact(from, 0, way / length, length);
     if (free < length) shorten(spheres[p], built_at[p], (1 - kept) * free / length);
@@ -108,7 +113,7 @@ void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<
 
 /// Whether a wall is nearer to the centre than r + skin; the view then knows all that is.
 bool SoftWalls::look(const Vector<3>& at, double r, double skin, View& view) const {
-  const double near = r + skin, moved = (at - view.at).norm();
+  const double near = r + skin, moved = way(view.at, at).norm();
   if (view.clearance - moved >= near) return false;
   if (view.reach - moved >= near) return view.pieces.front().distance - moved < near;
   ++queries_;
@@ -158,7 +163,7 @@ void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<
 void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere) {
   const View& view = views_[id];
   NearSphere near{lane, id, static_cast<std::uint32_t>(until_.size()), 0, place(sphere), 0, 0};
-  const double moved = (near.last - view.at).norm();
+  const double moved = way(view.at, near.last).norm();
   near.beyond = view.reach - moved;
   for (const Piece& piece : view.pieces) {
     if (piece.distance - moved >= sphere.r + skin_) {
@@ -180,7 +185,7 @@ void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out
     const std::vector<Piece>& pieces = views_[near.id].pieces;
     const Vector<3> c = place(spheres[l]);
     const double r = spheres[l].r;
-    near.way += (c - near.last).norm();
+    near.way += way(near.last, c).norm();
     near.last = c;
     double free = near.beyond - near.way;
     std::array<Contact, most_contacts> contacts;

@@ -83,10 +83,17 @@ class SoftWalls {
   };
 
   Vector<3> place(const SoftSphere& s) const;
+  /// The short way from one place of a sphere to another; along an axis that repeats itself the place jumps
+  /// by a period when the sphere passes its end, while the sphere and the wall beside it go on.
+  Vector<3> way(const Vector<3>& from, const Vector<3>& to) const {
+    const Vector<3> direct = to - from;
+    return repeats_ ? container_.boundary().minimum_image(direct) : direct;
+  }
   void add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere);
   bool look(const Vector<3>& at, double r, double skin, View& view) const;
 
   const Container& container_;
+  const bool repeats_;  // along some axis
   Vector<3> corner_, unit_;
   double resolution_;
   double skin_ = 0;

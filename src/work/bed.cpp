@@ -3,10 +3,12 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
 #include "bernal/core/dimension.hpp"
+#include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
 
 namespace bernal {
@@ -41,9 +43,19 @@ void concatenate(const std::vector<std::vector<T>>& blocks, std::vector<std::uin
 Bed::Bed(const Container& container, double r_min, double r_max, std::size_t expected, EffectLog& effects)
     : container_(container),
       effects_(effects),
+      repeats_(container.boundary().repeats()),
       skin_(tolerance::skin(r_min, container.resolution())),
+      longest_buffer_(std::numeric_limits<double>::infinity()),
       places_(container),
-      grid_(container.bounds(), r_min, r_max, expected) {}
+      grid_(container.bounds(), container.boundary(), r_min, r_max, expected) {
+  for (int k = 0; k < 3; ++k) {
+    if (!container.boundary().repeats(k)) continue;
+    const double period = container.boundary().edges[k];
+    if (period < least_period * 2 * r_max)
+      throw Error(ErrorCode::bad_argument, "a period is shorter than three of the largest diameters");
+    longest_buffer_ = std::min(longest_buffer_, (0.5 * period - 2 * r_max - 4 * skin_) / 4);
+  }
+}
 
 double Bed::potential(const Vector<3>& direction) const {
   double sum = 0, weight = 0;
@@ -58,7 +70,7 @@ double Bed::potential(const Vector<3>& direction) const {
 bool Bed::fits(const Vector<3>& c, double r) const {
   const bool overlaps = grid_.any_near(c, r + skin_, [&](Id j) {
     const double s = r + balls_[j].r + skin_;
-    return (balls_[j].center - c).squaredNorm() < s * s;
+    return way(c, balls_[j].center).squaredNorm() < s * s;
   });
   if (overlaps) return false;
   const EffectTimer wall_timer(walls_);
@@ -70,7 +82,7 @@ double Bed::room_between_spheres(const Vector<3>& c, double enough, double limit
   const auto lower_gap = [&](double reach) {
     return grid_.any_near(c, reach + skin_, [&](Id j) {
       const double s = gap + balls_[j].r + skin_;
-      const double squared = (balls_[j].center - c).squaredNorm();
+      const double squared = way(c, balls_[j].center).squaredNorm();
       if (squared < s * s) gap = std::sqrt(squared) - balls_[j].r - skin_;
       return gap < enough;
     });
@@ -80,7 +92,8 @@ double Bed::room_between_spheres(const Vector<3>& c, double enough, double limit
   return gap;
 }
 
-void Bed::insert(const Vector<3>& c, double r, std::uint32_t tag) {
+void Bed::insert(const Vector<3>& place, double r, std::uint32_t tag) {
+  const Vector<3> c = container_.boundary().wrap(place);
   grid_.insert(static_cast<Id>(balls_.size()), c, r);
   balls_.push_back({c, r});
   tags_.push_back(tag);
@@ -143,10 +156,20 @@ void Bed::update_grid() {
   for (Id i = 0; i < balls_.size(); ++i) grid_.move(i, balls_[i].center);
 }
 
-void Bed::enclose(double buffer) {
+/// Where a sphere was far from the wall its images are.
+void Bed::wrap() {
+  for (Id i = 0; i < balls_.size(); ++i) {
+    const Vector<3> wrapped = container_.boundary().wrap(balls_[i].center);
+    far_from_wall_at_[i] += wrapped - balls_[i].center;
+    balls_[i].center = wrapped;
+  }
+}
+
+double Bed::enclose(double buffer) {
   const EffectTimer timer(effects_["neighbour lists"]);
+  if (repeats_) wrap();
   update_grid();
-  buffer_ = buffer;
+  buffer = buffer_ = std::min(buffer, longest_buffer_);
   const std::size_t n = balls_.size();
   const std::size_t blocks = (n + block_size - 1) / block_size;
   std::vector<std::vector<Id>> near_spheres(blocks);
@@ -155,6 +178,7 @@ void Bed::enclose(double buffer) {
   box_centers_.resize(n);
   first_neighbor_.assign(n + 1, 0);
   first_facet_.assign(n + 1, 0);
+  meets_images_.assign(n, 0);
 
   oneapi::tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
     std::vector<NearFacet> facets;
@@ -167,8 +191,10 @@ void Bed::enclose(double buffer) {
       const std::size_t before = near_spheres[block].size();
       grid_.for_each_near(ball.center, boxes, [&](Id j) {
         const Ball& other = balls_[j];
-        const bool boxes_meet = (other.center - ball.center).cwiseAbs().maxCoeff() <= boxes + other.r;
-        if (j != i && boxes_meet) near_spheres[block].push_back(j);
+        const Vector<3> apart = way(ball.center, other.center);
+        if (j == i || apart.cwiseAbs().maxCoeff() > boxes + other.r) return;
+        near_spheres[block].push_back(j);
+        if (repeats_ && apart != other.center - ball.center) meets_images_[i] = 1;
       });
       first_neighbor_[i + 1] = static_cast<std::uint32_t>(near_spheres[block].size() - before);
 
@@ -196,6 +222,7 @@ void Bed::enclose(double buffer) {
     walls_.calls += w.calls;
     walls_.seconds += w.seconds;
   }
+  return buffer;
 }
 
 Spheres<3> Bed::spheres() const {
@@ -204,7 +231,7 @@ Spheres<3> Bed::spheres() const {
   std::sort(order.begin(), order.end(), [&](Id a, Id b) { return tags_[a] < tags_[b]; });
   Spheres<3> result;
   result.reserve(order.size());
-  for (const Id i : order) result.push_back(balls_[i].center, balls_[i].r);
+  for (const Id i : order) result.push_back(container_.boundary().wrap(balls_[i].center), balls_[i].r);
   return result;
 }
 

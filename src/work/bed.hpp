@@ -20,6 +20,12 @@ namespace bernal {
 /// Between two calls of `enclose` each sphere may move within its own bounding box, a cube around its place
 /// at the time of the call; neighbours and near walls are those that the boxes allow (Han, Feng & Owen 2005,
 /// section 2.1: the lists of all spheres are built together).
+///
+/// Along the axes of the container that repeat themselves every sphere is all of its images. Of these the
+/// centre is the one in the container's period when it appears and when it is enclosed, and lists hold the
+/// nearest: a period is at least `least_period` largest diameters, and bounding boxes are no larger than
+/// `longest_buffer`, so that no sphere can meet two images of another, or its own, before lists are built
+/// anew.
 class Bed {
  public:
   using Id = std::uint32_t;
@@ -29,7 +35,11 @@ class Bed {
     double r;
   };
 
-  /// Radii to come lie in [r_min, r_max]; `expected` is about how many spheres will come.
+  /// In largest diameters.
+  static constexpr double least_period = 3;
+
+  /// Radii to come lie in [r_min, r_max]; `expected` is about how many spheres will come. Throws
+  /// Error{bad_argument} for a period that is too short for them.
   Bed(const Container& container, double r_min, double r_max, std::size_t expected, EffectLog& effects);
 
   const Container& container() const { return container_; }
@@ -64,9 +74,14 @@ class Bed {
   /// after spheres have moved.
   void update_grid();
 
-  /// Gives every sphere a bounding box with `buffer` to move in on each side, and builds the neighbour lists
-  /// and near walls of all spheres together. Parallel; the same lists for any number of threads. O(N).
-  void enclose(double buffer);
+  /// Gives every sphere a bounding box with `buffer` to move in on each side, at most `longest_buffer`, and
+  /// builds the neighbour lists and near walls of all spheres together. Returns that buffer. Parallel; the
+  /// same lists for any number of threads. O(N).
+  double enclose(double buffer);
+
+  /// In a period of length L with radii up to R, L/8 - R/2 less the skin: two spheres that boxes allow to
+  /// meet are then nearer than L/2 on that axis, wherever they are in their boxes. Without periods infinite.
+  double longest_buffer() const { return longest_buffer_; }
 
   /// The spheres that sphere i may meet within their bounding boxes.
   std::span<const Id> neighbors(Id i) const {
@@ -81,16 +96,24 @@ class Bed {
     return balls_.empty() ? 0 : static_cast<double>(neighbors_.size()) / static_cast<double>(size());
   }
 
-  /// The spheres in the order of their tags.
+  /// The spheres in the order of their tags, centres in the period.
   Spheres<3> spheres() const;
 
  private:
   friend class Mover;
   void reorder(const std::vector<Id>& order);
+  void wrap();
+  /// The way from a to the nearest image of b.
+  Vector<3> way(const Vector<3>& a, const Vector<3>& b) const {
+    const Vector<3> direct = b - a;
+    return repeats_ ? container_.boundary().minimum_image(direct) : direct;
+  }
 
   const Container& container_;
   EffectLog& effects_;
+  const bool repeats_;  // along some axis
   double skin_;
+  double longest_buffer_;
   std::vector<Ball> balls_;
   std::vector<std::uint32_t> tags_;
   Places places_;
@@ -103,6 +126,7 @@ class Bed {
   std::vector<Vector<3>> box_centers_;
   std::vector<std::uint32_t> first_neighbor_;  // CSR: neighbours of i start here
   std::vector<Id> neighbors_;
+  std::vector<char> meets_images_;          // of its neighbours, where they are not themselves the nearest
   std::vector<std::uint32_t> first_facet_;  // CSR: walls near i start here, nearest first
   std::vector<NearFacet> facets_;
   std::vector<double>

@@ -14,12 +14,12 @@ constexpr std::size_t candidates_a_hole = 8;
 /// Of radii that look for holes among themselves.
 constexpr std::size_t most_groups = 4;
 
-double room_between(const CellGrid<3>& grid, const Spheres<3>& spheres, const Vector<3>& p, double enough,
-                    double limit) {
+double room_between(const CellGrid<3>& grid, const Spheres<3>& spheres, const Boundary<3>& boundary,
+                    const Vector<3>& p, double enough, double limit) {
   double room = limit;
   const auto lower = [&](double reach) {
     return grid.any_near(p, reach, [&](CellGrid<3>::Id j) {
-      room = std::min(room, (spheres.center(j) - p).norm() - spheres.r[j]);
+      room = std::min(room, boundary.minimum_image(spheres.center(j) - p).norm() - spheres.r[j]);
       return room < enough;
     });
   };
@@ -33,7 +33,8 @@ double room_between(const CellGrid<3>& grid, const Spheres<3>& spheres, const Ve
 std::vector<Hole> holes_for(std::span<const double> radii, const Container& container, const Places& places,
                             const Spheres<3>& spheres, std::size_t probes, Random& random) {
   const auto [least, most] = std::ranges::minmax(spheres.r);
-  CellGrid<3> grid(container.bounds(), least, most, spheres.size());
+  const Boundary<3>& boundary = container.boundary();
+  CellGrid<3> grid(container.bounds(), boundary, least, most, spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i)
     grid.insert(static_cast<CellGrid<3>::Id>(i), spheres.center(i), spheres.r[i]);
 
@@ -56,7 +57,7 @@ std::vector<Hole> holes_for(std::span<const double> radii, const Container& cont
     const Vector<3> p = places.draw(random);
     double enough = most;
     for (const Group& group : groups) enough = std::min(enough, group.enough(-most));
-    const double room = room_between(grid, spheres, p, enough, most);
+    const double room = room_between(grid, spheres, boundary, p, enough, most);
     if (room <= enough) continue;
     const double clearance = container.clearance_within(p, radii.front());
     for (Group& group : groups) {
@@ -90,7 +91,8 @@ std::vector<Hole> holes_for(std::span<const double> radii, const Container& cont
     given[chosen] = true;
     holes.push_back(best[chosen]);
     for (std::size_t k = 0; k < best.size(); ++k)
-      squared_apart[k] = std::min(squared_apart[k], (best[k].place - best[chosen].place).squaredNorm());
+      squared_apart[k] = std::min(squared_apart[k],
+                                  boundary.minimum_image(best[k].place - best[chosen].place).squaredNorm());
   }
   return holes;
 }

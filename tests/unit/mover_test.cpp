@@ -3,12 +3,13 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
 #include "kernels/first_contact.hpp"
 #include "settle/slide.hpp"
 #include "support/containers.hpp"
 
-// Bed and Mover against brute force: every sphere, every facet, no list, no grid, no box.
+// Bed and Mover against brute force: every sphere, every facet and every image, no list, no grid, no box.
 namespace bernal {
 namespace {
 
@@ -44,18 +45,46 @@ class RandomBed {
     return facets;
   }
 
+  /// All that matter of a sphere: two periods to every side.
+  std::vector<Vector<3>> images(const Vector<3>& c) const {
+    std::vector<Vector<3>> all{c};
+    for (int k = 0; k < 3; ++k) {
+      if (!container_->boundary().repeats(k)) continue;
+      for (std::size_t n = 0, count = all.size(); n < count; ++n)
+        for (const double periods : {-2.0, -1.0, 1.0, 2.0})
+          all.push_back(all[n] + periods * container_->boundary().edges[k] * Vector<3>::Unit(k));
+    }
+    return all;
+  }
+  /// From p to the nearest image of sphere j's centre.
+  long double nearest(const Vector<3>& p, Bed::Id j) const {
+    long double least = everywhere;
+    for (const Vector<3>& image : images(bed_[j].center))
+      least = std::min(least, norm(test::Point<long double>(p) - test::Point<long double>(image)));
+    return least;
+  }
+
   /// The smallest gap of any two spheres, or of a sphere and the wall.
   double smallest_gap() const {
     long double gap = everywhere;
     for (Bed::Id i = 0; i < bed_.size(); ++i) {
       const auto& [c, r] = bed_[i];
       gap = std::min(gap, test::precise_clearance(shape_, c) - r);
-      for (Bed::Id j = 0; j < i; ++j) {
-        const auto d = test::Point<long double>(c) - test::Point<long double>(bed_[j].center);
-        gap = std::min(gap, norm(d) - r - bed_[j].r);
-      }
+      for (Bed::Id j = 0; j < i; ++j) gap = std::min(gap, nearest(c, j) - r - bed_[j].r);
     }
     return static_cast<double>(gap);
+  }
+  /// Contacts of spheres with others of which another image is in the period.
+  int contacts_across_a_seam() const {
+    int count = 0;
+    const Spheres<3> spheres = bed_.spheres();
+    for (Bed::Id i = 0; i < spheres.size(); ++i)
+      for (Bed::Id j = 0; j < i; ++j) {
+        const Vector<3> direct = spheres.center(j) - spheres.center(i);
+        const Vector<3> way = container_->boundary().minimum_image(direct);
+        count += way != direct && way.norm() < spheres.r[i] + spheres.r[j] + 2 * bed_.skin();
+      }
+    return count;
   }
 
  private:
@@ -67,14 +96,17 @@ class RandomBed {
 
 class BedInContainer : public ::testing::TestWithParam<ContainerUnderTest> {};
 
-INSTANTIATE_TEST_SUITE_P(, BedInContainer,
-                         ::testing::Values(test::localized("Box", Box{{0, 0, 0}, {1, 0.8, 0.9}}),
-                                           test::localized("ObliqueCylinder",
-                                                           Cylinder{{1, 2, 3}, {1, -2, 0.5}, 0.7, 1.9}),
-                                           test::localized("Sphere", Sphere{{0, 0, 0}, 1}),
-                                           test::localized("PrismMesh", test::prism_mesh(12, 1, 2)),
-                                           test::localized("LShapeMesh", test::l_shape_mesh())),
-                         [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    , BedInContainer,
+    ::testing::Values(test::localized("Box", Box{{0, 0, 0}, {1, 0.8, 0.9}}),
+                      test::localized("ObliqueCylinder", Cylinder{{1, 2, 3}, {1, -2, 0.5}, 0.7, 1.9}),
+                      test::localized("Sphere", Sphere{{0, 0, 0}, 1}),
+                      test::localized("Column", Cylinder{{5, 2, 1}, {2, 0, 0}, 0.7, 1.1, true}),
+                      test::localized("Slab", Box{{0, 0, 0}, {1, 0.8, 0.9}, {true, true, false}}),
+                      test::localized("Channel", Box{{3, 0, -2}, {1, 0.8, 0.9}, {false, true, false}}),
+                      test::localized("PrismMesh", test::prism_mesh(12, 1, 2)),
+                      test::localized("LShapeMesh", test::l_shape_mesh())),
+    [](const auto& tested) { return tested.param.name; });
 
 /// The length that the sphere's bounding box leaves, whose half-width is `buffer` about `box_center`.
 double way_out_of_box(const Vector<3>& box_center, double buffer, const Vector<3>& c, const Vector<3>& u) {
@@ -107,10 +139,12 @@ void expect_free_path(RandomBed& bed, Bed::Id i, const Vector<3>& u, double limi
   };
   for (Bed::Id j = 0; j < bed->size(); ++j) {
     if (j == i) continue;
-    const auto stop = [&](double most) {
-      return first_contact<3>(c, u, most, (*bed)[j].center, (*bed)[j].r + r, skin);
-    };
-    look_at(stop(path.length), stop(longest), (*bed)[j].center);
+    for (const Vector<3>& image : bed.images((*bed)[j].center)) {
+      const auto stop = [&](double most) {
+        return first_contact<3>(c, u, most, image, (*bed)[j].r + r, skin);
+      };
+      look_at(stop(path.length), stop(longest), image);
+    }
   }
   for (const NearFacet& near : bed.all_facets(c)) {
     const auto stop = [&](double most) { return first_contact(near.facet, c, r, u, most, skin); };
@@ -130,10 +164,11 @@ void expect_free_path(RandomBed& bed, Bed::Id i, const Vector<3>& u, double limi
 
 TEST_P(BedInContainer, FreePathIsTheLeastOfAllObstacles) {
   int ends[4] = {};
-  for (const double buffer : {0.02, 0.3}) {
+  for (const double most : {0.02, 0.3}) {
     RandomBed bed(GetParam(), 300, 0.03, 0.07);
     ASSERT_GT(bed->size(), 50u);
-    bed->enclose(buffer);
+    const double buffer = bed->enclose(most);
+    EXPECT_EQ(buffer, std::min(most, bed->longest_buffer()));
     Mover mover(*bed);
     Random random(2, stream(Stream::test));
     for (int step = 0; step < 400; ++step) {
@@ -178,6 +213,7 @@ TEST_P(BedInContainer, NoGapFallsBelowHalfTheSkinHoweverSpheresSlide) {
   // Rounding may take some roundoffs of a coordinate from skin/2; the skin is at least a thousand of them.
   EXPECT_GE(bed.smallest_gap(), 0.49 * bed->skin());
   EXPECT_LE(bed.smallest_gap(), 2 * bed->skin());
+  EXPECT_EQ(bed.contacts_across_a_seam() > 0, is_periodic(bed.shape()));
 }
 
 TEST_P(BedInContainer, BoxesEncloseWhatSpheresCanDo) {
@@ -200,8 +236,11 @@ TEST_P(BedInContainer, ListsHoldAllThatASphereCanMeet) {
   for (Bed::Id i = 0; i < bed->size(); ++i) {
     const std::span<const Bed::Id> listed = bed->neighbors(i);
     for (Bed::Id j = 0; j < bed->size(); ++j) {
-      const Vector<3> apart = ((*bed)[j].center - (*bed)[i].center).cwiseAbs();
-      const double boxes_apart = (apart.array() - 2 * buffer).max(0).matrix().norm();
+      double boxes_apart = everywhere;
+      for (const Vector<3>& image : bed.images((*bed)[j].center)) {
+        const Vector<3> apart = (image - (*bed)[i].center).cwiseAbs();
+        boxes_apart = std::min(boxes_apart, (apart.array() - 2 * buffer).max(0).matrix().norm());
+      }
       const auto times = std::ranges::count(listed, j);
       EXPECT_LE(times, i == j ? 0 : 1);
       if (i != j && boxes_apart < (*bed)[i].r + (*bed)[j].r) {
@@ -220,10 +259,7 @@ TEST_P(BedInContainer, FitsAgreesWithBruteForce) {
     const Vector<3> c = uniform_point(random, bounds);
     const double r = random.uniform(0.03, 0.07);
     long double room = test::precise_clearance(bed.shape(), c);
-    for (Bed::Id j = 0; j < bed->size(); ++j) {
-      const auto d = test::Point<long double>(c) - test::Point<long double>((*bed)[j].center);
-      room = std::min(room, norm(d) - (*bed)[j].r);
-    }
+    for (Bed::Id j = 0; j < bed->size(); ++j) room = std::min(room, bed.nearest(c, j) - (*bed)[j].r);
     const long double spare = room - r - bed->skin();
     if (std::abs(spare) < 1e-14L) continue;
     EXPECT_EQ(bed->fits(c, r), spare > 0) << "spare room " << static_cast<double>(spare);
@@ -285,6 +321,19 @@ TEST(Bed, PotentialIsTheMeanHeightByVolume) {
   bed.insert({0, 0, -0.3}, 0.2, 0);
   bed.insert({0, 0, 0.2}, 0.1, 1);
   EXPECT_NEAR(bed.potential(down), (8 * -0.3 + 1 * 0.2) / 9, 1e-15);
+}
+
+/// Longer boxes than that would let a sphere meet two images of another.
+TEST(Bed, KeepsBoxesShorterThanItsPeriodsAllow) {
+  const ContainerUnderTest slab =
+      test::localized("", Box{{-0.5, -0.5, -0.5}, {1, 1, 1}, {true, false, false}});
+  const auto container = slab.container();
+  EffectLog effects;
+  const double r = 1.0 / 6;
+  Bed bed(*container, 0.01, r, 2, effects);
+  EXPECT_NEAR(bed.longest_buffer(), (0.5 - 2 * r) / 4, 1e-8);
+  EXPECT_GT(bed.longest_buffer(), 0);
+  EXPECT_THROW(Bed(*container, 0.01, 1.001 * r, 2, effects), Error);
 }
 
 TEST(Bed, ListsDoNotDependOnTheNumberOfThreads) {
