@@ -98,7 +98,10 @@ void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Domain& container = plan.domain;
   require_fitting(scene, container, plan.radii->min());
-  if (std::isfinite(plan.radii->max())) require_fitting(scene, container, plan.radii->max());
+  if (std::isfinite(plan.radii->max())) {
+    require_fitting(scene, container, plan.radii->max());
+    require_long_periods(scene, container, plan.radii->max());
+  }
 
   const double mean_volume = ball_volume(3, 1) * plan.radii->moment(3);
   const double volume = volume_of(container);

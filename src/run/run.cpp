@@ -119,7 +119,11 @@ class Run {
         source.cut = frame_.scale * radius_with_hardly_any_room(*work.container, packing_.seed);
       work.supply = std::make_shared<Supply>(source, volume, scene_.target, fraction);
     }
-    if (!plan_.box_follows) require_fitting(scene_, plan_.domain, work.supply->largest());
+    if (!plan_.box_follows) {
+      const double allowed = has_walls(plan_.domain) ? 0 : scene_.overlap;
+      require_fitting(scene_, plan_.domain, (1 - allowed) * work.supply->largest());
+    }
+    if (any_in_bed_) require_long_periods(scene_, plan_.domain, work.supply->largest());
     work.supply->divide_by(frame_.scale);
     if (scene_.is_periodic()) put_into_box(work);
     return work;
