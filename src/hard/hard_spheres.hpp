@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "bernal/hard/grow.hpp"
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
@@ -29,11 +30,6 @@ struct FlightPeriod {
   double wall_momentum = 0;
   double heating = 0;    ///< relative growth of the kinetic energy
   bool stopped = false;  ///< it was told to stop
-};
-
-enum class Masses {
-  equal,     ///< as in the papers
-  by_volume  ///< of one material
 };
 
 /// What `HardSpheres` may be told.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "bernal/version.hpp"
 #include "run/run_in_domain.hpp"
 
 namespace bernal {
@@ -20,7 +21,7 @@ Packing run(const Plan& plan, const RunOptions& options) {
   packing.scene.seed = packing.seed;
   packing.threads =
       options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  packing.version = BERNAL_VERSION;
+  packing.version = version();
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(std::max(1, packing.threads)));
   if (plan.scene.is_periodic()) {

@@ -9,16 +9,12 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/domain/container.hpp"
-#include "run/catalogue.hpp"
 #include "run/fitting.hpp"
+#include "run/stages.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 namespace {
-
-WallArithmetic arithmetic_of(const Scene& scene) {
-  if (scene.walls == "double") return WallArithmetic::plain;
-  return scene.walls == "exact" ? WallArithmetic::exact : WallArithmetic::filtered;
-}
 
 /// The frame in which the packer works. Throws where coordinates are so large that neighbouring spheres could
 /// not be told apart.
@@ -30,22 +26,20 @@ Frame working_frame(const Plan& plan) {
         ErrorCode::bad_scene,
         fmt::format("the container is so far from the origin that its coordinates are only good to {:.1g} "
                     "{}: move it closer or use larger spheres",
-                    frame.resolution * frame.scale, plan.scene.unit),
-        plan.scene.container.where);
+                    frame.resolution * frame.scale, name_of(plan.scene.unit)),
+        plan.scene.container.locations.whole);
   }
   return frame;
 }
 
-/// Whether the stage places as many spheres as are expected to fit where the scene says nothing.
-bool meets_expectation(const Spec& stage) { return stage.name == "relax" || stage.name == "grow"; }
-
 /// What a stage cannot do, only it knows; where the scene asks for it, only the run.
-StageEnd run_stage(const Spec& stage, Work& work) {
+StageEnd run_stage(const Stage& stage, Work& work) {
+  const StageEntry& entry = entry_of(stage);
   try {
-    return find_entry(stage_catalogue(), stage).run(stage, work);
+    return entry.run(entry.table.options(stage), work);
   } catch (const Error& error) {
     if (!error.location().file.empty()) throw;
-    throw Error(error.code(), error.what(), stage.where);
+    throw Error(error.code(), error.what(), stage.locations.whole);
   }
 }
 
@@ -64,10 +58,10 @@ void conclude(Packing& packing, const Supply& supply, StageEnd end) {
     packing.reason = fmt::format("the last stage reached its limit with {} spheres", n);
   } else if (target.is_open()) {
     packing.outcome = Outcome::converged;
-    packing.reason =
-        end == StageEnd::converged && !target.fill && meets_expectation(packing.scene.stages.back())
-            ? fmt::format("{} spheres are placed, as many as were expected to fit", n)
-            : fmt::format("the stages of the scene place {} spheres and no more", n);
+    packing.reason = end == StageEnd::converged && !target.fill &&
+                             table_of(packing.scene.stages.back()).traits.places_expected
+                         ? fmt::format("{} spheres are placed, as many as were expected to fit", n)
+                         : fmt::format("the stages of the scene place {} spheres and no more", n);
   } else {
     packing.outcome = Outcome::full;
     packing.reason =
@@ -96,13 +90,12 @@ void run_in_container(const Plan& plan, const Monitor& monitor, const Stopwatch&
   const Domain& shape = plan.domain;
   const Frame frame = working_frame(plan);
   const Domain local = to_local(shape, frame);
-  const std::unique_ptr<Container> container =
-      make_container(local, arithmetic_of(plan.scene), frame.resolution);
+  const std::unique_ptr<Container> container = make_container(local, plan.scene.walls, frame.resolution);
   const double unbounded = std::numeric_limits<double>::infinity();
   const double cut =
       plan.radii->max() < unbounded ? unbounded : radius_with_hardly_any_room(*container, packing.seed);
   Supply supply(*plan.radii, frame.scale, container->volume(), cut, plan.scene.target, packing.seed,
-                draw_of(plan.scene));
+                *plan.scene.draw);
   require_fitting(plan.scene, shape, supply.largest() * frame.scale);
 
   EffectLog effects;
@@ -130,9 +123,9 @@ void run_in_container(const Plan& plan, const Monitor& monitor, const Stopwatch&
             milestone, crowd_milestone, plan.scene.target, local,   plan.attainable_packing_fraction};
 
   StageEnd end = StageEnd::converged;
-  for (const Spec& stage : plan.scene.stages) {
+  for (const Stage& stage : plan.scene.stages) {
     end = run_stage(stage, work);
-    milestone(stage.name);
+    milestone(stage.name());
     if (end == StageEnd::cancelled) break;
   }
   if (supply.passed_over() > 0 && supply.trimming_is_cheap()) bed.remove_tags_from(supply.first_missing());

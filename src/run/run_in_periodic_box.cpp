@@ -5,8 +5,10 @@
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
-#include "run/catalogue.hpp"
+#include "run/fill_task_of.hpp"
 #include "run/run_in_domain.hpp"
+#include "run/stages.hpp"
+#include "work/periodic_work.hpp"
 
 namespace bernal {
 namespace {
@@ -47,12 +49,13 @@ std::optional<Vector<dynamic>> asked_edges(const Plan& plan, double volume_of_sp
 }
 
 /// What a stage cannot do, only it knows; where the scene asks for it, only the run.
-StageEnd run_stage(const Spec& stage, PeriodicWork& work) {
+StageEnd run_stage(const Stage& stage, PeriodicWork& work) {
+  const StageEntry& entry = entry_of(stage);
   try {
-    return find_entry(stage_catalogue(), stage).run_periodic(stage, work);
+    return entry.run_periodic(entry.table.options(stage), work);
   } catch (const Error& error) {
     if (!error.location().file.empty()) throw;
-    throw Error(error.code(), error.what(), stage.where);
+    throw Error(error.code(), error.what(), stage.locations.whole);
   }
 }
 
@@ -99,8 +102,8 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
 
   double fraction = target.packing_fraction.value_or(plan.expected_packing_fraction);
   for (int attempt = 1;; ++attempt) {
-    std::vector<double> radii = drawn_radii({*plan.radii, packing.seed, draw_of(scene)}, dimension,
-                                            target.count, fraction * asked_volume);
+    std::vector<double> radii = drawn_radii({*plan.radii, packing.seed, *scene.draw}, dimension, target.count,
+                                            fraction * asked_volume);
     if (static_cast<double>(radii.size()) >= most_spheres)
       throw Error(ErrorCode::bad_scene, "the box would hold more than 2^31 spheres of these sizes",
                   target.where);
@@ -133,7 +136,7 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
     };
 
     StageEnd end = StageEnd::converged;
-    for (const Spec& stage : scene.stages) {
+    for (const Stage& stage : scene.stages) {
       end = run_stage(stage, work);
       if (end == StageEnd::cancelled) break;
     }
@@ -151,8 +154,9 @@ void run_in_periodic_box(const Plan& plan, const Monitor& monitor, const Stopwat
     const Vector<dynamic> edges = work.edges * unit;
     packing.domain = periodic_box(edges, work.walls);
     packing.volume = volume_of(packing.domain);
-    packing.scene.container.parameters["size"].value = std::vector<double>(edges.begin(), edges.end());
-    packing.scene.container.parameters.erase("edge");
+    auto& stated = std::get<PeriodicBox>(packing.scene.container);
+    stated.size.assign(edges.begin(), edges.end());
+    stated.edge.reset();
     packing.effects = effects.all();
     conclude(packing, work, end, fits, wanted);
     return;

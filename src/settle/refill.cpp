@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bernal/core/dimension.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {
@@ -100,6 +101,39 @@ StageEnd refill(Work& work, const RefillOptions& options) {
     if (shake(work, options.shake) == StageEnd::cancelled) return StageEnd::cancelled;
   }
   return StageEnd::hit_limit;
+}
+
+template <>
+const StageEntry& entry_of<Refill>() {
+  using namespace schema;
+  static const StageEntry entry = {
+      .table = stage_table<Refill>(
+          {.name = "refill",
+           .help = "insert into the free space, compress and shake, until the container is full",
+           .keys = joined(
+               {number(&Refill::probes, "probes",
+                       "random places to look at, for each sphere that would fill the volume", above(0, 1e6)),
+                integer(&Refill::max_rounds, "max_rounds", "after which it stops unfilled", {1, 1e9}),
+                number(&Refill::patience, "patience",
+                       "full when a round adds less than this share of the spheres' volume", {0, 1})},
+               inside(&Refill::shake,
+                      joined({integer(&Shake::rounds, "shakes", "rounds of shaking after each refilling",
+                                      {0, 1e9}),
+                              number(&Shake::amplitude, "amplitude",
+                                     "longest way in one sweep of shaking, in mean radii", above(0, 100))},
+                             inside(&Shake::compress, compression_keys()))))},
+          {.in_containers = true, .reaches = Reaches::settled}),
+      .run = act(+[](Work& work, const Refill& options) {
+        Refill filling = options;
+        filling.shake.compress = with_unit_direction(options.shake.compress);
+        return refill(work, filling);
+      }),
+      .effects = {
+          {"refilling", "random probes of the free space", "O(1) a probe"},
+          {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+          {"compression", "after each refilling", "about 0.5 µs a sphere and sweep"},
+          {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}}};
+  return entry;
 }
 
 }  // namespace bernal
