@@ -38,7 +38,7 @@ std::filesystem::path scene_file(const VerifyCall& call) {
 
 void print(const Certificate& c, const Scene& scene) {
   fmt::print("certified  {}\n", c.certified ? "yes" : "NO");
-  fmt::print("spheres    {}, in {}\n", grouped(c.spheres), scene.unit);
+  fmt::print("spheres    {}, in {}\n", grouped(c.spheres), name_of(scene.unit));
   fmt::print("pairs      {} near, {} overlapping", grouped(c.pairs_tested), grouped(c.overlapping_pairs));
   if (c.worst_pair) fmt::print("; worst: {}, overlap ratio {:.3g}", worst_pair_text(c), c.max_overlap);
   if (!scene.is_periodic())

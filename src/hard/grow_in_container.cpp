@@ -145,7 +145,7 @@ class Growth {
   void insert_at_random(Growing& growing) {
     const EffectTimer timer(work_.effects["insertion"]);
     const double filled = volume_of(growing.spheres) / volume_of_container();
-    double phi = options_.phi_init;
+    double phi = options_.phi_init.value_or(0.2);
     do {
       growing.size = std::min(largest_start, std::cbrt(phi / filled));
       if (try_to_insert(growing)) return;

@@ -23,8 +23,8 @@ struct Report {
 /// `container` or, for a periodic one, `box`; `min_wall_gap` is null where no sphere is near a wall.
 std::string json_of(const Report& report);
 
-/// report.html: one page without scripts or outside files. `picture` is the SVG of the packing or empty, `scene` the
-/// scene as TOML.
+/// report.html: one page without scripts or outside files. `picture` is the SVG of the packing or empty,
+/// `scene` the scene as TOML.
 std::string html_of(const Report& report, std::string_view picture, std::string_view scene);
 
 }  // namespace bernal

@@ -18,7 +18,7 @@ namespace {
 /// "mm³", "mm²", and so on.
 std::string volume_unit(const Packing& packing) {
   const int dimension = packing.spheres.dimension();
-  const std::string unit = escaped(packing.scene.unit);
+  const std::string unit = escaped(name_of(packing.scene.unit));
   if (dimension == 1) return unit;
   return dimension == 2   ? unit + "²"
          : dimension == 3 ? unit + "³"
@@ -65,7 +65,7 @@ void write_headline(Page& page, const Report& report) {
 
 void write_scene(Page& page, const Report& report, std::string_view scene) {
   const Packing& packing = report.packing;
-  const std::string unit = escaped(packing.scene.unit);
+  const std::string unit = escaped(name_of(packing.scene.unit));
   const Vector<dynamic> extent = bounds_of<dynamic>(packing.domain).size();
   const bool periodic = is_periodic(packing.domain);
   page.add("<h2>What was asked</h2>\n<p>A {} of {} {:.6g} {}, {:.4g} {}{}", name_of(packing.domain),
@@ -99,9 +99,10 @@ void write_course(Page& page, const Packing& packing) {
     return;
   }
   page.add("<h2>How the run went</h2>\n<div class=\"pair\"><div>{}</div><div>{}</div></div>\n", filling,
-           relaxed ? overlap_chart(packing.history)
-                   : history_chart(packing.history, &Milestone::potential,
-                                   fmt::format("mean height of the spheres ({})", packing.scene.unit)));
+           relaxed
+               ? overlap_chart(packing.history)
+               : history_chart(packing.history, &Milestone::potential,
+                               fmt::format("mean height of the spheres ({})", name_of(packing.scene.unit))));
   page.raw(relaxed && !periodic
                ? "<p class=\"dim\">Spheres that overlap push each other apart, and the wall pushes too. What "
                  "is stuck is shaken with larger radii or put into holes, where the overlap jumps.</p>\n"
@@ -164,9 +165,8 @@ std::string html_of(const Report& report, std::string_view picture, std::string_
   const Packing& packing = report.packing;
   std::string title =
       fmt::format("{} spheres in a {}", grouped(packing.spheres.size()), name_of(packing.domain));
-  if (packing.scene.container.has("file")) {
-    title += ", " + std::filesystem::path(packing.scene.container.text("file")).filename().string();
-  }
+  if (const auto* mesh = std::get_if<MeshFile>(&packing.scene.container))
+    title += ", " + mesh->file.filename().string();
   Page page;
   page.add(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"

@@ -159,10 +159,9 @@ class Polish {
       ++reached_.steps;
     }
     reached_.products += region.products();
-    if (work_.milestone)
-      work_.milestone("polish",
-                      std::min(0.99, std::log(overlap / start_) / std::log(0.1 * tolerance_ / start_)),
-                      soft_.largest_overlap());
+    work_.milestone("polish",
+                    std::min(0.99, std::log(overlap / start_) / std::log(0.1 * tolerance_ / start_)),
+                    soft_.largest_overlap());
     return true;
   }
 

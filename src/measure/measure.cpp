@@ -8,7 +8,7 @@ namespace {
 SizeComparison compare_sizes_of(const Packing& packing, const SizeDistribution& asked) {
   const std::vector<double>& radii = packing.spheres.r;
   SizeComparison sizes = compare_sizes(radii, asked, packing.spheres.dimension());
-  const Draw draw = packing.scene.draw == "quantiles" ? Draw::quantiles : Draw::random;
+  const Draw draw = packing.scene.draw.value_or(Draw::random);
   const bool cut_tail = !is_periodic(packing.domain) && !std::isfinite(asked.max());
   sizes.drawn = compare_with_drawn(radii, {asked, packing.seed, draw}, cut_tail);
   return sizes;

@@ -36,8 +36,8 @@ void require_long_periods(const Scene& scene, const Domain& container, double ra
         ErrorCode::bad_scene,
         fmt::format("the container repeats itself every {:.6g} {}, in which spheres meet two images of "
                     "others; for these sizes make that at least {:.6g} {}",
-                    boundary.edges[k], scene.unit, least, scene.unit),
-        scene.container.where);
+                    boundary.edges[k], name_of(scene.unit), least, name_of(scene.unit)),
+        scene.container.locations.whole);
   }
 }
 
@@ -53,8 +53,9 @@ void require_fitting(const Scene& scene, const Domain& container, double radius)
       ErrorCode::bad_scene,
       fmt::format("a sphere of {} {:.6g} {} does not fit into the {}, which takes {} up to {:.6g} {}: use "
                   "smaller ones or check the units",
-                  one, shown * radius, scene.unit, kind_of(container), many, shown * largest, scene.unit),
-      scene.sizes.where);
+                  one, shown * radius, name_of(scene.unit), kind_of(container), many, shown * largest,
+                  name_of(scene.unit)),
+      scene.sizes.locations.whole);
 }
 
 double radius_with_hardly_any_room(const Container& container, std::uint64_t seed) {

@@ -12,9 +12,11 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/text.hpp"
-#include "run/catalogue.hpp"
+#include "bernal/version.hpp"
 #include "run/conclude.hpp"
+#include "run/fill_task_of.hpp"
 #include "run/fitting.hpp"
+#include "run/stages.hpp"
 #include "work/keepsake.hpp"
 
 namespace bernal {
@@ -38,11 +40,6 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-WallArithmetic arithmetic_of(const Scene& scene) {
-  if (scene.walls == "double") return WallArithmetic::plain;
-  return scene.walls == "exact" ? WallArithmetic::exact : WallArithmetic::filtered;
-}
-
 /// A container's own frame. Throws where coordinates are so large that neighbouring spheres could not be told
 /// apart.
 Frame frame_of_container(const Plan& plan) {
@@ -53,8 +50,8 @@ Frame frame_of_container(const Plan& plan) {
         ErrorCode::bad_scene,
         fmt::format("the container is so far from the origin that its coordinates are only good to {:.1g} "
                     "{}: move it closer or use larger spheres",
-                    frame.resolution * frame.scale, plan.scene.unit),
-        plan.scene.container.where);
+                    frame.resolution * frame.scale, name_of(plan.scene.unit)),
+        plan.scene.container.locations.whole);
   }
   return frame;
 }
@@ -72,9 +69,11 @@ Frame frame_of_box(const Vector<dynamic>& edges, double largest_radius) {
 class Run {
  public:
   Run(const Plan& plan, const Monitor& monitor, Packing& packing)
-      : plan_(plan), scene_(plan.scene), monitor_(monitor), packing_(packing) {
-    for (const Spec& stage : scene_.stages) any_in_bed_ = any_in_bed_ || works_in_bed(stage, plan);
-  }
+      : plan_(plan),
+        scene_(plan.scene),
+        monitor_(monitor),
+        packing_(packing),
+        any_in_bed_(any_in_bed(plan.scene)) {}
 
   void go() {
     double fraction = any_in_bed_ ? Supply::densest : plan_.expected_packing_fraction;
@@ -86,7 +85,7 @@ class Run {
         continue;
       }
       hand_over(work);
-      conclude(packing_, work, end, find_entry(stage_catalogue(), scene_.stages.back()).meets_expectation);
+      conclude(packing_, work, end, table_of(scene_.stages.back()).traits.places_expected);
       packing_.seconds = watch_.seconds();
       return;
     }
@@ -104,7 +103,7 @@ class Run {
               .monitor = monitor_,
               .effects = effects_,
               .on_course = [this](const Course& course) { tell(course); }};
-    Supply::Source source{*plan_.radii, work.dimension(), packing_.seed, draw_of(scene_)};
+    Supply::Source source{*plan_.radii, work.dimension(), packing_.seed, *scene_.draw};
     double volume = volume_of(plan_.domain);
     if (scene_.is_periodic()) {
       if (any_in_bed_ && !std::isfinite(source.radii.max()))
@@ -130,7 +129,7 @@ class Run {
   }
 
   std::shared_ptr<Container> container_of(const Domain& local, const Frame& frame) const {
-    return make_container(local, arithmetic_of(scene_), frame.resolution);
+    return make_container(local, scene_.walls, frame.resolution);
   }
 
   /// All spheres of the sequence, in a box of the plan's proportions, with the edges that the scene asks for.
@@ -145,7 +144,7 @@ class Run {
     if (any_in_bed_) {
       work.container = container_of(work.domain, frame_);
       work.target_edges = work.edges;
-      if (works_in_bed(scene_.stages.front(), plan_)) return;
+      if (table_of(scene_.stages.front()).traits.stands_in_bed(scene_)) return;
     }
     work.spheres.resize(work.supply->wanted());
     work.spheres.r = work.supply->radii();
@@ -161,13 +160,13 @@ class Run {
 
   StageEnd run_stages(Work& work) {
     StageEnd end = StageEnd::converged;
-    for (const Spec& stage : scene_.stages) {
-      const bool in_bed = works_in_bed(stage, plan_);
+    for (const Stage& stage : scene_.stages) {
+      const bool in_bed = table_of(stage).traits.stands_in_bed(scene_);
       in_bed ? work.stand_in_bed() : work.stand_in_box();
       const Keepsake before(work);
       end = run_stage(stage, work);
       if (end == StageEnd::cancelled) before.give_back_if_denser(work);
-      if (in_bed) work.milestone(stage.name);
+      if (in_bed) work.milestone(stage.name());
       if (end == StageEnd::cancelled) break;
     }
     Supply& supply = *work.supply;
@@ -177,13 +176,14 @@ class Run {
   }
 
   /// What a stage cannot do, only it knows; where the scene asks for it, only the run.
-  static StageEnd run_stage(const Spec& stage, Work& work) {
-    const StageEntry& entry = find_entry(stage_catalogue(), stage);
+  static StageEnd run_stage(const Stage& stage, Work& work) {
+    const StageEntry& entry = entry_of(stage);
     try {
-      return (work.stands_in_bed() ? entry.run : entry.run_periodic)(stage, work);
+      const auto& act = work.stands_in_bed() ? entry.act_in_bed : entry.act_in_box;
+      return act(entry.table.options(stage), work);
     } catch (const Error& error) {
       if (!error.location().file.empty()) throw;
-      throw Error(error.code(), error.what(), stage.where);
+      throw Error(error.code(), error.what(), stage.locations.whole);
     }
   }
 
@@ -218,9 +218,9 @@ class Run {
     }
     if (scene_.is_periodic()) {
       const Coordinates& edges = std::get<Box>(packing_.domain).size;
-      auto& parameters = packing_.scene.container.parameters;
-      parameters["size"].value = std::vector<double>(edges.begin(), edges.end());
-      parameters.erase("edge");
+      auto& stated = std::get<PeriodicBox>(packing_.scene.container);
+      stated.size.assign(edges.begin(), edges.end());
+      stated.edge.reset();
     }
     packing_.effects = effects_.all();
   }
@@ -242,10 +242,10 @@ class Run {
   const Scene& scene_;
   const Monitor& monitor_;
   Packing& packing_;
+  const bool any_in_bed_;
   const Stopwatch watch_;
   EffectLog effects_;
   Frame frame_;
-  bool any_in_bed_ = false;
 };
 
 }  // namespace
@@ -260,7 +260,7 @@ Packing run(const Plan& plan, const RunOptions& options) {
   packing.scene.seed = packing.seed;
   packing.threads =
       options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  packing.version = BERNAL_VERSION;
+  packing.version = version();
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(std::max(1, packing.threads)));
   Run(plan, options.monitor, packing).go();

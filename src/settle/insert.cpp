@@ -1,5 +1,7 @@
 #include "settle/insert.hpp"
 
+#include "work/stage_entry.hpp"
+
 namespace bernal {
 namespace {
 
@@ -32,6 +34,24 @@ StageEnd insert(Work& work, const InsertOptions& options) {
     if (placed && bed.size() % milestone_every == 0) work.milestone("insert");
   }
   return waiting > 0 && waiting == supply.window().size() ? StageEnd::full : StageEnd::converged;
+}
+
+template <>
+const StageEntry& entry_of<Insert>() {
+  using namespace schema;
+  static const StageEntry entry = {
+      .table = stage_table<Insert>(
+          {.name = "insert",
+           .help = "place spheres at random where they overlap nothing",
+           .keys = {integer(&Insert::attempts, "attempts",
+                            "random places tried for one sphere before it has to wait", {1, 1e9}),
+                    number(&Insert::packing_fraction, "packing_fraction", "where random insertion stops",
+                           between(0, 1))}},
+          {.in_bed = true, .reaches = Reaches::insertion}),
+      .act_in_bed = act(insert),
+      .bed_effects = {{"insertion", "random places, one sphere after the other", "O(1) a trial"}},
+      .reached = of_options(+[](const Insert& options) { return options.packing_fraction; })};
+  return entry;
 }
 
 }  // namespace bernal

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bernal/core/dimension.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {
@@ -27,7 +28,8 @@ std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
   const Bed& bed = work.bed();
   const Container& container = bed.container();
   Random random = work.random(Stream::refill);
-  const double radius = bed.size() > 0 ? bed.mean_radius() : work.supply->radius(work.supply->window().front());
+  const double radius =
+      bed.size() > 0 ? bed.mean_radius() : work.supply->radius(work.supply->window().front());
   const double smallest = work.supply->smallest() + bed.skin();
   const double capacity = container.volume() / ball_volume(3, radius);
   const double wanted = std::min(most_probes, 1000 + probes_a_sphere * capacity);
@@ -101,6 +103,39 @@ StageEnd refill(Work& work, const RefillOptions& options) {
     if (shake(work, options.shake) == StageEnd::cancelled) return StageEnd::cancelled;
   }
   return StageEnd::hit_limit;
+}
+
+template <>
+const StageEntry& entry_of<Refill>() {
+  using namespace schema;
+  static const StageEntry entry = {
+      .table = stage_table<Refill>(
+          {.name = "refill",
+           .help = "insert into the free space, compress and shake, until the container is full",
+           .keys = joined(
+               {number(&Refill::probes, "probes",
+                       "random places to look at, for each sphere that would fill the volume", above(0, 1e6)),
+                integer(&Refill::max_rounds, "max_rounds", "after which it stops unfilled", {1, 1e9}),
+                number(&Refill::patience, "patience",
+                       "full when a round adds less than this share of the spheres' volume", {0, 1})},
+               inside(&Refill::shake,
+                      joined({integer(&Shake::rounds, "shakes", "rounds of shaking after each refilling",
+                                      {0, 1e9}),
+                              number(&Shake::amplitude, "amplitude",
+                                     "longest way in one sweep of shaking, in mean radii", above(0, 100))},
+                             inside(&Shake::compress, compression_keys()))))},
+          {.in_bed = true, .reaches = Reaches::settled}),
+      .act_in_bed = act(+[](Work& work, const Refill& options) {
+        Refill filling = options;
+        filling.shake.compress = with_unit_direction(options.shake.compress);
+        return refill(work, filling);
+      }),
+      .bed_effects = {
+          {"refilling", "random probes of the free space", "O(1) a probe"},
+          {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+          {"compression", "after each refilling", "about 0.5 µs a sphere and sweep"},
+          {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}}};
+  return entry;
 }
 
 }  // namespace bernal

@@ -25,7 +25,8 @@ constexpr int patience_when_hopeless = 3;
 constexpr double relocated = 0.002;
 /// Largest overlap ratio, in mean squeezes, above which it is only a few spheres that are stuck.
 constexpr double local_jam = 40;
-/// What is taken out when not all fit, in mean squeezes times spheres; and the factor from one time to the next.
+/// What is taken out when not all fit, in mean squeezes times spheres; and the factor from one time to the
+/// next.
 constexpr double taken_out = 0.7, taken_out_faster = 1.25;
 /// Of the spheres, at most, at a time: squeeze says little where a box is asked to hold several times its
 /// fill.

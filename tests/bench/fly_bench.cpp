@@ -95,7 +95,7 @@ void fill(benchmark::State& state, bool patent, std::size_t n, double phi, int b
     for (auto& column : work.spheres.x) column.assign(n, 0);
     work.spheres.r.assign(n, 1);
     work.target_edges = work.edges;
-    const FlyOptions options{.batch = batch, .dt = patent ? 0.01 : 0.25, .patience = 1e5};
+    const Fly options{.batch = batch, .dt = patent ? 0.01 : 0.25, .patience = 1e5};
     patent ? fly_by_patent(work, options) : fly_by_events(work, options);
     placed = work.spheres.size();
     collisions = effects["collisions"].calls;

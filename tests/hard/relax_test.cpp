@@ -68,7 +68,7 @@ class HardRelaxation : public ::testing::TestWithParam<const char*> {
                       .monitor = monitor,
                       .effects = effects};
     for (int i = 0; i < count; ++i) work.spheres.push_back(place(i), 1.0);
-    EXPECT_EQ(relax(work, {.reference = reference()}), StageEnd::converged);
+    EXPECT_EQ(relax(work, {.method = reference() ? RelaxMethod::reference : RelaxMethod::fast}), StageEnd::converged);
     expect_free_of_overlap(work.spheres, work.edges);
     return work;
   }

@@ -237,8 +237,8 @@ TEST_P(EveryPacking, ThatIsCancelledIsWholeAsFarAsItGoes) {
   // Before the first sphere, among the first ones, and in the last stage. In a periodic box all spheres are
   // there from the start, and the box becomes as large as it must; relaxation in a container leaves those
   // that touch nothing, and so does filling of a box of given size.
-  const bool periodic = plan.scene.is_periodic() && plan.scene.stages.front().name == "relax";
-  const bool inserts = plan.scene.stages.front().name == "insert";
+  const bool periodic = plan.scene.is_periodic() && plan.scene.stages.front().name() == "relax";
+  const bool inserts = plan.scene.stages.front().name() == "insert";
   for (const std::size_t k : {std::size_t{0}, std::min<std::size_t>(30, polls / 2), polls - 1}) {
     const Packing packing = cancelled_after(plan, k);
     EXPECT_EQ(packing.outcome, Outcome::cancelled);

@@ -74,10 +74,10 @@ struct WallOptions {
 /// Absent in a periodic box, which has no wall, and without spheres.
 ///
 /// Layers of boxes, cylinders and spheres have their volumes in closed form; those of a mesh come from points
-/// that fill it evenly. Spheres nearer than `reach` are spread over the layers by 8 to 512 points each, a quarter where they are deeper than two mean diameters;
-/// spheres beyond go whole. What sticks out of the container counts to the first layer. The same bits for any
-/// number of threads. Cost of 30,000 spheres: 0.4 s in a cylinder, 2 s in a mesh of 10,000 triangles.
-/// Precondition: options positive.
+/// that fill it evenly. Spheres nearer than `reach` are spread over the layers by 8 to 512 points each, a
+/// quarter where they are deeper than two mean diameters; spheres beyond go whole. What sticks out of the
+/// container counts to the first layer. The same bits for any number of threads. Cost of 30,000 spheres: 0.4
+/// s in a cylinder, 2 s in a mesh of 10,000 triangles. Precondition: options positive.
 std::optional<WallProfile> wall_profile(const Packing&, const WallOptions& = {});
 
 }  // namespace bernal

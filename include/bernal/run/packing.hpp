@@ -19,6 +19,13 @@ enum class Outcome {
 };
 std::string_view name_of(Outcome);
 
+/// One line of `bernal explain`: something that would run, and what it costs.
+struct PlanItem {
+  std::string name;  ///< "walls", "neighbour lists", "compress", …
+  std::string what;  ///< one phrase
+  std::string cost;  ///< "O(N)", "O(N log T)", …
+};
+
 /// What one effect (insertion, compression, walls, neighbour lists, …) cost in a run.
 struct Effect {
   std::string name;
