@@ -100,7 +100,7 @@ void periodic(benchmark::State& state) {
     for (double& x : c) x = random.uniform();
     s.push_back(c, r);
   }
-  certificate_of(state, s, Box{Vector<dynamic>::Ones(dimension)}, Arithmetic::filtered);
+  certificate_of(state, s, periodic_box(Vector<dynamic>::Ones(dimension)), Arithmetic::filtered);
 }
 BENCHMARK(periodic)
     ->Args({2, 10'000})

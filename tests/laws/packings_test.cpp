@@ -69,10 +69,10 @@ std::vector<SceneUnderTest> scenes_under_test() {
                           "[[stage]]\ndo = \"compress\"\ndirection = [1.0, 1.0, 3.0]\n"
                           "[[stage]]\ndo = \"refill\"\ndirection = [1.0, 1.0, 3.0]\n");
   const std::string periodic = "[container]\nkind = \"periodic\"\n";
-  add("Box", periodic +
-                 "[spheres]\ncount = 120\n"
-                 "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n" +
-                 relax);
+  add("PeriodicBox", periodic +
+                         "[spheres]\ncount = 120\n"
+                         "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n" +
+                         relax);
   add("PeriodicPlane", periodic +
                            "dimension = 2\n[spheres]\ncount = 150\n"
                            "radius = { distribution = \"uniform\", min = 1.0, max = 2.0 }\n" +

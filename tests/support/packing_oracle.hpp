@@ -10,7 +10,7 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/domain.hpp"
 
-// What is true of a packing, from the definitions in shape.hpp: all pairs, all triangles, rational arithmetic
+// What is true of a packing, from the definitions in domain.hpp: all pairs, all triangles, rational arithmetic
 // with divisions. Slow and simple; it shares nothing with what it judges, neither search nor formula.
 
 namespace bernal::oracle {
