@@ -83,7 +83,7 @@ class PointGrid {
     Vector<D> size = upper - lower_;
     for (int k = 0; k < D; ++k) {
       if (!(boundary_.edges[k] > 0)) continue;
-      lower_[k] = 0;
+      lower_[k] = boundary_.origin[k];
       size[k] = boundary_.edges[k];
     }
     const double most = std::max(1.0, cells_per_point * static_cast<double>(points.size()));
