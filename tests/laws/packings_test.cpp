@@ -120,7 +120,7 @@ Packing run_with(const Plan& plan, int threads = 1) {
 
 void expect_certified(const Packing& packing) {
   const Certificate filtered = certify(packing.spheres, packing.domain);
-  const Certificate exact = certify(packing.spheres, packing.domain, 0, Arithmetic::exact);
+  const Certificate exact = certify(packing.spheres, packing.domain, {.arithmetic = Arithmetic::exact});
   EXPECT_TRUE(filtered.certified) << filtered.statement;
   EXPECT_TRUE(exact.certified) << exact.statement;
   EXPECT_EQ(filtered.pairs_tested, exact.pairs_tested);
