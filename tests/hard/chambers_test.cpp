@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/measured.hpp"
 #include "support/meshes.hpp"
 #include "support/packings.hpp"
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "measure/convex.hpp"
+#include "support/measured.hpp"
 #include "support/meshes.hpp"
 #include "support/packings.hpp"
 #include "support/periodic.hpp"

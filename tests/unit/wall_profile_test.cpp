@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "support/containers.hpp"
+#include "support/measured.hpp"
 #include "support/packings.hpp"
 #include "support/periodic.hpp"
 
