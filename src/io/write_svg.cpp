@@ -174,7 +174,7 @@ void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const Vie
   }
 }
 
-/// What has to fit on the canvas: the domain, and for a periodic box the spheres that stick out of it.
+/// What has to fit on the canvas: the domain, and the spheres that stick out of one period of it.
 std::vector<Vector<3>> corners_of(const Mesh& mesh, const Domain& domain, const Spheres<dynamic>& spheres) {
   if (!is_periodic(domain) || spheres.empty()) return mesh.vertices;
   const Vector<3> middle = bounds_of(domain).center();
