@@ -236,7 +236,8 @@ void measure_folder(const MeasureCall& call) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
   const Packing packing = read_packing(call.folder);
   const std::unique_ptr<SizeDistribution> asked = radii_of(packing.scene);
-  const Measurements measured = measure(packing, asked.get(), call.options);
+  const Measurements measured = measure(packing.spheres, packing.domain,
+                                        {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)}, call.options);
   if (call.json)
     fmt::print("{}", measurements_as_json(packing, measured));
   else

@@ -68,8 +68,8 @@ PredictionCheck check_prediction(const Scene& scene, const CheckOptions& options
   return {.phi = packing.packing_fraction(),
           .predicted = predicted_for(packing.spheres.r),
           .spheres = packing.spheres.size(),
-          .certified = certify(packing.spheres, packing.domain, scene.overlap).certified,
-          .coordination = measure_contacts(packing).coordination,
+          .certified = certify(packing.spheres, packing.domain, {.allowed_overlap = scene.overlap}).certified,
+          .coordination = measure_contacts(packing.spheres, packing.domain).coordination,
           .outcome = packing.outcome,
           .seconds = packing.seconds};
 }

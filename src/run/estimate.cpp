@@ -7,6 +7,7 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/predict/predict.hpp"
 #include "run/stages.hpp"
+#include "core/close_packing.hpp"
 
 namespace bernal {
 namespace {
@@ -27,6 +28,8 @@ constexpr std::size_t points = 5000;
 /// How much of itself a covering sphere may lack, as the wall's nearest point is known to rounding only.
 constexpr double slack = 0.02;
 constexpr int most_moves = 8;
+/// What relaxation reaches of rods in line, which nothing stops from filling it.
+constexpr double in_line = 0.99;
 
 /// Whether a sphere of radius r that lies inside covers p: its centre is moved from p off one wall after the
 /// other, in a corner off three.
@@ -109,8 +112,8 @@ double coverable_share(const Container& container, double r) {
 }
 
 double close_packing_fraction(const SizeDistribution& radii, int dimension) {
-  constexpr double equal[] = {0.99, 0.84, 0.64, 0.46, 0.31, 0.20, 0.119, 0.069};
-  return dimension == 3 ? predict_packing_fraction(radii).phi : equal[dimension - 1];
+  if (dimension == 1) return in_line;
+  return dimension == 3 ? predict_packing_fraction(radii).phi : random_close_packing[dimension - 1];
 }
 
 double error_of_expectation(const Scene& scene) {

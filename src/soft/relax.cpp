@@ -6,6 +6,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
+#include "core/close_packing.hpp"
 #include "jam/finish_in_periodic_box.hpp"
 #include "soft/relax_fast.hpp"
 #include "soft/relax_in_container.hpp"
@@ -16,9 +17,7 @@
 namespace bernal {
 namespace {
 
-/// Random close packing of equal spheres, by dimension.
-constexpr double close_packing[] = {1, 0.84, 0.64, 0.46, 0.31, 0.20, 0.119, 0.069};
-/// Up to this share of it spheres of any sizes find places free of overlap in a given box; they start in one
+/// Up to this share of random close packing spheres of any sizes find places free of overlap in a given box; they start in one
 /// that is smaller by volume, as it may grow while they relax, and again from where they ended if it grew too
 /// far.
 constexpr double loose = 0.9;
@@ -44,7 +43,7 @@ void complete_relax(Relax& relax, Scene& scene, const schema::Section&) {
 
 bool is_loose(const Work& work) {
   return work.target_edges &&
-         work.volume_of_spheres() < loose * close_packing[work.dimension() - 1] * work.target_edges->prod();
+         work.volume_of_spheres() < loose * random_close_packing[work.dimension() - 1] * work.target_edges->prod();
 }
 
 /// Those of phi0, or about those that are asked for; never so small that a sphere overlaps its own image.

@@ -66,7 +66,7 @@ class SettledBed {
  public:
   explicit SettledBed(const Plan& plan) {
     const Packing packing = run(plan);
-    const auto& shape = std::get<Domain>(plan.domain);
+    const Domain& shape = plan.domain;
     const Frame frame = frame_of(shape);
     container_ = make_local_container(shape, frame, WallArithmetic::filtered);
     const auto [smallest, largest] = std::ranges::minmax(packing.spheres.r);

@@ -25,7 +25,7 @@ using testing::plan_of;
 void expect_free_of_overlap(const Packing& packing) {
   const Box& box = std::get<Box>(packing.domain);
   for (const Arithmetic arithmetic : {Arithmetic::filtered, Arithmetic::exact}) {
-    const Certificate c = certify(packing.spheres, packing.domain, 0, arithmetic);
+    const Certificate c = certify(packing.spheres, packing.domain, {.arithmetic = arithmetic});
     EXPECT_TRUE(c.certified) << c.statement;
   }
   if (box.has_walls()) return;

@@ -69,10 +69,10 @@ std::vector<SceneUnderTest> scenes_under_test() {
                           "[[stage]]\ndo = \"compress\"\ndirection = [1.0, 1.0, 3.0]\n"
                           "[[stage]]\ndo = \"refill\"\ndirection = [1.0, 1.0, 3.0]\n");
   const std::string periodic = "[container]\nkind = \"periodic\"\n";
-  add("Box", periodic +
-                 "[spheres]\ncount = 120\n"
-                 "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n" +
-                 relax);
+  add("PeriodicBox", periodic +
+                         "[spheres]\ncount = 120\n"
+                         "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n" +
+                         relax);
   add("PeriodicPlane", periodic +
                            "dimension = 2\n[spheres]\ncount = 150\n"
                            "radius = { distribution = \"uniform\", min = 1.0, max = 2.0 }\n" +
@@ -120,7 +120,7 @@ Packing run_with(const Plan& plan, int threads = 1) {
 
 void expect_certified(const Packing& packing) {
   const Certificate filtered = certify(packing.spheres, packing.domain);
-  const Certificate exact = certify(packing.spheres, packing.domain, 0, Arithmetic::exact);
+  const Certificate exact = certify(packing.spheres, packing.domain, {.arithmetic = Arithmetic::exact});
   EXPECT_TRUE(filtered.certified) << filtered.statement;
   EXPECT_TRUE(exact.certified) << exact.statement;
   EXPECT_EQ(filtered.pairs_tested, exact.pairs_tested);

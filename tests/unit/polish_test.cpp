@@ -4,6 +4,7 @@
 #include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "jam/polish.hpp"
+#include "support/measured.hpp"
 #include "support/plans.hpp"
 
 // What a polish promises: contacts that are closed to its tolerance, and no more of them than hold the

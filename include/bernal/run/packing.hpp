@@ -46,7 +46,7 @@ struct Milestone {
 /// The result of a run: plain data. Lengths are in the scene's unit and frame. `spheres` has the dimension of
 /// the domain.
 struct Packing {
-  Spheres<dynamic> spheres;  ///< in a periodic box with centres in [0, edge)
+  Spheres<dynamic> spheres;  ///< centres in one period, see `wrap`
   Domain domain;
   double volume = 0;                     ///< of the domain
   double expected_packing_fraction = 0;  ///< by the plan, before the run

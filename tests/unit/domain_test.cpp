@@ -90,6 +90,72 @@ TEST(Domain, BoundsOfAnUprightCylinderAreExact) {
   EXPECT_EQ(bounds.upper, Vector<3>(1, 1, 2));
 }
 
+TEST(PeriodicCylinder, IsOnePeriodOfAColumn) {
+  for (const double length : {2.0, -0.5}) {
+    const Domain column = Cylinder{{1, 2, 3}, {0, length, 0}, 2, 5, true};
+    const double lowest = length > 0 ? 2 : -3;
+    EXPECT_EQ(kind_of(column), "cylinder");
+    EXPECT_EQ(name_of(column), "periodic cylinder");
+    EXPECT_TRUE(has_walls(column));
+    EXPECT_TRUE(is_periodic(column));
+    EXPECT_DOUBLE_EQ(volume_of(column), 20 * pi);
+    EXPECT_DOUBLE_EQ(area_of(column), 20 * pi) << "no lids";
+    EXPECT_EQ(bounds_of(column).lower, Vector<3>(-1, lowest, 1));
+    EXPECT_EQ(bounds_of(column).upper, Vector<3>(3, lowest + 5, 5));
+    const Boundary<3> boundary = boundary_of<3>(column);
+    EXPECT_EQ(boundary.edges, Vector<3>(0, 5, 0));
+    EXPECT_EQ(boundary.wrap({9, lowest - 1, 9}), Vector<3>(9, lowest + 4, 9));
+    EXPECT_EQ(boundary.wrap({9, lowest + 5, 9}), Vector<3>(9, lowest, 9));
+  }
+  EXPECT_FALSE(is_periodic(Cylinder{}));
+  EXPECT_EQ((Cylinder{.axis = {1, 1, 0}}).coordinate_axis(), -1);
+  EXPECT_EQ((Cylinder{.axis = {0, 0, 0}}).coordinate_axis(), -1);
+}
+
+TEST(Box, EndsOrRepeatsOnEveryAxis) {
+  const Domain slab = Box{{1, 2, 3}, {4, 5, 6}, {true, false, true}};
+  EXPECT_EQ(kind_of(slab), "periodic");
+  EXPECT_EQ(name_of(slab), "box periodic but along axis 1");
+  EXPECT_TRUE(has_walls(slab) && is_periodic(slab));
+  EXPECT_DOUBLE_EQ(volume_of(slab), 120);
+  EXPECT_DOUBLE_EQ(area_of(slab), 2 * 4 * 6);
+  EXPECT_EQ(boundary_of<3>(slab).edges, Vector<3>(4, 0, 6));
+  EXPECT_EQ(boundary_of<3>(slab).wrap({-1, -1, -1}), Vector<3>(3, -1, 5));
+
+  const Domain closed = Box{{1, 2}, {4, 5}};
+  EXPECT_EQ(kind_of(closed), "box");
+  EXPECT_EQ(dimension_of(closed), 2);
+  EXPECT_FALSE(is_periodic(closed));
+  EXPECT_EQ(volume_of(closed), 20);
+  EXPECT_FALSE(has_walls(periodic_box(Vector<2>(1, 1))));
+  EXPECT_TRUE(has_walls(periodic_box(Vector<2>(1, 1), {false, true})));
+}
+
+TEST(Wrap, TakesCentresToOnePeriodAndLeavesOthers) {
+  Spheres<dynamic> spheres(2);
+  const Box box{{-1, 3}, {2, 5}, {true, false}};
+  for (const double x : {-1.0, 0.0, 1.0, 7.25, -0x1p60, std::nextafter(-1.0, -2.0)})
+    spheres.push_back(Vector<2>(x, 100 + x), 1);
+  const Spheres<dynamic> before = spheres;
+  wrap(spheres, box);
+  EXPECT_EQ(spheres.x[1], before.x[1]);
+  EXPECT_EQ(spheres.x[0], (std::vector<double>{-1, 0, -1, -0.75, 0, std::nextafter(-1.0, -2.0) + 2}));
+}
+
+// A period is the distance of images: it must not be rounded, wherever the frame puts the box.
+TEST(Frame, DoesNotRoundPeriods) {
+  Random random(4, stream(Stream::test));
+  for (int i = 0; i < 1000; ++i) {
+    const Vector<3> corner = uniform_point<3>(random, {-1e4 * Vector<3>::Ones(), 1e4 * Vector<3>::Ones()});
+    const Vector<3> size = uniform_point<3>(random, {1e-3 * Vector<3>::Ones(), Vector<3>::Ones()});
+    for (const Domain& domain : {Domain(Box{corner, size, {true, false, true}}),
+                                 Domain(Cylinder{corner, {0, -3, 0}, size[0], size[1], true})}) {
+      const Frame frame = frame_of(domain);
+      EXPECT_EQ(frame.scale * boundary_of<3>(to_local(domain, frame)).edges, boundary_of<3>(domain).edges);
+    }
+  }
+}
+
 std::vector<Domain> one_of_each_kind(double size, const Vector<3>& offset) {
   Mesh mesh = tetrahedron();
   for (Vector<3>& v : mesh.vertices) v = offset + size * v;
