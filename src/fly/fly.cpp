@@ -179,7 +179,7 @@ const StageEntry& entry_of<Fly>() {
                     integer(&Fly::sweeps, "sweeps",
                             "classes, relaxation: of all spheres, after which it stops", {1, 1e9})},
            .complete = completion(complete_fly)},
-          {.in_box = true, .box_between_walls = true, .fills_given_box = true}),
+          {.in_box = true, .box_between_walls = true, .leaves_overlap = true, .fills_given_box = true}),
       .act_in_box = act(+[](Work& work, const Fly& options) {
         const FillChoice choice = choose_filling(options.method, work.fill_task);
         Fly chosen = options;

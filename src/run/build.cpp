@@ -60,6 +60,23 @@ void expect_in_container(Plan& plan) {
                         std::holds_alternative<Mesh>(container) ? "O(log faces) a query" : "O(1) a query"});
 }
 
+/// What is asked of the accuracy has an effect, or is refused.
+void require_effect_of_accuracy(const Scene& scene) {
+  const auto fail = [&](std::string_view key, std::string_view why) {
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("\"{}\" in [accuracy] would be without effect: {}", key, why),
+                scene.locations.of(key));
+  };
+  const auto leaves_overlap = [&](const Stage& stage) {
+    const StageTraits& traits = table_of(stage).traits;
+    return traits.leaves_overlap && !traits.stands_in_bed(scene);
+  };
+  if (scene.overlap > 0 && std::ranges::none_of(scene.stages, leaves_overlap))
+    fail("overlap", "no stage of this scene leaves any overlap; \"relax\" and \"fly\" in periodic boxes can");
+  if (scene.walls != WallArithmetic::filtered && !any_in_bed(scene))
+    fail("walls", "no stage of this scene asks a container about its walls");
+}
+
 /// Throws where a stage has demands on containers that this one does not meet.
 void require_fit_for_stages(const Plan& plan) {
   const double rarest = std::min(0.5, 1 / std::max(1.0, plan.expected_count));
@@ -145,6 +162,7 @@ Plan build(const Scene& stated) {
   plan.scene = stated;
   complete(plan.scene);
   const Scene& scene = plan.scene;
+  require_effect_of_accuracy(scene);
   plan.domain = domain_of(scene, &plan.container_notes);
   plan.radii = radii_of(scene);
   if (scene.is_periodic()) {

@@ -6,8 +6,8 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/predict/predict.hpp"
-#include "run/stages.hpp"
 #include "core/close_packing.hpp"
+#include "run/stages.hpp"
 
 namespace bernal {
 namespace {

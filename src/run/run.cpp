@@ -1,6 +1,7 @@
 #include "bernal/run/run.hpp"
 
 #include <oneapi/tbb/global_control.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -63,6 +64,20 @@ Frame frame_of_box(const Vector<dynamic>& edges, double largest_radius) {
   const double farthest = edges.maxCoeff() / frame.scale;
   frame.resolution = std::nextafter(farthest, std::numeric_limits<double>::infinity()) - farthest;
   return frame;
+}
+
+/// Refuses, before anything is drawn, more spheres than have numbers, and what this machine has no memory
+/// for.
+void require_memory(const Plan& plan) {
+  if (!(plan.expected_count < Supply::most_spheres)) Supply::refuse_count(plan.scene.target);
+  const double there =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (plan.expected_memory_bytes <= there) return;
+  throw Error(ErrorCode::bad_scene,
+              fmt::format("about {:.3g} spheres would take {:.3g} GB of memory, and this machine has {:.3g} "
+                          "GB: use larger spheres or ask for fewer",
+                          plan.expected_count, plan.expected_memory_bytes / 1e9, there / 1e9),
+              plan.scene.target.where);
 }
 
 /// One run of a plan's stages.
@@ -251,6 +266,7 @@ class Run {
 }  // namespace
 
 Packing run(const Plan& plan, const RunOptions& options) {
+  require_memory(plan);
   Packing packing;
   packing.domain = plan.domain;
   packing.volume = volume_of(plan.domain);

@@ -23,6 +23,7 @@ struct StageTraits {
   int least_dimension = 1, most_dimensions = max_dimension;  ///< of boxes
   bool keeps_sizes = false;      ///< in a bed the sizes stay exactly as they are drawn
   bool places_expected = false;  ///< in a bed it places as many spheres as are expected to fit
+  bool leaves_overlap = false;   ///< in a box it may leave as much overlap as [accuracy] allows
   bool fills_given_box = false;  ///< it needs a box of given size and the end that it is filled to
   bool is_default = false;       ///< it packs a scene that names no stage
   Reaches reaches = Reaches::nothing;

@@ -172,6 +172,7 @@ const StageEntry& entry_of<Relax>() {
            .prefers_bed = true,
            .keeps_sizes = true,
            .places_expected = true,
+           .leaves_overlap = true,
            .is_default = true,
            .reaches = Reaches::close_packing}),
       .act_in_bed = act(relax_in_container),

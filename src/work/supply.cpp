@@ -12,19 +12,21 @@ namespace {
 constexpr double window_share = 0.002;
 /// Taking out no more than this share makes the result exactly the drawn sequence less its tail.
 constexpr double trim_share = 0.002;
-constexpr double most_spheres = 2147483647.0;
 
 }  // namespace
+
+void Supply::refuse_count(const Target& target) {
+  throw Error(ErrorCode::bad_scene,
+              "there would be more than 2^31 spheres of these sizes; use larger ones or ask for a count",
+              target.where);
+}
 
 Supply::Supply(const Source& source, double volume, const Target& target, double fraction)
     : dimension_(source.dimension) {
   const double mean_volume = ball_volume(dimension_, 1) * source.radii.moment(dimension_);
   fraction = target.packing_fraction.value_or(fraction);
   const double expected = target.count ? static_cast<double>(*target.count) : fraction * volume / mean_volume;
-  if (!(expected < most_spheres))
-    throw Error(ErrorCode::bad_scene,
-                "there would be more than 2^31 spheres of these sizes; use larger ones or ask for a count",
-                target.where);
+  if (!(expected < most_spheres)) refuse_count(target);
   radii_.reserve(static_cast<std::size_t>(expected * 1.01) + 16);
   RadiusSequence sequence(source.radii, source.seed, source.draw);
   double filled = 0;

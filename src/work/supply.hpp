@@ -19,6 +19,10 @@ class Supply {
   /// No stage packs denser than this: so many of an open target are never missed.
   static constexpr double densest = 0.95;
 
+  static constexpr double most_spheres = 2147483647.0;
+  /// Throws the Error{bad_scene} that more would be.
+  [[noreturn]] static void refuse_count(const Target& target);
+
   /// What the radii are drawn from, and how.
   struct Source {
     const SizeDistribution& radii;

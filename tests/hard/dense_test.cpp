@@ -30,7 +30,7 @@ Packing certified(const Plan& plan) {
   Packing packing = run(plan, options);
   const Certificate certificate = certify(packing.spheres, packing.domain);
   EXPECT_TRUE(certificate.certified) << certificate.statement;
-  RadiusSequence sequence(*plan.radii, packing.seed, draw_of(plan.scene));
+  RadiusSequence sequence(*plan.radii, packing.seed, *plan.scene.draw);
   for (std::size_t i = 0; i < packing.spheres.size(); ++i)
     EXPECT_EQ(packing.spheres.r[i], sequence.next()) << "not the drawn sequence less its tail: " << i;
   return packing;

@@ -228,7 +228,7 @@ TEST_P(HardFlight, KeepsEveryPrescribedRadiusToTheLastBit) {
                                   "0.05, sigma = 0.3 }"));
   const Packing packing = run(plan);
   expect_free_of_overlap(packing);
-  RadiusSequence drawn(*plan.radii, packing.seed, draw_of(plan.scene));
+  RadiusSequence drawn(*plan.radii, packing.seed, *plan.scene.draw);
   for (const double r : packing.spheres.r) EXPECT_EQ(r, drawn.next());
 }
 

@@ -93,7 +93,7 @@ TEST(GrowthBetweenWalls, TakesTheDrawnSequenceLessItsTail) {
                 grow + "rate = 0.05\npressure = 1e4");
     const Packing packing = certified(plan);
     ASSERT_GT(packing.spheres.size(), 300u);
-    RadiusSequence sequence(*plan.radii, packing.seed, draw_of(plan.scene));
+    RadiusSequence sequence(*plan.radii, packing.seed, *plan.scene.draw);
     for (const double r : packing.spheres.r) ASSERT_EQ(r, sequence.next());
   }
 }

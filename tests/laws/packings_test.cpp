@@ -201,7 +201,7 @@ TEST_P(EveryPacking, HasTheRadiiThatWereDrawn) {
   const Packing packing = run_with(plan);
   const double largest = std::ranges::max(packing.spheres.r);
   const bool cut = std::isinf(plan.radii->max());  // then draws beyond the container's room are not asked for
-  RadiusSequence sequence(*plan.radii, packing.seed, draw_of(plan.scene));
+  RadiusSequence sequence(*plan.radii, packing.seed, *plan.scene.draw);
   std::size_t passed_over = 0;
   for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
     double drawn = sequence.next();

@@ -57,10 +57,10 @@ TEST(RelaxationInContainers, LeavesTheSizesAsTheyWereDrawn) {
        {"radius = { distribution = \"lognormal\", median = 0.03, sigma = 0.3, max = 0.1 }\n",
         "radius = { distribution = \"uniform\", min = 0.02, max = 0.045 }\n"}) {
     const Plan plan = plan_of(in_a_box + "fill = true\n" + sizes, test::l_shape_mesh());
-    ASSERT_EQ(draw_of(plan.scene), Draw::quantiles);
+    ASSERT_EQ(*plan.scene.draw, Draw::quantiles);
     const Packing packing = certified(plan);
     ASSERT_GT(packing.spheres.size(), 10000u);
-    RadiusSequence sequence(*plan.radii, packing.seed, draw_of(plan.scene));
+    RadiusSequence sequence(*plan.radii, packing.seed, *plan.scene.draw);
     double cubes = 0;
     for (const double r : packing.spheres.r) {
       ASSERT_EQ(r, sequence.next());
