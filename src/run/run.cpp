@@ -127,7 +127,8 @@ class Run {
       frame_ = frame_of_box(work.edges, work.supply->largest());
     } else {
       frame_ = frame_of_container(plan_);
-      work.container = container_of(to_local(plan_.domain, frame_), frame_);
+      work.domain = to_local(plan_.domain, frame_);
+      work.container = container_of(work.domain, frame_);
       volume = std::pow(frame_.scale, 3) * work.container->volume();
       if (!std::isfinite(source.radii.max()))
         source.cut = frame_.scale * radius_with_hardly_any_room(*work.container, packing_.seed);
