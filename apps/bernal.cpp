@@ -4,9 +4,12 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
 #include "commands.hpp"
 
@@ -18,6 +21,7 @@ constexpr const char* description =
 
 constexpr const char* examples = R"(Examples:
   bernal pack data/scenes/cylinder_han.toml -o out   fill a cylinder; results in out/
+  bernal pack bracket.stl --unit mm --diameter 2     fill a CAD part, without a scene; results in bracket/
   bernal verify out                                  certify what stands in the files, from scratch
   bernal measure out                                 contacts, rattlers, g(r), sizes against those asked for
   bernal inspect part.stl --unit mm                  can this CAD file be a container?
@@ -39,10 +43,25 @@ int complain(std::string what) {
   return exit_code::bad_input;
 }
 
-/// "bernal design target": the command that was asked for, as far as it is known.
-std::string asked_for(const CLI::App& app) {
+/// The command that was asked for, as far as it is known.
+const CLI::App& asked_for(const CLI::App& app) {
   const auto commands = app.get_subcommands();
-  return commands.empty() ? app.get_name() : app.get_name() + " " + asked_for(*commands.front());
+  return commands.empty() ? app : asked_for(*commands.front());
+}
+
+/// "bernal design target".
+std::string whole_name(const CLI::App& app) {
+  return app.get_parent() ? whole_name(*app.get_parent()) + " " + app.get_name() : app.get_name();
+}
+
+/// The word after it is no command, if there is one where a command should stand: which is meant?
+std::string unknown_command(const CLI::App& app, const std::vector<std::string>& words) {
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  const auto after = app.get_parent() ? std::ranges::find(words, app.get_name()) + 1 : words.begin();
+  if (names.empty() || after == words.end() || after->starts_with('-')) return "";
+  return fmt::format("unknown command \"{}\"{}", *after, bernal::remedy(*after, names));
 }
 
 }  // namespace
@@ -53,6 +72,7 @@ int main(int argc, char** argv) {
   app.footer(examples);
   app.set_version_flag("--version", "bernal " + std::string(bernal::version()));
   app.require_subcommand(1);
+  const std::vector<std::string> words(argv + 1, argv + argc);
   int status = exit_code::done;
   add_pack(app, status);
   add_verify(app, status);
@@ -65,11 +85,15 @@ int main(int argc, char** argv) {
   add_map(app, status);
   add_reproduce(app, status);
   try {
+    if (words.empty()) throw CLI::CallForHelp();
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
     app.exit(asked);
   } catch (const CLI::ParseError& wrong) {
-    return complain(fmt::format("{}; see {} --help", wrong.what(), asked_for(app)));
+    const CLI::App& command = asked_for(app);
+    const std::string unknown = unknown_command(command, words);
+    if (!unknown.empty()) return complain(unknown);
+    return complain(fmt::format("{}; see {} --help", wrong.what(), whole_name(command)));
   } catch (const std::bad_alloc&) {
     return complain("out of memory");
   } catch (const std::exception& error) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -21,12 +22,42 @@ using namespace bernal;
 namespace {
 
 struct PackCall {
-  std::filesystem::path scene;
+  std::filesystem::path scene;  ///< or a mesh, where the flags say what is packed into it
+  std::string unit;
+  std::optional<double> diameter;
+  std::vector<double> lognormal;  ///< median and sigma of the diameter
   std::filesystem::path folder;
   std::optional<std::uint64_t> seed;
   int threads = 0;
   bool quiet = false;
 };
+
+/// The scene that the flags stand for.
+Scene scene_of_flags(const PackCall& call) {
+  Scene scene;
+  if (call.unit.empty())
+    throw Error(ErrorCode::bad_argument,
+                "give the unit of the mesh and of all lengths too, such as --unit mm");
+  scene.unit = unit_named(call.unit);
+  scene.container = MeshFile{call.scene};
+  scene.sizes_are_diameters = true;
+  if (call.diameter)
+    scene.sizes = Constant{*call.diameter};
+  else
+    scene.sizes = Lognormal{.median = call.lognormal.at(0), .sigma = call.lognormal.at(1)};
+  complete(scene);
+  return scene;
+}
+
+Scene scene_of(const PackCall& call) {
+  const bool has_sizes = call.diameter || !call.lognormal.empty();
+  if (call.scene.extension() != ".toml" && has_sizes) return scene_of_flags(call);
+  if (has_sizes || !call.unit.empty())
+    throw Error(ErrorCode::bad_argument,
+                has_sizes ? "a scene says itself what is packed; leave out --diameter and --lognormal"
+                          : "--unit is for a mesh, with --diameter or --lognormal");
+  return read_scene(call.scene);
+}
 
 /// What was understood: told before the run, so that a wrong unit is seen at once.
 void print_plan(const Plan& plan) {
@@ -45,9 +76,12 @@ void print_result(const Packing& packing, const WrittenPacking& written) {
 }
 
 int pack(const PackCall& call) {
-  const Plan plan = build(read_scene(call.scene));
-  check_writable(call.folder);
+  const Scene scene = scene_of(call);
+  const Plan plan = build(scene);
+  const std::filesystem::path folder = call.folder.empty() ? call.scene.stem() : call.folder;
+  check_writable(folder);
   watch_for_interrupts(call.quiet);
+  if (!call.quiet && scene.file.empty()) fmt::print("{}", scene_as_toml(scene));
   if (!call.quiet) print_plan(plan);
 
   ProgressBar bar(call.quiet);
@@ -57,7 +91,7 @@ int pack(const PackCall& call) {
   options.monitor.on_progress = [&](const Progress& progress) { bar.show(progress); };
   options.monitor.cancelled = interrupted;
   const Packing packing = run(plan, options);
-  const WrittenPacking written = write_packing(packing, call.folder);
+  const WrittenPacking written = write_packing(packing, folder);
   bar.clear();
 
   if (!call.quiet) print_result(packing, written);
@@ -75,17 +109,34 @@ void add_pack(CLI::App& app, int& status) {
   auto call = std::make_shared<PackCall>();
   CLI::App* command =
       app.add_subcommand("pack", "Run a scene and write the packing, its report and its proof");
-  command->add_option("SCENE", call->scene, "The scene, a TOML file")->required();
-  command->add_option("-o,--output", call->folder, "Folder for the results; made if it does not exist")
+  command->add_option("SCENE", call->scene, "The scene, a TOML file; or a mesh, with its unit and sizes")
       ->required()
+      ->type_name("SCENE|MESH");
+  command
+      ->add_option("-o,--output", call->folder,
+                   "Folder for the results; made if it does not exist; named after the scene if absent")
       ->type_name("DIR");
+  command->add_option("--unit", call->unit, "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft")
+      ->type_name("UNIT");
+  CLI::Option* diameter =
+      command->add_option("--diameter", call->diameter, "Of every sphere in a mesh")->type_name("D");
+  command->add_option("--lognormal", call->lognormal, "Lognormal diameters in a mesh")
+      ->type_name("MEDIAN,SIGMA")
+      ->delimiter(',')
+      ->expected(2)
+      ->excludes(diameter);
   add_seed(*command, "Instead of the scene's; one seed gives one packing, bit for bit",
            [call](std::uint64_t seed) { call->seed = seed; });
   add_threads(*command, call->threads, "the result");
   command->add_flag("--quiet", call->quiet, "Print nothing but errors");
   command->footer(
+      "Examples:\n"
+      "  bernal pack data/scenes/hopper.toml                   results in hopper/\n"
+      "  bernal pack bracket.stl --unit mm --diameter 2        no scene needed; results in bracket/\n"
+      "  bernal pack bracket.stl --unit mm --lognormal 2,0.3   median 2 mm, sigma 0.3\n\n"
       "Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html and, in two and three\n"
       "dimensions, packing.svg: all or none.\n"
+      "For a mesh, prints the scene that the flags stand for, ready to be kept and changed.\n"
       "Ctrl-C ends the run at the next safe point and writes what is there, certified.\n"
       "Exit codes: 0 done; 2 bad input, nothing written; 3 ended without reaching what the scene asks.");
   command->callback([call, &status] { status = pack(*call); });

@@ -91,49 +91,50 @@ std::string expectation(const Key& key, const std::optional<Value>& given) {
 }
 
 bool accepts(const Key& key, const Value& value) {
-  const auto number = [&] { return std::get<double>(value); };
-  const auto numbers = [&]() -> const std::vector<double>& { return std::get<std::vector<double>>(value); };
-  const auto text = [&]() -> const std::string& { return std::get<std::string>(value); };
+  const auto* number = std::get_if<double>(&value);
+  const auto* text = std::get_if<std::string>(&value);
+  const auto* numbers = std::get_if<std::vector<double>>(&value);
+  const auto all = [&](const auto& fits) {
+    return numbers && !numbers->empty() && std::ranges::all_of(*numbers, fits);
+  };
+  const auto three = [&](const auto& fits) { return all(fits) && numbers->size() == 3; };
+  const auto is_word = [&] { return text && std::ranges::find(key.words, *text) != key.words.end(); };
   switch (key.type) {
-    case Type::flag:
-      return key.range.contains(std::get<bool>(value));
-    case Type::integer:
-      return key.range.contains(static_cast<double>(std::get<std::int64_t>(value)));
-    case Type::number:
-      if (std::holds_alternative<std::string>(value))
-        return std::ranges::find(key.words, text()) != key.words.end();
-      return std::isfinite(number()) && key.range.contains(number());
-    case Type::length:
-      return is_length(number());
-    case Type::word:
-      return std::ranges::find(key.words, text()) != key.words.end();
-    case Type::file:
-      return !text().empty() && text().find('\0') == std::string::npos;
-    case Type::direction: {
-      const auto nonzero = [](double v) { return is_length(std::abs(v)); };
-      return numbers().size() == 3 && std::ranges::all_of(numbers(), is_coordinate) &&
-             std::ranges::any_of(numbers(), nonzero);
+    case Type::flag: {
+      const auto* flag = std::get_if<bool>(&value);
+      return flag && key.range.contains(*flag);
     }
+    case Type::integer: {
+      const auto* whole = std::get_if<std::int64_t>(&value);
+      return whole && key.range.contains(static_cast<double>(*whole));
+    }
+    case Type::number:
+      return number ? std::isfinite(*number) && key.range.contains(*number) : is_word();
+    case Type::length:
+      return number && is_length(*number);
+    case Type::word:
+      return is_word();
+    case Type::file:
+      return text && !text->empty() && text->find('\0') == std::string::npos;
+    case Type::direction:
+      return three(is_coordinate) &&
+             std::ranges::any_of(*numbers, [](double v) { return is_length(std::abs(v)); });
     case Type::position:
-      return numbers().size() == 3 && std::ranges::all_of(numbers(), is_coordinate);
+      return three(is_coordinate);
     case Type::extents:
-      return numbers().size() == 3 && std::ranges::all_of(numbers(), is_length);
+      return three(is_length);
     case Type::lengths:
     case Type::shares:
-      return !numbers().empty() && std::ranges::all_of(numbers(), is_length);
-    case Type::amounts: {
-      const auto amount = [](double v) { return v == 0 || is_length(v); };
-      return !numbers().empty() && std::ranges::all_of(numbers(), amount);
-    }
-    case Type::axes: {
-      const auto axis = [&](double v) {
-        return v >= 0 && v < max_dimension && v == std::floor(v) && std::ranges::count(numbers(), v) == 1;
-      };
-      return !numbers().empty() && std::ranges::all_of(numbers(), axis);
-    }
+      return all(is_length);
+    case Type::amounts:
+      return all([](double v) { return v == 0 || is_length(v); });
+    case Type::axes:
+      return all([&](double v) {
+        return v >= 0 && v < max_dimension && v == std::floor(v) && std::ranges::count(*numbers, v) == 1;
+      });
     case Type::distribution:
     case Type::parts:
-      return !std::get<std::vector<SceneSizes>>(value).empty();  // which are checked by themselves
+      return std::holds_alternative<std::vector<SceneSizes>>(value);  // which are checked by themselves
   }
   return false;
 }

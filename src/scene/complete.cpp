@@ -31,12 +31,14 @@ void check(const Entry& entry, const void* options, const Section& section, bool
                                  in_bed ? "periodic boxes" : "containers with walls"));
       continue;
     }
-    if (!value && key.required && key.member.get && std::ranges::find(absent, key.name) == absent.end())
-      section.fail(key.name, fmt::format("missing \"{}\" in {}: {}, {}", key.name, section.name,
-                                         schema::expectation(key), key.help));
-    if (value && key.type != Type::distribution && key.type != Type::parts && !schema::accepts(key, *value))
-      section.refuse(key.name,
-                     fmt::format("must be {}, not {}", schema::expectation(key, value), toml_text(*value)));
+    const auto& [whole, keys] = section.locations;
+    const bool missing = key.of(entry.defaults.get()) ? whole.line > 0 && !keys.contains(key.name) : !value;
+    if (missing && key.required && key.member.get && std::ranges::find(absent, key.name) == absent.end())
+      section.fail("", fmt::format("missing \"{}\" in {}: {}, {}", key.name, section.name,
+                                   schema::expectation(key), key.help));
+    if (value && !schema::accepts(key, *value))
+      section.refuse(key.name, fmt::format("must be {}, not {}", schema::expectation(key, value),
+                                           toml_text(*value).substr(0, 100)));
   }
   if (entry.rule) entry.rule(options, section);
 }

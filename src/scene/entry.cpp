@@ -7,32 +7,6 @@
 
 namespace bernal::schema {
 
-Key key(Type type, Member member, std::string_view name, std::string_view help) {
-  return {.name = name, .type = type, .member = std::move(member), .help = help};
-}
-
-Key flag(Member member, std::string_view name, std::string_view help, Range range) {
-  Key made = key(Type::flag, std::move(member), name, help);
-  made.range = range;
-  return made;
-}
-
-Key integer(Member member, std::string_view name, std::string_view help, Range range) {
-  Key made = key(Type::integer, std::move(member), name, help);
-  made.range = range;
-  return made;
-}
-
-Key number(Member member, std::string_view name, std::string_view help, Range range) {
-  Key made = key(Type::number, std::move(member), name, help);
-  made.range = range;
-  return made;
-}
-
-Key length(Member member, std::string_view name, std::string_view help) {
-  return key(Type::length, std::move(member), name, help);
-}
-
 Key word(Member member, std::string_view name, std::string_view help, std::vector<std::string_view> words) {
   Key made = key(Type::word, {}, name, help);
   made.member.get = [get = member.get, words](const void* options) -> std::optional<Value> {
@@ -45,17 +19,6 @@ Key word(Member member, std::string_view name, std::string_view help, std::vecto
     set(options, std::ranges::find(words, std::get<std::string>(value)) - words.begin());
   };
   made.words = std::move(words);
-  return made;
-}
-
-Key required(Key key) {
-  key.required = true;
-  return key;
-}
-
-Key diameter(Member member, std::string_view name, std::string_view help) {
-  Key made = required(length(std::move(member), name, help));
-  made.is_diameter = true;
   return made;
 }
 
@@ -82,13 +45,15 @@ const Key* Entry::find(std::string_view key) const {
   return found == keys.end() ? nullptr : &*found;
 }
 
-std::vector<std::string_view> Entry::left_out(
-    const std::function<bool(const Key&)>& given,
-    const std::function<void(std::string_view, std::string_view)>& conflict,
-    const std::function<void(const std::string&)>& missing) const {
+std::vector<std::string_view> Entry::left_out(const void* options, const Section& section) const {
   using Names = std::vector<std::string_view>;
   const auto holds = [](const Names& set, std::string_view key) {
     return std::ranges::find(set, key) != set.end();
+  };
+  // What always has a value is given where a file says so.
+  const auto given = [&](std::string_view key_name) {
+    const Key& key = *find(key_name);
+    return key.of(defaults.get()) ? section.locations.keys.contains(key_name) : bool(key.of(options));
   };
   const auto needs_nothing = [&](const Names& set) {
     return std::ranges::none_of(set, [&](std::string_view key) { return find(key)->required; });
@@ -96,23 +61,26 @@ std::vector<std::string_view> Entry::left_out(
   Names out;
   for (const Choice& choice : choices) {
     Names present;
-    std::vector<std::string> sets;
-    for (const Names& set : choice) {
-      if (!set.empty()) sets.push_back(fmt::format("\"{}\"", fmt::join(set, "\" and \"")));
+    for (const Names& set : choice)
       for (const std::string_view key : set)
-        if (!holds(present, key) && given(*find(key))) present.push_back(key);
+        if (!holds(present, key) && given(key)) present.push_back(key);
+    const auto has_all = [&](const Names& set) {
+      return std::ranges::all_of(present, [&](std::string_view key) { return holds(set, key); });
+    };
+    const auto chosen =
+        present.empty() ? std::ranges::find_if(choice, needs_nothing) : std::ranges::find_if(choice, has_all);
+    if (chosen == choice.end() && present.empty()) {
+      std::vector<std::string> sets;
+      for (const Names& set : choice) sets.push_back(fmt::format("\"{}\"", fmt::join(set, "\" and \"")));
+      section.fail("", fmt::format("{} needs exactly one of {}", section.name, fmt::join(sets, ", ")));
     }
-    const auto chosen = std::ranges::find_if(choice, [&](const Names& set) {
-      return present.empty()
-                 ? needs_nothing(set)
-                 : std::ranges::all_of(present, [&](std::string_view key) { return holds(set, key); });
-    });
     if (chosen == choice.end()) {
-      if (present.empty()) missing(fmt::format("{}", fmt::join(sets, ", ")));
-      const auto first =
-          std::ranges::find_if(choice, [&](const Names& set) { return holds(set, present[0]); });
-      conflict(present[0],
-               *std::ranges::find_if(present, [&](std::string_view key) { return !holds(*first, key); }));
+      const Names& first =
+          *std::ranges::find_if(choice, [&](const Names& set) { return holds(set, present[0]); });
+      const auto other =
+          std::ranges::find_if(present, [&](std::string_view key) { return !holds(first, key); });
+      section.fail(*other, fmt::format("\"{}\" and \"{}\" in {} exclude each other; give one of them",
+                                       present[0], *other, section.name));
     }
     for (const Names& set : choice)
       for (const std::string_view key : set)
@@ -121,20 +89,13 @@ std::vector<std::string_view> Entry::left_out(
   return out;
 }
 
-std::vector<std::string_view> Entry::left_out(const void* options, const Section& section) const {
-  // What always has a value says nothing about the choice.
-  const auto given = [&](const Key& key) {
-    return bool(key.of(options)) && !(defaults && key.of(defaults.get()));
-  };
-  return left_out(
-      given,
-      [&](std::string_view first, std::string_view second) {
-        section.fail(second, fmt::format("\"{}\" and \"{}\" in {} exclude each other; give one of them",
-                                         first, second, section.name));
-      },
-      [&](const std::string& sets) {
-        section.fail("", fmt::format("{} needs exactly one of {}", section.name, sets));
-      });
+std::vector<std::pair<const Key*, Value>> Entry::said(const void* options) const {
+  const auto absent = left_out(options, {std::string(name), {}});
+  std::vector<std::pair<const Key*, Value>> all;
+  for (const Key& key : keys)
+    if (auto value = key.of(options); value && std::ranges::find(absent, key.name) == absent.end())
+      all.emplace_back(&key, std::move(*value));
+  return all;
 }
 
 }  // namespace bernal::schema

@@ -53,23 +53,58 @@ struct Range {
 inline Range above(double min, double max) { return {min, max, true}; }
 inline Range between(double min, double max) { return {min, max, true, true}; }
 
-/// The way from a plain struct to one of its members, whose value may be absent: an empty optional or vector.
+/// A member as a value; nothing where it is an empty optional or vector.
+template <class M>
+std::optional<Value> value_of(const M& m) {
+  if constexpr (requires { m.has_value(); })
+    return m ? value_of(*m) : std::nullopt;
+  else if constexpr (std::is_same_v<M, bool> || std::is_same_v<M, double>)
+    return m;
+  else if constexpr (std::is_integral_v<M> || std::is_enum_v<M>)
+    return static_cast<std::int64_t>(m);
+  else if constexpr (std::is_same_v<M, std::filesystem::path>)
+    return m.string();
+  else if constexpr (std::is_same_v<M, std::vector<SceneSizes>>)
+    return m.empty() ? std::nullopt : std::optional<Value>(m);
+  else
+    return m.size() == 0 ? std::nullopt : std::optional<Value>(std::vector<double>(m.begin(), m.end()));
+}
+/// And back. Precondition: the value is one of such a member.
+template <class M>
+void take_value(M& m, const Value& value) {
+  if constexpr (requires { m.has_value(); })
+    take_value(m.emplace(), value);
+  else if constexpr ((std::is_integral_v<M> && !std::is_same_v<M, bool>) || std::is_enum_v<M>)
+    m = static_cast<M>(std::get<std::int64_t>(value));
+  else if constexpr (std::is_same_v<M, std::filesystem::path>)
+    m = std::get<std::string>(value);
+  else if constexpr (requires { std::get<M>(value); })
+    m = std::get<M>(value);
+  else if (const auto& v = std::get<std::vector<double>>(value); true) {
+    if constexpr (requires { m.assign(v.begin(), v.end()); })
+      m.assign(v.begin(), v.end());
+    else
+      m = Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+  }
+}
+
+/// The way from a plain struct to one of its members.
 struct Member {
   std::function<std::optional<Value>(const void*)> get;
   std::function<void(void*, const Value&)> set;
 
   Member() = default;
   template <class T, class M>
-  Member(M T::*member);
+  Member(M T::*member)
+      : get([member](const void* of) { return value_of(static_cast<const T*>(of)->*member); }),
+        set([member](void* of, const Value& value) { take_value(static_cast<T*>(of)->*member, value); }) {}
 
   /// The same from a struct of which the one that it leads from is a part.
   template <class T, class M>
   Member inside(M T::*part) const {
     Member member;
-    member.get = [get = get, part](const void* whole) { return get(&(static_cast<const T*>(whole)->*part)); };
-    member.set = [set = set, part](void* whole, const Value& value) {
-      set(&(static_cast<T*>(whole)->*part), value);
-    };
+    member.get = [get = get, part](const void* of) { return get(&(static_cast<const T*>(of)->*part)); };
+    member.set = [set = set, part](void* of, const Value& v) { set(&(static_cast<T*>(of)->*part), v); };
     return member;
   }
 };
@@ -84,7 +119,7 @@ struct Key {
   std::string_view help = {};
   Range range = {};
   std::vector<std::string_view> words = {};
-  bool required = false;     ///< unless the entry's choices leave it out
+  bool required = false;     ///< in a file, unless the entry's choices leave it out
   bool is_diameter = false;  ///< a size that is a diameter by its name
   Acts acts = Acts::everywhere;
 
@@ -94,18 +129,30 @@ struct Key {
   bool acts_here(bool in_bed) const { return acts == Acts::everywhere || (acts == Acts::in_bed) == in_bed; }
 };
 
-Key flag(Member, std::string_view name, std::string_view help, Range = {0, 1});
-Key integer(Member, std::string_view name, std::string_view help, Range);
-Key number(Member, std::string_view name, std::string_view help, Range);
-Key length(Member, std::string_view name, std::string_view help);
+using Text = std::string_view;
+inline Key key(Type type, Member member, Text name, Text help, Range range = {}) {
+  return {name, type, std::move(member), help, range};
+}
+inline Key flag(Member member, Text name, Text help, Range range = {0, 1}) {
+  return key(Type::flag, std::move(member), name, help, range);
+}
+inline Key integer(Member member, Text name, Text help, Range range) {
+  return key(Type::integer, std::move(member), name, help, range);
+}
+inline Key number(Member member, Text name, Text help, Range range) {
+  return key(Type::number, std::move(member), name, help, range);
+}
+inline Key length(Member member, Text name, Text help) {
+  return key(Type::length, std::move(member), name, help);
+}
 /// Of an enumeration, whose words stand in the order of its enumerators.
-Key word(Member, std::string_view name, std::string_view help, std::vector<std::string_view> words);
-/// Of any other type.
-Key key(Type, Member, std::string_view name, std::string_view help);
+Key word(Member member, Text name, Text help, std::vector<std::string_view> words);
+inline Key required(Key key) {
+  key.required = true;
+  return key;
+}
 
-Key required(Key);
-/// A required length that is a diameter by its name.
-Key diameter(Member, std::string_view name, std::string_view help);
+/// Lists of keys: where they act, of a part of the struct, together.
 std::vector<Key> acting(Acts, std::vector<Key>);
 template <class T, class M>
 std::vector<Key> inside(M T::*part, std::vector<Key> keys) {
@@ -144,14 +191,11 @@ struct Entry {
   std::shared_ptr<const void> defaults = {};  ///< a struct as it is made
 
   const Key* find(std::string_view key) const;
-  /// The keys that its choices leave out where those of `given` are. Calls conflict(first, second) where two
-  /// sets are mixed, and missing(sets) where none is given that is needed.
-  std::vector<std::string_view> left_out(
-      const std::function<bool(const Key&)>& given,
-      const std::function<void(std::string_view, std::string_view)>& conflict,
-      const std::function<void(const std::string&)>& missing) const;
-  /// The same for a struct, with Error{bad_scene}.
+  /// The keys that the choices leave out. Throws Error{bad_scene} where two sets are mixed, or none is given
+  /// that is needed.
   std::vector<std::string_view> left_out(const void* options, const Section&) const;
+  /// The keys that have a value and are not left out, with it.
+  std::vector<std::pair<const Key*, Value>> said(const void* options) const;
 };
 
 /// The entry of such structs.
@@ -177,70 +221,8 @@ auto completion(void (*fill_in)(T&, Scene&, const Section&)) {
 /// its limits where only they refuse the one that was `given`.
 std::string expectation(const Key&, const std::optional<Value>& given = {});
 
-/// Whether a value of the right kind is one that the key accepts. Lengths and coordinates beyond 1e±30 are
+/// Whether a value is one that the key accepts. Lengths and coordinates beyond 1e±30 are
 /// not: volumes must neither overflow nor vanish.
 bool accepts(const Key&, const Value&);
-
-// How the members of structs are values.
-
-template <class M>
-struct Conversion {
-  static std::optional<Value> get(const M& m) {
-    if constexpr (std::is_same_v<M, bool> || std::is_same_v<M, double> || std::is_same_v<M, std::string>)
-      return Value(m);
-    else if constexpr (std::is_same_v<M, std::filesystem::path>)
-      return Value(m.string());
-    else if constexpr (std::is_integral_v<M> || std::is_enum_v<M>)
-      return Value(static_cast<std::int64_t>(m));
-    else
-      return Value(std::vector<double>(m.begin(), m.end()));
-  }
-  static void set(M& m, const Value& value) {
-    if constexpr (std::is_same_v<M, bool> || std::is_same_v<M, double> || std::is_same_v<M, std::string>)
-      m = std::get<M>(value);
-    else if constexpr (std::is_same_v<M, std::filesystem::path>)
-      m = std::get<std::string>(value);
-    else if constexpr (std::is_integral_v<M> || std::is_enum_v<M>)
-      m = static_cast<M>(std::get<std::int64_t>(value));
-    else {
-      const auto& numbers = std::get<std::vector<double>>(value);
-      m = Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
-    }
-  }
-};
-template <class M>
-struct Conversion<std::optional<M>> {
-  static std::optional<Value> get(const std::optional<M>& m) {
-    return m ? Conversion<M>::get(*m) : std::nullopt;
-  }
-  static void set(std::optional<M>& m, const Value& value) { Conversion<M>::set(m.emplace(), value); }
-};
-template <class Number>
-struct Conversion<std::vector<Number>> {
-  static std::optional<Value> get(const std::vector<Number>& m) {
-    if (m.empty()) return std::nullopt;
-    return Value(std::vector<double>(m.begin(), m.end()));
-  }
-  static void set(std::vector<Number>& m, const Value& value) {
-    m.clear();
-    for (const double v : std::get<std::vector<double>>(value)) m.push_back(static_cast<Number>(v));
-  }
-};
-template <>
-struct Conversion<std::vector<SceneSizes>> {
-  static std::optional<Value> get(const std::vector<SceneSizes>& m) {
-    return m.empty() ? std::nullopt : std::optional<Value>(m);
-  }
-  static void set(std::vector<SceneSizes>& m, const Value& value) {
-    m = std::get<std::vector<SceneSizes>>(value);
-  }
-};
-
-template <class T, class M>
-Member::Member(M T::*member)
-    : get([member](const void* whole) { return Conversion<M>::get(static_cast<const T*>(whole)->*member); }),
-      set([member](void* whole, const Value& value) {
-        Conversion<M>::set(static_cast<T*>(whole)->*member, value);
-      }) {}
 
 }  // namespace bernal::schema

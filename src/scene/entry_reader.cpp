@@ -67,10 +67,9 @@ std::size_t EntryReader::choose(const toml::table& table, std::string_view selec
 Value EntryReader::read_value(const toml::node& node, const Key& key, const std::string& where) const {
   if (key.type == Type::distribution) return std::vector{read_sizes(node, key, where)};
   if (key.type == Type::parts) return read_parts(node, key, where);
-  const bool is_word = key.type == Type::number && !key.words.empty() && node.is_string();
-  const std::optional<Value> value = value_in(node, is_word ? Type::word : key.type);
+  const std::optional<Value> value = value_in(node, key.type != Type::integer);
   if (value && schema::accepts(key, *value)) return *value;
-  if (value && key.type == Type::word)
+  if (key.type == Type::word && node.is_string())
     fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
          remedy(std::get<std::string>(*value), key.words));
   fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
@@ -81,23 +80,10 @@ void EntryReader::read(const toml::table& table, const Entry& entry, std::string
                        const std::string& where, void* options, Locations& locations) const {
   if (&entry != &schema::scene_entry())
     check_names(table, entry, selector.empty() ? Names{} : Names{selector}, where);
-  const Names absent = entry.left_out(
-      [&](const Key& key) { return table.contains(key.name); },
-      [&](std::string_view first, std::string_view second) {
-        fail(table.find(second)->first.source(),
-             "\"{}\" and \"{}\" in {} exclude each other; give one of them", first, second, where);
-      },
-      [&](const std::string& sets) { fail(table.source(), "{} needs exactly one of {}", where, sets); });
-
   if (locations.whole.file.empty()) locations.whole = at(table.source());
   for (const Key& key : entry.keys) {
     const auto found = table.find(key.name);
-    if (found == table.end()) {
-      if (key.required && std::ranges::find(absent, key.name) == absent.end())
-        fail(table.source(), "missing \"{}\" in {}: {}, {}", key.name, where, schema::expectation(key),
-             key.help);
-      continue;
-    }
+    if (found == table.end()) continue;
     locations.keys[std::string(key.name)] = at(found->first.source());
     if (key.member.set)
       key.member.set(options, read_value(found->second, key, where));
@@ -135,13 +121,13 @@ SceneSizes EntryReader::read_sizes(const toml::node& node, const Key& key, const
     read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
     return sizes;
   }
-  const auto value = value_in(node, Type::length);
+  const auto value = value_in(node, true);
   const Key length = {.name = key.name, .type = Type::length};
   if (!value || !schema::accepts(length, *value))
     fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
          written(node));
   sizes = Constant{std::get<double>(*value)};
-  sizes.locations.whole = at(node.source());
+  sizes.locations.whole = sizes.locations.keys["value"] = at(node.source());
   return sizes;
 }
 

@@ -26,8 +26,8 @@ class EntryReader {
   std::size_t choose(const toml::table& table, std::string_view selector, const Names& names,
                      std::string_view where) const;
 
-  /// All keys of an entry that the table has. Refuses what is missing, and unknown ones, except at the top of
-  /// the file, where the tables stand between the keys: there `check_names` does.
+  /// All keys of an entry that the table has; what is missing, `complete` finds. Refuses unknown ones, except
+  /// at the top of the file, where the tables stand between the keys: there `check_names` does.
   void read(const toml::table& table, const schema::Entry& entry, std::string_view selector,
             const std::string& where, void* options, Locations& locations) const;
 

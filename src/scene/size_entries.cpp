@@ -82,6 +82,13 @@ void mixture_rule(const Mixture& of, const Section& section) {
   one_for_each("shares", of.shares.size(), "of", of.of.size(), section);
 }
 
+/// A diameter by its name.
+Key diameter(Member member, Text name, Text help) {
+  Key key = required(length(std::move(member), name, help));
+  key.is_diameter = true;
+  return key;
+}
+
 template <class T>
 Key basis(Basis T::*member) {
   return word(member, "basis", "what shares and densities count: spheres or their volume",

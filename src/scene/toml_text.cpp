@@ -1,7 +1,5 @@
 #include "scene/toml_text.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -52,15 +50,13 @@ std::string toml_text(const schema::Value& value) {
 }
 
 std::vector<std::string> assignments(const schema::Entry& entry, const void* options, bool in_bed) {
-  const auto absent = entry.left_out(options, {std::string(entry.name), {}});
   std::vector<std::string> out;
-  for (const schema::Key& key : entry.keys) {
-    const auto value = key.of(options);
-    if (!value || !key.acts_here(in_bed) || std::ranges::find(absent, key.name) != absent.end()) continue;
-    const bool one = key.type == schema::Type::distribution;
+  for (const auto& [key, value] : entry.said(options)) {
+    if (!key->acts_here(in_bed)) continue;
+    const bool one = key->type == schema::Type::distribution;
     out.push_back(
-        fmt::format("{} = {}", key.name,
-                    one ? text_of(std::get<std::vector<SceneSizes>>(*value).front()) : toml_text(*value)));
+        fmt::format("{} = {}", key->name,
+                    one ? text_of(std::get<std::vector<SceneSizes>>(value).front()) : toml_text(value)));
   }
   return out;
 }

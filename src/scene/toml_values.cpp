@@ -6,17 +6,6 @@
 #include "scene/toml_text.hpp"
 
 namespace bernal {
-namespace {
-
-using schema::Value;
-
-std::optional<Value> number_in(const toml::node& node) {
-  if (!node.is_number()) return std::nullopt;
-  return *node.value<double>() + 0.0;  // -0 is 0
-}
-
-}  // namespace
-
 std::string written(const toml::node& node) {
   constexpr std::size_t longest = 60;
   if (const auto* text = node.as_string()) {
@@ -41,44 +30,19 @@ std::string written(const toml::node& node) {
   return "a date or time";
 }
 
-std::optional<Value> value_in(const toml::node& node, schema::Type type) {
-  using schema::Type;
-  switch (type) {
-    case Type::flag:
-      if (const auto* flag = node.as_boolean()) return flag->get();
-      return std::nullopt;
-    case Type::integer:
-      if (const auto* number = node.as_integer()) return number->get();
-      return std::nullopt;
-    case Type::number:
-    case Type::length:
-      return number_in(node);
-    case Type::word:
-    case Type::file:
-      if (const auto* text = node.as_string()) return text->get();
-      return std::nullopt;
-    case Type::direction:
-    case Type::position:
-    case Type::extents:
-    case Type::lengths:
-    case Type::shares:
-    case Type::amounts:
-    case Type::axes: {
-      const toml::array* array = node.as_array();
-      if (!array) return std::nullopt;
-      std::vector<double> numbers;
-      for (const toml::node& item : *array) {
-        const std::optional<Value> number = number_in(item);
-        if (!number) return std::nullopt;
-        numbers.push_back(std::get<double>(*number));
-      }
-      return numbers;
-    }
-    case Type::distribution:
-    case Type::parts:
-      return std::nullopt;  // tables of their own
+std::optional<schema::Value> value_in(const toml::node& node, bool as_double) {
+  if (const auto* flag = node.as_boolean()) return flag->get();
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* number = node.as_integer(); number && !as_double) return number->get();
+  if (node.is_number()) return *node.value<double>() + 0.0;  // -0 is 0
+  const toml::array* array = node.as_array();
+  if (!array) return std::nullopt;
+  std::vector<double> numbers;
+  for (const toml::node& item : *array) {
+    if (!item.is_number()) return std::nullopt;
+    numbers.push_back(*item.value<double>() + 0.0);
   }
-  return std::nullopt;
+  return numbers;
 }
 
 }  // namespace bernal

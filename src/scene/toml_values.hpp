@@ -11,7 +11,7 @@ namespace bernal {
 /// What the user wrote, short enough for an error of one line.
 std::string written(const toml::node&);
 
-/// The node as the kind of value that a key of this type has; nothing if it is of another kind.
-std::optional<schema::Value> value_in(const toml::node&, schema::Type);
+/// The node as a value, whole numbers as doubles if that is asked for; nothing for tables and dates.
+std::optional<schema::Value> value_in(const toml::node&, bool as_double);
 
 }  // namespace bernal

@@ -64,12 +64,8 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
 
 std::string sizes_in_words(const SceneSizes& sizes) {
   const schema::Entry& entry = schema::entry_of(sizes);
-  const void* options = schema::options_of(sizes);
-  const auto absent = entry.left_out(options, {std::string(entry.name), {}});
   std::string text(entry.name);
-  for (const schema::Key& key : entry.keys)
-    if (const auto value = key.of(options); value && std::ranges::find(absent, key.name) == absent.end())
-      text += ", " + in_words(key, *value);
+  for (const auto& [key, value] : entry.said(schema::options_of(sizes))) text += ", " + in_words(*key, value);
   return text;
 }
 

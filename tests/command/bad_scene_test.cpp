@@ -108,8 +108,8 @@ TEST(Explain, SaysWhatAMixtureIsMadeOf) {
                "of = [1, { distribution = \"fuller\", min = 1, max = 2 }] }");
   const Ended ended = bernal({"explain", folder.write("scene.toml", text).string()});
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_NE(ended.out.find("diameter in mm: mixture, basis number, shares [1, 3], of (constant, value 1) and "
-                           "(fuller, exponent 0.5, max 2, min 1); drawn by quantiles"),
+  EXPECT_NE(ended.out.find("diameter in mm: mixture, of (constant, value 1) and (fuller, max 2, exponent 0.5, min 1), "
+                           "shares [1, 3], basis number; drawn by quantiles"),
             std::string::npos)
       << ended.out;
 }

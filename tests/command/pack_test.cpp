@@ -51,6 +51,38 @@ TEST(Pack, WritesEveryFileOfTheContract) {
     EXPECT_NE(packed.err.find(word), std::string::npos) << word << "\nis not in:\n" << packed.err;
 }
 
+/// The command called from within a folder.
+Ended bernal_in(const Folder& folder, const std::string& words) {
+  return Process({"sh", "-c", "cd '" + folder.path().string() + "' && '" BERNAL_COMMAND "' " + words}).wait();
+}
+
+TEST(Pack, NamesTheFolderAfterTheScene) {
+  const Folder folder;
+  folder.write("small.toml", small_scene);
+  const Ended packed = bernal_in(folder, "pack small.toml --quiet");
+  EXPECT_EQ(packed.status, 0) << packed.err;
+  expect_certified(folder / "small");
+}
+
+TEST(Pack, AMeshNeedsNoScene) {
+  const Folder folder;
+  const std::string mesh = BERNAL_DATA "/meshes/hopper.stl";
+  const Ended packed = bernal_in(folder, "pack " + mesh + " --unit m --lognormal 0.12,0.1");
+  EXPECT_EQ(packed.status, 0) << packed.err;
+  expect_certified(folder / "hopper");
+
+  // It prints the scene that the flags stand for.
+  folder.write("again.toml", packed.out);
+  EXPECT_EQ(bernal_in(folder, "pack again.toml --quiet").status, 0);
+  EXPECT_EQ(report_of(folder / "again")["hash"], report_of(folder / "hopper")["hash"]);
+
+  expect_refused_in_one_line(bernal_in(folder, "pack " + mesh + " --diameter 30"), {"such as --unit mm"});
+  expect_refused_in_one_line(bernal_in(folder, "pack " + mesh + " --unit mm --diameter -2"),
+                             {"positive length, not -2"});
+  expect_refused_in_one_line(bernal_in(folder, "pack again.toml --diameter 2"), {"leave out --diameter"});
+  expect_refused_in_one_line(bernal_in(folder, "pack again.toml --unit mm"), {"--unit is for a mesh"});
+}
+
 TEST(Pack, QuietSaysNothing) {
   const Folder folder;
   const Ended packed = bernal(

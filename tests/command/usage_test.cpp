@@ -8,7 +8,7 @@ TEST(Usage, HelpNamesEverySubcommandWithExamples) {
   EXPECT_EQ(help.status, 0);
   EXPECT_EQ(help.err, "");
   for (const std::string command :
-       {"pack", "verify", "inspect", "explain", "measure", "predict", "design", "map", "reproduce"}) {
+       {"pack", "verify", "inspect", "explain", "keys", "measure", "predict", "design", "map", "reproduce"}) {
     EXPECT_NE(help.out.find("\n  " + command), std::string::npos) << command;
     const Ended own = bernal({command, "--help"});
     EXPECT_EQ(own.status, 0);
@@ -16,6 +16,27 @@ TEST(Usage, HelpNamesEverySubcommandWithExamples) {
     EXPECT_EQ(own.err, "");
   }
   EXPECT_NE(help.out.find("Examples:"), std::string::npos);
+}
+
+TEST(Usage, NothingAtAllIsHelp) {
+  const Ended alone = bernal({}), help = bernal({"--help"});
+  EXPECT_EQ(alone.status, 0);
+  EXPECT_EQ(alone.out, help.out);
+}
+
+TEST(Usage, AnUnknownCommandNamesTheNearest) {
+  expect_refused_in_one_line(bernal({"pak"}), {"unknown command \"pak\"; did you mean \"pack\"?"});
+  expect_refused_in_one_line(bernal({"design", "maximize"}), {"\"maximize\"; did you mean \"maximise\"?"});
+  expect_refused_in_one_line(bernal({"qqqqqqqq"}), {"known: \"pack\", \"verify\""});
+}
+
+TEST(Usage, KeysSaysWhatASceneMayHold) {
+  const Ended all = bernal({"keys"}), one = bernal({"keys", "relax"});
+  EXPECT_EQ(all.status, 0);
+  EXPECT_NE(all.out.find("\n  relax "), std::string::npos) << all.out;
+  EXPECT_EQ(one.status, 0);
+  EXPECT_NE(one.out.find("patience = 12"), std::string::npos) << one.out;
+  expect_refused_in_one_line(bernal({"keys", "relaks"}), {"did you mean \"relax\"?"});
 }
 
 TEST(Usage, VersionIsOneLine) {
@@ -30,11 +51,8 @@ TEST(Usage, WrongOnesAreOneLineAndExitTwo) {
   const std::string scene = folder.write("scene.toml", small_scene).string();
   const std::string out = (folder / "out").string();
   const std::vector<std::vector<std::string>> wrong = {
-      {},
-      {"pak"},
       {"--frobnicate"},
       {"pack"},
-      {"pack", scene},
       {"pack", "-o", out},
       {"pack", scene, "-o", out, "--frobnicate"},
       {"pack", scene, "-o", out, "--threads", "0"},

@@ -21,8 +21,8 @@ namespace bernal {
 /// axis either ends at two walls, with whole spheres between them, or repeats itself without end: there
 /// spheres have images in every box, and a sphere may be its own neighbour.
 struct Box {
-  Coordinates corner = {0, 0, 0};
-  Coordinates size = {1, 1, 1};
+  Coordinates corner = Vector<3>::Zero();
+  Coordinates size = Vector<3>::Ones();
   std::vector<bool> periodic = {};  ///< whether each axis repeats itself; empty: none does
 
   int dimension() const { return static_cast<int>(size.size()); }
