@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/version.hpp"
 #include "commands.hpp"
 
 namespace {
@@ -21,6 +22,7 @@ constexpr const char* examples = R"(Examples:
   bernal measure out                                 contacts, rattlers, g(r), sizes against those asked for
   bernal inspect part.stl --unit mm                  can this CAD file be a container?
   bernal explain data/scenes/hopper.toml             what would run, and what it would cost
+  bernal keys relax                                  what a scene may say of a stage
   bernal predict --lognormal 0.5                     how densely spheres of these sizes pack
   bernal design maximise --diameters 1,3,9           how much of each size packs densest
   bernal map 0.3 0.6 -o out                          how densely all their mixtures do
@@ -49,13 +51,14 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is an error to report, not a reason to die
   CLI::App app{description, "bernal"};
   app.footer(examples);
-  app.set_version_flag("--version", "bernal " BERNAL_VERSION);
+  app.set_version_flag("--version", "bernal " + std::string(bernal::version()));
   app.require_subcommand(1);
   int status = exit_code::done;
   add_pack(app, status);
   add_verify(app, status);
   add_inspect(app, status);
   add_explain(app, status);
+  add_keys(app, status);
   add_measure(app, status);
   add_predict(app, status);
   add_design(app, status);

@@ -7,6 +7,7 @@ void add_pack(CLI::App& app, int& status);
 void add_verify(CLI::App& app, int& status);
 void add_inspect(CLI::App& app, int& status);
 void add_explain(CLI::App& app, int& status);
+void add_keys(CLI::App& app, int& status);
 void add_measure(CLI::App& app, int& status);
 void add_predict(CLI::App& app, int& status);
 void add_design(CLI::App& app, int& status);

@@ -13,4 +13,4 @@ std::string describe_container(const bernal::Plan& plan);
 std::string describe_sizes(const bernal::Scene& scene);
 
 /// "as many as fit", "10,000", "up to packing fraction 0.45".
-std::string describe_target(const bernal::Scene& scene);
+std::string describe_target(const bernal::Plan& plan);

@@ -23,8 +23,8 @@ void print(const Plan& plan) {
   const Scene& scene = plan.scene;
   fmt::print("container  {}\n", describe_container(plan));
   if (!plan.container_notes.empty()) fmt::print("           {}\n", plan.container_notes);
-  fmt::print("spheres    {}; {}\n", describe_target(scene), describe_sizes(scene));
-  fmt::print("accuracy   walls {}, overlap {}\n", scene.walls, scene.overlap);
+  fmt::print("spheres    {}; {}\n", describe_target(plan), describe_sizes(scene));
+  fmt::print("accuracy   walls {}, overlap {}\n", name_of(scene.walls), scene.overlap);
   fmt::print("expected   about {:.3g} spheres, packing fraction {:.3f}, {:.3g} MB of memory\n\n",
              plan.expected_count, plan.expected_packing_fraction, plan.expected_memory_bytes / 1e6);
 
@@ -58,10 +58,10 @@ nlohmann::ordered_json as_json(const Plan& plan) {
   ordered_json items = ordered_json::array();
   for (const PlanItem& item : plan.items)
     items.push_back({{"name", item.name}, {"what", item.what}, {"cost", item.cost}});
-  return {{"unit", plan.scene.unit},
+  return {{"unit", name_of(plan.scene.unit)},
           {"container", container},
-          {"spheres", {{"target", describe_target(plan.scene)}, {"sizes", describe_sizes(plan.scene)}}},
-          {"accuracy", {{"walls", plan.scene.walls}, {"overlap", plan.scene.overlap}}},
+          {"spheres", {{"target", describe_target(plan)}, {"sizes", describe_sizes(plan.scene)}}},
+          {"accuracy", {{"walls", name_of(plan.scene.walls)}, {"overlap", plan.scene.overlap}}},
           {"expected",
            {{"count", plan.expected_count},
             {"packing_fraction", plan.expected_packing_fraction},

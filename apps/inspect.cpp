@@ -79,7 +79,8 @@ void print(const InspectCall& call, const MeshReport& report, const std::optiona
       {"area", fmt::format("{:.6g} {}", report.area, power("²"))},
   };
   if (!call.unit.empty() && call.unit != "m")
-    rows.insert(rows.end() - 1, {"", text_of(metres_per(call.unit) * report.bounds.size()) + " m"});
+    rows.insert(rows.end() - 1,
+                {"", text_of(metres_per(unit_named(call.unit)) * report.bounds.size()) + " m"});
   if (report.usable()) {
     rows.emplace_back("volume", fmt::format("{:.6g} {}", report.volume, power("³")));
     rows.emplace_back("genus", fmt::format("{}", report.genus));
@@ -145,7 +146,7 @@ nlohmann::ordered_json as_json(const InspectCall& call, const MeshReport& report
 }
 
 int inspect(const InspectCall& call) {
-  if (!call.unit.empty()) metres_per(call.unit);  // refuses an unknown one before the file is read
+  if (!call.unit.empty()) unit_named(call.unit);  // refuses an unknown one before the file is read
   const ImportedMesh imported = read_mesh(call.mesh);
   const MeshReport& report = imported.report;
   std::optional<Chambers> chambers;

@@ -87,7 +87,8 @@ void print_radial(const Packing& packing, const std::optional<RadialDistribution
     return;
   }
   fmt::print("\ng(r), the radial distribution function; mean diameter {:.6g} {}, bins of {:.3g} {}\n",
-             radial->mean_diameter, packing.scene.unit, radial->bin_width, packing.scene.unit);
+             radial->mean_diameter, name_of(packing.scene.unit), radial->bin_width,
+             name_of(packing.scene.unit));
   const double reach = radial->bin_width * static_cast<double>(radial->g.size()) / radial->mean_diameter;
   print_chart(radial->g, 3, 3, fmt::format("{:.3g} diameters", reach));
   for (const auto& peak : radial->peaks)
@@ -103,7 +104,7 @@ void print_chambers(const Packing& packing, const Chambers& found) {
     fmt::print("; too narrow: ");
   else
     fmt::print(", which spheres of the smallest radius, {:.4g} {}, cannot leave\ntoo narrow        ",
-               found.radius, packing.scene.unit);
+               found.radius, name_of(packing.scene.unit));
   fmt::print("{:.2f} % of the container for the smallest spheres, {:.2f} % for those of the mean radius\n",
              100 * found.by_smallest.share, 100 * found.by_mean.share);
   if (n > 1) fmt::print("\n{:>9} {:>9} {:>17}  {}\n", "share", "spheres", "packing fraction", "position");
@@ -148,7 +149,7 @@ void print_layers(const WallProfile& profile) {
 
 void print_walls(const Packing& packing, const WallProfile& profile) {
   fmt::print("\nporosity over the distance z from the wall, in mean diameters of {:.6g} {}\n",
-             profile.mean_diameter, packing.scene.unit);
+             profile.mean_diameter, name_of(packing.scene.unit));
   const std::size_t even = profile.layers.size() - 1;  // the last layer holds all that is deeper
   if (even > 1) {
     std::vector<double> porosities;
@@ -189,7 +190,7 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
   const bool diameters = packing.scene.sizes_are_diameters;
   const double factor = diameters ? 2 : 1;
   fmt::print("\nsizes against those asked for: {} in {}\n", diameters ? "diameter" : "radius",
-             packing.scene.unit);
+             name_of(packing.scene.unit));
   fmt::print("Kolmogorov        largest distance of the cumulative shares {:.5f}", sizes.ks_statistic);
   if (sizes.ks_p_value) fmt::print("; p = {:.3f}", *sizes.ks_p_value);
   fmt::print("\n");
@@ -219,7 +220,7 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
 void print(const Packing& packing, const Measurements& measured) {
   fmt::print("spheres           {}, in a {} of {:.6g} {}\n", grouped(packing.spheres.size()),
              name_of(packing.domain), fmt::join(bounds_of<dynamic>(packing.domain).size(), " x "),
-             packing.scene.unit);
+             name_of(packing.scene.unit));
   fmt::print("packing fraction  {:.6f}\n", measured.packing_fraction);
   if (measured.chambers) print_chambers(packing, *measured.chambers);
   print_contacts(packing, measured);
@@ -235,7 +236,8 @@ void measure_folder(const MeasureCall& call) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
   const Packing packing = read_packing(call.folder);
   const std::unique_ptr<SizeDistribution> asked = radii_of(packing.scene);
-  const Measurements measured = measure(packing, asked.get(), call.options);
+  const Measurements measured = measure(packing.spheres, packing.domain,
+                                        {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)}, call.options);
   if (call.json)
     fmt::print("{}", measurements_as_json(packing, measured));
   else

@@ -32,7 +32,7 @@ struct PackCall {
 void print_plan(const Plan& plan) {
   fmt::print(stderr, "container  {}\n", describe_container(plan));
   if (!plan.container_notes.empty()) fmt::print(stderr, "           {}\n", plan.container_notes);
-  fmt::print(stderr, "spheres    {}; {}\n", describe_target(plan.scene), describe_sizes(plan.scene));
+  fmt::print(stderr, "spheres    {}; {}\n", describe_target(plan), describe_sizes(plan.scene));
 }
 
 void print_result(const Packing& packing, const WrittenPacking& written) {

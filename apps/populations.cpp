@@ -89,13 +89,6 @@ std::vector<double> numbers_of_line(std::string_view line, const std::string& wh
   }
 }
 
-/// Sizes whose shares count volume.
-Spec by_volume(std::string name) {
-  Spec spec{std::move(name), {}, {}};
-  spec.parameters["basis"].value = std::string("volume");
-  return spec;
-}
-
 }  // namespace
 
 Population parse_lognormal(const std::string& text, const std::string& where) {
@@ -160,7 +153,7 @@ std::vector<Population> read_populations(std::istream& in, char format) {
   return populations;
 }
 
-Spec sizes_of(const std::vector<Population>& populations) {
+Mixture sizes_of(const std::vector<Population>& populations) {
   double largest = 0, all = 0;
   for (const Population& p : populations) {
     if (p.volume > 0) largest = std::max(largest, p.d43);
@@ -169,8 +162,7 @@ Spec sizes_of(const std::vector<Population>& populations) {
   if (!(all > 0)) throw Error(ErrorCode::bad_argument, "all populations have volume zero");
 
   std::map<double, double> classes;  // the volume of each radius
-  Spec mixture = by_volume("mixture");
-  std::vector<double> shares;
+  Mixture mixture{.basis = Basis::volume};
   for (const Population& p : populations) {
     const double radius = p.d43 / largest, share = p.volume / all;
     if (!(share > 0)) continue;
@@ -180,28 +172,23 @@ Spec sizes_of(const std::vector<Population>& populations) {
     if (p.sigma < 1e-9) {
       classes[radius] += share;
     } else {
-      Spec lognormal = by_volume("lognormal");
-      lognormal.parameters["median"].value =
-          radius * std::exp(-0.5 * p.sigma * p.sigma);  // d43 = median by volume e^(s²/2)
-      lognormal.parameters["sigma"].value = p.sigma;
-      mixture.parts.push_back(std::move(lognormal));
-      shares.push_back(share);
+      mixture.of.push_back(Lognormal{// d43 = median by volume e^(s²/2)
+                                     .median = radius * std::exp(-0.5 * p.sigma * p.sigma),
+                                     .sigma = p.sigma,
+                                     .basis = Basis::volume});
+      mixture.shares.push_back(share);
     }
   }
   if (!classes.empty()) {
-    std::vector<double> radii, volumes;
+    Classes all_classes{.basis = Basis::volume};
     double total = 0;
     for (const auto& [radius, volume] : classes) {
-      radii.push_back(radius);
-      volumes.push_back(volume);
+      all_classes.values.push_back(radius);
+      all_classes.shares.push_back(volume);
       total += volume;
     }
-    Spec all_classes = by_volume("classes");
-    all_classes.parameters["values"].value = std::move(radii);
-    all_classes.parameters["shares"].value = std::move(volumes);
-    mixture.parts.push_back(std::move(all_classes));
-    shares.push_back(total);
+    mixture.of.push_back(std::move(all_classes));
+    mixture.shares.push_back(total);
   }
-  mixture.parameters["shares"].value = std::move(shares);
   return mixture;
 }

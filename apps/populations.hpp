@@ -30,4 +30,4 @@ std::vector<Population> read_populations(std::istream& in, char format);
 
 /// All of them mixed, as a scene has them: radii in units of the largest mean radius; those without volume
 /// are left out.
-bernal::Spec sizes_of(const std::vector<Population>& populations);
+bernal::Mixture sizes_of(const std::vector<Population>& populations);

@@ -73,15 +73,16 @@ Scene scene_of(const PredictCall& call) {
   } else {
     scene = read_scene(call.scene);
     if (scene.dimension() != 3)
-      throw Error(ErrorCode::bad_scene, "the rod model is for three dimensions", scene.container.where);
+      throw Error(ErrorCode::bad_scene, "the rod model is for three dimensions",
+                  scene.container.locations.whole);
   }
   return scene;
 }
 
 /// Of the one lognormal population that a fit is for.
 double width_of(const Scene& scene) {
-  const Spec& only = scene.sizes.parts.front();
-  return only.has("sigma") ? only.number("sigma") : 0;
+  const auto* only = std::get_if<Lognormal>(&std::get<Mixture>(scene.sizes).of.front());
+  return only ? *only->sigma : 0;
 }
 
 /// Packs those very sizes.
@@ -234,7 +235,10 @@ void add_predict(CLI::App& app, int& status) {
       ->needs(check)
       ->check(CLI::Range(1, 10'000'000))
       ->type_name("N");
-  command->add_option("--stage", call->packing.stage, "What packs them, relax or grow; relax if absent")
+  command
+      ->add_option_function<std::string>(
+          "--stage", [call](const std::string& name) { call->packing.stage = stage_named(name); },
+          "What packs them, relax or grow; relax if absent")
       ->needs(check)
       ->type_name("NAME");
   add_seed(*command, "Of that packing; 1 if absent", [call](std::uint64_t seed) {

@@ -1,10 +1,11 @@
+#include <charconv>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
@@ -14,7 +15,8 @@
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "commands.hpp"
-#include "describe.hpp"
+#include "interrupt.hpp"
+#include "progress_bar.hpp"
 #include "threads.hpp"
 
 using namespace bernal;
@@ -24,9 +26,22 @@ namespace {
 struct VerifyCall {
   std::filesystem::path target;
   std::filesystem::path scene;
+  std::string list;
   int threads = 0;
   bool json = false;
 };
+
+/// Of `--list`, `--list=all` and `--list=N`.
+std::size_t listed(const std::string& text) {
+  if (text.empty()) return 0;
+  if (text == "all") return CertifyOptions::all;
+  std::size_t most = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, most);
+  if (error != std::errc{} || stop != end || most == 0)
+    throw Error(ErrorCode::bad_argument, "--list takes no value, or how many are wanted: --list=20");
+  return most;
+}
 
 std::filesystem::path scene_file(const VerifyCall& call) {
   if (!call.scene.empty()) return call.scene;
@@ -36,17 +51,22 @@ std::filesystem::path scene_file(const VerifyCall& call) {
               {call.target.string()});
 }
 
-void print(const Certificate& c, const Scene& scene) {
+void print(const Certificate& c, const Domain& domain, std::string_view unit) {
   fmt::print("certified  {}\n", c.certified ? "yes" : "NO");
-  fmt::print("spheres    {}, in {}\n", grouped(c.spheres), scene.unit);
+  fmt::print("spheres    {}, in {}\n", grouped(c.spheres), unit);
   fmt::print("pairs      {} near, {} overlapping", grouped(c.pairs_tested), grouped(c.overlapping_pairs));
+  if (c.allowed_overlap > 0) fmt::print(" by more than {:g}", c.allowed_overlap);
   if (c.worst_pair) fmt::print("; worst: {}, overlap ratio {:.3g}", worst_pair_text(c), c.max_overlap);
-  if (!scene.is_periodic())
+  if (has_walls(domain))
     fmt::print("\nwalls      {} near, {} spheres protruding", grouped(c.walls_tested),
                grouped(c.protruding_spheres));
   if (c.worst_wall) fmt::print("; worst: sphere {}, gap {:.3g} of its radius", *c.worst_wall, c.min_wall_gap);
   fmt::print("\ndecided    {} in double with a proven bound, {} in exact arithmetic, in {:.3f} s\n",
              grouped(c.decided_double), grouped(c.decided_exact), c.seconds);
+  for (const auto& [pair, ratio] : c.overlaps)
+    fmt::print("overlap    {}, ratio {:.3g}\n", pair_text(pair), ratio);
+  for (const auto& [sphere, gap] : c.protrusions)
+    fmt::print("protrudes  {}, gap {:.3g} of its radius\n", sphere, gap);
   fmt::print("{}\n", c.statement);
 }
 
@@ -57,14 +77,18 @@ int verify(const VerifyCall& call) {
       std::filesystem::is_directory(call.target) ? call.target / "spheres.csv" : call.target;
   const Spheres<dynamic> spheres = read_csv_of(scene, file);
 
-  std::optional<tbb::global_control> limit;
-  if (call.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
-  const Certificate certificate = certify(spheres, domain, scene.overlap);
+  watch_for_interrupts(true);
+  ProgressBar bar(call.json);
+  CertifyOptions options{
+      .allowed_overlap = scene.overlap, .list = listed(call.list), .threads = call.threads};
+  options.monitor.on_progress = [&](const Progress& progress) { bar.show(progress); };
+  options.monitor.cancelled = interrupted;
+  const Certificate certificate = certify(spheres, domain, options);
+  bar.clear();
   if (call.json)
     fmt::print("{}", certificate_as_json(certificate));
   else
-    print(certificate, scene);
+    print(certificate, domain, name_of(scene.unit));
   return certificate.certified ? exit_code::done : exit_code::no;
 }
 
@@ -78,6 +102,8 @@ void add_verify(CLI::App& app, int& status) {
       ->type_name("DIR|FILE.csv");
   command->add_option("--scene", call->scene, "The scene that names the container, if not DIR/scene.toml")
       ->type_name("SCENE.toml");
+  command->add_flag("--list{all}", call->list,
+                    "Name every overlapping pair and protruding sphere; --list=N: the N worst of each");
   add_threads(*command, call->threads, "the answer");
   command->add_flag("--json", call->json, "One JSON object on standard output");
   command->footer(

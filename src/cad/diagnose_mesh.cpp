@@ -1,8 +1,5 @@
 #include "cad/diagnose_mesh.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/orientation.h>
-#include <CGAL/Surface_mesh.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,12 +7,10 @@
 
 #include "cad/mesh_topology.hpp"
 #include "cad/self_intersections.hpp"
+#include "cad/surface_mesh.hpp"
 
 namespace bernal::cad {
 namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
 Bounds<3> bounds_of_vertices(const Mesh& mesh) {
   Bounds<3> bounds{mesh.vertices.front(), mesh.vertices.front()};
@@ -52,32 +47,6 @@ void turn(Mesh& mesh) {
   for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
-/// Turns whole components so that the mesh bounds a volume: outermost ones outwards, those inside them
-/// inwards, and so on. Precondition: closed, consistently oriented, no self-intersections.
-void orient_components(Mesh& mesh) {
-  const MeshTopology topology = topology_of(mesh);
-  SurfaceMesh surface;
-  surface.reserve(static_cast<unsigned>(topology.fans), static_cast<unsigned>(topology.edges),
-                  static_cast<unsigned>(mesh.triangles.size()));
-  std::vector<std::uint32_t> vertex_of_fan(topology.fans);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) vertex_of_fan[topology.fan[t][k]] = mesh.triangles[t][k];
-  for (const std::uint32_t v : vertex_of_fan) {
-    const Vector<3>& p = mesh.vertices[v];
-    surface.add_vertex({p[0], p[1], p[2]});
-  }
-  using Vertex = SurfaceMesh::Vertex_index;
-  for (const auto& fan : topology.fan) surface.add_face(Vertex(fan[0]), Vertex(fan[1]), Vertex(fan[2]));
-
-  CGAL::Polygon_mesh_processing::orient_to_bound_a_volume(surface);
-
-  for (const auto face : surface.faces()) {
-    int k = 0;
-    for (const auto v : CGAL::vertices_around_face(surface.halfedge(face), surface))
-      mesh.triangles[face][k++] = vertex_of_fan[v];
-  }
-}
-
 bool same_orientation(std::array<std::uint32_t, 3> s, const std::array<std::uint32_t, 3>& t) {
   for (int turns = 0; turns < 3; ++turns) {
     if (s == t) return true;
@@ -100,7 +69,7 @@ void orient(Mesh& mesh, const MeshTopology& topology, MeshReport& report) {
   const Mesh original = mesh;
   if (orient_consistently(mesh, topology) == none) {
     report.orientation = "mixed";
-    report.problems.push_back("one-sided surface: inside and outside are the same");
+    report.problems.emplace_back("one-sided surface: inside and outside are the same");
     return;
   }
   const Vector<3> center = report.bounds.center();
@@ -112,7 +81,7 @@ void orient(Mesh& mesh, const MeshTopology& topology, MeshReport& report) {
   report.volume = signed_volume(mesh, center);
   if (!(report.volume > 0) || !std::isfinite(report.volume)) {
     report.volume = 0;
-    report.problems.push_back("it encloses no volume that double precision can hold");
+    report.problems.emplace_back("it encloses no volume that double precision can hold");
     return;
   }
   const std::size_t turned = count_turned(mesh, original);
@@ -144,7 +113,7 @@ MeshReport diagnose_mesh(Triangles& triangles) {
   report.vertices = mesh.vertices.size();
   if (mesh.triangles.empty()) {
     report.orientation = "mixed";
-    report.problems.push_back("no faces with an area");
+    report.problems.emplace_back("no faces with an area");
     return report;
   }
   report.bounds = bounds_of_vertices(mesh);

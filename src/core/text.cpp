@@ -45,6 +45,15 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
   return nearest;
 }
 
+std::string remedy(std::string_view name, std::span<const std::string_view> candidates) {
+  if (const std::string_view near = nearest_name(name, candidates); !near.empty())
+    return "; did you mean \"" + std::string(near) + "\"?";
+  std::string known;
+  for (const std::string_view candidate : candidates)
+    known += (known.empty() ? "; known: \"" : ", \"") + std::string(candidate) + '"';
+  return known;
+}
+
 std::string grouped(std::uint64_t n) {
   std::string digits = std::to_string(n);
   for (std::size_t from_right = 3; from_right < digits.size(); from_right += 4) {

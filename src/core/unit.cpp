@@ -1,10 +1,10 @@
 #include "bernal/core/unit.hpp"
 
-#include <fmt/format.h>
-
-#include <array>
+#include <algorithm>
 #include <cstddef>
-#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bernal/core/error.hpp"
 
@@ -30,35 +30,27 @@ constexpr double quotient(Definition from, Definition to) {
          (to.numerator * power_of_ten(shift < 0 ? -shift : 0));
 }
 
-constexpr Definition metre{1, 0};
-constexpr std::array<Definition, 7> definitions = {
-    {{1, -9}, {1, -6}, {1, -3}, {1, -2}, metre, {254, -4}, {3048, -4}}};
-constexpr std::array<Unit, 7> table = {{{"nm", quotient(definitions[0], metre)},
-                                        {"um", quotient(definitions[1], metre)},
-                                        {"mm", quotient(definitions[2], metre)},
-                                        {"cm", quotient(definitions[3], metre)},
-                                        {"m", quotient(definitions[4], metre)},
-                                        {"in", quotient(definitions[5], metre)},
-                                        {"ft", quotient(definitions[6], metre)}}};
+constexpr Definition definitions[] = {{1, -9}, {1, -6}, {1, -3}, {1, -2}, {1, 0}, {254, -4}, {3048, -4}};
+constexpr std::string_view names[] = {"nm", "um", "mm", "cm", "m", "in", "ft"};
 
-std::size_t index_of(std::string_view name) {
-  std::vector<std::string_view> names;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (table[i].name == name) return i;
-    names.push_back(table[i].name);
-  }
-  throw Error(ErrorCode::bad_argument,
-              fmt::format("unknown unit \"{}\": use one of {}", name, fmt::join(names, ", ")));
-}
+Definition definition_of(Unit unit) { return definitions[static_cast<std::size_t>(unit)]; }
 
 }  // namespace
 
-std::span<const Unit> units() { return table; }
+std::string_view name_of(Unit unit) { return names[static_cast<std::size_t>(unit)]; }
 
-double metres_per(std::string_view unit) { return table[index_of(unit)].metres; }
+std::span<const std::string_view> unit_names() { return names; }
 
-double conversion_factor(std::string_view from, std::string_view to) {
-  return quotient(definitions[index_of(from)], definitions[index_of(to)]);
+Unit unit_named(std::string_view name) {
+  const auto found = std::ranges::find(names, name);
+  if (found == std::end(names))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("unknown unit \"{}\": use one of {}", name, fmt::join(names, ", ")));
+  return static_cast<Unit>(found - names);
 }
+
+double metres_per(Unit unit) { return conversion_factor(unit, Unit::m); }
+
+double conversion_factor(Unit from, Unit to) { return quotient(definition_of(from), definition_of(to)); }
 
 }  // namespace bernal

@@ -77,7 +77,9 @@ void Container::walls_near(const Vector<3>& c, double reach, std::vector<WallPoi
 std::unique_ptr<Container> make_analytic_container(const Domain& shape, WallArithmetic arithmetic,
                                                    double resolution) {
   if (const auto* box = std::get_if<Box>(&shape)) {
-    require(box->dimension() == 3, "a container has three dimensions");
+    require(box->dimension() == 3 && box->corner.size() == 3, "a container has three dimensions");
+    require(box->periodic.empty() || box->periodic.size() == 3,
+            "a box repeats itself or ends on each of its axes");
     require(box->corner.allFinite() && is_length(box->size[0]) && is_length(box->size[1]) &&
                 is_length(box->size[2]),
             "a box needs three positive edges and a finite corner");

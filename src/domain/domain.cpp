@@ -94,7 +94,7 @@ std::string_view kind_of(const Domain& domain) {
 
 std::string name_of(const Domain& domain) {
   const auto* cylinder = std::get_if<Cylinder>(&domain);
-  if (cylinder && cylinder->periodic) return "endless cylinder";
+  if (cylinder && cylinder->periodic) return "periodic cylinder";
   const auto* box = std::get_if<Box>(&domain);
   if (!box || !box->repeats()) return std::string(kind_of(domain));
   if (!box->has_walls()) return "periodic box";
@@ -194,6 +194,15 @@ Boundary<D> boundary_of(const Domain& domain) {
 #define BERNAL_INSTANTIATE(D) template Boundary<D> boundary_of(const Domain&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
+void wrap(Spheres<dynamic>& spheres, const Domain& domain) {
+  with_dimension(dimension_of(domain), EveryDimension{}, [&](auto dimension) {
+    constexpr int D = decltype(dimension)::value;
+    const Boundary<D> boundary = boundary_of<D>(domain);
+    for (std::size_t i = 0; i < spheres.size(); ++i)
+      spheres.set_center(i, boundary.wrap(Vector<D>(spheres.center(i))));
+  });
+}
+
 Frame frame_of(const Domain& shape) {
   const Bounds<3> bounds = bounds_of(shape);
   const double diagonal = bounds.diagonal();
@@ -216,8 +225,10 @@ Frame frame_of(const Domain& shape) {
 Domain to_local(const Domain& shape, const Frame& frame) {
   return std::visit(Overloaded{[&](const Box& s) -> Domain {
                                  const Vector<3> lower = frame.to_local(s.corner);
-                                 const Vector<3> upper = frame.to_local(s.corner + s.size);
-                                 return Box{lower, upper - lower, s.periodic};
+                                 Vector<3> size = frame.to_local(s.corner + s.size) - lower;
+                                 for (int k = 0; k < 3; ++k)  // periods scale without rounding
+                                   if (s.repeats(k)) size[k] = s.size[k] / frame.scale;
+                                 return Box{lower, size, s.periodic};
                                },
                                [&](Cylinder s) -> Domain {
                                  s.base = frame.to_local(s.base);

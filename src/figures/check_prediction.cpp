@@ -1,17 +1,12 @@
 #include "bernal/figures/check_prediction.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include "bernal/core/error.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
-#include "scene/toml_text.hpp"
 
 namespace bernal {
 namespace {
@@ -31,30 +26,9 @@ double predicted_for(const std::vector<double>& radii) {
       .phi;
 }
 
-Spec size_spec(std::string_view name, std::initializer_list<std::pair<std::string, Value>> parameters) {
-  Spec spec{std::string(name), {}, {}};
-  for (const auto& [key, value] : parameters) spec.parameters[key] = {value, {}};
-  return spec;
-}
-
-Spec population(double mean, double sigma) {
-  if (sigma < 1e-9) return size_spec("constant", {{"value", mean}});
-  return size_spec("lognormal", {{"median", mean * std::exp(-0.5 * sigma * sigma)},
-                                 {"sigma", sigma},
-                                 {"basis", std::string("volume")}});
-}
-
-/// Of a text that no user has seen, so that errors name no line of it.
-Scene scene_of(const std::string& text) {
-  try {
-    Scene scene = parse_scene(text, {});
-    scene.stages.front().where = {};
-    return scene;
-  } catch (const Error& error) {
-    const std::string place = error.location().text();
-    throw Error(ErrorCode::bad_argument,
-                std::string(error.what()).substr(place.empty() ? 0 : place.size() + 2));
-  }
+SceneSizes population(double mean, double sigma) {
+  if (sigma < 1e-9) return Constant{mean};
+  return Lognormal{.median = mean * std::exp(-0.5 * sigma * sigma), .sigma = sigma, .basis = Basis::volume};
 }
 
 }  // namespace
@@ -68,24 +42,24 @@ std::int64_t spheres_for(const SizeDistribution& radii) {
   return 200'000;
 }
 
-Spec sizes_of(const TwoPopulations& p) {
+SceneSizes sizes_of(const TwoPopulations& p) {
   if (p.share == 0) return population(1, p.sigma_a);
   if (p.share == 1 || (p.ratio == 1 && p.sigma_a == p.sigma_b)) return population(p.ratio, p.sigma_b);
-  Spec both = size_spec(
-      "mixture", {{"shares", std::vector<double>{1 - p.share, p.share}}, {"basis", std::string("volume")}});
-  both.parts = {population(1, p.sigma_a), population(p.ratio, p.sigma_b)};
-  return both;
+  return Mixture{.of = {population(1, p.sigma_a), population(p.ratio, p.sigma_b)},
+                 .shares = {1 - p.share, p.share},
+                 .basis = Basis::volume};
 }
 
-Scene scene_to_check(const Spec& sizes, bool sizes_are_diameters, const CheckOptions& options) {
-  Scene scene =
-      scene_of(fmt::format("[container]\nkind = \"periodic\"\n[spheres]\ncount = {}\nradius = 1\n"
-                           "draw = \"quantiles\"\n[[stage]]\ndo = {}\n",
-                           std::max<std::int64_t>(options.spheres, 1), toml_string(options.stage)));
-  scene.seed = options.seed;
+Scene scene_to_check(const SceneSizes& sizes, bool sizes_are_diameters, const CheckOptions& options) {
+  Scene scene;
+  scene.container = PeriodicBox{};
   scene.sizes = sizes;
   scene.sizes_are_diameters = sizes_are_diameters;
-  if (options.spheres == 0) scene.target.count = spheres_for(*radii_of(scene));
+  scene.draw = Draw::quantiles;
+  scene.seed = options.seed;
+  scene.target.count = options.spheres == 0 ? spheres_for(*radii_of(scene)) : options.spheres;
+  scene.stages = {options.stage};
+  complete(scene);
   return scene;
 }
 
@@ -94,8 +68,8 @@ PredictionCheck check_prediction(const Scene& scene, const CheckOptions& options
   return {.phi = packing.packing_fraction(),
           .predicted = predicted_for(packing.spheres.r),
           .spheres = packing.spheres.size(),
-          .certified = certify(packing.spheres, packing.domain, scene.overlap).certified,
-          .coordination = measure_contacts(packing).coordination,
+          .certified = certify(packing.spheres, packing.domain, {.allowed_overlap = scene.overlap}).certified,
+          .coordination = measure_contacts(packing.spheres, packing.domain).coordination,
           .outcome = packing.outcome,
           .seconds = packing.seconds};
 }

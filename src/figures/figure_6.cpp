@@ -49,17 +49,13 @@ std::vector<std::vector<double>> starts_beside(const std::vector<double>& neighb
   return {neighbour, has_three ? std::vector{0.22, 0.0, 0.78} : std::vector{0.15, 0.15, 0.7}};
 }
 
-Spec sizes_of(double second, double third, const std::vector<double>& shares) {
-  Spec sizes{"classes", {}, {}};
-  std::vector<double> values, amounts;
+Classes sizes_of(double second, double third, const std::vector<double>& shares) {
+  Classes sizes{.basis = Basis::volume};
   for (std::size_t k = 0; k < shares.size(); ++k) {
     if (!(shares[k] > 0)) continue;
-    values.push_back(k == 0 ? 1 : k == 1 ? second : second * third);
-    amounts.push_back(shares[k]);
+    sizes.values.push_back(k == 0 ? 1 : k == 1 ? second : second * third);
+    sizes.shares.push_back(shares[k]);
   }
-  sizes.parameters["values"].value = values;
-  sizes.parameters["shares"].value = amounts;
-  sizes.parameters["basis"].value = std::string("volume");
   return sizes;
 }
 
@@ -111,8 +107,8 @@ Files figure_6(const FigureOptions& options) {
       CheckOptions check;
       check.spheres = spheres;
       check.seed = options.seed;
-      Scene scene = scene_to_check(sizes_of(second, third, best.shares), true, check);
-      scene.stages.front().parameters["alpha"].value = alpha;
+      check.stage = Relax{.alpha = alpha};
+      const Scene scene = scene_to_check(sizes_of(second, third, best.shares), true, check);
       const auto packed = packed_for_a_figure(scene, "figure 6", done += 0.2, options);
       if (!packed) return {};
       csv += fmt::format("{},{:.6f},{},{:.3f}\n", csv_line("relax", second, third, packed->phi, best.shares),

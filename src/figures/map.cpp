@@ -79,7 +79,7 @@ WrittenMap write_map(const MapOptions& o, const std::filesystem::path& folder) {
     for (std::size_t j = 0; j < map.xs.size(); ++j) {
       const Prediction& p = rows[i][j];
       map.values.push_back(p.phi);
-      fmt::format_to(std::back_inserter(csv), "{:.6g},{:.6g},{:.6f}\n", map.ys[i], map.xs[j], p.phi);
+      csv += fmt::format("{:.6g},{:.6g},{:.6f}\n", map.ys[i], map.xs[j], p.phi);
       densest.error = std::max(densest.error, p.error);
       if (p.phi <= densest.phi) continue;
       densest.phi = p.phi;

@@ -8,16 +8,12 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "neighbors/cell_grid.hpp"
-#include "soft/soft_packing.hpp"
 #include "work/periodic_holes.hpp"
 #include "work/resize_box.hpp"
 
 namespace bernal {
 namespace {
 
-/// Of sizes, for lists that are made for one: in four dimensions 10,000 spheres of three classes with ratios
-/// 10 : 4 : 1 fill 0.4 of a box in 1.8 s by relaxation and in 0.07 s by classes.
-constexpr double wide_range = 3;
 /// Spheres down to this share of the largest of a class belong to it: a level of the background grid.
 constexpr double least_of_class = 0.5;
 /// Random places that are tried for a sphere before the others of its class are moved.
@@ -36,7 +32,7 @@ constexpr double first_step = 0.3, successful = 0.4, adapted = 1.1, shortest_ste
 template <int D>
 class Insertion {
  public:
-  explicit Insertion(PeriodicWork& work)
+  explicit Insertion(Work& work)
       : work_(work),
         random_(work.random(Stream::insert)),
         spheres_(work.spheres.in<D>()),
@@ -182,7 +178,7 @@ class Insertion {
     });
   }
 
-  PeriodicWork& work_;
+  Work& work_;
   Random random_;
   Spheres<D> spheres_;
   const Vector<D> edges_;
@@ -198,7 +194,7 @@ class Insertion {
 
 }  // namespace
 
-StageEnd fill_by_classes(PeriodicWork& work, const FillOptions& options) {
+StageEnd fill_by_classes(Work& work, const FillOptions& options) {
   if (!work.spheres.empty() && fits_box(work)) {
     const EffectTimer timer(work.effects["insertion"]);
     const StageEnd end = with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
@@ -207,15 +203,6 @@ StageEnd fill_by_classes(PeriodicWork& work, const FillOptions& options) {
     if (end != StageEnd::full) return end;
   }
   return fill_by_relaxation(work, options);
-}
-
-StageEnd fill(PeriodicWork& work, const FillOptions& options) {
-  if (work.spheres.empty()) return StageEnd::converged;
-  const auto [least, most] = std::ranges::minmax(work.spheres.r);
-  const bool lists_know_sizes =
-      work.dimension() <= 3 && work.target_edges->minCoeff() > SoftPacking::smallest_edge(work.spheres.r);
-  return most > wide_range * least && !lists_know_sizes ? fill_by_classes(work, options)
-                                                        : fill_by_relaxation(work, options);
 }
 
 }  // namespace bernal

@@ -13,6 +13,7 @@
 #include "fly/fill_by_classes.hpp"
 #include "fly/fly_events.hpp"
 #include "fly/fly_patent.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {
@@ -26,13 +27,22 @@ constexpr double share_between_walls = 0.5;
 /// Where radii differ more than this, small spheres have room between the large ones: those come first.
 constexpr double wide_sizes = 4;
 
-constexpr std::pair<std::string_view, FillMethod> methods[] = {{"patent", FillMethod::patent},
-                                                               {"flight", FillMethod::flight},
-                                                               {"classes", FillMethod::classes},
-                                                               {"relaxation", FillMethod::relaxation}};
+constexpr std::string_view methods[] = {"auto", "flight", "patent", "classes", "relaxation"};
+
+/// What `fly` fills the box to is the scene's target.
+void complete_fly(Fly& fly, Scene& scene, const schema::Section& section) {
+  const auto* box = std::get_if<PeriodicBox>(&scene.container);
+  if (!fly.packing_fraction || !box) return;
+  Target& target = scene.target;
+  if (target.packing_fraction || target.fill || (target.count && !box->scalable))
+    section.fail("packing_fraction",
+                 "\"packing_fraction\" in [[stage]] fly says again what [spheres] says; leave it out");
+  target.packing_fraction = std::exchange(fly.packing_fraction, std::nullopt);
+  target.where = section.locations.of("packing_fraction");
+}
 
 /// Takes out the spheres that overlap their own image or do not fit between two walls.
-std::size_t drop_too_wide(PeriodicWork& work) {
+std::size_t drop_too_wide(Work& work) {
   Spheres<dynamic> fitting(work.dimension());
   fitting.reserve(work.spheres.size());
   const double skin = 1 + 1e-9;  // more than the margin that flying spheres keep from walls
@@ -47,7 +57,7 @@ std::size_t drop_too_wide(PeriodicWork& work) {
   return dropped;
 }
 
-StageEnd fill(PeriodicWork& work, FillMethod method, const FlyOptions& options) {
+StageEnd fill(Work& work, FillMethod method, const Fly& options) {
   switch (method) {
     case FillMethod::patent:
     case FillMethod::flight: {
@@ -55,31 +65,27 @@ StageEnd fill(PeriodicWork& work, FillMethod method, const FlyOptions& options) 
       return method == FillMethod::patent ? fly_by_patent(work, options) : fly_by_events(work, options);
     }
     case FillMethod::classes:
-      return fill_by_classes(work, {.sweeps = options.sweeps});
+      return fill_by_classes(work, {.sweeps = static_cast<double>(options.sweeps)});
     case FillMethod::relaxation:
+    case FillMethod::automatic:
       break;
   }
-  return fill_by_relaxation(work, {.sweeps = options.sweeps});
+  return fill_by_relaxation(work, {.sweeps = static_cast<double>(options.sweeps)});
 }
 
 bool flies(FillMethod method) { return method == FillMethod::patent || method == FillMethod::flight; }
 
 }  // namespace
 
-std::string_view name_of(FillMethod method) {
-  return std::ranges::find(methods, method, &std::pair<std::string_view, FillMethod>::second)->first;
-}
+std::string_view name_of(FillMethod method) { return methods[static_cast<std::size_t>(method)]; }
 
-FillChoice choose_filling(std::string_view method, const FillTask& task) {
-  if (method != "auto") {
-    const auto* named = std::ranges::find(methods, method, &std::pair<std::string_view, FillMethod>::first);
-    if (named == std::end(methods))
-      throw Error(ErrorCode::bad_argument, fmt::format("no such way of filling a box: \"{}\"", method));
-    if (task.has_walls && named->second == FillMethod::classes)
+FillChoice choose_filling(FillMethod method, const FillTask& task) {
+  if (method != FillMethod::automatic) {
+    if (task.has_walls && method == FillMethod::classes)
       throw Error(ErrorCode::bad_argument,
                   "\"classes\" does not know walls; with walls, the methods are \"auto\", \"flight\", "
                   "\"patent\" and \"relaxation\"");
-    return {named->second, "as the scene asks for it"};
+    return {method, "as the scene asks for it"};
   }
   const double reached =
       share_of_flight[task.dimension - 1] * task.attainable * (task.has_walls ? share_between_walls : 1);
@@ -96,7 +102,26 @@ FillChoice choose_filling(std::string_view method, const FillTask& task) {
           fmt::format("as {:.3f} is more than the {:.3f} that flight{} reaches", phi, reached, between)};
 }
 
-StageEnd fly(PeriodicWork& work, const FillChoice& choice, const FlyOptions& options) {
+template <>
+const StageEntry& entry_of<Fly>();
+
+namespace {
+
+/// The method and why it, at the first of its effects.
+std::vector<PlanItem> effects_of(const Fly& options, const FillTask& task) {
+  const FillChoice choice = choose_filling(options.method, task);
+  const auto all = entry_of<Fly>().box_effects.begin();
+  std::vector<PlanItem> items = {
+      {"fly", fmt::format("by {}, {}", name_of(choice.method), choice.reason), ""}};
+  const bool in_flight = flies(choice.method), by_classes = choice.method == FillMethod::classes;
+  items.insert(items.end(), all + (in_flight ? 0 : by_classes ? 2 : 4), all + (in_flight ? 2 : 6));
+  if (choice.method == FillMethod::patent) items[2].cost = "O(N) each";
+  return items;
+}
+
+}  // namespace
+
+StageEnd fly(Work& work, const FillChoice& choice, const Fly& options) {
   if (work.placed && work.edges == *work.target_edges) {
     work.account = "all had places in this box before";
     return StageEnd::converged;
@@ -122,6 +147,57 @@ StageEnd fly(PeriodicWork& work, const FillChoice& choice, const FlyOptions& opt
         "; no place was free among {} in a row",
         grouped(static_cast<std::uint64_t>(options.patience * static_cast<double>(wanted - too_wide))));
   return end;
+}
+
+template <>
+const StageEntry& entry_of<Fly>() {
+  using namespace schema;
+  static const StageEntry entry = {
+      .table = stage_table<Fly>(
+          {.name = "fly",
+           .help = "fill a box of given size with spheres of given radii that fly and collide",
+           .keys = {word(
+                        &Fly::method, "method",
+                        "auto: by target and sizes; flight: from collision to collision; patent: in steps of "
+                        "one collision; classes: large ones first, small ones between them; relaxation: all "
+                        "at once, pushed apart",
+                        {std::begin(methods), std::end(methods)}),
+                    number(&Fly::packing_fraction, "packing_fraction",
+                           "where [spheres] does not say it: the one to fill the box to", between(0, 1)),
+                    integer(&Fly::batch, "batch",
+                            "flight, patent: new spheres tried between two steps; 0: half of all, for the "
+                            "patent's procedure a tenth",
+                            {0, 1e9}),
+                    number(&Fly::dt, "dt",
+                           "flight, patent: way between two batches in mean diameters; if absent 0.25, for "
+                           "the patent's procedure 0.01",
+                           above(0, 1e6)),
+                    number(
+                        &Fly::patience, "patience",
+                        "flight, patent: full when so many places in a row, for each sphere, were not free",
+                        above(0, 1e9)),
+                    integer(&Fly::sweeps, "sweeps",
+                            "classes, relaxation: of all spheres, after which it stops", {1, 1e9})},
+           .complete = completion(complete_fly)},
+          {.in_box = true, .box_between_walls = true, .fills_given_box = true}),
+      .act_in_box = act(+[](Work& work, const Fly& options) {
+        const FillChoice choice = choose_filling(options.method, work.fill_task);
+        Fly chosen = options;
+        if (!chosen.dt) chosen.dt = choice.method == FillMethod::patent ? 0.01 : 0.25;
+        return fly(work, choice, chosen);
+      }),
+      .box_effects = {{"flight",
+                       "new spheres at random places, from large to small, while those that are there fly",
+                       "O(N) a batch"},
+                      {"collisions", "elastic, between spheres and at walls", "O(log N) each"},
+                      {"insertion", "from large to small, between those that are there", "O(1) a trial"},
+                      {"trial places", "random, and pushed out of what they overlap", "O(1) each"},
+                      {"neighbour lists", "of all spheres together, from the background grid",
+                       "O(N) an iteration"},
+                      {"relaxation", "overlapping spheres push each other apart; what is stuck is stirred",
+                       "some 1,000 sweeps of O(N)"}},
+      .chosen_effects = of_options(effects_of)};
+  return entry;
 }
 
 }  // namespace bernal

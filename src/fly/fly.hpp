@@ -2,28 +2,21 @@
 #include <string>
 #include <string_view>
 
-#include "fly/fly_options.hpp"
-#include "work/periodic_work.hpp"
+#include "bernal/fly/fly.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 
-/// How a box of given edges is filled with spheres of given radii.
-enum class FillMethod {
-  patent,      ///< the patent's collision filling: PatentFlight
-  flight,      ///< from event to event, with pushed trial centres: EventFlight
-  classes,     ///< the largest first, the smaller between them: fill_by_classes
-  relaxation,  ///< all at once, overlapping, pushed apart: fill_by_relaxation
-};
 std::string_view name_of(FillMethod);
 
 struct FillChoice {
-  FillMethod method = FillMethod::relaxation;
-  std::string reason;  ///< a clause: "as …"
+  FillMethod method = FillMethod::relaxation;  ///< not automatic
+  std::string reason;                          ///< a clause: "as …"
 };
 
-/// `method` is "auto" or a method's name. All know walls but "classes".
+/// All know walls but `classes`.
 /// Throws Error{bad_argument} where the method that is named cannot do it.
-FillChoice choose_filling(std::string_view method, const FillTask& task);
+FillChoice choose_filling(FillMethod method, const FillTask& task);
 
 /// Collision filling in n dimensions: puts spheres of prescribed radii into the box of prescribed edges, in 1
 /// to 8 dimensions; neither changes by a bit. Spheres come from large to small; those that cross a periodic
@@ -33,6 +26,6 @@ FillChoice choose_filling(std::string_view method, const FillTask& task);
 /// were wider than the box; `hit_limit` and `cancelled` as they say. Then `work.spheres` holds those that are
 /// placed, in the order in which they were drawn. Spheres that have places in that very box already stay
 /// there. Precondition: `work.target_edges`. Deterministic in the seed.
-StageEnd fly(PeriodicWork& work, const FillChoice& choice, const FlyOptions& options);
+StageEnd fly(Work& work, const FillChoice& choice, const Fly& options);
 
 }  // namespace bernal

@@ -21,11 +21,11 @@ constexpr double worn = 0.3;
 }  // namespace
 
 template <int D>
-EventFlight<D>::EventFlight(FlyingSpheres<D>& spheres, const FlyOptions& options, Random random)
+EventFlight<D>::EventFlight(FlyingSpheres<D>& spheres, const Fly& options, Random random)
     : spheres_(spheres),
       batch_(options.batch > 0 ? static_cast<std::size_t>(options.batch)
                                : std::max<std::size_t>(1, spheres.wanted() / 2)),
-      dt_(options.dt * 2 * spheres.mean_radius()),
+      dt_(*options.dt * 2 * spheres.mean_radius()),
       random_(random),
       small_(spheres.is_small()) {
   from_.resize(static_cast<Eigen::Index>(spheres.wanted()), D);
@@ -219,7 +219,7 @@ void EventFlight<D>::fly() {
   for (Id i = 0; i < n; ++i) move_to(i, end_);
 }
 
-StageEnd fly_by_events(PeriodicWork& work, const FlyOptions& options) {
+StageEnd fly_by_events(Work& work, const Fly& options) {
   return with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
     return fly_until_full<EventFlight<D>, D>(work, options);

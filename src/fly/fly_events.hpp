@@ -3,7 +3,7 @@
 #include <queue>
 #include <vector>
 
-#include "fly/fly_options.hpp"
+#include "bernal/fly/fly.hpp"
 #include "fly/flying_spheres.hpp"
 
 namespace bernal {
@@ -24,7 +24,7 @@ class EventFlight {
  public:
   using Id = typename FlyingSpheres<D>::Id;
 
-  EventFlight(FlyingSpheres<D>& spheres, const FlyOptions& options, Random random);
+  EventFlight(FlyingSpheres<D>& spheres, const Fly& options, Random random);
 
   /// One batch of new spheres. Returns how many found a place.
   std::size_t insert();
@@ -75,6 +75,6 @@ class EventFlight {
 };
 
 /// Fills the box `*work.target_edges` that way. As `fill_by_relaxation` otherwise.
-StageEnd fly_by_events(PeriodicWork& work, const FlyOptions& options);
+StageEnd fly_by_events(Work& work, const Fly& options);
 
 }  // namespace bernal

@@ -23,11 +23,11 @@ constexpr int most_halvings = 40;
 }  // namespace
 
 template <int D>
-PatentFlight<D>::PatentFlight(FlyingSpheres<D>& spheres, const FlyOptions& options, Random random)
+PatentFlight<D>::PatentFlight(FlyingSpheres<D>& spheres, const Fly& options, Random random)
     : spheres_(spheres),
       batch_(options.batch > 0 ? static_cast<std::size_t>(options.batch)
                                : std::max<std::size_t>(1, spheres.wanted() / spheres_for_each_tried)),
-      dt_(options.dt * 2 * spheres.mean_radius()),
+      dt_(*options.dt * 2 * spheres.mean_radius()),
       random_(random) {
   next_.resize(static_cast<Eigen::Index>(spheres.wanted()), D);
 }
@@ -156,7 +156,7 @@ void PatentFlight<D>::fly() {
   if (hits(next_, found) > 0) collide(found[0]);
 }
 
-StageEnd fly_by_patent(PeriodicWork& work, const FlyOptions& options) {
+StageEnd fly_by_patent(Work& work, const Fly& options) {
   return with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
     return fly_until_full<PatentFlight<D>, D>(work, options);

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fly/fly_options.hpp"
+#include "bernal/fly/fly.hpp"
 #include "fly/flying_spheres.hpp"
 
 namespace bernal {
@@ -29,7 +29,7 @@ class PatentFlight {
  public:
   using Id = typename FlyingSpheres<D>::Id;
 
-  PatentFlight(FlyingSpheres<D>& spheres, const FlyOptions& options, Random random);
+  PatentFlight(FlyingSpheres<D>& spheres, const Fly& options, Random random);
 
   /// One batch of new spheres. Returns how many found a place.
   std::size_t insert();
@@ -61,6 +61,6 @@ class PatentFlight {
 };
 
 /// Fills the box `*work.target_edges` that way. As `fill_by_relaxation` otherwise.
-StageEnd fly_by_patent(PeriodicWork& work, const FlyOptions& options);
+StageEnd fly_by_patent(Work& work, const Fly& options);
 
 }  // namespace bernal

@@ -1,5 +1,5 @@
 #pragma once
-#include "fly/fly_options.hpp"
+#include "bernal/fly/fly.hpp"
 #include "fly/flying_spheres.hpp"
 
 namespace bernal {
@@ -7,7 +7,7 @@ namespace bernal {
 /// Inserts and flies in turn until all are placed, none finds a place for long, or the user stops it. What is
 /// placed by then is what `work` holds in the end.
 template <class Flight, int D>
-StageEnd fly_until_full(PeriodicWork& work, const FlyOptions& options) {
+StageEnd fly_until_full(Work& work, const Fly& options) {
   constexpr double milestone_every = 0.01;
   FlyingSpheres<D> spheres(work);
   Flight flight(spheres, options, work.random(Stream::fly));

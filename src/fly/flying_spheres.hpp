@@ -11,7 +11,7 @@
 #include "bernal/core/random.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "neighbors/partial_grid.hpp"
-#include "work/periodic_work.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 
@@ -33,7 +33,7 @@ class FlyingSpheres {
   };
 
   /// Precondition: every sphere has room in the box for itself. `axes` as PartialGrid's.
-  FlyingSpheres(const PeriodicWork& work, int axes = PartialGrid<D>::automatic)
+  FlyingSpheres(const Work& work, int axes = PartialGrid<D>::automatic)
       : edges_(*work.target_edges),
         drawn_(work.spheres.r),
         margin_(std::max(1e-10, 4 * tolerance::growth(edges_.maxCoeff() / std::ranges::min(drawn_)))),

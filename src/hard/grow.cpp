@@ -8,12 +8,14 @@
 #include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
+#include "hard/grow_in_container.hpp"
 #include "hard/growth_schedule.hpp"
 #include "hard/hard_spheres.hpp"
 #include "jam/finish_in_periodic_box.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/random_insertion.hpp"
 #include "work/resize_box.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {
@@ -24,6 +26,13 @@ constexpr int most_trials = 100000;
 constexpr double room_for_rounding = 1e-12;
 /// A milestone for each growth by this much of the logarithm of the compressibility.
 constexpr double milestone_every = 0.1;
+
+/// The papers' phi_init; in other than three dimensions as far below where random insertion ends.
+constexpr double loose_start[] = {0.28, 0.2, 0.135, 0.089, 0.057};
+
+void complete_grow(Grow& grow, Scene& scene, const schema::Section&) {
+  if (!grow.phi_init) grow.phi_init = loose_start[scene.dimension() - 2];
+}
 
 /// Random sequential insertion between the walls. Returns whether all have found places.
 template <int D>
@@ -44,7 +53,7 @@ bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::ve
 /// Tells the run how far it has come, now and then.
 class Milestones {
  public:
-  Milestones(PeriodicWork& work, double pressure) : work_(work), pressure_(pressure) {}
+  Milestones(Work& work, double pressure) : work_(work), pressure_(pressure) {}
 
   void pass(const Vector<dynamic>& edges, double filled, const FlightPeriod& period) {
     work_.edges = edges;
@@ -57,14 +66,14 @@ class Milestones {
   }
 
  private:
-  PeriodicWork& work_;
+  Work& work_;
   double pressure_;
   double next_ = 0, next_filled_ = 0;
 };
 
 /// Those of the box, in its coordinates.
 template <int D>
-std::vector<Wall<D>> walls_of(const PeriodicWork& work, const Vector<D>& edges) {
+std::vector<Wall<D>> walls_of(const Work& work, const Vector<D>& edges) {
   std::vector<Wall<D>> walls;
   for (int k = 0; k < D; ++k) {
     if (!work.has_wall(k)) continue;
@@ -86,7 +95,7 @@ void require_room(const Spheres<D>& spheres, const Vector<D>& box, const std::ve
 }
 
 template <int D>
-void start(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, double phi_init) {
+void start(Spheres<D>& spheres, Vector<D>& edges, Work& work, double phi_init) {
   if (work.placed) {
     if (work.allowed_overlap > 0) {  // other stages may leave some
       const Vector<D> free = edges_free_of_overlap<D>(spheres, edges, 0, work.walls);
@@ -108,12 +117,12 @@ void start(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, double phi
 }
 
 template <int D>
-StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
+StageEnd grow_in(Work& work, const GrowOptions& options) {
   if (options.polish > 0 && !work.walls.empty())
     throw Error(ErrorCode::bad_scene, "\"polish\" knows no walls; leave it out");
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
-  start<D>(spheres, edges, work, options.phi_init);
+  start<D>(spheres, edges, work, options.phi_init.value_or(loose_start[D - 2]));
 
   HardSpheres<D> flight(spheres, edges_around_walls(edges, work.walls), work.random(Stream::grow),
                         {.walls = walls_of(work, edges), .masses = options.masses});
@@ -151,10 +160,82 @@ StageEnd grow_in(PeriodicWork& work, const GrowOptions& options) {
 
 }  // namespace
 
-StageEnd grow(PeriodicWork& work, const GrowOptions& options) {
+StageEnd grow(Work& work, const GrowOptions& options) {
   EffectTimer timer(work.effects["growth"]);
   return with_dimension(work.dimension(), std::integer_sequence<int, 2, 3, 4, 5, 6>{},
                         [&](auto dimension) { return grow_in<decltype(dimension)::value>(work, options); });
+}
+
+template <>
+const StageEntry& entry_of<Grow>() {
+  using namespace schema;
+  static const StageEntry entry = {
+      .table = stage_table<Grow>(
+          {.name = "grow",
+           .help = "hard spheres fly, collide and grow, in convex containers to their radii, in periodic "
+                   "boxes of 2 to 6 dimensions until they jam",
+           .keys = joined(
+               {number(
+                    &Grow::delta, "delta",
+                    "as published: growth of the radii, relative to those at the start, in the time that a "
+                    "sphere of thermal speed takes across the box, or for the cube root of the "
+                    "container's volume; if absent see rate",
+                    above(0, 100)),
+                number(&Grow::phi_init, "phi_init",
+                       "packing fraction of the random insertion at the start, in a container half of it "
+                       "where spheres find no places; if absent 0.2, in other than three dimensions half of "
+                       "what insertion reaches",
+                       above(0, 0.5)),
+                number(&Grow::rate, "rate",
+                       "growth of the mean diameter by volume over the thermal speed where the packing "
+                       "forms; slower is denser; ten times that while the spheres are a fluid",
+                       {1e-6, 1}),
+                number(&Grow::pressure, "pressure",
+                       "compressibility factor P V / N k T at which the spheres count as jammed", {10, 1e13}),
+                word(&Grow::masses, "masses",
+                     "equal, as published; volume: as of one material, which packs denser where sizes differ "
+                     "several times, if the rate is low",
+                     {"equal", "volume"})},
+               acting(Acts::in_box,
+                      {number(&Grow::polish, "polish",
+                              "close the gaps and overlaps of all contacts to this ratio; 0: do not",
+                              {0, 0.5})})),
+           .complete = completion(complete_grow)},
+          {.in_bed = true,
+           .in_box = true,
+           .box_between_walls = true,
+           .least_dimension = 2,
+           .most_dimensions = 6,
+           .keeps_sizes = true,
+           .places_expected = true,
+           .reaches = Reaches::close_packing}),
+      .act_in_bed = act(grow_in_container),
+      .act_in_box = act(grow),
+      .bed_effects = {{"insertion", "random places at the start, the largest first", "O(1) a trial"},
+                      {"neighbour shells", "each sphere renews its own list, and that of its walls",
+                       "about 1 µs"},
+                      {"collisions", "of growing spheres, from a calendar of events", "0.5 to 0.8 µs"},
+                      {"reflections", "of growing spheres from the walls, from the same calendar",
+                       "0.5 to 0.8 µs"},
+                      {"growth",
+                       "until the spheres have their radii; what jams before loses the last of the drawn "
+                       "sequence",
+                       "some 2,000 collisions a sphere"}},
+      .box_effects = {{"insertion", "random places at the start, the largest first", "O(1) a trial"},
+                      {"neighbour shells", "each sphere renews its own list", "about 1 µs"},
+                      {"collisions", "of growing spheres, from a calendar of events", "0.5 to 0.8 µs"},
+                      {"reflections", "of growing spheres from the walls", "0.5 to 0.8 µs"},
+                      {"growth", "until the spheres jam", "some 2,000 collisions a sphere"}},
+      .chosen_effects =
+          [](const void*, const FillTask& task) {
+            auto effects = entry_of<Grow>().box_effects;
+            if (!task.has_walls)
+              std::erase_if(effects, [](const PlanItem& e) { return e.name == "reflections"; });
+            return effects;
+          },
+      .require = [](const Domain& container,
+                    double smallest_radius) { walls_for_growth(container, smallest_radius); }};
+  return entry;
 }
 
 }  // namespace bernal

@@ -1,27 +1,11 @@
 #pragma once
-#include <optional>
-
+#include "bernal/hard/grow.hpp"
 #include "hard/hard_spheres.hpp"
-#include "work/periodic_work.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 
-struct GrowOptions {
-  /// Growth of the radii in units of their first values and of the time that a sphere of thermal speed takes
-  /// for the length of the box: r = r0 (1 + delta t). Without it, growth follows the default schedule.
-  std::optional<double> delta = {};
-  /// Where spheres that have no places start: random sequential insertion up to this packing fraction.
-  double phi_init = 0.2;
-  /// Of the default schedule, where the packing forms: growth of the mean diameter by volume over the thermal
-  /// speed. By volume, because it is the large spheres that must not grow too fast for the others.
-  double rate = 0.01;
-  /// Compressibility factor P V / N k T at which spheres count as jammed.
-  double pressure = 1e6;
-  /// Of one material large spheres are heavy and pack denser where sizes differ much, see `grow`.
-  Masses masses = Masses::equal;
-  /// Overlap ratio to which `polish` closes the contacts of the jammed packing; 0: not at all.
-  double polish = 0;
-};
+using GrowOptions = Grow;
 
 /// Growth in a periodic box, which may end at walls along some axes: hard spheres fly, collide and grow in
 /// proportion to their radii until they jam or fill the box as asked (Lubachevsky & Stillinger, J. Stat.
@@ -54,6 +38,6 @@ struct GrowOptions {
 /// for the minimum image: 2.5 of the largest diameters, but along axes with walls. Throws Error{bad_scene} if
 /// it is that from the start, or if phi_init is denser than random insertion reaches. Precondition: 2 to 6
 /// dimensions. Cost: some 2,000 collisions a sphere at 0.5 to 0.8 µs. One thread.
-StageEnd grow(PeriodicWork& work, const GrowOptions& options);
+StageEnd grow(Work& work, const GrowOptions& options);
 
 }  // namespace bernal

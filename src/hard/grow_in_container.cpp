@@ -67,11 +67,11 @@ class Growth {
       : work_(work),
         options_(options),
         random_(work.random(Stream::grow)),
-        full_size_(1 + (1 + room_for_rounding) * work.bed.skin() / work.supply.smallest()),
-        walls_(walls_for_growth(work.shape, work.supply.smallest())) {
-    const Bounds<3> bounds = work.bed.container().bounds();
-    const Boundary<3>& boundary = work.bed.container().boundary();
-    edges_ = bounds.size().array() + margin * 2 * work.supply.largest();
+        full_size_(1 + (1 + room_for_rounding) * work.bed().skin() / work.supply->smallest()),
+        walls_(walls_for_growth(work.domain, work.supply->smallest())) {
+    const Bounds<3> bounds = work.bed().container().bounds();
+    const Boundary<3>& boundary = work.bed().container().boundary();
+    edges_ = bounds.size().array() + margin * 2 * work.supply->largest();
     to_box_ = 0.5 * edges_ - bounds.center();
     for (int k = 0; k < 3; ++k) {
       if (!boundary.repeats(k)) continue;
@@ -83,7 +83,7 @@ class Growth {
 
   StageEnd run() {
     const std::size_t wanted = target_count();
-    if (work_.bed.size() >= wanted) return StageEnd::converged;
+    if (work_.bed().size() >= wanted) return StageEnd::converged;
     require_fitting();
     Growing growing = from_bed();
     std::size_t count = std::min(wanted, count_for(most_of_attainable * work_.attainable));
@@ -104,34 +104,34 @@ class Growth {
   }
 
  private:
-  double volume_of_container() const { return work_.bed.container().volume(); }
+  double volume_of_container() const { return work_.bed().container().volume(); }
   std::size_t count_for(double packing_fraction) const {
-    return work_.supply.count_filling(packing_fraction * volume_of_container());
+    return work_.supply->count_filling(packing_fraction * volume_of_container());
   }
 
   std::size_t target_count() const {
     if (work_.target.is_open() && !work_.target.fill) return count_for(work_.attainable);
-    return work_.supply.wanted();
+    return work_.supply->wanted();
   }
 
-  double radius_of(std::size_t tag) const { return work_.supply.radius(static_cast<std::uint32_t>(tag)); }
+  double radius_of(std::size_t tag) const { return work_.supply->radius(static_cast<std::uint32_t>(tag)); }
 
   /// Of analytic containers that is known beforehand.
   void require_fitting() const {
-    if (!std::holds_alternative<Mesh>(work_.shape)) return;
+    if (!std::holds_alternative<Mesh>(work_.domain)) return;
     const LargestSphere largest = largest_sphere_between(walls_, {Vector<3>::Zero(), edges_});
-    if (work_.supply.largest() <= largest.radius) return;
+    if (work_.supply->largest() <= largest.radius) return;
     throw Error(
         ErrorCode::bad_scene,
         fmt::format(
             "the largest sphere does not fit into the container, which takes one only {:.6g} times as "
             "large: use smaller ones or check the units",
-            largest.radius / work_.supply.largest()));
+            largest.radius / work_.supply->largest()));
   }
 
   /// The first of the drawn sequence, up to the last one that is in the bed.
   Growing from_bed() const {
-    const Bed& bed = work_.bed;
+    const Bed& bed = work_.bed();
     Growing growing;
     for (Bed::Id i = 0; i < bed.size(); ++i) {
       while (growing.spheres.size() <= bed.tag(i)) growing.add(radius_of(growing.spheres.size()));
@@ -145,7 +145,7 @@ class Growth {
   void insert(Growing& growing) {
     const EffectTimer timer(work_.effects["insertion"]);
     const double filled = volume_of(growing.spheres) / volume_of_container();
-    double phi = options_.phi_init;
+    double phi = options_.phi_init.value_or(0.2);
     do {
       growing.size = std::min(largest_start, std::cbrt(phi / filled));
       if (try_to_insert(growing)) return;
@@ -158,11 +158,11 @@ class Growth {
   }
 
   bool try_to_insert(Growing& growing) {
-    const Container& container = work_.bed.container();
-    const double clear_of_walls = inset * flatness * work_.supply.smallest();
+    const Container& container = work_.bed().container();
+    const double clear_of_walls = inset * flatness * work_.supply->smallest();
     const bool all = insert_at_random<3>(
         growing.spheres, growing.placed, growing.size, container.bounds(), container.boundary(), most_trials,
-        [&](double) { return work_.bed.places().draw(random_); },
+        [&](double) { return work_.bed().places().draw(random_); },
         [&](const Vector<3>& c, double r) {
           return container.clearance_within(c, r + clear_of_walls) >= r + clear_of_walls;
         });
@@ -204,7 +204,7 @@ class Growth {
   void trim_and_grow(Growing& growing) {
     double spare = caution;
     for (int k = 0; k < most_trims && !growing.grown && !cancelled_; ++k, spare *= 2) {
-      const std::size_t fitting = work_.supply.count_filling((1 - spare) * growing.volume());
+      const std::size_t fitting = work_.supply->count_filling((1 - spare) * growing.volume());
       growing.spheres.resize(std::min(fitting, growing.spheres.size()) - 1);
       growing.size *= 1 - shrinkage;
       grow(growing);
@@ -233,7 +233,7 @@ class Growth {
 
   /// Into the bed, in the order of the sequence, unless there were more before. Returns whether all fit.
   bool hand_over(const Spheres<3>& spheres) {
-    Bed& bed = work_.bed;
+    Bed& bed = work_.bed();
     std::vector<std::optional<Bed::Ball>> before(spheres.size());
     const std::size_t count_before = bed.size();
     for (Bed::Id i = 0; i < bed.size(); ++i) {
@@ -255,7 +255,7 @@ class Growth {
         if (placed[tag]) bed.insert(before[tag]->center, before[tag]->r, tag);
       }
     }
-    work_.supply.set_placed(placed);
+    work_.supply->set_placed(placed);
     return all_fit;
   }
 

@@ -6,6 +6,7 @@
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
+#include "bernal/hard/grow.hpp"
 #include "hard/calendar.hpp"
 #include "hard/collision_kernels.hpp"
 #include "hard/shells.hpp"
@@ -29,11 +30,6 @@ struct FlightPeriod {
   double wall_momentum = 0;
   double heating = 0;    ///< relative growth of the kinetic energy
   bool stopped = false;  ///< it was told to stop
-};
-
-enum class Masses {
-  equal,     ///< as in the papers
-  by_volume  ///< of one material
 };
 
 /// What `HardSpheres` may be told.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <vector>
 
 #include <fmt/format.h>
@@ -55,8 +54,7 @@ std::string chart_of(const std::vector<Moment>& history, double y0, double y1, s
   add_stages(chart, history);
   std::string line;
   for (const Moment& m : history) {
-    fmt::format_to(std::back_inserter(line), "{}{:.1f} {:.1f}", line.empty() ? 'M' : 'L', chart.x(m.seconds),
-                   chart.y(m.value));
+    line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? 'M' : 'L', chart.x(m.seconds), chart.y(m.value));
   }
   chart.add("<path class=\"first line\" d=\"{}\"/>", line);
   if (history.size() <= 200) {
@@ -103,10 +101,8 @@ std::string size_histogram(const SizeHistogram& histogram) {
     const double x = chart.x(least) + bar * static_cast<double>(k);
     chart.add("<rect class=\"bar\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>", x + 0.5,
               chart.y(number[k]), bar - 1, chart.y(0) - chart.y(number[k]));
-    fmt::format_to(std::back_inserter(by_volume), "{}{:.1f} {:.1f}H{:.1f}", k == 0 ? 'M' : 'L', x,
-                   chart.y(volume[k]), x + bar);
-    fmt::format_to(std::back_inserter(by_asked), "{}{:.1f} {:.1f}H{:.1f}", k == 0 ? 'M' : 'L', x,
-                   chart.y(asked[k]), x + bar);
+    by_volume += fmt::format("{}{:.1f} {:.1f}H{:.1f}", k == 0 ? 'M' : 'L', x, chart.y(volume[k]), x + bar);
+    by_asked += fmt::format("{}{:.1f} {:.1f}H{:.1f}", k == 0 ? 'M' : 'L', x, chart.y(asked[k]), x + bar);
   }
   chart.add("<path class=\"second line\" d=\"{}\"/>", by_volume);
   if (histogram.asked) chart.add("<path class=\"asked line\" d=\"{}\"/>", by_asked);
@@ -125,8 +121,8 @@ std::string radial_chart(const RadialDistribution& radial) {
                "distance of the centres (mean diameters)"},
               {0, highest, "g(r)"});
   const auto point = [&](std::string& path, std::size_t k, double g) {
-    fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L',
-                   chart.x(diameters(k)), chart.y(std::clamp(g, 0.0, highest)));
+    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', chart.x(diameters(k)),
+                        chart.y(std::clamp(g, 0.0, highest)));
   };
   std::string line, band;
   for (std::size_t k = 0; k < radial.g.size(); ++k) {
@@ -148,8 +144,8 @@ std::string wall_chart(const WallProfile& profile) {
       {0, highest, "porosity"});
   const auto point = [&](std::string& path, std::size_t k, double porosity) {
     const double middle = 0.5 * (profile.layers[k].from + profile.layers[k].to) / profile.mean_diameter;
-    fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', chart.x(middle),
-                   chart.y(std::clamp(porosity, 0.0, highest)));
+    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', chart.x(middle),
+                        chart.y(std::clamp(porosity, 0.0, highest)));
   };
   std::string line, band;
   for (std::size_t k = 0; k < even; ++k) {

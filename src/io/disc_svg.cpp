@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -30,11 +29,11 @@ void append_discs(std::string& out, const ByColour& discs, double rim) {
   for (int c = 0; c < colour_classes; ++c) {
     if (discs[static_cast<std::size_t>(c)].empty()) continue;
     const Colour colour = size_colour((c + 0.5) / colour_classes);
-    fmt::format_to(std::back_inserter(out), "<g fill=\"{}\" stroke=\"{}\" stroke-width=\"{:.2f}\">\n",
-                   colour.text(), mix(colour, Colour{}, 0.45).text(), rim);
+    out += fmt::format("<g fill=\"{}\" stroke=\"{}\" stroke-width=\"{:.2f}\">\n", colour.text(),
+                       mix(colour, Colour{}, 0.45).text(), rim);
     for (const Disc& disc : discs[static_cast<std::size_t>(c)]) {
-      fmt::format_to(std::back_inserter(out), "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.2f}\"/>\n",
-                     disc.center[0], disc.center[1], std::max(0.0, disc.radius - rim / 2));
+      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.2f}\"/>\n", disc.center[0],
+                         disc.center[1], std::max(0.0, disc.radius - rim / 2));
     }
     out += "</g>\n";
   }
@@ -61,8 +60,8 @@ std::string disc_svg(const Spheres<dynamic>& spheres, const Box& box, std::strin
     const auto colour = static_cast<std::size_t>(sizes.colour_class(r));
     for (int image = 0; image < 9; ++image) {
       if ((box.has_wall(0) && image % 3 != 1) || (box.has_wall(1) && image / 3 != 1)) continue;
-      const Vector<2> c(spheres.x[0][i] + (image % 3 - 1) * box.size[0],
-                        spheres.x[1][i] + (image / 3 - 1) * box.size[1]);
+      const Vector<2> c(spheres.x[0][i] - box.corner[0] + (image % 3 - 1) * box.size[0],
+                        spheres.x[1][i] - box.corner[1] + (image / 3 - 1) * box.size[1]);
       if ((c.array() + r <= 0).any() || (c.array() - r >= window.array()).any()) continue;
       const Disc disc{corner + scale * Vector<2>(c[0], window[1] - c[1]), scale * r};
       inside[colour].push_back(disc);
@@ -74,16 +73,13 @@ std::string disc_svg(const Spheres<dynamic>& spheres, const Box& box, std::strin
   std::string out = svg_head(canvas.width, canvas.height, spheres.size());
   const std::string frame = fmt::format("x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"",
                                         corner[0], corner[1], scale * window[0], scale * window[1]);
-  fmt::format_to(std::back_inserter(out),
-                 "<clipPath id=\"bernalbox\"><rect {}/></clipPath>\n<g opacity=\"0.25\">\n", frame);
+  out += fmt::format("<clipPath id=\"bernalbox\"><rect {}/></clipPath>\n<g opacity=\"0.25\">\n", frame);
   append_discs(out, across, rim);
   out += "</g>\n<g clip-path=\"url(#bernalbox)\">\n";
   append_discs(out, inside, rim);
-  fmt::format_to(std::back_inserter(out),
-                 "</g>\n<rect {} fill=\"none\" stroke=\"#8590a0\" stroke-width=\"1.6\"/>\n", frame);
+  out += fmt::format("</g>\n<rect {} fill=\"none\" stroke=\"#8590a0\" stroke-width=\"1.6\"/>\n", frame);
   if (part < 1) {
-    fmt::format_to(
-        std::back_inserter(out),
+    out += fmt::format(
         "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" font-family=\"system-ui,sans-serif\" "
         "font-size=\"17\" fill=\"#8590a0\">a corner of the box, {:.2g} of its edges</text>\n",
         canvas.width / 2, canvas.height + legend_height / 2 + 6, part);

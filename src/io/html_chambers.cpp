@@ -36,7 +36,7 @@ void write_table(Page& page, const Chambers& found, const std::string& unit) {
 void write_chambers(Page& page, const Report& report) {
   const std::optional<Chambers>& found = report.measured.chambers;
   if (!found) return;
-  const std::string unit = escaped(report.packing.scene.unit);
+  const std::string unit = escaped(name_of(report.packing.scene.unit));
   const std::size_t n = found->chambers.size();
   page.raw("<h2>Chambers</h2>\n");
   if (n == 1) {

@@ -123,7 +123,7 @@ void write_comparison(Page& page, const SizeComparison& c, const Sizes& sizes) {
 
 void write_sizes(Page& page, const Report& report) {
   const Sizes sizes = sizes_of(report.packing);
-  const std::string unit = escaped(report.packing.scene.unit);
+  const std::string unit = escaped(name_of(report.packing.scene.unit));
   if (sizes.values.empty()) return;
   constexpr std::size_t most_classes = 12;
   std::map<double, std::uint64_t> classes;
@@ -139,8 +139,10 @@ void write_sizes(Page& page, const Report& report) {
     page.add("<p>In {}.</p>\n", unit);
     write_classes(page, sizes, classes, report.asked);
   } else {
-    SizeHistogram histogram{
-        sizes.values, sizes.dimension, fmt::format("{} ({})", sizes.word, report.packing.scene.unit), {}};
+    SizeHistogram histogram{sizes.values,
+                            sizes.dimension,
+                            fmt::format("{} ({})", sizes.word, name_of(report.packing.scene.unit)),
+                            {}};
     if (report.asked)
       histogram.asked = [&](double size) { return report.asked->cumulative(size / sizes.factor); };
     page.add(

@@ -53,9 +53,9 @@ void write_walls(Page& page, const Report& report) {
         "<p>The porosity at a distance from the wall: of all that is so far from the nearest piece of wall, "
         "the share that no sphere fills{}. Lengths are in mean diameters, of {:.4g} {}.</p>\n",
         chart.empty() ? "" : ". The band is its standard error", walls->mean_diameter,
-        escaped(report.packing.scene.unit));
+        escaped(name_of(report.packing.scene.unit)));
     page.add("<div class=\"pair\"><div>{}</div><div class=\"wide\"><table>\n", chart);
-    write_profile(page, *walls, escaped(report.packing.scene.unit));
+    write_profile(page, *walls, escaped(name_of(report.packing.scene.unit)));
     page.raw("</table></div></div>\n");
   }
   if (!order) return;

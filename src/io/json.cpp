@@ -91,10 +91,11 @@ Json::object_t::value_type domain_json(const Domain& domain) {
              {"volume", volume_of(domain)}}};
   }
   const Bounds<3> bounds = bounds_of(domain);
-  return {"container",
-          {{"kind", kind_of(domain)},
-           {"volume", volume_of(domain)},
-           {"bounds", {{"lower", json_of(bounds.lower)}, {"upper", json_of(bounds.upper)}}}}};
+  Json container = {{"kind", kind_of(domain)},
+                    {"volume", volume_of(domain)},
+                    {"bounds", {{"lower", json_of(bounds.lower)}, {"upper", json_of(bounds.upper)}}}};
+  if (is_periodic(domain)) container["periods"] = json_of(boundary_of<3>(domain).edges);
+  return {"container", container};
 }
 
 }  // namespace bernal

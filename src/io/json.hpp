@@ -37,7 +37,9 @@ Json walls_json(const WallProfile&);
 /// How the sizes differ from the drawn sequence, or null.
 Json drawn_json(const SizeComparison&);
 
-/// The key `box` with the edges of a periodic box, or `container` with kind, volume and bounds.
+/// The key `box` with edges, axes that have walls and volume of a box that repeats itself or has not three
+/// dimensions; or `container` with kind, volume and bounds, and the periods of one that repeats itself, 0
+/// along open axes.
 Json::object_t::value_type domain_json(const Domain&);
 
 }  // namespace bernal

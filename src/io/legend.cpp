@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -51,28 +50,26 @@ void append_legend(std::string& out, const Canvas& canvas, const SizeScale& size
   const double y = canvas.height + legend_height / 2;
   const double length = round_length(0.2 * canvas.width / canvas.scale);
   const double bar = length * canvas.scale;
-  fmt::format_to(std::back_inserter(out),
-                 "<g font-family=\"system-ui,sans-serif\" font-size=\"17\" fill=\"#8590a0\">\n"
-                 "<path d=\"M{0} {1}v10h{2:.1f}v-10\" fill=\"none\" stroke=\"#8590a0\" stroke-width=\"1.6\"/>"
-                 "<text x=\"{3:.1f}\" y=\"{4}\">{5:g} {6}</text>\n",
-                 canvas_margin, y - 5, bar, canvas_margin + bar + 10, y + 6, length, unit);
+  out += fmt::format(
+      "<g font-family=\"system-ui,sans-serif\" font-size=\"17\" fill=\"#8590a0\">\n"
+      "<path d=\"M{0} {1}v10h{2:.1f}v-10\" fill=\"none\" stroke=\"#8590a0\" stroke-width=\"1.6\"/>"
+      "<text x=\"{3:.1f}\" y=\"{4}\">{5:g} {6}</text>\n",
+      canvas_margin, y - 5, bar, canvas_margin + bar + 10, y + 6, length, unit);
   if (!sizes.empty() && sizes.equal()) {
-    fmt::format_to(std::back_inserter(out),
-                   "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {:.3g} {}</text>\n",
-                   canvas.width - canvas_margin, y + 6, sizes.smallest(), unit);
+    out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {:.3g} {}</text>\n",
+                       canvas.width - canvas_margin, y + 6, sizes.smallest(), unit);
   } else if (!sizes.empty()) {
     constexpr double step = 17;
     const double end = canvas.width - canvas_margin - 100;
-    fmt::format_to(std::back_inserter(out), "<text x=\"{:.1f}\" y=\"{}\">{:.3g} {}</text>\n", end + 8, y + 6,
-                   sizes.largest(), unit);
+    out +=
+        fmt::format("<text x=\"{:.1f}\" y=\"{}\">{:.3g} {}</text>\n", end + 8, y + 6, sizes.largest(), unit);
     for (int c = 0; c < colour_classes; ++c) {
-      fmt::format_to(std::back_inserter(out), "<circle cx=\"{:.1f}\" cy=\"{}\" r=\"{:.1f}\" fill=\"{}\"/>\n",
-                     end - step * (colour_classes - c - 0.5), y, 4.0 + 4.0 * c / (colour_classes - 1),
-                     fill(c));
+      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{}\" r=\"{:.1f}\" fill=\"{}\"/>\n",
+                         end - step * (colour_classes - c - 0.5), y, 4.0 + 4.0 * c / (colour_classes - 1),
+                         fill(c));
     }
-    fmt::format_to(std::back_inserter(out),
-                   "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {:.3g}</text>\n",
-                   end - step * colour_classes - 8, y + 6, sizes.smallest());
+    out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {:.3g}</text>\n",
+                       end - step * colour_classes - 8, y + 6, sizes.smallest());
   }
   out += "</g>\n";
 }

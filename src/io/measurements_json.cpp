@@ -61,7 +61,7 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
   for (const Contacts& contacts : measured.by_gap) by_gap.push_back(contacts_json(contacts));
   Json json = {{"n", packing.spheres.size()},
                {"dimension", packing.spheres.dimension()},
-               {"unit", packing.scene.unit},
+               {"unit", name_of(packing.scene.unit)},
                {"phi", measured.packing_fraction},
                domain_json(packing.domain)};
   json.update(contacts_json(measured.contacts));

@@ -1,5 +1,4 @@
 #pragma once
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,7 +14,7 @@ class Page {
  public:
   template <class... Args>
   void add(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
+    text_ += fmt::format(format, std::forward<Args>(args)...);
   }
   void raw(std::string_view text) { text_ += text; }
 

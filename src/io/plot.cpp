@@ -75,7 +75,7 @@ void Plot::axes() {
 void Plot::line(std::span<const double> xs, std::span<const double> ys, std::string_view classes) {
   std::string path;
   for (std::size_t i = 0; i < xs.size(); ++i)
-    fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", i == 0 ? 'M' : 'L', x(xs[i]), y(ys[i]));
+    path += fmt::format("{}{:.1f} {:.1f}", i == 0 ? 'M' : 'L', x(xs[i]), y(ys[i]));
   add("<path class=\"{}\" d=\"{}\"/>", classes, path);
 }
 

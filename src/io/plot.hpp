@@ -1,5 +1,4 @@
 #pragma once
-#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -53,7 +52,7 @@ class Plot {
 
   template <class... Args>
   void add(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
+    out_ += fmt::format(format, std::forward<Args>(args)...);
   }
   /// Grid lines, numbers and labels, that of y above the axis.
   void axes();

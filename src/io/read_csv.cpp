@@ -112,12 +112,9 @@ class Lines {
 std::string read_unit(const Lines& lines) {
   std::string_view name = lines.line().substr(unit_mark.size());
   while (name.starts_with(' ')) name.remove_prefix(1);
-  std::string known;
-  for (const Unit& unit : units()) {
-    if (unit.name == name) return std::string(name);
-    known += (known.empty() ? "" : ", ") + std::string(unit.name);
-  }
-  lines.fail(fmt::format("unknown unit {}; use one of {}", quoted(name), known));
+  const auto known = unit_names();
+  if (std::ranges::find(known, name) != known.end()) return std::string(name);
+  lines.fail(fmt::format("unknown unit {}; use one of {}", quoted(name), fmt::join(known, ", ")));
 }
 
 double read_number(std::string_view field, std::string_view column, const Lines& lines) {

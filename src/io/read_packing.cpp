@@ -10,10 +10,10 @@ namespace bernal {
 
 Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file) {
   SpheresFile read = read_csv(file);
-  if (!read.unit.empty() && read.unit != scene.unit)
+  if (!read.unit.empty() && read.unit != name_of(scene.unit))
     throw Error(ErrorCode::bad_packing,
                 fmt::format("the spheres are in {}, but the scene is in {}; both must have one unit",
-                            read.unit, scene.unit),
+                            read.unit, name_of(scene.unit)),
                 {file.string()});
   if (read.spheres.dimension() != scene.dimension())
     throw Error(ErrorCode::bad_packing,

@@ -20,11 +20,11 @@ struct Report {
 
 /// report.json: the keys of the file format, in a fixed order, lengths in the scene's unit. Numbers that are
 /// not finite become null. Which keys there are does not depend on the packing, except that there is either
-/// `container` or, for a periodic one, `box`; `min_wall_gap` is null where no sphere is near a wall.
+/// `container` or `box`, see `domain_json`; `min_wall_gap` is null where no sphere is near a wall.
 std::string json_of(const Report& report);
 
-/// report.html: one page without scripts or outside files. `picture` is the SVG of the packing or empty, `scene` the
-/// scene as TOML.
+/// report.html: one page without scripts or outside files. `picture` is the SVG of the packing or empty,
+/// `scene` the scene as TOML.
 std::string html_of(const Report& report, std::string_view picture, std::string_view scene);
 
 }  // namespace bernal

@@ -18,7 +18,7 @@ namespace {
 /// "mm³", "mm²", and so on.
 std::string volume_unit(const Packing& packing) {
   const int dimension = packing.spheres.dimension();
-  const std::string unit = escaped(packing.scene.unit);
+  const std::string unit = escaped(name_of(packing.scene.unit));
   if (dimension == 1) return unit;
   return dimension == 2   ? unit + "²"
          : dimension == 3 ? unit + "³"
@@ -50,7 +50,7 @@ void write_headline(Page& page, const Report& report) {
             fmt::format("{}: {}", name_of(packing.outcome), escaped(packing.reason)));
   page.card(fmt::format("{:.4f}", packing.packing_fraction()), "Packing fraction",
             fmt::format("the share of the {}’s {} that is sphere{}",
-                        is_periodic(packing.domain) ? "box" : "container", volume_word(packing),
+                        kind_of(packing.domain) == "periodic" ? "box" : "container", volume_word(packing),
                         expected_text(packing)));
   page.card(certified ? "yes" : "no", "Certified",
             certified ? "no overlap, nothing sticks out; proven on the written file"
@@ -65,14 +65,16 @@ void write_headline(Page& page, const Report& report) {
 
 void write_scene(Page& page, const Report& report, std::string_view scene) {
   const Packing& packing = report.packing;
-  const std::string unit = escaped(packing.scene.unit);
+  const std::string unit = escaped(name_of(packing.scene.unit));
   const Vector<dynamic> extent = bounds_of<dynamic>(packing.domain).size();
-  const bool periodic = is_periodic(packing.domain);
+  const std::string_view repeated = !is_periodic(packing.domain) ? " over all"
+                                    : !has_walls(packing.domain) ? ", repeated without end in all directions"
+                                    : kind_of(packing.domain) == "cylinder"
+                                        ? ", repeated without end along its axis"
+                                        : ", repeated without end along the axes that have no walls";
   page.add("<h2>What was asked</h2>\n<p>A {} of {} {:.6g} {}, {:.4g} {}{}", name_of(packing.domain),
            volume_word(packing), packing.volume, volume_unit(packing), fmt::join(extent, " × "), unit,
-           !periodic                   ? " over all"
-           : has_walls(packing.domain) ? ", repeated without end along the axes that have no walls"
-                                       : ", repeated without end in all directions");
+           repeated);
   if (const auto* mesh = std::get_if<Mesh>(&packing.domain))
     page.add(", with {} triangles", grouped(mesh->triangles.size()));
   page.add(". Seed {}. Every length is in {}.</p>\n", packing.seed, unit);
@@ -82,16 +84,17 @@ void write_scene(Page& page, const Report& report, std::string_view scene) {
       escaped(scene));
 }
 
-/// Where spheres are relaxed overlaps go away; where they are compressed they settle.
+/// Where spheres are relaxed overlaps go away; where they are compressed they settle; else only their number
+/// changes.
 void write_course(Page& page, const Packing& packing) {
   if (packing.history.size() < 2) return;
-  const bool periodic = is_periodic(packing.domain);
-  const auto all = [&](auto is) { return std::ranges::all_of(packing.history, is); };
-  const bool relaxed = !all([](const Milestone& m) { return m.max_overlap == 0; });
-  const bool grown = all([](const Milestone& m) { return m.stage == "grow"; });
+  const auto any = [&](auto is) { return std::ranges::any_of(packing.history, is); };
+  const bool grown = !any([](const Milestone& m) { return m.stage != "grow"; });
+  const bool relaxed = !grown && any([](const Milestone& m) { return m.max_overlap != 0; });
+  const bool settled = !grown && any([](const Milestone& m) { return m.potential != 0; });
   const std::string filling =
       history_chart(packing.history, &Milestone::packing_fraction, "packing fraction");
-  if (grown || (periodic && !relaxed)) {
+  if (!relaxed && !settled) {
     page.add(
         "<h2>How the run went</h2>\n{}<p class=\"dim\">{}</p>\n", filling,
         grown ? "Hard spheres fly, collide and grow until they jam or are as large as asked."
@@ -101,14 +104,14 @@ void write_course(Page& page, const Packing& packing) {
   page.add("<h2>How the run went</h2>\n<div class=\"pair\"><div>{}</div><div>{}</div></div>\n", filling,
            relaxed ? overlap_chart(packing.history)
                    : history_chart(packing.history, &Milestone::potential,
-                                   fmt::format("mean height of the spheres ({})", packing.scene.unit)));
-  page.raw(relaxed && !periodic
-               ? "<p class=\"dim\">Spheres that overlap push each other apart, and the wall pushes too. What "
-                 "is stuck is shaken with larger radii or put into holes, where the overlap jumps.</p>\n"
-           : periodic ? "<p class=\"dim\">The run starts with spheres that overlap; they push each other "
-                        "apart, in a box that grows or has its size already.</p>\n"
-                      : "<p class=\"dim\">The height is measured against the direction in which the spheres "
-                        "are pushed; it falls as they settle and rises as new ones are put on top.</p>\n");
+                                   fmt::format("mean height of the spheres ({})", name_of(packing.scene.unit))));
+  page.raw(!relaxed ? "<p class=\"dim\">The height is measured against the direction in which the spheres "
+                      "are pushed; it falls as they settle and rises as new ones are put on top.</p>\n"
+           : kind_of(packing.domain) == "periodic"
+               ? "<p class=\"dim\">The run starts with spheres that overlap; they push each other "
+                 "apart, in a box that grows or has its size already.</p>\n"
+               : "<p class=\"dim\">Spheres that overlap push each other apart, and the wall pushes too. What "
+                 "is stuck is shaken with larger radii or put into holes, where the overlap jumps.</p>\n");
 }
 
 void write_effects(Page& page, const Packing& packing) {
@@ -130,12 +133,13 @@ void write_certificate(Page& page, const Report& report) {
   page.add(
       "<h2>The certificate</h2>\n<p>After writing, <code>spheres.csv</code> was read back, and every "
       "question of "
-      "the kind “do these two overlap?”{} was decided for the numbers as they stand in the file: in ordinary "
+      "the kind “do these two overlap?”{}{} was decided for the numbers as they stand in the file: in "
+      "ordinary "
       "arithmetic where its rounding error provably cannot change the answer, in exact arithmetic everywhere "
       "else. "
       "Touching is allowed.</p>\n<div class=\"wide\"><table>\n",
-      walls ? " or “does this sphere cross this piece of wall?”"
-            : ", images in the neighbouring boxes included,");
+      is_periodic(report.packing.domain) ? ", images in the neighbouring periods included," : "",
+      walls ? " or “does this sphere cross this piece of wall?”" : "");
   page.row("pairs of spheres", grouped(c.pairs_tested), "near enough to need a decision");
   if (walls) {
     page.row("spheres and pieces of wall", grouped(c.walls_tested), "near enough to need a decision");
@@ -143,7 +147,9 @@ void write_certificate(Page& page, const Report& report) {
   }
   page.row("decided in ordinary arithmetic", grouped(c.decided_double), "with a proven error bound");
   page.row("decided in exact arithmetic", grouped(c.decided_exact), "where the bound was not enough");
-  page.row("overlapping pairs", grouped(c.overlapping_pairs), "");
+  page.row(
+      "overlapping pairs", grouped(c.overlapping_pairs),
+      c.allowed_overlap > 0 ? fmt::format("by more than {:g} of the sum of radii", c.allowed_overlap) : "");
   if (walls) page.row("spheres that stick out", grouped(c.protruding_spheres), "");
   if (c.worst_pair) {
     page.row(
@@ -164,9 +170,8 @@ std::string html_of(const Report& report, std::string_view picture, std::string_
   const Packing& packing = report.packing;
   std::string title =
       fmt::format("{} spheres in a {}", grouped(packing.spheres.size()), name_of(packing.domain));
-  if (packing.scene.container.has("file")) {
-    title += ", " + std::filesystem::path(packing.scene.container.text("file")).filename().string();
-  }
+  if (const auto* mesh = std::get_if<MeshFile>(&packing.scene.container))
+    title += ", " + mesh->file.filename().string();
   Page page;
   page.add(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"

@@ -50,7 +50,7 @@ std::string json_of(const Report& report) {
                {"reason", packing.reason},
                {"n", packing.spheres.size()},
                {"dimension", packing.spheres.dimension()},
-               {"unit", packing.scene.unit},
+               {"unit", name_of(packing.scene.unit)},
                {"phi", packing.packing_fraction()},
                {"expected_phi", packing.expected_packing_fraction}};
   json.update(contacts_json(report.measured.contacts));

@@ -38,10 +38,10 @@ std::string scene_as_run(const Packing& packing, const std::filesystem::path& fo
 /// Certifies what stands in the file, not what stood in memory.
 Certificate certify_written(const std::filesystem::path& csv, const Packing& packing) {
   const SpheresFile written = read_csv(csv);
-  if (written.spheres != packing.spheres || written.unit != packing.scene.unit) {
+  if (written.spheres != packing.spheres || written.unit != name_of(packing.scene.unit)) {
     throw Error(ErrorCode::cannot_write, "reads back differently from what was written", {csv.string()});
   }
-  return certify(written.spheres, packing.domain, packing.scene.overlap);
+  return certify(written.spheres, packing.domain, {.allowed_overlap = packing.scene.overlap});
 }
 
 /// A result is not lost because what it is compared with has gone, the file of a table for instance.
@@ -60,7 +60,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   const std::filesystem::path csv = staged.add("spheres.csv");
   {
     OutputFile file(csv);
-    write_csv(file, packing.spheres, packing.scene.unit);
+    write_csv(file, packing.spheres, name_of(packing.scene.unit));
     file.close();
   }
   {
@@ -70,13 +70,14 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   }
   const Certificate certificate = certify_written(csv, packing);
   const std::unique_ptr<SizeDistribution> asked = asked_sizes(packing.scene);
-  const Measurements measured = measure(packing, asked.get(),
-                                        {.radial = {.work = distances_for_a_report},
-                                         .chambers = {.points = points_for_a_report},
-                                         .walls = {.work = wall_distances_for_a_report}});
+  const Measurements measured =
+      measure(packing.spheres, packing.domain, {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)},
+              {.radial = {.work = distances_for_a_report},
+               .chambers = {.points = points_for_a_report},
+               .walls = {.work = wall_distances_for_a_report}});
   const Report report{packing, certificate, measured, asked.get(), hash_of(packing.spheres)};
   const std::string scene = scene_as_run(packing, folder);
-  const std::string picture = svg_of(packing.spheres, packing.domain, packing.scene.unit);
+  const std::string picture = svg_of(packing.spheres, packing.domain, name_of(packing.scene.unit));
 
   write_text(staged.add("scene.toml"), scene);
   write_text(staged.add("report.json"), json_of(report));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <numbers>
 #include <numeric>
 
@@ -117,14 +116,13 @@ void append_gradients(std::string& out) {
     for (int s = 0; s < shade_classes; ++s) {
       const double shade = static_cast<double>(s) / (shade_classes - 1);
       const Colour base = darker(size_colour((c + 0.5) / colour_classes), shade);
-      fmt::format_to(std::back_inserter(out),
-                     "<radialGradient id=\"bernal{}{}\" cx=\".5\" cy=\".5\" r=\".5\" fx=\".34\" fy=\".27\">"
-                     "<stop offset=\"0\" stop-color=\"{}\"/><stop offset=\".3\" stop-color=\"{}\"/>"
-                     "<stop offset=\".75\" stop-color=\"{}\"/><stop offset=\"1\" stop-color=\"{}\"/>"
-                     "</radialGradient>\n",
-                     static_cast<char>('a' + c), s, mix(base, day, 0.55 - 0.35 * shade).text(),
-                     mix(base, day, 0.16 * (1 - shade)).text(), darker(base, 0.2).text(),
-                     darker(base, 0.65).text());
+      out += fmt::format(
+          "<radialGradient id=\"bernal{}{}\" cx=\".5\" cy=\".5\" r=\".5\" fx=\".34\" fy=\".27\">"
+          "<stop offset=\"0\" stop-color=\"{}\"/><stop offset=\".3\" stop-color=\"{}\"/>"
+          "<stop offset=\".75\" stop-color=\"{}\"/><stop offset=\"1\" stop-color=\"{}\"/>"
+          "</radialGradient>\n",
+          static_cast<char>('a' + c), s, mix(base, day, 0.55 - 0.35 * shade).text(),
+          mix(base, day, 0.16 * (1 - shade)).text(), darker(base, 0.2).text(), darker(base, 0.65).text());
     }
   }
   out += "</defs>\n";
@@ -132,14 +130,14 @@ void append_gradients(std::string& out) {
 
 void append_strokes(std::string& out, const std::vector<Stroke>& strokes, bool hidden, double opacity,
                     double width) {
-  fmt::format_to(std::back_inserter(out),
-                 "<path fill=\"none\" stroke=\"#8590a0\" stroke-opacity=\"{}\" stroke-width=\"{}\" "
-                 "stroke-linecap=\"round\" d=\"",
-                 opacity, width);
+  out += fmt::format(
+      "<path fill=\"none\" stroke=\"#8590a0\" stroke-opacity=\"{}\" stroke-width=\"{}\" "
+      "stroke-linecap=\"round\" d=\"",
+      opacity, width);
   for (const Stroke& stroke : strokes) {
     if (stroke.hidden != hidden) continue;
-    fmt::format_to(std::back_inserter(out), "M{:.1f} {:.1f}L{:.1f} {:.1f}", stroke.from.x, stroke.from.y,
-                   stroke.to.x, stroke.to.y);
+    out +=
+        fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", stroke.from.x, stroke.from.y, stroke.to.x, stroke.to.y);
   }
   out += "\"/>\n";
 }
@@ -167,14 +165,13 @@ void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const Vie
     if (!shows(k)) continue;
     const Ball& ball = balls[k];
     const int shade = std::min(shade_classes - 1, static_cast<int>(shading(ball) * shade_classes));
-    fmt::format_to(std::back_inserter(out),
-                   "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" fill=\"url(#bernal{}{})\"/>\n",
-                   ball.center.x, ball.center.y, ball.radius,
-                   static_cast<char>('a' + sizes.colour_class(spheres.r[ball.sphere])), shade);
+    out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" fill=\"url(#bernal{}{})\"/>\n",
+                       ball.center.x, ball.center.y, ball.radius,
+                       static_cast<char>('a' + sizes.colour_class(spheres.r[ball.sphere])), shade);
   }
 }
 
-/// What has to fit on the canvas: the domain, and for a periodic box the spheres that stick out of it.
+/// What has to fit on the canvas: the domain, and the spheres that stick out of one period of it.
 std::vector<Vector<3>> corners_of(const Mesh& mesh, const Domain& domain, const Spheres<dynamic>& spheres) {
   if (!is_periodic(domain) || spheres.empty()) return mesh.vertices;
   const Vector<3> middle = bounds_of(domain).center();

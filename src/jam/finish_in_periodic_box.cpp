@@ -3,24 +3,31 @@
 #include <algorithm>
 
 #include "core/every_dimension.hpp"
-#include "work/free_of_overlap.hpp"
 #include "jam/polish.hpp"
+#include "work/free_of_overlap.hpp"
 #include "work/resize_box.hpp"
 
 namespace bernal {
 
 template <int D>
-void shake(Spheres<D>& spheres, const Vector<D>& edges, double length, Random random) {
-  const Boundary<D> boundary{edges};
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    spheres.set_center(i, boundary.wrap(spheres.center(i) + length * uniform_direction<D>(random)));
+void shake(Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls, double length,
+           Random random) {
+  Boundary<D> boundary{edges};
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    if (walls[k]) boundary.edges[static_cast<int>(k)] = 0;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    Vector<D> c = boundary.wrap(spheres.center(i) + length * uniform_direction<D>(random));
+    for (int k = 0; k < D; ++k)
+      if (!boundary.repeats(k)) c[k] = std::clamp(c[k], 0.0, edges[k]);
+    spheres.set_center(i, c);
+  }
 }
 
 template <int D>
-void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work) {
+void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, Work& work) {
   Vector<D> free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap, work.walls);
   while (!free.allFinite()) {  // cancelled while centres coincide
-    shake<D>(spheres, edges, 1e-3 * std::ranges::max(spheres.r), work.random(Stream::relax));
+    shake<D>(spheres, edges, work.walls, 1e-3 * std::ranges::max(spheres.r), work.random(Stream::relax));
     free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap, work.walls);
   }
   resize_box<D>(spheres, edges, free);
@@ -34,7 +41,7 @@ bool fits(const Spheres<D>& spheres, const Vector<D>& edges, const Vector<D>& ta
 
 template <int D>
 StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish_to,
-                                PeriodicWork& work) {
+                                Work& work) {
   if (polish_to > 0 && end == StageEnd::converged) {
     end = polish<D>(spheres, edges, polish_to, work).end;
     free_of_overlap<D>(spheres, edges, work);
@@ -48,11 +55,11 @@ StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd en
   return end;
 }
 
-#define BERNAL_INSTANTIATE(D)                                                                          \
-  template StageEnd finish_in_periodic_box<D>(Spheres<D>, Vector<D>, StageEnd, double, PeriodicWork&); \
-  template void free_of_overlap<D>(Spheres<D>&, Vector<D>&, PeriodicWork&);                            \
-  template bool fits<D>(const Spheres<D>&, const Vector<D>&, const Vector<D>&);                        \
-  template void shake<D>(Spheres<D>&, const Vector<D>&, double, Random);
+#define BERNAL_INSTANTIATE(D)                                                                  \
+  template StageEnd finish_in_periodic_box<D>(Spheres<D>, Vector<D>, StageEnd, double, Work&); \
+  template void free_of_overlap<D>(Spheres<D>&, Vector<D>&, Work&);                            \
+  template bool fits<D>(const Spheres<D>&, const Vector<D>&, const Vector<D>&);                \
+  template void shake<D>(Spheres<D>&, const Vector<D>&, const std::vector<bool>&, double, Random);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

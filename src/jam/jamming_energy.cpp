@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Cholesky>
-
 #include "bernal/domain/boundary.hpp"
 #include "core/every_dimension.hpp"
+#include "jam/invert.hpp"
 
 namespace bernal {
 namespace {
@@ -227,7 +226,7 @@ void JammingEnergy<D>::factor_preconditioner() {
     inverse_blocks_[c.first] += block;
     inverse_blocks_[c.second] += block;
   }
-  for (Block& block : inverse_blocks_) block = block.llt().solve(Block::Identity()).eval();
+  for (Block& block : inverse_blocks_) invert_positive_definite(block.data(), D);
   inverse_dilation_ = 1 / dilation;
 }
 

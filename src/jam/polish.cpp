@@ -31,7 +31,7 @@ constexpr double balanced = 1e-2;
 template <int D>
 class Polish {
  public:
-  Polish(const Spheres<D>& spheres, const Vector<D>& edges, double tolerance, PeriodicWork& work)
+  Polish(const Spheres<D>& spheres, const Vector<D>& edges, double tolerance, Work& work)
       : soft_(spheres, edges), tolerance_(tolerance), work_(work) {
     const auto n = static_cast<double>(spheres.size());
     balance_ = spheres.size() <= solved_closely ? close_balance : loose_balance;
@@ -159,10 +159,9 @@ class Polish {
       ++reached_.steps;
     }
     reached_.products += region.products();
-    if (work_.milestone)
-      work_.milestone("polish",
-                      std::min(0.99, std::log(overlap / start_) / std::log(0.1 * tolerance_ / start_)),
-                      soft_.largest_overlap());
+    work_.milestone("polish",
+                    std::min(0.99, std::log(overlap / start_) / std::log(0.1 * tolerance_ / start_)),
+                    soft_.largest_overlap());
     return true;
   }
 
@@ -209,7 +208,7 @@ class Polish {
   double start_ = gentlest_start;
   double imbalance_ = 0;
   bool cancelled_ = false;
-  PeriodicWork& work_;
+  Work& work_;
   std::vector<char> bears_;  // force, by place in soft_
   Polished reached_;
 };
@@ -217,7 +216,7 @@ class Polish {
 }  // namespace
 
 template <int D>
-Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, PeriodicWork& work) {
+Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work) {
   if (spheres.empty()) return {};
   Polish<D> act(spheres, edges, tolerance, work);
   const Polished reached = act.run();
@@ -225,7 +224,7 @@ Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Periodi
   return reached;
 }
 
-#define BERNAL_INSTANTIATE(D) template Polished polish<D>(Spheres<D>&, Vector<D>&, double, PeriodicWork&);
+#define BERNAL_INSTANTIATE(D) template Polished polish<D>(Spheres<D>&, Vector<D>&, double, Work&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "work/periodic_work.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 
@@ -43,6 +43,6 @@ struct Polished {
 /// 1,000 spheres, more than half a minute for 3,000, more than a minute for 10,000. Cancelled, it ends within
 /// a step. Memory about 1 kB a sphere. One thread; the same bits each time.
 template <int D>
-Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, PeriodicWork& work);
+Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work);
 
 }  // namespace bernal

@@ -31,10 +31,10 @@ struct Bonds {
   }
 };
 
-std::vector<Bonds> solid_bonds(const Packing& packing) {
-  const std::vector<NearBond> bonds = near_bonds(packing, BondOrder::widest_gap);
-  const std::vector<Harmonics6> orders = orders_of(packing.spheres.size(), bonds);
-  std::vector<Bonds> found(packing.spheres.size());
+std::vector<Bonds> solid_bonds(const Spheres<dynamic>& spheres, const Domain& domain) {
+  const std::vector<NearBond> bonds = near_bonds(spheres, domain, BondOrder::widest_gap);
+  const std::vector<Harmonics6> orders = orders_of(spheres.size(), bonds);
+  std::vector<Bonds> found(spheres.size());
   for (const NearBond& bond : bonds) {
     const bool solid = orders[bond.first].dot(orders[bond.second]) > BondOrder::solid_bond;
     found[bond.first].add(solid);
@@ -45,9 +45,10 @@ std::vector<Bonds> solid_bonds(const Packing& packing) {
 
 }  // namespace
 
-std::optional<BondOrder> bond_order(const Packing& packing, std::span<const Region> regions) {
-  if (packing.spheres.dimension() != 3) return {};
-  const std::vector<Bonds> bonds = solid_bonds(packing);
+std::optional<BondOrder> bond_order(const Spheres<dynamic>& spheres, const Domain& domain,
+                                    std::span<const Region> regions) {
+  if (spheres.dimension() != 3) return {};
+  const std::vector<Bonds> bonds = solid_bonds(spheres, domain);
   BondOrder order;
   if (!regions.empty()) order.near_wall = order.core = BondOrder::Count{};
   for (std::size_t i = 0; i < bonds.size(); ++i) {

@@ -87,7 +87,8 @@ std::vector<std::optional<Place>> centers_of(const FreeSpace& space, const Spher
 /// Components that spheres show to be one, and places that only a sphere found. The sets of the components,
 /// which come first, and of the spheres.
 std::vector<std::uint32_t> linked(const Components& components, const FreeSpace& space,
-                                  const Packing& packing, const std::vector<std::optional<Place>>& centers) {
+                                  const Spheres<dynamic>& spheres, const Domain& domain,
+                                  const std::vector<std::optional<Place>>& centers) {
   const std::size_t n = components.deepest().size();
   std::vector<std::uint32_t> found(centers.size(), none);
   oneapi::tbb::parallel_for(std::size_t{0}, centers.size(), [&](std::size_t i) {
@@ -100,7 +101,7 @@ std::vector<std::uint32_t> linked(const Components& components, const FreeSpace&
     if (found[i] != none) sets.unite(found[i], static_cast<std::uint32_t>(n + i));
 
   std::vector<NearBond> open;
-  if (n > 1 || std::ranges::find(found, none) != found.end()) open = near_bonds(packing, near_gap);
+  if (n > 1 || std::ranges::find(found, none) != found.end()) open = near_bonds(spheres, domain, near_gap);
   std::erase_if(open, [&](const NearBond& bond) {
     return !centers[bond.first] || !centers[bond.second] ||
            (found[bond.first] == found[bond.second] && found[bond.first] != none);
@@ -184,17 +185,18 @@ void sort(Chambers& found) {
     if (chamber != none) chamber = place[chamber];
 }
 
-Chambers chambers_in(const Domain& shape, const Packing* packing, double radius, double mean_radius,
+/// `packed` may be null: then it is only what spheres of that radius would find.
+Chambers chambers_in(const Domain& shape, const Spheres<dynamic>* packed, double radius, double mean_radius,
                      const ChamberOptions& options) {
   const Frame frame = frame_of(shape);
   const auto container = make_local_container(shape, frame, WallArithmetic::plain);
   const FreeSpace space(*container, radius / frame.scale);
   const Components components(shape, space, options.cells);
-  const Spheres<3> spheres = packing ? localised(packing->spheres, frame) : Spheres<3>{};
+  const Spheres<3> spheres = packed ? localised(*packed, frame) : Spheres<3>{};
   const std::vector<std::optional<Place>> centers = centers_of(space, spheres);
   const std::size_t n = components.deepest().size();
   const std::vector<std::uint32_t> sets =
-      packing ? linked(components, space, *packing, centers) : DisjointSets(n).numbered();
+      packed ? linked(components, space, *packed, shape, centers) : DisjointSets(n).numbered();
 
   Chambers found;
   found.radius = radius;
@@ -233,7 +235,7 @@ Chambers chambers_in(const Domain& shape, const Packing* packing, double radius,
     Chambers::Chamber& chamber = found.chambers[k];
     chamber.share = sampled.share(sampled.covered[k]);
     chamber.share_error = sampled.error(sampled.covered[k]);
-    if (packing && chamber.share > 0)
+    if (packed && chamber.share > 0)
       chamber.packing_fraction = solid[k] / (chamber.share * container->volume());
   }
   found.by_smallest = found.by_mean = uncovered_of(sampled, radius);
@@ -249,11 +251,12 @@ Chambers chambers_in(const Domain& shape, const Packing* packing, double radius,
 
 }  // namespace
 
-std::optional<Chambers> chambers(const Packing& packing, const ChamberOptions& options) {
-  if (is_periodic(packing.domain) || dimension_of(packing.domain) != 3 || packing.spheres.empty()) return {};
-  const std::vector<double>& radii = packing.spheres.r;
+std::optional<Chambers> chambers(const Spheres<dynamic>& spheres, const Domain& domain,
+                                 const ChamberOptions& options) {
+  if (!has_walls(domain) || dimension_of(domain) != 3 || spheres.empty()) return {};
+  const std::vector<double>& radii = spheres.r;
   const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
-  return chambers_in(packing.domain, &packing, *std::ranges::min_element(radii), mean, options);
+  return chambers_in(domain, &spheres, *std::ranges::min_element(radii), mean, options);
 }
 
 Chambers chambers_for(const Domain& shape, double radius, const ChamberOptions& options) {

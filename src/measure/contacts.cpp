@@ -52,11 +52,11 @@ std::vector<bool> backbone_of(int dimension, std::vector<int> held, const std::v
   return backbone;
 }
 
-Contacts count(const Packing& packing, const std::vector<NearPair>& pairs, const std::vector<NearWall>& walls,
-               double contact_gap) {
-  const int dimension = packing.spheres.dimension();
-  const auto n = static_cast<double>(packing.spheres.size());
-  std::vector<int> held(packing.spheres.size(), 0);
+Contacts count(std::size_t spheres, const Domain& domain, const std::vector<NearPair>& pairs,
+               const std::vector<NearWall>& walls, double contact_gap) {
+  const int dimension = dimension_of(domain);
+  const auto n = static_cast<double>(spheres);
+  std::vector<int> held(spheres, 0);
   for (const NearWall& wall : walls) ++held[wall.sphere];
   const std::vector<bool> backbone = backbone_of(dimension, held, pairs);
 
@@ -66,28 +66,29 @@ Contacts count(const Packing& packing, const std::vector<NearPair>& pairs, const
   contacts.walls = walls.size();
   contacts.coordination = n > 0 ? 2.0 * static_cast<double>(pairs.size()) / n : 0;
   contacts.backbone = static_cast<std::uint64_t>(std::ranges::count(backbone, true));
-  contacts.rattlers = packing.spheres.size() - contacts.backbone;
+  contacts.rattlers = spheres - contacts.backbone;
   for (const NearPair& pair : pairs) contacts.backbone_pairs += backbone[pair.first] && backbone[pair.second];
   for (const NearWall& wall : walls) contacts.backbone_walls += backbone[wall.sphere];
   if (contacts.backbone == 0) return contacts;
   contacts.backbone_coordination =
       2.0 * static_cast<double>(contacts.backbone_pairs) / static_cast<double>(contacts.backbone);
-  if (!has_walls(packing.domain))
+  if (!has_walls(domain))
     contacts.isostatic = static_cast<std::uint64_t>(dimension) * (contacts.backbone - 1) + 1;
   return contacts;
 }
 
 }  // namespace
 
-Contacts measure_contacts(const Packing& packing, double contact_gap) {
-  return measure_contacts(packing, {&contact_gap, 1}).front();
+Contacts measure_contacts(const Spheres<dynamic>& spheres, const Domain& domain, double contact_gap) {
+  return measure_contacts(spheres, domain, {&contact_gap, 1}).front();
 }
 
-std::vector<Contacts> measure_contacts(const Packing& packing, std::span<const double> contact_gaps) {
+std::vector<Contacts> measure_contacts(const Spheres<dynamic>& spheres, const Domain& domain,
+                                       std::span<const double> contact_gaps) {
   if (contact_gaps.empty()) return {};
   const double widest = std::ranges::max(contact_gaps);
-  const std::vector<NearPair> pairs = near_pairs(packing, widest);
-  const std::vector<NearWall> walls = near_walls(packing, widest);
+  const std::vector<NearPair> pairs = near_pairs(spheres, domain, widest);
+  const std::vector<NearWall> walls = near_walls(spheres, domain, widest);
   std::vector<Contacts> all;
   for (const double gap : contact_gaps) {
     const auto touches = [gap](const auto& near) { return near.gap < gap; };
@@ -95,7 +96,7 @@ std::vector<Contacts> measure_contacts(const Packing& packing, std::span<const d
     std::vector<NearWall> touching_walls;
     std::ranges::copy_if(pairs, std::back_inserter(touching_pairs), touches);
     std::ranges::copy_if(walls, std::back_inserter(touching_walls), touches);
-    all.push_back(count(packing, touching_pairs, touching_walls, gap));
+    all.push_back(count(spheres.size(), domain, touching_pairs, touching_walls, gap));
   }
   return all;
 }

@@ -16,18 +16,28 @@ constexpr double most_in_vain = 16;
 
 /// Volume of the points deeper than z, over a constant factor.
 double inner_volume(const Box& box, double z) {
-  const Vector<3> inner = bounds_of(box).size() - Vector<3>::Constant(2 * z);
+  Vector<3> inner = bounds_of(box).size();
+  for (int k = 0; k < 3; ++k)
+    if (box.has_wall(k)) inner[k] -= 2 * z;
   return inner.minCoeff() > 0 ? inner.prod() : 0;
 }
 double inner_volume(const Cylinder& cylinder, double z) {
-  const double radius = cylinder.radius - z, height = cylinder.height - 2 * z;
+  const double radius = cylinder.radius - z, height = cylinder.height - (cylinder.periodic ? 0 : 2 * z);
   return radius > 0 && height > 0 ? radius * radius * height : 0;
 }
 double inner_volume(const Sphere& sphere, double z) { return std::pow(std::max(0.0, sphere.radius - z), 3); }
 double inner_volume(const Mesh&, double) { return 0; }
 
-double deepest_of(const Box& box) { return 0.5 * bounds_of(box).size().minCoeff(); }
-double deepest_of(const Cylinder& cylinder) { return std::min(cylinder.radius, 0.5 * cylinder.height); }
+double deepest_of(const Box& box) {
+  const Vector<3> size = bounds_of(box).size();
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k)
+    if (box.has_wall(k)) least = std::min(least, size[k]);
+  return 0.5 * least;
+}
+double deepest_of(const Cylinder& cylinder) {
+  return cylinder.periodic ? cylinder.radius : std::min(cylinder.radius, 0.5 * cylinder.height);
+}
 double deepest_of(const Sphere& sphere) { return sphere.radius; }
 double deepest_of(const Mesh&) { return 0; }
 

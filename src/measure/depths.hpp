@@ -8,7 +8,7 @@ namespace bernal {
 
 /// How much of a container is how deep: the share of its volume farther than z from the wall. Exact to
 /// rounding for a box, a cylinder and a sphere, whose points deeper than z are a box, a cylinder and a sphere
-/// again; for a mesh from points in the cells of a grid.
+/// again, as long as before along axes that repeat themselves; for a mesh from points in the cells of a grid.
 class Depths {
  public:
   /// Looks at about `points` points inside a mesh, and no deeper than `reach`. Cost: up to 16 times as many

@@ -11,4 +11,8 @@ Spheres<3> localised(const Spheres<dynamic>& spheres, const Frame& frame) {
   return local;
 }
 
+Boundary<3> localised(const Boundary<3>& boundary, const Frame& frame) {
+  return {boundary.edges / frame.scale, frame.to_local(boundary.origin)};
+}
+
 }  // namespace bernal

@@ -8,5 +8,6 @@ namespace bernal {
 /// origin the scene's coordinates would lose the digits that tell a contact from a gap. The wall there is
 /// `make_local_container`'s.
 Spheres<3> localised(const Spheres<dynamic>&, const Frame&);
+Boundary<3> localised(const Boundary<3>&, const Frame&);
 
 }  // namespace bernal

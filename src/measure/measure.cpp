@@ -2,33 +2,43 @@
 
 #include <cmath>
 
+#include "bernal/core/dimension.hpp"
+
 namespace bernal {
 namespace {
 
-SizeComparison compare_sizes_of(const Packing& packing, const SizeDistribution& asked) {
-  const std::vector<double>& radii = packing.spheres.r;
-  SizeComparison sizes = compare_sizes(radii, asked, packing.spheres.dimension());
-  const Draw draw = packing.scene.draw == "quantiles" ? Draw::quantiles : Draw::random;
-  const bool cut_tail = !is_periodic(packing.domain) && !std::isfinite(asked.max());
-  sizes.drawn = compare_with_drawn(radii, {asked, packing.seed, draw}, cut_tail);
+SizeComparison compare_sizes_of(const Spheres<dynamic>& spheres, const Domain& domain,
+                                const AskedRadii& asked) {
+  SizeComparison sizes = compare_sizes(spheres.r, *asked.sizes, spheres.dimension());
+  const bool cut_tail = has_walls(domain) && !std::isfinite(asked.sizes->max());
+  sizes.drawn = compare_with_drawn(spheres.r, {*asked.sizes, asked.seed, asked.draw}, cut_tail);
   return sizes;
 }
 
 }  // namespace
 
-Measurements measure(const Packing& packing, const SizeDistribution* asked, const MeasureOptions& options) {
+double packing_fraction(const Spheres<dynamic>& spheres, const Domain& domain) {
+  const double volume = volume_of(domain);
+  double sum = 0;
+  for (const double r : spheres.r) sum += ball_volume(spheres.dimension(), r);
+  return volume > 0 ? sum / volume : 0;
+}
+
+Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, const AskedRadii& asked,
+                     const MeasureOptions& options) {
   Measurements measured;
-  measured.packing_fraction = packing.packing_fraction();
+  measured.packing_fraction = packing_fraction(spheres, domain);
   std::vector<double> gaps = options.gaps;
   gaps.push_back(options.contact_gap);
-  measured.by_gap = measure_contacts(packing, gaps);
+  measured.by_gap = measure_contacts(spheres, domain, gaps);
   measured.contacts = measured.by_gap.back();
   measured.by_gap.pop_back();
-  measured.radial = radial_distribution(packing, options.radial);
-  measured.chambers = chambers(packing, options.chambers);
-  measured.walls = wall_profile(packing, options.walls);
-  measured.order = bond_order(packing, measured.walls ? measured.walls->regions : std::vector<Region>{});
-  if (asked && !packing.spheres.empty()) measured.sizes = compare_sizes_of(packing, *asked);
+  measured.radial = radial_distribution(spheres, domain, options.radial);
+  measured.chambers = chambers(spheres, domain, options.chambers);
+  measured.walls = wall_profile(spheres, domain, options.walls);
+  measured.order =
+      bond_order(spheres, domain, measured.walls ? measured.walls->regions : std::vector<Region>{});
+  if (asked.sizes && !spheres.empty()) measured.sizes = compare_sizes_of(spheres, domain, asked);
   return measured;
 }
 

@@ -114,14 +114,15 @@ double shell_volume(int dimension, double from, double to) {
 }
 
 /// Of the n·references directed distances as many are counted from both ends as chance has it.
-void normalise(const std::vector<std::uint64_t>& counts, const Packing& packing, RadialDistribution& radial) {
-  const auto n = static_cast<double>(packing.spheres.size());
+void normalise(const std::vector<std::uint64_t>& counts, const Spheres<dynamic>& spheres, double volume,
+               RadialDistribution& radial) {
+  const auto n = static_cast<double>(spheres.size());
   const auto references = static_cast<double>(radial.references);
-  const double density = (n - 1) / volume_of(packing.domain);
+  const double density = (n - 1) / volume;
   const double distinct = 1 - 0.5 * references / n;
   for (std::size_t k = 0; k < counts.size(); ++k) {
     const double from = static_cast<double>(k) * radial.bin_width, to = from + radial.bin_width;
-    const double expected = references * density * shell_volume(packing.spheres.dimension(), from, to);
+    const double expected = references * density * shell_volume(spheres.dimension(), from, to);
     const auto count = static_cast<double>(counts[k]);
     radial.r.push_back(0.5 * (from + to));
     radial.g.push_back(count / expected);
@@ -149,9 +150,10 @@ void find_peaks(RadialDistribution& radial) {
 
 }  // namespace
 
-std::optional<RadialDistribution> radial_distribution(const Packing& packing, const RadialOptions& options) {
-  const std::vector<double>& radii = packing.spheres.r;
-  if (has_walls(packing.domain) || radii.size() < 2) return {};
+std::optional<RadialDistribution> radial_distribution(const Spheres<dynamic>& spheres, const Domain& domain,
+                                                      const RadialOptions& options) {
+  const std::vector<double>& radii = spheres.r;
+  if (has_walls(domain) || radii.size() < 2) return {};
   const auto n = static_cast<double>(radii.size());
   const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / n;
   double squares = 0;
@@ -161,18 +163,18 @@ std::optional<RadialDistribution> radial_distribution(const Packing& packing, co
   radial.mean_diameter = 2 * mean;
   radial.radius_spread = std::sqrt(squares / n);
   radial.bin_width = options.bin * radial.mean_diameter;
-  const double reach = std::min(options.reach * radial.mean_diameter,
-                                0.5 * bounds_of<dynamic>(packing.domain).size().minCoeff());
+  const double reach =
+      std::min(options.reach * radial.mean_diameter, 0.5 * bounds_of<dynamic>(domain).size().minCoeff());
   const double bins = std::floor(reach / radial.bin_width + slack);
   if (!(bins >= 1)) return {};
   const Histogram empty(static_cast<std::size_t>(bins), radial.bin_width);
   Histogram found = empty;
-  with_dimension(packing.spheres.dimension(), EveryDimension{}, [&](auto dimension) {
+  with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
-    found = count_distances<D>(packing.spheres.in<D>(), boundary_of<D>(packing.domain), empty, options.work,
-                               radial.references);
+    found =
+        count_distances<D>(spheres.in<D>(), boundary_of<D>(domain), empty, options.work, radial.references);
   });
-  normalise(found.counts(), packing, radial);
+  normalise(found.counts(), spheres, volume_of(domain), radial);
   find_peaks(radial);
   return radial;
 }

@@ -101,32 +101,38 @@ std::vector<Found> pairs_among(const Spheres<D>& spheres, const Boundary<D>& bou
   return pairs;
 }
 
-/// Whether it is a container that ends everywhere.
-bool is_bounded(const Domain& domain) { return !is_periodic(domain) && dimension_of(domain) == 3; }
+/// Whether to work in the frame of the walls, which keeps the digits that far away would be lost.
+bool has_own_frame(const Domain& domain) { return has_walls(domain) && dimension_of(domain) == 3; }
+
+template <class Found>
+std::vector<Found> pairs_in_own_frame(const Spheres<dynamic>& spheres, const Domain& domain,
+                                      double widest_gap) {
+  const Frame frame = frame_of(domain);
+  return pairs_among<Found, 3>(localised(spheres, frame), localised(boundary_of<3>(domain), frame),
+                               widest_gap);
+}
 
 }  // namespace
 
-std::vector<NearPair> near_pairs(const Packing& packing, double widest_gap) {
-  if (packing.spheres.empty()) return {};
-  if (is_bounded(packing.domain))
-    return pairs_among<NearPair, 3>(localised(packing.spheres, frame_of(packing.domain)), {}, widest_gap);
-  return with_dimension(packing.spheres.dimension(), EveryDimension{}, [&](auto dimension) {
+std::vector<NearPair> near_pairs(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap) {
+  if (spheres.empty()) return {};
+  if (has_own_frame(domain)) return pairs_in_own_frame<NearPair>(spheres, domain, widest_gap);
+  return with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
-    return pairs_among<NearPair, D>(packing.spheres.in<D>(), boundary_of<D>(packing.domain), widest_gap);
+    return pairs_among<NearPair, D>(spheres.in<D>(), boundary_of<D>(domain), widest_gap);
   });
 }
 
-std::vector<NearBond> near_bonds(const Packing& packing, double widest_gap) {
-  if (packing.spheres.empty()) return {};
-  if (is_bounded(packing.domain))
-    return pairs_among<NearBond, 3>(localised(packing.spheres, frame_of(packing.domain)), {}, widest_gap);
-  return pairs_among<NearBond, 3>(packing.spheres.in<3>(), boundary_of<3>(packing.domain), widest_gap);
+std::vector<NearBond> near_bonds(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap) {
+  if (spheres.empty()) return {};
+  if (has_own_frame(domain)) return pairs_in_own_frame<NearBond>(spheres, domain, widest_gap);
+  return pairs_among<NearBond, 3>(spheres.in<3>(), boundary_of<3>(domain), widest_gap);
 }
 
 namespace {
 
-/// Those on the axes of a periodic box that have walls.
-std::vector<NearWall> near_walls_of(const Box& box, const Spheres<dynamic>& spheres, double widest_gap) {
+/// Those of a box of any dimension.
+std::vector<NearWall> near_faces(const Box& box, const Spheres<dynamic>& spheres, double widest_gap) {
   std::vector<NearWall> near;
   for (std::uint32_t i = 0; i < spheres.size(); ++i) {
     const double r = spheres.r[i];
@@ -142,19 +148,18 @@ std::vector<NearWall> near_walls_of(const Box& box, const Spheres<dynamic>& sphe
 
 }  // namespace
 
-std::vector<NearWall> near_walls(const Packing& packing, double widest_gap) {
-  if (packing.spheres.empty()) return {};
-  const Box* box = std::get_if<Box>(&packing.domain);
-  if (box && !is_bounded(packing.domain)) return near_walls_of(*box, packing.spheres, widest_gap);
-  const Frame frame = frame_of(packing.domain);
-  const auto container = make_local_container(packing.domain, frame, WallArithmetic::plain);
-  const Spheres<3> spheres = localised(packing.spheres, frame);
+std::vector<NearWall> near_walls(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap) {
+  if (spheres.empty() || !has_walls(domain)) return {};
+  if (!has_own_frame(domain)) return near_faces(std::get<Box>(domain), spheres, widest_gap);
+  const Frame frame = frame_of(domain);
+  const auto container = make_local_container(domain, frame, WallArithmetic::plain);
+  const Spheres<3> local = localised(spheres, frame);
   std::vector<NearWall> near;
   std::vector<WallPoint> points;
-  for (std::uint32_t i = 0; i < spheres.size(); ++i) {
-    const double r = spheres.r[i], reach = (1 + widest_gap) * r;
+  for (std::uint32_t i = 0; i < local.size(); ++i) {
+    const double r = local.r[i], reach = (1 + widest_gap) * r;
     points.clear();
-    container->walls_near(spheres.center(i), reach, points);
+    container->walls_near(local.center(i), reach, points);
     for (const WallPoint& p : points)
       if (p.clearance < reach) near.push_back({i, (p.clearance - r) / r});
   }

@@ -2,7 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bernal/run/packing.hpp"
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal {
 
@@ -26,10 +27,10 @@ struct NearWall {
 
 /// Everything whose gap ratio is below `widest_gap`, each once, in an order that does not depend on the
 /// number of threads. Cost: O(N + pairs).
-std::vector<NearPair> near_pairs(const Packing&, double widest_gap);
+std::vector<NearPair> near_pairs(const Spheres<dynamic>&, const Domain&, double widest_gap);
 /// The same pairs in the same order. Precondition: three dimensions.
-std::vector<NearBond> near_bonds(const Packing&, double widest_gap);
-/// Nothing in a periodic box.
-std::vector<NearWall> near_walls(const Packing&, double widest_gap);
+std::vector<NearBond> near_bonds(const Spheres<dynamic>&, const Domain&, double widest_gap);
+/// Nothing where there are no walls.
+std::vector<NearWall> near_walls(const Spheres<dynamic>&, const Domain&, double widest_gap);
 
 }  // namespace bernal

@@ -10,6 +10,7 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/random.hpp"
+#include "bernal/measure/measure.hpp"
 #include "measure/depths.hpp"
 #include "measure/even_points.hpp"
 #include "measure/localised.hpp"
@@ -173,17 +174,18 @@ Region region_of(double clearance, double r, const Zones& zones) {
 
 }  // namespace
 
-std::optional<WallProfile> wall_profile(const Packing& packing, const WallOptions& options) {
-  if (is_periodic(packing.domain) || dimension_of(packing.domain) != 3 || packing.spheres.empty()) return {};
-  const Frame frame = frame_of(packing.domain);
-  const auto container = make_local_container(packing.domain, frame, WallArithmetic::plain);
-  const Spheres<3> spheres = localised(packing.spheres, frame);
+std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Domain& domain,
+                                        const WallOptions& options) {
+  if (!has_walls(domain) || dimension_of(domain) != 3 || packed.empty()) return {};
+  const Frame frame = frame_of(domain);
+  const auto container = make_local_container(domain, frame, WallArithmetic::plain);
+  const Spheres<3> spheres = localised(packed, frame);
   const double volume = container->volume();
   const double diameter =
       2 * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / static_cast<double>(spheres.size());
   const double thickness = options.layer * diameter;
   const double reach = std::max(options.reach, least_reach) * diameter;
-  const Depths depths(to_local(packing.domain, frame), *container, reach,
+  const Depths depths(to_local(domain, frame), *container, reach,
                       static_cast<std::size_t>(mesh_share * options.work));
 
   WallProfile profile;
@@ -196,8 +198,7 @@ std::optional<WallProfile> wall_profile(const Packing& packing, const WallOption
   const std::vector<double> clearance = clearances(*container, spheres, reach);
   double within_reach = 0;
   for (std::size_t i = 0; i < spheres.size(); ++i) within_reach += clearance[i] - spheres.r[i] < reach;
-  const double work =
-      options.work * (std::holds_alternative<Mesh>(packing.domain) ? mesh_share : analytic_share);
+  const double work = options.work * (std::holds_alternative<Mesh>(domain) ? mesh_share : analytic_share);
   const auto points =
       static_cast<std::uint32_t>(std::clamp(work / std::max(1.0, within_reach), fewest_points, most_points));
   const std::vector<Filling> filling = fill(*container, spheres, clearance, zones, reach, points);
@@ -211,7 +212,7 @@ std::optional<WallProfile> wall_profile(const Packing& packing, const WallOption
     profile.layers.push_back({in_scene(from), in_scene(to), share, 1 - solid.value, solid.error});
   }
   profile.mean_diameter = in_scene(diameter);
-  profile.mean_porosity = 1 - packing.packing_fraction();
+  profile.mean_porosity = 1 - packing_fraction(packed, domain);
   const double near_share = 1 - depths.deeper(zones.near), core_share = depths.deeper(zones.core);
   profile.near_wall_packing_fraction = fraction_of(filling[zones.near_zone()], near_share, 0, volume).value;
   const Fraction core =

@@ -5,10 +5,11 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/dimension.hpp"
-#include "hard/grow_in_container.hpp"
-#include "run/catalogue.hpp"
+#include "bernal/scene/read_scene.hpp"
 #include "run/estimate.hpp"
+#include "run/fill_task_of.hpp"
 #include "run/fitting.hpp"
+#include "run/stages.hpp"
 
 namespace bernal {
 namespace {
@@ -18,71 +19,6 @@ namespace {
 constexpr double bytes_a_sphere = 600;
 /// The same for relaxation in a periodic box.
 constexpr double bytes_a_relaxed_sphere = 400;
-
-/// Throws where a stage cannot work in the scene's domain.
-void require_possible(const Scene& scene) {
-  for (const Spec& stage : scene.stages) {
-    const StageEntry& entry = find_entry(stage_catalogue(), stage);
-    if (scene.is_periodic() ? entry.run_periodic != nullptr : entry.run != nullptr) continue;
-    std::vector<std::string_view> able;
-    for (const StageEntry& other : stage_catalogue())
-      if (scene.is_periodic() ? other.run_periodic != nullptr : other.run != nullptr)
-        able.push_back(other.name);
-    throw Error(
-        ErrorCode::bad_scene,
-        fmt::format("\"{}\" cannot work in a {}; there, the stages are \"{}\"", stage.name,
-                    scene.is_periodic() ? "periodic box" : "container with walls", fmt::join(able, "\", \"")),
-        stage.where);
-  }
-  if (scene.container.has("walls"))
-    for (const Spec& stage : scene.stages)
-      if (stage.name != "fly" && stage.name != "grow")
-        throw Error(
-            ErrorCode::bad_scene,
-            fmt::format("\"{}\" does not know the walls of a box that is periodic along other axes; there, "
-                        "the stages are \"fly\" and \"grow\"",
-                        stage.name),
-            stage.where);
-  const bool flies = std::ranges::find(scene.stages, "fly", &Spec::name) != scene.stages.end();
-  const Target& target = scene.target;
-  if (flies && !target.packing_fraction && (!target.count || scene.container.flag("scalable")))
-    throw Error(
-        ErrorCode::bad_scene,
-        "\"fly\" fills a box of given size to a given end: give \"packing_fraction\" in [spheres], or "
-        "\"count\" and the size of the box",
-        target.where);
-}
-
-}  // namespace
-
-Domain domain_of(const Scene& scene, std::string* notes) {
-  std::string unused;
-  return find_entry(container_catalogue(), scene.container).make(scene, notes ? *notes : unused);
-}
-
-Domain packed_domain_of(const Scene& scene) {
-  if (scene.is_periodic() && !scene.container.has("size") && !scene.container.has("edge"))
-    throw Error(
-        ErrorCode::bad_scene,
-        "does not say how large the periodic box is; give its \"size\", as the scene.toml that bernal "
-        "pack writes beside the spheres does",
-        scene.container.where);
-  return domain_of(scene);
-}
-
-std::unique_ptr<SizeDistribution> radii_of(const Scene& scene) {
-  const SizesEntry& entry = find_entry(sizes_catalogue(), scene.sizes);
-  try {
-    return entry.make(scene.sizes, scene.sizes_are_diameters ? 0.5 : 1.0);
-  } catch (const Error& error) {  // what only the numbers together show
-    if (error.code() != ErrorCode::bad_argument) throw;
-    throw Error(ErrorCode::bad_scene, error.what(), scene.sizes.where);
-  }
-}
-
-Draw draw_of(const Scene& scene) { return scene.draw == "quantiles" ? Draw::quantiles : Draw::random; }
-
-namespace {
 
 /// Puts a number where the scene says "predicted": what its stages are likely to reach less the error of that
 /// expectation, so that it is reached, and rounded down to what a reader can take in.
@@ -104,7 +40,10 @@ void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Domain& container = plan.domain;
   require_fitting(scene, container, plan.radii->min());
-  if (std::isfinite(plan.radii->max())) require_fitting(scene, container, plan.radii->max());
+  if (std::isfinite(plan.radii->max())) {
+    require_fitting(scene, container, plan.radii->max());
+    require_long_periods(scene, container, plan.radii->max());
+  }
 
   const double mean_volume = ball_volume(3, 1) * plan.radii->moment(3);
   const double volume = volume_of(container);
@@ -117,22 +56,22 @@ void expect_in_container(Plan& plan) {
     plan.expected_count = std::min(plan.expected_count, static_cast<double>(*scene.target.count));
   plan.expected_packing_fraction = plan.expected_count * mean_volume / volume;
   plan.expected_memory_bytes = plan.expected_count * bytes_a_sphere;
-  plan.items.push_back({"walls", fmt::format("{}, {}", kind_of(container), scene.walls),
+  plan.items.push_back({"walls", fmt::format("{}, {}", kind_of(container), name_of(scene.walls)),
                         std::holds_alternative<Mesh>(container) ? "O(log faces) a query" : "O(1) a query"});
 }
 
-/// Throws where growth would find that the container is not convex.
-void require_convex_for_growth(const Plan& plan) {
-  const Domain& shape = plan.domain;
+/// Throws where a stage has demands on containers that this one does not meet.
+void require_fit_for_stages(const Plan& plan) {
   const double rarest = std::min(0.5, 1 / std::max(1.0, plan.expected_count));
   const double smallest = std::max(plan.radii->min(), plan.radii->quantile(rarest));
-  for (const Spec& stage : plan.scene.stages) {
-    if (stage.name != "grow") continue;
+  for (const Stage& stage : plan.scene.stages) {
+    const StageEntry& entry = entry_of(stage);
+    if (!entry.require) continue;
     try {
-      const Frame frame = frame_of(shape);
-      walls_for_growth(to_local(shape, frame), smallest / frame.scale);
+      const Frame frame = frame_of(plan.domain);
+      entry.require(to_local(plan.domain, frame), smallest / frame.scale);
     } catch (const Error& error) {
-      throw Error(error.code(), error.what(), stage.where);
+      throw Error(error.code(), error.what(), stage.locations.whole);
     }
   }
 }
@@ -151,9 +90,11 @@ Vector<dynamic> proportions_of(const Vector<dynamic>& edges) {
 void expect_in_periodic_box(Plan& plan) {
   const Scene& scene = plan.scene;
   const int dimension = scene.dimension();
-  plan.box_follows = scene.container.flag("scalable");
+  plan.box_follows = std::get<PeriodicBox>(scene.container).scalable;
   const double mean_volume = ball_volume(dimension, 1) * plan.radii->moment(dimension);
-  double attainable = plan.attainable_packing_fraction = close_packing_fraction(*plan.radii, dimension);
+  double attainable = plan.attainable_packing_fraction =
+      any_in_bed(scene) ? expected_packing_fraction(scene, plan.domain, *plan.radii)
+                        : close_packing_fraction(*plan.radii, dimension);
   resolve_predicted(plan);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   if (plan.box_follows) {
@@ -169,38 +110,62 @@ void expect_in_periodic_box(Plan& plan) {
   plan.expected_memory_bytes = plan.expected_count * bytes_a_relaxed_sphere;
 }
 
+/// Those of its effects that the plan calls for.
+std::vector<PlanItem> effects_of(const Stage& stage, const Plan& plan) {
+  const StageEntry& entry = entry_of(stage);
+  if (entry.table.traits.stands_in_bed(plan.scene)) return entry.bed_effects;
+  if (!entry.chosen_effects) return entry.box_effects;
+  try {
+    return entry.chosen_effects(entry.table.options(stage), fill_task_of(plan));
+  } catch (const Error& error) {
+    throw Error(ErrorCode::bad_scene, error.what(), stage.locations.of("method"));
+  }
+}
+
 }  // namespace
 
-Plan build(const Scene& scene) {
+FillTask fill_task_of(const Plan& plan) {
+  constexpr double rare = 1e-4;
+  const int dimension = plan.scene.dimension();
+  const Target& target = plan.scene.target;
+  FillTask task{.dimension = dimension,
+                .attainable = plan.attainable_packing_fraction,
+                .size_ratio = plan.radii->quantile(1 - rare) / plan.radii->quantile(rare),
+                .has_walls = has_walls(plan.domain)};
+  if (target.packing_fraction)
+    task.packing_fraction = *target.packing_fraction;
+  else if (target.count)
+    task.packing_fraction = static_cast<double>(*target.count) * ball_volume(dimension, 1) *
+                            plan.radii->moment(dimension) / volume_of(plan.domain);
+  return task;
+}
+
+Plan build(const Scene& stated) {
   Plan plan;
-  plan.scene = scene;
-  require_possible(scene);
+  plan.scene = stated;
+  complete(plan.scene);
+  const Scene& scene = plan.scene;
   plan.domain = domain_of(scene, &plan.container_notes);
   plan.radii = radii_of(scene);
   if (scene.is_periodic()) {
     expect_in_periodic_box(plan);
   } else {
     expect_in_container(plan);
-    require_convex_for_growth(plan);
+    require_fit_for_stages(plan);
   }
+  plan.places_expected = any_in_bed(scene) && any_stage(scene, &StageTraits::places_expected, true);
 
-  for (const Spec& stage : scene.stages) {
-    const StageEntry& entry = find_entry(stage_catalogue(), stage);
-    const auto all = entry.effects_in(scene);
-    for (const PlanItem& item : entry.chosen_effects ? entry.chosen_effects(stage, plan)
-                                                     : std::vector<PlanItem>(all.begin(), all.end())) {
-      const auto same = [&](const PlanItem& other) { return other.name == item.name; };
-      if (std::ranges::none_of(plan.items, same)) plan.items.push_back(item);
-    }
-  }
-  for (const StageEntry& stage : stage_catalogue()) {
-    for (const PlanItem& item : stage.effects_in(scene)) {
-      const auto same = [&](const PlanItem& other) { return other.name == item.name; };
-      const bool runs = std::ranges::any_of(plan.items, same);
-      if (!runs && std::ranges::find(plan.absent, item.name) == plan.absent.end())
+  const auto has = [&](const std::string& name) {
+    return std::ranges::find(plan.items, name, &PlanItem::name) != plan.items.end();
+  };
+  for (const Stage& stage : scene.stages)
+    for (const PlanItem& item : effects_of(stage, plan))
+      if (!has(item.name)) plan.items.push_back(item);
+  for (const StageEntry* stage : stage_entries())
+    for (const PlanItem& item :
+         stage->table.traits.stands_in_bed(scene) ? stage->bed_effects : stage->box_effects)
+      if (!has(item.name) && std::ranges::find(plan.absent, item.name) == plan.absent.end())
         plan.absent.push_back(item.name);
-    }
-  }
   return plan;
 }
 

@@ -6,6 +6,8 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/predict/predict.hpp"
+#include "run/stages.hpp"
+#include "core/close_packing.hpp"
 
 namespace bernal {
 namespace {
@@ -26,6 +28,8 @@ constexpr std::size_t points = 5000;
 /// How much of itself a covering sphere may lack, as the wall's nearest point is known to rounding only.
 constexpr double slack = 0.02;
 constexpr int most_moves = 8;
+/// What relaxation reaches of rods in line, which nothing stops from filling it.
+constexpr double in_line = 0.99;
 
 /// Whether a sphere of radius r that lies inside covers p: its centre is moved from p off one wall after the
 /// other, in a corner off three.
@@ -83,9 +87,7 @@ double reached_by_relaxation(const Domain& shape, const SizeDistribution& radii)
          std::max(0.1, 1 - wall_deficit_relaxed * wall);
 }
 
-bool has_stage(const Scene& scene, std::string_view name) {
-  return std::ranges::find(scene.stages, name, &Spec::name) != scene.stages.end();
-}
+bool reaches(const Scene& scene, Reaches what) { return any_stage(scene, &StageTraits::reaches, what); }
 
 }  // namespace
 
@@ -110,26 +112,25 @@ double coverable_share(const Container& container, double r) {
 }
 
 double close_packing_fraction(const SizeDistribution& radii, int dimension) {
-  constexpr double equal[] = {0.99, 0.84, 0.64, 0.46, 0.31, 0.20, 0.119, 0.069};
-  return dimension == 3 ? predict_packing_fraction(radii).phi : equal[dimension - 1];
+  if (dimension == 1) return in_line;
+  return dimension == 3 ? predict_packing_fraction(radii).phi : random_close_packing[dimension - 1];
 }
 
 double error_of_expectation(const Scene& scene) {
-  if (scene.is_periodic()) return 0.01;
-  return has_stage(scene, "relax") || has_stage(scene, "grow") ? 0.016 : 0.03;
+  if (!any_in_bed(scene)) return 0.01;
+  return reaches(scene, Reaches::close_packing) ? 0.016 : 0.03;
 }
 
 /// Compression leaves a share of close packing that falls with x = A d / V, for a wall of area A, a volume V
 /// and the surface-weighted mean diameter d. Fitted to fills with x from 0.18 (Han's cylinder) to 1.6 (a part
 /// only two spheres thick), all of them met within 0.03.
 double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii) {
-  const auto runs = [&](std::string_view name) { return has_stage(scene, name); };
-  if (runs("relax") || runs("grow")) return reached_by_relaxation(shape, radii);
-  if (!runs("refill")) {
+  if (reaches(scene, Reaches::close_packing)) return reached_by_relaxation(shape, radii);
+  if (!reaches(scene, Reaches::settled)) {
     double fraction = 0;
-    for (const Spec& s : scene.stages) {
-      if (s.name == "insert") fraction = s.number("packing_fraction");
-    }
+    for (const Stage& stage : scene.stages)
+      if (const StageEntry& entry = entry_of(stage); entry.reached)
+        fraction = entry.reached(entry.table.options(stage));
     return fraction;
   }
   const double mean_diameter = 2 * radii.moment(3) / radii.moment(2);

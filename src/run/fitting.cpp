@@ -16,15 +16,8 @@ namespace bernal {
 namespace {
 
 struct LargestRadius {
-  double operator()(const Box& b) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < b.dimension(); ++k)
-      if (b.has_wall(k)) least = std::min(least, 0.5 * b.size[k]);
-    return least;
-  }
-  double operator()(const Cylinder& c) const {
-    return c.periodic ? c.radius : std::min(c.radius, 0.5 * c.height);
-  }
+  double operator()(const Box& b) const { return 0.5 * b.size.minCoeff(); }
+  double operator()(const Cylinder& c) const { return std::min(c.radius, 0.5 * c.height); }
   double operator()(const Sphere& s) const { return s.radius; }
   double operator()(const Mesh& m) const {
     const double by_volume = std::cbrt(3 * volume_of(m) / (4 * std::numbers::pi));
@@ -33,8 +26,6 @@ struct LargestRadius {
 };
 
 }  // namespace
-
-namespace {
 
 void require_long_periods(const Scene& scene, const Domain& container, double radius) {
   const Boundary<3> boundary = boundary_of<3>(container);
@@ -45,18 +36,16 @@ void require_long_periods(const Scene& scene, const Domain& container, double ra
         ErrorCode::bad_scene,
         fmt::format("the container repeats itself every {:.6g} {}, in which spheres meet two images of "
                     "others; for these sizes make that at least {:.6g} {}",
-                    boundary.edges[k], scene.unit, least, scene.unit),
-        scene.container.where);
+                    boundary.edges[k], name_of(scene.unit), least, name_of(scene.unit)),
+        scene.container.locations.whole);
   }
 }
-
-}  // namespace
 
 double largest_fitting_radius(const Domain& shape) { return std::visit(LargestRadius{}, shape); }
 
 void require_fitting(const Scene& scene, const Domain& container, double radius) {
   const double largest = largest_fitting_radius(container);
-  if (radius <= largest) return require_long_periods(scene, container, radius);
+  if (radius <= largest) return;
   const double shown = scene.sizes_are_diameters ? 2 : 1;
   const auto [one, many] =
       scene.sizes_are_diameters ? std::pair("diameter", "diameters") : std::pair("radius", "radii");
@@ -64,8 +53,9 @@ void require_fitting(const Scene& scene, const Domain& container, double radius)
       ErrorCode::bad_scene,
       fmt::format("a sphere of {} {:.6g} {} does not fit into the {}, which takes {} up to {:.6g} {}: use "
                   "smaller ones or check the units",
-                  one, shown * radius, scene.unit, kind_of(container), many, shown * largest, scene.unit),
-      scene.sizes.where);
+                  one, shown * radius, name_of(scene.unit), kind_of(container), many, shown * largest,
+                  name_of(scene.unit)),
+      scene.sizes.locations.whole);
 }
 
 double radius_with_hardly_any_room(const Container& container, std::uint64_t seed) {

@@ -6,9 +6,13 @@
 
 namespace bernal {
 
-/// No sphere larger than this fits into the shape: exact for the analytic ones; for a mesh an upper bound
-/// from its bounds and its volume.
+/// No sphere larger than this fits into the shape, or beside its own images: exact for the analytic ones; for
+/// a mesh an upper bound from its bounds and its volume.
 double largest_fitting_radius(const Domain& shape);
+
+/// Throws Error{bad_scene} at the scene's container if it repeats itself so often that spheres of that
+/// radius, in a bed, would meet two images of others.
+void require_long_periods(const Scene& scene, const Domain& container, double radius);
 
 /// Throws Error{bad_scene} at the scene's sizes, with the remedy, if a sphere of that radius cannot fit.
 void require_fitting(const Scene& scene, const Domain& container, double radius);

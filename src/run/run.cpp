@@ -3,14 +3,254 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
 #include <thread>
 
-#include "run/run_in_domain.hpp"
+#include <fmt/format.h>
+
+#include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/version.hpp"
+#include "run/conclude.hpp"
+#include "run/fill_task_of.hpp"
+#include "run/fitting.hpp"
+#include "run/stages.hpp"
+#include "work/keepsake.hpp"
 
 namespace bernal {
+namespace {
+
+/// How often a box of given size that is to be filled is tried with another number of spheres.
+constexpr int most_attempts = 6;
+/// What the second attempt leaves free of the packing fraction that the first one reached, so that it fits;
+/// every further attempt leaves twice as much.
+constexpr double caution = 5e-4;
+/// A first attempt that leaves more than this of the volume free was too small.
+constexpr double too_much_room = 5e-3;
+
+/// Seconds since it was made.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// A container's own frame. Throws where coordinates are so large that neighbouring spheres could not be told
+/// apart.
+Frame frame_of_container(const Plan& plan) {
+  Frame frame = frame_of(plan.domain);
+  const double smallest = plan.radii->min() > 0 ? plan.radii->min() : plan.radii->quantile(1e-9);
+  if (1e6 * frame.resolution * frame.scale > smallest) {
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("the container is so far from the origin that its coordinates are only good to {:.1g} "
+                    "{}: move it closer or use larger spheres",
+                    frame.resolution * frame.scale, name_of(plan.scene.unit)),
+        plan.scene.container.locations.whole);
+  }
+  return frame;
+}
+
+/// That of a box, which stays where it is: the power of two below the largest radius is its unit.
+Frame frame_of_box(const Vector<dynamic>& edges, double largest_radius) {
+  Frame frame;
+  frame.scale = std::exp2(std::floor(std::log2(largest_radius)));
+  const double farthest = edges.maxCoeff() / frame.scale;
+  frame.resolution = std::nextafter(farthest, std::numeric_limits<double>::infinity()) - farthest;
+  return frame;
+}
+
+/// One run of a plan's stages.
+class Run {
+ public:
+  Run(const Plan& plan, const Monitor& monitor, Packing& packing)
+      : plan_(plan),
+        scene_(plan.scene),
+        monitor_(monitor),
+        packing_(packing),
+        any_in_bed_(any_in_bed(plan.scene)) {}
+
+  void go() {
+    double fraction = any_in_bed_ ? Supply::densest : plan_.expected_packing_fraction;
+    for (int attempt = 1;; ++attempt) {
+      Work work = start(fraction);
+      const StageEnd end = run_stages(work);
+      if (const std::optional<double> other = other_fraction(work, end, attempt)) {
+        fraction = *other;
+        continue;
+      }
+      hand_over(work);
+      conclude(packing_, work, end, table_of(scene_.stages.back()).traits.places_expected);
+      packing_.seconds = watch_.seconds();
+      return;
+    }
+  }
+
+ private:
+  /// The drawn sequence, the frame that follows from it, and no sphere in its place.
+  Work start(double fraction) {
+    Work work{.spheres = Spheres<dynamic>(dimension_of(plan_.domain)),
+              .edges = bounds_of<dynamic>(plan_.domain).size(),
+              .allowed_overlap = scene_.overlap,
+              .target = scene_.target,
+              .attainable = plan_.attainable_packing_fraction,
+              .seed = packing_.seed,
+              .monitor = monitor_,
+              .effects = effects_,
+              .on_course = [this](const Course& course) { tell(course); }};
+    Supply::Source source{*plan_.radii, work.dimension(), packing_.seed, *scene_.draw};
+    double volume = volume_of(plan_.domain);
+    if (scene_.is_periodic()) {
+      if (any_in_bed_ && !std::isfinite(source.radii.max()))
+        source.cut = radius_with_hardly_any_room(*container_of(plan_.domain, Frame{}), packing_.seed);
+      work.supply = std::make_shared<Supply>(source, volume, scene_.target, fraction);
+      frame_ = frame_of_box(work.edges, work.supply->largest());
+    } else {
+      frame_ = frame_of_container(plan_);
+      work.container = container_of(to_local(plan_.domain, frame_), frame_);
+      volume = std::pow(frame_.scale, 3) * work.container->volume();
+      if (!std::isfinite(source.radii.max()))
+        source.cut = frame_.scale * radius_with_hardly_any_room(*work.container, packing_.seed);
+      work.supply = std::make_shared<Supply>(source, volume, scene_.target, fraction);
+    }
+    if (!plan_.box_follows) {
+      const double allowed = has_walls(plan_.domain) ? 0 : scene_.overlap;
+      require_fitting(scene_, plan_.domain, (1 - allowed) * work.supply->largest());
+    }
+    if (any_in_bed_) require_long_periods(scene_, plan_.domain, work.supply->largest());
+    work.supply->divide_by(frame_.scale);
+    if (scene_.is_periodic()) put_into_box(work);
+    return work;
+  }
+
+  std::shared_ptr<Container> container_of(const Domain& local, const Frame& frame) const {
+    return make_container(local, scene_.walls, frame.resolution);
+  }
+
+  /// All spheres of the sequence, in a box of the plan's proportions, with the edges that the scene asks for.
+  void put_into_box(Work& work) const {
+    const Box& box = std::get<Box>(plan_.domain);
+    work.edges /= frame_.scale;
+    work.domain = Box{box.corner / frame_.scale, work.edges, box.periodic};
+    if (box.has_walls()) {
+      work.walls = box.periodic;
+      work.walls.flip();
+    }
+    if (any_in_bed_) {
+      work.container = container_of(work.domain, frame_);
+      work.target_edges = work.edges;
+      if (table_of(scene_.stages.front()).traits.stands_in_bed(scene_)) return;
+    }
+    work.spheres.resize(work.supply->wanted());
+    work.spheres.r = work.supply->radii();
+    const std::optional<double> phi = scene_.target.packing_fraction;
+    if (!plan_.box_follows) {
+      work.target_edges = work.edges;
+    } else if (phi) {
+      const double volume = work.volume_of_spheres() / *phi;
+      work.target_edges = work.edges * std::pow(volume / work.edges.prod(), 1.0 / work.dimension());
+    }
+    work.fill_task = fill_task_of(plan_);
+  }
+
+  StageEnd run_stages(Work& work) {
+    StageEnd end = StageEnd::converged;
+    for (const Stage& stage : scene_.stages) {
+      const bool in_bed = table_of(stage).traits.stands_in_bed(scene_);
+      in_bed ? work.stand_in_bed() : work.stand_in_box();
+      const Keepsake before(work);
+      end = run_stage(stage, work);
+      if (end == StageEnd::cancelled) before.give_back_if_denser(work);
+      if (in_bed) work.milestone(stage.name());
+      if (end == StageEnd::cancelled) break;
+    }
+    Supply& supply = *work.supply;
+    if (work.stands_in_bed() && supply.passed_over() > 0 && supply.trimming_is_cheap())
+      work.bed().remove_tags_from(supply.first_missing());
+    return end;
+  }
+
+  /// What a stage cannot do, only it knows; where the scene asks for it, only the run.
+  static StageEnd run_stage(const Stage& stage, Work& work) {
+    const StageEntry& entry = entry_of(stage);
+    try {
+      const auto& act = work.stands_in_bed() ? entry.act_in_bed : entry.act_in_box;
+      return act(entry.table.options(stage), work);
+    } catch (const Error& error) {
+      if (!error.location().file.empty()) throw;
+      throw Error(error.code(), error.what(), stage.locations.whole);
+    }
+  }
+
+  /// Where it is left open how many spheres a box of given size takes, and the stages put all in their places
+  /// or none: what to try next, unless the last try will do.
+  std::optional<double> other_fraction(const Work& work, StageEnd end, int attempt) const {
+    if (any_in_bed_ || !scene_.target.is_open() || plan_.box_follows || end == StageEnd::cancelled) return {};
+    const bool fits = work.edges == *work.target_edges;
+    const bool roomy = attempt == 1 && fits && work.needed_volume < (1 - too_much_room) * work.edges.prod();
+    if ((fits && !roomy) || attempt == most_attempts) return {};
+    return work.volume_of_spheres() / work.needed_volume * (1 - std::ldexp(caution, attempt - 1));
+  }
+
+  /// Back into the scene's unit and place, in the order of the drawn sequence.
+  void hand_over(Work& work) {
+    packing_.spheres =
+        work.stands_in_bed() ? Spheres<dynamic>(work.bed().spheres()) : std::move(work.spheres);
+    Spheres<dynamic>& spheres = packing_.spheres;
+    for (int k = 0; k < spheres.dimension(); ++k) {
+      const double origin = k < 3 ? frame_.origin[k] : 0;
+      for (double& x : spheres.x[static_cast<std::size_t>(k)]) x = origin + frame_.scale * x;
+    }
+    for (double& r : spheres.r) r *= frame_.scale;
+    if (work.stands_in_bed()) {
+      Effect& walls = effects_["walls"];
+      walls.calls += work.bed().wall_queries().calls;
+      walls.seconds += work.bed().wall_queries().seconds;
+    } else {
+      const Vector<dynamic> edges = work.edges * frame_.scale;
+      packing_.domain = periodic_box(edges, work.walls);
+      packing_.volume = volume_of(packing_.domain);
+    }
+    if (scene_.is_periodic()) {
+      const Coordinates& edges = std::get<Box>(packing_.domain).size;
+      auto& stated = std::get<PeriodicBox>(packing_.scene.container);
+      stated.size.assign(edges.begin(), edges.end());
+      stated.edge.reset();
+    }
+    packing_.effects = effects_.all();
+  }
+
+  void tell(const Course& course) {
+    packing_.history.push_back({std::string(course.stage), course.spheres, course.packing_fraction,
+                                course.potential ? frame_.scale * *course.potential + frame_.origin[2] : 0,
+                                course.max_overlap, watch_.seconds()});
+    const double expected = plan_.expected_packing_fraction;
+    const double share = expected > 0 ? std::min(course.packing_fraction / expected, 0.99) : 0;
+    const std::string overlap =
+        course.max_overlap > 0 ? fmt::format(", largest overlap {:.1e}", course.max_overlap) : std::string();
+    monitor_.report({course.stage, course.done.value_or(share),
+                     fmt::format("{} spheres, packing fraction {:.4f}{}", grouped(course.spheres),
+                                 course.packing_fraction, overlap)});
+  }
+
+  const Plan& plan_;
+  const Scene& scene_;
+  const Monitor& monitor_;
+  Packing& packing_;
+  const bool any_in_bed_;
+  const Stopwatch watch_;
+  EffectLog effects_;
+  Frame frame_;
+};
+
+}  // namespace
 
 Packing run(const Plan& plan, const RunOptions& options) {
-  const Stopwatch watch;
   Packing packing;
   packing.domain = plan.domain;
   packing.volume = volume_of(plan.domain);
@@ -20,15 +260,10 @@ Packing run(const Plan& plan, const RunOptions& options) {
   packing.scene.seed = packing.seed;
   packing.threads =
       options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  packing.version = BERNAL_VERSION;
+  packing.version = version();
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(std::max(1, packing.threads)));
-  if (plan.scene.is_periodic()) {
-    run_in_periodic_box(plan, options.monitor, watch, packing);
-  } else {
-    run_in_container(plan, options.monitor, watch, packing);
-  }
-  packing.seconds = watch.seconds();
+  Run(plan, options.monitor, packing).go();
   return packing;
 }
 

@@ -5,8 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bernal/core/unit.hpp"
-#include "scene/schema.hpp"
+#include "scene/entry.hpp"
 
 namespace bernal::schema {
 namespace {
@@ -46,7 +45,7 @@ bool has_length(Type type) {
 std::string kind_of_value(const Key& key) {
   switch (key.type) {
     case Type::flag:
-      return "true or false";
+      return key.range.min > 0 ? "true or left out" : "true or false";
     case Type::integer:
       return key.range.max > 0x1p53
                  ? fmt::format("a whole number of at least {}", key.range.min)
@@ -58,8 +57,6 @@ std::string kind_of_value(const Key& key) {
       return "a positive length";
     case Type::word:
       return fmt::format("\"{}\"", fmt::join(key.words, "\" or \""));
-    case Type::unit:
-      return "the name of a unit";
     case Type::file:
       return "the path of a file";
     case Type::direction:
@@ -74,6 +71,8 @@ std::string kind_of_value(const Key& key) {
       return "an array of positive numbers";
     case Type::amounts:
       return "an array of numbers of at least 0";
+    case Type::axes:
+      return "an array of axes, counted from 0, each once";
     case Type::distribution:
       return "a positive length or a table { distribution = … }";
     case Type::parts:
@@ -97,7 +96,7 @@ bool accepts(const Key& key, const Value& value) {
   const auto text = [&]() -> const std::string& { return std::get<std::string>(value); };
   switch (key.type) {
     case Type::flag:
-      return true;
+      return key.range.contains(std::get<bool>(value));
     case Type::integer:
       return key.range.contains(static_cast<double>(std::get<std::int64_t>(value)));
     case Type::number:
@@ -108,8 +107,6 @@ bool accepts(const Key& key, const Value& value) {
       return is_length(number());
     case Type::word:
       return std::ranges::find(key.words, text()) != key.words.end();
-    case Type::unit:
-      return std::ranges::find(units(), text(), &Unit::name) != units().end();
     case Type::file:
       return !text().empty() && text().find('\0') == std::string::npos;
     case Type::direction: {
@@ -128,10 +125,15 @@ bool accepts(const Key& key, const Value& value) {
       const auto amount = [](double v) { return v == 0 || is_length(v); };
       return !numbers().empty() && std::ranges::all_of(numbers(), amount);
     }
+    case Type::axes: {
+      const auto axis = [&](double v) {
+        return v >= 0 && v < max_dimension && v == std::floor(v) && std::ranges::count(numbers(), v) == 1;
+      };
+      return !numbers().empty() && std::ranges::all_of(numbers(), axis);
+    }
     case Type::distribution:
-      return is_length(number());
     case Type::parts:
-      return false;  // a table of its own, not a value
+      return !std::get<std::vector<SceneSizes>>(value).empty();  // which are checked by themselves
   }
   return false;
 }

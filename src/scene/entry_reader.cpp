@@ -7,8 +7,8 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
-#include "bernal/core/unit.hpp"
 #include "scene/read_columns.hpp"
+#include "scene/scene_entries.hpp"
 #include "scene/toml_text.hpp"
 #include "scene/toml_values.hpp"
 
@@ -18,25 +18,13 @@ namespace {
 using schema::Entry;
 using schema::Key;
 using schema::Type;
+using schema::Value;
 using Names = EntryReader::Names;
 
-Names names_of(const std::vector<Entry>& entries) {
+Names names_of(const auto& entries) {
   Names names;
-  for (const Entry& entry : entries) names.push_back(entry.name);
+  for (const auto& entry : entries) names.push_back(entry.name);
   return names;
-}
-
-Names names_of(const std::vector<Key>& keys) {
-  Names names;
-  for (const Key& key : keys) names.push_back(key.name);
-  return names;
-}
-
-/// `; did you mean "diameter"?` or, where nothing is near, `; known: "count", "radius"`.
-std::string remedy(std::string_view name, const Names& candidates) {
-  if (const std::string_view near = nearest_name(name, candidates); !near.empty())
-    return fmt::format("; did you mean \"{}\"?", near);
-  return fmt::format("; known: \"{}\"", fmt::join(candidates, "\", \""));
 }
 
 }  // namespace
@@ -59,9 +47,8 @@ void EntryReader::check_names(const toml::table& table, const Entry& entry, cons
          remedy(unknown->str(), known));
 }
 
-const Entry& EntryReader::choose(const toml::table& table, std::string_view selector,
-                                 const std::vector<Entry>& entries, std::string_view where) const {
-  const Names names = names_of(entries);
+std::size_t EntryReader::choose(const toml::table& table, std::string_view selector, const Names& names,
+                                std::string_view where) const {
   const toml::node* node = table.get(selector);
   if (!node)
     fail(table.source(), "missing \"{}\" in {}; it is one of \"{}\"", selector, where,
@@ -70,127 +57,104 @@ const Entry& EntryReader::choose(const toml::table& table, std::string_view sele
   if (!word)
     fail(node->source(), "\"{}\" in {} must be one of \"{}\", not {}", selector, where,
          fmt::join(names, "\", \""), written(*node));
-  const Entry* entry = schema::Schema::find(entries, word->get());
-  if (!entry)
+  const auto found = std::ranges::find(names, word->get());
+  if (found == names.end())
     fail(node->source(), "unknown {} {} in {}{}", selector == "do" ? "stage" : selector, written(*node),
          where, remedy(word->get(), names));
-  return *entry;
+  return static_cast<std::size_t>(found - names.begin());
 }
 
-/// The keys that the choices of an entry leave out of this table. Throws where two sets are mixed or none
-/// is given that is needed.
-Names EntryReader::left_out(const toml::table& table, const Entry& entry, std::string_view where) const {
-  Names out;
-  for (const schema::Choice& choice : entry.choices) {
-    const auto needs_nothing = [&](const Names& set) {
-      return std::ranges::all_of(set, [&](std::string_view key) { return bool(entry.find(key)->otherwise); });
-    };
-    const auto holds = [](const Names& set, std::string_view key) {
-      return std::ranges::find(set, key) != set.end();
-    };
-    Names given;
-    std::vector<std::string> sets;
-    for (const Names& set : choice) {
-      if (!set.empty()) sets.push_back(fmt::format("\"{}\"", fmt::join(set, "\" and \"")));
-      for (const std::string_view key : set)
-        if (table.contains(key) && !holds(given, key)) given.push_back(key);
-    }
-    const auto chosen = std::ranges::find_if(choice, [&](const Names& set) {
-      return given.empty()
-                 ? needs_nothing(set)
-                 : std::ranges::all_of(given, [&](std::string_view key) { return holds(set, key); });
-    });
-    if (chosen == choice.end() && given.empty())
-      fail(table.source(), "{} needs exactly one of {}", where, fmt::join(sets, ", "));
-    if (chosen == choice.end()) {
-      const auto first = std::ranges::find_if(choice, [&](const Names& set) { return holds(set, given[0]); });
-      const auto other =
-          std::ranges::find_if(given, [&](std::string_view key) { return !holds(*first, key); });
-      fail(table.find(*other)->first.source(), "\"{}\" and \"{}\" in {} exclude each other; give one of them",
-           given[0], *other, where);
-    }
-    for (const Names& set : choice)
-      for (const std::string_view key : set)
-        if (!holds(*chosen, key)) out.push_back(key);
-  }
-  return out;
-}
-
-/// Reads and checks one key.
-Value EntryReader::read_value(const toml::node& node, const Key& key, std::string_view where) const {
+Value EntryReader::read_value(const toml::node& node, const Key& key, const std::string& where) const {
+  if (key.type == Type::distribution) return std::vector{read_sizes(node, key, where)};
+  if (key.type == Type::parts) return read_parts(node, key, where);
   const bool is_word = key.type == Type::number && !key.words.empty() && node.is_string();
   const std::optional<Value> value = value_in(node, is_word ? Type::word : key.type);
   if (value && schema::accepts(key, *value)) return *value;
-  if (value && (key.type == Type::unit || key.type == Type::word)) {
-    Names words = key.words;
-    if (key.type == Type::unit)
-      for (const Unit& unit : units()) words.push_back(unit.name);
-    const std::string& word = std::get<std::string>(*value);
-    fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node), remedy(word, words));
-  }
+  if (value && key.type == Type::word)
+    fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
+         remedy(std::get<std::string>(*value), key.words));
   fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
        written(node));
 }
 
-Spec EntryReader::read(const toml::table& table, const Entry& entry, std::string_view selector,
-                       const std::string& where) const {
-  if (&entry != &all_.scene) check_names(table, entry, selector.empty() ? Names{} : Names{selector}, where);
-  const Names absent = left_out(table, entry, where);
+void EntryReader::read(const toml::table& table, const Entry& entry, std::string_view selector,
+                       const std::string& where, void* options, Locations& locations) const {
+  if (&entry != &schema::scene_entry())
+    check_names(table, entry, selector.empty() ? Names{} : Names{selector}, where);
+  const Names absent = entry.left_out(
+      [&](const Key& key) { return table.contains(key.name); },
+      [&](std::string_view first, std::string_view second) {
+        fail(table.find(second)->first.source(),
+             "\"{}\" and \"{}\" in {} exclude each other; give one of them", first, second, where);
+      },
+      [&](const std::string& sets) { fail(table.source(), "{} needs exactly one of {}", where, sets); });
 
-  Spec spec{std::string(entry.name), {}, at(table.source())};
+  if (locations.whole.file.empty()) locations.whole = at(table.source());
   for (const Key& key : entry.keys) {
     const auto found = table.find(key.name);
-    const bool given = found != table.end();
-    if (key.type == Type::distribution || std::ranges::find(absent, key.name) != absent.end()) continue;
-    if (!given && !key.otherwise && !key.optional)
-      fail(table.source(), "missing \"{}\" in {}: {}, {}", key.name, where, schema::expectation(key),
-           key.help);
-    if (key.type == Type::parts)
-      spec.parts = read_parts(found->second, key, where);
-    else if (given)
-      spec.parameters[std::string(key.name)] = {read_value(found->second, key, where),
-                                                at(found->first.source())};
-    else if (key.otherwise)
-      spec.parameters[std::string(key.name)] = {*key.otherwise, {file_}};
+    if (found == table.end()) {
+      if (key.required && std::ranges::find(absent, key.name) == absent.end())
+        fail(table.source(), "missing \"{}\" in {}: {}, {}", key.name, where, schema::expectation(key),
+             key.help);
+      continue;
+    }
+    locations.keys[std::string(key.name)] = at(found->first.source());
+    if (key.member.set)
+      key.member.set(options, read_value(found->second, key, where));
+    else
+      take_columns(found->second, entry, where, options, locations);
   }
-  if (!entry.columns.empty() && spec.has("file")) take_columns(spec, entry, where);
-  if (entry.rule) entry.rule(spec, where);
-  return spec;
 }
 
-/// Puts what stands in the spec's file in its place, so that the scene is whole without the file.
-void EntryReader::take_columns(Spec& spec, const Entry& entry, const std::string& where) const {
-  const Location at_file = spec.location("file");
+/// Puts what stands in the file in its place, so that the scene is whole without the file.
+void EntryReader::take_columns(const toml::node& node, const Entry& entry, const std::string& where,
+                               void* options, Locations& locations) const {
+  const std::string file = std::get<std::string>(read_value(node, *entry.find("file"), where));
+  const Location at_file = locations.of("file");
   const std::array keys = {entry.find(entry.columns.at(0)), entry.find(entry.columns.at(1))};
   try {
-    const auto columns = read_columns(path_.parent_path() / spec.text("file"), keys);
-    for (std::size_t k = 0; k < keys.size(); ++k)
-      spec.parameters[std::string(keys[k]->name)] = {columns[k], at_file};
+    const auto columns = read_columns(path_.parent_path() / file, keys);
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      keys[k]->member.set(options, columns[k]);
+      locations.keys[std::string(keys[k]->name)] = at_file;
+    }
   } catch (const Error& error) {
     if (!error.location().file.empty()) throw;
     throw Error(error.code(), fmt::format("\"file\" in {}: {}", where, error.what()), at_file);
   }
-  spec.parameters.erase("file");
 }
 
-Spec EntryReader::read_distribution(const toml::node& node, const Key& key, const std::string& where) const {
-  const toml::table* table = node.as_table();
-  if (!table)
-    return {"constant", {{"value", {read_value(node, key, where), at(node.source())}}}, at(node.source())};
-  const std::string named = fmt::format("{} of {}", key.name, where);
-  return read(*table, choose(*table, "distribution", all_.distributions, named), "distribution", named);
+/// A plain length, whose key says what it must be, is a constant distribution.
+SceneSizes EntryReader::read_sizes(const toml::node& node, const Key& key, const std::string& where) const {
+  SceneSizes sizes;
+  if (const toml::table* table = node.as_table()) {
+    const std::string named = fmt::format("{} of {}", key.name, where);
+    const auto& entries = schema::size_entries();
+    const std::size_t n = choose(*table, "distribution", names_of(entries), named);
+    schema::hold(sizes, n);
+    read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
+    return sizes;
+  }
+  const auto value = value_in(node, Type::length);
+  const Key length = {.name = key.name, .type = Type::length};
+  if (!value || !schema::accepts(length, *value))
+    fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
+         written(node));
+  sizes = Constant{std::get<double>(*value)};
+  sizes.locations.whole = at(node.source());
+  return sizes;
 }
 
-std::vector<Spec> EntryReader::read_parts(const toml::node& node, const Key& key,
-                                          const std::string& where) const {
+std::vector<SceneSizes> EntryReader::read_parts(const toml::node& node, const Key& key,
+                                                const std::string& where) const {
   const toml::array* array = node.as_array();
   if (!array || array->empty())
     fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key),
          written(node));
-  std::vector<Spec> parts;
+  std::vector<SceneSizes> parts;
   for (const toml::node& item : *array) {
     const std::string name = fmt::format("part {}", parts.size() + 1);
-    parts.push_back(read_distribution(item, {.name = name, .type = Type::distribution, .help = {}}, where));
+    parts.push_back(read_sizes(item, {.name = name, .type = Type::distribution}, where));
   }
   return parts;
 }

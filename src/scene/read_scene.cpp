@@ -8,14 +8,12 @@
 #include <toml++/toml.h>
 
 #include "scene/entry_reader.hpp"
-#include "scene/schema.hpp"
+#include "scene/scene_entries.hpp"
+#include "scene/stage_table.hpp"
 #include "scene/toml_values.hpp"
 
 namespace bernal {
 namespace {
-
-using schema::Entry;
-using schema::Key;
 
 class Reader {
  public:
@@ -26,15 +24,13 @@ class Reader {
     Scene scene;
     scene.file = path_;
     check_tables(root);
-    const Spec top = entries_.read(root, all_.scene, {}, "the scene");
-    scene.unit = top.text("unit");
-    scene.seed = static_cast<std::uint64_t>(top.integer("seed"));
+    read_own(root, schema::scene_entry(), "the scene", scene);
     read_container(root, scene);
     read_spheres(table_in(root, "spheres"), scene);
-    read_accuracy(root, scene);
+    if (root.contains("accuracy"))
+      read_own(table_in(root, "accuracy"), schema::accuracy_entry(), "[accuracy]", scene);
     read_stages(root, scene);
-    take_target_of_fly(scene);
-    if (scene.draw.empty()) scene.draw = default_draw(scene);
+    complete(scene);
     return scene;
   }
 
@@ -56,7 +52,7 @@ class Reader {
 
   /// A misspelt table is reported as such, before anything is missed for it.
   void check_tables(const toml::table& root) const {
-    entries_.check_names(root, all_.scene, {tables.begin(), tables.end()}, "the scene");
+    entries_.check_names(root, schema::scene_entry(), {tables.begin(), tables.end()}, "the scene");
     for (const std::string_view name : tables)
       if (const toml::node* node = root.get(name); node && name != "stage" && !node->is_table())
         entries_.fail(node->source(), "\"{0}\" must be a table [{0}], not {1}", name, written(*node));
@@ -68,133 +64,56 @@ class Reader {
     return *node->as_table();
   }
 
+  /// A table whose keys are of the scene itself.
+  void read_own(const toml::table& table, const schema::Entry& entry, const std::string& name,
+                Scene& scene) const {
+    entries_.read(table, entry, {}, name, &scene, scene.locations);
+    scene.locations.whole = {file_};
+  }
+
   void read_container(const toml::table& root, Scene& scene) const {
     const toml::table& table = table_in(root, "container");
-    const Entry& entry = entries_.choose(table, "kind", all_.containers, "[container]");
-    scene.container = entries_.read(table, entry, "kind", "[container]");
-    if (scene.is_periodic() && !scene.container.has("size") && !scene.container.has("edge"))
-      scene.container.parameters["scalable"].value = true;
-    if (entry.name != "mesh") return;
+    EntryReader::Names kinds;
+    for (const schema::Entry& entry : schema::container_entries()) kinds.push_back(entry.name);
+    schema::hold(scene.container, entries_.choose(table, "kind", kinds, "[container]"));
+    entries_.read(table, schema::entry_of(scene.container), "kind", "[container]",
+                  schema::options_of(scene.container), scene.container.locations);
+    auto* mesh = std::get_if<MeshFile>(&scene.container);
+    if (!mesh) return;
     if (!root.contains("unit"))
       entries_.fail(table.source(),
                     "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
-    auto& parameters = scene.container.parameters;
-    parameters.try_emplace("unit", Parameter{scene.unit, {file_}});
-    std::filesystem::path mesh = scene.container.text("file");
-    if (mesh.is_relative()) mesh = (path_.parent_path() / mesh).lexically_normal();
-    parameters["file"].value = mesh.string();
+    if (mesh->file.is_relative()) mesh->file = (path_.parent_path() / mesh->file).lexically_normal();
   }
 
   void read_spheres(const toml::table& table, Scene& scene) const {
-    const Spec spec = entries_.read(table, all_.spheres, {}, "[spheres]");
-    scene.target.where = spec.where;
-    if (spec.has("count")) scene.target.count = spec.integer("count");
-    if (spec.has("packing_fraction")) {
-      scene.target.predicted =
-          std::holds_alternative<std::string>(spec.parameters.at("packing_fraction").value);
-      if (!scene.target.predicted) scene.target.packing_fraction = spec.number("packing_fraction");
-    }
-    scene.target.fill = spec.has("fill");
-    if (scene.target.fill && !spec.flag("fill"))
-      entries_.fail(table.get("fill")->source(),
-                    "\"fill\" in [spheres] can only be true; give \"count\" or \"packing_fraction\" instead");
-    for (const std::string_view key : {"count", "packing_fraction", "fill"})
-      if (spec.has(key) && spec.location(key).line > 0) scene.target.where = spec.location(key);
-
-    check_target(scene);
-
-    scene.sizes_are_diameters = table.contains("diameter");
-    const std::string_view key = scene.sizes_are_diameters ? "diameter" : "radius";
-    scene.sizes = entries_.read_distribution(*table.get(key), *all_.spheres.find(key), "[spheres]");
-    if (!scene.sizes_are_diameters) refuse_diameters(scene.sizes);
-    scene.draw = spec.has("draw") ? spec.text("draw") : "";
-  }
-
-  /// What the target and a periodic box demand of each other.
-  void check_target(const Scene& scene) const {
-    const Target& target = scene.target;
-    const auto fail = [&](const char* message) { throw Error(ErrorCode::bad_scene, message, target.where); };
-    const bool scalable = scene.is_periodic() && scene.container.flag("scalable");
-    if (target.count && target.has_packing_fraction() && !scalable)
-      fail(
-          "\"count\" and \"packing_fraction\" in [spheres] exclude each other; give one of them (both go "
-          "together only in a periodic box without size)");
-    if (scalable && !target.count)
-      fail("a periodic box without size needs a \"count\" in [spheres]; or give it \"size\" or \"edge\"");
-  }
-
-  /// A size that is a diameter by its name cannot be a radius.
-  void refuse_diameters(const Spec& sizes) const {
-    for (const Key& key : schema::Schema::find(all_.distributions, sizes.name)->keys)
-      if (key.is_diameter && sizes.has(key.name))
-        throw Error(ErrorCode::bad_scene,
-                    fmt::format("\"{}\" is a diameter; write diameter = {{…}}, not radius", key.name),
-                    sizes.location(key.name));
-    for (const Spec& part : sizes.parts) refuse_diameters(part);
-  }
-
-  void read_accuracy(const toml::table& root, Scene& scene) const {
-    const toml::table none;
-    const Spec spec = entries_.read(root.contains("accuracy") ? table_in(root, "accuracy") : none,
-                                    all_.accuracy, {}, "[accuracy]");
-    scene.walls = spec.text("walls");
-    scene.overlap = spec.number("overlap");
+    read_own(table, schema::spheres_entry(), "[spheres]", scene);
+    if (!table.contains("radius") && !table.contains("diameter"))
+      entries_.fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
+    scene.target.where = entries_.at(table.source());
+    for (const char* key : {"count", "packing_fraction", "fill"})
+      if (table.contains(key)) scene.target.where = scene.locations.of(key);
   }
 
   void read_stages(const toml::table& root, Scene& scene) const {
     const toml::node* node = root.get("stage");
-    scene.stages_are_default = !node;
-    if (!node) {
-      for (const std::string_view name :
-           schema::Schema::find(all_.containers, scene.container.name)->protocol)
-        scene.stages.push_back(
-            read_stage({}, *schema::Schema::find(all_.stages_for(scene), name), "[[stage]]", scene));
-      return;
-    }
+    if (!node) return;
     const toml::array* stages = node->as_array();
     if (!stages || stages->empty() || !stages->is_array_of_tables())
       entries_.fail(node->source(), "\"stage\" must be one table [[stage]] a stage, not {}", written(*node));
+    EntryReader::Names names;
+    for (const StageTable* stage : stage_tables()) names.push_back(stage->name());
     for (const toml::node& item : *stages) {
       const toml::table& table = *item.as_table();
-      const Entry& entry = entries_.choose(table, "do", all_.stages_for(scene), "[[stage]]");
-      scene.stages.push_back(read_stage(table, entry, fmt::format("[[stage]] {}", entry.name), scene));
+      const StageTable& stage = *stage_tables()[entries_.choose(table, "do", names, "[[stage]]")];
+      Stage& made = scene.stages.emplace_back(stage.make());
+      entries_.read(table, stage.keys, "do", fmt::format("[[stage]] {}", stage.name()),
+                    stage.options_of(made), made.locations);
     }
-  }
-
-  /// What `fly` fills the box to is the scene's target.
-  void take_target_of_fly(Scene& scene) const {
-    Target& target = scene.target;
-    for (Spec& stage : scene.stages) {
-      if (stage.name != "fly" || !stage.has("packing_fraction")) continue;
-      const bool scalable = scene.container.flag("scalable");
-      if (target.packing_fraction || target.fill || (target.count && !scalable))
-        throw Error(ErrorCode::bad_scene,
-                    "\"packing_fraction\" in [[stage]] fly says again what [spheres] says; leave it out",
-                    stage.location("packing_fraction"));
-      target.packing_fraction = stage.number("packing_fraction");
-      target.where = stage.location("packing_fraction");
-      stage.parameters.erase("packing_fraction");
-    }
-  }
-
-  /// Relaxation and growth in a container keep the sizes exactly as they are drawn: then these may as well be
-  /// exact.
-  static std::string default_draw(const Scene& scene) {
-    const bool keeps_sizes = std::ranges::any_of(
-        scene.stages, [](const Spec& stage) { return stage.name == "relax" || stage.name == "grow"; });
-    return keeps_sizes && !scene.is_periodic() ? "quantiles" : "random";
-  }
-
-  Spec read_stage(const toml::table& table, const Entry& entry, const std::string& where,
-                  const Scene& scene) const {
-    Spec stage = entries_.read(table, entry, "do", where);
-    if (entry.complete) entry.complete(stage, scene);
-    return stage;
   }
 
   static constexpr std::array<std::string_view, 4> tables = {"container", "spheres", "accuracy", "stage"};
 
-  const schema::Schema& all_ = schema::schema();
   std::filesystem::path path_;
   std::string file_;
   EntryReader entries_;

@@ -8,6 +8,8 @@
 namespace bernal {
 namespace {
 
+using schema::Value;
+
 std::optional<Value> number_in(const toml::node& node) {
   if (!node.is_number()) return std::nullopt;
   return *node.value<double>() + 0.0;  // -0 is 0
@@ -50,10 +52,8 @@ std::optional<Value> value_in(const toml::node& node, schema::Type type) {
       return std::nullopt;
     case Type::number:
     case Type::length:
-    case Type::distribution:
       return number_in(node);
     case Type::word:
-    case Type::unit:
     case Type::file:
       if (const auto* text = node.as_string()) return text->get();
       return std::nullopt;
@@ -62,7 +62,8 @@ std::optional<Value> value_in(const toml::node& node, schema::Type type) {
     case Type::extents:
     case Type::lengths:
     case Type::shares:
-    case Type::amounts: {
+    case Type::amounts:
+    case Type::axes: {
       const toml::array* array = node.as_array();
       if (!array) return std::nullopt;
       std::vector<double> numbers;
@@ -73,8 +74,9 @@ std::optional<Value> value_in(const toml::node& node, schema::Type type) {
       }
       return numbers;
     }
+    case Type::distribution:
     case Type::parts:
-      return std::nullopt;
+      return std::nullopt;  // tables of their own
   }
   return std::nullopt;
 }

@@ -4,8 +4,7 @@
 
 #include <toml++/toml.h>
 
-#include "bernal/scene/scene.hpp"
-#include "scene/schema.hpp"
+#include "scene/entry.hpp"
 
 namespace bernal {
 
@@ -13,6 +12,6 @@ namespace bernal {
 std::string written(const toml::node&);
 
 /// The node as the kind of value that a key of this type has; nothing if it is of another kind.
-std::optional<Value> value_in(const toml::node&, schema::Type);
+std::optional<schema::Value> value_in(const toml::node&, schema::Type);
 
 }  // namespace bernal

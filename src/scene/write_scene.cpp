@@ -4,86 +4,73 @@
 #include <fmt/ranges.h>
 
 #include "bernal/scene/read_scene.hpp"
-#include "scene/schema.hpp"
+#include "scene/scene_entries.hpp"
+#include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {
 namespace {
 
-using schema::Entry;
-using schema::Schema;
-
-const Entry& entry_of(const std::vector<Entry>& entries, const Spec& spec) {
-  if (const Entry* entry = Schema::find(entries, spec.name)) return *entry;
-  throw Error(ErrorCode::bad_argument, fmt::format("no scene can name \"{}\"", spec.name), spec.where);
+std::string lines(const schema::Entry& entry, const void* options, bool in_bed = true) {
+  return fmt::format("{}\n", fmt::join(assignments(entry, options, in_bed), "\n"));
 }
 
-std::string distribution_as_toml(const Spec&);
+std::string container_as_toml(SceneContainer container, const std::filesystem::path& folder) {
+  if (auto* mesh = std::get_if<MeshFile>(&container); mesh && !folder.empty())
+    mesh->file = std::filesystem::proximate(mesh->file, folder);
+  const schema::Entry& entry = schema::entry_of(container);
+  return fmt::format("[container]\nkind = {}\n{}", toml_string(entry.name),
+                     lines(entry, schema::options_of(container)));
+}
 
-/// `key = value` for every parameter that the spec has, in the order of the schema, each followed by `end`.
-std::string assignments(const Spec& spec, const Entry& entry, std::string_view end) {
-  std::string out;
-  for (const schema::Key& key : entry.keys) {
-    if (key.type == schema::Type::parts) {
-      std::vector<std::string> parts;
-      for (const Spec& part : spec.parts) parts.push_back(distribution_as_toml(part));
-      out += fmt::format("{} = [{}]{}", key.name, fmt::join(parts, ", "), end);
-    }
-    if (const auto found = spec.parameters.find(key.name); found != spec.parameters.end())
-      out += fmt::format("{} = {}{}", key.name, toml_text(found->second.value), end);
+/// "median 1", for a key and its value.
+std::string in_words(const schema::Key& key, const schema::Value& value) {
+  constexpr std::size_t most = 8;
+  if (const auto* word = std::get_if<std::string>(&value)) return fmt::format("{} {}", key.name, *word);
+  if (const auto* v = std::get_if<std::vector<double>>(&value); v && v->size() > most)
+    return fmt::format("{} [{}, … {} numbers … {}]", key.name, fmt::join(v->begin(), v->begin() + 3, ", "),
+                       v->size() - 4, v->back());
+  if (const auto* parts = std::get_if<std::vector<SceneSizes>>(&value)) {
+    std::vector<std::string> all;
+    for (const SceneSizes& part : *parts) all.push_back(fmt::format("({})", sizes_in_words(part)));
+    return fmt::format("of {}", fmt::join(all, " and "));
   }
-  return out;
-}
-
-/// An inline table.
-std::string distribution_as_toml(const Spec& spec) {
-  std::string keys = assignments(spec, entry_of(schema::schema().distributions, spec), ", ");
-  if (keys.ends_with(", ")) keys.resize(keys.size() - 2);
-  return fmt::format("{{ distribution = {}, {} }}", toml_string(spec.name), keys);
-}
-
-std::string container_as_toml(Spec container, const std::filesystem::path& folder) {
-  if (container.name == "mesh" && !folder.empty()) {
-    Value& file = container.parameters["file"].value;
-    file = std::filesystem::proximate(std::get<std::string>(file), folder).string();
-  }
-  const Entry& entry = entry_of(schema::schema().containers, container);
-  return fmt::format("[container]\nkind = {}\n{}", toml_string(container.name),
-                     assignments(container, entry, "\n"));
-}
-
-std::string spheres_as_toml(const Scene& scene) {
-  std::string target;
-  if (scene.target.count) target += fmt::format("count = {}\n", *scene.target.count);
-  if (scene.target.packing_fraction)
-    target += fmt::format("packing_fraction = {}\n", *scene.target.packing_fraction);
-  else if (scene.target.predicted)
-    target += "packing_fraction = \"predicted\"\n";
-  if (scene.target.fill) target += "fill = true\n";
-  return fmt::format("[spheres]\n{}{} = {}\ndraw = {}\n", target,
-                     scene.sizes_are_diameters ? "diameter" : "radius", distribution_as_toml(scene.sizes),
-                     toml_string(scene.draw));
+  return fmt::format("{} {}", key.name, toml_text(value));
 }
 
 }  // namespace
 
 std::string stages_as_toml(const Scene& scene) {
-  std::string out;
-  for (const Spec& stage : scene.stages)
-    out += fmt::format("{}[[stage]]\ndo = {}\n{}", out.empty() ? "" : "\n", toml_string(stage.name),
-                       assignments(stage, entry_of(schema::schema().stages_for(scene), stage), "\n"));
-  return out;
+  std::vector<std::string> out;
+  for (const Stage& stage : scene.stages) {
+    const StageTable& table = table_of(stage);
+    out.push_back(fmt::format("[[stage]]\ndo = {}\n{}", toml_string(table.name()),
+                              lines(table.keys, table.options(stage), table.traits.stands_in_bed(scene))));
+  }
+  return fmt::format("{}", fmt::join(out, "\n"));
 }
 
 std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folder) {
   if (scene.seed > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
     throw Error(ErrorCode::bad_argument,
                 fmt::format("TOML cannot hold the seed {}: it is above 2^63 - 1", scene.seed));
-  std::string out = fmt::format("unit = {}\nseed = {}\n\n", toml_string(scene.unit), scene.seed);
-  out += fmt::format("{}\n{}\n", container_as_toml(scene.container, folder), spheres_as_toml(scene));
-  out += fmt::format("[accuracy]\nwalls = {}\noverlap = {}\n", toml_string(scene.walls), scene.overlap);
+  std::string out =
+      fmt::format("{}\n{}\n[spheres]\n{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
+                  container_as_toml(scene.container, folder), lines(schema::spheres_entry(), &scene),
+                  lines(schema::accuracy_entry(), &scene));
   if (!scene.stages.empty()) out.append("\n").append(stages_as_toml(scene));
   return out;
+}
+
+std::string sizes_in_words(const SceneSizes& sizes) {
+  const schema::Entry& entry = schema::entry_of(sizes);
+  const void* options = schema::options_of(sizes);
+  const auto absent = entry.left_out(options, {std::string(entry.name), {}});
+  std::string text(entry.name);
+  for (const schema::Key& key : entry.keys)
+    if (const auto value = key.of(options); value && std::ranges::find(absent, key.name) == absent.end())
+      text += ", " + in_words(key, *value);
+  return text;
 }
 
 }  // namespace bernal

@@ -7,6 +7,7 @@
 
 #include "bernal/core/error.hpp"
 #include "settle/slide.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {
@@ -113,7 +114,7 @@ void require_support(const Boundary<3>& boundary, const Vector<3>& direction) {
 }
 
 StageEnd compress(Work& work, const CompressOptions& options) {
-  Bed& bed = work.bed;
+  Bed& bed = work.bed();
   require_support(bed.container().boundary(), options.direction);
   if (bed.size() == 0) return StageEnd::converged;
   const EffectTimer timer(work.effects["compression"]);
@@ -146,6 +147,40 @@ StageEnd compress(Work& work, const CompressOptions& options) {
     if (resting_bed && before - after < options.tolerance * (before - floor)) return StageEnd::converged;
   }
   return StageEnd::hit_limit;
+}
+
+std::vector<schema::Key> compression_keys() {
+  using namespace schema;
+  return {key(Type::direction, &Compress::direction, "direction",
+              "where the spheres are pushed; its length is of no matter"),
+          number(&Compress::tilt, "tilt",
+                 "how far a sphere's own direction leaves the common one; 0: not at all", {0, 100}),
+          number(&Compress::tolerance, "tolerance",
+                 "relative fall of the potential energy in an iteration that counts as none", between(0, 1)),
+          integer(&Compress::max_iterations, "max_iterations", "after which it stops unconverged", {1, 1e9}),
+          number(&Compress::buffer, "buffer", "room in a sphere's bounding box on each side, in mean radii",
+                 {0.01, 10})};
+}
+
+Compress with_unit_direction(Compress options) {
+  options.direction.normalize();
+  return options;
+}
+
+template <>
+const StageEntry& entry_of<Compress>() {
+  static const StageEntry entry = {
+      .table = stage_table<Compress>({.name = "compress",
+                                      .help = "move every sphere along a direction until it touches",
+                                      .keys = compression_keys()},
+                                     {.in_bed = true}),
+      .act_in_bed = act(
+          +[](Work& work, const Compress& options) { return compress(work, with_unit_direction(options)); }),
+      .bed_effects = {
+          {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+          {"compression", "to first touch along the global and local directions",
+           "about 0.5 µs a sphere and sweep"}}};
+  return entry;
 }
 
 }  // namespace bernal

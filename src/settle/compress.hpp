@@ -1,15 +1,13 @@
 #pragma once
+#include <vector>
+
+#include "bernal/settle/compress.hpp"
+#include "scene/entry.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
 
-struct CompressOptions {
-  Vector<3> direction = -Vector<3>::UnitZ();  ///< global compression direction, unit
-  double tilt = 2;          ///< local directions are direction + tilt·(random unit vector); 0: none
-  double tolerance = 1e-2;  ///< converged when an iteration lowers the potential by less than this share
-  int max_iterations = 400;
-  double buffer = 0.5;  ///< room in a sphere's bounding box on each side, in mean radii
-};
+using CompressOptions = Compress;
 
 /// Compression (Han, Feng & Owen 2005, section 2.1). In an iteration all spheres get a bounding box and all
 /// neighbour lists are built together; then sphere after sphere, from the bottom up, moves along the global
@@ -23,11 +21,16 @@ struct CompressOptions {
 /// a packing fraction of 0.527 and with local directions to 0.58; the sleeping of spheres whose surroundings
 /// have not changed; and the skin. Cost: about 0.5 µs a sphere and sweep; an iteration makes up to 8 sweeps
 /// along the global direction, over the spheres that are awake, and 10 along local directions.
+///
+/// Precondition: the direction is of unit length.
 StageEnd compress(Work& work, const CompressOptions& options);
 
 /// Throws Error{bad_scene} if spheres that are pressed along `direction` would fall for ever: it must have no
 /// component along an axis that repeats itself.
 void require_support(const Boundary<3>& boundary, const Vector<3>& direction);
+/// What every stage has that ends with a compression: its keys; its options, as the engine takes them.
+std::vector<schema::Key> compression_keys();
+Compress with_unit_direction(Compress options);
 
 /// One sweep: every sphere slides along a random direction of its own, normalised
 /// `pull` + `tilt`·(random unit vector, its part along `across` removed if that is not zero), at most

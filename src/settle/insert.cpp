@@ -1,6 +1,7 @@
 #include "settle/insert.hpp"
 
 #include "work/random_insertion.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {
@@ -12,8 +13,8 @@ constexpr std::size_t milestone_every = 8192;
 
 StageEnd insert(Work& work, const InsertOptions& options) {
   const EffectTimer timer(work.effects["insertion"]);
-  Bed& bed = work.bed;
-  Supply& supply = work.supply;
+  Bed& bed = work.bed();
+  Supply& supply = *work.supply;
   Random random = work.random(Stream::insert);
   // Trials are counted inside the container; places are drawn a little beyond it, too.
   const double attempts = options.attempts * std::max(1.0, bed.places().volume() / bed.container().volume());
@@ -34,6 +35,24 @@ StageEnd insert(Work& work, const InsertOptions& options) {
     if (bed.size() % milestone_every == 0) work.milestone("insert");
   }
   return waiting > 0 && waiting == supply.window().size() ? StageEnd::full : StageEnd::converged;
+}
+
+template <>
+const StageEntry& entry_of<Insert>() {
+  using namespace schema;
+  static const StageEntry entry = {
+      .table = stage_table<Insert>(
+          {.name = "insert",
+           .help = "place spheres at random where they overlap nothing",
+           .keys = {integer(&Insert::attempts, "attempts",
+                            "random places tried for one sphere before it has to wait", {1, 1e9}),
+                    number(&Insert::packing_fraction, "packing_fraction", "where random insertion stops",
+                           between(0, 1))}},
+          {.in_bed = true, .reaches = Reaches::insertion}),
+      .act_in_bed = act(insert),
+      .bed_effects = {{"insertion", "random places, one sphere after the other", "O(1) a trial"}},
+      .reached = of_options(+[](const Insert& options) { return options.packing_fraction; })};
+  return entry;
 }
 
 }  // namespace bernal

@@ -1,12 +1,10 @@
 #pragma once
+#include "bernal/settle/insert.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
 
-struct InsertOptions {
-  int attempts = 100;              ///< random places tried for a sphere before it has to wait
-  double packing_fraction = 0.30;  ///< stop here; random insertion gets slow beyond
-};
+using InsertOptions = Insert;
 
 /// Random sequential insertion: the spheres that are still to come, in order, each at a uniformly random
 /// place where it overlaps nothing (Han, Feng & Owen 2005, section 2: the initial packing). Ends when the

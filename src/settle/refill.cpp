@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bernal/core/dimension.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {
@@ -24,11 +25,12 @@ constexpr double least_trials = 3e5;
 /// wall stays where it is.
 std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
   const EffectTimer timer(work.effects["refilling"]);
-  const Bed& bed = work.bed;
+  const Bed& bed = work.bed();
   const Container& container = bed.container();
   Random random = work.random(Stream::refill);
-  const double radius = bed.size() > 0 ? bed.mean_radius() : work.supply.radius(work.supply.window().front());
-  const double smallest = work.supply.smallest() + bed.skin();
+  const double radius =
+      bed.size() > 0 ? bed.mean_radius() : work.supply->radius(work.supply->window().front());
+  const double smallest = work.supply->smallest() + bed.skin();
   const double capacity = container.volume() / ball_volume(3, radius);
   const double wanted = std::min(most_probes, 1000 + probes_a_sphere * capacity);
   std::vector<Probe> probes;
@@ -44,8 +46,8 @@ std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
 /// Puts spheres of the window into the free space.
 void fill_free_space(Work& work, std::vector<Probe>& probes) {
   const EffectTimer timer(work.effects["refilling"]);
-  Bed& bed = work.bed;
-  Supply& supply = work.supply;
+  Bed& bed = work.bed();
+  Supply& supply = *work.supply;
   const double smallest = supply.smallest();
   bed.update_grid();
   std::vector<Probe*> open;
@@ -86,21 +88,54 @@ void fill_free_space(Work& work, std::vector<Probe>& probes) {
 }  // namespace
 
 StageEnd refill(Work& work, const RefillOptions& options) {
-  require_support(work.bed.container().boundary(), options.shake.compress.direction);
-  if (work.supply.exhausted()) return StageEnd::converged;
+  require_support(work.bed().container().boundary(), options.shake.compress.direction);
+  if (work.supply->exhausted()) return StageEnd::converged;
   std::vector<Probe> probes = draw_probes(work, options.probes);
   for (int round = 0; round < options.max_rounds; ++round) {
     if (work.monitor.stop()) return StageEnd::cancelled;
-    const double before = work.bed.packing_fraction();
+    const double before = work.bed().packing_fraction();
     fill_free_space(work, probes);
-    const double after = work.bed.packing_fraction();
+    const double after = work.bed().packing_fraction();
     work.milestone("refill");
     if (compress(work, options.shake.compress) == StageEnd::cancelled) return StageEnd::cancelled;
-    if (work.supply.exhausted()) return StageEnd::converged;
+    if (work.supply->exhausted()) return StageEnd::converged;
     if (after - before <= options.patience * after) return StageEnd::full;
     if (shake(work, options.shake) == StageEnd::cancelled) return StageEnd::cancelled;
   }
   return StageEnd::hit_limit;
+}
+
+template <>
+const StageEntry& entry_of<Refill>() {
+  using namespace schema;
+  static const StageEntry entry = {
+      .table = stage_table<Refill>(
+          {.name = "refill",
+           .help = "insert into the free space, compress and shake, until the container is full",
+           .keys = joined(
+               {number(&Refill::probes, "probes",
+                       "random places to look at, for each sphere that would fill the volume", above(0, 1e6)),
+                integer(&Refill::max_rounds, "max_rounds", "after which it stops unfilled", {1, 1e9}),
+                number(&Refill::patience, "patience",
+                       "full when a round adds less than this share of the spheres' volume", {0, 1})},
+               inside(&Refill::shake,
+                      joined({integer(&Shake::rounds, "shakes", "rounds of shaking after each refilling",
+                                      {0, 1e9}),
+                              number(&Shake::amplitude, "amplitude",
+                                     "longest way in one sweep of shaking, in mean radii", above(0, 100))},
+                             inside(&Shake::compress, compression_keys()))))},
+          {.in_bed = true, .reaches = Reaches::settled}),
+      .act_in_bed = act(+[](Work& work, const Refill& options) {
+        Refill filling = options;
+        filling.shake.compress = with_unit_direction(options.shake.compress);
+        return refill(work, filling);
+      }),
+      .bed_effects = {
+          {"refilling", "random probes of the free space", "O(1) a probe"},
+          {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+          {"compression", "after each refilling", "about 0.5 µs a sphere and sweep"},
+          {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}}};
+  return entry;
 }
 
 }  // namespace bernal

@@ -1,14 +1,10 @@
 #pragma once
+#include "bernal/settle/refill.hpp"
 #include "settle/shake.hpp"
 
 namespace bernal {
 
-struct RefillOptions {
-  int max_rounds = 200;
-  double probes = 15;  ///< random places to look at, for each sphere that would fill the container's volume
-  double patience = 3e-3;  ///< full when a round adds less volume than this share of what is there
-  ShakeOptions shake;      ///< between two rounds; its compression also follows every refilling
-};
+using RefillOptions = Refill;
 
 /// Refilling (Han, Feng & Owen 2005, section 2): spheres still to come are put wherever the free space holds
 /// them, the bed is compressed and shaken, and so on until the domain is full or the target is reached.

@@ -1,5 +1,7 @@
 #include "settle/shake.hpp"
 
+#include "work/stage_entry.hpp"
+
 namespace bernal {
 namespace {
 
@@ -8,7 +10,7 @@ constexpr int sweeps_a_round = 10;
 }  // namespace
 
 StageEnd shake(Work& work, const ShakeOptions& options) {
-  Bed& bed = work.bed;
+  Bed& bed = work.bed();
   const Vector<3>& direction = options.compress.direction;
   require_support(bed.container().boundary(), direction);
   for (int round = 0; round < options.rounds; ++round) {
@@ -28,6 +30,30 @@ StageEnd shake(Work& work, const ShakeOptions& options) {
     if (end == StageEnd::cancelled) return end;
   }
   return StageEnd::converged;
+}
+
+template <>
+const StageEntry& entry_of<Shake>() {
+  using namespace schema;
+  static const StageEntry entry = {
+      .table = stage_table<Shake>(
+          {.name = "shake",
+           .help = "move spheres across the direction, so that arches break, and compress again",
+           .keys = joined({integer(&Shake::rounds, "rounds", "how often", {1, 1e9}),
+                           number(&Shake::amplitude, "amplitude", "longest way in one sweep, in mean radii",
+                                  above(0, 100))},
+                          inside(&Shake::compress, compression_keys()))},
+          {.in_bed = true}),
+      .act_in_bed = act(+[](Work& work, const Shake& options) {
+        Shake shaking = options;
+        shaking.compress = with_unit_direction(options.compress);
+        return shake(work, shaking);
+      }),
+      .bed_effects = {
+          {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+          {"shaking", "local directions across the global one", "about 0.5 µs a sphere and sweep"},
+          {"compression", "after each round", "about 0.5 µs a sphere and sweep"}}};
+  return entry;
 }
 
 }  // namespace bernal

@@ -1,13 +1,10 @@
 #pragma once
+#include "bernal/settle/shake.hpp"
 #include "settle/compress.hpp"
 
 namespace bernal {
 
-struct ShakeOptions {
-  int rounds = 2;        ///< each: sweeps across the direction, then compression
-  double amplitude = 2;  ///< longest way of a sphere in one sweep, in mean radii
-  CompressOptions compress;
-};
+using ShakeOptions = Shake;
 
 /// Shaking (Han, Feng & Owen 2005): arches that hold against the compression direction are broken by
 /// iterations in which every sphere moves along a random local direction *perpendicular* to the global one,

@@ -4,10 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <fmt/format.h>
-
-#include "bernal/core/error.hpp"
-#include "work/holes.hpp"
+#include "core/every_dimension.hpp"
 
 namespace bernal {
 namespace {
@@ -16,154 +13,135 @@ namespace {
 constexpr double share_of_margin = 0.97;
 /// After so many sweeps it is looked at how far things are.
 constexpr int sweeps_a_look = 25;
-/// Stuck: at so many looks in a row the strain is more than this share of the least so far.
+/// Stuck: at so many looks in a row the mean squeeze is more than this share of the least so far.
 constexpr double hardly_freer = 0.85;
 constexpr int patience = 2;
-/// The margin is so many resolutions of the coordinates at least, and never more than this.
-constexpr double resolutions_a_margin = 100, largest_margin = 0.01;
-constexpr double burst_swelling = 1.02;
 constexpr int burst_sweeps = 50;
-/// Random places that are looked at for each sphere to find holes.
-constexpr double probes_a_sphere = 2, least_probes = 1000;
 /// Sum of squared overlap ratios of a sphere that will not find its way by itself.
 constexpr float severe_squeeze = 0.05f;
 
-/// The indices of the `count` largest, the largest first.
-std::vector<std::uint32_t> most_squeezed(const std::vector<float>& stress, std::size_t count) {
-  std::vector<std::uint32_t> ids(stress.size());
+}  // namespace
+
+template <class Ground>
+Crowd<Ground>::Crowd(Ground ground, Spheres<D> spheres)
+    : ground_(std::move(ground)), spheres_(std::move(spheres)) {
+  ground_.place(spheres_);
+}
+
+template <class Ground>
+void Crowd<Ground>::measure() {
+  const Pace pace = pace_for(0);
+  ground_.wear_lists(pace.wear);
+  largest_overlap_ = ground_.sweep_and_measure(pace.omega);
+  squeeze_ = ground_.squeeze();
+  ++sweeps_;
+  double sum = 0;
+  severe_ = 0;
+  for (const float s : squeeze_) {
+    sum += std::sqrt(s);
+    if (s > severe_squeeze) ++severe_;
+  }
+  mean_squeeze_ = sum / static_cast<double>(size());
+}
+
+template <class Ground>
+typename Crowd<Ground>::Rest Crowd<Ground>::settle(const Monitor& monitor,
+                                                   const std::function<void()>& milestone,
+                                                   double most_sweeps) {
+  Rest rest = Rest::stuck;
+  double least_squeeze = 1e300;
+  for (int slow = 0; slow < patience;) {
+    const Pace pace = pace_for(largest_overlap_);
+    ground_.wear_lists(pace.wear);
+    bool cancelled = false;
+    for (int k = 1; k < sweeps_a_look && !cancelled; ++k) {
+      ground_.sweep(pace.omega);
+      ++sweeps_;
+      cancelled = monitor.stop();
+    }
+    measure();
+    if (milestone) milestone();
+    if (largest_overlap_ < share_of_margin * margin()) rest = Rest::free;
+    if (rest == Rest::stuck && sweeps_ > most_sweeps) rest = Rest::over;
+    if (cancelled) rest = Rest::cancelled;
+    if (rest != Rest::stuck) break;
+    slow = mean_squeeze_ > hardly_freer * least_squeeze ? slow + 1 : 0;
+    // May swing: only a new low counts, so that this ends.
+    least_squeeze = std::min(least_squeeze, mean_squeeze_);
+  }
+  ground_.read_places(spheres_);
+  return rest;
+}
+
+template <class Ground>
+void Crowd<Ground>::burst() {
+  ground_.swell(Ground::burst_swelling);
+  for (int k = 0; k < burst_sweeps; ++k) ground_.sweep(pace_for(0).omega);
+  sweeps_ += burst_sweeps;
+  ground_.swell(1);
+}
+
+/// The largest first, of equal ones the first.
+template <class Ground>
+std::vector<std::uint32_t> Crowd<Ground>::most_squeezed(std::size_t count) const {
+  std::vector<std::uint32_t> ids(squeeze_.size());
   std::iota(ids.begin(), ids.end(), 0u);
-  count = std::min(count, ids.size());
+  count = std::min(count, ids.size() - Ground::always_stay);
   std::ranges::partial_sort(ids, ids.begin() + static_cast<std::ptrdiff_t>(count), [&](auto a, auto b) {
-    return stress[a] != stress[b] ? stress[a] > stress[b] : a < b;
+    return squeeze_[a] != squeeze_[b] ? squeeze_[a] > squeeze_[b] : a < b;
   });
   ids.resize(count);
   return ids;
 }
 
-}  // namespace
-
-Crowd::Crowd(const Container& container, const Places& places, Spheres<3> spheres)
-    : container_(container), places_(places), spheres_(std::move(spheres)) {
-  prepare();
-  const double resolution = packing_->resolution() / *std::ranges::min_element(spheres_.r);
-  margin_ = std::max(margin_, resolutions_a_margin * resolution);
-  if (margin_ > largest_margin)
-    throw Error(ErrorCode::bad_scene,
-                fmt::format("spheres {:.0e} times smaller than the container cannot be relaxed in it; name "
-                            "other stages, such as \"insert\" and \"compress\"",
-                            std::exp2(32) * resolution));
-  packing_->swell(1 + margin_);
-}
-
-void Crowd::prepare() {
-  if (packing_) {
-    list_builds_ += packing_->builds();
-    wall_queries_ += packing_->wall_queries();
-  }
-  packing_ = std::make_unique<SoftPacking>(spheres_, container_, soft_kernels().front());
-  packing_->swell(1 + margin_);
-}
-
-void Crowd::measure() {
-  const Pace pace = pace_for(0);
-  packing_->wear_lists(pace.wear);
-  largest_overlap_ = packing_->sweep_and_measure(pace.omega);
-  ++sweeps_;
-  double sum = 0;
-  severe_ = 0;
-  for (const float s : packing_->stress()) {
-    sum += std::sqrt(s);
-    if (s > severe_squeeze) ++severe_;
-  }
-  strain_ = sum / static_cast<double>(size());
-}
-
-Crowd::Rest Crowd::settle(const Monitor& monitor, const std::function<void()>& milestone) {
-  int slow = 0;
-  double least_strain = 1e300;
-  for (;;) {
-    const Pace pace = pace_for(largest_overlap_);
-    packing_->wear_lists(pace.wear);
-    for (int k = 1; k < sweeps_a_look; ++k) {
-      packing_->sweep(pace.omega);
-      ++sweeps_;
-      if (monitor.stop()) {
-        packing_->write_to(spheres_);
-        return Rest::cancelled;
-      }
-    }
-    measure();
-    milestone();
-    if (largest_overlap_ < share_of_margin * margin_) {
-      packing_->write_to(spheres_);
-      return Rest::free;
-    }
-    slow = strain_ > hardly_freer * least_strain ? slow + 1 : 0;
-    if (slow == patience) return Rest::stuck;
-    least_strain = std::min(least_strain, strain_);  // may swing: only a new low counts, so that this ends
-  }
-}
-
-void Crowd::burst() {
-  packing_->swell((1 + margin_) * burst_swelling);
-  for (int k = 0; k < burst_sweeps; ++k) packing_->sweep(pace_for(0).omega);
-  sweeps_ += burst_sweeps;
-  packing_->swell(1 + margin_);
-}
-
-void Crowd::relocate(double share, Random& random) {
-  const std::vector<float> stress = packing_->stress();
+template <class Ground>
+void Crowd<Ground>::relocate(double share, Random& random) {
   const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(size())));
-  packing_->write_to(spheres_);
-  move_to_holes(most_squeezed(stress, std::max(count, severe_)), random);
+  ground_.read_places(spheres_);
+  ground_.move_to_holes(spheres_, most_squeezed(std::max(count, severe_)), random);
 }
 
-void Crowd::move_to_holes(std::vector<std::uint32_t> ids, Random& random) {
-  std::ranges::stable_sort(ids, std::greater<>(), [&](std::uint32_t i) { return spheres_.r[i]; });
-  std::vector<double> radii;
-  for (const std::uint32_t i : ids) radii.push_back(spheres_.r[i]);
-  const std::vector<Hole> holes = holes_for(radii, container_, places_, spheres_, probes(), random);
-  std::vector<SoftPacking::Move> moves;
-  for (std::size_t k = 0; k < holes.size(); ++k) {
-    spheres_.set_center(ids[k], holes[k].place);
-    moves.push_back({ids[k], holes[k].place});
-  }
-  packing_->put(moves);
-}
-
-std::size_t Crowd::probes() const {
-  return static_cast<std::size_t>(least_probes + probes_a_sphere * static_cast<double>(size()));
-}
-
-void Crowd::drop_last(std::size_t count, Random& random) {
+template <class Ground>
+void Crowd<Ground>::drop_last(std::size_t count, Random& random) {
   count = std::min(count, size() - 1);
-  packing_->write_to(spheres_);
-  std::vector<float> stress = packing_->stress();
+  ground_.read_places(spheres_);
   spheres_.resize(size() - count);
-  stress.resize(size());
-  prepare();
-  move_to_holes(most_squeezed(stress, count), random);
+  squeeze_.resize(size());
+  ground_.place(spheres_);
+  ground_.move_to_holes(spheres_, most_squeezed(count), random);
 }
 
-std::size_t Crowd::add(std::span<const double> radii, Random& random) {
-  packing_->write_to(spheres_);
+template <class Ground>
+std::size_t Crowd<Ground>::add(std::span<const double> radii, Random& random) {
+  ground_.read_places(spheres_);
   std::vector<std::size_t> order(radii.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return radii[i]; });
   std::vector<double> descending;
   for (const std::size_t i : order) descending.push_back(radii[i]);
-  const std::vector<Hole> holes = holes_for(descending, container_, places_, spheres_, probes(), random);
+  const std::vector<Vector<D>> holes = ground_.holes_for(descending, spheres_, random);
   if (holes.size() < radii.size()) return 0;
-  std::vector<Vector<3>> place(radii.size());
-  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = holes[k].place;
+  std::vector<Vector<D>> place(radii.size());
+  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = holes[k];
   for (std::size_t i = 0; i < radii.size(); ++i) spheres_.push_back(place[i], radii[i]);
-  prepare();
+  ground_.place(spheres_);
   return radii.size();
 }
 
-void Crowd::restore(Spheres<3> spheres) {
+template <class Ground>
+void Crowd<Ground>::restore(Spheres<D> spheres) {
   spheres_ = std::move(spheres);
-  prepare();
+  ground_.place(spheres_);
 }
+
+template class Crowd<ContainerGround>;
+#define BERNAL_INSTANTIATE(D)                                                                           \
+  template Crowd<BoxGround<D>>::Crowd(BoxGround<D>, Spheres<D>);                                        \
+  template Crowd<BoxGround<D>>::Rest Crowd<BoxGround<D>>::settle(const Monitor&,                        \
+                                                                 const std::function<void()>&, double); \
+  template void Crowd<BoxGround<D>>::burst();                                                           \
+  template void Crowd<BoxGround<D>>::relocate(double, Random&);                                         \
+  template void Crowd<BoxGround<D>>::drop_last(std::size_t, Random&);
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

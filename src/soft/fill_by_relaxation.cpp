@@ -9,25 +9,26 @@
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
+#include "soft/crowd.hpp"
 #include "work/overlapping.hpp"
-#include "soft/periodic_crowd.hpp"
 #include "work/resize_box.hpp"
 
 namespace bernal {
 namespace {
 
-/// Stirring helps as long as the strain falls below this share of the least so far.
+/// Stirring helps as long as the mean squeeze falls below this share of the least so far.
 constexpr double progress = 0.9;
-/// Strain at which there are so many spheres too many that stirring is of no use.
+/// Mean squeeze at which there are so many spheres too many that stirring is of no use.
 constexpr double hopeless = 0.02;
 constexpr int patience_when_hopeless = 3;
 /// The share of the spheres that is put elsewhere at a time.
 constexpr double relocated = 0.002;
-/// Largest overlap ratio, in strains, above which it is only a few spheres that are stuck.
+/// Largest overlap ratio, in mean squeezes, above which it is only a few spheres that are stuck.
 constexpr double local_jam = 40;
-/// What is taken out when not all fit, in strains times spheres; and the factor from one time to the next.
+/// What is taken out when not all fit, in mean squeezes times spheres; and the factor from one time to the
+/// next.
 constexpr double taken_out = 0.7, taken_out_faster = 1.25;
-/// Of the spheres, at most, at a time: strain says little where a box is asked to hold several times its
+/// Of the spheres, at most, at a time: squeeze says little where a box is asked to hold several times its
 /// fill.
 constexpr double most_taken_out = 0.2;
 /// For that there are so many sweeps more, in those of the limit.
@@ -64,7 +65,7 @@ Spheres<1> in_line(Spheres<1> spheres, double edge, double allowed, Random& rand
 
 /// What reaches beyond a wall goes back to just before it.
 template <int D>
-void move_between_walls(Spheres<D>& spheres, const Vector<D>& edges, const PeriodicWork& work) {
+void move_between_walls(Spheres<D>& spheres, const Vector<D>& edges, const Work& work) {
   for (int k = 0; k < D; ++k) {
     if (!work.has_wall(k)) continue;
     for (std::size_t i = 0; i < spheres.size(); ++i) {
@@ -76,7 +77,7 @@ void move_between_walls(Spheres<D>& spheres, const Vector<D>& edges, const Perio
 }
 
 template <int D>
-Spheres<D> starting_places(const PeriodicWork& work, Random& random) {
+Spheres<D> starting_places(const Work& work, Random& random) {
   Spheres<D> spheres = work.spheres.in<D>();
   const Vector<D> edges = *work.target_edges;
   if (work.placed) {
@@ -139,13 +140,14 @@ Spheres<D> without_overlap(const Spheres<D>& spheres, const Vector<D>& edges, do
 template <int D>
 class Filling {
  public:
-  Filling(PeriodicWork& work, const FillOptions& options, Spheres<D> spheres, const Random& random)
+  Filling(Work& work, const FillOptions& options, Spheres<D> spheres, const Random& random)
       : work_(work),
         options_(options),
         most_sweeps_(options.sweeps),
         random_(random),
         edges_(*work.target_edges),
-        crowd_(shaken<D>(std::move(spheres), edges_, random_), edges_, work.allowed_overlap, work.walls) {}
+        crowd_(BoxGround<D>(edges_, work.allowed_overlap, work.walls),
+               shaken<D>(std::move(spheres), edges_, random_)) {}
 
   StageEnd run() {
     const StageEnd end = relax(options_.patience);
@@ -156,28 +158,28 @@ class Filling {
   }
 
  private:
-  using Rest = typename PeriodicCrowd<D>::Rest;
+  using Rest = typename CrowdInBox<D>::Rest;
 
   /// Settles and stirs.
   StageEnd relax(int patience) {
-    double least_strain = 1e300;
+    double least_squeeze = 1e300;
     for (int failures = 0;;) {
-      const Rest rest = crowd_.settle(work_.monitor, most_sweeps_);
+      const Rest rest = crowd_.settle(work_.monitor, {}, most_sweeps_);
       report();
       if (rest == Rest::cancelled) return StageEnd::cancelled;
       if (rest == Rest::free && overlapping<D>(crowd_.spheres(), edges_, work_.allowed_overlap).empty())
         return StageEnd::converged;
       if (crowd_.sweeps() > most_sweeps_) return StageEnd::hit_limit;
-      if (crowd_.strain() < progress * least_strain) {
-        least_strain = crowd_.strain();
+      if (crowd_.mean_squeeze() < progress * least_squeeze) {
+        least_squeeze = crowd_.mean_squeeze();
         failures = 0;
       } else if (++failures >
-                 (crowd_.strain() > hopeless ? std::min(patience, patience_when_hopeless) : patience)) {
+                 (crowd_.mean_squeeze() > hopeless ? std::min(patience, patience_when_hopeless) : patience)) {
         return StageEnd::full;
       }
       // Bursts do most; what they do not help to is where there is no room.
       const bool local =
-          crowd_.severely_squeezed() > 0 || crowd_.largest_overlap() > local_jam * crowd_.strain();
+          crowd_.severely_squeezed() > 0 || crowd_.largest_overlap() > local_jam * crowd_.mean_squeeze();
       if (failures % 2 == 0 && !local)
         crowd_.burst();
       else
@@ -192,7 +194,7 @@ class Filling {
     while (end != StageEnd::converged && end != StageEnd::cancelled && crowd_.size() > 1 &&
            crowd_.sweeps() <= most_sweeps_) {
       const double count =
-          std::min(share * crowd_.strain(), most_taken_out) * static_cast<double>(crowd_.size());
+          std::min(share * crowd_.mean_squeeze(), most_taken_out) * static_cast<double>(crowd_.size());
       crowd_.drop_last(std::max<std::size_t>(1, static_cast<std::size_t>(count)), random_);
       share *= taken_out_faster;
       end = relax(0);
@@ -204,16 +206,16 @@ class Filling {
     work_.milestone("fill", std::clamp(done, 0.0, 0.99), crowd_.largest_overlap());
   }
 
-  PeriodicWork& work_;
+  Work& work_;
   const FillOptions options_;
   double most_sweeps_;
   Random random_;
   const Vector<D> edges_;
-  PeriodicCrowd<D> crowd_;
+  CrowdInBox<D> crowd_;
 };
 
 template <int D>
-StageEnd fill_box(PeriodicWork& work, const FillOptions& options) {
+StageEnd fill_box(Work& work, const FillOptions& options) {
   Random random = work.random(Stream::relax);
   Spheres<D> spheres = starting_places<D>(work, random);
   work.edges = *work.target_edges;
@@ -227,12 +229,12 @@ StageEnd fill_box(PeriodicWork& work, const FillOptions& options) {
 
 }  // namespace
 
-bool fits_box(const PeriodicWork& work) {
+bool fits_box(const Work& work) {
   const double largest = std::ranges::max(work.spheres.r);
   return 2 * largest * (1 - work.allowed_overlap) <= work.target_edges->minCoeff();
 }
 
-StageEnd fill_by_relaxation(PeriodicWork& work, const FillOptions& options) {
+StageEnd fill_by_relaxation(Work& work, const FillOptions& options) {
   if (work.spheres.empty()) return StageEnd::converged;
   if (!fits_box(work))
     throw Error(

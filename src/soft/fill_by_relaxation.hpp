@@ -1,5 +1,5 @@
 #pragma once
-#include "work/periodic_work.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 
@@ -13,7 +13,7 @@ struct FillOptions {
 
 /// Whether every sphere alone finds room in the box that the spheres are to end in: none overlaps its own
 /// image by more than is allowed. Precondition: `work.target_edges` is set.
-bool fits_box(const PeriodicWork& work);
+bool fits_box(const Work& work);
 
 /// Puts all spheres, whose radii are prescribed, into the box `*work.target_edges`, which is so too, in 1 to
 /// 8 dimensions, by pushing apart what overlaps. They start where they are, relative to the box, or at random
@@ -29,6 +29,6 @@ bool fits_box(const PeriodicWork& work);
 /// Precondition: `work.target_edges` is set. Throws Error{bad_scene} where a sphere overlaps its own image.
 /// Cost: some hundred sweeps of 11 to 130 ns a sphere, some thousand near random close packing; 2,000 equal
 /// spheres to 0.62 in three dimensions 0.02 s, to 0.435 in four 0.1 s, to 0.065 in eight 0.3 s.
-StageEnd fill_by_relaxation(PeriodicWork& work, const FillOptions& options);
+StageEnd fill_by_relaxation(Work& work, const FillOptions& options);
 
 }  // namespace bernal

@@ -41,7 +41,7 @@ NeighborRelaxation<D>::NeighborRelaxation(const Spheres<D>& spheres, const Vecto
       places_(spheres.size() + block, Place{}),
       radii_(spheres.size() + block, std::numeric_limits<float>::quiet_NaN()),
       ids_(spheres.size()),
-      stress_(spheres.size(), 0.0f) {
+      squeeze_(spheres.size(), 0.0f) {
   for (std::size_t i = 0; i < count_; ++i) {
     for (int k = 0; k < D; ++k)
       places_[i].x[k] = to_fixed(spheres.x[static_cast<std::size_t>(k)][i], edges[k]);
@@ -123,10 +123,10 @@ float NeighborRelaxation<D>::move_all(float omega) {
   float largest = 0;
   for (Id i = 0; i < count_; ++i) {
     const Id* end = find_overlapping(i);
-    stress_[i] = 0;
+    squeeze_[i] = 0;
     if (end == hits_.data()) continue;
     const Push push = in_images ? push_from_images(i, end) : push_from_nearest(i, end);
-    stress_[i] = push.stress;
+    squeeze_[i] = push.squeeze;
     largest = std::max(largest, push.largest);
     const Floats step = push.sum * std::min(omega / push.contacts, 1.0f) * inverse_scale_;
     const Floats limit = Floats{} + longest_move;
@@ -310,9 +310,9 @@ void NeighborRelaxation<D>::build_lists() {
 }
 
 template <int D>
-std::vector<float> NeighborRelaxation<D>::stress() const {
+std::vector<float> NeighborRelaxation<D>::squeeze() const {
   std::vector<float> of_sphere(count_);
-  for (std::size_t i = 0; i < count_; ++i) of_sphere[ids_[i]] = stress_[i];
+  for (std::size_t i = 0; i < count_; ++i) of_sphere[ids_[i]] = squeeze_[i];
   return of_sphere;
 }
 

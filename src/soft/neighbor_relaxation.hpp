@@ -36,7 +36,7 @@ class NeighborRelaxation {
   /// The same; returns the largest overlap ratio that was met.
   double sweep_and_measure(float omega);
   /// Of each sphere the sum of its squared overlap ratios, as the last measuring sweep met them.
-  std::vector<float> stress() const;
+  std::vector<float> squeeze() const;
 
   /// The box and the distances grow, or shrink; the radii do not.
   void grow(double factor);
@@ -58,9 +58,9 @@ class NeighborRelaxation {
   /// What the overlaps of a sphere do to it.
   struct Push {
     Floats sum{};
-    float contacts = 0, stress = 0, largest = 0;
+    float contacts = 0, squeeze = 0, largest = 0;
     void measure(float ratio) {
-      stress += ratio * ratio;
+      squeeze += ratio * ratio;
       largest = ratio > largest ? ratio : largest;
     }
   };
@@ -89,7 +89,7 @@ class NeighborRelaxation {
   std::vector<Place> places_;    // sorted by cell; behind them some that touch nothing
   std::vector<float> radii_;
   std::vector<Id> ids_;
-  std::vector<float> stress_;
+  std::vector<float> squeeze_;
 
   FixedPointGrid<D> grid_;
   std::vector<Id> neighbors_;      // four by four; padded with count_

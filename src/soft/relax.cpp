@@ -4,18 +4,20 @@
 #include <cmath>
 
 #include "bernal/core/dimension.hpp"
+#include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
+#include "core/close_packing.hpp"
 #include "jam/finish_in_periodic_box.hpp"
 #include "soft/relax_fast.hpp"
+#include "soft/relax_in_container.hpp"
 #include "soft/relax_reference.hpp"
 #include "work/resize_box.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {
 
-/// Random close packing of equal spheres, by dimension.
-constexpr double close_packing[] = {1, 0.84, 0.64, 0.46, 0.31, 0.20, 0.119, 0.069};
-/// Up to this share of it spheres of any sizes find places free of overlap in a given box; they start in one
+/// Up to this share of random close packing spheres of any sizes find places free of overlap in a given box; they start in one
 /// that is smaller by volume, as it may grow while they relax, and again from where they ended if it grew too
 /// far.
 constexpr double loose = 0.9;
@@ -24,13 +26,28 @@ constexpr int most_starts_in_a_loose_box = 20;
 /// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
 constexpr double jitter = 1e-6;
 
-bool is_loose(const PeriodicWork& work) {
+/// The paper's phi0, and in other than three dimensions what is as far above random close packing.
+constexpr double dense_start[] = {1.34, 1.13, 0.86, 0.62, 0.42, 0.27, 0.16, 0.093};
+
+}  // namespace
+
+template <>
+const StageEntry& entry_of<Relax>();
+
+namespace {
+
+void complete_relax(Relax& relax, Scene& scene, const schema::Section&) {
+  if (!relax.phi0 && !entry_of<Relax>().table.traits.stands_in_bed(scene))
+    relax.phi0 = dense_start[scene.dimension() - 1];
+}
+
+bool is_loose(const Work& work) {
   return work.target_edges &&
-         work.volume_of_spheres() < loose * close_packing[work.dimension() - 1] * work.target_edges->prod();
+         work.volume_of_spheres() < loose * random_close_packing[work.dimension() - 1] * work.target_edges->prod();
 }
 
 /// Those of phi0, or about those that are asked for; never so small that a sphere overlaps its own image.
-Vector<dynamic> edges_to_start_from(const PeriodicWork& work, double phi0) {
+Vector<dynamic> edges_to_start_from(const Work& work, double phi0) {
   const int dimension = work.dimension();
   const auto with_volume = [&](double volume) -> Vector<dynamic> {
     return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
@@ -53,10 +70,10 @@ void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random random)
 /// Places for spheres that have none. Those of others are moved by nothing that matters, so that a lattice or
 /// a line of spheres does not last for ever.
 template <int D>
-void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, PeriodicWork& work) {
+void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& work) {
   if (work.placed) {
     resize_box<D>(spheres, edges, start);
-    shake<D>(spheres, edges, jitter * std::ranges::max(spheres.r), work.random(Stream::relax));
+    shake<D>(spheres, edges, work.walls, jitter * std::ranges::max(spheres.r), work.random(Stream::relax));
   } else {
     edges = start;
     place_at_random<D>(spheres, edges, work.random(Stream::relax));
@@ -64,17 +81,22 @@ void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Period
 }
 
 template <int D>
-StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
-  if (!options.reference && fast_path_exists<D>(spheres, edges))
+StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const RelaxOptions& options) {
+  if (options.method == RelaxMethod::fast && (!work.walls.empty() || fast_path_exists<D>(spheres, edges)))
     return relax_fast<D>(spheres, edges, work, options);
   return relax_by_the_book<D>(spheres, edges, work, options);
 }
 
 template <int D>
-StageEnd relax_in(PeriodicWork& work, const RelaxOptions& options) {
+StageEnd relax_in(Work& work, const RelaxOptions& options) {
+  const bool by_the_book = options.method == RelaxMethod::reference;
+  if (!work.walls.empty() && (by_the_book || options.polish > 0))
+    throw Error(ErrorCode::bad_scene,
+                by_the_book ? "the reference method of relax knows no walls; leave \"method\" out"
+                            : "\"polish\" knows no walls; leave it out");
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
-  const Vector<D> start = edges_to_start_from(work, options.phi0);
+  const Vector<D> start = edges_to_start_from(work, options.phi0.value_or(dense_start[D - 1]));
   place<D>(spheres, edges, start, work);
 
   const int most_starts = is_loose(work) ? most_starts_in_a_loose_box : 1;
@@ -99,10 +121,74 @@ int sweeps_a_cycle(double alpha, std::size_t spheres) {
   return std::max(1, static_cast<int>(std::lround(alpha * decades * decades)));
 }
 
-StageEnd relax(PeriodicWork& work, const RelaxOptions& options) {
+StageEnd relax(Work& work, const RelaxOptions& options) {
   EffectTimer timer(work.effects["relaxation"]);
   return with_dimension(work.dimension(), EveryDimension{},
                         [&](auto dimension) { return relax_in<decltype(dimension)::value>(work, options); });
+}
+
+template <>
+const StageEntry& entry_of<Relax>() {
+  using namespace schema;
+  static const StageEntry entry = {
+      .table = stage_table<Relax>(
+          {.name = "relax",
+           .help =
+               "start with overlaps; push spheres apart, in a periodic box while it grows, in a container "
+               "off the walls too, and stir what is stuck",
+           .keys = joined(
+               acting(
+                   Acts::in_box,
+                   {number(&Relax::alpha, "alpha",
+                           "sweeps between two growths of the box, in units of (log10 N)^2", above(0, 1e6)),
+                    number(&Relax::beta, "beta", "the box grows by the largest overlap ratio divided by this",
+                           {0.01, 1e6}),
+                    number(&Relax::phi0, "phi0",
+                           "packing fraction of the overlapping spheres at the start; if absent 0.86, in "
+                           "other than three dimensions 1.34 of random close packing",
+                           above(0, 10)),
+                    number(&Relax::stop, "stop",
+                           "largest overlap ratio that counts as none; the box then grows by it",
+                           {1e-12, 0.5}),
+                    number(&Relax::polish, "polish",
+                           "close the gaps and overlaps of all contacts to this ratio; 0: do not", {0, 0.5}),
+                    word(&Relax::method, "method",
+                         "fast, or reference: the published loop as it stands, a hundred times slower",
+                         {"fast", "reference"}),
+                    flag(&Relax::settle, "settle",
+                         "reference: what touches nothing moves to touch its nearest neighbour")}),
+               acting(
+                   Acts::in_bed,
+                   {integer(&Relax::patience, "patience",
+                            "how often what is stuck is stirred before some spheres are taken out", {0, 1e6}),
+                    integer(&Relax::sweeps, "sweeps", "of all spheres, after which it stops", {1, 1e9}),
+                    number(&Relax::seconds, "seconds",
+                           "after which it stops, and then one seed need not give one packing; 0: any time",
+                           {0, 1e9})})),
+           .complete = completion(complete_relax)},
+          {.in_bed = true,
+           .in_box = true,
+           .box_between_walls = true,
+           .prefers_bed = true,
+           .keeps_sizes = true,
+           .places_expected = true,
+           .is_default = true,
+           .reaches = Reaches::close_packing}),
+      .act_in_bed = act(relax_in_container),
+      .act_in_box = act(relax),
+      .bed_effects = {{"insertion", "random places, where so few are asked for that these are enough",
+                       "O(1) a trial"},
+                      {"neighbour lists", "of all spheres together, from the background grid",
+                       "O(N) an iteration"},
+                      {"relaxation",
+                       "overlapping spheres and walls push; what is stuck is stirred or put into "
+                       "holes",
+                       "some 1,000 sweeps of O(N)"}},
+      .box_effects = {
+          {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+          {"relaxation", "overlapping spheres push each other apart while the box grows",
+           "some 1,000 sweeps of O(N)"}}};
+  return entry;
 }
 
 }  // namespace bernal

@@ -1,19 +1,12 @@
 #pragma once
 #include <cstddef>
 
-#include "work/periodic_work.hpp"
+#include "bernal/soft/relax.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 
-struct RelaxOptions {
-  double alpha = 17;
-  double beta = 30;
-  double phi0 = 0.86;
-  double stop = 2e-4;
-  double polish = 0;
-  bool reference = false;
-  bool settle = false;
-};
+using RelaxOptions = Relax;
 
 /// T = alpha (log10 N)², rounded, at least 1 (equation 6).
 int sweeps_a_cycle(double alpha, std::size_t spheres);
@@ -31,6 +24,6 @@ int sweeps_a_cycle(double alpha, std::size_t spheres);
 ///
 /// Cost: about alpha (log10 N)² ln(1/stop) sweeps. Cancelled, it leaves the spheres free of overlap in a box
 /// that is larger than it need be.
-StageEnd relax(PeriodicWork& work, const RelaxOptions& options);
+StageEnd relax(Work& work, const RelaxOptions& options);
 
 }  // namespace bernal

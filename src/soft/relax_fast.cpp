@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "core/every_dimension.hpp"
-#include "soft/neighbor_relaxation.hpp"
-#include "soft/soft_packing.hpp"
+#include "soft/soft_engine.hpp"
 
 namespace bernal {
 namespace {
@@ -45,9 +44,11 @@ class Growth {
   double last_growth_ = 0;
 };
 
-template <int D, class Packing>
-StageEnd relax_with(Packing&& packing, Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work,
-                    const RelaxOptions& options) {
+}  // namespace
+
+template <int D>
+StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const RelaxOptions& options) {
+  SoftEngine<D> packing(spheres, edges, 1, work.walls);
   const int sweeps = sweeps_a_cycle(options.alpha, std::min(spheres.size(), enough));
   const double stop =
       std::max({share_of_stop * options.stop, std::min(work.allowed_overlap, options.stop), least_overlap});
@@ -74,25 +75,14 @@ StageEnd relax_with(Packing&& packing, Spheres<D>& spheres, Vector<D>& edges, Pe
   return end;
 }
 
-}  // namespace
-
 template <int D>
 bool fast_path_exists(const Spheres<D>& spheres, const Vector<D>& edges) {
-  return D > 3 || edges.minCoeff() >= SoftPacking::smallest_edge(spheres.r);
-}
-
-template <int D>
-StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work, const RelaxOptions& options) {
-  if constexpr (D <= 3) {
-    return relax_with<D>(SoftPacking(spheres, edges, soft_kernels().front()), spheres, edges, work, options);
-  } else {
-    return relax_with<D>(NeighborRelaxation<D>(spheres, edges), spheres, edges, work, options);
-  }
+  return D > 3 || SoftEngine<D>::is_wide(spheres, edges);
 }
 
 #define BERNAL_INSTANTIATE(D)                                             \
   template bool fast_path_exists<D>(const Spheres<D>&, const Vector<D>&); \
-  template StageEnd relax_fast<D>(Spheres<D>&, Vector<D>&, PeriodicWork&, const RelaxOptions&);
+  template StageEnd relax_fast<D>(Spheres<D>&, Vector<D>&, Work&, const RelaxOptions&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

@@ -1,13 +1,10 @@
 #pragma once
+#include "bernal/soft/relax.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
 
-struct RelaxInContainerOptions {
-  double patience = 12;   ///< how often spheres that are stuck are stirred before some are taken out
-  double sweeps = 40000;  ///< at most
-  double seconds = 0;     ///< at most; 0: as long as it takes
-};
+using RelaxInContainerOptions = Relax;
 
 /// Random close packing in a container with the sizes as they were drawn.
 ///

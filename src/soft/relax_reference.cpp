@@ -119,8 +119,7 @@ class Loop {
 }  // namespace
 
 template <int D>
-StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work,
-                           const RelaxOptions& options) {
+StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, const RelaxOptions& options) {
   Loop<D> loop(spheres, edges, options.settle, work.random(Stream::relax));
   const int sweeps = sweeps_a_cycle(options.alpha, spheres.size());
   double reported = 0;
@@ -141,7 +140,7 @@ StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& 
 }
 
 #define BERNAL_INSTANTIATE(D) \
-  template StageEnd relax_by_the_book<D>(Spheres<D>&, Vector<D>&, PeriodicWork&, const RelaxOptions&);
+  template StageEnd relax_by_the_book<D>(Spheres<D>&, Vector<D>&, Work&, const RelaxOptions&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

@@ -21,7 +21,6 @@ namespace bernal {
 /// sweep. Cost: about 0.4 µs a sphere and sweep in three dimensions. Source: Zhao, Li & Liu 2007, section 2
 /// and figure 7.
 template <int D>
-StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, PeriodicWork& work,
-                           const RelaxOptions& options);
+StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, const RelaxOptions& options);
 
 }  // namespace bernal

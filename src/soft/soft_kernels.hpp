@@ -23,7 +23,8 @@ struct SweepTask {
   std::array<float, 3> scale;  ///< edge / 2^32 on each axis
   float omega;       ///< over-relaxation: the step is min(omega / contacts, 1) times the sum of overlaps
   SoftWalls* walls;  ///< of a container; null in a periodic box
-  float* stress;  ///< receives, of each sphere, the sum of its squared overlap ratios when these are measured
+  float*
+      squeeze;  ///< receives, of each sphere, the sum of its squared overlap ratios when these are measured
 };
 
 /// One level of the background grid: spheres with radii in (largest / 2, largest], sorted by cell.
@@ -56,7 +57,7 @@ struct SoftKernels {
   /// wall counts as a neighbour with w = 1. Precondition: no two spheres of a group are neighbours. Cost:
   /// about 1 ns a neighbour.
   void (*sweep)(const SweepTask&, std::size_t begin, std::size_t end);
-  /// The same; returns the largest overlap ratio (ri + rj - d) / (ri + rj) that was met, and fills `stress`.
+  /// The same; returns the largest overlap ratio (ri + rj - d) / (ri + rj) that was met, and fills `squeeze`.
   float (*sweep_and_measure)(const SweepTask&, std::size_t begin, std::size_t end);
   /// Writes the places of all neighbours of a sphere but itself, `self`, to `out` and returns their end; up
   /// to `lanes` more entries are scribbled over. Cost: about 10 ns a row of three cells.

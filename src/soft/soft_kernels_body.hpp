@@ -211,7 +211,7 @@ float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
       store(mine, {wrapped_sum(me.x, to_ints(sum_x * step * inverse_x)),
                    wrapped_sum(me.y, to_ints(sum_y * step * inverse_y)),
                    wrapped_sum(me.z, to_ints(sum_z * step * inverse_z)), me.r});
-      if constexpr (measure) *reinterpret_cast<UnalignedFloats*>(task.stress + lanes * g + first) = squares;
+      if constexpr (measure) *reinterpret_cast<UnalignedFloats*>(task.squeeze + lanes * g + first) = squares;
     }
     if (near_wall) task.walls->guard(g, at_wall, task.spheres + lanes * g);
   }

@@ -131,9 +131,9 @@ void SoftPacking::sweep(float omega) {
 double SoftPacking::sweep_and_measure(float omega) {
   patience_ = 0;  // what is measured is measured on lists that are known to be good
   keep_lists_valid();
-  stress_.assign(spheres_.size(), 0);
+  squeeze_.assign(spheres_.size(), 0);
   SweepTask work = task(omega);
-  work.stress = stress_.data();
+  work.squeeze = squeeze_.data();
   std::vector<float> largest(spheres_.size() / lanes + 1, 0.0f);
   for_each_chain([&](const Chain& chain) {
     largest[chain.first] = kernels_.sweep_and_measure(work, chain.first, chain.last);
@@ -170,10 +170,10 @@ void SoftPacking::set_place(SoftSphere& sphere, const Vector<3>& center) const {
     sphere.x[k] = to_fixed(center[static_cast<int>(k)] - corner_[static_cast<int>(k)], edges_[k]);
 }
 
-std::vector<float> SoftPacking::stress() const {
+std::vector<float> SoftPacking::squeeze() const {
   std::vector<float> of_sphere(count_);
-  for (std::size_t p = 0; p < stress_.size(); ++p)
-    if (spheres_[p].r > 0) of_sphere[ids_[p]] = stress_[p];
+  for (std::size_t p = 0; p < squeeze_.size(); ++p)
+    if (spheres_[p].r > 0) of_sphere[ids_[p]] = squeeze_[p];
   return of_sphere;
 }
 

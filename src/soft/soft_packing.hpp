@@ -59,7 +59,7 @@ class SoftPacking {
   /// The same; returns the largest overlap ratio that was met.
   double sweep_and_measure(float omega);
   /// Of each sphere the sum of its squared overlap ratios, as the last measuring sweep met them.
-  std::vector<float> stress() const;
+  std::vector<float> squeeze() const;
 
   /// The box and the distances grow; the radii do not.
   void grow(double factor);
@@ -105,7 +105,7 @@ class SoftPacking {
   std::unique_ptr<SoftWalls> walls_;  // null in a periodic box
   std::vector<SoftSphere> spheres_;   // in sweep order
   std::vector<std::uint32_t> ids_;
-  std::vector<float> stress_;
+  std::vector<float> squeeze_;
   std::vector<float> radii_;          // as given, by id; of spheres in a container
   bool stale_ = true;                 // the lists
   std::vector<SoftSphere> built_at_;  // where they were when the lists were built

@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <tbb/task_arena.h>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "verify/judge_pairs.hpp"
@@ -50,21 +52,36 @@ std::optional<std::string> complaint_about(const Spheres<dynamic>& spheres) {
       counted_spheres(bad), first, fmt::join(c, ", "), spheres.r[first]);
 }
 
-std::vector<verify::Ball<3>> balls_of(const Spheres<dynamic>& spheres) {
-  std::vector<verify::Ball<3>> balls(spheres.size());
-  for (std::size_t i = 0; i < balls.size(); ++i) balls[i] = {spheres.center(i), spheres.r[i], i};
-  return balls;
+template <int D, class Space>
+verify::BallTree<D> tree_of(const Spheres<dynamic>& spheres, const Space& space) {
+  std::vector<verify::Ball<D>> balls(spheres.size());
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    for (int k = 0; k < D; ++k)
+      balls[i].c[k] = space.representative(k, spheres.x[static_cast<std::size_t>(k)][i]);
+    balls[i].r = spheres.r[i];
+    balls[i].index = i;
+  }
+  return verify::BallTree<D>(std::move(balls));
 }
 
-verify::Tally judge(const Spheres<dynamic>& spheres, const Domain& domain, double allowed_overlap,
-                    Arithmetic arithmetic) {
-  if (is_periodic(domain) || dimension_of(domain) != 3) {
-    verify::Tally tally = verify::judge_pairs(spheres, domain, allowed_overlap, arithmetic);
-    return tally += verify::judge_walls(spheres, domain, arithmetic);
-  }
-  const verify::BallTree<3> balls(balls_of(spheres));
-  verify::Tally tally = verify::judge_pairs(balls, allowed_overlap, arithmetic);
-  return tally += verify::judge_walls(balls, domain, arithmetic);
+template <int D, class Space>
+verify::Tally judge_in(const Space& space, const Spheres<dynamic>& spheres, const Domain& domain,
+                       const verify::Course& course) {
+  const verify::BallTree<D> balls = tree_of<D>(spheres, space);
+  verify::Tally tally = verify::judge_pairs(balls, space, course);
+  return tally += verify::judge_walls(balls, domain, course);
+}
+
+verify::Tally judge(const Spheres<dynamic>& spheres, const Domain& domain, const verify::Course& course) {
+  const Vector<dynamic> periods = verify::periods_of(domain);
+  const bool repeats = (periods.array() < verify::Box<1>::infinity).any();
+  if (!repeats && periods.size() == 3) return judge_in<3>(verify::OpenSpace<3>(), spheres, domain, course);
+  std::optional<verify::Tally> tally;
+  with_dimension(static_cast<int>(periods.size()), EveryDimension{}, [&](auto dimension) {
+    constexpr int D = decltype(dimension)::value;
+    tally = judge_in<D>(verify::PeriodicSpace<D>{periods}, spheres, domain, course);
+  });
+  return *std::move(tally);
 }
 
 /// "1,200 spheres, 7,000 near pairs and 7,200 walls decided exactly, no overlap, no protrusion"
@@ -83,8 +100,12 @@ std::string what_was_decided(const Certificate& c, const Domain& domain, const s
       counted(c.walls_tested, mesh ? "near triangle" : "wall", mesh ? "near triangles" : "walls"), limit);
 }
 
-std::string statement_of(const Certificate& c, double allowed_overlap, const Domain& domain) {
-  const std::string limit = allowed_overlap > 0 ? fmt::format(" above {}", allowed_overlap) : "";
+std::string statement_of(const Certificate& c, const Domain& domain) {
+  if (c.cancelled)
+    return fmt::format("Not certified: it was stopped after {} and {}.",
+                       counted(c.pairs_tested, "near pair", "near pairs"),
+                       counted(c.walls_tested, "wall", "walls"));
+  const std::string limit = c.allowed_overlap > 0 ? fmt::format(" above {}", c.allowed_overlap) : "";
   if (c.certified) {
     if (c.spheres == 0) return "Certified: there are no spheres.";
     std::string closest;
@@ -108,41 +129,50 @@ std::string statement_of(const Certificate& c, double allowed_overlap, const Dom
 
 }  // namespace
 
-std::string worst_pair_text(const Certificate& c) {
-  if (!c.worst_pair) return "none";
-  const auto [first, second] = *c.worst_pair;
+std::string pair_text(const std::array<std::uint64_t, 2>& pair) {
+  const auto [first, second] = pair;
   return first == second ? fmt::format("{} and its own image", first)
                          : fmt::format("{} and {}", first, second);
 }
 
-Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, double allowed_overlap,
-                    Arithmetic arithmetic) {
+std::string worst_pair_text(const Certificate& c) { return c.worst_pair ? pair_text(*c.worst_pair) : "none"; }
+
+Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, const CertifyOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  check_arguments(spheres, domain, allowed_overlap);
+  check_arguments(spheres, domain, options.allowed_overlap);
 
   Certificate result;
   result.spheres = spheres.size();
+  result.allowed_overlap = options.allowed_overlap;
   if (auto complaint = complaint_about(spheres)) {
     result.statement = *std::move(complaint);
   } else {
-    const verify::Tally tally = judge(spheres, domain, allowed_overlap, arithmetic);
+    const verify::Course course(options);
+    verify::Tally tally(0);
+    if (options.threads > 0)
+      tbb::task_arena(options.threads).execute([&] { tally = judge(spheres, domain, course); });
+    else
+      tally = judge(spheres, domain, course);
+    result.cancelled = course.stopped();
     result.pairs_tested = tally.pairs;
     result.walls_tested = tally.walls;
     result.centers_tested = tally.centers;
-    result.decided_double = tally.decided_double;
-    result.decided_exact = tally.decided_exact;
+    result.decided_double = tally.decisions.by_double;
+    result.decided_exact = tally.decisions.by_exact;
     result.overlapping_pairs = tally.overlapping;
     result.protruding_spheres = tally.protruding;
     if (tally.pairs > 0) {
-      result.worst_pair = {tally.worst_pair[0], tally.worst_pair[1]};
-      result.max_overlap = tally.max_overlap;
+      result.worst_pair = tally.worst_pair.pair;
+      result.max_overlap = tally.worst_pair.ratio;
     }
-    if (std::isfinite(tally.min_wall_gap)) {
-      result.worst_wall = tally.worst_wall;
-      result.min_wall_gap = tally.min_wall_gap;
+    if (std::isfinite(tally.worst_wall.gap)) {
+      result.worst_wall = tally.worst_wall.sphere;
+      result.min_wall_gap = tally.worst_wall.gap;
     }
-    result.certified = tally.overlapping == 0 && tally.protruding == 0;
-    result.statement = statement_of(result, allowed_overlap, domain);
+    result.overlaps = std::move(tally.overlaps).sorted();
+    result.protrusions = std::move(tally.protrusions).sorted();
+    result.certified = !result.cancelled && tally.overlapping == 0 && tally.protruding == 0;
+    result.statement = statement_of(result, domain);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -4,14 +4,13 @@
 #include <cmath>
 #include <variant>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 #include <Eigen/Geometry>
 
-#include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
+#include "core/every_dimension.hpp"
 #include "verify/mesh_wall.hpp"
 #include "verify/predicates.hpp"
+#include "verify/stand.hpp"
 
 namespace bernal::verify {
 namespace {
@@ -33,18 +32,18 @@ class PieceJudge {
   template <class Predicate>
   void piece(double clearance, const Predicate& predicate) {
     ++tally_.walls;
-    const bool holds = decide(arithmetic_, tally_, predicate) == Truth::yes;
-    inside_ = inside_ && holds;
-    tally_.add_wall_ratio(ball_.index, with_sign((clearance - ball_.r) / ball_.r, holds));
+    const bool holds = decide(arithmetic_, tally_.decisions, predicate) == Truth::yes;
+    stand_.inside = stand_.inside && holds;
+    stand_.gap = std::min(stand_.gap, with_sign((clearance - ball_.r) / ball_.r, holds));
   }
 
-  bool inside() const { return inside_; }
+  const Stand& stand() const { return stand_; }
 
  private:
   const Ball<D>& ball_;
   Arithmetic arithmetic_;
   Tally& tally_;
-  bool inside_ = true;
+  Stand stand_;
 };
 
 /// Of any dimension; only the axes that end have walls.
@@ -52,11 +51,13 @@ template <int D>
 class BoxWall {
  public:
   explicit BoxWall(const bernal::Box& box) : box_(box), lower_(box.corner), upper_(box.corner + box.size) {
-    require(lower_.allFinite() && upper_.allFinite() && (lower_.array() < upper_.array()).all(),
-            "a box needs a finite corner and a positive finite size");
+    for (int k = 0; k < D; ++k)
+      require(
+          !box.has_wall(k) || (std::isfinite(lower_[k]) && std::isfinite(upper_[k]) && lower_[k] < upper_[k]),
+          "a box needs a finite corner and a positive finite size");
   }
 
-  bool inside(const Ball<D>& ball, Arithmetic arithmetic, Tally& tally) const {
+  Stand stand_of(const Ball<D>& ball, Arithmetic arithmetic, Tally& tally) const {
     PieceJudge judge(ball, arithmetic, tally);
     for (int k = 0; k < D; ++k) {
       if (!box_.has_wall(k)) continue;
@@ -64,7 +65,7 @@ class BoxWall {
       judge.piece(c - lower, [=]<class Number>() { return above<Number>(c, r, lower); });
       judge.piece(upper - c, [=]<class Number>() { return below<Number>(c, r, upper); });
     }
-    return judge.inside();
+    return judge.stand();
   }
 
  private:
@@ -80,12 +81,12 @@ class SphereWall {
             "a sphere needs a finite centre and a positive finite radius");
   }
 
-  bool inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
+  Stand stand_of(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
     const Vector<3> d = ball.c - sphere_.center;
     PieceJudge judge(ball, arithmetic, tally);
     judge.piece(sphere_.radius - std::hypot(d[0], d[1], d[2]),
                 [&]<class Number>() { return ball_in_ball<Number>(ball.c, ball.r, sphere_); });
-    return judge.inside();
+    return judge.stand();
   }
 
  private:
@@ -102,7 +103,7 @@ class CylinderWall {
     unit_axis_ = cylinder.axis.stableNormalized();
   }
 
-  bool inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
+  Stand stand_of(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
     const Vector<3> w = ball.c - cylinder_.base;
     const Vector<3> across = w.cross(unit_axis_);
     const double height = w.dot(unit_axis_);
@@ -110,7 +111,7 @@ class CylinderWall {
     if (!cylinder_.periodic) judge_lids(judge, ball, height);
     judge.piece(cylinder_.radius - std::hypot(across[0], across[1], across[2]),
                 [&]<class Number>() { return inside_side<Number>(ball.c, ball.r, cylinder_); });
-    return judge.inside();
+    return judge.stand();
   }
 
  private:
@@ -125,56 +126,29 @@ class CylinderWall {
 };
 
 template <int D, class Wall>
-void judge(const Ball<D>& ball, const Wall& wall, Arithmetic arithmetic, Tally& tally) {
-  if (!wall.inside(ball, arithmetic, tally)) ++tally.protruding;
-}
-
-template <class Wall>
-Tally judge_all(const BallTree<3>& balls, const Wall& wall, Arithmetic arithmetic) {
+Tally judge_all(const BallTree<D>& balls, const Wall& wall, const Course& course) {
   const auto all = balls.items();
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, all.size(), 64), Tally{},
-      [&](const tbb::blocked_range<std::size_t>& range, Tally tally) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) judge(all[i], wall, arithmetic, tally);
-        return tally;
-      },
-      [](Tally a, const Tally& b) { return a += b; });
-}
-
-struct JudgeBalls {
-  const BallTree<3>& balls;
-  Arithmetic arithmetic;
-
-  Tally operator()(const bernal::Box& s) const { return judge_all(balls, BoxWall<3>(s), arithmetic); }
-  Tally operator()(const Cylinder& s) const { return judge_all(balls, CylinderWall(s), arithmetic); }
-  Tally operator()(const Sphere& s) const { return judge_all(balls, SphereWall(s), arithmetic); }
-  Tally operator()(const Mesh& s) const { return judge_all(balls, MeshWall(s), arithmetic); }
-};
-
-/// One after the other, as they stand in the file.
-template <int D, class Wall>
-Tally judge_in_order(const Spheres<dynamic>& spheres, const Wall& wall, Arithmetic arithmetic) {
-  Tally tally;
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    judge(Ball<D>{spheres.center(i), spheres.r[i], i}, wall, arithmetic, tally);
-  return tally;
+  return course.for_each("walls", all.size(), 64, [&](std::size_t i, Tally& tally) {
+    const Stand stand = wall.stand_of(all[i], course.options().arithmetic, tally);
+    tally.add_ball({all[i].index, stand.gap}, stand.inside);
+  });
 }
 
 }  // namespace
 
-Tally judge_walls(const BallTree<3>& balls, const Domain& container, Arithmetic arithmetic) {
-  return std::visit(JudgeBalls{balls, arithmetic}, container);
+template <int D>
+Tally judge_walls(const BallTree<D>& balls, const Domain& domain, const Course& course) {
+  if (const auto* box = std::get_if<bernal::Box>(&domain)) return judge_all(balls, BoxWall<D>(*box), course);
+  if constexpr (D == 3) {
+    if (const auto* cylinder = std::get_if<Cylinder>(&domain))
+      return judge_all(balls, CylinderWall(*cylinder), course);
+    if (const auto* sphere = std::get_if<Sphere>(&domain))
+      return judge_all(balls, SphereWall(*sphere), course);
+    return judge_all(balls, MeshWall(std::get<Mesh>(domain)), course);
+  }
+  return Tally(0);
 }
-
-Tally judge_walls(const Spheres<dynamic>& spheres, const Domain& domain, Arithmetic arithmetic) {
-  if (const auto* box = std::get_if<bernal::Box>(&domain))
-    return with_dimension(box->dimension(), EveryDimension{}, [&](auto dimension) {
-      constexpr int D = decltype(dimension)::value;
-      return judge_in_order<D>(spheres, BoxWall<D>(*box), arithmetic);
-    });
-  const auto* cylinder = std::get_if<Cylinder>(&domain);
-  require(cylinder, "only boxes and cylinders repeat themselves");
-  return judge_in_order<3>(spheres, CylinderWall(*cylinder), arithmetic);
-}
+#define BERNAL_INSTANTIATE(D) template Tally judge_walls(const BallTree<D>&, const Domain&, const Course&);
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 
 }  // namespace bernal::verify

@@ -1,21 +1,20 @@
 #pragma once
-#include "bernal/core/spheres.hpp"
 #include "bernal/domain/domain.hpp"
 #include "verify/ball.hpp"
+#include "verify/course.hpp"
 #include "verify/tally.hpp"
 
 namespace bernal::verify {
 
-/// Decides for every ball whether it lies in the closed container.
+/// Decides for every ball whether it lies in the closed domain; along axes that repeat themselves it may lie
+/// anywhere.
 ///
-/// A box has six pieces of wall, a cylinder three (base, top, side) and a sphere one: every ball is tried
-/// against each. Of a mesh the triangles whose boxes touch the ball's are tried, and the side of its centre
-/// is decided. Throws Error{bad_mesh} for a mesh that encloses nothing and Error{bad_argument} for absurd
-/// measures. Cost: O(N), for a mesh of T triangles O(T log T + N log T + near pieces).
-Tally judge_walls(const BallTree<3>& balls, const Domain& container, Arithmetic arithmetic);
-
-/// The same for a domain that repeats itself along some axes, or a box of any dimension: only axes that end
-/// are looked at, and centres may lie anywhere along the others. One thread.
-Tally judge_walls(const Spheres<dynamic>& spheres, const Domain& domain, Arithmetic arithmetic);
+/// A box has two pieces of wall for every axis that ends, a cylinder three (base, top, side) or, repeating
+/// itself, its side, and a sphere one: every ball is tried against each. Of a mesh the triangles whose boxes
+/// touch the ball's are tried, and the side of its centre is decided. Throws Error{bad_mesh} for a mesh that
+/// encloses nothing and Error{bad_argument} for absurd measures. Cost: O(N), for a mesh of T triangles
+/// O(T log T + N log T + near pieces). Precondition: D is the dimension of the domain.
+template <int D>
+Tally judge_walls(const BallTree<D>& balls, const Domain& domain, const Course& course);
 
 }  // namespace bernal::verify

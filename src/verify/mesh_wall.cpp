@@ -125,13 +125,13 @@ Corners MeshWall::corners(const Facet& facet) const {
   return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
 }
 
-bool MeshWall::inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
+Stand MeshWall::stand_of(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
   bool clear = true;
   double distance = Box<3>::infinity;
   facets_.for_each_touching(ball.box(), [&](const Facet& facet) {
     const Corners corner = corners(facet);
     ++tally.walls;
-    const Truth clears = decide(arithmetic, tally, [&]<class Number>() {
+    const Truth clears = decide(arithmetic, tally.decisions, [&]<class Number>() {
       return ball_clears_triangle<Number>(ball.c, ball.r, corner);
     });
     clear = clear && clears == Truth::yes;
@@ -141,24 +141,23 @@ bool MeshWall::inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) 
   const bool center_is_inside = center_inside(ball, arithmetic, tally);
   if (!center_is_inside) distance = -distance_from(ball.c);
   const bool holds = center_is_inside && clear;
-  if (distance < Box<3>::infinity)
-    tally.add_wall_ratio(ball.index, with_sign((distance - ball.r) / ball.r, holds));
-  return holds;
+  if (distance == Box<3>::infinity) return {holds, distance};
+  return {holds, with_sign((distance - ball.r) / ball.r, holds)};
 }
 
 bool MeshWall::center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
   const Vector<3>& p = ball.c;
   const Box<3> upwards{{p[0], p[1], p[2]}, {p[0], p[1], Box<3>::infinity}};
   int winding = 0;
-  Tally crossings;
+  Decisions crossings;
   facets_.for_each_touching(upwards, [&](const Facet& facet) {
     const Corners corner = corners(facet);
     winding += static_cast<int>(
         decide(arithmetic, crossings, [&]<class Number>() { return crossing_above<Number>(p, corner); }));
   });
   ++tally.centers;
-  const bool by_double = arithmetic == Arithmetic::filtered && crossings.decided_exact == 0;
-  ++(by_double ? tally.decided_double : tally.decided_exact);
+  const bool by_double = arithmetic == Arithmetic::filtered && crossings.by_exact == 0;
+  ++(by_double ? tally.decisions.by_double : tally.decisions.by_exact);
   return winding == 1;
 }
 

@@ -4,6 +4,7 @@
 #include "bernal/domain/domain.hpp"
 #include "verify/ball.hpp"
 #include "verify/predicates.hpp"
+#include "verify/stand.hpp"
 #include "verify/tally.hpp"
 
 namespace bernal::verify {
@@ -20,7 +21,7 @@ class MeshWall {
   explicit MeshWall(const Mesh& mesh);
 
   /// Tries the ball against the near triangles and decides the side of its centre; counts both.
-  bool inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const;
+  Stand stand_of(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const;
 
  private:
   struct Facet {

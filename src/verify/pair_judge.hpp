@@ -3,10 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include "verify/ball.hpp"
+#include "verify/course.hpp"
 #include "verify/predicates.hpp"
 #include "verify/space.hpp"
 #include "verify/tally.hpp"
@@ -17,17 +15,12 @@ namespace bernal::verify {
 template <int D, class Space>
 class PairJudge {
  public:
-  PairJudge(const BallTree<D>& balls, const Space& space, double allowed, Arithmetic arithmetic)
-      : balls_(balls), space_(space), allowed_(allowed), arithmetic_(arithmetic) {}
+  PairJudge(const BallTree<D>& balls, const Space& space, const Course& course)
+      : balls_(balls), space_(space), course_(course) {}
 
   Tally judge_all() const {
-    return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, balls_.leaves(), 16), Tally{},
-        [&](const tbb::blocked_range<std::size_t>& range, Tally tally) {
-          for (std::size_t l = range.begin(); l < range.end(); ++l) judge_leaf(l, tally);
-          return tally;
-        },
-        [](Tally a, const Tally& b) { return a += b; });
+    return course_.for_each("pairs", balls_.leaves(), 16,
+                            [this](std::size_t l, Tally& tally) { judge_leaf(l, tally); });
   }
 
  private:
@@ -70,16 +63,15 @@ class PairJudge {
   template <class Predicate>
   void record(std::uint64_t first, std::uint64_t second, double gap, Tally& tally,
               const Predicate& clear) const {
-    const auto holds = [&](double allowed, Tally& counts) {
-      return decide(arithmetic_, counts,
+    const auto holds = [&](double allowed, Decisions& decisions) {
+      return decide(course_.options().arithmetic, decisions,
                     [&]<class Number>() { return clear.template operator()<Number>(allowed); }) == Truth::yes;
     };
-    ++tally.pairs;
-    const bool as_allowed = holds(allowed_, tally);
-    if (!as_allowed) ++tally.overlapping;
-    Tally only_for_the_sign;
-    const bool strictly = allowed_ == 0 ? as_allowed : holds(0, only_for_the_sign);
-    tally.add_pair_ratio(first, second, 0.0 - with_sign(gap, strictly));
+    const double allowed = course_.options().allowed_overlap;
+    const bool as_allowed = holds(allowed, tally.decisions);
+    Decisions only_for_the_sign;
+    const bool strictly = allowed == 0 ? as_allowed : holds(0, only_for_the_sign);
+    tally.add_pair({{first, second}, 0.0 - with_sign(gap, strictly)}, as_allowed);
   }
 
   double distance(const Ball<D>& a, const Ball<D>& b) const {
@@ -91,8 +83,7 @@ class PairJudge {
 
   const BallTree<D>& balls_;
   const Space& space_;
-  double allowed_;
-  Arithmetic arithmetic_;
+  const Course& course_;
 };
 
 }  // namespace bernal::verify

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bernal/core/vector.hpp"
+#include "bernal/domain/domain.hpp"
 #include "verify/box_tree.hpp"
 
 // What a certificate has to know of the space in which balls meet: how far apart two coordinates are, in any
@@ -13,6 +14,11 @@ namespace bernal::verify {
 
 inline double magnitude(double x) { return std::abs(x); }
 inline double smaller(double a, double b) { return std::min(a, b); }
+
+/// The period of every axis of a domain, infinite where it has none. What repeats is said here once more,
+/// from the plain data: the packer's own metric is not trusted. Throws Error{bad_argument} unless every
+/// period is positive and finite and every axis is said to repeat itself or to end.
+Vector<dynamic> periods_of(const Domain& domain);
 
 /// Space without end, in which a ball is in one place.
 template <int D>
@@ -24,6 +30,7 @@ struct OpenSpace {
     return Number(a) - Number(b);
   }
   static Box<D> reach_of(const Box<D>& box) { return box; }
+  static double representative(int, double x) { return x; }
 };
 
 /// A box and the ends of its images in the periods before and after, as far as others can meet them.

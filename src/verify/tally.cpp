@@ -2,35 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace bernal::verify {
 
-void Tally::add_pair_ratio(std::uint64_t first, std::uint64_t second, double overlap) {
-  if (std::tuple(-overlap, first, second) < std::tuple(-max_overlap, worst_pair[0], worst_pair[1])) {
-    worst_pair[0] = first;
-    worst_pair[1] = second;
-    max_overlap = overlap;
-  }
+void Tally::add_pair(const Certificate::Overlap& pair, bool clear) {
+  ++pairs;
+  if (worse(pair, worst_pair)) worst_pair = pair;
+  if (clear) return;
+  ++overlapping;
+  overlaps.add(pair);
 }
 
-void Tally::add_wall_ratio(std::uint64_t sphere, double gap) {
-  if (std::tuple(gap, sphere) < std::tuple(min_wall_gap, worst_wall)) {
-    worst_wall = sphere;
-    min_wall_gap = gap;
-  }
+void Tally::add_ball(const Certificate::Protrusion& ball, bool inside) {
+  if (worse(ball, worst_wall)) worst_wall = ball;
+  if (inside) return;
+  ++protruding;
+  protrusions.add(ball);
 }
 
 Tally& Tally::operator+=(const Tally& other) {
   pairs += other.pairs;
   walls += other.walls;
   centers += other.centers;
-  decided_double += other.decided_double;
-  decided_exact += other.decided_exact;
+  decisions.by_double += other.decisions.by_double;
+  decisions.by_exact += other.decisions.by_exact;
   overlapping += other.overlapping;
   protruding += other.protruding;
-  add_pair_ratio(other.worst_pair[0], other.worst_pair[1], other.max_overlap);
-  add_wall_ratio(other.worst_wall, other.min_wall_gap);
+  if (worse(other.worst_pair, worst_pair)) worst_pair = other.worst_pair;
+  if (worse(other.worst_wall, worst_wall)) worst_wall = other.worst_wall;
+  overlaps.add(other.overlaps);
+  protrusions.add(other.protrusions);
   return *this;
 }
 

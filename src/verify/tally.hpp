@@ -5,8 +5,15 @@
 #include "bernal/verify/certificate.hpp"
 #include "verify/bounded.hpp"
 #include "verify/exact.hpp"
+#include "verify/worst_of.hpp"
 
 namespace bernal::verify {
+
+/// How many predicates were decided by which arithmetic.
+struct Decisions {
+  std::uint64_t by_double = 0;
+  std::uint64_t by_exact = 0;
+};
 
 /// What has been decided so far. Merging is associative and commutative: sums of counts, and extremes with
 /// ties broken by index. So any order of any number of threads gives the same tally.
@@ -14,35 +21,38 @@ struct Tally {
   std::uint64_t pairs = 0;
   std::uint64_t walls = 0;
   std::uint64_t centers = 0;
-  std::uint64_t decided_double = 0;
-  std::uint64_t decided_exact = 0;
+  Decisions decisions;
   std::uint64_t overlapping = 0;
   std::uint64_t protruding = 0;
 
-  /// first <= second; none yet while the ratio is -infinity.
-  std::uint64_t worst_pair[2] = {0, 0};
-  double max_overlap = -std::numeric_limits<double>::infinity();
-  /// None yet while the ratio is +infinity.
-  std::uint64_t worst_wall = 0;
-  double min_wall_gap = std::numeric_limits<double>::infinity();
+  /// None yet while the ratio is -infinity, or the gap +infinity.
+  Certificate::Overlap worst_pair = {{0, 0}, -std::numeric_limits<double>::infinity()};
+  Certificate::Protrusion worst_wall = {0, std::numeric_limits<double>::infinity()};
+  WorstOf<Certificate::Overlap> overlaps;
+  WorstOf<Certificate::Protrusion> protrusions;
 
-  void add_pair_ratio(std::uint64_t first, std::uint64_t second, double overlap);
-  void add_wall_ratio(std::uint64_t sphere, double gap);
+  /// `list`: of the most to be listed.
+  explicit Tally(std::size_t list) : overlaps(list), protrusions(list) {}
+
+  /// A near pair; `clear` is whether it overlaps no more than is allowed.
+  void add_pair(const Certificate::Overlap& pair, bool clear);
+  /// A ball that is near a wall, or has an infinite gap.
+  void add_ball(const Certificate::Protrusion& ball, bool inside);
   Tally& operator+=(const Tally& other);
 };
 
 /// Evaluates a predicate, `template <class Number> Truth` or `Sign`, first in Bounded (unless `arithmetic` is
 /// exact), then in Exact where that is not certain, and counts which of the two decided.
 template <class Predicate>
-auto decide(Arithmetic arithmetic, Tally& tally, const Predicate& predicate) {
+auto decide(Arithmetic arithmetic, Decisions& decisions, const Predicate& predicate) {
   if (arithmetic == Arithmetic::filtered) {
     const auto answer = predicate.template operator()<Bounded>();
     if (answer != decltype(answer)::unknown) {
-      ++tally.decided_double;
+      ++decisions.by_double;
       return answer;
     }
   }
-  ++tally.decided_exact;
+  ++decisions.by_exact;
   return predicate.template operator()<Exact>();
 }
 

@@ -8,8 +8,6 @@
 namespace bernal {
 namespace {
 
-/// No stage packs denser than this, so a `fill` never needs more spheres than make up so much of the volume.
-constexpr double densest = 0.95;
 /// The window's share of the spheres that may come.
 constexpr double window_share = 0.002;
 /// Taking out no more than this share makes the result exactly the drawn sequence less its tail.
@@ -18,37 +16,41 @@ constexpr double most_spheres = 2147483647.0;
 
 }  // namespace
 
-Supply::Supply(const SizeDistribution& radii, double scale, double volume, double cut, const Target& target,
-               std::uint64_t seed, Draw draw) {
-  const double mean_volume = ball_volume(3, 1) * radii.moment(3) / (scale * scale * scale);
-  const double fraction = target.packing_fraction.value_or(densest);
+Supply::Supply(const Source& source, double volume, const Target& target, double fraction)
+    : dimension_(source.dimension) {
+  const double mean_volume = ball_volume(dimension_, 1) * source.radii.moment(dimension_);
+  fraction = target.packing_fraction.value_or(fraction);
   const double expected = target.count ? static_cast<double>(*target.count) : fraction * volume / mean_volume;
-  if (!(expected < most_spheres)) {
-    throw Error(
-        ErrorCode::bad_scene,
-        "the container would hold more than 2^31 spheres of these sizes; use larger ones or ask for a count",
-        target.where);
-  }
+  if (!(expected < most_spheres))
+    throw Error(ErrorCode::bad_scene,
+                "there would be more than 2^31 spheres of these sizes; use larger ones or ask for a count",
+                target.where);
   radii_.reserve(static_cast<std::size_t>(expected * 1.01) + 16);
-  RadiusSequence sequence(radii, seed, draw);
+  RadiusSequence sequence(source.radii, source.seed, source.draw);
   double filled = 0;
   while (target.count ? radii_.size() < static_cast<std::size_t>(*target.count)
                       : filled < fraction * volume) {
-    const double r = sequence.next() / scale;
-    if (r > cut) {
+    const double r = sequence.next();
+    if (r > source.cut) {
       ++cut_off_;
       continue;
     }
     radii_.push_back(r);
-    filled += ball_volume(3, radii_.back());
+    filled += ball_volume(dimension_, r);
   }
-  const auto [smallest, largest] = std::minmax_element(radii_.begin(), radii_.end());
-  smallest_ = *smallest;
-  largest_ = *largest;
+  const auto [smallest, largest] = std::ranges::minmax(radii_);
+  smallest_ = smallest;
+  largest_ = largest;
   width_ = smallest_ == largest_
                ? 1
                : std::max<std::size_t>(16, static_cast<std::size_t>(window_share * expected));
   open_window();
+}
+
+void Supply::divide_by(double unit) {
+  for (double& r : radii_) r /= unit;
+  smallest_ /= unit;
+  largest_ /= unit;
 }
 
 void Supply::open_window() {
@@ -70,7 +72,7 @@ void Supply::set_placed(const std::vector<bool>& placed) {
 
 std::size_t Supply::count_filling(double volume) const {
   std::size_t count = 0;
-  while (count < radii_.size() && volume > 0) volume -= ball_volume(3, radii_[count++]);
+  while (count < radii_.size() && volume > 0) volume -= ball_volume(dimension_, radii_[count++]);
   return count;
 }
 

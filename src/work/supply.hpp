@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "bernal/scene/scene.hpp"
@@ -15,11 +16,26 @@ namespace bernal {
 /// passed over. So the sizes are not biased towards what fits more easily.
 class Supply {
  public:
-  /// Draws all radii that a volume of `volume` could ever need, in units of `scale` (the packer's frame), by
-  /// the seed's stream of radii. Throws Error{bad_scene} if those are more than 2^31.
-  /// Radii above `cut` are drawn again and counted.
-  Supply(const SizeDistribution& radii, double scale, double volume, double cut, const Target& target,
-         std::uint64_t seed, Draw draw = Draw::random);
+  /// No stage packs denser than this: so many of an open target are never missed.
+  static constexpr double densest = 0.95;
+
+  /// What the radii are drawn from, and how.
+  struct Source {
+    const SizeDistribution& radii;
+    int dimension = 3;
+    std::uint64_t seed = 1;
+    Draw draw = Draw::random;
+    /// Larger radii are drawn again, and counted.
+    double cut = std::numeric_limits<double>::infinity();
+  };
+
+  /// Draws as many radii as the target asks for, or as fill `fraction` of the volume where it leaves that
+  /// open, by the seed's stream of radii. Throws Error{bad_scene} if those are more than 2^31.
+  Supply(const Source& source, double volume, const Target& target, double fraction = densest);
+
+  /// Lengths from now on are in units of `unit`, a power of two.
+  void divide_by(double unit);
+  const std::vector<double>& radii() const { return radii_; }
 
   /// Nothing more is to be placed: the target has been reached.
   bool exhausted() const { return window_.empty(); }
@@ -39,7 +55,7 @@ class Supply {
   /// Whether only a few spheres stand beyond `first_missing`, so that taking them out again, which makes the
   /// result exactly the drawn sequence less its tail, costs next to nothing.
   bool trimming_is_cheap() const;
-  /// How many spheres the target asks for; for `fill` an upper bound.
+  /// How many spheres the target asks for; for an open one an upper bound.
   std::size_t wanted() const { return radii_.size(); }
   /// So many of the sequence, from its start, fill this volume; at most all.
   std::size_t count_filling(double volume) const;
@@ -51,6 +67,7 @@ class Supply {
  private:
   void open_window();
 
+  int dimension_ = 3;
   std::vector<double> radii_;
   std::vector<std::uint32_t> window_;
   std::uint32_t next_ = 0;  // the first tag that was never in the window

@@ -1,38 +1,110 @@
 #pragma once
+#include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/domain.hpp"
+#include "bernal/scene/scene.hpp"
 #include "work/bed.hpp"
+#include "work/effect_log.hpp"
+#include "work/fill_task.hpp"
 #include "work/stage_end.hpp"
 #include "work/supply.hpp"
 
 namespace bernal {
 
-/// What the stages of one run share.
+/// How far a stage has come, for the run's history and the progress bar.
+struct Course {
+  std::string_view stage;
+  std::uint64_t spheres = 0;
+  double packing_fraction = 0;
+  std::optional<double> potential = {};  ///< mean height in the bed, in the packer's unit
+  double max_overlap = 0;                ///< largest overlap ratio of a pair
+  std::optional<double> done = {};       ///< in [0, 1], where the stage knows it
+};
+
+/// What the stages of one run share: where they report, what is asked for, and the spheres as the last of
+/// them left them. Lengths are in the packer's unit, a power of two of the scene's.
+///
+/// The spheres stand in one of two ways, and a stage works on one of them. In a *bed*, spheres of the drawn
+/// sequence come one after the other into a domain of fixed size with walls; in a *box*, which may be scaled,
+/// all of them are there from the start and stages give them their places. `stand_in_bed` and `stand_in_box`
+/// lead from one to the other.
 struct Work {
-  Bed& bed;
-  Supply& supply;
+  // ---- the spheres in a box
+
+  /// Radii as drawn, which no stage changes. Centres in [0, edge) once `placed`.
+  Spheres<dynamic> spheres;
+  /// Of the box; before the spheres are placed only its proportions mean something.
+  Vector<dynamic> edges;
+  bool placed = false;
+  /// Axes on which the box ends at walls, with whole spheres between them; empty: none.
+  std::vector<bool> walls = {};
+  /// Those that the box is to end with, where the scene says so.
+  std::optional<Vector<dynamic>> target_edges = {};
+  /// While a stage puts spheres in their places one after the other: how many have them, and their share of
+  /// the volume of all. Otherwise all do.
+  std::size_t placed_count = 0;
+  double placed_share = 1;
+  /// By the plan, for stages that choose their method.
+  FillTask fill_task = {};
+  /// How a stage went about it, for people: follows "all 200 spheres are placed".
+  std::string account = {};
+  /// Volume of the box that the spheres needed, before it grew to the one that was asked for.
+  double needed_volume = 0;
+
+  // ---- what is asked for
+
+  /// Largest overlap ratio that the result may keep; 0 for none.
+  double allowed_overlap = 0;
+  Target target = {};
+  /// The packing fraction that the stages are likely to reach.
+  double attainable = 1;
+  Domain domain = {};
+  std::shared_ptr<Supply> supply = {};
+  std::shared_ptr<Container> container = {};  ///< null where there is no bed
+
+  // ---- where stages report
+
   const std::uint64_t seed;
   const Monitor& monitor;
   EffectLog& effects;
-  /// Called after every round of a stage, for the run's history and the progress bar.
-  std::function<void(std::string_view stage)> milestone;
-  /// The same while spheres are not in the bed, because they overlap or are still to grow: their number,
-  /// volume and largest overlap ratio, and how far the stage has come, in [0, 1].
-  std::function<void(std::string_view stage, std::size_t spheres, double volume, double max_overlap,
-                     double done)>
-      crowd_milestone;
-  const Target& target;
-  /// What the bed's container is, in the same coordinates.
-  const Domain& shape;
-  /// The packing fraction that the stages are likely to reach.
-  const double attainable;
+  std::function<void(const Course&)> on_course = {};
   std::uint64_t streams_used = 0;
 
   /// A fresh stream of random numbers for one round of a stage.
   Random random(Stream purpose) { return {seed, stream(purpose, streams_used++)}; }
+
+  int dimension() const { return spheres.dimension(); }
+  double volume_of_spheres() const;
+  bool has_wall(int axis) const { return !walls.empty() && walls[static_cast<std::size_t>(axis)]; }
+
+  /// Precondition: the spheres stand in a bed.
+  Bed& bed() { return *bed_; }
+  const Bed& bed() const { return *bed_; }
+  bool stands_in_bed() const { return bed_ != nullptr; }
+  /// Precondition: there is a container. What stood in a box keeps its places.
+  void stand_in_bed();
+  /// The first of the sequence, up to the last that stands in the bed, or as many as are wanted where a count
+  /// or a packing fraction is; those that have no place are left out.
+  void stand_in_box();
+
+  /// To be called some hundred times a stage at most: of the bed; of the box, where `done` says how far the
+  /// stage has come; and of spheres that are in neither, because they overlap or are still to grow.
+  void milestone(std::string_view stage) const;
+  void milestone(std::string_view stage, double done, double max_overlap) const;
+  void crowd_milestone(std::string_view stage, std::size_t count, double volume, double max_overlap,
+                       double done) const;
+
+  std::shared_ptr<Bed> bed_ = {};
 };
 
 }  // namespace bernal

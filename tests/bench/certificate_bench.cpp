@@ -9,6 +9,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/verify/certificate.hpp"
+#include "core/close_packing.hpp"
 #include "support/integer_meshes.hpp"
 
 namespace {
@@ -46,7 +47,7 @@ void certificate_of(benchmark::State& state, const Spheres<dynamic>& s, const Do
   Certificate c;
   tbb::task_arena one_thread(1);
   one_thread.execute([&] {
-    for (auto _ : state) c = certify(s, container, 0, arithmetic);
+    for (auto _ : state) c = certify(s, container, {.arithmetic = arithmetic});
   });
   state.SetLabel(c.statement);
   state.counters["spheres"] = static_cast<double>(c.spheres);
@@ -91,8 +92,7 @@ BENCHMARK(triangles)->RangeMultiplier(10)->Range(1000, 1'000'000)->Unit(benchmar
 void periodic(benchmark::State& state) {
   const auto dimension = static_cast<int>(state.range(0));
   const auto n = static_cast<double>(state.range(1));
-  constexpr double close[] = {0.99, 0.84, 0.64, 0.46, 0.31, 0.20, 0.119, 0.069};
-  const double r = std::pow(close[dimension - 1] / n / ball_volume(dimension, 1), 1.0 / dimension);
+  const double r = std::pow(random_close_packing[dimension - 1] / n / ball_volume(dimension, 1), 1.0 / dimension);
   Random random(1, stream(Stream::test));
   Spheres<dynamic> s(dimension);
   Vector<dynamic> c(dimension);
@@ -100,7 +100,7 @@ void periodic(benchmark::State& state) {
     for (double& x : c) x = random.uniform();
     s.push_back(c, r);
   }
-  certificate_of(state, s, Box{Vector<dynamic>::Ones(dimension)}, Arithmetic::filtered);
+  certificate_of(state, s, periodic_box(Vector<dynamic>::Ones(dimension)), Arithmetic::filtered);
 }
 BENCHMARK(periodic)
     ->Args({2, 10'000})

@@ -9,7 +9,7 @@
 namespace bernal {
 namespace {
 
-using Fill = StageEnd (*)(PeriodicWork&, const FillOptions&);
+using Fill = StageEnd (*)(Work&, const FillOptions&);
 
 void run(benchmark::State& state, Fill fill, const std::vector<double>& radii, int dimension,
          double packing_fraction) {
@@ -21,7 +21,7 @@ void run(benchmark::State& state, Fill fill, const std::vector<double>& radii, i
   const Spheres<dynamic>& spheres = filled.work.spheres;
   if (end != StageEnd::converged || spheres.r != radii || filled.work.edges != box)
     state.SkipWithError("not all spheres found a place");
-  else if (!certify(spheres, Box{box}).certified)
+  else if (!certify(spheres, periodic_box(box)).certified)
     state.SkipWithError("not certified");
   state.counters["packing_fraction"] = packing_fraction;
 }

@@ -86,17 +86,16 @@ void fill(benchmark::State& state, bool patent, std::size_t n, double phi, int b
   std::uint64_t collisions = 0;
   for (auto _ : state) {
     EffectLog effects;
-    PeriodicWork work{.spheres = Spheres<dynamic>(D),
+    Work work{.spheres = Spheres<dynamic>(D),
                       .edges = Vector<dynamic>::Constant(
                           D, std::pow(static_cast<double>(n) * ball_volume(D, 1) / phi, 1.0 / D)),
                       .seed = 1,
                       .monitor = monitor,
-                      .effects = effects,
-                      .milestone = [](std::string_view, double, double) {}};
+                      .effects = effects};
     for (auto& column : work.spheres.x) column.assign(n, 0);
     work.spheres.r.assign(n, 1);
     work.target_edges = work.edges;
-    const FlyOptions options{.batch = batch, .dt = patent ? 0.01 : 0.25, .patience = 1e5};
+    const Fly options{.batch = batch, .dt = patent ? 0.01 : 0.25, .patience = 1e5};
     patent ? fly_by_patent(work, options) : fly_by_events(work, options);
     placed = work.spheres.size();
     collisions = effects["collisions"].calls;

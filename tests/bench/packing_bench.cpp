@@ -52,21 +52,21 @@ BENCHMARK_CAPTURE(pack_han, cylinder, han)->Apply(for_threads);
 BENCHMARK_CAPTURE(pack_han, prism_mesh, han_as_mesh)->Apply(for_threads);
 
 /// What accuracy of the walls costs: 8,000 spheres in a hopper.
-void pack_hopper(benchmark::State& state, const char* walls) {
+void pack_hopper(benchmark::State& state, WallArithmetic walls) {
   Scene scene = testing::small(read_scene(BERNAL_DATA "/scenes/hopper.toml"), 8000);
   scene.walls = walls;
   run_whole(state, build(scene), 1);
 }
-BENCHMARK_CAPTURE(pack_hopper, double, "double")->Apply(once);
-BENCHMARK_CAPTURE(pack_hopper, filtered, "filtered")->Apply(once);
-BENCHMARK_CAPTURE(pack_hopper, exact, "exact")->Apply(once);
+BENCHMARK_CAPTURE(pack_hopper, double, WallArithmetic::plain)->Apply(once);
+BENCHMARK_CAPTURE(pack_hopper, filtered, WallArithmetic::filtered)->Apply(once);
+BENCHMARK_CAPTURE(pack_hopper, exact, WallArithmetic::exact)->Apply(once);
 
 /// A settled packing in the packer's frame, made once for each container.
 class SettledBed {
  public:
   explicit SettledBed(const Plan& plan) {
     const Packing packing = run(plan);
-    const auto& shape = std::get<Domain>(plan.domain);
+    const Domain& shape = plan.domain;
     const Frame frame = frame_of(shape);
     container_ = make_local_container(shape, frame, WallArithmetic::filtered);
     const auto [smallest, largest] = std::ranges::minmax(packing.spheres.r);

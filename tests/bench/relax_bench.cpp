@@ -40,7 +40,7 @@ Crowd crowd(const std::string& sizes, std::int64_t count) {
   RunOptions options;
   options.threads = 1;
   const Packing packing = run(build(scene_of(sizes, count, "alpha = 0.2\nstop = 0.02")), options);
-  return {packing.spheres.in<3>(), 0.99 * std::get<Box>(packing.domain).edges};
+  return {packing.spheres.in<3>(), 0.99 * std::get<Box>(packing.domain).size};
 }
 
 void per_sphere(benchmark::State& state, std::size_t spheres) {

@@ -14,8 +14,8 @@ namespace bernal {
 namespace {
 
 Certificate expect_truth(const Spheres<3>& s, const Domain& shape) {
-  const Certificate filtered = certify(s, shape, 0, Arithmetic::filtered);
-  const Certificate exact = certify(s, shape, 0, Arithmetic::exact);
+  const Certificate filtered = certify(s, shape, {.arithmetic = Arithmetic::filtered});
+  const Certificate exact = certify(s, shape, {.arithmetic = Arithmetic::exact});
   const oracle::Verdict truth = oracle::judge(s, shape);
   for (const Certificate& c : {filtered, exact}) {
     EXPECT_EQ(c.overlapping_pairs, truth.overlapping);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/measured.hpp"
 #include "support/meshes.hpp"
 #include "support/packings.hpp"
 
@@ -89,7 +90,7 @@ TEST(HardChambers, SpheresFindTheWayThatTheCellsMiss) {
     for (int j = 0; j < 54; ++j)
       spheres.push_back((1 + 1.05 * i) * turned + (1 + 1.05 * j) * across + 0.505 * up, r);
   Packing packing = testing::packing_of(spheres, Box{});
-  packing.domain.emplace<Domain>(mesh);
+  packing.domain = mesh;
   packing.volume = volume_of(packing.domain);
   const Chambers found = chambers(packing, {.cells = 12, .points = 1000}).value();
   EXPECT_EQ(found.misplaced, 0u);

@@ -25,7 +25,7 @@ using testing::plan_of;
 void expect_free_of_overlap(const Packing& packing) {
   const Box& box = std::get<Box>(packing.domain);
   for (const Arithmetic arithmetic : {Arithmetic::filtered, Arithmetic::exact}) {
-    const Certificate c = certify(packing.spheres, packing.domain, 0, arithmetic);
+    const Certificate c = certify(packing.spheres, packing.domain, {.arithmetic = arithmetic});
     EXPECT_TRUE(c.certified) << c.statement;
   }
   if (box.has_walls()) return;
@@ -73,7 +73,7 @@ struct Flyers {
 
   Monitor monitor;
   EffectLog effects;
-  PeriodicWork work;
+  Work work;
   Random random{1, stream(Stream::test)};
   std::optional<FlyingSpheres<D>> spheres;
 };
@@ -91,7 +91,7 @@ class HardFlight : public ::testing::TestWithParam<const char*> {
   /// So many stretches or steps of flight with whoever is there.
   template <int D>
   static double energy_after(Flyers<D>& flyers, int steps, double dt = 0.05) {
-    const FlyOptions options{.dt = dt};
+    const Fly options{.dt = dt};
     const auto fly = [&](auto flight) {
       for (int step = 0; step < steps; ++step) flight.fly();
     };
@@ -113,7 +113,7 @@ TEST_P(HardFlight, ConservesEnergyToRounding) {
   std::vector<double> radii;
   for (int i = 0; i < 60; ++i) radii.push_back(1 + i / 60.0);
   Flyers<3> flyers(radii, 17);
-  const FlyOptions options{.batch = 2000};
+  const Fly options{.batch = 2000, .dt = 0.01};
   while (!flyers.spheres->queue().empty())
     PatentFlight<3>(*flyers.spheres, options, flyers.work.random(Stream::fly)).insert();
   const double before = flyers.spheres->kinetic_energy();
@@ -235,16 +235,15 @@ TEST_P(HardFlight, KeepsEveryPrescribedRadiusToTheLastBit) {
 // ---- the protocol
 
 TEST(FillChoice, GoesByTargetAndSizes) {
-  const auto method = [](FillTask task) { return choose_filling("auto", task).method; };
+  const auto method = [](FillTask task) { return choose_filling(FillMethod::automatic, task).method; };
   EXPECT_EQ(method({.packing_fraction = 0.4, .attainable = 0.64}), FillMethod::flight);
   EXPECT_EQ(method({.packing_fraction = 0.6, .attainable = 0.64}), FillMethod::relaxation);
   EXPECT_EQ(method({.packing_fraction = 0.6, .attainable = 0.8, .size_ratio = 10}), FillMethod::classes);
   EXPECT_EQ(method({.packing_fraction = 0.6, .attainable = 0.64, .has_walls = true}), FillMethod::relaxation);
   EXPECT_EQ(method({.packing_fraction = 0.2, .attainable = 0.64, .has_walls = true}), FillMethod::flight);
   EXPECT_EQ(method({.packing_fraction = 0.4, .attainable = 0.64, .has_walls = true}), FillMethod::relaxation);
-  EXPECT_EQ(choose_filling("patent", {.packing_fraction = 0.9}).method, FillMethod::patent);
-  EXPECT_THROW(choose_filling("classes", {.has_walls = true}), Error);
-  EXPECT_THROW(choose_filling("levitation", {}), Error);
+  EXPECT_EQ(choose_filling(FillMethod::patent, {.packing_fraction = 0.9}).method, FillMethod::patent);
+  EXPECT_THROW(choose_filling(FillMethod::classes, {.has_walls = true}), Error);
 }
 
 TEST(Fly, ReachesByEveryMethodWhatIsAskedFor) {

@@ -29,7 +29,7 @@ Packing certified(const Plan& plan, Monitor monitor = {}) {
   options.threads = 1;
   options.monitor = std::move(monitor);
   Packing packing = run(plan, options);
-  const Certificate certificate = certify(packing.spheres, packing.domain, 0, Arithmetic::exact);
+  const Certificate certificate = certify(packing.spheres, packing.domain, {.arithmetic = Arithmetic::exact});
   EXPECT_TRUE(certificate.certified) << certificate.statement;
   return packing;
 }

@@ -9,6 +9,7 @@
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/measure/measure.hpp"
+#include "support/measured.hpp"
 #include "support/nearest_images.hpp"
 #include "support/plans.hpp"
 #include "support/refusals.hpp"
@@ -35,7 +36,7 @@ Packing grown(const std::string& toml, Monitor monitor = {}) {
   Packing packing = run(plan_of(toml), options);
   with_dimension(packing.spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
-    const Vector<D> edges = std::get<Box>(packing.domain).edges;
+    const Vector<D> edges = std::get<Box>(packing.domain).size;
     EXPECT_TRUE(oracle::centers_in_box<D>(packing.spheres.in<D>(), edges));
     EXPECT_EQ(oracle::overlapping_pairs<D>(packing.spheres.in<D>(), edges), 0u);
   });
@@ -85,7 +86,7 @@ TEST(Growth, SaysWhatAnImpossibleTargetNeeds) {
 TEST(Growth, PlacesThinlySpreadSpheresAtOnce) {
   const Packing packing = grown(scene("edge = 20.0", "count = 50\nradius = 1.0"));
   EXPECT_EQ(packing.outcome, Outcome::converged);
-  EXPECT_EQ(std::get<Box>(packing.domain).edges[0], 20.0);
+  EXPECT_EQ(std::get<Box>(packing.domain).size[0], 20.0);
 }
 
 TEST(Growth, CompressesWhatRelaxationLeaves) {
@@ -138,7 +139,7 @@ TEST(Growth, TakesSizesThatDifferEightfold) {
 TEST(Growth, TakesBoxesOfUnequalEdges) {
   const Packing packing = grown(scene("size = [1.0, 2.0, 4.0]\nscalable = true", "count = 400\nradius = 1.0",
                                       "rate = 0.1\npressure = 1e3"));
-  const Vector<dynamic>& edges = std::get<Box>(packing.domain).edges;
+  const Vector<dynamic>& edges = std::get<Box>(packing.domain).size;
   EXPECT_NEAR(edges[2] / edges[0], 4, 1e-12);
 }
 

@@ -69,10 +69,10 @@ std::vector<SceneUnderTest> scenes_under_test() {
                           "[[stage]]\ndo = \"compress\"\ndirection = [1.0, 1.0, 3.0]\n"
                           "[[stage]]\ndo = \"refill\"\ndirection = [1.0, 1.0, 3.0]\n");
   const std::string periodic = "[container]\nkind = \"periodic\"\n";
-  add("Box", periodic +
-                 "[spheres]\ncount = 120\n"
-                 "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n" +
-                 relax);
+  add("PeriodicBox", periodic +
+                         "[spheres]\ncount = 120\n"
+                         "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n" +
+                         relax);
   add("PeriodicPlane", periodic +
                            "dimension = 2\n[spheres]\ncount = 150\n"
                            "radius = { distribution = \"uniform\", min = 1.0, max = 2.0 }\n" +
@@ -142,7 +142,7 @@ Packing run_with(const Plan& plan, int threads = 1) {
 
 void expect_certified(const Packing& packing) {
   const Certificate filtered = certify(packing.spheres, packing.domain);
-  const Certificate exact = certify(packing.spheres, packing.domain, 0, Arithmetic::exact);
+  const Certificate exact = certify(packing.spheres, packing.domain, {.arithmetic = Arithmetic::exact});
   EXPECT_TRUE(filtered.certified) << filtered.statement;
   EXPECT_TRUE(exact.certified) << exact.statement;
   EXPECT_EQ(filtered.pairs_tested, exact.pairs_tested);
@@ -259,8 +259,8 @@ TEST_P(EveryPacking, ThatIsCancelledIsWholeAsFarAsItGoes) {
   // Before the first sphere, among the first ones, and in the last stage. In a periodic box all spheres are
   // there from the start, and the box becomes as large as it must; relaxation in a container leaves those
   // that touch nothing, and so does filling of a box of given size.
-  const bool periodic = plan.scene.is_periodic() && plan.scene.stages.front().name == "relax";
-  const bool inserts = plan.scene.stages.front().name == "insert";
+  const bool periodic = plan.scene.is_periodic() && plan.scene.stages.front().name() == "relax";
+  const bool inserts = plan.scene.stages.front().name() == "insert";
   for (const std::size_t k : {std::size_t{0}, std::min<std::size_t>(30, polls / 2), polls - 1}) {
     const Packing packing = cancelled_after(plan, k);
     EXPECT_EQ(packing.outcome, Outcome::cancelled);

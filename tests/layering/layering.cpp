@@ -81,7 +81,8 @@ std::vector<Include> includes_of(const fs::path& file) {
   return includes;
 }
 
-/// Where a file stands, told from its path below the root.
+/// Where a file stands, told from its path below the root. Headers of no room, which stand in include/bernal
+/// itself, see public headers only, as the command does.
 struct Place {
   std::string room;
   bool is_public;  ///< below include/bernal
@@ -93,6 +94,7 @@ Place place_of(const fs::path& below_root) {
   const bool is_public = *part == "include";
   const bool is_app = *part == "apps";
   std::advance(part, is_public ? 2 : is_app ? 0 : 1);
+  if (is_public && part->extension() == ".hpp") return {"apps", true, true};
   return {part->string(), is_public, below_root.extension() == ".hpp"};
 }
 
@@ -105,10 +107,11 @@ std::string objection(const Include& include, const Place& place, const fs::path
 
   const bool of_public = include.path.starts_with("bernal/");
   if (!of_public && !include.quoted) return "";  // the standard library and third parties
-  if (place.room == "apps" && !of_public)
+  if (place.room == "apps" && !place.is_public && !of_public)
     return fs::exists(folder / include.path) ? "" : include.path + ": apps see public headers only";
   if (place.is_public && !of_public) return include.path + ": a public header sees public headers only";
 
+  if (place.room == "apps") return "";
   const std::vector<std::string> parts = split(include.path.substr(of_public ? 7 : 0), '/');
   if (parts.size() != 2 || !rules.contains(parts[0])) return include.path + ": names no room";
   const std::string &room = parts[0], &header = parts[1];

@@ -24,9 +24,9 @@ TEST(Layering, TheTableIsReadAsItIsMeant) {
   EXPECT_TRUE(rules.at("core").rooms.empty());
   EXPECT_TRUE(rules.at("domain").rooms.contains("kernels"));
   EXPECT_FALSE(rules.at("verify").rooms.contains("domain"));
-  EXPECT_EQ(rules.at("verify").files.at("domain"), (std::set<std::string>{"domain.hpp", "shape.hpp"}));
-  EXPECT_EQ(rules.at("stages").files.at("run"), std::set<std::string>{"packing.hpp"});
-  EXPECT_TRUE(rules.at("run").rooms.contains("stages"));
+  EXPECT_EQ(rules.at("verify").files.at("domain"), std::set<std::string>{"domain.hpp"});
+  EXPECT_EQ(rules.at("work").files.at("run"), std::set<std::string>{"packing.hpp"});
+  EXPECT_TRUE(rules.at("run").rooms.contains("settle"));
   EXPECT_FALSE(rules.at("run").rooms.contains("verify"));
   EXPECT_TRUE(rules.at("apps").public_headers_only);
 }
@@ -75,7 +75,7 @@ TEST(Layering, AllowedIncludesAreNotFound) {
       {"src/domain/a.cpp",
        "#include \"kernels/first_contact.hpp\"\n#include <boost/multiprecision/cpp_int.hpp>"},
       {"src/cad/a.cpp", "#include <CGAL/AABB_tree.h>\n#include <assimp/scene.h>"},
-      {"src/settle/a.cpp", "#include \"bernal/run/packing.hpp\""},
+      {"src/work/a.cpp", "#include \"bernal/run/packing.hpp\""},
       {"src/verify/a.cpp", "#include \"bernal/domain/domain.hpp\""},
       {"src/run/a.cpp", "#include \"work/bed.hpp\"\n#include \"bernal/cad/read_mesh.hpp\""},
       {"apps/a.cpp",

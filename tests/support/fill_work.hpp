@@ -12,7 +12,7 @@ namespace bernal::testing {
 struct FillCase {
   EffectLog effects;
   Monitor monitor;
-  PeriodicWork work;
+  Work work;
 
   FillCase(std::vector<double> radii, const Vector<dynamic>& target, std::uint64_t seed = 1)
       : work{.spheres = Spheres<dynamic>(static_cast<int>(target.size())),
@@ -20,8 +20,7 @@ struct FillCase {
              .target_edges = target,
              .seed = seed,
              .monitor = monitor,
-             .effects = effects,
-             .milestone = [](std::string_view, double, double) {}} {
+             .effects = effects} {
     for (auto& column : work.spheres.x) column.assign(radii.size(), 0);
     work.spheres.r = std::move(radii);
   }

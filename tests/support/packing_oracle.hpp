@@ -4,14 +4,16 @@
 #include <set>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/domain.hpp"
 
-// What is true of a packing, from the definitions in shape.hpp: all pairs, all triangles, rational arithmetic
-// with divisions. Slow and simple; it shares nothing with what it judges, neither search nor formula.
+// What is true of a packing, from the definitions in domain.hpp: all pairs, all triangles, rational
+// arithmetic with divisions. Slow and simple; it shares nothing with what it judges, neither search nor
+// formula.
 
 namespace bernal::oracle {
 
@@ -85,17 +87,22 @@ inline int winding(const Point& p, const Mesh& mesh) {
   }
 }
 
+/// The ball lies between the walls of the box, in any dimension.
+inline bool inside(const Vector<dynamic>& c, double radius, const Box& box) {
+  for (int k = 0; k < box.dimension(); ++k) {
+    if (!box.periodic.empty() && box.periodic[static_cast<std::size_t>(k)]) continue;
+    const double upper = box.corner[k] + box.size[k];
+    if (Rational(c[k]) - Rational(radius) < Rational(box.corner[k])) return false;
+    if (Rational(c[k]) + Rational(radius) > Rational(upper)) return false;
+  }
+  return true;
+}
+
 /// The ball lies in the closed container.
-inline bool inside(const Vector<3>& center, double radius, const Domain& shape) {
+inline bool inside(const Vector<dynamic>& center, double radius, const Domain& shape) {
+  if (const auto* box = std::get_if<Box>(&shape)) return inside(center, radius, *box);
   const Point c = point(center);
   const Rational r(radius);
-  if (const auto* box = std::get_if<Box>(&shape)) {
-    for (int k = 0; k < 3; ++k) {
-      const double upper = box->corner[k] + box->size[k];
-      if (c[k] - r < Rational(box->corner[k]) || c[k] + r > Rational(upper)) return false;
-    }
-    return true;
-  }
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     const Point w = c - point(sphere->center);
     const Rational room = Rational(sphere->radius) - r;
@@ -109,6 +116,7 @@ inline bool inside(const Vector<3>& center, double radius, const Domain& shape) 
     const Rational signed_height = signed_square(h) / aa;
     const Rational room = Rational(cylinder->radius) - r;
     const Rational from_axis_squared = dot(w, w) - h * h / aa;
+    if (cylinder->periodic) return room >= 0 && from_axis_squared <= room * room;
     return signed_height >= r * r && signed_height <= signed_square(Rational(cylinder->height) - r) &&
            room >= 0 && from_axis_squared <= room * room;
   }
@@ -145,6 +153,7 @@ struct Verdict {
   std::uint64_t near_at_least = 0;  ///< pairs whose boxes meet
   std::uint64_t near_at_most = 0;   ///< pairs whose boxes meet when they are grown by some roundoffs
   double max_overlap = 0;           ///< over pairs whose boxes meet
+  std::vector<std::array<std::uint64_t, 2>> pairs;  ///< that overlap, where they are listed
 };
 
 inline Verdict judge(const Spheres<3>& s, const Domain& shape, double allowed = 0) {

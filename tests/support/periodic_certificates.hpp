@@ -25,30 +25,48 @@ inline Spheres<dynamic> rows(std::initializer_list<std::vector<double>> rows) {
 inline void expect_same_verdict(const Certificate& a, const Certificate& b) {
   EXPECT_EQ(a.certified, b.certified);
   EXPECT_EQ(a.pairs_tested, b.pairs_tested);
+  EXPECT_EQ(a.walls_tested, b.walls_tested);
   EXPECT_EQ(a.overlapping_pairs, b.overlapping_pairs);
+  EXPECT_EQ(a.protruding_spheres, b.protruding_spheres);
   EXPECT_EQ(a.worst_pair, b.worst_pair);
   EXPECT_EQ(a.max_overlap, b.max_overlap);
+  EXPECT_EQ(a.worst_wall, b.worst_wall);
+  EXPECT_EQ(a.min_wall_gap, b.min_wall_gap);
+  EXPECT_EQ(a.overlaps, b.overlaps);
+  EXPECT_EQ(a.protrusions, b.protrusions);
   EXPECT_EQ(a.statement, b.statement);
 }
 
 /// Whatever the packing, the certificate says what the oracle says, in both arithmetics. Without the oracle
-/// (centres too many boxes away for it) only that both arithmetics agree.
-inline Certificate expect_truth(const Spheres<dynamic>& s, const Box& box, double allowed = 0,
+/// (centres too many periods away for it) only that both arithmetics agree.
+inline Certificate expect_truth(const Spheres<dynamic>& s, const Domain& domain, double allowed = 0,
                                 bool with_oracle = true) {
-  const Certificate filtered = certify(s, box, allowed, Arithmetic::filtered);
-  const Certificate exact = certify(s, box, allowed, Arithmetic::exact);
+  CertifyOptions options{.allowed_overlap = allowed, .list = CertifyOptions::all};
+  const Certificate filtered = certify(s, domain, options);
+  options.arithmetic = Arithmetic::exact;
+  const Certificate exact = certify(s, domain, options);
   expect_same_verdict(filtered, exact);
   EXPECT_EQ(exact.decided_double, 0u);
   for (const Certificate& c : {filtered, exact}) {
-    EXPECT_EQ(c.decided_double + c.decided_exact, c.pairs_tested);
-    EXPECT_EQ(c.walls_tested + c.centers_tested + c.protruding_spheres, 0u);
+    EXPECT_EQ(c.decided_double + c.decided_exact, c.pairs_tested + c.walls_tested + c.centers_tested);
     EXPECT_EQ(c.worst_pair.has_value(), c.pairs_tested > 0);
-    EXPECT_FALSE(c.worst_wall.has_value());
-    EXPECT_EQ(c.certified, c.overlapping_pairs == 0);
+    EXPECT_EQ(c.certified, c.overlapping_pairs == 0 && c.protruding_spheres == 0);
+    EXPECT_EQ(c.overlaps.size(), c.overlapping_pairs);
+    EXPECT_EQ(c.protrusions.size(), c.protruding_spheres);
+    EXPECT_EQ(c.min_wall_gap<0, c.protruding_spheres> 0);
+    if (!has_walls(domain)) {
+      EXPECT_EQ(c.walls_tested + c.centers_tested + c.protruding_spheres, 0u);
+      EXPECT_FALSE(c.worst_wall.has_value());
+    }
   }
   if (!with_oracle) return filtered;
-  const oracle::Verdict truth = oracle::judge(s, box, allowed);
+  const oracle::Verdict truth = oracle::judge(s, domain, allowed);
   EXPECT_EQ(filtered.overlapping_pairs, truth.overlapping);
+  EXPECT_EQ(filtered.protruding_spheres, truth.protruding);
+  std::vector<std::array<std::uint64_t, 2>> listed;
+  for (const auto& overlap : filtered.overlaps) listed.push_back(overlap.pair);
+  std::ranges::sort(listed);
+  EXPECT_EQ(listed, truth.pairs);
   EXPECT_GE(filtered.pairs_tested, truth.near_at_least);
   EXPECT_LE(filtered.pairs_tested, truth.near_at_most);
   if (truth.near_at_least > 0) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "measure/harmonics.hpp"
+#include "support/measured.hpp"
 #include "support/packings.hpp"
 #include "support/periodic.hpp"
 #include "support/plans.hpp"

@@ -43,8 +43,9 @@ void expect_same_verdict(const Certificate& a, const Certificate& b) {
 /// The law of this file: whatever the packing, the certificate says what the oracle says, in both
 /// arithmetics.
 Certificate expect_truth(const Spheres<3>& s, const Domain& shape, double allowed = 0) {
-  const Certificate filtered = certify(s, shape, allowed, Arithmetic::filtered);
-  const Certificate exact = certify(s, shape, allowed, Arithmetic::exact);
+  const Certificate filtered =
+      certify(s, shape, {.allowed_overlap = allowed, .arithmetic = Arithmetic::filtered});
+  const Certificate exact = certify(s, shape, {.allowed_overlap = allowed, .arithmetic = Arithmetic::exact});
   expect_same_verdict(filtered, exact);
   EXPECT_EQ(exact.decided_double, 0u);
   for (const Certificate& c : {filtered, exact})
@@ -179,8 +180,8 @@ TEST(Certificate, RefusesContainersThatAreNone) {
   Mesh lost = meshes::cube();
   lost.vertices[0][0] = nan;
   EXPECT_THROW(certify(one, lost), Error);
-  EXPECT_THROW(certify(one, Box{}, -1e-3), Error);
-  EXPECT_THROW(certify(one, Box{}, nan), Error);
+  EXPECT_THROW(certify(one, Box{}, {.allowed_overlap = -1e-3}), Error);
+  EXPECT_THROW(certify(one, Box{}, {.allowed_overlap = nan}), Error);
   // A container has three dimensions.
   EXPECT_THROW(certify(Spheres<2>(), Box{}), Error);
   EXPECT_THROW(certify(Spheres<4>(), Sphere{}), Error);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "measure/convex.hpp"
+#include "support/measured.hpp"
 #include "support/meshes.hpp"
 #include "support/packings.hpp"
 #include "support/periodic.hpp"
@@ -19,7 +20,7 @@ using testing::packing_of;
 
 Packing packing_in(Spheres<3> spheres, const Domain& shape) {
   Packing packing = packing_of(std::move(spheres), Box{});
-  packing.domain.emplace<Domain>(shape);
+  packing.domain = shape;
   packing.volume = volume_of(packing.domain);
   return packing;
 }

@@ -29,7 +29,7 @@ std::vector<double> lognormal_radii(std::size_t n, double sigma) {
 }
 
 /// In exact arithmetic, over all pairs.
-void expect_free_of_overlap(const PeriodicWork& work) {
+void expect_free_of_overlap(const Work& work) {
   ASSERT_EQ(work.edges, *work.target_edges);
   with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;

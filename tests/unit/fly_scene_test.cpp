@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bernal/core/error.hpp"
+#include "bernal/fly/fly.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 
@@ -33,7 +34,7 @@ TEST(FlyScene, MayGiveThePackingFractionInTheStage) {
   const Plan in_spheres = plan_of("edge = 10.0", fraction), in_stage = plan_of("edge = 10.0", "", fraction);
   EXPECT_EQ(in_stage.scene.target.packing_fraction, in_spheres.scene.target.packing_fraction);
   EXPECT_EQ(in_stage.expected_count, in_spheres.expected_count);
-  EXPECT_FALSE(in_stage.scene.stages[0].has("packing_fraction"));  // it is said once
+  EXPECT_FALSE(in_stage.scene.stages[0].as<Fly>()->packing_fraction);  // it is said once
   EXPECT_NEAR(plan_of("", "count = 100", fraction).expected_packing_fraction, 0.3, 1e-12);
 }
 

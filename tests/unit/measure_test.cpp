@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "support/measured.hpp"
 #include "support/packings.hpp"
 
 namespace bernal {

@@ -8,6 +8,7 @@
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
+#include "support/measured.hpp"
 #include "support/periodic_certificates.hpp"
 
 // A box that repeats itself along some axes and ends at walls along others.
@@ -23,8 +24,8 @@ double down(double x) { return std::nextafter(x, -std::numeric_limits<double>::i
 const Box mixed = periodic_box(Vector<2>(10, 10), {false, true});
 
 Certificate both_ways(const Spheres<dynamic>& spheres, const Box& box = mixed) {
-  const Certificate filtered = certify(spheres, box, 0, Arithmetic::filtered);
-  const Certificate exact = certify(spheres, box, 0, Arithmetic::exact);
+  const Certificate filtered = certify(spheres, box, {.arithmetic = Arithmetic::filtered});
+  const Certificate exact = certify(spheres, box, {.arithmetic = Arithmetic::exact});
   EXPECT_EQ(filtered.certified, exact.certified);
   EXPECT_EQ(filtered.statement, exact.statement);
   EXPECT_EQ(exact.decided_double, 0u);

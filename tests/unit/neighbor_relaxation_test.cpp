@@ -18,7 +18,7 @@ void expect_same_overlaps(std::size_t n, const Vector<D>& edges, double r_max) {
   const Spheres<D> spheres = testing::ideal_gas<D>(n, 0.5 * r_max, r_max, edges, 5);
   NeighborRelaxation<D> relaxation(spheres, edges);
   const double largest = relaxation.sweep_and_measure(0);
-  const std::vector<float> stress = relaxation.stress();
+  const std::vector<float> squeeze = relaxation.squeeze();
 
   const Boundary<D> boundary{edges};
   double largest_expected = 0;
@@ -34,7 +34,7 @@ void expect_same_overlaps(std::size_t n, const Vector<D>& edges, double r_max) {
       });
     }
     // Single precision: each ratio is good to 1e-6.
-    EXPECT_NEAR(stress[i], expected, 1e-5 * std::max(1.0, expected)) << i;
+    EXPECT_NEAR(squeeze[i], expected, 1e-5 * std::max(1.0, expected)) << i;
   }
   EXPECT_NEAR(largest, largest_expected, 1e-6);
 }

@@ -65,7 +65,7 @@ TEST(PeriodicCertificate, DecidesTouchesAcrossCornersByAnUlp) {
     moved.x[k][0] = up(pair.x[k][0]);
     EXPECT_TRUE(expect_truth(moved, box).certified) << k;
     Box other = box;
-    other.edges[static_cast<int>(k)] = down(box.size[static_cast<int>(k)]);
+    other.size[static_cast<int>(k)] = down(box.size[static_cast<int>(k)]);
     EXPECT_FALSE(expect_truth(pair, other).certified) << k;
   }
 }
@@ -248,7 +248,7 @@ struct Sample {
 /// On a lattice, so that translations are exact.
 Sample sample(int dimension, std::size_t n, std::uint64_t seed) {
   Random random(seed, stream(Stream::test));
-  Sample sample{Spheres<dynamic>(dimension), {Vector<dynamic>(dimension)}};
+  Sample sample{Spheres<dynamic>(dimension), bernal::periodic_box(Vector<dynamic>::Zero(dimension))};
   for (int k = 0; k < dimension; ++k) sample.box.size[k] = 4 + 0.5 * k;
   for (std::size_t i = 0; i < n; ++i) {
     Vector<dynamic> c(dimension);

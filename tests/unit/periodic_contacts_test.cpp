@@ -6,6 +6,7 @@
 
 #include "bernal/measure/contacts.hpp"
 #include "neighbors/point_grid.hpp"
+#include "support/measured.hpp"
 #include "support/periodic.hpp"
 
 namespace bernal {

@@ -179,6 +179,30 @@ TEST(Picture, OfAPeriodicBoxHoldsWhatSticksOut) {
   }
 }
 
+TEST(Picture, OfAPeriodicCylinderHoldsWhatSticksOutAtItsEnds) {
+  Spheres<3> spheres;
+  for (int i = 0; i < 5; ++i) spheres.push_back({3, -1, 2.0 + 1.99 * i}, 2);
+  const std::string svg = svg_of(spheres, Cylinder{{3, -1, 2}, {0, 0, 1}, 2, 8, true}, "mm");
+  ASSERT_EQ(painted(svg).size(), 5u);
+  for (const Disc& d : painted(svg)) {
+    EXPECT_GE(d.x - d.r, 0);
+    EXPECT_LE(d.x + d.r, 1000);
+    EXPECT_GE(d.y - d.r, 0);
+    EXPECT_LE(d.y + d.r, 1000);
+  }
+}
+
+TEST(Picture, OfABoxOfTwoDimensionsDoesNotDependOnItsPlace) {
+  Spheres<2> here, there;
+  for (const Vector<2>& c : {Vector<2>(0.5, 5), {3, 9.75}, {6, 1}}) {
+    here.push_back(c, 1);
+    there.push_back(c + Vector<2>(64, -32), 1);
+  }
+  const std::vector<bool> periodic = {true, false};
+  EXPECT_EQ(svg_of(there, Box{{64, -32}, {10, 10}, periodic}, "mm"),
+            svg_of(here, Box{{0, 0}, {10, 10}, periodic}, "mm"));
+}
+
 TEST(DepthBuffer, HidesABallOnlyBehindWhatCoversAllOfIt) {
   DepthBuffer buffer(100, 100, 0.5);
   EXPECT_FALSE(buffer.hides_ball({50, 50, 0}, 10));

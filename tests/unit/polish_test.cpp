@@ -4,6 +4,7 @@
 #include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "jam/polish.hpp"
+#include "support/measured.hpp"
 #include "support/plans.hpp"
 
 // What a polish promises: contacts that are closed to its tolerance, and no more of them than hold the
@@ -57,7 +58,7 @@ StageEnd end_of_polish(int count, double tolerance, const Monitor& monitor) {
   Spheres<3> spheres = packing.spheres.in<3>();
   Vector<3> edges = std::get<Box>(packing.domain).size;
   EffectLog effects;
-  PeriodicWork work{
+  Work work{
       .spheres = Spheres<dynamic>(3), .edges = edges, .seed = 1, .monitor = monitor, .effects = effects};
   return polish<3>(spheres, edges, tolerance, work).end;
 }

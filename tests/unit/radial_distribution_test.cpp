@@ -6,6 +6,7 @@
 #include <map>
 
 #include "bernal/core/dimension.hpp"
+#include "support/measured.hpp"
 #include "support/packings.hpp"
 #include "support/periodic.hpp"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bernal/io/certificate_json.hpp"
+#include "bernal/io/read_packing.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "support/written_files.hpp"
 
@@ -78,6 +79,61 @@ TEST(ReportJson, HasEveryKeyOfTheFormatWithTheRightType) {
             (nlohmann::json{{"name", "insertion"}, {"calls", 12}, {"seconds", 0.25}}));
   EXPECT_EQ(json.at("history").at(0).at("stage"), "insert");
   EXPECT_GT(json.at("peak_memory_bytes"), 1'000'000);
+}
+
+TEST(ReportJson, NamesThePeriodsOfAContainerAndTheWallsOfABox) {
+  Packing packing = example(1, 1);
+  const auto written = [&] {
+    return nlohmann::json::parse(json_of(Report{packing, Certificate{}, Measurements{}, nullptr, "0"}));
+  };
+  EXPECT_FALSE(written().at("container").contains("periods"));
+  packing.domain = Cylinder{{0, 0, 1}, {0, 0, 2}, 3, 4, true};
+  const auto column = written().at("container");
+  EXPECT_EQ(column.at("kind"), "cylinder");
+  EXPECT_EQ(column.at("periods"), (std::vector<double>{0, 0, 4}));
+  EXPECT_EQ(column.at("bounds").at("lower"), (std::vector<double>{-3, -3, 1}));
+  EXPECT_FALSE(written().contains("box"));
+  packing.domain = periodic_box(Vector<3>(2, 3, 4), {false, true, false});
+  EXPECT_EQ(written().at("box").at("edges"), (std::vector<double>{2, 3, 4}));
+  EXPECT_EQ(written().at("box").at("walls"), std::vector<int>{1});
+  EXPECT_FALSE(written().contains("container"));
+}
+
+TEST(CertificateJson, ListsWhatWasAskedFor) {
+  Certificate certificate;
+  certificate.allowed_overlap = 0.125;
+  EXPECT_FALSE(nlohmann::json::parse(certificate_as_json(certificate)).contains("overlaps"));
+  certificate.overlaps = {{{3, 7}, 0.5}, {{2, 2}, 0.25}};
+  certificate.protrusions = {{9, -0.75}};
+  const auto json = nlohmann::json::parse(certificate_as_json(certificate));
+  EXPECT_EQ(json.at("allowed_overlap"), 0.125);
+  EXPECT_EQ(json.at("overlaps"),
+            nlohmann::json::parse(R"([{"pair": [3, 7], "ratio": 0.5}, {"pair": [2, 2], "ratio": 0.25}])"));
+  EXPECT_EQ(json.at("protrusions"), nlohmann::json::parse(R"([{"sphere": 9, "gap": -0.75}])"));
+}
+
+TEST(Report, OfAPeriodicCylinderIsWrittenAndReadBack) {
+  Packing packing = example(1, 0);
+  packing.domain = Cylinder{{1, 2, 3}, {0, 0, 1}, 2, 4, true};
+  packing.volume = volume_of(packing.domain);
+  for (int k = 0; k < 4; ++k) packing.spheres.push_back(Vector<3>(1, 2, 4 + 5 * k), 0.5);
+  wrap(packing.spheres, packing.domain);
+  packing.history = {{"insert", 2, 0.1, 5, 0.1}, {"compress", 4, 0.2, 4, 0.2}};
+  const Folder folder;
+  const WrittenPacking written = write_packing(packing, folder.path());
+  EXPECT_TRUE(written.certificate.certified) << written.certificate.statement;
+  EXPECT_EQ(read_csv(folder / "spheres.csv").spheres, packing.spheres);
+  for (const double z : packing.spheres.x[2]) EXPECT_TRUE(z >= 3 && z < 7) << z;
+  const auto json = nlohmann::json::parse(text_of(folder / "report.json"));
+  EXPECT_EQ(json.at("contacts"), 4);  // 1 apart, round the period
+  EXPECT_EQ(json.at("wall_contacts"), 0);
+  EXPECT_FALSE(json.at("walls").is_null());
+  EXPECT_EQ(json.at("chambers").at("list").size(), 1u);
+  const std::string html = text_of(folder / "report.html");
+  for (const char* words :
+       {"4 spheres in a periodic cylinder", "repeated without end along its axis", "container’s volume",
+        "images in the neighbouring periods", "does this sphere cross", "The height is measured"})
+    EXPECT_NE(html.find(words), std::string::npos) << words;
 }
 
 TEST(ReportJson, WritesWhatIsNotFiniteAsNullAndNoPairAsNull) {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "bernal/scene/read_scene.hpp"
+#include "bernal/settle/refill.hpp"
+#include "bernal/soft/relax.hpp"
 #include "support/folder.hpp"
 #include "support/scene_texts.hpp"
 
@@ -16,26 +18,24 @@ TEST(Scene, TheLeastOneHasEveryDefault) {
   const Scene scene =
       parse_scene("[container]\nkind = \"box\"\nsize = [1, 2, 3]\n[spheres]\ndiameter = 0.1\n", "s.toml");
   EXPECT_EQ(scene.file, "s.toml");
-  EXPECT_EQ(scene.unit, "m");
+  EXPECT_EQ(scene.unit, Unit::m);
   EXPECT_EQ(scene.seed, 1u);
-  EXPECT_EQ(scene.container.name, "box");
-  EXPECT_EQ(scene.container.numbers("size"), (std::vector<double>{1, 2, 3}));
-  EXPECT_EQ(scene.container.numbers("corner"), (std::vector<double>{0, 0, 0}));
-  EXPECT_EQ(scene.container.location("size").text(), "s.toml:3");
-  EXPECT_EQ(scene.container.location("corner").text(), "s.toml");
-  EXPECT_EQ(scene.sizes.name, "constant");
-  EXPECT_EQ(scene.sizes.number("value"), 0.1);
+  const Box& box = std::get<Box>(scene.container);
+  EXPECT_EQ(box.size, Vector<3>(1, 2, 3));
+  EXPECT_EQ(box.corner, Vector<3>(0, 0, 0));
+  EXPECT_EQ(scene.container.locations.of("size").text(), "s.toml:3");
+  EXPECT_EQ(scene.container.locations.of("corner").text(), "s.toml:1");
+  EXPECT_EQ(std::get<Constant>(scene.sizes).value, 0.1);
   EXPECT_TRUE(scene.sizes_are_diameters);
   EXPECT_TRUE(scene.target.is_open());
   EXPECT_FALSE(scene.target.fill);
-  EXPECT_EQ(scene.walls, "filtered");
+  EXPECT_EQ(scene.walls, WallArithmetic::filtered);
   EXPECT_EQ(scene.overlap, 0);
   EXPECT_TRUE(scene.stages_are_default);
-  std::vector<std::string> protocol;
-  for (const Spec& stage : scene.stages) protocol.push_back(stage.name);
-  EXPECT_EQ(protocol, (std::vector<std::string>{"relax"}));
-  EXPECT_EQ(scene.stages[0].integer("patience"), 12);
-  EXPECT_EQ(scene.draw, "quantiles");
+  ASSERT_EQ(scene.stages.size(), 1u);
+  EXPECT_EQ(scene.stages[0].name(), "relax");
+  EXPECT_EQ(scene.stages[0].as<Relax>()->patience, 12);
+  EXPECT_EQ(scene.draw, Draw::quantiles);
 }
 
 TEST(Scene, KeepsWhatTheUserWrote) {
@@ -59,29 +59,30 @@ direction = [1, 0.5, -2]
 )",
                                   "/tmp/scenes/s.toml");
   EXPECT_EQ(scene.seed, 9223372036854775807u);
-  EXPECT_EQ(scene.container.text("file"), "/tmp/parts/a b.stl");
-  EXPECT_EQ(scene.container.text("unit"), "mm");
+  EXPECT_EQ(std::get<MeshFile>(scene.container).file, "/tmp/parts/a b.stl");
+  EXPECT_EQ(std::get<MeshFile>(scene.container).unit, Unit::mm);
   EXPECT_EQ(scene.target.packing_fraction, 0.4);
   EXPECT_FALSE(scene.target.fill);
   EXPECT_FALSE(scene.sizes_are_diameters);
-  EXPECT_EQ(scene.sizes.number("max"), 2);
-  EXPECT_FALSE(scene.sizes.has("min"));
-  EXPECT_EQ(scene.sizes.text("basis"), "volume");
-  EXPECT_EQ(scene.walls, "exact");
+  const auto& sizes = std::get<Lognormal>(scene.sizes);
+  EXPECT_EQ(sizes.max, 2);
+  EXPECT_FALSE(sizes.min);
+  EXPECT_EQ(sizes.basis, Basis::volume);
+  EXPECT_EQ(scene.walls, WallArithmetic::exact);
   EXPECT_EQ(scene.overlap, 1e-3);
   EXPECT_FALSE(scene.stages_are_default);
   ASSERT_EQ(scene.stages.size(), 2u);
-  EXPECT_EQ(scene.stages[0].integer("max_rounds"), 7);
-  EXPECT_EQ(scene.stages[1].numbers("direction"), (std::vector<double>{1, 0.5, -2}));
-  EXPECT_EQ(scene.stages[1].where.line, 15);
+  EXPECT_EQ(scene.stages[0].as<Refill>()->max_rounds, 7);
+  EXPECT_EQ(scene.stages[1].as<Compress>()->direction, Vector<3>(1, 0.5, -2));
+  EXPECT_EQ(scene.stages[1].locations.whole.line, 15);
 }
 
 TEST(Scene, MeanDiametersNeedNoBasis) {
   const Scene scene =
       parse_scene(with_spheres(R"(diameter = { distribution = "lognormal", d43 = 2, d32 = 0.5 })"), "s.toml");
-  EXPECT_EQ(scene.sizes.number("d43"), 2);
-  EXPECT_FALSE(scene.sizes.has("median"));
-  EXPECT_FALSE(scene.sizes.has("basis"));
+  EXPECT_EQ(std::get<Lognormal>(scene.sizes).d43, 2);
+  EXPECT_FALSE(std::get<Lognormal>(scene.sizes).median);
+  EXPECT_EQ(scene_as_toml(scene).find("basis"), std::string::npos);
 }
 
 TEST(Scene, AMixtureHasPartsOfAnyKind) {
@@ -96,14 +97,16 @@ of = [
   { distribution = "mixture", shares = [1], of = [{ distribution = "normal", mean = 1, sd = 0.1 }] },
 ])"),
                                   "s.toml");
-  EXPECT_EQ(scene.draw, "quantiles");
-  EXPECT_EQ(scene.sizes.numbers("shares"), (std::vector<double>{1, 2, 3}));
-  ASSERT_EQ(scene.sizes.parts.size(), 3u);
-  EXPECT_EQ(scene.sizes.parts[0].name, "constant");
-  EXPECT_EQ(scene.sizes.parts[0].number("value"), 1.5);
-  EXPECT_EQ(scene.sizes.parts[1].number("exponent"), 0.5);
-  EXPECT_EQ(scene.sizes.parts[2].parts.at(0).number("sd"), 0.1);
-  EXPECT_EQ(scene.sizes.parts[2].parts.at(0).text("basis"), "number");
+  EXPECT_EQ(scene.draw, Draw::quantiles);
+  const auto& mixture = std::get<Mixture>(scene.sizes);
+  EXPECT_EQ(mixture.shares, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(mixture.basis, Basis::volume);
+  ASSERT_EQ(mixture.of.size(), 3u);
+  EXPECT_EQ(std::get<Constant>(mixture.of[0]).value, 1.5);
+  EXPECT_EQ(std::get<Fuller>(mixture.of[1]).exponent, 0.5);
+  const auto& inner = std::get<Normal>(std::get<Mixture>(mixture.of[2]).of.at(0));
+  EXPECT_EQ(inner.sd, 0.1);
+  EXPECT_EQ(inner.basis, Basis::number);
   expect_equal(scene, parse_scene(scene_as_toml(scene), "s.toml"));
 }
 
@@ -115,9 +118,9 @@ TEST(Scene, TakesTheColumnsOfAFileForItsOwn) {
                "0.063;0\r\n .125\t3e1 # wet\r\n");
   const Scene scene = read_scene(folder.write(
       "scene.toml", with_spheres("diameter = { distribution = \"sieve\", file = \"lab/sieve.csv\" }")));
-  EXPECT_EQ(scene.sizes.numbers("sizes"), (std::vector<double>{0.5, 0.063, 0.125}));
-  EXPECT_EQ(scene.sizes.numbers("passing"), (std::vector<double>{100, 0, 30}));
-  EXPECT_FALSE(scene.sizes.has("file"));
+  const auto& sieve = std::get<Sieve>(scene.sizes);
+  EXPECT_EQ(sieve.sizes, (std::vector<double>{0.5, 0.063, 0.125}));
+  EXPECT_EQ(sieve.passing, (std::vector<double>{100, 0, 30}));
   expect_equal(scene, parse_scene(scene_as_toml(scene), "elsewhere.toml"));
 }
 
@@ -156,12 +159,6 @@ TEST(Scene, SaysWhatIsWrongInAFileOfColumns) {
   std::string long_table;
   for (int i = 1; i < 5000; ++i) long_table += fmt::format("{},1\n", i);
   expect(long_table, {"t.csv:4097", "4096"});
-}
-
-TEST(Scene, GettersRefuseWhatIsNotThere) {
-  const Spec spec{"box", {{"size", {std::vector<double>{1, 2, 3}, {}}}}, {}};
-  EXPECT_THROW(spec.number("size"), Error);
-  EXPECT_THROW(spec.numbers("corner"), Error);
 }
 
 }  // namespace

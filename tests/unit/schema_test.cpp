@@ -1,10 +1,10 @@
-#include "scene/schema.hpp"
-
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
 
 #include "bernal/scene/read_scene.hpp"
+#include "scene/scene_entries.hpp"
+#include "scene/stage_table.hpp"
 #include "support/folder.hpp"
 #include "support/scene_texts.hpp"
 
@@ -41,8 +41,6 @@ std::string sample(const Key& key, int choice) {
       return key.name == "max" || key.name == "d43" ? "2.5e3" : "0.1";
     case Type::word:
       return fmt::format("\"{}\"", key.words[choice % key.words.size()]);
-    case Type::unit:
-      return choice == 0 ? "\"in\"" : "\"mm\"";
     case Type::file:
       return choice == 0 ? "\"part.stl\"" : "'''/tmp/a \"strange\" \\ name.stl'''";
     case Type::direction:
@@ -56,6 +54,8 @@ std::string sample(const Key& key, int choice) {
       return "[30, 70, 1e3]";
     case Type::amounts:  // of the sizes 1, 2, 0.3: a sieve's passing may not fall
       return "[25.5, 100, 0]";
+    case Type::axes:
+      return "[0]";
     case Type::parts:
       return choice == 0 ? "[1, { distribution = \"fuller\", max = 2, min = 0.1 }, 3]"
                          : "[1, 2, { distribution = \"mixture\", of = [1, 2], shares = [1, 2] }]";
@@ -66,7 +66,6 @@ std::string sample(const Key& key, int choice) {
 }
 
 std::string sample_of(const Entry& entry, const Key& key, int choice) {
-  if (key.name == "walls" && key.type == Type::amounts) return "[0]";  // axes, not any numbers
   return key.type == Type::file && !entry.columns.empty() ? file_of_columns() : sample(key, choice);
 }
 
@@ -81,37 +80,55 @@ std::vector<Key> keys_of(const Entry& entry, std::size_t n) {
   return keys;
 }
 
+/// The same for a stage wherever it works, with the keys that act there.
+template <class Visit>
+void visit_stage(const StageTable& stage, Visit visit) {
+  const Scene container = parse_scene(with_spheres("radius = 1"), "s.toml");
+  Scene box = container;
+  box.container = PeriodicBox{};
+  for (const Scene& where : {container, box}) {
+    if (!stage.traits.works_in(where)) continue;
+    std::vector<Key> keys = stage.keys.keys;
+    std::erase_if(keys, [&](const Key& key) { return !key.acts_here(stage.traits.stands_in_bed(where)); });
+    visit(stage.keys, keys, [&](const std::vector<std::string>& lines) {
+      const std::string body = fmt::format("do = \"{}\"\n{}", stage.name(), fmt::join(lines, "\n"));
+      return where.is_periodic() ? "[container]\nkind = \"periodic\"\n[spheres]\ncount = 9\nradius = 1\n"
+                                   "[[stage]]\n" +
+                                       body + "\n"
+                                 : with_stage(body);
+    });
+  }
+}
+
 /// Calls `visit(keys, text_of_value → scene)` for every entry of the schema and every set of its choices.
 template <class Visit>
 void for_every_entry(Visit visit) {
   const auto joined = [](const std::vector<std::string>& parts, const char* with) {
     return fmt::format("{}", fmt::join(parts, with));
   };
-  const auto& all = schema::schema();
   for (std::size_t n = 0; n < 3; ++n) {
-    for (const Entry& e : all.containers)
+    for (const Entry& e : schema::container_entries())
       visit(e, keys_of(e, n), [&](const std::vector<std::string>& lines) {
         return fmt::format(
             "unit = \"mm\"\n[container]\nkind = \"{}\"\n{}\n[spheres]\ncount = 5\nradius = 1\n", e.name,
             joined(lines, "\n"));
       });
-    for (const Entry& e : all.distributions)
+    for (const Entry& e : schema::size_entries())
       visit(e, keys_of(e, n), [&](const std::vector<std::string>& lines) {
         return with_spheres(
             fmt::format("diameter = {{ distribution = \"{}\", {} }}", e.name, joined(lines, ", ")));
       });
-    for (const Entry& e : all.stages_in_containers)
-      visit(e, keys_of(e, n), [&](const std::vector<std::string>& lines) {
-        return with_stage(fmt::format("do = \"{}\"\n", e.name) + joined(lines, "\n"));
-      });
-    visit(all.scene, keys_of(all.scene, n), [&](const std::vector<std::string>& lines) {
-      return joined(lines, "\n") + "\n" + with_spheres("radius = 1");
-    });
-    visit(all.spheres, keys_of(all.spheres, n),
+    for (const StageTable* stage : stage_tables()) visit_stage(*stage, visit);
+    visit(schema::scene_entry(), keys_of(schema::scene_entry(), n),
+          [&](const std::vector<std::string>& lines) {
+            return joined(lines, "\n") + "\n" + with_spheres("radius = 1");
+          });
+    visit(schema::spheres_entry(), keys_of(schema::spheres_entry(), n),
           [&](const std::vector<std::string>& lines) { return with_spheres(joined(lines, "\n")); });
-    visit(all.accuracy, keys_of(all.accuracy, n), [&](const std::vector<std::string>& lines) {
-      return with_spheres("radius = 1\n[accuracy]\n" + joined(lines, "\n"));
-    });
+    visit(schema::accuracy_entry(), keys_of(schema::accuracy_entry(), n),
+          [&](const std::vector<std::string>& lines) {
+            return with_spheres("radius = 1\n[accuracy]\n" + joined(lines, "\n"));
+          });
   }
 }
 
@@ -126,6 +143,11 @@ TEST(SchemaLaw, EveryKeyIsReadAndSurvivesBeingWritten) {
       const Scene scene = parse_scene(scene_with(lines), "s.toml");
       EXPECT_FALSE(entry.help.empty());
       const std::string written = scene_as_toml(scene);
+      for (const Key& key : keys) {
+        EXPECT_TRUE(!key.member.get || written.find(fmt::format("{} = ", key.name)) != written.npos)
+            << key.name << " is lost in\n"
+            << written;
+      }
       expect_equal(scene, parse_scene(written, "s.toml"));
       EXPECT_EQ(scene_as_toml(parse_scene(written, "s.toml")), written);
       ++scenes;
@@ -157,8 +179,11 @@ TEST(SchemaLaw, EveryKeyRefusesAWrongTypeByName) {
 
 TEST(SchemaLaw, EveryDefaultIsAcceptedByItsKey) {
   for_every_entry([](const Entry& entry, const std::vector<Key>& keys, const auto&) {
-    for (const Key& key : keys)
-      EXPECT_TRUE(!key.otherwise || schema::accepts(key, *key.otherwise)) << entry.name << " " << key.name;
+    for (const Key& key : keys) {
+      const auto otherwise = key.of(entry.defaults.get());
+      EXPECT_TRUE(key.required || !otherwise || schema::accepts(key, *otherwise))
+          << entry.name << " " << key.name;
+    }
   });
 }
 

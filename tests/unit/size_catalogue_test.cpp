@@ -8,8 +8,7 @@
 
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "run/catalogue.hpp"
-#include "scene/schema.hpp"
+#include "scene/scene_entries.hpp"
 
 namespace bernal {
 namespace {
@@ -35,8 +34,8 @@ Scene scene_of(std::string_view key, std::string_view distribution, std::string_
 }
 
 TEST(SizeCatalogue, MakesWhatTheSchemaNames) {
-  const auto& entries = schema::schema().distributions;
-  EXPECT_EQ(entries.size(), sizes_catalogue().size());
+  const auto& entries = schema::size_entries();
+  EXPECT_EQ(entries.size(), std::variant_size_v<SceneSizes::variant>);
   for (const schema::Entry& entry : entries) {
     ASSERT_TRUE(stated.contains(entry.name)) << entry.name;
     const auto sizes = radii_of(scene_of("diameter", entry.name, stated.find(entry.name)->second));

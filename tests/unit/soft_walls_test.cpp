@@ -52,7 +52,7 @@ TEST_P(OneContact, PushesByTheOverlapAlongItsNormal) {
     // Single precision of the overlap and of the coordinates.
     const double tolerance = 4 * (0x1p-24 * tested.r + packing.resolution());
     EXPECT_NEAR(packing.sweep_and_measure(1), overlap / tested.r, tolerance / tested.r);
-    EXPECT_NEAR(packing.stress()[0], std::pow(overlap / tested.r, 2), 3 * tolerance / tested.r);
+    EXPECT_NEAR(packing.squeeze()[0], std::pow(overlap / tested.r, 2), 3 * tolerance / tested.r);
     packing.write_to(spheres);
     const Vector<3> expected = tested.center + overlap * away.normalized();
     EXPECT_LT((spheres.center(0) - expected).norm(), tolerance) << spheres.center(0).transpose();
@@ -100,7 +100,7 @@ TEST(SoftWalls, PushOutOfACornerFromEveryFace) {
     spheres.push_back({0.09, 0.08, 0.07}, 0.1);
     SoftPacking packing(spheres, *container, soft_kernels().front());
     EXPECT_NEAR(packing.sweep_and_measure(3), 0.3, 1e-6);
-    EXPECT_NEAR(packing.stress()[0], 0.01 + 0.04 + 0.09, 1e-6);
+    EXPECT_NEAR(packing.squeeze()[0], 0.01 + 0.04 + 0.09, 1e-6);
     packing.write_to(spheres);
     EXPECT_LT((spheres.center(0) - Vector<3>(0.1, 0.1, 0.1)).norm(), 1e-7);
   }

@@ -11,8 +11,6 @@
 namespace bernal {
 namespace {
 
-constexpr double unbounded = std::numeric_limits<double>::infinity();
-
 Target count_of(std::int64_t n) {
   Target target;
   target.count = n;
@@ -53,7 +51,7 @@ double volume_of(const std::vector<double>& radii) {
 const std::unique_ptr<SizeDistribution> uniform = make_uniform(0.01, 0.02, Basis::number);
 
 TEST(Supply, OfACountIsThatManyDrawnRadii) {
-  const Supply supply(*uniform, 1, 1, unbounded, count_of(500), 7);
+  const Supply supply({.radii = *uniform, .seed = 7}, 1, count_of(500));
   EXPECT_EQ(radii_of(supply), drawn(*uniform, 500, 7));
   const std::vector<double> radii = radii_of(supply);
   EXPECT_EQ(supply.smallest(), std::ranges::min(radii));
@@ -61,13 +59,15 @@ TEST(Supply, OfACountIsThatManyDrawnRadii) {
 }
 
 TEST(Supply, SpeaksThePackersLengths) {
-  const Supply supply(*uniform, 0.25, 1, unbounded, count_of(50), 7);
+  Supply supply({.radii = *uniform, .seed = 7}, 1, count_of(50));
+  supply.divide_by(0.25);
   EXPECT_EQ(radii_of(supply), drawn(*uniform, 50, 7, 0.25));
 }
 
 TEST(Supply, OfAPackingFractionIsTheShortestSequenceThatHasIt) {
   const double volume = 3, scale = 2;
-  const Supply supply(*uniform, scale, volume, unbounded, fraction_of(0.01), 7);
+  Supply supply({.radii = *uniform, .seed = 7}, scale * scale * scale * volume, fraction_of(0.01));
+  supply.divide_by(scale);
   std::vector<double> radii = radii_of(supply);
   EXPECT_EQ(radii, drawn(*uniform, radii.size(), 7, scale));
   EXPECT_GE(volume_of(radii), 0.01 * volume);
@@ -76,7 +76,7 @@ TEST(Supply, OfAPackingFractionIsTheShortestSequenceThatHasIt) {
 }
 
 TEST(Supply, OfAFillIsMoreThanAnyPackingHolds) {
-  const Supply supply(*uniform, 1, 0.1, unbounded, fill(), 7);
+  const Supply supply({.radii = *uniform, .seed = 7}, 0.1, fill());
   const std::vector<double> radii = radii_of(supply);
   EXPECT_EQ(radii, drawn(*uniform, radii.size(), 7));
   EXPECT_GT(volume_of(radii), 0.9 * 0.1);
@@ -84,20 +84,21 @@ TEST(Supply, OfAFillIsMoreThanAnyPackingHolds) {
 }
 
 TEST(Supply, DrawsOtherRadiiForAnotherSeed) {
-  const Supply one(*uniform, 1, 1, unbounded, count_of(10), 1),
-      other(*uniform, 1, 1, unbounded, count_of(10), 2);
+  const Supply one({.radii = *uniform, .seed = 1}, 1, count_of(10)),
+      other({.radii = *uniform, .seed = 2}, 1, count_of(10));
   EXPECT_NE(radii_of(one), radii_of(other));
 }
 
 TEST(Supply, DrawsByQuantilesWhereToldTo) {
-  const Supply supply(*uniform, 0.25, 1, unbounded, count_of(50), 7, Draw::quantiles);
+  Supply supply({.radii = *uniform, .seed = 7, .draw = Draw::quantiles}, 1, count_of(50));
+  supply.divide_by(0.25);
   RadiusSequence sequence(*uniform, 7, Draw::quantiles);
   for (const double r : radii_of(supply)) EXPECT_EQ(r, sequence.next() / 0.25);
 }
 
 TEST(Supply, DrawsAgainWhatIsAboveTheCutAndCountsIt) {
   const double cut = 0.018;
-  const Supply supply(*uniform, 1, 1, cut, count_of(500), 7);
+  const Supply supply({.radii = *uniform, .seed = 7, .cut = cut}, 1, count_of(500));
   std::vector<double> expected;
   std::size_t above = 0;
   for (const double r : drawn(*uniform, 2000, 7)) {
@@ -116,7 +117,7 @@ TEST(Supply, DrawsAgainWhatIsAboveTheCutAndCountsIt) {
 TEST(Supply, RefusesMoreSpheresThanHaveIds) {
   const auto tiny = make_constant(1e-5);
   try {
-    const Supply supply(*tiny, 1, 1, unbounded, fill(), 1);
+    const Supply supply({.radii = *tiny}, 1, fill());
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::bad_scene);
@@ -125,7 +126,7 @@ TEST(Supply, RefusesMoreSpheresThanHaveIds) {
 
 TEST(Supply, EqualSpheresComeOneAfterTheOther) {
   const auto equal = make_constant(0.01);
-  Supply supply(*equal, 1, 1, unbounded, count_of(3), 1);
+  Supply supply({.radii = *equal}, 1, count_of(3));
   for (std::uint32_t tag = 0; tag < 3; ++tag) {
     EXPECT_FALSE(supply.exhausted());
     EXPECT_EQ(supply.window(), std::vector<std::uint32_t>{tag});
@@ -140,7 +141,7 @@ TEST(Supply, EqualSpheresComeOneAfterTheOther) {
 /// What was taken and what was not, told by the caller's own book.
 TEST(Supply, OffersAnAscendingWindowOfWhatIsMissing) {
   constexpr std::size_t n = 2000;
-  Supply supply(*uniform, 1, 1, unbounded, count_of(n), 7);
+  Supply supply({.radii = *uniform, .seed = 7}, 1, count_of(n));
   const std::size_t width = supply.window().size();
   EXPECT_GT(width, 1u);
   EXPECT_LT(width, n / 20);
@@ -172,7 +173,7 @@ TEST(Supply, OffersAnAscendingWindowOfWhatIsMissing) {
 }
 
 TEST(Supply, TrimmingIsCheapWhereFewStandBeyondTheFirstMissing) {
-  Supply supply(*uniform, 1, 1, unbounded, count_of(2000), 7);
+  Supply supply({.radii = *uniform, .seed = 7}, 1, count_of(2000));
   for (int k = 0; k < 1000; ++k) supply.take(0);
   EXPECT_TRUE(supply.trimming_is_cheap());
   supply.take(1);  // one of 1,001

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "support/containers.hpp"
+#include "support/measured.hpp"
 #include "support/packings.hpp"
 #include "support/periodic.hpp"
 
@@ -19,7 +20,7 @@ using testing::packing_of;
 
 Packing packing_in(Spheres<3> spheres, const Domain& shape) {
   Packing packing = packing_of(std::move(spheres), Box{});
-  packing.domain.emplace<Domain>(shape);
+  packing.domain = shape;
   packing.volume = volume_of(packing.domain);
   return packing;
 }

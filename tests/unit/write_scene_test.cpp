@@ -18,7 +18,9 @@ TEST(ExampleScenes, AreReadAndSurviveBeingWritten) {
     SCOPED_TRACE(file.string());
     const Scene scene = read_scene(file);
     expect_equal(scene, parse_scene(scene_as_toml(scene), file));
-    EXPECT_TRUE(!scene.container.has("file") || std::filesystem::exists(scene.container.text("file")));
+    if (const auto* mesh = std::get_if<MeshFile>(&scene.container)) {
+      EXPECT_TRUE(std::filesystem::exists(mesh->file));
+    }
   }
 }
 
@@ -31,7 +33,7 @@ TEST(WriteScene, NamesTheMeshFromItsOwnFolder) {
   const std::string written = scene_as_toml(scene, folder / "out/deep");
   EXPECT_NE(written.find("file = \"../../parts/a.stl\""), std::string::npos) << written;
   const Scene again = read_scene(folder.write("out/deep/scene.toml", written));
-  EXPECT_EQ(std::filesystem::weakly_canonical(again.container.text("file")),
+  EXPECT_EQ(std::filesystem::weakly_canonical(std::get<MeshFile>(again.container).file),
             std::filesystem::weakly_canonical(folder / "parts/a.stl"));
 }
 

@@ -70,15 +70,15 @@ INSTANTIATE_TEST_SUITE_P(
 /// material and patience: with equal masses it is up to 0.022 less. One packing scatters by 0.002 to 0.003
 /// there; mixtures that the band holds on average only, a tenth small, or not at all, 15 %, are left out: see
 /// `grow`.
-struct Mixture {
+struct TestedMixture {
   const char* name;
   const char* radius;
   const char* stage;
 
-  friend std::ostream& operator<<(std::ostream& out, const Mixture& mixture) { return out << mixture.radius; }
+  friend std::ostream& operator<<(std::ostream& out, const TestedMixture& mixture) { return out << mixture.radius; }
 };
 
-class RodModel : public ::testing::TestWithParam<Mixture> {};
+class RodModel : public ::testing::TestWithParam<TestedMixture> {};
 
 TEST_P(RodModel, IsReached) {
   const Plan plan = testing::plan_of(
@@ -99,11 +99,11 @@ TEST_P(RodModel, IsReached) {
 #define WITH_PATIENCE "masses = \"volume\"\nrate = 0.0025\n"
 INSTANTIATE_TEST_SUITE_P(
     Mixtures, RodModel,
-    ::testing::Values(Mixture{"Lognormal", "{ distribution = \"lognormal\", median = 1.0, sigma = 0.5 }", ""},
-                      Mixture{"OneToFiveThreeQuartersSmall", ONE_TO_FIVE("25", "75"), ""},
-                      Mixture{"OneToFiveHalfSmall", ONE_TO_FIVE("50", "50"), ""},
-                      Mixture{"OneToFiveThreeTenthsSmall", ONE_TO_FIVE("70", "30"), ""},
-                      Mixture{"OneToFiveAFifthSmall", ONE_TO_FIVE("79", "21"), WITH_PATIENCE}),
+    ::testing::Values(TestedMixture{"Lognormal", "{ distribution = \"lognormal\", median = 1.0, sigma = 0.5 }", ""},
+                      TestedMixture{"OneToFiveThreeQuartersSmall", ONE_TO_FIVE("25", "75"), ""},
+                      TestedMixture{"OneToFiveHalfSmall", ONE_TO_FIVE("50", "50"), ""},
+                      TestedMixture{"OneToFiveThreeTenthsSmall", ONE_TO_FIVE("70", "30"), ""},
+                      TestedMixture{"OneToFiveAFifthSmall", ONE_TO_FIVE("79", "21"), WITH_PATIENCE}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 /// In containers growth reaches what relaxation is expected to, and a hundredth more.

@@ -8,6 +8,7 @@
 #include "bernal/core/random.hpp"
 #include "bernal/measure/wall_profile.hpp"
 #include "bernal/verify/certificate.hpp"
+#include "support/measured.hpp"
 #include "support/meshes.hpp"
 #include "support/plans.hpp"
 

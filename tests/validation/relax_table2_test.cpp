@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "bernal/measure/measure.hpp"
+#include "support/measured.hpp"
 #include "support/plans.hpp"
 
 // Zhao, Li & Liu, Chinese Journal of Computational Physics 24 (2007), table 2, gives for N = 10,000 the

@@ -76,6 +76,10 @@ struct Spheres<dynamic> {
     for (auto& column : x) column.reserve(n);
     r.reserve(n);
   }
+  void resize(std::size_t n) {
+    for (auto& column : x) column.resize(n);
+    r.resize(n);
+  }
   /// A copy with the dimension fixed; precondition: D == dimension().
   template <int D>
   Spheres<D> in() const {

@@ -11,6 +11,10 @@ namespace bernal {
 /// meant: more than a third of the letters of the longer word differ.
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates);
 
+/// What to tell who wrote that name: `; did you mean "diameter"?` or, where nothing is near,
+/// `; known: "count", "radius"`.
+std::string remedy(std::string_view name, std::span<const std::string_view> candidates);
+
 /// 28312 as "28,312".
 std::string grouped(std::uint64_t n);
 

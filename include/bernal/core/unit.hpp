@@ -4,20 +4,21 @@
 
 namespace bernal {
 
-/// A length unit by the name that users write.
-struct Unit {
-  std::string_view name;
-  double metres;
-};
+/// A unit of length.
+enum class Unit { nm, um, mm, cm, m, in, ft };
 
-/// nm, um, mm, cm, m, in, ft.
-std::span<const Unit> units();
+/// What users write: "nm", "um", "mm", …
+std::string_view name_of(Unit);
+/// All names, in the order of the enumerators.
+std::span<const std::string_view> unit_names();
+/// Throws Error{bad_argument} that lists the names for an unknown one.
+Unit unit_named(std::string_view name);
 
-/// Metres in one unit. Throws Error{bad_argument} that lists the names for an unknown one.
-double metres_per(std::string_view unit);
+/// Metres in one unit.
+double metres_per(Unit unit);
 
-/// Lengths in `from` times this are lengths in `to`. Exactly 1 for equal names; otherwise correctly rounded
+/// Lengths in `from` times this are lengths in `to`. Exactly 1 for equal units; otherwise correctly rounded
 /// for the powers of ten between metric units.
-double conversion_factor(std::string_view from, std::string_view to);
+double conversion_factor(Unit from, Unit to);
 
 }  // namespace bernal

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
 #include "bernal/domain/boundary.hpp"
 
@@ -65,7 +66,7 @@ using Domain = std::variant<Box, Cylinder, Sphere, Mesh>;
 
 /// "box", "cylinder", "sphere", "mesh"; "periodic" for a box that repeats itself along some axis.
 std::string_view kind_of(const Domain&);
-/// What to call it in a sentence: "cylinder", "endless cylinder", "periodic box", "box periodic but along
+/// What to call it in a sentence: "cylinder", "periodic cylinder", "periodic box", "box periodic but along
 /// axis 2".
 std::string name_of(const Domain&);
 
@@ -88,6 +89,10 @@ double area_of(const Domain&);
 template <int D>
 Boundary<D> boundary_of(const Domain&);
 
+/// Replaces every centre by its image in one period: that in [lower, lower + period) along axes that have
+/// one, where results and files have them. Precondition: spheres of the domain's dimension.
+void wrap(Spheres<dynamic>&, const Domain&);
+
 /// A similarity that takes the scene's coordinates to the packer's: local = (scene - origin) / scale, with
 /// `scale` a power of two, so that scaling is exact and the local domain has a diagonal in [1, 2).
 struct Frame {
@@ -102,7 +107,8 @@ struct Frame {
 /// The frame centred on the bounds of a domain of three dimensions.
 Frame frame_of(const Domain&);
 
-/// The domain in local coordinates; vertices are rounded to within `frame.resolution`.
+/// The domain in local coordinates; corners and vertices are rounded to within `frame.resolution`, periods
+/// are not rounded.
 Domain to_local(const Domain&, const Frame&);
 
 }  // namespace bernal

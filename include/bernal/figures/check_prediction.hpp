@@ -1,17 +1,17 @@
 #pragma once
 #include <cstdint>
-#include <string>
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/predict/mixtures.hpp"
 #include "bernal/run/run.hpp"
+#include "bernal/soft/relax.hpp"
 
 namespace bernal {
 
 /// How sizes are packed to see whether a prediction holds.
 struct CheckOptions {
-  std::int64_t spheres = 0;     ///< 0: enough for the sizes, see `spheres_for`
-  std::string stage = "relax";  ///< that packs in a periodic box
+  std::int64_t spheres = 0;  ///< 0: enough for the sizes, see `spheres_for`
+  Stage stage = Relax{};     ///< that packs in a periodic box
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: as many as the machine has
   Monitor monitor = {};
@@ -34,10 +34,10 @@ std::int64_t spheres_for(const SizeDistribution& radii);
 
 /// Sizes, as a scene has them, in a periodic box that becomes as large as the packing needs, drawn by
 /// quantiles. Throws Error{bad_scene} where no such stage can work there.
-Scene scene_to_check(const Spec& sizes, bool sizes_are_diameters, const CheckOptions&);
+Scene scene_to_check(const SceneSizes& sizes, bool sizes_are_diameters, const CheckOptions&);
 
 /// Two lognormal populations as the sizes of a scene; those of `make_two_populations`.
-Spec sizes_of(const TwoPopulations&);
+SceneSizes sizes_of(const TwoPopulations&);
 
 /// Packs such a scene, certifies and measures it. Cost: that of the stage; with relax 2 s for 10,000 spheres
 /// whose sizes differ little, on one core.

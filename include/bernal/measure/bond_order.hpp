@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "bernal/measure/wall_profile.hpp"
-#include "bernal/run/packing.hpp"
 
 namespace bernal {
 
@@ -30,7 +29,7 @@ struct BondOrder {
     }
   };
   Count all;
-  std::optional<Count> near_wall;  ///< by Region, in a container
+  std::optional<Count> near_wall;  ///< by Region, where there are walls
   std::optional<Count> core;
 
   static constexpr double widest_gap = 0.3;
@@ -39,12 +38,12 @@ struct BondOrder {
   static constexpr double solid_share = 0.6;
 };
 
-/// Absent in other dimensions than three. `regions` are those of a wall profile, or empty. Cost: O(N
-/// bonds), about 2 µs a sphere. Random close packings of equal spheres
-/// have up to about 1 %, fcc and hcp 100 %.
+/// Absent in other dimensions than three. `regions` are those of a wall profile, or empty. Cost: O(N bonds),
+/// about 2 µs a sphere. Random close packings of equal spheres have up to about 1 %, fcc and hcp 100 %.
 /// Source: Steinhardt, Nelson & Ronchetti, Phys. Rev. B 28 (1983) 784; ten Wolde, Ruiz-Montero & Frenkel, J.
 /// Chem. Phys. 104 (1996) 9932, who compare neighbours; the limit 0.7 for hard spheres is that of Filion,
 /// Hermes, Ni & Dijkstra, J. Chem. Phys. 133 (2010) 244115.
-std::optional<BondOrder> bond_order(const Packing&, std::span<const Region> regions = {});
+std::optional<BondOrder> bond_order(const Spheres<dynamic>&, const Domain&,
+                                    std::span<const Region> regions = {});
 
 }  // namespace bernal

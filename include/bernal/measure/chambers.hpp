@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "bernal/run/packing.hpp"
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal {
 
@@ -44,7 +45,8 @@ struct ChamberOptions {
   std::uint32_t points = 8000;  ///< in the container, for the shares
 };
 
-/// Absent in a periodic box and without spheres.
+/// Absent without walls, in other dimensions than three, and without spheres. A container that repeats itself
+/// stands for one period.
 ///
 /// Boxes, cylinders, spheres and convex meshes have convex places: one chamber or none. In another mesh the
 /// cells of an octree that clearance, being 1-Lipschitz, does not decide are searched for a place down to the
@@ -54,7 +56,7 @@ struct ChamberOptions {
 /// 0.99 r. The same bits for any number of threads. Cost: 0.3 to 0.6 s of one core in a mesh of 10,000
 /// triangles, 1 s in one of 100,000, a few µs a sphere; seconds where spheres are nearly as large as a round
 /// part of many triangles, from whose middle they are all equally near. Precondition: options positive.
-std::optional<Chambers> chambers(const Packing&, const ChamberOptions& = {});
+std::optional<Chambers> chambers(const Spheres<dynamic>&, const Domain&, const ChamberOptions& = {});
 
 /// The same for a radius, without spheres. Precondition: radius > 0.
 Chambers chambers_for(const Domain&, double radius, const ChamberOptions& = {});

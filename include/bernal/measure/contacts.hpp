@@ -4,13 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "bernal/run/packing.hpp"
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal {
 
 /// What touches what. A *contact* is a pair (or a sphere and a wall) whose gap is below `contact_gap`:
-/// gap ratio = (d - ri - rj) / (ri + rj) for a pair, (clearance - r) / r for a wall. In a periodic box every
-/// image of a pair that touches is a contact, and a sphere may touch its own image.
+/// gap ratio = (d - ri - rj) / (ri + rj) for a pair, (clearance - r) / r for a wall. Where the domain repeats
+/// itself every image of a pair that touches is a contact, and a sphere may touch its own image.
 ///
 /// *Rattlers* are spheres that fewer than D + 1 contacts hold, taken out one after the other until every one
 /// that is left is held; a sphere is not held by its own image. What is left is the *backbone*.
@@ -26,16 +27,18 @@ struct Contacts {
   std::uint64_t backbone_walls = 0;
   double backbone_coordination = 0;  ///< 2 backbone_pairs / backbone
   /// Contacts that just hold the backbone of a frictionless packing in a periodic box: D (backbone - 1)
-  /// displacements and the size of the box, D (backbone - 1) + 1. Absent in a container and in a
-  /// box with walls, where it depends on what the walls and the weight do, and where there is no backbone.
+  /// displacements and the size of the box, D (backbone - 1) + 1. Absent where there are walls, as it depends
+  /// on what these and the weight do, and where there is no backbone.
   std::optional<std::uint64_t> isostatic;
 };
 
-/// Cost O(N): about 1 µs a sphere in a periodic box of three dimensions. The packing is in the scene's frame;
-/// nothing is changed. Any dimension, any size ratio, and boxes as small as one sphere.
-Contacts measure_contacts(const Packing&, double contact_gap = 0.002);
+/// Cost O(N): about 1 µs a sphere in a periodic box of three dimensions. Any dimension, any size ratio, and
+/// periods as short as one sphere; along axes with a period centres may lie anywhere. Precondition: spheres
+/// of the domain's dimension.
+Contacts measure_contacts(const Spheres<dynamic>&, const Domain&, double contact_gap = 0.002);
 
 /// The same for every one of the gaps, in their order, at the cost of the largest.
-std::vector<Contacts> measure_contacts(const Packing&, std::span<const double> contact_gaps);
+std::vector<Contacts> measure_contacts(const Spheres<dynamic>&, const Domain&,
+                                       std::span<const double> contact_gaps);
 
 }  // namespace bernal

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,12 +10,12 @@
 #include "bernal/measure/radial_distribution.hpp"
 #include "bernal/measure/size_comparison.hpp"
 #include "bernal/measure/wall_profile.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
 
-/// What can be said of a packing from its spheres alone.
+/// What can be said of spheres in a domain.
 struct Measurements {
   double packing_fraction = 0;
   Contacts contacts;             ///< at MeasureOptions::contact_gap
@@ -34,9 +35,19 @@ struct MeasureOptions {
   WallOptions walls;
 };
 
-/// `asked` is the distribution of radii that the packing is held against; null for none. Cost: that of the
-/// parts.
-Measurements measure(const Packing&, const SizeDistribution* asked, const MeasureOptions& = {});
+/// What the radii are held against: a distribution, or null for nothing, and how it was drawn from.
+struct AskedRadii {
+  const SizeDistribution* sizes = nullptr;
+  std::uint64_t seed = 1;
+  Draw draw = Draw::random;
+};
+
+/// Precondition: spheres of the domain's dimension. Cost: that of the parts.
+Measurements measure(const Spheres<dynamic>&, const Domain&, const AskedRadii& = {},
+                     const MeasureOptions& = {});
+
+/// Volume of the spheres over that of the domain, or of one period.
+double packing_fraction(const Spheres<dynamic>&, const Domain&);
 
 /// 64-bit FNV-1a of the doubles of all spheres in order, the coordinates and r of each, little-endian; 16
 /// hexadecimal digits.

@@ -3,7 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "bernal/run/packing.hpp"
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal {
 
@@ -37,10 +38,11 @@ struct RadialOptions {
   double work = 2e8;  ///< about how many distances are computed; larger packings are sampled
 };
 
-/// Absent in a container, where the walls and the free surface leave no density to compare with, and for
-/// fewer than two spheres. A distance that rounding brought below a bin by 1e-6 of its width counts in that
+/// Absent where there are walls, which with the free surface leave no density to compare with, and for fewer
+/// than two spheres. A distance that rounding brought below a bin by 1e-6 of its width counts in that
 /// bin, so that contacts of equal spheres come together. Cost: min(options.work, O(N reach^D)), at about 2
 /// ns; memory O(N). Precondition: bin and reach positive.
-std::optional<RadialDistribution> radial_distribution(const Packing&, const RadialOptions& = {});
+std::optional<RadialDistribution> radial_distribution(const Spheres<dynamic>&, const Domain&,
+                                                      const RadialOptions& = {});
 
 }  // namespace bernal

@@ -4,7 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bernal/run/packing.hpp"
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal {
 
@@ -16,8 +17,9 @@ enum class Region : std::uint8_t {
   core,  ///< the centre in the core of the wall profile
 };
 
-/// How a packing changes with the distance z from the wall, wherever that is nearest: floor, lid and sides.
-/// Lengths are in the scene's unit.
+/// How a packing changes with the distance z from the wall, wherever that is nearest: floor, lid and sides,
+/// as far as there are such. Where the container repeats itself it is that of one period. Lengths are in the
+/// spheres' unit.
 ///
 /// The container is cut into layers of equal z; its porosity there is what no sphere fills,
 ///   porosity = 1 - (volume of the spheres in the layer) / (volume of the layer).
@@ -71,13 +73,13 @@ struct WallOptions {
   double work = 1e6;
 };
 
-/// Absent in a periodic box, which has no wall, and without spheres.
+/// Absent without walls, in other dimensions than three, and without spheres.
 ///
 /// Layers of boxes, cylinders and spheres have their volumes in closed form; those of a mesh come from points
-/// that fill it evenly. Spheres nearer than `reach` are spread over the layers by 8 to 512 points each, a quarter where they are deeper than two mean diameters;
-/// spheres beyond go whole. What sticks out of the container counts to the first layer. The same bits for any
-/// number of threads. Cost of 30,000 spheres: 0.4 s in a cylinder, 2 s in a mesh of 10,000 triangles.
-/// Precondition: options positive.
-std::optional<WallProfile> wall_profile(const Packing&, const WallOptions& = {});
+/// that fill it evenly. Spheres nearer than `reach` are spread over the layers by 8 to 512 points each, a
+/// quarter where they are deeper than two mean diameters; spheres beyond go whole. What sticks out of the
+/// container counts to the first layer. The same bits for any number of threads. Cost of 30,000 spheres: 0.4
+/// s in a cylinder, 2 s in a mesh of 10,000 triangles. Precondition: options positive.
+std::optional<WallProfile> wall_profile(const Spheres<dynamic>&, const Domain&, const WallOptions& = {});
 
 }  // namespace bernal

@@ -19,6 +19,13 @@ enum class Outcome {
 };
 std::string_view name_of(Outcome);
 
+/// One line of `bernal explain`: something that would run, and what it costs.
+struct PlanItem {
+  std::string name;  ///< "walls", "neighbour lists", "compress", …
+  std::string what;  ///< one phrase
+  std::string cost;  ///< "O(N)", "O(N log T)", …
+};
+
 /// What one effect (insertion, compression, walls, neighbour lists, …) cost in a run.
 struct Effect {
   std::string name;
@@ -39,7 +46,7 @@ struct Milestone {
 /// The result of a run: plain data. Lengths are in the scene's unit and frame. `spheres` has the dimension of
 /// the domain.
 struct Packing {
-  Spheres<dynamic> spheres;  ///< in a periodic box with centres in [0, edge)
+  Spheres<dynamic> spheres;  ///< centres in one period, see `wrap`
   Domain domain;
   double volume = 0;                     ///< of the domain
   double expected_packing_fraction = 0;  ///< by the plan, before the run

@@ -13,13 +13,6 @@
 
 namespace bernal {
 
-/// One line of `bernal explain`: something that would run, and what it costs.
-struct PlanItem {
-  std::string name;  ///< "walls", "neighbour lists", "compress", …
-  std::string what;  ///< one phrase
-  std::string cost;  ///< "O(N)", "O(N log T)", …
-};
-
 /// A scene that has been checked as a whole, with everything it names made and nothing else.
 struct Plan {
   Scene scene;
@@ -32,12 +25,13 @@ struct Plan {
   double attainable_packing_fraction = 0, expected_packing_fraction = 0;
   double expected_count = 0;
   double expected_memory_bytes = 0;
+  bool places_expected = false;     ///< some stage ends with as many spheres as are expected to fit
   std::vector<PlanItem> items;      ///< what would run, in order
   std::vector<std::string> absent;  ///< effects that the scene does not call for and that are not built
 };
 
-/// Makes what the scene names. Throws Error (bad_scene, bad_mesh) where parts do not fit each other: a sphere
-/// larger than the container, a mesh that is no container. Cost: reading the mesh.
+/// Completes the scene and makes what it names. Throws Error (bad_scene, bad_mesh) where parts do not fit
+/// each other: a sphere larger than the container, a mesh that is no container. Cost: reading the mesh.
 Plan build(const Scene& scene);
 
 /// The container or the periodic box that a scene describes, in the scene's unit: what `build` and the
@@ -52,9 +46,6 @@ Domain packed_domain_of(const Scene& scene);
 
 /// The size distribution of radii that a scene describes, in the scene's unit. Throws as `build`.
 std::unique_ptr<SizeDistribution> radii_of(const Scene& scene);
-
-/// How the scene takes radii from it.
-Draw draw_of(const Scene& scene);
 
 struct RunOptions {
   std::optional<std::uint64_t> seed;  ///< the scene's own if absent

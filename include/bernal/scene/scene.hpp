@@ -1,78 +1,111 @@
 #pragma once
+#include <any>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
-#include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
-#include "bernal/core/error.hpp"
+#include "bernal/core/unit.hpp"
+#include "bernal/domain/container.hpp"
+#include "bernal/domain/domain.hpp"
+#include "bernal/scene/locations.hpp"
+#include "bernal/scene/sizes.hpp"
+#include "bernal/sizes/radius_sequence.hpp"
 
 namespace bernal {
 
-/// What a user may write to the right of an equals sign.
-using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
-
-/// One `key = value` of the scene and where it stands; line 0 for a default that was filled in.
-struct Parameter {
-  Value value;
-  Location where;
+/// A container in a CAD file.
+struct MeshFile {
+  std::filesystem::path file;
+  std::optional<Unit> unit = {};  ///< of the file's coordinates; the scene's if absent
 };
 
-/// A named thing of the scene (a container, a size distribution, a stage) with its parameters. Plain data:
-/// the reader has checked names, types and ranges against the schema, and has filled in every default, so a
-/// getter of an existing key never fails. Missing keys and wrong types throw Error{bad_argument}, which
-/// only a scene made in C++ can cause.
-struct Spec {
-  std::string name;
-  std::map<std::string, Parameter, std::less<>> parameters;
-  Location where;
-  std::vector<Spec> parts = {};  ///< of a mixture: what it is made of
+/// A box that repeats itself along every axis but those with walls. By `size` or `edge`; with neither, the
+/// packing decides how large it is.
+struct PeriodicBox {
+  int dimension = 3;
+  std::vector<double> size = {};
+  std::optional<double> edge = {};  ///< all its edges
+  std::vector<int> walls = {};      ///< axes, counted from 0, along which it ends at walls
+  bool scalable = false;            ///< the packing decides how large it is; size only gives its proportions
+};
 
-  bool has(std::string_view key) const { return parameters.find(key) != parameters.end(); }
-  double number(std::string_view key) const;  ///< double or integer
-  std::int64_t integer(std::string_view key) const;
-  bool flag(std::string_view key) const;
-  const std::string& text(std::string_view key) const;
-  const std::vector<double>& numbers(std::string_view key) const;
-  Location location(std::string_view key) const;  ///< of the key if it has one, else of the whole
+/// What is to be filled: `scene.container = Cylinder{.radius = 2, .height = 5}`. A box of three dimensions
+/// with walls all around is a Box; one that repeats itself is a PeriodicBox.
+struct SceneContainer : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox> {
+  using variant::variant;
+  Locations locations;
+};
+
+/// One act of the protocol: the options of any stage, such as Relax{.patience = 20}.
+struct Stage {
+  template <class Options>
+  requires(!std::is_same_v<Options, Stage>) Stage(Options of) : options(std::move(of)) {}
+
+  /// Its options if it is that stage, else null.
+  template <class Options>
+  Options* as() {
+    return std::any_cast<Options>(&options);
+  }
+  template <class Options>
+  const Options* as() const {
+    return std::any_cast<Options>(&options);
+  }
+
+  /// "relax": what `do = …` calls it. Throws Error{bad_scene} for options that no stage has.
+  std::string_view name() const;
+
+  std::any options;
+  Locations locations = {};
 };
 
 /// At most one of these says when there are enough spheres; in a periodic box that is given neither size nor
 /// edge, `count` and `packing_fraction` together say how large it is. Where nothing is said the stages place
 /// what they can, or for relaxation in a container what the plan expects.
 struct Target {
-  std::optional<std::int64_t> count;
-  std::optional<double> packing_fraction;
+  std::optional<std::int64_t> count = {};
+  std::optional<double> packing_fraction = {};
   /// `packing_fraction = "predicted"`: `build` puts in a number, what is predicted less the error of that.
   bool predicted = false;
   bool fill = false;  ///< as many as the stages can place, at any price
-  Location where;
+  Location where = {};
 
   bool has_packing_fraction() const { return packing_fraction || predicted; }
   /// Whether it is left to the stages how many spheres there are.
   bool is_open() const { return !count && !has_packing_fraction(); }
 };
 
-/// A packing problem as the user states it: plain data, no behaviour. Lengths are in `unit`.
+/// A packing problem as the user states it: plain data. Lengths are in `unit`. What is left out `build` fills
+/// in, and it refuses with an Error{bad_scene} what no scene file could say.
 struct Scene {
   std::filesystem::path file;  ///< empty for a scene made in C++
-  std::string unit = "m";
+  Unit unit = Unit::m;
   std::uint64_t seed = 1;
-  Spec container;  ///< box, cylinder, sphere, mesh, periodic
-  Spec sizes;      ///< constant, classes, uniform, …; lengths as written
+  SceneContainer container;  ///< the unit cube, if nothing else is said
+  SceneSizes sizes;
   bool sizes_are_diameters = false;
-  std::string draw = "random";  ///< random | quantiles
+  std::optional<Draw> draw =
+      {};  ///< without it quantiles where a stage keeps them in a container, else random
   Target target;
-  std::string walls = "filtered";  ///< double | filtered | exact
+  WallArithmetic walls = WallArithmetic::filtered;
   double overlap = 0;              ///< largest overlap ratio that the result may keep
-  std::vector<Spec> stages;        ///< in order; the protocol of the container's kind if the file names none
+  std::vector<Stage> stages = {};  ///< in order; none: the one that suits any container
   bool stages_are_default = false;
+  Locations locations;  ///< of what stands in no container, sizes or stage
 
-  bool is_periodic() const { return container.name == "periodic"; }
-  int dimension() const { return is_periodic() ? static_cast<int>(container.integer("dimension")) : 3; }
+  bool is_periodic() const { return std::holds_alternative<PeriodicBox>(container); }
+  int dimension() const {
+    const auto* box = std::get_if<PeriodicBox>(&container);
+    return box ? box->dimension : 3;
+  }
 };
+
+/// As scenes have them: "double", "filtered", "exact"; "random", "quantiles".
+std::string_view name_of(WallArithmetic);
+std::string_view name_of(Draw);
 
 }  // namespace bernal

@@ -1,9 +1,13 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "bernal/core/monitor.hpp"
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/domain.hpp"
 
@@ -15,21 +19,25 @@ enum class Arithmetic {
   exact,     ///< exact rational arithmetic throughout
 };
 
-/// What was proven about spheres in a container or a periodic box, taking the doubles as written for exact
-/// real numbers. Touching is allowed.
+/// What was proven about spheres in a domain, taking the doubles as written for exact real numbers. Touching
+/// is allowed.
 ///
-/// In a container, for every pair of spheres: |ci - cj| >= ri + rj; for every sphere: its ball lies inside
-/// the closed container. Pairs and triangles of a mesh that bounding boxes separate are not counted; every
-/// other one is decided exactly, and so is every sphere against each of the six faces of a box, the base, the
-/// top and the side of a cylinder, or the wall of a sphere.
+/// Pairs: |ci - cj| >= ri + rj for every pair of spheres. Where the domain repeats itself, L being the vector
+/// of its periods, 0 along open axes: |ci - cj + k·L| >= ri + rj for every vector k of integers, and
+/// |k·L| >= 2 ri for every sphere and every k·L that is not 0. A pair counts once, whatever the number of its
+/// images that meet, and is judged by the nearest; a sphere that meets its own images counts as a pair of
+/// itself. Along axes with a period centres may lie anywhere: they stand for their images, without rounding.
 ///
-/// In a periodic box with the edges L, in any dimension, for every pair of spheres and every vector k of
-/// integers: |ci - cj + k·L| >= ri + rj; for every sphere and every k that is not 0: |k·L| >= 2 ri. A pair
-/// counts once, whatever the number of its images that meet, and is judged by the nearest; a sphere that
-/// meets its own images counts as a pair of itself. Centres may lie outside the box: they stand for their
-/// images in it, without rounding. There are no walls.
+/// Walls: every ball lies inside the closed domain, whose walls are the two faces of every axis of a box that
+/// does not repeat itself, in any dimension; the base, the top and the side of a cylinder, only the side of a
+/// periodic one; the surface of a sphere; the triangles of a mesh.
+///
+/// Pairs and triangles that bounding boxes separate are not counted; every other one is decided exactly, and
+/// so is every sphere against each of the other walls.
 struct Certificate {
-  bool certified = false;  ///< no overlap, no protrusion, every radius positive and finite
+  bool certified = false;  ///< no overlap above the allowed, no protrusion, every radius positive and finite
+  double allowed_overlap = 0;  ///< the largest overlap ratio of a pair that counted as none
+  bool cancelled = false;      ///< the monitor ended it: the figures are of what was decided until then
 
   std::uint64_t spheres = 0;
   std::uint64_t pairs_tested = 0;    ///< near pairs
@@ -54,27 +62,54 @@ struct Certificate {
   /// no sphere is near a wall.
   double min_wall_gap = 0;
 
+  struct Overlap {
+    std::array<std::uint64_t, 2> pair;  ///< as `worst_pair`
+    double ratio;                       ///< as `max_overlap`; above what is allowed
+    bool operator==(const Overlap&) const = default;
+  };
+  struct Protrusion {
+    std::uint64_t sphere;
+    double gap;  ///< as `min_wall_gap`; negative
+    bool operator==(const Protrusion&) const = default;
+  };
+  /// The overlapping pairs and the protruding spheres, as many as were asked for: the worst first, equal ones
+  /// by index.
+  std::vector<Overlap> overlaps;
+  std::vector<Protrusion> protrusions;
+
   double seconds = 0;
   std::string statement;  ///< one sentence for people
 };
 
-/// Certifies. Shares no neighbour search, kernel or stage with the packer. `allowed_overlap` in [0, 1) is the
-/// largest overlap ratio of a pair that still counts as none (0: strict). Uses all threads of the calling
-/// arena; the answer does not depend on their number.
+struct CertifyOptions {
+  double allowed_overlap = 0;  ///< in [0, 1): the largest overlap ratio of a pair that still counts as none
+  Arithmetic arithmetic = Arithmetic::filtered;
+  /// How many overlapping pairs and how many protruding spheres are listed at most: the worst of each.
+  std::size_t list = 0;
+  static constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+  int threads = 0;       ///< 0: those of the calling arena
+  Monitor monitor = {};  ///< hears of pairs, then of walls
+};
+
+/// Certifies. Shares no neighbour search, kernel or stage with the packer. The answer does not depend on the
+/// number of threads. Once the monitor cancels, nothing is certified any more.
 ///
 /// A sphere whose centre is not finite or whose radius is not positive and finite makes the packing not
 /// certified, as the statement says; then nothing else is tested. Throws Error{bad_argument} for columns of
-/// different lengths, spheres that have not the dimension of the domain and absurd measures of a container or
-/// a box, Error{bad_mesh} for a mesh with a boundary. That a mesh does not intersect itself is not checked.
+/// different lengths, spheres that have not the dimension of the domain, a box whose members are not of one
+/// dimension and absurd measures of a domain, Error{bad_mesh} for a mesh with a boundary. That a mesh does
+/// not intersect itself is not checked.
 ///
 /// Cost: O(N log N + near pairs), about 0.7 µs a sphere at N = 30,000 and 0.9 at 10,000,000 on one core, a
-/// quarter more in a periodic box; a mesh of T triangles adds O(T log T), about 0.5 µs each. Exact arithmetic
-/// throughout is 4 to 12 times slower. In high dimensions most pairs are near ones, and the cost is that of
-/// all pairs.
-Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, double allowed_overlap = 0,
-                    Arithmetic arithmetic = Arithmetic::filtered);
+/// quarter more where the domain repeats itself; a mesh of T triangles adds O(T log T), about 0.5 µs each.
+/// Exact arithmetic throughout is 4 to 12 times slower. In high dimensions most pairs are near ones, and the
+/// cost is that of all pairs. A list of n takes up to 48 n bytes a thread.
+Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain,
+                    const CertifyOptions& options = {});
 
-/// "3 and 7" or "3 and its own image"; "none".
+/// "3 and 7" or "3 and its own image".
+std::string pair_text(const std::array<std::uint64_t, 2>& pair);
+/// That of the worst pair; "none".
 std::string worst_pair_text(const Certificate&);
 
 }  // namespace bernal

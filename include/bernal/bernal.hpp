@@ -1,0 +1,24 @@
+#pragma once
+
+// All of bernal: state a problem, pack it, certify, measure and write it.
+//
+//   Scene scene;
+//   scene.container = Cylinder{.radius = 5, .height = 20};
+//   scene.sizes = Lognormal{.median = 0.5, .sigma = 0.2};
+//   const Packing packing = run(build(scene));
+
+#include "bernal/figures/check_prediction.hpp"
+#include "bernal/fly/fly.hpp"
+#include "bernal/hard/grow.hpp"
+#include "bernal/io/read_packing.hpp"
+#include "bernal/io/write_packing.hpp"
+#include "bernal/measure/measure.hpp"
+#include "bernal/predict/design.hpp"
+#include "bernal/predict/predict.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "bernal/settle/insert.hpp"
+#include "bernal/settle/refill.hpp"
+#include "bernal/soft/relax.hpp"
+#include "bernal/verify/certificate.hpp"
+#include "bernal/version.hpp"

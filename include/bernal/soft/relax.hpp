@@ -1,0 +1,29 @@
+#pragma once
+#include <optional>
+
+namespace bernal {
+
+enum class RelaxMethod {
+  fast,       ///< on neighbour lists, with over-relaxed steps
+  reference,  ///< the published loop as it stands, a hundred times slower
+};
+
+/// Spheres start with overlaps and push each other apart (Zhao, Li & Liu 2007). In a periodic box the box
+/// grows meanwhile; in a container the walls push too, and what is stuck is stirred.
+struct Relax {
+  // in periodic boxes
+  double alpha = 17;  ///< sweeps between two growths of the box, in units of (log10 N)²
+  double beta = 30;   ///< the box grows by the largest overlap ratio divided by this
+  /// Packing fraction at the start; without it 0.86, or what suits the dimension.
+  std::optional<double> phi0 = {};
+  double stop = 2e-4;  ///< largest overlap ratio that counts as none
+  double polish = 0;   ///< overlap ratio to which contacts are closed in the end; 0: not at all
+  RelaxMethod method = RelaxMethod::fast;
+  bool settle = false;  ///< reference: what touches nothing moves to touch its nearest neighbour
+  // in containers
+  int patience = 12;   ///< how often spheres that are stuck are stirred before some are taken out
+  int sweeps = 40000;  ///< at most
+  double seconds = 0;  ///< at most; 0: as long as it takes
+};
+
+}  // namespace bernal

@@ -1,0 +1,192 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bernal/core/text.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "scene/scene_entries.hpp"
+#include "scene/stage_table.hpp"
+#include "scene/toml_text.hpp"
+
+namespace bernal {
+namespace {
+
+using schema::Entry;
+using schema::Key;
+using schema::Section;
+using schema::Type;
+
+/// Every value of the struct is one that a scene can say.
+void check(const Entry& entry, const void* options, const Section& section, bool in_bed = true) {
+  const auto absent = entry.left_out(options, section);
+  for (const Key& key : entry.keys) {
+    const auto value = key.of(options);
+    if (!key.acts_here(in_bed)) {
+      const auto otherwise = key.of(entry.defaults.get());
+      const bool said = value && !(otherwise && toml_text(*value) == toml_text(*otherwise));
+      if (said || section.locations.keys.contains(key.name))
+        section.fail(key.name,
+                     fmt::format("\"{}\" in {} acts in {} only; leave it out", key.name, section.name,
+                                 in_bed ? "periodic boxes" : "containers with walls"));
+      continue;
+    }
+    if (!value && key.required && key.member.get && std::ranges::find(absent, key.name) == absent.end())
+      section.fail(key.name, fmt::format("missing \"{}\" in {}: {}, {}", key.name, section.name,
+                                         schema::expectation(key), key.help));
+    if (value && key.type != Type::distribution && key.type != Type::parts && !schema::accepts(key, *value))
+      section.refuse(key.name,
+                     fmt::format("must be {}, not {}", schema::expectation(key, value), toml_text(*value)));
+  }
+  if (entry.rule) entry.rule(options, section);
+}
+
+void check_sizes(const SceneSizes& sizes, const std::string& name, const Scene& scene) {
+  const Entry& entry = schema::entry_of(sizes);
+  const void* options = schema::options_of(sizes);
+  const Section section{name, sizes.locations};
+  check(entry, options, section);
+  for (const Key& key : entry.keys)
+    if (key.is_diameter && !scene.sizes_are_diameters && key.of(options))
+      section.fail(key.name,
+                   fmt::format("\"{}\" is a diameter; write diameter = {{…}}, not radius", key.name));
+  if (const auto* mixture = std::get_if<Mixture>(&sizes))
+    for (std::size_t i = 0; i < mixture->of.size(); ++i)
+      check_sizes(mixture->of[i], fmt::format("part {} of {}", i + 1, name), scene);
+}
+
+/// What the target and a periodic box demand of each other.
+void check_target(const Scene& scene) {
+  const Target& target = scene.target;
+  const auto fail = [&](const char* message) { throw Error(ErrorCode::bad_scene, message, target.where); };
+  const auto* box = std::get_if<PeriodicBox>(&scene.container);
+  const bool scalable = box && box->scalable;
+  if (target.count && target.has_packing_fraction() && !scalable)
+    fail(
+        "\"count\" and \"packing_fraction\" in [spheres] exclude each other; give one of them (both go "
+        "together only in a periodic box without size)");
+  if (scalable && !target.count)
+    fail("a periodic box without size needs a \"count\" in [spheres]; or give it \"size\" or \"edge\"");
+}
+
+/// The stage that packs any scene.
+void take_default_stage(Scene& scene) {
+  scene.stages_are_default = true;
+  for (const StageTable* table : stage_tables())
+    if (table->traits.is_default) {
+      scene.stages.push_back(table->make());
+      scene.stages.back().locations.whole.file = scene.file.string();
+    }
+}
+
+bool has_fixed_walls(const PeriodicBox& box) {
+  return !box.walls.empty() && box.dimension == 3 && !box.scalable;
+}
+
+std::string_view name_of_domain(const Scene& scene) {
+  const auto* box = std::get_if<PeriodicBox>(&scene.container);
+  if (!box) return "container with walls";
+  return box->walls.empty() ? "periodic box" : "periodic box that ends at walls along some axes";
+}
+
+/// The stages that can work in the scene's domain, for people.
+std::string stages_for(const Scene& scene) {
+  std::vector<std::string_view> names;
+  for (const StageTable* table : stage_tables())
+    if (table->traits.works_in(scene)) names.push_back(table->name());
+  return fmt::format("there, the stages are \"{}\"", fmt::join(names, "\", \""));
+}
+
+/// Throws where a stage cannot work in the scene's domain.
+void require_possible(const Scene& scene, const Stage& stage) {
+  const StageTable& table = table_of(stage);
+  const StageTraits& traits = table.traits;
+  const auto fail = [&](const std::string& why) {
+    throw Error(ErrorCode::bad_scene, fmt::format("\"{}\" {}", table.name(), why), stage.locations.whole);
+  };
+  if (!traits.works_in(scene))
+    fail(fmt::format("cannot work in a {}; {}", name_of_domain(scene), stages_for(scene)));
+  const auto* box = std::get_if<PeriodicBox>(&scene.container);
+  if (!box || traits.stands_in_bed(scene)) return;
+  if (box->dimension < traits.least_dimension || box->dimension > traits.most_dimensions)
+    fail(fmt::format("works in {} to {} dimensions, not in {}", traits.least_dimension,
+                     traits.most_dimensions, box->dimension));
+}
+
+/// Once the stages have said what they fill the box to.
+void require_end(const Scene& scene) {
+  const Target& target = scene.target;
+  const auto* box = std::get_if<PeriodicBox>(&scene.container);
+  for (const Stage& stage : scene.stages)
+    if (const StageTable& table = table_of(stage); table.traits.fills_given_box &&
+                                                   !target.has_packing_fraction() &&
+                                                   (!target.count || (box && box->scalable)))
+      throw Error(ErrorCode::bad_scene,
+                  fmt::format("\"{}\" fills a box of given size to a given end: give \"packing_fraction\" in "
+                              "[spheres], or \"count\" and the size of the box",
+                              table.name()),
+                  target.where);
+}
+
+void complete_stages(Scene& scene) {
+  if (scene.stages.empty()) take_default_stage(scene);
+  bool keeps_sizes = false;  // in a bed
+  for (Stage& stage : scene.stages) {
+    const StageTable& table = table_of(stage);
+    const Section section = section_of(stage, table);
+    require_possible(scene, stage);
+    check(table.keys, table.options(stage), section, table.traits.stands_in_bed(scene));
+    if (table.keys.complete) table.keys.complete(table.options_of(stage), scene, section);
+    keeps_sizes = keeps_sizes || (table.traits.keeps_sizes && table.traits.stands_in_bed(scene));
+  }
+  require_end(scene);
+  if (!scene.draw) scene.draw = keeps_sizes ? Draw::quantiles : Draw::random;
+}
+
+}  // namespace
+
+bool StageTraits::stands_in_bed(const Scene& scene) const {
+  const auto* box = std::get_if<PeriodicBox>(&scene.container);
+  if (!box) return true;
+  return in_bed && has_fixed_walls(*box) && (!in_box || prefers_bed);
+}
+
+bool StageTraits::works_in(const Scene& scene) const {
+  if (stands_in_bed(scene)) return in_bed;
+  const auto& box = std::get<PeriodicBox>(scene.container);
+  return in_box && (box_between_walls || box.walls.empty());
+}
+
+void complete(Scene& scene) {
+  for (const Entry* entry : schema::own_entries())
+    check(*entry, &scene,
+          {entry->name == "scene" ? "the scene" : fmt::format("[{}]", entry->name), scene.locations});
+  const Entry& container = schema::entry_of(scene.container);
+  const Section section{"[container]", scene.container.locations};
+  check(container, schema::options_of(std::as_const(scene.container)), section);
+  if (container.complete) container.complete(schema::options_of(scene.container), scene, section);
+  check_target(scene);
+  check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",
+              scene);
+  complete_stages(scene);
+}
+
+const StageTable& table_of(const Stage& stage) {
+  for (const StageTable* table : stage_tables())
+    if (table->options(stage)) return *table;
+  throw Error(ErrorCode::bad_scene, "these are the options of no stage", stage.locations.whole);
+}
+
+std::string_view Stage::name() const { return table_of(*this).name(); }
+
+Stage stage_named(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const StageTable* table : stage_tables()) {
+    if (table->name() == name) return table->make();
+    names.push_back(table->name());
+  }
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("unknown stage {}{}", toml_string(name), remedy(name, names)));
+}
+
+}  // namespace bernal

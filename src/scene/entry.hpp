@@ -1,0 +1,246 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "bernal/core/vector.hpp"
+#include "bernal/scene/scene.hpp"
+
+namespace bernal::schema {
+
+/// What a user may write to the right of an equals sign; a distribution is an array of one.
+using Value =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<SceneSizes>>;
+
+/// What the value of a key must be. Vectors have three components; arrays have at least one.
+enum class Type {
+  flag,          ///< true or false; only true where the range begins at 1
+  integer,       ///< within Key::range
+  number,        ///< finite, within Key::range; or one of Key::words, if there are any
+  length,        ///< positive, in the scene's unit
+  word,          ///< one of Key::words
+  file,          ///< a path, relative to the scene's folder
+  direction,     ///< [x, y, z], not all zero
+  position,      ///< [x, y, z] in the scene's unit
+  extents,       ///< [a, b, c], each a length
+  lengths,       ///< array of lengths
+  shares,        ///< array of positive numbers
+  amounts,       ///< array of numbers of at least 0
+  axes,          ///< array of axes, counted from 0, each once
+  distribution,  ///< a length, or a table of one of the distributions
+  parts,         ///< array of distributions
+};
+
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool above_min = false;  ///< min itself is excluded
+  bool below_max = false;  ///< max itself is excluded
+
+  bool contains(double v) const {
+    return (above_min ? v > min : v >= min) && (below_max ? v < max : v <= max);
+  }
+};
+/// (min, max], (min, max)
+inline Range above(double min, double max) { return {min, max, true}; }
+inline Range between(double min, double max) { return {min, max, true, true}; }
+
+/// The way from a plain struct to one of its members, whose value may be absent: an empty optional or vector.
+struct Member {
+  std::function<std::optional<Value>(const void*)> get;
+  std::function<void(void*, const Value&)> set;
+
+  Member() = default;
+  template <class T, class M>
+  Member(M T::*member);
+
+  /// The same from a struct of which the one that it leads from is a part.
+  template <class T, class M>
+  Member inside(M T::*part) const {
+    Member member;
+    member.get = [get = get, part](const void* whole) { return get(&(static_cast<const T*>(whole)->*part)); };
+    member.set = [set = set, part](void* whole, const Value& value) {
+      set(&(static_cast<T*>(whole)->*part), value);
+    };
+    return member;
+  }
+};
+
+/// On what a key of a stage acts: spheres that stand in a bed, or in a box (see `Work`).
+enum class Acts { everywhere, in_bed, in_box };
+
+struct Key {
+  std::string_view name;
+  Type type;
+  Member member = {};  ///< none of a key that the reader replaces by others
+  std::string_view help = {};
+  Range range = {};
+  std::vector<std::string_view> words = {};
+  bool required = false;     ///< unless the entry's choices leave it out
+  bool is_diameter = false;  ///< a size that is a diameter by its name
+  Acts acts = Acts::everywhere;
+
+  std::optional<Value> of(const void* options) const {
+    return member.get ? member.get(options) : std::nullopt;
+  }
+  bool acts_here(bool in_bed) const { return acts == Acts::everywhere || (acts == Acts::in_bed) == in_bed; }
+};
+
+Key flag(Member, std::string_view name, std::string_view help, Range = {0, 1});
+Key integer(Member, std::string_view name, std::string_view help, Range);
+Key number(Member, std::string_view name, std::string_view help, Range);
+Key length(Member, std::string_view name, std::string_view help);
+/// Of an enumeration, whose words stand in the order of its enumerators.
+Key word(Member, std::string_view name, std::string_view help, std::vector<std::string_view> words);
+/// Of any other type.
+Key key(Type, Member, std::string_view name, std::string_view help);
+
+Key required(Key);
+/// A required length that is a diameter by its name.
+Key diameter(Member, std::string_view name, std::string_view help);
+std::vector<Key> acting(Acts, std::vector<Key>);
+template <class T, class M>
+std::vector<Key> inside(M T::*part, std::vector<Key> keys) {
+  for (Key& key : keys) key.member = key.member.inside(part);
+  return keys;
+}
+std::vector<Key> joined(std::vector<Key>, std::vector<Key>);
+
+/// Sets of keys of which exactly one is given, whole: the first that holds all that are given; other keys
+/// stay absent. Where none is given, the first set that needs nothing is meant, if there is one.
+using Choice = std::vector<std::vector<std::string_view>>;
+
+/// A table of a scene as its errors name it: "[container]", "part 2 of radius of [spheres]".
+struct Section {
+  std::string name;
+  const Locations& locations;
+
+  /// `"size" in [container] must …`, at the key's place.
+  [[noreturn]] void refuse(std::string_view key, std::string_view must) const;
+  [[noreturn]] void fail(std::string_view key, const std::string& message) const;
+};
+
+/// What a scene may say in one of its tables, and the plain struct that receives it: a container, a size
+/// distribution, a stage, or a table that stands for itself. Defaults are those of the struct.
+struct Entry {
+  std::string_view name;
+  std::string_view help;
+  std::vector<Key> keys;
+  std::vector<Choice> choices = {};
+  /// What the keys demand of each other; throws Error{bad_scene}.
+  std::function<void(const void*, const Section&)> rule = {};
+  /// Fills in what depends on the rest of the scene, where it is left out.
+  std::function<void(void*, Scene&, const Section&)> complete = {};
+  /// Of a distribution that may stand in a "file": the keys that the file's columns are.
+  std::vector<std::string_view> columns = {};
+  std::shared_ptr<const void> defaults = {};  ///< a struct as it is made
+
+  const Key* find(std::string_view key) const;
+  /// The keys that its choices leave out where those of `given` are. Calls conflict(first, second) where two
+  /// sets are mixed, and missing(sets) where none is given that is needed.
+  std::vector<std::string_view> left_out(
+      const std::function<bool(const Key&)>& given,
+      const std::function<void(std::string_view, std::string_view)>& conflict,
+      const std::function<void(const std::string&)>& missing) const;
+  /// The same for a struct, with Error{bad_scene}.
+  std::vector<std::string_view> left_out(const void* options, const Section&) const;
+};
+
+/// The entry of such structs.
+template <class T>
+Entry entry(Entry of) {
+  of.defaults = std::make_shared<const T>();
+  return of;
+}
+template <class T>
+auto rule(void (*demand)(const T&, const Section&)) {
+  return [demand](const void* options, const Section& section) {
+    demand(*static_cast<const T*>(options), section);
+  };
+}
+template <class T>
+auto completion(void (*fill_in)(T&, Scene&, const Section&)) {
+  return [fill_in](void* options, Scene& scene, const Section& section) {
+    fill_in(*static_cast<T*>(options), scene, section);
+  };
+}
+
+/// What a value of this key must be, for people: "a positive length", "a whole number from 1 to 100"; with
+/// its limits where only they refuse the one that was `given`.
+std::string expectation(const Key&, const std::optional<Value>& given = {});
+
+/// Whether a value of the right kind is one that the key accepts. Lengths and coordinates beyond 1e±30 are
+/// not: volumes must neither overflow nor vanish.
+bool accepts(const Key&, const Value&);
+
+// How the members of structs are values.
+
+template <class M>
+struct Conversion {
+  static std::optional<Value> get(const M& m) {
+    if constexpr (std::is_same_v<M, bool> || std::is_same_v<M, double> || std::is_same_v<M, std::string>)
+      return Value(m);
+    else if constexpr (std::is_same_v<M, std::filesystem::path>)
+      return Value(m.string());
+    else if constexpr (std::is_integral_v<M> || std::is_enum_v<M>)
+      return Value(static_cast<std::int64_t>(m));
+    else
+      return Value(std::vector<double>(m.begin(), m.end()));
+  }
+  static void set(M& m, const Value& value) {
+    if constexpr (std::is_same_v<M, bool> || std::is_same_v<M, double> || std::is_same_v<M, std::string>)
+      m = std::get<M>(value);
+    else if constexpr (std::is_same_v<M, std::filesystem::path>)
+      m = std::get<std::string>(value);
+    else if constexpr (std::is_integral_v<M> || std::is_enum_v<M>)
+      m = static_cast<M>(std::get<std::int64_t>(value));
+    else {
+      const auto& numbers = std::get<std::vector<double>>(value);
+      m = Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+    }
+  }
+};
+template <class M>
+struct Conversion<std::optional<M>> {
+  static std::optional<Value> get(const std::optional<M>& m) {
+    return m ? Conversion<M>::get(*m) : std::nullopt;
+  }
+  static void set(std::optional<M>& m, const Value& value) { Conversion<M>::set(m.emplace(), value); }
+};
+template <class Number>
+struct Conversion<std::vector<Number>> {
+  static std::optional<Value> get(const std::vector<Number>& m) {
+    if (m.empty()) return std::nullopt;
+    return Value(std::vector<double>(m.begin(), m.end()));
+  }
+  static void set(std::vector<Number>& m, const Value& value) {
+    m.clear();
+    for (const double v : std::get<std::vector<double>>(value)) m.push_back(static_cast<Number>(v));
+  }
+};
+template <>
+struct Conversion<std::vector<SceneSizes>> {
+  static std::optional<Value> get(const std::vector<SceneSizes>& m) {
+    return m.empty() ? std::nullopt : std::optional<Value>(m);
+  }
+  static void set(std::vector<SceneSizes>& m, const Value& value) {
+    m = std::get<std::vector<SceneSizes>>(value);
+  }
+};
+
+template <class T, class M>
+Member::Member(M T::*member)
+    : get([member](const void* whole) { return Conversion<M>::get(static_cast<const T*>(whole)->*member); }),
+      set([member](void* whole, const Value& value) {
+        Conversion<M>::set(static_cast<T*>(whole)->*member, value);
+      }) {}
+
+}  // namespace bernal::schema

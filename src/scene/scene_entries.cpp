@@ -1,0 +1,196 @@
+#include "scene/scene_entries.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace bernal {
+namespace {
+
+constexpr std::string_view wall_words[] = {"double", "filtered", "exact"};
+constexpr std::string_view draw_words[] = {"random", "quantiles"};
+
+}  // namespace
+
+std::string_view name_of(WallArithmetic walls) { return wall_words[static_cast<std::size_t>(walls)]; }
+std::string_view name_of(Draw draw) { return draw_words[static_cast<std::size_t>(draw)]; }
+
+}  // namespace bernal
+
+namespace bernal::schema {
+namespace {
+
+std::vector<std::string_view> words(std::span<const std::string_view> of) { return {of.begin(), of.end()}; }
+
+/// A number, or "predicted".
+Member packing_fraction() {
+  Member member;
+  member.get = [](const void* scene) -> std::optional<Value> {
+    const Target& target = static_cast<const Scene*>(scene)->target;
+    if (target.packing_fraction) return *target.packing_fraction;
+    return target.predicted ? std::optional<Value>(std::string("predicted")) : std::nullopt;
+  };
+  member.set = [](void* scene, const Value& value) {
+    Target& target = static_cast<Scene*>(scene)->target;
+    target.predicted = std::holds_alternative<std::string>(value);
+    if (!target.predicted) target.packing_fraction = std::get<double>(value);
+  };
+  return member;
+}
+
+/// Said only where it is true.
+Member fill() {
+  Member member(&Target::fill);
+  member.get = [](const void* target) -> std::optional<Value> {
+    return static_cast<const Target*>(target)->fill ? std::optional<Value>(true) : std::nullopt;
+  };
+  return member.inside(&Scene::target);
+}
+
+/// The sizes, as radii or as diameters.
+Member sizes(bool diameters) {
+  Member member;
+  member.get = [diameters](const void* scene) -> std::optional<Value> {
+    const auto& of = *static_cast<const Scene*>(scene);
+    if (of.sizes_are_diameters != diameters) return std::nullopt;
+    return std::vector<SceneSizes>{of.sizes};
+  };
+  member.set = [diameters](void* scene, const Value& value) {
+    auto& of = *static_cast<Scene*>(scene);
+    of.sizes_are_diameters = diameters;
+    of.sizes = std::get<std::vector<SceneSizes>>(value).front();
+  };
+  return member;
+}
+
+void box_rule(const Box& box, const Section& section) {
+  if (box.repeats())
+    section.refuse("size",
+                   "must not repeat itself; a box that does is of the kind \"periodic\", a PeriodicBox");
+}
+
+void cylinder_rule(const Cylinder& cylinder, const Section& section) {
+  if (cylinder.periodic && cylinder.coordinate_axis() < 0)
+    section.refuse("axis", "must lie along x, y or z where \"periodic\" is true");
+}
+
+void periodic_rule(const PeriodicBox& box, const Section& section) {
+  if (!box.size.empty() && static_cast<int>(box.size.size()) != box.dimension)
+    section.refuse("size", fmt::format("must have a length for each of {} dimensions, but it has {}",
+                                       box.dimension, box.size.size()));
+  if (!box.walls.empty() && std::ranges::max(box.walls) >= box.dimension)
+    section.refuse("walls", fmt::format("must name axes, each once, from 0 to {}", box.dimension - 1));
+}
+
+/// Where nothing says how large the box is, the packing does.
+void complete_periodic(PeriodicBox& box, Scene&, const Section&) {
+  if (box.size.empty() && !box.edge) box.scalable = true;
+}
+
+void complete_mesh(MeshFile& mesh, Scene& scene, const Section&) {
+  if (!mesh.unit) mesh.unit = scene.unit;
+}
+
+}  // namespace
+
+const Entry& scene_entry() {
+  static const Entry made = entry<Scene>(
+      {.name = "scene",
+       .help = "what stands at the top",
+       .keys = {word(&Scene::unit, "unit", "unit of every length in the scene; required with a mesh",
+                     words(unit_names())),
+                integer(&Scene::seed, "seed", "one seed gives one packing, bit for bit", {0, 0x1p63})}});
+  return made;
+}
+
+const Entry& spheres_entry() {
+  static const Entry made = [] {
+    Entry of{.name = "spheres",
+             .help = "how many spheres there are, and how large",
+             .keys = {integer(Member(&Target::count).inside(&Scene::target), "count",
+                              "stop at this many spheres", {1, 0x1p31 - 1}),
+                      number(packing_fraction(), "packing_fraction",
+                             "stop when the spheres fill this fraction of the container; \"predicted\": as "
+                             "much as is predicted, less the error of that",
+                             between(0, 1)),
+                      flag(fill(), "fill", "true: as many spheres as the stages can place", {1, 1}),
+                      key(Type::distribution, sizes(false), "radius", "lengths are radii"),
+                      key(Type::distribution, sizes(true), "diameter", "lengths are diameters"),
+                      word(&Scene::draw, "draw",
+                           "sizes at random, or quantiles: evenly over the distribution; if absent quantiles "
+                           "where relax or grow packs a container, else random",
+                           words(draw_words))},
+             .choices = {{{"count"}, {"packing_fraction"}, {"fill"}, {"count", "packing_fraction"}, {}},
+                         {{"radius"}, {"diameter"}}}};
+    of.keys[1].words = {"predicted"};
+    return entry<Scene>(std::move(of));
+  }();
+  return made;
+}
+
+const Entry& accuracy_entry() {
+  static const Entry made = entry<Scene>(
+      {.name = "accuracy",
+       .help = "how walls are decided and what the result may keep",
+       .keys = {word(&Scene::walls, "walls",
+                     "double, filtered (certified bounds, exact where they cannot decide) or exact",
+                     words(wall_words)),
+                number(&Scene::overlap, "overlap",
+                       "largest overlap ratio (ri + rj - d) / (ri + rj) that is allowed; 0: none",
+                       {0, 1, false, true})}});
+  return made;
+}
+
+const std::array<const Entry*, 3>& own_entries() {
+  static const std::array<const Entry*, 3> all = {&scene_entry(), &spheres_entry(), &accuracy_entry()};
+  return all;
+}
+
+const std::vector<Entry>& container_entries() {
+  static const std::vector<Entry> all = {
+      entry<Box>({.name = "box",
+                  .help = "a box along the axes",
+                  .keys = {required(key(Type::extents, &Box::size, "size", "its three edges")),
+                           key(Type::position, &Box::corner, "corner", "its lowest corner")},
+                  .rule = rule(box_rule)}),
+      entry<Cylinder>(
+          {.name = "cylinder",
+           .help = "a circular cylinder along any axis",
+           .keys = {required(length(&Cylinder::radius, "radius", "its radius")),
+                    required(length(&Cylinder::height, "height", "its length along the axis")),
+                    key(Type::direction, &Cylinder::axis, "axis",
+                        "from the base to the top; its length is of no matter"),
+                    key(Type::position, &Cylinder::base, "base", "the middle of its base"),
+                    flag(&Cylinder::periodic, "periodic",
+                         "true: no lids, an endless column that repeats itself with the period height; its "
+                         "axis lies along x, y or z")},
+           .rule = rule(cylinder_rule)}),
+      entry<MeshFile>(
+          {.name = "mesh",
+           .help = "a closed surface from a CAD file",
+           .keys = {required(key(Type::file, &MeshFile::file, "file", "STL, OBJ, PLY, OFF, 3MF, glTF, …")),
+                    word(&MeshFile::unit, "unit", "unit of the file's coordinates; the scene's if absent",
+                         words(unit_names()))},
+           .complete = completion(complete_mesh)}),
+      entry<Sphere>({.name = "sphere",
+                     .help = "a sphere",
+                     .keys = {required(length(&Sphere::radius, "radius", "its radius")),
+                              key(Type::position, &Sphere::center, "center", "its centre")}}),
+      entry<PeriodicBox>(
+          {.name = "periodic",
+           .help = "a box that repeats itself in all directions",
+           .keys = {integer(&PeriodicBox::dimension, "dimension", "of space", {1, max_dimension}),
+                    required(key(Type::lengths, &PeriodicBox::size, "size", "its edges")),
+                    required(length(&PeriodicBox::edge, "edge", "all its edges")),
+                    key(Type::axes, &PeriodicBox::walls, "walls",
+                        "axes, counted from 0, along which the box does not repeat itself but ends at walls, "
+                        "with whole spheres between them; fly and grow only"),
+                    flag(&PeriodicBox::scalable, "scalable",
+                         "the packing decides how large the box is; size only gives its proportions")},
+           .choices = {{{"size"}, {"edge"}, {}}},
+           .rule = rule(periodic_rule),
+           .complete = completion(complete_periodic)})};
+  return all;
+}
+
+}  // namespace bernal::schema

@@ -1,0 +1,44 @@
+#pragma once
+#include <array>
+#include <string_view>
+
+#include "scene/entry.hpp"
+
+namespace bernal::schema {
+
+// Everything that a scene may say, but for its stages. The reader, its errors, the defaults, the writer and
+// the reference all follow these.
+
+/// The keys at the top, before any table; [spheres]; [accuracy]. All of them of a Scene.
+const Entry& scene_entry();
+const Entry& spheres_entry();
+const Entry& accuracy_entry();
+const std::array<const Entry*, 3>& own_entries();
+
+/// In the order of the alternatives of SceneContainer and SceneSizes.
+const std::vector<Entry>& container_entries();
+const std::vector<Entry>& size_entries();
+
+inline const Entry& entry_of(const SceneContainer& container) {
+  return container_entries()[container.index()];
+}
+inline const Entry& entry_of(const SceneSizes& sizes) { return size_entries()[sizes.index()]; }
+
+/// The struct that a variant holds.
+template <class... T>
+void* options_of(std::variant<T...>& of) {
+  return std::visit([](auto& options) -> void* { return &options; }, of);
+}
+template <class... T>
+const void* options_of(const std::variant<T...>& of) {
+  return std::visit([](const auto& options) -> const void* { return &options; }, of);
+}
+/// Makes it hold its n-th alternative.
+template <class... T>
+void hold(std::variant<T...>& of, std::size_t n) {
+  using Variant = std::variant<T...>;
+  static constexpr void (*make[])(Variant&) = {[](Variant& v) { v.template emplace<T>(); }...};
+  make[n](of);
+}
+
+}  // namespace bernal::schema

@@ -1,0 +1,62 @@
+#include "soft/container_ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "work/holes.hpp"
+
+namespace bernal {
+namespace {
+
+/// The margin is so many resolutions of the coordinates at least, and never more than this.
+constexpr double least_margin = 1e-4, resolutions_a_margin = 100, largest_margin = 0.01;
+/// Random places that are looked at for each sphere to find holes.
+constexpr double probes_a_sphere = 2, least_probes = 1000;
+
+}  // namespace
+
+void ContainerGround::place(const Spheres<3>& spheres) {
+  if (packing_) {
+    list_builds_ += packing_->builds();
+    wall_queries_ += packing_->wall_queries();
+  }
+  packing_ = std::make_unique<SoftPacking>(spheres, *container_, soft_kernels().front());
+  if (margin_ == 0) {
+    const double resolution = packing_->resolution() / *std::ranges::min_element(spheres.r);
+    margin_ = std::max(least_margin, resolutions_a_margin * resolution);
+    if (margin_ > largest_margin)
+      throw Error(ErrorCode::bad_scene,
+                  fmt::format("spheres {:.0e} times smaller than the container cannot be relaxed in it; name "
+                              "other stages, such as \"insert\" and \"compress\"",
+                              std::exp2(32) * resolution));
+  }
+  packing_->swell(1 + margin_);
+}
+
+void ContainerGround::move_to_holes(Spheres<3>& spheres, std::vector<std::uint32_t> ids, Random& random) {
+  std::ranges::stable_sort(ids, std::greater<>(), [&](std::uint32_t i) { return spheres.r[i]; });
+  std::vector<double> radii;
+  for (const std::uint32_t i : ids) radii.push_back(spheres.r[i]);
+  const std::vector<Vector<3>> holes = holes_for(radii, spheres, random);
+  std::vector<SoftPacking::Move> moves;
+  for (std::size_t k = 0; k < holes.size(); ++k) {
+    spheres.set_center(ids[k], holes[k]);
+    moves.push_back({ids[k], holes[k]});
+  }
+  packing_->put(moves);
+}
+
+std::vector<Vector<3>> ContainerGround::holes_for(std::span<const double> radii, const Spheres<3>& spheres,
+                                                  Random& random) const {
+  const auto probes =
+      static_cast<std::size_t>(least_probes + probes_a_sphere * static_cast<double>(spheres.size()));
+  std::vector<Vector<3>> places;
+  for (const Hole& hole : bernal::holes_for(radii, *container_, *places_, spheres, probes, random))
+    places.push_back(hole.place);
+  return places;
+}
+
+}  // namespace bernal
