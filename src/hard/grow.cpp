@@ -12,8 +12,8 @@
 #include "hard/growth_schedule.hpp"
 #include "hard/hard_spheres.hpp"
 #include "jam/finish_in_periodic_box.hpp"
-#include "neighbors/cell_grid.hpp"
 #include "work/free_of_overlap.hpp"
+#include "work/random_insertion.hpp"
 #include "work/resize_box.hpp"
 #include "work/stage_entry.hpp"
 
@@ -34,34 +34,20 @@ void complete_grow(Grow& grow, Scene& scene, const schema::Section&) {
   if (!grow.phi_init) grow.phi_init = loose_start[scene.dimension() - 2];
 }
 
-/// Random sequential insertion, the largest first. Returns whether all have found places.
+/// Random sequential insertion between the walls. Returns whether all have found places.
 template <int D>
 bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls,
                       Random random) {
-  std::vector<std::uint32_t> order(spheres.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::stable_sort(order, [&](auto i, auto j) { return spheres.r[i] > spheres.r[j]; });
   const Boundary<D> boundary{edges_around_walls(edges, walls)};
-  CellGrid<D> grid(boundary, std::ranges::min(spheres.r), std::ranges::max(spheres.r), spheres.size());
-  for (const std::uint32_t i : order) {
-    const double r = spheres.r[i];
+  const auto between_walls = [&](double r) {
     Bounds<D> bounds{Vector<D>::Zero(), edges};
     for (int k = 0; k < D; ++k)
       if (!walls.empty() && walls[static_cast<std::size_t>(k)]) bounds.lower[k] += r, bounds.upper[k] -= r;
-    for (int trial = 0;; ++trial) {
-      if (trial == most_trials) return false;
-      const Vector<D> c = uniform_point(random, bounds);
-      const bool taken = grid.any_near(c, r, [&](std::uint32_t j) {
-        const double sum = r + spheres.r[j];
-        return boundary.minimum_image(c - spheres.center(j)).squaredNorm() < sum * sum;
-      });
-      if (taken) continue;
-      spheres.set_center(i, c);
-      grid.insert(i, c, r);
-      break;
-    }
-  }
-  return true;
+    return uniform_point(random, bounds);
+  };
+  return bernal::insert_at_random<D>(spheres, std::vector<bool>(spheres.size(), false), 1,
+                                     {Vector<D>::Zero(), boundary.edges}, boundary, most_trials,
+                                     between_walls, [](const Vector<D>&, double) { return true; });
 }
 
 /// Tells the run how far it has come, now and then.

@@ -11,7 +11,7 @@
 #include "hard/growth_schedule.hpp"
 #include "hard/hard_spheres.hpp"
 #include "hard/largest_sphere.hpp"
-#include "neighbors/cell_grid.hpp"
+#include "work/random_insertion.hpp"
 
 namespace bernal {
 namespace {
@@ -91,7 +91,7 @@ class Growth {
          first = false, count = std::min(wanted, count + std::max<std::size_t>(1, count / 10))) {
       Growing more = growing;
       while (more.spheres.size() < count) more.add(radius_of(more.spheres.size()));
-      insert_at_random(more);
+      insert(more);
       const bool jammed = !grow(more);
       if (jammed) trim_and_grow(more);
       if (first || (more.grown && more.spheres.size() > growing.spheres.size())) growing = std::move(more);
@@ -142,7 +142,7 @@ class Growth {
   }
 
   /// Finds places for all spheres that have none, and the size at which they do.
-  void insert_at_random(Growing& growing) {
+  void insert(Growing& growing) {
     const EffectTimer timer(work_.effects["insertion"]);
     const double filled = volume_of(growing.spheres) / volume_of_container();
     double phi = options_.phi_init.value_or(0.2);
@@ -157,41 +157,17 @@ class Growth {
         "small; use \"relax\"");
   }
 
-  /// Random sequential insertion, the largest first.
   bool try_to_insert(Growing& growing) {
     const Container& container = work_.bed().container();
-    Spheres<3>& spheres = growing.spheres;
     const double clear_of_walls = inset * flatness * work_.supply->smallest();
-    const auto [least, most] = std::ranges::minmax(spheres.r);
-    const Boundary<3>& boundary = container.boundary();
-    CellGrid<3> grid(container.bounds(), boundary, growing.size * least, growing.size * most, spheres.size());
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t i = 0; i < spheres.size(); ++i) {
-      if (growing.placed[i])
-        grid.insert(i, spheres.center(i), growing.size * spheres.r[i]);
-      else
-        order.push_back(i);
-    }
-    std::ranges::stable_sort(order, [&](auto i, auto j) { return spheres.r[i] > spheres.r[j]; });
-    for (const std::uint32_t i : order) {
-      const double r = growing.size * spheres.r[i];
-      const auto is_free = [&](const Vector<3>& c) {
-        const bool taken = grid.any_near(c, r, [&](std::uint32_t j) {
-          const double sum = r + growing.size * spheres.r[j];
-          return boundary.minimum_image(c - spheres.center(j)).squaredNorm() < sum * sum;
+    const bool all = insert_at_random<3>(
+        growing.spheres, growing.placed, growing.size, container.bounds(), container.boundary(), most_trials,
+        [&](double) { return work_.bed().places().draw(random_); },
+        [&](const Vector<3>& c, double r) {
+          return container.clearance_within(c, r + clear_of_walls) >= r + clear_of_walls;
         });
-        return !taken && container.clearance_within(c, r + clear_of_walls) >= r + clear_of_walls;
-      };
-      Vector<3> c = work_.bed().places().draw(random_);
-      for (int trial = 1; !is_free(c); ++trial) {
-        if (trial == most_trials) return false;
-        c = work_.bed().places().draw(random_);
-      }
-      spheres.set_center(i, c);
-      grid.insert(i, c, r);
-    }
-    growing.placed.assign(spheres.size(), true);
-    return true;
+    if (all) growing.placed.assign(growing.spheres.size(), true);
+    return all;
   }
 
   /// Lets them fly and grow until they have their radii, or jam. Returns whether they have.

@@ -8,6 +8,7 @@
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
+#include "neighbors/counting_sort.hpp"
 
 namespace bernal {
 
@@ -82,20 +83,17 @@ class PartialGrid {
   /// Takes the first `n` spheres, with their places.
   template <class Columns>
   void sort(const Columns& x, const std::vector<double>& r, std::size_t n) {
-    std::vector<std::uint32_t> cell(n);
-    std::fill(start_.begin(), start_.end(), 0);
+    std::vector<std::uint32_t> slot(n);
     for (std::size_t i = 0; i < n; ++i) {
       std::size_t index = 0;
       for (int k = std::min(axes_, D) - 1; k >= 0; --k)
         index = index * static_cast<std::size_t>(cells_[k]) + coordinate(k, place(x, k, i));
-      cell[i] = static_cast<std::uint32_t>(index);
-      ++start_[index + 1];
+      slot[i] = static_cast<std::uint32_t>(index);
     }
-    for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
-    std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+    counting_sort(slot, start_.size() - 1, start_);
     ids_.resize(n);
     r_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) ids_[next[cell[i]]++] = static_cast<Id>(i);
+    for (std::size_t i = 0; i < n; ++i) ids_[slot[i]] = static_cast<Id>(i);
     for (std::size_t s = 0; s < n; ++s) r_[s] = r[ids_[s]];
     for (auto& column : x_) column.resize(n);
     update(x);

@@ -9,6 +9,7 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
 #include "bernal/domain/boundary.hpp"
+#include "neighbors/counting_sort.hpp"
 
 namespace bernal {
 
@@ -34,20 +35,15 @@ class PointGrid {
     for (const Id id : ids) points.push_back(boundary.wrap(spheres.center(id)));
     lay_cells(points, edge);
 
-    std::vector<std::uint32_t> cell_of_point;
-    cell_of_point.reserve(points.size());
-    for (const Vector<D>& p : points) {
-      cell_of_point.push_back(cell_of(p));
-      ++start_[cell_of_point.back() + 1];
-    }
-    for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
+    std::vector<std::uint32_t> place;
+    place.reserve(points.size());
+    for (const Vector<D>& p : points) place.push_back(cell_of(p));
+    counting_sort(place, cell_count_, start_);
     ids_.resize(points.size());
     for (auto& column : x_) column.resize(points.size());
-    std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const std::uint32_t place = next[cell_of_point[i]]++;
-      ids_[place] = ids[i];
-      for (int k = 0; k < D; ++k) x_[k][place] = points[i][k];
+      ids_[place[i]] = ids[i];
+      for (int k = 0; k < D; ++k) x_[k][place[i]] = points[i][k];
     }
   }
 
@@ -98,7 +94,7 @@ class PointGrid {
       if (cells <= most) break;
     }
     for (int k = 0; k < D; ++k) cell_edge_[k] = size[k] > 0 ? size[k] / static_cast<double>(cells_[k]) : edge;
-    start_.assign(static_cast<std::size_t>(cells) + 1, 0);
+    cell_count_ = static_cast<std::size_t>(cells);
   }
 
   std::int64_t unwrapped(int k, double x) const {
@@ -152,6 +148,7 @@ class PointGrid {
   Vector<D> lower_ = Vector<D>::Zero();
   Vector<D> cell_edge_ = Vector<D>::Ones();
   std::array<std::int64_t, D> cells_{};
+  std::size_t cell_count_ = 1;
   std::vector<std::uint32_t> start_;
   std::vector<Id> ids_;
   std::array<std::vector<double>, D> x_;

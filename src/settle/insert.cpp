@@ -1,5 +1,6 @@
 #include "settle/insert.hpp"
 
+#include "work/random_insertion.hpp"
 #include "work/stage_entry.hpp"
 
 namespace bernal {
@@ -22,16 +23,16 @@ StageEnd insert(Work& work, const InsertOptions& options) {
     if (work.monitor.stop()) return StageEnd::cancelled;
     const std::uint32_t tag = supply.window()[waiting];
     const double r = supply.radius(tag);
-    bool placed = false;
-    for (double trial = 0; trial < attempts && !placed; ++trial) {
-      const Vector<3> c = bed.places().draw(random);
-      if (!bed.fits(c, r)) continue;
-      bed.insert(c, r, tag);
-      supply.take(waiting);
-      placed = true;
+    const auto place = find_place(
+        attempts, [&] { return bed.places().draw(random); },
+        [&](const Vector<3>& c) { return bed.fits(c, r); });
+    if (!place) {
+      ++waiting;
+      continue;
     }
-    if (!placed) ++waiting;
-    if (placed && bed.size() % milestone_every == 0) work.milestone("insert");
+    bed.insert(*place, r, tag);
+    supply.take(waiting);
+    if (bed.size() % milestone_every == 0) work.milestone("insert");
   }
   return waiting > 0 && waiting == supply.window().size() ? StageEnd::full : StageEnd::converged;
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <functional>
-#include <numeric>
 
 #include "core/every_dimension.hpp"
+#include "neighbors/counting_sort.hpp"
 
 namespace bernal {
 namespace {
@@ -47,7 +47,6 @@ std::vector<std::uint32_t> FixedPointGrid<D>::sort(const Vector<D>& edges, doubl
   std::size_t all = 1;
   for (const Axis& axis : axes_) all *= static_cast<std::size_t>(axis.cells);
   std::vector<Id> cell(count);
-  cell_start_.assign(all + 1, 0);
   for (std::size_t i = 0; i < count; ++i) {
     std::uint64_t c = 0;
     for (const Axis& axis : axes_) {
@@ -55,11 +54,8 @@ std::vector<std::uint32_t> FixedPointGrid<D>::sort(const Vector<D>& edges, doubl
       c = c * n + (places[i].x[axis.axis] * n >> 32);
     }
     cell[i] = static_cast<Id>(c);
-    ++cell_start_[c + 1];
   }
-  std::partial_sum(cell_start_.begin(), cell_start_.end(), cell_start_.begin());
-  std::vector<Id> next(cell_start_.begin(), cell_start_.end() - 1);
-  for (Id& c : cell) c = next[c]++;
+  counting_sort(cell, all, cell_start_);
   return cell;
 }
 

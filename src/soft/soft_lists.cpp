@@ -8,6 +8,8 @@
 #include <limits>
 #include <memory>
 
+#include "neighbors/counting_sort.hpp"
+
 namespace bernal {
 namespace {
 
@@ -39,14 +41,10 @@ int count_of_cells(double edge, double width) {
 /// Reorders `order` by key(i) < buckets, keeping the order of equals. Returns where each bucket starts.
 template <class Key>
 std::vector<std::uint32_t> sort_by(std::vector<std::uint32_t>& order, std::size_t buckets, const Key& key) {
-  std::vector<std::uint32_t> start(buckets + 1, 0), sorted(order.size()), keys(order.size());
-  for (std::size_t n = 0; n < order.size(); ++n) {
-    keys[n] = static_cast<std::uint32_t>(key(order[n]));
-    ++start[keys[n] + 1];
-  }
-  for (std::size_t b = 0; b < buckets; ++b) start[b + 1] += start[b];
-  std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-  for (std::size_t n = 0; n < order.size(); ++n) sorted[next[keys[n]]++] = order[n];
+  std::vector<std::uint32_t> start, sorted(order.size()), place(order.size());
+  for (std::size_t n = 0; n < order.size(); ++n) place[n] = static_cast<std::uint32_t>(key(order[n]));
+  counting_sort(place, buckets, start);
+  for (std::size_t n = 0; n < order.size(); ++n) sorted[place[n]] = order[n];
   order.swap(sorted);
   return start;
 }

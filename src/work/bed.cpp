@@ -10,6 +10,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
+#include "work/room.hpp"
 
 namespace bernal {
 namespace {
@@ -78,18 +79,9 @@ bool Bed::fits(const Vector<3>& c, double r) const {
 }
 
 double Bed::room_between_spheres(const Vector<3>& c, double enough, double limit) const {
-  double gap = limit;
-  const auto lower_gap = [&](double reach) {
-    return grid_.any_near(c, reach + skin_, [&](Id j) {
-      const double s = gap + balls_[j].r + skin_;
-      const double squared = way(c, balls_[j].center).squaredNorm();
-      if (squared < s * s) gap = std::sqrt(squared) - balls_[j].r - skin_;
-      return gap < enough;
-    });
-  };
-  // Most places are inside some sphere: look near by before looking far around.
-  if (!lower_gap(enough)) lower_gap(gap);
-  return gap;
+  return bernal::room_between_spheres(grid_, c, enough, limit, skin_, [&](Id j) {
+    return Nearby{way(c, balls_[j].center).squaredNorm(), balls_[j].r};
+  });
 }
 
 void Bed::insert(const Vector<3>& place, double r, std::uint32_t tag) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "neighbors/cell_grid.hpp"
+#include "work/room.hpp"
 
 namespace bernal {
 namespace {
@@ -13,20 +14,6 @@ namespace {
 constexpr std::size_t candidates_a_hole = 8;
 /// Of radii that look for holes among themselves.
 constexpr std::size_t most_groups = 4;
-
-double room_between(const CellGrid<3>& grid, const Spheres<3>& spheres, const Boundary<3>& boundary,
-                    const Vector<3>& p, double enough, double limit) {
-  double room = limit;
-  const auto lower = [&](double reach) {
-    return grid.any_near(p, reach, [&](CellGrid<3>::Id j) {
-      room = std::min(room, boundary.minimum_image(spheres.center(j) - p).norm() - spheres.r[j]);
-      return room < enough;
-    });
-  };
-  // Most places are inside some sphere: look near by before looking far around.
-  if (!lower(0)) lower(room);
-  return room;
-}
 
 }  // namespace
 
@@ -57,7 +44,9 @@ std::vector<Hole> holes_for(std::span<const double> radii, const Container& cont
     const Vector<3> p = places.draw(random);
     double enough = most;
     for (const Group& group : groups) enough = std::min(enough, group.enough(-most));
-    const double room = room_between(grid, spheres, boundary, p, enough, most);
+    const double room = room_between_spheres(grid, p, enough, most, 0, [&](CellGrid<3>::Id j) {
+      return Nearby{boundary.minimum_image(spheres.center(j) - p).squaredNorm(), spheres.r[j]};
+    });
     if (room <= enough) continue;
     const double clearance = container.clearance_within(p, radii.front());
     for (Group& group : groups) {

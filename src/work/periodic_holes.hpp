@@ -6,6 +6,7 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/boundary.hpp"
 #include "neighbors/cell_grid.hpp"
+#include "work/room.hpp"
 
 namespace bernal {
 
@@ -40,14 +41,10 @@ void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std:
     double room = most;
     for (int k = 0; k < D && !walls.empty(); ++k)
       if (walls[static_cast<std::size_t>(k)]) room = std::min({room, p[k], edges[k] - p[k]});
-    const auto lower = [&](double reach) {
-      grid.for_each_near(p, reach, [&](std::uint32_t j) {
-        room = std::min(room, boundary.minimum_image(spheres.center(j) - p).norm() - spheres.r[j]);
-      });
-    };
-    lower(0);
-    if (room > 0) lower(room);
-    holes.push_back({p, room});
+    const double between = room_between_spheres(grid, p, -most, room, 0, [&](std::uint32_t j) {
+      return Nearby{boundary.minimum_image(spheres.center(j) - p).squaredNorm(), spheres.r[j]};
+    });
+    holes.push_back({p, between});
   }
   std::ranges::stable_sort(holes, std::greater<>(), &Hole::room);
   auto hole = holes.begin();

@@ -105,6 +105,28 @@ std::vector<SceneUnderTest> scenes_under_test() {
                       return plan_of(box + "[spheres]\npacking_fraction = 0.5\nradius = 0.12\n" + grow,
                                      test::prism_mesh(8, 1, 2));
                     }});
+  const std::string column =
+      "[container]\nkind = \"cylinder\"\nradius = 1.0\nheight = 2.5\nperiodic = true\n";
+  const std::string sideways = "direction = [1.0, -0.5, 0.0]\n";
+  const std::string settle = "[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"compress\"\n" + sideways +
+                             "[[stage]]\ndo = \"shake\"\n" + sideways + "[[stage]]\ndo = \"refill\"\n" +
+                             sideways;
+  add("RelaxationInAColumn",
+      column + "[spheres]\nradius = { distribution = \"uniform\", min = 0.1, max = 0.2 }\n");
+  add("SettlingInAColumn", column + "[spheres]\nfill = true\nradius = 0.15\n" + settle);
+  add("GrowthInAColumn", column + "[spheres]\nradius = 0.15\n" + grow);
+  const auto add_in = [&](std::string name, const Domain& domain, const std::string& toml) {
+    scenes.push_back({std::move(name), [=] { return plan_of(box + toml, domain); }});
+  };
+  const Box slab{{0.5, -1, 2}, {1.1, 1, 0.8}, {true, true, false}};
+  const Box channel{{0.5, -1, 2}, {1.1, 1, 0.8}, {false, false, true}};
+  add_in("RelaxationInASlab", slab, "[spheres]\nradius = 0.08\n");
+  add_in("SettlingInASlab", slab,
+         "[spheres]\nfill = true\nradius = 0.08\n[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"refill\"\n");
+  add_in("SettlingInAChannel", channel, "[spheres]\nfill = true\nradius = 0.08\n" + settle);
+  add_in("GrowthInAChannel", channel, "[spheres]\nradius = 0.08\n" + grow);
+  add_in("RelaxationBetweenNoWalls", Box{{3, 0, 0}, {1, 1, 1}, {true, true, true}},
+         "[spheres]\nradius = 0.09\n[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"relax\"\n");
   scenes.push_back({"LShapeMesh", [] {
                       return plan_of("unit = \"m\"\n" + box + "[spheres]\nfill = true\nradius = 0.1\n",
                                      test::translated(test::l_shape_mesh(), {0, 0, -7}));

@@ -70,9 +70,9 @@ inline Plan scaled(Plan plan, double factor) {
   return plan;
 }
 
-/// A periodic box has no place.
+/// A box of kind "periodic" has no place.
 inline Plan shifted(Plan plan, const Vector<3>& by) {
-  if (!is_periodic(plan.domain)) plan.domain = shifted(std::move(plan.domain), by);
+  if (!plan.scene.is_periodic()) plan.domain = shifted(std::move(plan.domain), by);
   return plan;
 }
 

@@ -47,7 +47,9 @@ void expect_free(const Spheres<3>& spheres, const Container& container) {
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     EXPECT_TRUE(container.contains(spheres.center(i), spheres.r[i])) << i;
     for (std::size_t j = 0; j < i; ++j)
-      EXPECT_GE((spheres.center(i) - spheres.center(j)).norm(), spheres.r[i] + spheres.r[j]) << i << " " << j;
+      EXPECT_GE(container.boundary().minimum_image(spheres.center(i) - spheres.center(j)).norm(),
+                spheres.r[i] + spheres.r[j])
+          << i << " " << j;
   }
 }
 
@@ -58,6 +60,38 @@ TEST(Crowd, ComesFreeWhereThereIsRoom) {
   EXPECT_EQ(tested.crowd.spheres().r, spheres.r);
   EXPECT_EQ(tested.crowd.severely_squeezed(), 0u);
   expect_free(tested.crowd.spheres(), *tested.container);
+}
+
+/// Along all axes that repeat themselves, one of them and none: spheres meet across the seam.
+TEST(Crowd, ComesFreeWhereSpaceRepeatsItself) {
+  const Domain domains[] = {Cylinder{{0.5, 0.5, 0}, {0, 0, 1}, 0.5, 1.3, true},
+                            Box{{0, 0, 0}, {1, 1, 1}, {true, false, true}},
+                            Box{{0, 0, 0}, {1, 1, 1}, {true, true, true}}};
+  for (const Domain& domain : domains) {
+    SCOPED_TRACE(name_of(domain));
+    auto container = make_analytic_container(domain, WallArithmetic::filtered, 0x1p-50);
+    Spheres<3> spheres = random_spheres(container->bounds(), 0.08, 0.35);
+    for (std::size_t i = 0; i < spheres.size(); ++i)
+      while (!(container->clearance(spheres.center(i)) > 0))
+        spheres.set_center(i, 0.5 * (spheres.center(i) + container->bounds().center()));
+    CrowdUnderTest tested(std::move(container), spheres);
+    ASSERT_EQ(tested.settle(), Crowd::Rest::free);
+    expect_free(tested.crowd.spheres(), *tested.container);
+    const Boundary<3>& boundary = tested.container->boundary();
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const Vector<3> c = tested.crowd.spheres().center(i);
+      EXPECT_EQ(boundary.wrap(c), c);
+      for (int k = 0; k < 3 && i == 0; ++k) {
+        if (!boundary.repeats(k)) continue;
+        const std::vector<double>& x = tested.crowd.spheres().x[static_cast<std::size_t>(k)];
+        EXPECT_LT(std::ranges::min(x), boundary.origin[k] + 0.04) << "a wall stands at the seam";
+        EXPECT_GT(std::ranges::max(x), boundary.origin[k] + boundary.edges[k] - 0.04);
+      }
+    }
+    tested.crowd.relocate(0.1, tested.random);
+    EXPECT_EQ(tested.settle(), Crowd::Rest::free);
+    expect_free(tested.crowd.spheres(), *tested.container);
+  }
 }
 
 TEST(Crowd, GetsStuckWhereThereIsNone) {

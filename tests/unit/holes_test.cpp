@@ -116,6 +116,26 @@ TEST(Holes, InAPartThatIsTooThinAreItsMiddle) {
   EXPECT_TRUE(holes_in(*container, spheres, {0.13}, 5000).empty());
 }
 
+TEST(Holes, AreFoundAcrossASeam) {
+  // Only half of the hole is on either side; the lattice goes on there, and so do spheres.
+  const auto container =
+      make_analytic_container(Box{{0, 0, 0}, {1, 1, 1}, {false, true, true}}, WallArithmetic::plain, 0x1p-50);
+  Spheres<3> spheres;
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j)
+      for (int k = 0; k < 5; ++k)
+        if (i != 2 || j != 0 || k != 0) spheres.push_back(r * Vector<3>(2 * i + 1, 2 * j, 2 * k), r);
+  const std::vector<Hole> holes = holes_in(*container, spheres, {r}, 1000000);
+  ASSERT_EQ(holes.size(), 1u);
+  const Vector<3> from_missing = container->boundary().minimum_image(holes[0].place - Vector<3>(0.5, 0, 0));
+  EXPECT_LT(from_missing.norm(), (2 - std::numbers::sqrt3) * r);
+  double room = r;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    room = std::min(
+        room, container->boundary().minimum_image(spheres.center(i) - holes[0].place).norm() - spheres.r[i]);
+  EXPECT_DOUBLE_EQ(holes[0].room, room);
+}
+
 TEST(Holes, AreFewerWhereThereAreNotSoMany) {
   const auto container = box_of({1, 1, 1});
   const Spheres<3> spheres = random_crowd(*container, 10, 0.05, 0.1);

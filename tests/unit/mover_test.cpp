@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(test::localized("Box", Box{{0, 0, 0}, {1, 0.8, 0.9}}),
                       test::localized("ObliqueCylinder", Cylinder{{1, 2, 3}, {1, -2, 0.5}, 0.7, 1.9}),
                       test::localized("Sphere", Sphere{{0, 0, 0}, 1}),
-                      test::localized("Column", Cylinder{{5, 2, 1}, {2, 0, 0}, 0.7, 1.1, true}),
+                      test::localized("Column", Cylinder{{5, 2, 1}, {2, 0, 0}, 0.7, 1.9, true}),
                       test::localized("Slab", Box{{0, 0, 0}, {1, 0.8, 0.9}, {true, true, false}}),
                       test::localized("Channel", Box{{3, 0, -2}, {1, 0.8, 0.9}, {false, true, false}}),
                       test::localized("PrismMesh", test::prism_mesh(12, 1, 2)),

@@ -116,6 +116,30 @@ TEST(SoftWalls, BetweenPlatesNearerThanADiameterPushToTheMiddle) {
   EXPECT_LT((spheres.center(0) - Vector<3>(0.4, 0.45, 0.075)).norm(), 1e-7);
 }
 
+// ---- where space repeats itself
+
+/// Two spheres that overlap each other across the seam of a column, and its wall: the one goes through the
+/// seam, and on along the wall, as if it were nowhere.
+TEST(SoftWallsOfAColumn, PushSpheresThroughTheSeam) {
+  const auto column = container_of(Cylinder{{0, 0, 3}, {0, 0, 1}, 1, 2, true});
+  const double r = 0.2, depth = 0.05, apart = 0.1;
+  Spheres<3> spheres;
+  for (const double z : {4.99, 4.99 - apart}) spheres.push_back({1 - r + depth, 0, z}, r);
+  SoftPacking packing(spheres, *column, soft_kernels().front());
+  for (int sweep = 0; sweep < 60; ++sweep) packing.sweep(5);
+  EXPECT_LT(packing.sweep_and_measure(1), 1e-3);
+  packing.write_to(spheres);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_TRUE(column->contains(spheres.center(i), r - 1e-3)) << i;
+    EXPECT_GE(spheres.x[2][i], 3);
+    EXPECT_LT(spheres.x[2][i], 5);
+  }
+  EXPECT_LT(spheres.x[2][0], 3.3);  // it came through
+  EXPECT_GT(spheres.x[2][1], 4.6);
+  const Vector<3> way = column->boundary().minimum_image(spheres.center(1) - spheres.center(0));
+  EXPECT_NEAR(way.norm(), 2 * r, 2e-3);
+}
+
 // ---- many spheres
 
 /// Spheres at random inside that would fill the container `phi` times over, their radii down to r / `range`.
