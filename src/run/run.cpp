@@ -224,6 +224,7 @@ class Run {
     }
     for (double& r : spheres.r) r *= frame_.scale;
     if (work.stands_in_bed()) {
+      wrap(spheres, packing_.domain);
       Effect& walls = effects_["walls"];
       walls.calls += work.bed().wall_queries().calls;
       walls.seconds += work.bed().wall_queries().seconds;

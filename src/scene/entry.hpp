@@ -78,7 +78,8 @@ void take_value(M& m, const Value& value) {
     m = static_cast<M>(std::get<std::int64_t>(value));
   else if constexpr (std::is_same_v<M, std::filesystem::path>)
     m = std::get<std::string>(value);
-  else if constexpr (requires { std::get<M>(value); })
+  else if constexpr (std::is_same_v<M, bool> || std::is_same_v<M, double> ||
+                     std::is_same_v<M, std::vector<SceneSizes>>)
     m = std::get<M>(value);
   else if (const auto& v = std::get<std::vector<double>>(value); true) {
     if constexpr (requires { m.assign(v.begin(), v.end()); })
