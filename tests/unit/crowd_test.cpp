@@ -75,7 +75,7 @@ TEST(Crowd, ComesFreeWhereSpaceRepeatsItself) {
       while (!(container->clearance(spheres.center(i)) > 0))
         spheres.set_center(i, 0.5 * (spheres.center(i) + container->bounds().center()));
     CrowdUnderTest tested(std::move(container), spheres);
-    ASSERT_EQ(tested.settle(), Crowd::Rest::free);
+    ASSERT_EQ(tested.settle(), CrowdInContainer::Rest::free);
     expect_free(tested.crowd.spheres(), *tested.container);
     const Boundary<3>& boundary = tested.container->boundary();
     for (std::size_t i = 0; i < spheres.size(); ++i) {
@@ -89,7 +89,7 @@ TEST(Crowd, ComesFreeWhereSpaceRepeatsItself) {
       }
     }
     tested.crowd.relocate(0.1, tested.random);
-    EXPECT_EQ(tested.settle(), Crowd::Rest::free);
+    EXPECT_EQ(tested.settle(), CrowdInContainer::Rest::free);
     expect_free(tested.crowd.spheres(), *tested.container);
   }
 }

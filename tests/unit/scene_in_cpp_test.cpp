@@ -30,7 +30,7 @@ TEST(SceneInCpp, PacksWhatTheSameTextPacks) {
   scene.stages = {Insert{.packing_fraction = 0.1}, Relax{.patience = 9}};
   const Packing packing = run(build(scene));
   EXPECT_EQ(packing.spheres.size(), 200u);
-  EXPECT_TRUE(certify(packing.spheres, packing.domain, 0).certified);
+  EXPECT_TRUE(certify(packing.spheres, packing.domain).certified);
 
   const Scene same = parse_scene(R"(
 [container]
