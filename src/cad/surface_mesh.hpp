@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bernal/domain/shape.hpp"
+#include "bernal/domain/domain.hpp"
 
 namespace bernal::cad {
 
