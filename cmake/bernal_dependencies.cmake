@@ -1,11 +1,21 @@
-# Every library that bernal uses; CONTRIBUTING.md says why each one is here.
-# The Debian packages are listed in cmake/debian-packages.txt.
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(Boost 1.74 REQUIRED)
-find_package(TBB REQUIRED)
-find_package(fmt 9 REQUIRED)
-find_package(NLopt 2.7 REQUIRED)
-find_package(CGAL 5.5 REQUIRED)
-find_package(assimp 5.2 REQUIRED)
-find_package(tomlplusplus 3.3 REQUIRED)
-find_package(nlohmann_json 3.11 REQUIRED)
+# Finds what the components to be built need.
+include(bernal_components)
+
+set(BERNAL_COMPONENTS "" CACHE STRING "Libraries to build, with what they stand on; all of them if empty")
+foreach(component IN LISTS BERNAL_COMPONENTS)
+  if(NOT component IN_LIST bernal_components)
+    message(FATAL_ERROR "BERNAL_COMPONENTS: ${component} is none of ${bernal_components}")
+  endif()
+endforeach()
+if(BERNAL_COMPONENTS)
+  bernal_with_foundations(bernal_built ${BERNAL_COMPONENTS})
+else()
+  set(bernal_built ${bernal_components})
+endif()
+
+foreach(component IN LISTS bernal_built)
+  foreach(package IN LISTS bernal_${component}_packages)
+    separate_arguments(package)
+    find_package(${package} REQUIRED)
+  endforeach()
+endforeach()

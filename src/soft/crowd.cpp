@@ -59,11 +59,14 @@ typename Crowd<Ground>::Rest Crowd<Ground>::settle(const Monitor& monitor,
       ++sweeps_;
       cancelled = monitor.stop();
     }
+    if (cancelled) {
+      rest = Rest::cancelled;
+      break;
+    }
     measure();
     if (milestone) milestone();
     if (largest_overlap_ < share_of_margin * margin()) rest = Rest::free;
     if (rest == Rest::stuck && sweeps_ > most_sweeps) rest = Rest::over;
-    if (cancelled) rest = Rest::cancelled;
     if (rest != Rest::stuck) break;
     slow = mean_squeeze_ > hardly_freer * least_squeeze ? slow + 1 : 0;
     // May swing: only a new low counts, so that this ends.

@@ -1,26 +1,79 @@
-# Installs the build in BUILD below PREFIX and builds and runs the stranger's project against that.
-function(run what)
+# Installs the build in BUILD below PREFIX and builds and runs projects of strangers against that.
+function(execute what)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  set(result "${result}" PARENT_SCOPE)
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+macro(run what)
+  execute(${what} ${ARGN})
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "${what} failed (${result}):\n${output}")
   endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+endmacro()
 
+set(configure ${CMAKE_COMMAND} -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_PREFIX_PATH=${PREFIX}
+  -D CMAKE_BUILD_TYPE=Debug)
 set(stranger ${PREFIX}/stranger)
 file(REMOVE_RECURSE ${PREFIX})
 run("install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX})
-run("configure" ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/stranger -B ${stranger} -G ${GENERATOR}
-  -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_PREFIX_PATH=${PREFIX} -D CMAKE_BUILD_TYPE=Debug)
+run("configure" ${configure} -S ${CMAKE_CURRENT_LIST_DIR}/stranger -B ${stranger})
 run("build" ${CMAKE_COMMAND} --build ${stranger})
 run("pack_a_box" ${stranger}/pack_a_box ${stranger}/packing)
 run("the installed command" ${PREFIX}/bin/bernal verify ${stranger}/packing)
-run("only_predict" ${stranger}/only_predict)
+run("every installed header" ${CMAKE_COMMAND} --build ${stranger} --target headers)
 
-# Who links bernal::predict gets neither the CAD libraries nor exact arithmetic.
-run("ldd" ldd ${stranger}/only_predict)
-foreach(library assimp CGAL mpfr)
-  if(output MATCHES "${library}")
-    message(FATAL_ERROR "a program that links only bernal::predict needs ${library}:\n${output}")
+# On a machine that has not what packing needs, as far as CMake can tell: there whoever wants all of bernal is told
+# what is missing, and whoever wants a part gets it. Nothing of the rest is read or linked.
+function(hide result)
+  set(hidden)
+  foreach(package ${ARGN})
+    list(APPEND hidden -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+  endforeach()
+  set(${result} ${hidden} PARENT_SCOPE)
+endfunction()
+hide(without_cad CGAL assimp tomlplusplus nlohmann_json)
+hide(without_search NLopt)
+
+execute("configure" ${configure} ${without_cad} -S ${CMAKE_CURRENT_LIST_DIR}/stranger -B ${PREFIX}/refused)
+if(result EQUAL 0 OR NOT output MATCHES "CGAL")
+  message(FATAL_ERROR "find_package(bernal) does not miss CGAL where there is none:\n${output}")
+endif()
+
+function(build_alone folder hidden unread)
+  set(components ${ARGN})
+  string(REPLACE ";" "," joined "${components}")
+  run("configure ${joined}" ${configure} ${hidden} -D COMPONENTS=${joined}
+    -S ${CMAKE_CURRENT_LIST_DIR}/alone -B ${folder})
+  run("build ${joined}" ${CMAKE_COMMAND} --build ${folder})
+  foreach(component IN LISTS components)
+    run("${component}_alone" ${folder}/${component}_alone)
+    run("ldd" ldd ${folder}/${component}_alone)
+    if(output MATCHES "(${unread}|mpfr|gmp)")
+      message(FATAL_ERROR "a program that links only bernal::${component} needs ${CMAKE_MATCH_1}:\n${output}")
+    endif()
+  endforeach()
+  file(GLOB_RECURSE dependencies ${folder}/*.d)
+  execute("read files" ninja -C ${folder} -t deps)
+  foreach(dependency IN LISTS dependencies)
+    file(READ ${dependency} text)
+    string(APPEND output "${text}")
+  endforeach()
+  if(NOT output MATCHES "certificate.hpp")
+    message(FATAL_ERROR "which files the compiler read is not known:\n${output}")
   endif()
-endforeach()
+  if(output MATCHES "/(${unread})")
+    message(FATAL_ERROR "a header of ${joined} reads ${CMAKE_MATCH_1}")
+  endif()
+endfunction()
+set(of_cad "CGAL|assimp|toml|nlohmann")
+build_alone(${PREFIX}/predict_and_verify "${without_cad}" "${of_cad}" predict verify)
+build_alone(${PREFIX}/verify "${without_cad};${without_search}" "${of_cad}|nlopt" verify)
+
+# And such a machine can build them.
+execute_process(
+  COMMAND ${CMAKE_COMMAND} -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER} ${without_cad}
+    "-DBERNAL_COMPONENTS=predict;verify" -S ${SOURCE} -B ${PREFIX}/built_there
+  RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "predict and verify cannot be configured without CGAL:\n${output}")
+endif()

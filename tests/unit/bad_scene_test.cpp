@@ -80,7 +80,7 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
       {with_spheres("diameter = { distribution = \"lognormal\", median = 1, d43 = 2 }"),
        3,
        {"exclude each other"}},
-      {with_spheres("fill = false\nradius = 1"), 3, {"\"fill\"", "\"count\""}},
+      {with_spheres("fill = false\nradius = 1"), 3, {"\"fill\"", "must be true or left out"}},
       // values out of range
       {with_container("kind = \"cylinder\"\nradius = -3\nheight = 1"),
        4,

@@ -320,7 +320,7 @@ TEST(WatchedCertificate, CertifiesNothingOnceItIsStopped) {
     s.push_back(Vector<3>(i % 100 * 2 + 1, i / 100 % 4 * 2 + 1, i / 400 * 0.7 + 0.3), 0.3);
   const Certificate whole = certify(s, hall);
   ASSERT_TRUE(whole.certified) << whole.statement;
-  for (const int after : {0, 5, 100}) {
+  for (const int after : {0, 1}) {
     int asked = 0;
     CertifyOptions options;
     options.monitor.cancelled = [&] { return asked++ >= after; };

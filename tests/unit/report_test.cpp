@@ -118,7 +118,7 @@ TEST(Report, OfAPeriodicCylinderIsWrittenAndReadBack) {
   packing.volume = volume_of(packing.domain);
   for (int k = 0; k < 4; ++k) packing.spheres.push_back(Vector<3>(1, 2, 4 + 5 * k), 0.5);
   wrap(packing.spheres, packing.domain);
-  packing.history = {{"insert", 2, 0.1, 5, 0.1}, {"compress", 4, 0.2, 4, 0.2}};
+  packing.history = {{"insert", 2, 0.1, 5, 0, 0.1}, {"compress", 4, 0.2, 4, 0, 0.2}};
   const Folder folder;
   const WrittenPacking written = write_packing(packing, folder.path());
   EXPECT_TRUE(written.certificate.certified) << written.certificate.statement;

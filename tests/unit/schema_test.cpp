@@ -43,7 +43,8 @@ std::string sample(const Key& key, int choice) {
       return fmt::format("\"{}\"", key.words[choice % key.words.size()]);
     case Type::file:
       return choice == 0 ? "\"part.stl\"" : "'''/tmp/a \"strange\" \\ name.stl'''";
-    case Type::direction:
+    case Type::direction:  // along an axis, as columns need it
+      return choice == 0 ? "[0, -1e-5, 0]" : "[4.000000000000001, 0, 0]";
     case Type::position:
       return choice == 0 ? "[0, -1, 1e-5]" : "[3, 4.000000000000001, 0]";
     case Type::extents:
