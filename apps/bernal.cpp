@@ -3,13 +3,11 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
 #include "commands.hpp"
 
@@ -43,57 +41,29 @@ int complain(std::string what) {
   return exit_code::bad_input;
 }
 
-/// The command that was asked for, as far as it is known.
-const CLI::App& asked_for(const CLI::App& app) {
-  const auto commands = app.get_subcommands();
-  return commands.empty() ? app : asked_for(*commands.front());
-}
-
-/// "bernal design target".
-std::string whole_name(const CLI::App& app) {
-  return app.get_parent() ? whole_name(*app.get_parent()) + " " + app.get_name() : app.get_name();
-}
-
-/// The word after it is no command, if there is one where a command should stand: which is meant?
-std::string unknown_command(const CLI::App& app, const std::vector<std::string>& words) {
-  std::vector<std::string_view> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
-  const auto after = app.get_parent() ? std::ranges::find(words, app.get_name()) + 1 : words.begin();
-  if (names.empty() || after == words.end() || after->starts_with('-')) return "";
-  return fmt::format("unknown command \"{}\"{}", *after, bernal::remedy(*after, names));
+void add_commands(Command bernal, int& status) {
+  bernal.footer(examples);
+  bernal.require_subcommand();
+  add_pack(bernal, status);
+  add_verify(bernal, status);
+  add_inspect(bernal, status);
+  add_explain(bernal, status);
+  add_keys(bernal, status);
+  add_measure(bernal, status);
+  add_predict(bernal, status);
+  add_design(bernal, status);
+  add_map(bernal, status);
+  add_reproduce(bernal, status);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is an error to report, not a reason to die
-  CLI::App app{description, "bernal"};
-  app.footer(examples);
-  app.set_version_flag("--version", "bernal " + std::string(bernal::version()));
-  app.require_subcommand(1);
-  const std::vector<std::string> words(argv + 1, argv + argc);
   int status = exit_code::done;
-  add_pack(app, status);
-  add_verify(app, status);
-  add_inspect(app, status);
-  add_explain(app, status);
-  add_keys(app, status);
-  add_measure(app, status);
-  add_predict(app, status);
-  add_design(app, status);
-  add_map(app, status);
-  add_reproduce(app, status);
   try {
-    if (words.empty()) throw CLI::CallForHelp();
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked);
-  } catch (const CLI::ParseError& wrong) {
-    const CLI::App& command = asked_for(app);
-    const std::string unknown = unknown_command(command, words);
-    if (!unknown.empty()) return complain(unknown);
-    return complain(fmt::format("{}; see {} --help", wrong.what(), whole_name(command)));
+    read_command_line(argc, argv, description, "bernal " + std::string(bernal::version()),
+                      [&](Command bernal) { add_commands(bernal, status); });
   } catch (const std::bad_alloc&) {
     return complain("out of memory");
   } catch (const std::exception& error) {

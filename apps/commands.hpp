@@ -1,18 +1,18 @@
 #pragma once
-#include <CLI/CLI.hpp>
+#include "command_line.hpp"
 
 /// Each of these adds one subcommand. When the user calls it, it runs while the command line is parsed and
 /// leaves the exit code of the process in `status`; bad input throws bernal::Error.
-void add_pack(CLI::App& app, int& status);
-void add_verify(CLI::App& app, int& status);
-void add_inspect(CLI::App& app, int& status);
-void add_explain(CLI::App& app, int& status);
-void add_keys(CLI::App& app, int& status);
-void add_measure(CLI::App& app, int& status);
-void add_predict(CLI::App& app, int& status);
-void add_design(CLI::App& app, int& status);
-void add_map(CLI::App& app, int& status);
-void add_reproduce(CLI::App& app, int& status);
+void add_pack(Command app, int& status);
+void add_verify(Command app, int& status);
+void add_inspect(Command app, int& status);
+void add_explain(Command app, int& status);
+void add_keys(Command app, int& status);
+void add_measure(Command app, int& status);
+void add_predict(Command app, int& status);
+void add_design(Command app, int& status);
+void add_map(Command app, int& status);
+void add_reproduce(Command app, int& status);
 
 /// Exit codes, the same for every subcommand.
 namespace exit_code {

@@ -15,10 +15,10 @@
 
 using namespace bernal;
 
-void add_output(CLI::App& command, DesignOutput& output) {
+void add_output(Command command, DesignOutput& output) {
   command.add_option("--rods", output.rods, "Rods that stand for the sizes; 16,000 if absent")
-      ->check(CLI::Range(100, 10'000'000))
-      ->type_name("N");
+      .within(100, 10'000'000)
+      .type_name("N");
   command.add_flag("--json", output.json, "One JSON object on standard output");
 }
 
@@ -80,18 +80,17 @@ nlohmann::ordered_json table_as_json(const Prediction& prediction, const std::st
           {"scene_line", "diameter = " + table}};
 }
 
-void add_design(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("design", "Find the sizes that pack densest, or as densely as asked");
-  command->require_subcommand(1);
-  command->footer(R"(Examples:
+void add_design(Command app, int& status) {
+  Command command = app.add_subcommand("design", "Find the sizes that pack densest, or as densely as asked");
+  command.require_subcommand();
+  command.footer(R"(Examples:
   bernal design maximise --diameters 1,3,9             how much of each packs densest: 0.8336
   bernal design target --phi 0.7 --family lognormal    how wide: sigma = 0.4619
   bernal design best --min 1 --max 10                  the densest sizes between two limits
 
 Each ends with a line "diameter = { … }" to paste under [spheres] of a scene.
 All of it by the rod model: see bernal predict --help for what that is worth.)");
-  add_design_maximise(*command, status);
-  add_design_target(*command, status);
-  add_design_best(*command, status);
+  add_design_maximise(command, status);
+  add_design_target(command, status);
+  add_design_best(command, status);
 }

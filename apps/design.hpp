@@ -3,24 +3,24 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include "command_line.hpp"
 
 #include "bernal/predict/predict.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 #include "populations.hpp"
 
 // bernal design: one file for each of its commands, and what they share.
-void add_design_maximise(CLI::App& design, int& status);
-void add_design_target(CLI::App& design, int& status);
-void add_design_best(CLI::App& design, int& status);
+void add_design_maximise(Command design, int& status);
+void add_design_target(Command design, int& status);
+void add_design_best(Command design, int& status);
 
 /// --rods and --json, as in bernal predict.
 struct DesignOutput {
   int rods = 16000;
   bool json = false;
 };
-void add_output(CLI::App& command, DesignOutput& output);
+void add_output(Command command, DesignOutput& output);
 
 /// A length or an amount in the fewest digits, at most ten, that are good to 1e-10.
 std::string number(double value);

@@ -161,19 +161,17 @@ Exit codes: 0 done; 2 bad input; 3 stopped early, the answer is the best so far.
 
 }  // namespace
 
-void add_design_best(CLI::App& design, int& status) {
+void add_design_best(Command design, int& status) {
   auto call = std::make_shared<BestCall>();
-  CLI::App* command = design.add_subcommand("best", "The sizes between two limits that pack densest");
-  command->add_option("--min", call->min, "The smallest diameter, in any unit")->required()->type_name("D");
-  command->add_option("--max", call->max, "The largest diameter, in the same unit")
-      ->required()
-      ->type_name("D");
-  command->add_option("--bins", call->bins, "Of the density: 2, 4, 8, 16, 32 or 64; 16 if absent")
-      ->check(CLI::IsMember({2, 4, 8, 16, 32, 64}))
-      ->type_name("N");
-  add_output(*command, call->output);
-  command->footer(footer);
-  command->callback([call, &status] {
+  Command command = design.add_subcommand("best", "The sizes between two limits that pack densest");
+  command.add_option("--min", call->min, "The smallest diameter, in any unit").required().type_name("D");
+  command.add_option("--max", call->max, "The largest diameter, in the same unit").required().type_name("D");
+  command.add_option("--bins", call->bins, "Of the density: 2, 4, 8, 16, 32 or 64; 16 if absent")
+      .one_of({2, 4, 8, 16, 32, 64})
+      .type_name("N");
+  add_output(command, call->output);
+  command.footer(footer);
+  command.callback([call, &status] {
     const Answer answer = find(*call);
     if (call->output.json)
       fmt::print("{}\n", as_json(answer).dump(2));

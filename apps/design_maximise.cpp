@@ -147,24 +147,21 @@ Exit codes: 0 done; 2 bad input; 3 stopped early, the answer is the best so far.
 
 }  // namespace
 
-void add_design_maximise(CLI::App& design, int& status) {
+void add_design_maximise(Command design, int& status) {
   auto call = std::make_shared<MaximiseCall>();
-  CLI::App* command =
+  Command command =
       design.add_subcommand("maximise", "The composition of two to six given populations that packs densest");
-  command->add_option("--diameters", call->diameters, "Populations of one diameter each, in any unit")
-      ->type_name("D,D,…");
+  command.add_option("--diameters", call->diameters, "Populations of one diameter each, in any unit")
+      .type_name("D,D,…");
   command
-      ->add_option(
-          "--lognormal", call->lognormals,
-          "A lognormal population by its volume- and its surface-weighted mean diameter; as often as "
-          "needed")
-      ->type_name("D43,D32")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  add_output(*command, call->output);
-  command->footer(footer);
-  command->callback([call, &status] {
+      .add_option("--lognormal", call->lognormals,
+                  "A lognormal population by its volume- and its surface-weighted mean diameter; as often as "
+                  "needed")
+      .type_name("D43,D32")
+      .repeated();
+  add_output(command, call->output);
+  command.footer(footer);
+  command.callback([call, &status] {
     const Answer answer = maximise(*call);
     if (call->output.json)
       fmt::print("{}\n", as_json(answer).dump(2));

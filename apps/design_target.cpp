@@ -121,23 +121,23 @@ Exit codes: 0 done; 2 bad input; 3 no member of the family packs so, and what th
 
 }  // namespace
 
-void add_design_target(CLI::App& design, int& status) {
+void add_design_target(Command design, int& status) {
   auto call = std::make_shared<TargetCall>();
-  CLI::App* command =
+  Command command =
       design.add_subcommand("target", "The sizes of a family that pack to a given packing fraction");
-  command->add_option("--phi", call->phi, "The packing fraction asked for")->required()->type_name("P");
-  command->add_option("--family", call->family, "One of the families below")
-      ->required()
-      ->check(CLI::IsMember(family_names()))
-      ->type_name("NAME");
-  command->add_option("--max-ratio", call->ratio, "The largest over the smallest diameter, at most")
-      ->type_name("R");
-  command->add_option("--min", call->min, "No diameter is smaller than this, in any unit")->type_name("D");
-  command->add_option("--max", call->max, "No diameter is larger, in the same unit")->type_name("D");
-  command->add_option("--exponent", call->exponent, "Of fuller; 0.5 if absent")->type_name("Q");
-  add_output(*command, call->output);
-  command->footer(footer);
-  command->callback([call, &status] {
+  command.add_option("--phi", call->phi, "The packing fraction asked for").required().type_name("P");
+  command.add_option("--family", call->family, "One of the families below")
+      .required()
+      .one_of(family_names())
+      .type_name("NAME");
+  command.add_option("--max-ratio", call->ratio, "The largest over the smallest diameter, at most")
+      .type_name("R");
+  command.add_option("--min", call->min, "No diameter is smaller than this, in any unit").type_name("D");
+  command.add_option("--max", call->max, "No diameter is larger, in the same unit").type_name("D");
+  command.add_option("--exponent", call->exponent, "Of fuller; 0.5 if absent").type_name("Q");
+  add_output(command, call->output);
+  command.footer(footer);
+  command.callback([call, &status] {
     const Answer answer = find(*call);
     if (call->output.json)
       fmt::print("{}\n", as_json(*call, answer).dump(2));

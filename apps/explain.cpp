@@ -82,16 +82,16 @@ void explain(const ExplainCall& call) {
 
 }  // namespace
 
-void add_explain(CLI::App& app, int& status) {
+void add_explain(Command app, int& status) {
   auto call = std::make_shared<ExplainCall>();
-  CLI::App* command = app.add_subcommand("explain", "Say what a scene would run and cost; run nothing");
-  command->add_option("SCENE", call->scene, "The scene, a TOML file")->required();
-  command->add_flag("--json", call->json, "One JSON object on standard output");
-  command->footer(
+  Command command = app.add_subcommand("explain", "Say what a scene would run and cost; run nothing");
+  command.add_option("SCENE", call->scene, "The scene, a TOML file").required();
+  command.add_flag("--json", call->json, "One JSON object on standard output");
+  command.footer(
       "Prints what was understood, what would run, how many spheres to expect and, where the scene names\n"
       "no stages, those that run, with all their defaults.\n"
       "Exit codes: 0 done; 2 bad input.");
-  command->callback([call, &status] {
+  command.callback([call, &status] {
     explain(*call);
     status = exit_code::done;
   });

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -160,30 +161,30 @@ int inspect(const InspectCall& call) {
 
 }  // namespace
 
-void add_inspect(CLI::App& app, int& status) {
+void add_inspect(Command app, int& status) {
   auto call = std::make_shared<InspectCall>();
-  CLI::App* command =
-      app.add_subcommand("inspect", "Say what a CAD file is and whether it can be a container");
-  command->add_option("MESH", call->mesh, "The file: STL, OBJ, OFF, PLY, 3MF, glTF, …")->required();
+  Command command = app.add_subcommand("inspect", "Say what a CAD file is and whether it can be a container");
+  command.add_option("MESH", call->mesh, "The file: STL, OBJ, OFF, PLY, 3MF, glTF, …").required();
   command
-      ->add_option("--unit", call->unit,
-                   "Unit of the file's lengths: nm, um, mm, cm, m, in, ft; unknown if absent")
-      ->type_name("UNIT");
+      .add_option("--unit", call->unit,
+                  "Unit of the file's lengths: nm, um, mm, cm, m, in, ft; unknown if absent")
+      .type_name("UNIT");
   command
-      ->add_option("--radius", call->radius,
-                   "Count the chambers that spheres of this radius, in the file's lengths, cannot leave")
-      ->check([](const std::string& text) {
-        double radius = 0;
-        const bool fine = CLI::detail::lexical_cast(text, radius) && radius > 0 && std::isfinite(radius);
+      .add_option("--radius", call->radius,
+                  "Count the chambers that spheres of this radius, in the file's lengths, cannot leave")
+      .check([](const std::string& text) {
+        char* end = nullptr;
+        const double radius = std::strtod(text.c_str(), &end);
+        const bool fine = *end == '\0' && radius > 0 && std::isfinite(radius);
         return fine ? std::string() : text + " is no length above 0";
       })
-      ->type_name("LENGTH");
-  command->add_flag("--json", call->json, "One JSON object on standard output");
-  command->footer(
+      .type_name("LENGTH");
+  command.add_flag("--json", call->json, "One JSON object on standard output");
+  command.footer(
       "A container is closed, does not cross itself, and hangs together in more than edges and corners.\n"
       "\nExamples:\n"
       "  bernal inspect part.stl --unit mm                can this CAD file be a container?\n"
       "  bernal inspect part.stl --radius 0.5 --json      and into how many chambers does it fall?\n"
       "Exit codes: 0 usable; 1 not usable; 2 bad input.");
-  command->callback([call, &status] { status = inspect(*call); });
+  command.callback([call, &status] { status = inspect(*call); });
 }

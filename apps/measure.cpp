@@ -236,8 +236,9 @@ void measure_folder(const MeasureCall& call) {
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
   const Packing packing = read_packing(call.folder);
   const std::unique_ptr<SizeDistribution> asked = radii_of(packing.scene);
-  const Measurements measured = measure(packing.spheres, packing.domain,
-                                        {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)}, call.options);
+  const Measurements measured =
+      measure(packing.spheres, packing.domain,
+              {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)}, call.options);
   if (call.json)
     fmt::print("{}", measurements_as_json(packing, measured));
   else
@@ -246,28 +247,28 @@ void measure_folder(const MeasureCall& call) {
 
 }  // namespace
 
-void add_measure(CLI::App& app, int& status) {
+void add_measure(Command app, int& status) {
   auto call = std::make_shared<MeasureCall>();
-  CLI::App* command = app.add_subcommand(
+  Command command = app.add_subcommand(
       "measure",
       "Contacts, rattlers, g(r), chambers, porosity near walls, order, sizes against those asked for");
-  command->add_option("DIR", call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read")
-      ->required();
+  command.add_option("DIR", call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read")
+      .required();
   command
-      ->add_option("--gap", call->options.contact_gap,
-                   "Spheres touch below this gap over the sum of their radii; 0.002 if absent")
-      ->check(CLI::Range(0.0, 1.0))
-      ->type_name("RATIO");
-  add_threads(*command, call->threads, "the answer");
-  command->add_flag("--json", call->json, "One JSON object on standard output");
-  command->footer(
+      .add_option("--gap", call->options.contact_gap,
+                  "Spheres touch below this gap over the sum of their radii; 0.002 if absent")
+      .within(0.0, 1.0)
+      .type_name("RATIO");
+  add_threads(command, call->threads, "the answer");
+  command.add_flag("--json", call->json, "One JSON object on standard output");
+  command.footer(
       "Rattlers are taken out one after the other until every sphere left is held by D + 1 contacts.\n"
       "In a container: the chambers that the smallest spheres cannot leave, with the packing fraction of\n"
       "each, and what no sphere can cover; porosity over the distance from the wall, the packing fraction\n"
       "of the core (more than 3 mean diameters from it) and near it; whether small spheres gather there.\n"
       "In three dimensions: the share of the spheres whose neighbours lie as in a crystal.\n"
       "Exit codes: 0 done; 2 bad input.");
-  command->callback([call, &status] {
+  command.callback([call, &status] {
     measure_folder(*call);
     status = exit_code::done;
   });

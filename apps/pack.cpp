@@ -105,31 +105,29 @@ int pack(const PackCall& call) {
 
 }  // namespace
 
-void add_pack(CLI::App& app, int& status) {
+void add_pack(Command app, int& status) {
   auto call = std::make_shared<PackCall>();
-  CLI::App* command =
-      app.add_subcommand("pack", "Run a scene and write the packing, its report and its proof");
-  command->add_option("SCENE", call->scene, "The scene, a TOML file; or a mesh, with its unit and sizes")
-      ->required()
-      ->type_name("SCENE|MESH");
+  Command command = app.add_subcommand("pack", "Run a scene and write the packing, its report and its proof");
+  command.add_option("SCENE", call->scene, "The scene, a TOML file; or a mesh, with its unit and sizes")
+      .required()
+      .type_name("SCENE|MESH");
   command
-      ->add_option("-o,--output", call->folder,
-                   "Folder for the results; made if it does not exist; named after the scene if absent")
-      ->type_name("DIR");
-  command->add_option("--unit", call->unit, "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft")
-      ->type_name("UNIT");
-  CLI::Option* diameter =
-      command->add_option("--diameter", call->diameter, "Of every sphere in a mesh")->type_name("D");
-  command->add_option("--lognormal", call->lognormal, "Lognormal diameters in a mesh")
-      ->type_name("MEDIAN,SIGMA")
-      ->delimiter(',')
-      ->expected(2)
-      ->excludes(diameter);
-  add_seed(*command, "Instead of the scene's; one seed gives one packing, bit for bit",
+      .add_option("-o,--output", call->folder,
+                  "Folder for the results; made if it does not exist; named after the scene if absent")
+      .type_name("DIR");
+  command.add_option("--unit", call->unit, "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft")
+      .type_name("UNIT");
+  Option diameter =
+      command.add_option("--diameter", call->diameter, "Of every sphere in a mesh").type_name("D");
+  command.add_option("--lognormal", call->lognormal, "Lognormal diameters in a mesh")
+      .type_name("MEDIAN,SIGMA")
+      .list_of(2)
+      .excludes(diameter);
+  add_seed(command, "Instead of the scene's; one seed gives one packing, bit for bit",
            [call](std::uint64_t seed) { call->seed = seed; });
-  add_threads(*command, call->threads, "the result");
-  command->add_flag("--quiet", call->quiet, "Print nothing but errors");
-  command->footer(
+  add_threads(command, call->threads, "the result");
+  command.add_flag("--quiet", call->quiet, "Print nothing but errors");
+  command.footer(
       "Examples:\n"
       "  bernal pack data/scenes/hopper.toml                   results in hopper/\n"
       "  bernal pack bracket.stl --unit mm --diameter 2        no scene needed; results in bracket/\n"
@@ -139,5 +137,5 @@ void add_pack(CLI::App& app, int& status) {
       "For a mesh, prints the scene that the flags stand for, ready to be kept and changed.\n"
       "Ctrl-C ends the run at the next safe point and writes what is there, certified.\n"
       "Exit codes: 0 done; 2 bad input, nothing written; 3 ended without reaching what the scene asks.");
-  command->callback([call, &status] { status = pack(*call); });
+  command.callback([call, &status] { status = pack(*call); });
 }

@@ -198,55 +198,52 @@ Exit codes: 0 done; 2 bad input; with --check 1 not certified, 3 the packing was
 
 }  // namespace
 
-void add_predict(CLI::App& app, int& status) {
+void add_predict(Command app, int& status) {
   auto call = std::make_shared<PredictCall>();
-  CLI::App* command =
+  Command command =
       app.add_subcommand("predict", "Say how densely spheres of these sizes pack, without packing them");
   command
-      ->add_option("--lognormal,--sigma", call->lognormals,
-                   "A lognormal population: its width alone, or its mean diameters and its volume")
-      ->type_name("SIGMA|D43,D32,VOLUME")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--classes", call->classes, "Populations of one diameter each")->type_name("D:V,D:V,…");
-  command->add_option("--scene", call->scene, "The sizes of a scene, a TOML file")->type_name("SCENE");
-  command->add_option("--stdin", call->format, "Populations from standard input, in this format")
-      ->check(CLI::IsMember({"l", "d", "w"}))
-      ->type_name("FORMAT");
-  command->add_option("--rods", call->rods, "Rods that stand for the sizes; 16,000 if absent")
-      ->check(CLI::Range(2, 10'000'000))
-      ->type_name("N");
-  command->add_flag("--fit", call->fit, "Farr's formula for one lognormal population, sigma up to 3");
-  CLI::Option* solids =
-      command
-          ->add_option("--solids", call->solids,
-                       "Also the viscosity of a suspension with this volume fraction of spheres")
-          ->type_name("PHI");
-  command->add_option("--intrinsic", call->intrinsic, "Intrinsic viscosity; 2.5, that of spheres, if absent")
-      ->needs(solids)
-      ->type_name("ETA");
-  command->add_flag("--json", call->json, "One JSON object on standard output");
-  CLI::Option* check = command->add_flag(
+      .add_option("--lognormal,--sigma", call->lognormals,
+                  "A lognormal population: its width alone, or its mean diameters and its volume")
+      .type_name("SIGMA|D43,D32,VOLUME")
+      .repeated();
+  command.add_option("--classes", call->classes, "Populations of one diameter each").type_name("D:V,D:V,…");
+  command.add_option("--scene", call->scene, "The sizes of a scene, a TOML file").type_name("SCENE");
+  command.add_option("--stdin", call->format, "Populations from standard input, in this format")
+      .one_of({"l", "d", "w"})
+      .type_name("FORMAT");
+  command.add_option("--rods", call->rods, "Rods that stand for the sizes; 16,000 if absent")
+      .within(2, 10'000'000)
+      .type_name("N");
+  command.add_flag("--fit", call->fit, "Farr's formula for one lognormal population, sigma up to 3");
+  Option solids = command
+                      .add_option("--solids", call->solids,
+                                  "Also the viscosity of a suspension with this volume fraction of spheres")
+                      .type_name("PHI");
+  command.add_option("--intrinsic", call->intrinsic, "Intrinsic viscosity; 2.5, that of spheres, if absent")
+      .needs(solids)
+      .type_name("ETA");
+  command.add_flag("--json", call->json, "One JSON object on standard output");
+  Option check = command.add_flag(
       "--check", call->check, "Also pack these sizes in a periodic box, certify that, and say both numbers");
   command
-      ->add_option("--spheres", call->packing.spheres,
-                   "So many; 10,000 if absent, more for wide distributions")
-      ->needs(check)
-      ->check(CLI::Range(1, 10'000'000))
-      ->type_name("N");
+      .add_option("--spheres", call->packing.spheres,
+                  "So many; 10,000 if absent, more for wide distributions")
+      .needs(check)
+      .within(1, 10'000'000)
+      .type_name("N");
   command
-      ->add_option_function<std::string>(
+      .add_word(
           "--stage", [call](const std::string& name) { call->packing.stage = stage_named(name); },
           "What packs them, relax or grow; relax if absent")
-      ->needs(check)
-      ->type_name("NAME");
-  add_seed(*command, "Of that packing; 1 if absent", [call](std::uint64_t seed) {
+      .needs(check)
+      .type_name("NAME");
+  add_seed(command, "Of that packing; 1 if absent", [call](std::uint64_t seed) {
     call->packing.seed = seed;
-  })->needs(check);
-  command->add_flag("--quiet", call->quiet, "Show no progress");
-  command->footer(footer);
-  command->callback([call, &status] {
+  }).needs(check);
+  command.add_flag("--quiet", call->quiet, "Show no progress");
+  command.footer(footer);
+  command.callback([call, &status] {
     const Answer answer = predict(*call);
     if (call->json)
       fmt::print("{}\n", as_json(*call, answer).dump(2));

@@ -43,27 +43,27 @@ int reproduce(const ReproduceCall& call) {
 
 }  // namespace
 
-void add_reproduce(CLI::App& app, int& status) {
+void add_reproduce(Command app, int& status) {
   auto call = std::make_shared<ReproduceCall>();
-  CLI::App* command = app.add_subcommand("reproduce", "Compute a figure or table of Farr (2013) again");
+  Command command = app.add_subcommand("reproduce", "Compute a figure or table of Farr (2013) again");
   std::vector<std::string> names;
   std::string footer = "Figures and tables:\n";
   for (const Figure& figure : all_figures()) {
     names.emplace_back(figure.name);
     footer += fmt::format("  {:<8}{}{}\n", figure.name, figure.what, figure.packs ? " *" : "");
   }
-  command->add_option("NAME", call->name, "Which of those below")->required()->check(CLI::IsMember(names));
+  command.add_option("NAME", call->name, "Which of those below").required().one_of(names);
   command
-      ->add_option("-o,--output", call->folder, "Folder for NAME.svg and NAME.csv; made if it does not exist")
-      ->required()
-      ->type_name("DIR");
-  command->add_flag("--pack", call->pack, "Also pack some of the sizes in three dimensions: minutes");
-  add_seed(*command, "Of the packings; 1 if absent", [call](std::uint64_t seed) { call->seed = seed; });
-  command->add_flag("--quiet", call->quiet, "Print nothing but the files and errors");
-  command->footer(footer + R"(  * with --pack also packings of its own
+      .add_option("-o,--output", call->folder, "Folder for NAME.svg and NAME.csv; made if it does not exist")
+      .required()
+      .type_name("DIR");
+  command.add_flag("--pack", call->pack, "Also pack some of the sizes in three dimensions: minutes");
+  add_seed(command, "Of the packings; 1 if absent", [call](std::uint64_t seed) { call->seed = seed; });
+  command.add_flag("--quiet", call->quiet, "Print nothing but the files and errors");
+  command.footer(footer + R"(  * with --pack also packings of its own
 
 R. S. Farr: Random close packing fractions of lognormal distributions of hard spheres. Powder
 Technology 245, 28 (2013). KTS packings are printed there; all else is computed.
 Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.)");
-  command->callback([call, &status] { status = reproduce(*call); });
+  command.callback([call, &status] { status = reproduce(*call); });
 }

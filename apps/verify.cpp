@@ -94,21 +94,21 @@ int verify(const VerifyCall& call) {
 
 }  // namespace
 
-void add_verify(CLI::App& app, int& status) {
+void add_verify(Command app, int& status) {
   auto call = std::make_shared<VerifyCall>();
-  CLI::App* command = app.add_subcommand("verify", "Certify files from scratch: no overlap, nothing outside");
-  command->add_option("DIR", call->target, "What bernal pack wrote, or one CSV file with x,y,z,r lines")
-      ->required()
-      ->type_name("DIR|FILE.csv");
-  command->add_option("--scene", call->scene, "The scene that names the container, if not DIR/scene.toml")
-      ->type_name("SCENE.toml");
-  command->add_flag("--list{all}", call->list,
-                    "Name every overlapping pair and protruding sphere; --list=N: the N worst of each");
-  add_threads(*command, call->threads, "the answer");
-  command->add_flag("--json", call->json, "One JSON object on standard output");
-  command->footer(
+  Command command = app.add_subcommand("verify", "Certify files from scratch: no overlap, nothing outside");
+  command.add_option("DIR", call->target, "What bernal pack wrote, or one CSV file with x,y,z,r lines")
+      .required()
+      .type_name("DIR|FILE.csv");
+  command.add_option("--scene", call->scene, "The scene that names the container, if not DIR/scene.toml")
+      .type_name("SCENE.toml");
+  command.add_flag("--list{all}", call->list,
+                   "Name every overlapping pair and protruding sphere; --list=N: the N worst of each");
+  add_threads(command, call->threads, "the answer");
+  command.add_flag("--json", call->json, "One JSON object on standard output");
+  command.footer(
       "Every near pair and every near wall is decided: in double arithmetic where a proven error bound "
       "allows,\n"
       "else exactly. Exit codes: 0 certified; 1 not; 2 bad input.");
-  command->callback([call, &status] { status = verify(*call); });
+  command.callback([call, &status] { status = verify(*call); });
 }

@@ -3,8 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -33,25 +31,7 @@ class FlyingSpheres {
   };
 
   /// Precondition: every sphere has room in the box for itself. `axes` as PartialGrid's.
-  FlyingSpheres(const Work& work, int axes = PartialGrid<D>::automatic)
-      : edges_(*work.target_edges),
-        drawn_(work.spheres.r),
-        margin_(std::max(1e-10, 4 * tolerance::growth(edges_.maxCoeff() / std::ranges::min(drawn_)))),
-        queue_(drawn_.size()),
-        mean_radius_(std::accumulate(drawn_.begin(), drawn_.end(), 0.0) / static_cast<double>(drawn_.size())),
-        smallest_(std::ranges::min(drawn_)),
-        largest_(std::ranges::max(drawn_)),
-        skin_(std::min(0.3, 0.6 / D) * 2 * mean_radius_),
-        axes_(axes) {
-    for (int k = 0; k < D; ++k) repeats_[k] = !work.has_wall(k);
-    std::iota(queue_.begin(), queue_.end(), Id{0});
-    std::ranges::stable_sort(queue_, [&](Id a, Id b) { return drawn_[a] > drawn_[b]; });
-    for (const double r : drawn_) whole_volume_ += std::pow(r / mean_radius_, D);
-    const auto n = static_cast<Eigen::Index>(drawn_.size());
-    x.resize(n, D);
-    v.resize(n, D);
-    sort();
-  }
+  explicit FlyingSpheres(const Work& work, int axes = PartialGrid<D>::automatic);
 
   std::size_t size() const { return tags_.size(); }
   std::size_t wanted() const { return drawn_.size(); }
@@ -85,11 +65,7 @@ class FlyingSpheres {
     return d;
   }
   /// Whether a pair can meet in more than one place at a time.
-  bool is_small() const {
-    for (int k = 0; k < D; ++k)
-      if (repeats_[k] && edges_[k] < 4 * largest_ + 2 * skin_) return true;
-    return false;
-  }
+  bool is_small() const;
   /// Two that touch rebound elastically, in proportion to their volumes.
   void collide(Id i, Id j) { collide(i, j, nearest(center(i) - center(j))); }
   /// The same for an image, `d` being the way from j to i.
@@ -107,23 +83,9 @@ class FlyingSpheres {
 
   const std::vector<Pair>& pairs() const { return pairs_; }
   /// Takes centres that have left the box to their images in it.
-  void wrap_all() {
-    for (std::size_t i = 0; i < size(); ++i)
-      for (int k = 0; k < D; ++k) wrap(x(static_cast<Eigen::Index>(i), k), k);
-  }
+  void wrap_all();
   /// Lists the near pairs of all. Centres are at most half an edge outside the box.
-  void sort() {
-    grid_.emplace(edges_, repeats_, 2 * largest_ + skin_, 0.5 * skin_, std::max<std::size_t>(size(), 64),
-                  axes_);
-    grid_->set_largest(largest_);
-    grid_->sort(x, r_, size());
-    pairs_.clear();
-    for (Id i = 0; i < size(); ++i) {
-      grid_->for_each_near(center(i), r_[i] + skin_, [&](Id j, double) {
-        if (j > i) pairs_.push_back({i, j});
-      });
-    }
-  }
+  void sort();
   /// Tells the grid where all are now; to be called before places are looked for.
   void update() {
     if (is_worn()) sort();
@@ -139,36 +101,9 @@ class FlyingSpheres {
     return c;
   }
   /// Whether a sphere has room there.
-  bool is_free(const Vector<D>& c, double r) const {
-    return !grid_->any_near(c, r + 2 * margin_ * largest_, [&](Id j, double squared) {
-      const double limit = (1 + margin_) * (r + r_[j]);
-      return squared < limit * limit;
-    });
-  }
+  bool is_free(const Vector<D>& c, double r) const;
   /// Moves the centre away from what it overlaps, a few times. Returns whether it has room then.
-  bool push_into_room(Vector<D>& c, double r, int pushes) const {
-    const double wide = (1 + 1e-6) * r;  // so that a push ends beyond contact and not in it
-    for (int push = 0;; ++push) {
-      Vector<D> way = Vector<D>::Zero();
-      int met = 0;
-      double deepest = 0;
-      grid_->for_each_near(c, wide + 2e-6 * largest_, [&](Id j, double squared) {
-        const double limit = (1 + 1e-6) * (r + r_[j]);
-        if (!(squared < limit * limit)) return;
-        const double d = std::sqrt(squared);
-        deepest = std::max(deepest, limit - d);
-        ++met;
-        if (d > 0) way += nearest(c - center(j)) * (limit / d - 1);
-      });
-      if (met == 0) return is_free(c, r);
-      if (push == pushes || !(way.squaredNorm() > 1e-4 * deepest * deepest)) return false;
-      c += way;
-      for (int k = 0; k < D; ++k) {
-        wrap(c[k], k);
-        if (!repeats_[k]) c[k] = std::clamp(c[k], low(r), high(k, r));
-      }
-    }
-  }
+  bool push_into_room(Vector<D>& c, double r, int pushes) const;
   /// Tries `batch` random places, in turn for the largest that wait: those within a tenth of the very
   /// largest, so that no smaller one takes their room. find_room(c, r) says whether a sphere has room at c,
   /// which it may move; placed(c) is called when it has been put there.
@@ -201,37 +136,14 @@ class FlyingSpheres {
   /// Places tried since the last that was free.
   double in_vain() const { return in_vain_; }
   /// Puts the sphere at `place` of the queue where it has room, flying.
-  void accept(std::size_t place, const Vector<D>& c, Random& random) {
-    const Id tag = queue_[place], i = static_cast<Id>(size());
-    const double r = drawn_[tag];
-    grid_->for_each_near(c, r + skin_, [&](Id j, double) { pairs_.push_back({j, i}); });
-    queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(place));
-    tags_.push_back(tag);
-    r_.push_back(r);
-    mass_.push_back(std::pow(r / mean_radius_, D));
-    volume_ += mass_.back();
-    grid_->add(c, r);
-    x.row(i) = c.transpose().array();
-    set_velocity(i, thermal(i, random));
-  }
+  void accept(std::size_t place, const Vector<D>& c, Random& random);
   /// In a random direction with the kinetic energy of all.
   Vector<D> thermal(Id i, Random& random) const { return uniform_direction<D>(random) / std::sqrt(mass_[i]); }
   /// Share of the volume that is to be placed which has been.
   double share() const { return volume_ / whole_volume_; }
 
   /// Those that are placed, in the order in which they were drawn, with centres in [0, edges).
-  Spheres<dynamic> result() const {
-    std::vector<Id> order(size());
-    std::iota(order.begin(), order.end(), Id{0});
-    std::ranges::sort(order, [&](Id a, Id b) { return tags_[a] < tags_[b]; });
-    Spheres<D> spheres;
-    for (const Id i : order) {
-      Vector<D> c = center(i);
-      for (int k = 0; k < D; ++k) wrap(c[k], k);
-      spheres.push_back(c, r_[i]);
-    }
-    return spheres;
-  }
+  Spheres<dynamic> result() const;
 
   Columns x, v;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bernal/core/tolerance.hpp"
+#include "bernal/domain/boundary.hpp"
 #include "core/every_dimension.hpp"
 #include "jam/polish.hpp"
 #include "work/free_of_overlap.hpp"

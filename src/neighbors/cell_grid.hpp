@@ -40,61 +40,23 @@ class CellGrid {
       : CellGrid({box.origin, box.origin + box.edges}, box, r_min, r_max, expected) {}
   /// Of a region within `bounds` along the open axes, and of a period along the others.
   CellGrid(const Bounds<D>& bounds, const Boundary<D>& boundary, double r_min, double r_max,
-           std::size_t expected)
-      : lower_(bounds.lower), size_(bounds.size()), r_max_(r_max) {
-    for (int k = 0; k < D; ++k) {
-      repeats_[k] = boundary.repeats(k);
-      if (!repeats_[k]) continue;
-      lower_[k] = boundary.origin[k];
-      size_[k] = boundary.edges[k];
-    }
-    const double max_cells = std::max(64.0, cells_per_sphere * static_cast<double>(expected));
-    std::size_t offset = 0;
-    for (double largest = r_max;; largest /= 2) {
-      levels_.push_back(make_level(largest, max_cells, offset));
-      if (largest / 2 < r_min || levels_.size() == max_levels) break;
-    }
-    heads_.assign(offset, none);
-  }
+           std::size_t expected);
 
   /// A box [0, edge) that is periodic on every axis and all centres have been multiplied by the same factor
   /// on each axis; the box has these edges now. Spheres stay in their cells. Radii have not changed: what a
   /// query finds is what is near in the new box. Cost: O(levels).
-  void rescale(const Vector<D>& edges) {
-    size_ = edges;
-    for (Level& level : levels_) {
-      for (int k = 0; k < D; ++k) level.inverse_edge[k] = level.cells[k] / edges[k];
-    }
-  }
+  void rescale(const Vector<D>& edges);
 
   /// Precondition: `id` is not in the grid, r in [r_min, r_max].
-  void insert(Id id, const Vector<D>& center, double r) {
-    if (id >= links_.size()) links_.resize(id + std::size_t{1});
-    Level& level = levels_[level_of(r)];
-    ++level.spheres;
-    link(id, cell_of(level, center), static_cast<std::uint8_t>(&level - levels_.data()));
-  }
+  void insert(Id id, const Vector<D>& center, double r);
 
   /// Precondition: `id` is in the grid.
-  void remove(Id id) {
-    --levels_[links_[id].level].spheres;
-    unlink(id);
-  }
+  void remove(Id id);
 
   /// Tells the grid where sphere `id` is now. Precondition: it is in the grid.
-  void move(Id id, const Vector<D>& center) {
-    Link& l = links_[id];
-    const std::uint32_t cell = cell_of(levels_[l.level], center);
-    if (cell == l.cell) return;
-    unlink(id);
-    link(id, cell, l.level);
-  }
+  void move(Id id, const Vector<D>& center);
 
-  void clear() {
-    std::fill(heads_.begin(), heads_.end(), none);
-    links_.clear();
-    for (Level& level : levels_) level.spheres = 0;
-  }
+  void clear();
 
   /// Calls visit(id) until it returns true, for every sphere whose bounding cube, blown up by `reach`, may
   /// hold c: at least for all with max_k |c - c_id|_k < reach + r_id, which includes all whose surface is
@@ -168,38 +130,9 @@ class CellGrid {
   };
 
   /// Appends its cells behind `offset`, and moves that.
-  Level make_level(double largest_radius, double max_cells, std::size_t& offset) const {
-    double edge = 2 * largest_radius;
-    // The border cell of an open axis holds what is left of it; a period has whole cells only.
-    const auto cells_along = [&](int k) {
-      const double whole = std::floor(size_[k] / edge);
-      return repeats_[k] ? std::max(1.0, whole) : whole + 1;
-    };
-    const auto all_cells = [&] {
-      double cells = 1;
-      for (int k = 0; k < D; ++k) cells *= cells_along(k);
-      return cells;
-    };
-    while (all_cells() > max_cells) edge *= 1.25;
+  Level make_level(double largest_radius, double max_cells, std::size_t& offset) const;
 
-    Level level;
-    level.largest_radius = largest_radius;
-    level.offset = offset;
-    std::size_t cells = 1;
-    for (int k = 0; k < D; ++k) {
-      level.cells[k] = static_cast<int>(cells_along(k));
-      level.inverse_edge[k] = repeats_[k] ? level.cells[k] / size_[k] : 1 / edge;
-      cells *= static_cast<std::size_t>(level.cells[k]);
-    }
-    offset += cells;
-    return level;
-  }
-
-  std::size_t level_of(double r) const {
-    std::size_t l = 0;
-    for (double largest = r_max_ / 2; r <= largest && l + 1 < levels_.size(); largest /= 2) ++l;
-    return l;
-  }
+  std::size_t level_of(double r) const;
   int coordinate(const Level& level, int k, double x) const {
     double cell = (x - lower_[k]) * level.inverse_edge[k];
     const double cells = level.cells[k];
@@ -226,22 +159,9 @@ class CellGrid {
       i = i * static_cast<std::size_t>(level.cells[k]) + static_cast<std::size_t>(at[k]);
     return level.offset + i;
   }
-  std::uint32_t cell_of(const Level& level, const Vector<D>& c) const {
-    std::array<int, D> at;
-    for (int k = 0; k < D; ++k) at[k] = coordinate(level, k, c[k]);
-    return static_cast<std::uint32_t>(index(level, at));
-  }
-  void link(Id id, std::uint32_t cell, std::uint8_t level) {
-    Link& l = links_[id];
-    l = {heads_[cell], none, cell, level};
-    if (l.next != none) links_[l.next].previous = id;
-    heads_[cell] = id;
-  }
-  void unlink(Id id) {
-    const Link& l = links_[id];
-    (l.previous == none ? heads_[l.cell] : links_[l.previous].next) = l.next;
-    if (l.next != none) links_[l.next].previous = l.previous;
-  }
+  std::uint32_t cell_of(const Level& level, const Vector<D>& c) const;
+  void link(Id id, std::uint32_t cell, std::uint8_t level);
+  void unlink(Id id);
 
   Vector<D> lower_, size_;
   std::array<bool, D> repeats_;
