@@ -161,7 +161,7 @@ TEST(Growth, EndsWhenCancelled) {
 
 TEST(Growth, RefusesWhatItCannotDo) {
   EXPECT_NE(error_of(scene("", "count = 3\nradius = 1.0")).find("more spheres"), std::string::npos);
-  EXPECT_NE(error_of(scene("dimension = 7", "count = 300\nradius = 1.0")).find("two to six"),
+  EXPECT_NE(error_of(scene("dimension = 7", "count = 300\nradius = 1.0")).find("2 to 6"),
             std::string::npos);
   EXPECT_NE(error_of(scene("", "count = 2000\nradius = 1.0", "phi_init = 0.45")).find("phi_init"),
             std::string::npos);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "run/estimate.hpp"
@@ -83,6 +84,9 @@ inline Plan plan_of(const std::string& toml) { return build(parse_scene(toml, "t
 inline Plan plan_of(const std::string& toml, Domain container) {
   Plan plan = plan_of(toml);
   plan.attainable_packing_fraction = expected_packing_fraction(plan.scene, container, *plan.radii);
+  plan.expected_count =
+      plan.attainable_packing_fraction * volume_of(container) / (ball_volume(3, 1) * plan.radii->moment(3));
+  plan.expected_memory_bytes = 0;
   plan.domain = std::move(container);
   return plan;
 }
