@@ -144,6 +144,7 @@ double SoftPacking::sweep_and_measure(float omega) {
 
 void SoftPacking::grow(double factor) {
   for (int k = 0; k < dimension_; ++k) edges_[static_cast<std::size_t>(k)] *= factor;
+  if (factor < 1) stale_ = true;  // spheres that were not near each other may be now
 }
 
 void SoftPacking::swell(double factor) {
