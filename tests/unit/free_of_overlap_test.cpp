@@ -5,6 +5,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "bernal/domain/boundary.hpp"
 #include "work/resize_box.hpp"
 #include "support/nearest_images.hpp"
 
