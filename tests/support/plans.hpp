@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -86,6 +87,8 @@ inline Plan plan_of(const std::string& toml, Domain container) {
   plan.attainable_packing_fraction = expected_packing_fraction(plan.scene, container, *plan.radii);
   plan.expected_count =
       plan.attainable_packing_fraction * volume_of(container) / (ball_volume(3, 1) * plan.radii->moment(3));
+  if (plan.scene.target.count)
+    plan.expected_count = std::min(plan.expected_count, static_cast<double>(*plan.scene.target.count));
   plan.expected_memory_bytes = 0;
   plan.domain = std::move(container);
   return plan;
