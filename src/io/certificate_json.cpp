@@ -4,7 +4,7 @@
 
 namespace bernal {
 
-std::string certificate_as_json(const Certificate& c) {
+Json certificate_json(const Certificate& c) {
   Json json = {{"certified", c.certified},
                {"statement", c.statement},
                {"allowed_overlap", c.allowed_overlap},
@@ -25,7 +25,9 @@ std::string certificate_as_json(const Certificate& c) {
   for (const auto& [sphere, gap] : c.protrusions)
     json["protrusions"].push_back({{"sphere", sphere}, {"gap", gap}});
   json["seconds"] = c.seconds;
-  return text_of(json);
+  return json;
 }
+
+std::string certificate_as_json(const Certificate& c) { return text_of(certificate_json(c)); }
 
 }  // namespace bernal

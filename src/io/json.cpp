@@ -12,6 +12,10 @@ Json json_of(const std::optional<BondOrder::Count>& count) { return count ? json
 
 }  // namespace
 
+std::string text_of(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Json contacts_json(const Contacts& contacts) {
   return {{"contact_gap", contacts.contact_gap},
           {"coordination", contacts.coordination},

@@ -6,20 +6,22 @@
 
 #include "bernal/domain/domain.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/verify/certificate.hpp"
 
 namespace bernal {
 
 using Json = nlohmann::ordered_json;  // writes NaN and infinity as null
 
 /// Names may hold any bytes; a report that is not valid UTF-8 would be worse than a replaced character.
-inline std::string text_of(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string text_of(const Json&);
 
 template <class T>
 Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json();
 }
+
+/// What stands under `certificate` of report.json.
+Json certificate_json(const Certificate&);
 
 /// `coordination`, `contacts`, `rattlers` and what goes with them.
 Json contacts_json(const Contacts&);

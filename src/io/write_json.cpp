@@ -1,6 +1,5 @@
 #include <sys/resource.h>
 
-#include "bernal/io/certificate_json.hpp"
 #include "io/json.hpp"
 #include "io/report.hpp"
 
@@ -28,7 +27,7 @@ std::uint64_t peak_memory_bytes() {
 std::string json_of(const Report& report) {
   const Packing& packing = report.packing;
   const Certificate& certificate = report.certificate;
-  const Json of_certificate = Json::parse(certificate_as_json(certificate));
+  const Json of_certificate = certificate_json(certificate);
 
   Json effects = Json::array();
   for (const Effect& e : packing.effects) {
@@ -59,7 +58,7 @@ std::string json_of(const Report& report) {
                {"walls", report.measured.walls ? walls_json(*report.measured.walls) : Json()},
                {"sizes", sizes_json(report.measured)},
                {"max_overlap", certificate.max_overlap},
-               {"min_wall_gap", of_certificate["min_wall_gap"]},
+               {"min_wall_gap", of_certificate.at("min_wall_gap")},
                {"certified", certificate.certified},
                {"certificate", of_certificate},
                domain_json(packing.domain),
