@@ -46,15 +46,6 @@ void CellGrid<D>::remove(Id id) {
 }
 
 template <int D>
-void CellGrid<D>::move(Id id, const Vector<D>& center) {
-  Link& l = links_[id];
-  const std::uint32_t cell = cell_of(levels_[l.level], center);
-  if (cell == l.cell) return;
-  unlink(id);
-  link(id, cell, l.level);
-}
-
-template <int D>
 void CellGrid<D>::clear() {
   std::fill(heads_.begin(), heads_.end(), none);
   links_.clear();
@@ -95,28 +86,6 @@ std::size_t CellGrid<D>::level_of(double r) const {
   std::size_t l = 0;
   for (double largest = r_max_ / 2; r <= largest && l + 1 < levels_.size(); largest /= 2) ++l;
   return l;
-}
-
-template <int D>
-std::uint32_t CellGrid<D>::cell_of(const Level& level, const Vector<D>& c) const {
-  std::array<int, D> at;
-  for (int k = 0; k < D; ++k) at[k] = coordinate(level, k, c[k]);
-  return static_cast<std::uint32_t>(index(level, at));
-}
-
-template <int D>
-void CellGrid<D>::link(Id id, std::uint32_t cell, std::uint8_t level) {
-  Link& l = links_[id];
-  l = {heads_[cell], none, cell, level};
-  if (l.next != none) links_[l.next].previous = id;
-  heads_[cell] = id;
-}
-
-template <int D>
-void CellGrid<D>::unlink(Id id) {
-  const Link& l = links_[id];
-  (l.previous == none ? heads_[l.cell] : links_[l.previous].next) = l.next;
-  if (l.next != none) links_[l.next].previous = l.previous;
 }
 
 #define BERNAL_INSTANTIATE(D) template class CellGrid<D>;

@@ -54,7 +54,13 @@ class CellGrid {
   void remove(Id id);
 
   /// Tells the grid where sphere `id` is now. Precondition: it is in the grid.
-  void move(Id id, const Vector<D>& center);
+  void move(Id id, const Vector<D>& center) {
+    Link& l = links_[id];
+    const std::uint32_t cell = cell_of(levels_[l.level], center);
+    if (cell == l.cell) return;
+    unlink(id);
+    link(id, cell, l.level);
+  }
 
   void clear();
 
@@ -159,9 +165,22 @@ class CellGrid {
       i = i * static_cast<std::size_t>(level.cells[k]) + static_cast<std::size_t>(at[k]);
     return level.offset + i;
   }
-  std::uint32_t cell_of(const Level& level, const Vector<D>& c) const;
-  void link(Id id, std::uint32_t cell, std::uint8_t level);
-  void unlink(Id id);
+  std::uint32_t cell_of(const Level& level, const Vector<D>& c) const {
+    std::array<int, D> at;
+    for (int k = 0; k < D; ++k) at[k] = coordinate(level, k, c[k]);
+    return static_cast<std::uint32_t>(index(level, at));
+  }
+  void link(Id id, std::uint32_t cell, std::uint8_t level) {
+    Link& l = links_[id];
+    l = {heads_[cell], none, cell, level};
+    if (l.next != none) links_[l.next].previous = id;
+    heads_[cell] = id;
+  }
+  void unlink(Id id) {
+    const Link& l = links_[id];
+    (l.previous == none ? heads_[l.cell] : links_[l.previous].next) = l.next;
+    if (l.next != none) links_[l.next].previous = l.previous;
+  }
 
   Vector<D> lower_, size_;
   std::array<bool, D> repeats_;
