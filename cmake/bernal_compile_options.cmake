@@ -4,6 +4,7 @@ add_library(bernal_compile_options INTERFACE)
 target_compile_features(bernal_compile_options INTERFACE cxx_std_20)
 target_compile_options(bernal_compile_options INTERFACE
   -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>  # which takes a file compiled together with others for a header
   -ffp-contract=off -fno-fast-math -fno-math-errno -fno-trapping-math)
 
 set(BERNAL_SANITIZE "" CACHE STRING "Value of -fsanitize= for every target, empty for none")
@@ -12,6 +13,23 @@ if(BERNAL_SANITIZE)
     -fsanitize=${BERNAL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(bernal_compile_options INTERFACE -fsanitize=${BERNAL_SANITIZE})
 endif()
+
+# Where CMAKE_UNITY_BUILD is on, the files of a folder are compiled a few together: what the same headers and templates
+# cost is paid once for all of them, which halves a build from nothing. Names in a folder are different anyway. Kernels
+# stay alone: what they tell the compiler about instruction sets is theirs.
+set(BERNAL_FILES_TOGETHER 8)
+function(bernal_compile_together folder)
+  set(sources ${ARGN})
+  list(FILTER sources EXCLUDE REGEX "kernels[.]cpp$")
+  list(LENGTH sources count)
+  math(EXPR groups "(${count} + ${BERNAL_FILES_TOGETHER} - 1) / ${BERNAL_FILES_TOGETHER}")
+  set(k 0)
+  foreach(source IN LISTS sources)
+    math(EXPR group "${k} * ${groups} / ${count}")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${group})
+    math(EXPR k "${k} + 1")
+  endforeach()
+endfunction()
 
 # What nearly every file includes, read once instead of once a file. A file still includes what it uses:
 # -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON must build too.

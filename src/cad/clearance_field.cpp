@@ -1,6 +1,5 @@
 #include "cad/clearance_field.hpp"
-
-#include <tbb/parallel_for.h>
+#include "core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +28,8 @@ ClearanceField::ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds
 
   // Along a row each cube bounds the search of the next and mostly knows its side. A row is one task, and so
   // the result does not depend on the number of threads.
-  tbb::parallel_for(0, count_[1] * count_[2], [&](int row) {
-    const int y = row % count_[1], z = row / count_[1];
+  parallel_for(static_cast<std::size_t>(count_[1]) * count_[2], [&](std::size_t k) {
+    const int row = static_cast<int>(k), y = row % count_[1], z = row / count_[1];
     double last = infinity;
     bool inside = false;
     for (int x = 0; x < count_[0]; ++x) {

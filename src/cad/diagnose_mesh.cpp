@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cad/mesh_topology.hpp"
 #include "cad/self_intersections.hpp"
-#include "cad/surface_mesh.hpp"
+#include "cad/triangle_tree.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -21,16 +22,12 @@ Bounds<3> bounds_of_vertices(const Mesh& mesh) {
   return bounds;
 }
 
-/// Sum of the signed tetrahedra about the centre of the bounds, where they cancel least.
-double signed_volume(const Mesh& mesh, const Vector<3>& center) {
-  double six_volumes = 0;
-  for (const auto& t : mesh.triangles) {
-    const Vector<3> a = mesh.vertices[t[0]] - center;
-    const Vector<3> b = mesh.vertices[t[1]] - center;
-    const Vector<3> c = mesh.vertices[t[2]] - center;
-    six_volumes += a.dot(b.cross(c));
-  }
-  return six_volumes / 6;
+/// Of the signed tetrahedron between the triangle and the centre of the bounds, where they cancel least.
+double six_signed_volumes(const Mesh& mesh, const std::array<std::uint32_t, 3>& t, const Vector<3>& center) {
+  const Vector<3> a = mesh.vertices[t[0]] - center;
+  const Vector<3> b = mesh.vertices[t[1]] - center;
+  const Vector<3> c = mesh.vertices[t[2]] - center;
+  return a.dot(b.cross(c));
 }
 
 double area_of_mesh(const Mesh& mesh) {
@@ -43,8 +40,39 @@ double area_of_mesh(const Mesh& mesh) {
   return two_areas / 2;
 }
 
-void turn(Mesh& mesh) {
-  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+/// Of each component, whether it lies inside an odd number of others. A corner that touches another one does
+/// not tell; where all do, the middle of a triangle does, which meets none.
+std::vector<Crossing> nesting(const Mesh& mesh, const MeshTopology& topology) {
+  std::vector<Crossing> nested(topology.components, Crossing::starts_on_wall);
+  if (nested.size() == 1) return {Crossing::even};
+  const TriangleTree tree(mesh);
+  const auto look_from = [&](const Vector<3>& p, std::uint32_t own) {
+    if (nested[own] == Crossing::starts_on_wall)
+      nested[own] = tree.crossing(p, 0, std::numeric_limits<double>::infinity(),
+                                  [&](std::uint32_t t) { return topology.component[t] == own; });
+  };
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t corner : mesh.triangles[t])
+      look_from(mesh.vertices[corner], topology.component[t]);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [i, j, k] = mesh.triangles[t];
+    look_from((mesh.vertices[i] + mesh.vertices[j] + mesh.vertices[k]) / 3, topology.component[t]);
+  }
+  return nested;
+}
+
+/// Turns whole components so that the mesh bounds a volume: the outermost outwards, those in them inwards,
+/// and so on. Precondition: closed, consistently oriented, no self-intersections.
+void orient_components(Mesh& mesh, const MeshTopology& topology, const Vector<3>& center) {
+  std::vector<double> six_volumes(topology.components, 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    six_volumes[topology.component[t]] += six_signed_volumes(mesh, mesh.triangles[t], center);
+  const std::vector<Crossing> nested = nesting(mesh, topology);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::uint32_t own = topology.component[t];
+    if ((six_volumes[own] < 0) != (nested[own] == Crossing::odd))
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  }
 }
 
 bool same_orientation(std::array<std::uint32_t, 3> s, const std::array<std::uint32_t, 3>& t) {
@@ -73,12 +101,9 @@ void orient(Mesh& mesh, const MeshTopology& topology, MeshReport& report) {
     return;
   }
   const Vector<3> center = report.bounds.center();
-  if (report.components > 1) {
-    orient_components(mesh);
-  } else if (signed_volume(mesh, center) < 0) {
-    turn(mesh);
-  }
-  report.volume = signed_volume(mesh, center);
+  orient_components(mesh, topology, center);
+  for (const auto& t : mesh.triangles) report.volume += six_signed_volumes(mesh, t, center);
+  report.volume /= 6;
   if (!(report.volume > 0) || !std::isfinite(report.volume)) {
     report.volume = 0;
     report.problems.emplace_back("it encloses no volume that double precision can hold");

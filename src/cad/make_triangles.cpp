@@ -6,7 +6,7 @@
 #include <boost/unordered/unordered_set.hpp>
 #include <utility>
 
-#include "cad/surface_mesh.hpp"
+#include "cad/triangulate.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -65,7 +65,8 @@ Triangles make_triangles(const PolygonSoup& soup) {
       larger.push_back(std::move(corners));
     }
   }
-  for (const auto& t : triangulate(result.mesh.vertices, larger)) triangles.push_back(t);
+  for (const Polygon& polygon : larger)
+    for (const auto& t : triangulate(result.mesh.vertices, polygon)) triangles.push_back(t);
   result.welded =
       static_cast<std::uint64_t>(std::count(used.begin(), used.end(), true)) - result.mesh.vertices.size();
 

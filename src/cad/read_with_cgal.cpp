@@ -13,8 +13,8 @@
 namespace bernal::cad {
 namespace {
 
-using Point = CGAL::Simple_cartesian<double>::Point_3;
-using Points = std::vector<Point>;
+using SoupPoint = CGAL::Simple_cartesian<double>::Point_3;
+using Points = std::vector<SoupPoint>;
 using Polygons = std::vector<std::vector<std::size_t>>;
 
 template <typename Read>
@@ -29,7 +29,7 @@ ReadAttempt attempt(const Read& read) {
   }
   if (!result.ok()) return result;
 
-  for (const Point& p : points) {
+  for (const SoupPoint& p : points) {
     result.soup.points.emplace_back(p.x(), p.y(), p.z());
     if (!result.soup.points.back().allFinite()) result.failure = "a coordinate is not finite";
   }

@@ -214,10 +214,12 @@ class MoveTraversal {
 /// Counts the triangles that the way from p along an axis crosses, as seen along that axis: not from p itself
 /// but from p' = p + (epsilon², epsilon) in the plane across, for an infinitesimal epsilon > 0, so that no
 /// edge and no vertex is ever hit. Predicates are exact. Sees also whether p itself is on a triangle.
+template <typename Ignored>
 class CrossingTraversal {
  public:
-  CrossingTraversal(const Vector<3>& p, int axis, double end)
-      : start_(to_cgal(p)),
+  CrossingTraversal(const Vector<3>& p, int axis, double end, const Ignored& ignored)
+      : ignored_(ignored),
+        start_(to_cgal(p)),
         axis_(axis),
         u_((axis + 1) % 3),
         v_((axis + 2) % 3),
@@ -237,6 +239,7 @@ class CrossingTraversal {
   }
   void intersection(const Vector<3>& p, const Leaf& leaf) {
     const WallTriangle& t = leaf.triangle();
+    if (ignored_(t.id)) return;
     const Kernel::Point_3 a = to_cgal(t.a), b = to_cgal(t.b), c = to_cgal(t.c);
     const int start_side = CGAL::orientation(a, b, c, start_);
     if (start_side == 0 && leaf.datum().has_on(start_)) {
@@ -266,6 +269,7 @@ class CrossingTraversal {
     return 0;
   }
 
+  const Ignored& ignored_;
   Kernel::Point_3 start_, end_;
   int axis_, u_, v_;
   double low_, high_;
@@ -333,10 +337,24 @@ double TriangleTree::first_contact(const Vector<3>& c, double r, const Vector<3>
   return traversal.limit();
 }
 
-Crossing TriangleTree::crossing(const Vector<3>& p, int axis, double end) const {
-  CrossingTraversal traversal(p, axis, end);
-  impl_->tree.traversal(p, traversal);
+namespace {
+
+template <typename Ignored>
+Crossing crossing_in(const Tree& tree, const Vector<3>& p, int axis, double end, const Ignored& ignored) {
+  CrossingTraversal traversal(p, axis, end, ignored);
+  tree.traversal(p, traversal);
   return traversal.crossing();
+}
+
+}  // namespace
+
+Crossing TriangleTree::crossing(const Vector<3>& p, int axis, double end) const {
+  return crossing_in(impl_->tree, p, axis, end, [](std::uint32_t) { return false; });
+}
+
+Crossing TriangleTree::crossing(const Vector<3>& p, int axis, double end,
+                                const std::function<bool(std::uint32_t)>& ignored) const {
+  return crossing_in(impl_->tree, p, axis, end, ignored);
 }
 
 }  // namespace bernal::cad

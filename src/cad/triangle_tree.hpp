@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -37,8 +38,10 @@ class TriangleTree {
 
   /// Whether p is on the wall and, if not, whether the way from p along the axis to the coordinate `end`
   /// crosses the wall an odd number of times, exactly. Its end must not be on the wall; infinity is a good
-  /// end.
+  /// end. The second form looks at no triangle for which ignored(its number) holds.
   Crossing crossing(const Vector<3>& p, int axis, double end) const;
+  Crossing crossing(const Vector<3>& p, int axis, double end,
+                    const std::function<bool(std::uint32_t)>& ignored) const;
 
  private:
   struct Impl;

@@ -193,6 +193,7 @@ Boundary<D> boundary_of(const Domain& domain) {
 }
 #define BERNAL_INSTANTIATE(D) template Boundary<D> boundary_of(const Domain&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 void wrap(Spheres<dynamic>& spheres, const Domain& domain) {
   with_dimension(dimension_of(domain), EveryDimension{}, [&](auto dimension) {

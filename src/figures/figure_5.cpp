@@ -7,7 +7,7 @@
 namespace bernal::figures {
 namespace {
 
-constexpr int rods = 16000;
+constexpr int rods_a_curve = 16000;
 constexpr double widths[] = {0, 0.3, 0.6};
 constexpr double ratios[] = {1, 2, 4, 8};
 constexpr const char* strokes[] = {"line one heavy", "line two dashed", "line three dotdash",
@@ -31,7 +31,7 @@ Files figure_5(const FigureOptions& options) {
       plot.axes();
       add_text(plot, left + 111, top - 8, "middle", fmt::format("σa = {}, σb = {}", sigma_a, sigma_b));
       for (int k = 0; k < 4; ++k) {
-        const auto predictions = predict_shares({sigma_a, sigma_b, ratios[k]}, shares, rods);
+        const auto predictions = predict_shares({sigma_a, sigma_b, ratios[k]}, shares, rods_a_curve);
         std::vector<double> phi;
         for (std::size_t i = 0; i < shares.size(); ++i) {
           phi.push_back(predictions[i].phi);

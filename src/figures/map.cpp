@@ -1,10 +1,10 @@
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "bernal/core/error.hpp"
 #include "bernal/predict/mixtures.hpp"
+#include "core/parallel.hpp"
 #include "figures/contours.hpp"
 #include "figures/drawing.hpp"
 #include "figures/write_files.hpp"
@@ -68,7 +68,7 @@ WrittenMap write_map(const MapOptions& o, const std::filesystem::path& folder) {
   for (std::size_t from = 0; from < rows.size(); from += rows_at_once) {
     if (o.monitor.stop()) return {};
     o.monitor.report({"map", static_cast<double>(from) / static_cast<double>(rows.size()), "of the ratios"});
-    oneapi::tbb::parallel_for(from, std::min(rows.size(), from + rows_at_once), [&](std::size_t i) {
+    parallel_for(from, std::min(rows.size(), from + rows_at_once), [&](std::size_t i) {
       rows[i] = predict_shares({o.sigma_a, o.sigma_b, map.ys[i]}, map.xs, o.rods);
     });
   }

@@ -19,7 +19,7 @@ constexpr double least_of_class = 0.5;
 /// Random places that are tried for a sphere before the others of its class are moved.
 constexpr int tries = 4;
 /// So often a place that overlaps is pushed to where it does not.
-constexpr int pushes = 12;
+constexpr int most_pushes = 12;
 /// A push goes this much farther than contact, and over-relaxed where there are several.
 constexpr double beyond_contact = 1e-4, over_relaxation = 1.5;
 /// A class is left when moving it has helped fewer than this share of those that wait, so often in a row.
@@ -111,7 +111,7 @@ class Insertion {
     const Bounds<D> box{Vector<D>::Zero(), edges_};
     for (int t = 0; t < tries; ++t) {
       Vector<D> c = uniform_point(random_, box);
-      for (int k = 0; k <= pushes; ++k) {
+      for (int k = 0; k <= most_pushes; ++k) {
         ++trials_;
         const Push push = push_at(c, i);
         if (push.overlaps == 0) {

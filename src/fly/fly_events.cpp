@@ -61,7 +61,7 @@ std::size_t EventFlight<D>::insert() {
   const std::size_t accepted = spheres_.insert(
       batch_, random_, [&](Vector<D>& c, double r) { return spheres_.push_into_room(c, r, pushes); },
       [&](const Vector<D>& c) {
-        from_.row(static_cast<Eigen::Index>(spheres_.size() - 1)) = c.transpose().array();
+        spheres_.set_row(from_, static_cast<Id>(spheres_.size() - 1), c);
         near_.emplace_back();
         if (spheres_.is_worn()) list_pairs();
       });
@@ -74,7 +74,7 @@ void EventFlight<D>::move_to(Id i, double t) {
   const double dt = t - time_[i];
   time_[i] = t;
   if (dt <= 0) return;
-  spheres_.x.row(i) += dt * spheres_.v.row(i);
+  for (int k = 0; k < D; ++k) spheres_.x(i, k) += dt * spheres_.v(i, k);
   room_[i] -= dt * std::sqrt(spheres_.v.row(i).square().sum());
 }
 
@@ -228,5 +228,6 @@ StageEnd fly_by_events(Work& work, const Fly& options) {
 
 #define BERNAL_INSTANTIATE(D) template class EventFlight<D>;
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

@@ -43,13 +43,14 @@ std::size_t PatentFlight<D>::insert() {
 
 template <int D>
 void PatentFlight<D>::turn_back_at_faces() {
-  const auto x = spheres_.places();
-  auto v = spheres_.velocities();
   for (int k = 0; k < D; ++k) {
     if (!spheres_.repeats(k)) continue;
-    const Eigen::ArrayXd inwards = v.col(k).abs();
-    v.col(k) =
-        (x.col(k) < 0).select(inwards, (x.col(k) > spheres_.edge(k)).select(-inwards, v.col(k))).eval();
+    for (Id i = 0; i < spheres_.size(); ++i) {
+      const double x = spheres_.x(i, k);
+      double& v = spheres_.v(i, k);
+      if (x < 0) v = std::abs(v);
+      if (x > spheres_.edge(k)) v = -std::abs(v);
+    }
   }
 }
 
@@ -60,7 +61,7 @@ int PatentFlight<D>::hits(const typename FlyingSpheres<D>::Columns& x, Hit (&fou
   const double tolerated = 1 - 0.5 * spheres_.margin();
   for (const auto& [i, j] : spheres_.pairs()) {
     const double contact = spheres_.contact(i, j);
-    const Vector<D> d = spheres_.nearest((x.row(i) - x.row(j)).transpose().matrix());
+    const Vector<D> d = spheres_.nearest(spheres_.row(x, i) - spheres_.row(x, j));
     const double squared = d.squaredNorm();
     if (squared >= contact * contact) continue;
     const bool separate = d.dot(spheres_.velocity(i) - spheres_.velocity(j)) >= 0;
@@ -165,5 +166,6 @@ StageEnd fly_by_patent(Work& work, const Fly& options) {
 
 #define BERNAL_INSTANTIATE(D) template class PatentFlight<D>;
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

@@ -47,10 +47,10 @@ void FlyingSpheres<D>::sort() {
   grid_.emplace(edges_, repeats_, 2 * largest_ + skin_, 0.5 * skin_, std::max<std::size_t>(size(), 64),
                 axes_);
   grid_->set_largest(largest_);
-  grid_->sort(x, r_, size());
+  grid_->sort(columns_of(x), r_, size());
   pairs_.clear();
   for (Id i = 0; i < size(); ++i) {
-    grid_->for_each_near(center(i), r_[i] + skin_, [&](Id j, double) {
+    grid_->for_each_near(center(i).data(), r_[i] + skin_, [&](Id j, double) {
       if (j > i) pairs_.push_back({i, j});
     });
   }
@@ -58,7 +58,7 @@ void FlyingSpheres<D>::sort() {
 
 template <int D>
 bool FlyingSpheres<D>::is_free(const Vector<D>& c, double r) const {
-  return !grid_->any_near(c, r + 2 * margin_ * largest_, [&](Id j, double squared) {
+  return !grid_->any_near(c.data(), r + 2 * margin_ * largest_, [&](Id j, double squared) {
     const double limit = (1 + margin_) * (r + r_[j]);
     return squared < limit * limit;
   });
@@ -71,7 +71,7 @@ bool FlyingSpheres<D>::push_into_room(Vector<D>& c, double r, int pushes) const 
     Vector<D> way = Vector<D>::Zero();
     int met = 0;
     double deepest = 0;
-    grid_->for_each_near(c, wide + 2e-6 * largest_, [&](Id j, double squared) {
+    grid_->for_each_near(c.data(), wide + 2e-6 * largest_, [&](Id j, double squared) {
       const double limit = (1 + 1e-6) * (r + r_[j]);
       if (!(squared < limit * limit)) return;
       const double d = std::sqrt(squared);
@@ -93,14 +93,14 @@ template <int D>
 void FlyingSpheres<D>::accept(std::size_t place, const Vector<D>& c, Random& random) {
   const Id tag = queue_[place], i = static_cast<Id>(size());
   const double r = drawn_[tag];
-  grid_->for_each_near(c, r + skin_, [&](Id j, double) { pairs_.push_back({j, i}); });
+  grid_->for_each_near(c.data(), r + skin_, [&](Id j, double) { pairs_.push_back({j, i}); });
   queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(place));
   tags_.push_back(tag);
   r_.push_back(r);
   mass_.push_back(std::pow(r / mean_radius_, D));
   volume_ += mass_.back();
-  grid_->add(c, r);
-  x.row(i) = c.transpose().array();
+  grid_->add(c.data(), r);
+  set_row(x, i, c);
   set_velocity(i, thermal(i, random));
 }
 
@@ -120,5 +120,6 @@ Spheres<dynamic> FlyingSpheres<D>::result() const {
 
 #define BERNAL_INSTANTIATE(D) template class FlyingSpheres<D>;
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

@@ -31,7 +31,7 @@ class FlyingSpheres {
   };
 
   /// Precondition: every sphere has room in the box for itself. `axes` as PartialGrid's.
-  explicit FlyingSpheres(const Work& work, int axes = PartialGrid<D>::automatic);
+  explicit FlyingSpheres(const Work& work, int axes = PartialGrid::automatic);
 
   std::size_t size() const { return tags_.size(); }
   std::size_t wanted() const { return drawn_.size(); }
@@ -55,9 +55,17 @@ class FlyingSpheres {
 
   auto places() { return x.topRows(static_cast<Eigen::Index>(size())); }
   auto velocities() { return v.topRows(static_cast<Eigen::Index>(size())); }
-  Vector<D> center(Id i) const { return x.row(i).transpose().matrix(); }
-  Vector<D> velocity(Id i) const { return v.row(i).transpose().matrix(); }
-  void set_velocity(Id i, const Vector<D>& w) { v.row(i) = w.transpose().array(); }
+  Vector<D> center(Id i) const { return row(x, i); }
+  Vector<D> velocity(Id i) const { return row(v, i); }
+  void set_velocity(Id i, const Vector<D>& w) { set_row(v, i, w); }
+  static Vector<D> row(const Columns& columns, Id i) {
+    Vector<D> w;
+    for (int k = 0; k < D; ++k) w[k] = columns(i, k);
+    return w;
+  }
+  static void set_row(Columns& columns, Id i, const Vector<D>& w) {
+    for (int k = 0; k < D; ++k) columns(i, k) = w[k];
+  }
   /// Of a displacement within the box, the nearest image.
   Vector<D> nearest(Vector<D> d) const {
     for (int k = 0; k < D; ++k)
@@ -89,7 +97,7 @@ class FlyingSpheres {
   /// Tells the grid where all are now; to be called before places are looked for.
   void update() {
     if (is_worn()) sort();
-    grid_->update(x);
+    grid_->update(columns_of(x));
   }
   /// Whether so many are new that all should be sorted again.
   bool is_worn() const { return grid_->unsorted() > 64 + size() / 16; }
@@ -155,7 +163,7 @@ class FlyingSpheres {
   }
 
   Vector<D> edges_;
-  std::array<bool, D> repeats_{};
+  PartialGrid::EachAxis<bool> repeats_{};
   std::vector<double> drawn_;
   double margin_;
   std::vector<Id> queue_;
@@ -165,7 +173,7 @@ class FlyingSpheres {
   std::vector<double> r_, mass_;
   double volume_ = 0, whole_volume_ = 0;  // in balls of the mean radius
   double in_vain_ = 0;
-  std::optional<PartialGrid<D>> grid_;
+  std::optional<PartialGrid> grid_;
   std::vector<Pair> pairs_;
 };
 

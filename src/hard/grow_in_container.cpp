@@ -23,7 +23,7 @@ constexpr double inset = 6;
 /// Spheres start no larger than this share of their radii, clear of such walls wherever they come from.
 constexpr double largest_start = 0.99;
 /// Random places tried for a sphere before the insertion counts as stuck, and the thinnest insertion.
-constexpr int most_trials = 10000;
+constexpr int most_trials_between_walls = 10000;
 constexpr double least_phi_init = 1e-6;
 /// More than what is likely to fit, in shares of it, is not tried at once.
 constexpr double most_of_attainable = 1.1;
@@ -34,7 +34,7 @@ constexpr double caution = 5e-4;
 constexpr int most_trims = 8;
 constexpr double shrinkage = 0.07;
 /// Of the skin: room for rounding beyond it.
-constexpr double room_for_rounding = 0.01;
+constexpr double share_for_rounding = 0.01;
 /// Room beside the container in the periodic box around it, in largest diameters, along axes that do not
 /// repeat themselves: no sphere meets an image of another, and shells are as large as they like.
 constexpr double margin = 3;
@@ -67,7 +67,7 @@ class Growth {
       : work_(work),
         options_(options),
         random_(work.random(Stream::grow)),
-        full_size_(1 + (1 + room_for_rounding) * work.bed().skin() / work.supply->smallest()),
+        full_size_(1 + (1 + share_for_rounding) * work.bed().skin() / work.supply->smallest()),
         walls_(walls_for_growth(work.domain, work.supply->smallest())) {
     const Bounds<3> bounds = work.bed().container().bounds();
     const Boundary<3>& boundary = work.bed().container().boundary();
@@ -161,8 +161,8 @@ class Growth {
     const Container& container = work_.bed().container();
     const double clear_of_walls = inset * flatness * work_.supply->smallest();
     const bool all = insert_at_random<3>(
-        growing.spheres, growing.placed, growing.size, container.bounds(), container.boundary(), most_trials,
-        [&](double) { return work_.bed().places().draw(random_); },
+        growing.spheres, growing.placed, growing.size, container.bounds(), container.boundary(),
+        most_trials_between_walls, [&](double) { return work_.bed().places().draw(random_); },
         [&](const Vector<3>& c, double r) {
           return container.clearance_within(c, r + clear_of_walls) >= r + clear_of_walls;
         });

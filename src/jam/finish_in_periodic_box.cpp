@@ -63,5 +63,6 @@ StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd en
   template bool fits<D>(const Spheres<D>&, const Vector<D>&, const Vector<D>&);                \
   template void shake<D>(Spheres<D>&, const Vector<D>&, const std::vector<bool>&, double, Random);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

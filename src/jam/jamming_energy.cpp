@@ -264,5 +264,6 @@ void JammingEnergy<D>::write(Spheres<D>& spheres) const {
 
 #define BERNAL_INSTANTIATE(D) template class JammingEnergy<D>;
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

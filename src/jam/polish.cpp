@@ -226,5 +226,6 @@ Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& w
 
 #define BERNAL_INSTANTIATE(D) template Polished polish<D>(Spheres<D>&, Vector<D>&, double, Work&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

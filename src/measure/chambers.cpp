@@ -1,7 +1,5 @@
 #include "bernal/measure/chambers.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -10,6 +8,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
+#include "core/parallel.hpp"
 #include "measure/convex.hpp"
 #include "measure/even_points.hpp"
 #include "measure/free_cells.hpp"
@@ -76,7 +75,7 @@ class Components {
 /// A sphere's centre as a place; absent where it is none.
 std::vector<std::optional<Place>> centers_of(const FreeSpace& space, const Spheres<3>& spheres) {
   std::vector<std::optional<Place>> centers(spheres.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+  parallel_for(spheres.size(), [&](std::size_t i) {
     const Vector<3> c = spheres.center(i);
     const double clearance = space.container().clearance_within(c, 2 * space.radius());
     if (space.is_place(clearance)) centers[i] = Place{c, clearance};
@@ -91,7 +90,7 @@ std::vector<std::uint32_t> linked(const Components& components, const FreeSpace&
                                   const std::vector<std::optional<Place>>& centers) {
   const std::size_t n = components.deepest().size();
   std::vector<std::uint32_t> found(centers.size(), none);
-  oneapi::tbb::parallel_for(std::size_t{0}, centers.size(), [&](std::size_t i) {
+  parallel_for(centers.size(), [&](std::size_t i) {
     if (!centers[i]) return;
     const std::optional<FreeCells::Found> component = components.find(*centers[i]);
     if (component && component->joined) found[i] = component->component;
@@ -107,7 +106,7 @@ std::vector<std::uint32_t> linked(const Components& components, const FreeSpace&
            (found[bond.first] == found[bond.second] && found[bond.first] != none);
   });
   std::vector<std::uint8_t> joined(open.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t k) {
+  parallel_for(open.size(), [&](std::size_t k) {
     joined[k] = space.joined(*centers[open[k].first], *centers[open[k].second], components.step());
   });
   for (std::size_t k = 0; k < open.size(); ++k)
@@ -142,7 +141,7 @@ Sampled sample(const FreeSpace& space, std::span<const Place> known, std::size_t
   const Bounds<3> bounds = space.container().bounds();
   const double waste = std::clamp(bounds.volume() / space.container().volume(), 1.0, most_in_vain);
   std::vector<std::uint32_t> kinds(static_cast<std::size_t>(waste * points));
-  oneapi::tbb::parallel_for(std::size_t{0}, kinds.size(), [&](std::size_t k) {
+  parallel_for(kinds.size(), [&](std::size_t k) {
     const Vector<3> p = bounds.lower + bounds.size().cwiseProduct(even_point(k));
     kinds[k] = outside;
     if (!space.container().contains(p, 0)) return;

@@ -1,18 +1,17 @@
 #include "measure/depths.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "bernal/core/random.hpp"
+#include "core/parallel.hpp"
 
 namespace bernal {
 namespace {
 
-constexpr double most_in_vain = 16;
+constexpr double most_waste = 16;
 
 /// Volume of the points deeper than z, over a constant factor.
 double inner_volume(const Box& box, double z) {
@@ -46,13 +45,13 @@ double deepest_of(const Mesh&) { return 0; }
 std::vector<double> sample(const Container& container, double reach, std::size_t points) {
   const Bounds<3> bounds = container.bounds();
   const Vector<3> size = bounds.size();
-  const double waste = std::clamp(size.prod() / container.volume(), 1.0, most_in_vain);
+  const double waste = std::clamp(size.prod() / container.volume(), 1.0, most_waste);
   const double edge = std::cbrt(size.prod() / (waste * static_cast<double>(points)));
   std::array<std::size_t, 3> cells;
   for (int k = 0; k < 3; ++k) cells[k] = static_cast<std::size_t>(std::max(1.0, std::round(size[k] / edge)));
 
   std::vector<double> depths(cells[0] * cells[1] * cells[2], -1);
-  oneapi::tbb::parallel_for(std::size_t{0}, depths.size(), [&](std::size_t cell) {
+  parallel_for(depths.size(), [&](std::size_t cell) {
     Random random(1, stream(Stream::measure, cell));
     const std::array<std::size_t, 3> at = {cell % cells[0], cell / cells[0] % cells[1],
                                            cell / (cells[0] * cells[1])};

@@ -1,6 +1,5 @@
 #include "measure/free_cells.hpp"
-
-#include <oneapi/tbb/parallel_for.h>
+#include "core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +81,7 @@ void FreeCells::collect_nodes() {
   Cell blocks;
   for (int k = 0; k < 3; ++k) blocks[k] = (count_[k] + block - 1) / block;
   std::vector<std::vector<Node>> parts(static_cast<std::size_t>(blocks[0]) * blocks[1] * blocks[2]);
-  oneapi::tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+  parallel_for(parts.size(), [&](std::size_t part) {
     const int at = static_cast<int>(part);
     refine({block * (at % blocks[0]), block * (at / blocks[0] % blocks[1]),
             block * (at / (blocks[0] * blocks[1]))},
@@ -144,7 +143,7 @@ void FreeCells::connect() {
 
   // Each with its roomiest neighbour, which connects nearly all at the cost of one line each.
   std::vector<std::uint32_t> upward(nodes_.size(), none);
-  oneapi::tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t n) {
+  parallel_for(nodes_.size(), [&](std::size_t n) {
     const Node& node = nodes_[n];
     if (node.whole) return;
     Place best = node.place;
@@ -162,7 +161,7 @@ void FreeCells::connect() {
 
   component_ = sets.numbered();
   std::vector<std::vector<std::uint32_t>> sideways(nodes_.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t n) {
+  parallel_for(nodes_.size(), [&](std::size_t n) {
     const Node& node = nodes_[n];
     if (node.whole) return;
     for_each_neighbour(node.cell, [&](const Cell& cell, std::uint32_t other) {

@@ -1,12 +1,11 @@
 #include "bernal/measure/radial_distribution.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "bernal/core/dimension.hpp"
+#include "core/parallel.hpp"
 #include "neighbors/point_grid.hpp"
 
 namespace bernal {
@@ -15,7 +14,7 @@ namespace {
 /// How far below a bin a distance may lie and still count in it, in bins: a contact that was rounded.
 constexpr double slack = 1e-6;
 constexpr std::size_t fewest_references = 100;
-constexpr std::size_t chunk = 256;  // references
+constexpr std::size_t references_a_part = 256;  // references
 
 /// The bins out to a distance, and what is found in them.
 class Histogram {
@@ -98,9 +97,10 @@ Histogram count_distances(const Spheres<D>& spheres, const Boundary<D>& boundary
   const double affordable =
       std::clamp(work / surroundings.cost(), 1.0 * fewest_references, static_cast<double>(n));
   const std::size_t looked_from = std::min(n, static_cast<std::size_t>(affordable));
-  std::vector<Histogram> parts((looked_from + chunk - 1) / chunk, empty);
-  oneapi::tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    for (std::size_t k = part * chunk; k < std::min(looked_from, (part + 1) * chunk); ++k)
+  std::vector<Histogram> parts((looked_from + references_a_part - 1) / references_a_part, empty);
+  parallel_for(parts.size(), [&](std::size_t part) {
+    for (std::size_t k = part * references_a_part; k < std::min(looked_from, (part + 1) * references_a_part);
+         ++k)
       surroundings.count((2 * k + 1) * n / (2 * looked_from), parts[part]);
   });
   Histogram sum = empty;

@@ -1,7 +1,5 @@
 #include "measure/touching.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -11,6 +9,7 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/domain/container.hpp"
+#include "core/parallel.hpp"
 #include "measure/localised.hpp"
 #include "neighbors/point_grid.hpp"
 
@@ -90,7 +89,7 @@ std::vector<Found> pairs_among(const Spheres<D>& spheres, const Boundary<D>& bou
     const PointGrid<D>& grid = *levels[l].grid;
     const std::size_t n = grid.ids().size();
     std::vector<std::vector<Found>> found((n + chunk - 1) / chunk);
-    oneapi::tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t part) {
+    parallel_for(found.size(), [&](std::size_t part) {
       for (std::size_t place = part * chunk; place < std::min(n, (part + 1) * chunk); ++place) {
         append_pairs<D>(spheres, std::span(levels).first(l + 1), grid.ids()[place], grid.point(place),
                         widest_gap, found[part]);

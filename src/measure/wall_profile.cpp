@@ -1,7 +1,5 @@
 #include "bernal/measure/wall_profile.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/measure/measure.hpp"
+#include "core/parallel.hpp"
 #include "measure/depths.hpp"
 #include "measure/even_points.hpp"
 #include "measure/localised.hpp"
@@ -18,7 +17,7 @@
 namespace bernal {
 namespace {
 
-constexpr std::size_t chunk = 256;                      // spheres
+constexpr std::size_t spheres_a_part = 256;             // spheres
 constexpr double fewest_points = 8, most_points = 512;  // in a sphere
 /// In mean diameters: deeper, layers hardly differ and fewer points will do.
 constexpr double structured = 2;
@@ -69,11 +68,11 @@ constexpr double least_rest = 0.01;
 /// Layers of equal thickness down to `reach`, or to half a layer from the deepest point, and one for the
 /// rest; none of them without volume.
 std::vector<double> edges_of(const Depths& depths, double thickness, double reach) {
-  constexpr double slack = 1e-9;
+  constexpr double rounding = 1e-9;
   std::vector<double> edges = {0};
   for (int k = 1;; ++k) {
     const double z = k * thickness;
-    if (z > reach + slack * thickness || z > depths.deepest() - 0.5 * thickness) break;
+    if (z > reach + rounding * thickness || z > depths.deepest() - 0.5 * thickness) break;
     if (depths.deeper(z) < least_rest) break;
     if (depths.deeper(z) < depths.deeper(edges.back())) edges.push_back(z);
   }
@@ -83,7 +82,7 @@ std::vector<double> edges_of(const Depths& depths, double thickness, double reac
 /// The clearance of every centre, as far as the sphere may reach into a layer.
 std::vector<double> clearances(const Container& container, const Spheres<3>& spheres, double reach) {
   std::vector<double> found(spheres.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+  parallel_for(spheres.size(), [&](std::size_t i) {
     found[i] = container.clearance_within(spheres.center(i), reach + spheres.r[i]);
   });
   return found;
@@ -93,12 +92,13 @@ std::vector<double> clearances(const Container& container, const Spheres<3>& sph
 std::vector<Filling> fill(const Container& container, const Spheres<3>& spheres,
                           const std::vector<double>& clearance, const Zones& zones, double reach,
                           std::uint32_t points) {
-  std::vector<std::vector<Filling>> parts((spheres.size() + chunk - 1) / chunk);
-  oneapi::tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+  std::vector<std::vector<Filling>> parts((spheres.size() + spheres_a_part - 1) / spheres_a_part);
+  parallel_for(parts.size(), [&](std::size_t part) {
     std::vector<Filling>& filling = parts[part];
     filling.resize(zones.count());
     std::vector<std::uint32_t> inside(zones.count());
-    for (std::size_t i = part * chunk; i < std::min(spheres.size(), (part + 1) * chunk); ++i) {
+    for (std::size_t i = part * spheres_a_part; i < std::min(spheres.size(), (part + 1) * spheres_a_part);
+         ++i) {
       const double r = spheres.r[i], v = ball_volume(3, r);
       std::ranges::fill(inside, 0u);
       const bool beyond = clearance[i] - r >= reach;

@@ -90,5 +90,6 @@ std::size_t CellGrid<D>::level_of(double r) const {
 
 #define BERNAL_INSTANTIATE(D) template class CellGrid<D>;
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

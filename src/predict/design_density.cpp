@@ -15,7 +15,7 @@ namespace {
 /// That stand for all bins in the search: a bin of one class is 0.001 off, 128 in all 1e-4 or less.
 constexpr int classes_in_search = 128;
 /// Starts that end this near to the best found the same, as far as classes can stand for bins.
-constexpr double same = 1e-4;
+constexpr double same_for_classes = 1e-4;
 /// Of the volume: the first amount moved from bin to bin, and the last.
 constexpr double first_amount = 0.08, last_amount = 5e-4;
 
@@ -48,8 +48,8 @@ class DensitySearch {
         inquiry_.fraction = std::min(1.0, inquiry_.fraction + 0.7 * bins / (8.0 * most_bins));
       }
       answer.optimum.starts = static_cast<int>(ends.size());
-      answer.optimum.agreeing =
-          static_cast<int>(std::ranges::count_if(ends, [&](double end) { return end >= densest - same; }));
+      answer.optimum.agreeing = static_cast<int>(
+          std::ranges::count_if(ends, [&](double end) { return end >= densest - same_for_classes; }));
       answer.optimum.spread = densest - std::ranges::min(ends);
       answer.optimum.prediction = predict_packing_fraction(*sieve(best), options_.rods);
       answer.levels.push_back({bins, answer.optimum.prediction.phi});

@@ -12,10 +12,7 @@
 namespace bernal {
 namespace {
 
-/// Starts that end this near to the best found the same packing fraction.
-constexpr double same = 1e-5;
 constexpr int starts_each_population = 4;
-constexpr int to_refine = 3;
 constexpr int most_evaluations = 2000;
 
 struct Composition {
@@ -49,7 +46,7 @@ class Search {
     Optimum optimum;
     optimum.starts = static_cast<int>(ends.size());
     optimum.agreeing = static_cast<int>(std::ranges::count_if(
-        ends, [&](const Composition& end) { return end.value >= ends.front().value - same; }));
+        ends, [&](const Composition& end) { return end.value >= ends.front().value - predict::same_end; }));
     optimum.spread = ends.front().value - ends.back().value;
     optimum.shares = refined(ends);
     optimum.prediction = predict_packing_fraction(*mixture_(optimum.shares), options_.rods);
@@ -63,7 +60,7 @@ class Search {
   std::vector<double> refined(const std::vector<Composition>& ends) {
     inquiry_.activity = "refining";
     Composition best{ends.front().shares, -1};
-    for (const Composition& end : ends | std::views::take(to_refine)) {
+    for (const Composition& end : ends | std::views::take(predict::ends_to_refine)) {
       if (end.value < ends.front().value - 1e-3 || inquiry_.stopped()) continue;
       const Composition fine =
           settled({end.shares, value(end.shares, options_.rods)}, 0.01, 1e-7, options_.rods);

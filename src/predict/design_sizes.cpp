@@ -10,10 +10,8 @@
 namespace bernal {
 namespace {
 
-constexpr double same = 1e-5;
 constexpr int starts = 9;
-constexpr int most_evaluations = 4000;
-constexpr int to_refine = 3;
+constexpr int most_evaluations_of_sizes = 4000;
 
 /// Places are u: count - 1 of the composition, then count - 2 positions between the ends.
 class SizesSearch {
@@ -33,14 +31,16 @@ class SizesSearch {
     std::ranges::stable_sort(ends, std::greater(), &predict::Place::value);
     predict::Place best = ends.front();
     best.value = -1;
-    for (std::size_t k = 0; k < std::min<std::size_t>(to_refine, ends.size()) && !inquiry_.stopped(); ++k) {
+    for (std::size_t k = 0;
+         k < std::min<std::size_t>(predict::ends_to_refine, ends.size()) && !inquiry_.stopped(); ++k) {
       const predict::Place fine = settled(ends[k].x, 0.01, 1e-7, options_.rods);
       if (fine.value > best.value) best = fine;
     }
 
     DensestSizes answer = at(best.x);
     answer.optimum.starts = static_cast<int>(ends.size());
-    for (const predict::Place& end : ends) answer.optimum.agreeing += end.value >= ends.front().value - same;
+    for (const predict::Place& end : ends)
+      answer.optimum.agreeing += end.value >= ends.front().value - predict::same_end;
     answer.optimum.spread = ends.front().value - ends.back().value;
     answer.optimum.prediction = predict_packing_fraction(*mixture(best.x), options_.rods);
     answer.optimum.evaluations = inquiry_.evaluations + 1;
@@ -97,8 +97,9 @@ class SizesSearch {
     predict::Place best{from, phi(from)};
     for (int idle = 0; idle < 2 && !inquiry_.stopped();
          step = idle == 1 ? 0.05 : std::max(0.5 * step, 0.005)) {
-      const predict::Place end = predict::climb(phi, best.x, {step, 0.1 * tolerance, most_evaluations},
-                                                [this] { return inquiry_.stopped(); });
+      const predict::Place end =
+          predict::climb(phi, best.x, {step, 0.1 * tolerance, most_evaluations_of_sizes},
+                         [this] { return inquiry_.stopped(); });
       idle = end.value > best.value + tolerance ? 0 : idle + 1;
       if (end.value > best.value) best = end;
     }

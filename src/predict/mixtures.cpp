@@ -1,7 +1,5 @@
 #include "bernal/predict/mixtures.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "bernal/core/error.hpp"
+#include "core/parallel.hpp"
 #include "predict/chord_table.hpp"
 #include "predict/from_chords.hpp"
 
@@ -82,9 +81,8 @@ std::vector<Prediction> predict_all(
   for (std::size_t from = 0; from < count; from += batch) {
     if (monitor.stop()) return {};
     monitor.report({activity, static_cast<double>(from) / static_cast<double>(count), "of the predictions"});
-    oneapi::tbb::parallel_for(from, std::min(count, from + batch), [&](std::size_t i) {
-      predictions[i] = predict_packing_fraction(*sizes(i), rods);
-    });
+    parallel_for(from, std::min(count, from + batch),
+                 [&](std::size_t i) { predictions[i] = predict_packing_fraction(*sizes(i), rods); });
   }
   return predictions;
 }

@@ -36,8 +36,8 @@ class Reader {
 
  private:
   toml::table parse(std::string_view text) const {
-    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
-    if (std::ranges::all_of(text, blank))
+    const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+    if (std::ranges::all_of(text, is_blank))
       throw Error(ErrorCode::bad_scene, "the scene is empty; it needs at least [container] and [spheres]",
                   {file_});
     try {

@@ -11,8 +11,6 @@
 namespace bernal {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// Probability that a standard normal variable is below z.
 double normal_below(double z) { return 0.5 * boost::math::erfc(-z / std::numbers::sqrt2); }
 
@@ -23,7 +21,7 @@ double normal_between(double a, double b) {
 
 /// z with normal_below(z) = p.
 double normal_quantile(double p) {
-  if (p <= 0) return -infinity;
+  if (p <= 0) return -std::numeric_limits<double>::infinity();
   return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * p);
 }
 
@@ -36,8 +34,9 @@ class Lognormal final : public SizeDistribution {
         sigma_(sigma),
         min_(min),
         max_(max),
-        alpha_(min > 0 ? (std::log(min) - mu) / sigma : -infinity),
-        beta_(max < infinity ? (std::log(max) - mu) / sigma : infinity),
+        alpha_(min > 0 ? (std::log(min) - mu) / sigma : -std::numeric_limits<double>::infinity()),
+        beta_(max < std::numeric_limits<double>::infinity() ? (std::log(max) - mu) / sigma
+                                                            : std::numeric_limits<double>::infinity()),
         mass_(normal_between(alpha_, beta_)) {}
 
   /// The fraction of the untruncated distribution that is kept.

@@ -13,7 +13,6 @@
 namespace bernal {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The smallest double r with f(r) >= p, for a nondecreasing f that may jump and rest, f(low) < p <= f(high).
 template <class F>
@@ -54,7 +53,7 @@ class Mixture final : public SizeDistribution {
   double quantile(double p) const override {
     if (p <= 0) return min();
     if (p >= 1) return max();
-    double low = infinity, high = 0;
+    double low = std::numeric_limits<double>::infinity(), high = 0;
     for (const Part& part : parts_) {
       const double r = part.sizes->quantile(p);
       low = std::min(low, r);
@@ -108,7 +107,7 @@ class Mixture final : public SizeDistribution {
 
   std::string_view name_;
   std::vector<Part> parts_;
-  double min_ = infinity;
+  double min_ = std::numeric_limits<double>::infinity();
   double max_ = 0;
 };
 

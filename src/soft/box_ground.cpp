@@ -3,17 +3,11 @@
 #include <algorithm>
 
 #include "core/every_dimension.hpp"
+#include "soft/fixed_point.hpp"
 #include "work/periodic_holes.hpp"
 #include "work/resize_box.hpp"
 
 namespace bernal {
-namespace {
-
-/// So many resolutions of the coordinates at least, and never more than the last.
-constexpr double least_margin = 1e-4, resolutions_a_margin = 100, largest_margin = 0.01;
-
-}  // namespace
-
 template <int D>
 BoxGround<D>::BoxGround(const Vector<D>& edges, double allowed, std::vector<bool> walls)
     : edges_(edges), allowed_(allowed), walls_(std::move(walls)) {}
@@ -52,5 +46,6 @@ void BoxGround<D>::move_to_holes(Spheres<D>& spheres, std::vector<std::uint32_t>
 
 #define BERNAL_INSTANTIATE(D) template class BoxGround<D>;
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

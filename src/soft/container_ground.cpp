@@ -6,13 +6,12 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "soft/fixed_point.hpp"
 #include "work/holes.hpp"
 
 namespace bernal {
 namespace {
 
-/// The margin is so many resolutions of the coordinates at least, and never more than this.
-constexpr double least_margin = 1e-4, resolutions_a_margin = 100, largest_margin = 0.01;
 /// Random places that are looked at for each sphere to find holes.
 constexpr double probes_a_sphere = 2, least_probes = 1000;
 

@@ -15,7 +15,7 @@ constexpr double share_of_margin = 0.97;
 constexpr int sweeps_a_look = 25;
 /// Stuck: at so many looks in a row the mean squeeze is more than this share of the least so far.
 constexpr double hardly_freer = 0.85;
-constexpr int patience = 2;
+constexpr int most_slow_looks = 2;
 constexpr int burst_sweeps = 50;
 /// Sum of squared overlap ratios of a sphere that will not find its way by itself.
 constexpr float severe_squeeze = 0.05f;
@@ -50,7 +50,7 @@ typename Crowd<Ground>::Rest Crowd<Ground>::settle(const Monitor& monitor,
                                                    double most_sweeps) {
   Rest rest = Rest::stuck;
   double least_squeeze = 1e300;
-  for (int slow = 0; slow < patience;) {
+  for (int slow = 0; slow < most_slow_looks;) {
     const Pace pace = pace_for(largest_overlap_);
     ground_.wear_lists(pace.wear);
     bool cancelled = false;
@@ -146,5 +146,6 @@ template class Crowd<ContainerGround>;
   template void Crowd<BoxGround<D>>::relocate(double, Random&);                                         \
   template void Crowd<BoxGround<D>>::drop_last(std::size_t, Random&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

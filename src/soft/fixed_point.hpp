@@ -33,6 +33,10 @@ struct FixedPlace {
   typename RegistersFor<D>::Whole x;
 };
 
+/// What is left between spheres for the rounding of their places, in radii: so many resolutions at least, and
+/// never more than the last.
+constexpr double least_margin = 1e-4, resolutions_a_margin = 100, largest_margin = 0.01;
+
 inline std::uint32_t to_fixed(double x, double edge) {
   const double share = x / edge;
   return static_cast<std::uint32_t>(

@@ -96,5 +96,6 @@ void FixedPointGrid<D>::rows_near(const FixedPlace<D>& place, std::vector<Row>& 
 
 #define BERNAL_INSTANTIATE(D) template class FixedPointGrid<D>;
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

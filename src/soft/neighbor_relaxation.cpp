@@ -326,5 +326,6 @@ void NeighborRelaxation<D>::write_to(Spheres<D>& spheres, Vector<D>& edges) cons
 
 #define BERNAL_INSTANTIATE(D) template class NeighborRelaxation<D>;
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

@@ -17,14 +17,14 @@
 namespace bernal {
 namespace {
 
-/// Up to this share of random close packing spheres of any sizes find places free of overlap in a given box; they start in one
-/// that is smaller by volume, as it may grow while they relax, and again from where they ended if it grew too
-/// far.
+/// Up to this share of random close packing spheres of any sizes find places free of overlap in a given box;
+/// they start in one that is smaller by volume, as it may grow while they relax, and again from where they
+/// ended if it grew too far.
 constexpr double loose = 0.9;
 constexpr double room_to_grow = 0.03;
 constexpr int most_starts_in_a_loose_box = 20;
 /// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
-constexpr double jitter = 1e-6;
+constexpr double first_jitter = 1e-6;
 
 /// The paper's phi0, and in other than three dimensions what is as far above random close packing.
 constexpr double dense_start[] = {1.34, 1.13, 0.86, 0.62, 0.42, 0.27, 0.16, 0.093};
@@ -42,8 +42,8 @@ void complete_relax(Relax& relax, Scene& scene, const schema::Section&) {
 }
 
 bool is_loose(const Work& work) {
-  return work.target_edges &&
-         work.volume_of_spheres() < loose * random_close_packing[work.dimension() - 1] * work.target_edges->prod();
+  return work.target_edges && work.volume_of_spheres() < loose * random_close_packing[work.dimension() - 1] *
+                                                             work.target_edges->prod();
 }
 
 /// Those of phi0, or about those that are asked for; never so small that a sphere overlaps its own image.
@@ -73,7 +73,8 @@ template <int D>
 void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& work) {
   if (work.placed) {
     resize_box<D>(spheres, edges, start);
-    shake<D>(spheres, edges, work.walls, jitter * std::ranges::max(spheres.r), work.random(Stream::relax));
+    shake<D>(spheres, edges, work.walls, first_jitter * std::ranges::max(spheres.r),
+             work.random(Stream::relax));
   } else {
     edges = start;
     place_at_random<D>(spheres, edges, work.random(Stream::relax));

@@ -84,5 +84,6 @@ bool fast_path_exists(const Spheres<D>& spheres, const Vector<D>& edges) {
   template bool fast_path_exists<D>(const Spheres<D>&, const Vector<D>&); \
   template StageEnd relax_fast<D>(Spheres<D>&, Vector<D>&, Work&, const RelaxOptions&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

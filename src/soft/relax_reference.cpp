@@ -142,5 +142,6 @@ StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, co
 #define BERNAL_INSTANTIATE(D) \
   template StageEnd relax_by_the_book<D>(Spheres<D>&, Vector<D>&, Work&, const RelaxOptions&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

@@ -62,5 +62,6 @@ typename SoftEngine<D>::Engine SoftEngine<D>::make(const Spheres<D>& spheres, co
 
 #define BERNAL_INSTANTIATE(D) template class SoftEngine<D>;
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

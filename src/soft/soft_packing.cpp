@@ -9,6 +9,8 @@
 #include <limits>
 #include <numeric>
 
+#include "soft/fixed_point.hpp"
+
 namespace bernal {
 namespace {
 
@@ -35,12 +37,6 @@ std::vector<float> as_floats(const std::vector<double>& values, double factor = 
   return floats;
 }
 
-std::int32_t to_fixed(double x, double edge) {
-  const double share = x / edge;
-  return static_cast<std::int32_t>(static_cast<std::uint32_t>(
-      static_cast<std::int64_t>(std::llround((share - std::floor(share)) * 0x1p32))));
-}
-
 }  // namespace
 
 Pace pace_for(double largest_overlap) {
@@ -61,7 +57,7 @@ SoftPacking::SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, cons
   for (int k = 0; k < D; ++k) edges_[static_cast<std::size_t>(k)] = edges[k];
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     for (std::size_t k = 0; k < D; ++k)
-      spheres_[i].x[k] = to_fixed(spheres.x[k][i], edges[static_cast<int>(k)]);
+      spheres_[i].x[k] = static_cast<std::int32_t>(to_fixed(spheres.x[k][i], edges[static_cast<int>(k)]));
     spheres_[i].r = static_cast<float>(spheres.r[i]);
     ids_[i] = static_cast<std::uint32_t>(i);
   }
@@ -168,7 +164,8 @@ void SoftPacking::put(const std::vector<Move>& moves) {
 
 void SoftPacking::set_place(SoftSphere& sphere, const Vector<3>& center) const {
   for (std::size_t k = 0; k < 3; ++k)
-    sphere.x[k] = to_fixed(center[static_cast<int>(k)] - corner_[static_cast<int>(k)], edges_[k]);
+    sphere.x[k] = static_cast<std::int32_t>(
+        to_fixed(center[static_cast<int>(k)] - corner_[static_cast<int>(k)], edges_[k]));
 }
 
 std::vector<float> SoftPacking::squeeze() const {
@@ -261,5 +258,6 @@ void SoftPacking::write_to(Spheres<3>& spheres) const {
 BERNAL_INSTANTIATE(1)
 BERNAL_INSTANTIATE(2)
 BERNAL_INSTANTIATE(3)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

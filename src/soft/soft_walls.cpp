@@ -19,7 +19,7 @@ constexpr double kept = 0.1;
 constexpr double units_kept = 64;
 /// How far from the wall a sphere is told apart from one that is farther, in skins.
 constexpr double far_reach = 3;
-constexpr std::size_t groups_per_block = 64;
+constexpr std::size_t groups_a_task = 64;
 
 /// p minus the nearest point of the facet; for a facet of an analytic container p is on its inner side.
 Vector<3> offset(const std::variant<Facet, PreparedTriangle>& piece, const Vector<3>& p) {
@@ -140,8 +140,8 @@ void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<
   skin_ = skin;
   const std::size_t groups = spheres.size() / lanes;
   std::vector<std::uint16_t> near_lanes(groups, 0);
-  tbb::parallel_for(std::size_t{0}, (groups + groups_per_block - 1) / groups_per_block, [&](std::size_t b) {
-    for (std::size_t g = b * groups_per_block; g < std::min(groups, (b + 1) * groups_per_block); ++g) {
+  tbb::parallel_for(std::size_t{0}, (groups + groups_a_task - 1) / groups_a_task, [&](std::size_t b) {
+    for (std::size_t g = b * groups_a_task; g < std::min(groups, (b + 1) * groups_a_task); ++g) {
       for (std::size_t l = 0; l < lanes; ++l) {
         const SoftSphere& s = spheres[g * lanes + l];
         if (s.r > 0 && look(place(s), s.r, skin, views_[ids[g * lanes + l]]))

@@ -9,9 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include <tbb/parallel_invoke.h>
-
 #include "bernal/core/vector.hpp"
+#include "core/parallel.hpp"
 
 namespace bernal::verify {
 
@@ -171,7 +170,7 @@ class BoxTree {
     const auto left = [&] { build(2 * n, begin, middle); };
     const auto right = [&] { build(2 * n + 1, middle, end); };
     if (end - begin > worth_a_task) {
-      tbb::parallel_invoke(left, right);
+      parallel_both(left, right);
     } else {
       left();
       right();

@@ -1,8 +1,4 @@
 #pragma once
-#include <bit>
-#include <cmath>
-#include <cstdint>
-
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "verify/sign.hpp"
@@ -17,27 +13,16 @@ namespace bernal::verify {
 class Exact {
  public:
   /// Precondition: finite.
-  explicit Exact(double x) {
-    if (x == 0) return;
-    int exponent = 0;
-    const auto mantissa = static_cast<std::int64_t>(std::frexp(x, &exponent) * 0x1p53);
-    const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissa));
-    mantissa_ = mantissa >> zeros;
-    exponent_ = exponent - 53 + zeros;
-  }
+  explicit Exact(double x);
+  Exact(const Exact&);
+  Exact& operator=(const Exact&);
+  ~Exact();
 
-  Sign sign() const { return static_cast<Sign>(mantissa_.sign()); }
+  Sign sign() const;
 
-  friend Exact operator+(const Exact& a, const Exact& b) {
-    if (a.mantissa_.is_zero()) return b;
-    if (b.mantissa_.is_zero()) return a;
-    const int exponent = std::min(a.exponent_, b.exponent_);
-    return {(a.mantissa_ << (a.exponent_ - exponent)) + (b.mantissa_ << (b.exponent_ - exponent)), exponent};
-  }
-  friend Exact operator-(const Exact& a, const Exact& b) { return a + Exact(-b.mantissa_, b.exponent_); }
-  friend Exact operator*(const Exact& a, const Exact& b) {
-    return {a.mantissa_ * b.mantissa_, a.exponent_ + b.exponent_};
-  }
+  friend Exact operator+(const Exact& a, const Exact& b);
+  friend Exact operator-(const Exact& a, const Exact& b);
+  friend Exact operator*(const Exact& a, const Exact& b);
   friend Exact square(const Exact& a) { return a * a; }
   friend Exact magnitude(const Exact& a) { return a.sign() == Sign::negative ? Exact(0) - a : a; }
   friend Exact smaller(const Exact& a, const Exact& b) { return (b - a).sign() == Sign::negative ? b : a; }
@@ -48,7 +33,7 @@ class Exact {
                                              boost::multiprecision::unchecked>,
       boost::multiprecision::et_off>;
 
-  Exact(Integer mantissa, int exponent) : mantissa_(std::move(mantissa)), exponent_(exponent) {}
+  Exact(const Integer& mantissa, int exponent);
 
   Integer mantissa_ = 0;
   int exponent_ = 0;

@@ -16,5 +16,6 @@ Tally judge_pairs(const BallTree<D>& balls, const PeriodicSpace<D>& space, const
 #define BERNAL_INSTANTIATE(D) \
   template Tally judge_pairs(const BallTree<D>&, const PeriodicSpace<D>&, const Course&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal::verify

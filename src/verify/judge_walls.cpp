@@ -15,10 +15,6 @@
 namespace bernal::verify {
 namespace {
 
-void require(bool holds, const char* what) {
-  if (!holds) throw Error(ErrorCode::bad_argument, what);
-}
-
 bool positive(double x) { return std::isfinite(x) && x > 0; }
 
 /// Tries one ball against the pieces of wall of a container that has few.
@@ -150,5 +146,6 @@ Tally judge_walls(const BallTree<D>& balls, const Domain& domain, const Course& 
 }
 #define BERNAL_INSTANTIATE(D) template Tally judge_walls(const BallTree<D>&, const Domain&, const Course&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal::verify

@@ -6,14 +6,6 @@
 #include "bernal/core/error.hpp"
 
 namespace bernal::verify {
-namespace {
-
-void require(bool holds, const char* what) {
-  if (!holds) throw Error(ErrorCode::bad_argument, what);
-}
-
-}  // namespace
-
 Vector<dynamic> periods_of(const Domain& domain) {
   const int dimension = dimension_of(domain);
   Vector<dynamic> periods = Vector<dynamic>::Constant(dimension, Box<1>::infinity);

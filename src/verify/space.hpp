@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "bernal/core/error.hpp"
 #include "bernal/core/vector.hpp"
 #include "bernal/domain/domain.hpp"
 #include "verify/box_tree.hpp"
@@ -14,6 +15,11 @@ namespace bernal::verify {
 
 inline double magnitude(double x) { return std::abs(x); }
 inline double smaller(double a, double b) { return std::min(a, b); }
+
+/// Throws Error{bad_argument} unless it holds.
+inline void require(bool holds, const char* what) {
+  if (!holds) throw Error(ErrorCode::bad_argument, what);
+}
 
 /// The period of every axis of a domain, infinite where it has none. What repeats is said here once more,
 /// from the plain data: the packer's own metric is not trusted. Throws Error{bad_argument} unless every

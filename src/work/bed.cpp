@@ -1,7 +1,5 @@
 #include "work/bed.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +8,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
+#include "core/parallel.hpp"
 #include "work/room.hpp"
 
 namespace bernal {
@@ -172,7 +171,7 @@ double Bed::enclose(double buffer) {
   first_facet_.assign(n + 1, 0);
   meets_images_.assign(n, 0);
 
-  oneapi::tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+  parallel_for(blocks, [&](std::size_t block) {
     std::vector<NearFacet> facets;
     const auto end = static_cast<Id>(std::min(n, (block + 1) * block_size));
     for (auto i = static_cast<Id>(block * block_size); i < end; ++i) {

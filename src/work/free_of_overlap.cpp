@@ -65,5 +65,6 @@ Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edge
   template Vector<D> edges_free_of_overlap(const Spheres<D>&, const Vector<D>&, double, \
                                            const std::vector<bool>&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

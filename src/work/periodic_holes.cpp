@@ -23,11 +23,11 @@ void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std:
   for (std::uint32_t i = 0; i < spheres.size(); ++i)
     if (!moves[i]) grid.insert(i, spheres.center(i), spheres.r[i]);
 
-  struct Hole {
+  struct Probe {
     Vector<D> place;
     double room;
   };
-  std::vector<Hole> holes;
+  std::vector<Probe> holes;
   const auto probes =
       static_cast<std::size_t>(least_probes + probes_a_sphere * static_cast<double>(spheres.size()));
   for (std::size_t n = 0; n < probes; ++n) {
@@ -40,7 +40,7 @@ void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std:
     });
     holes.push_back({p, between});
   }
-  std::ranges::stable_sort(holes, std::greater<>(), &Hole::room);
+  std::ranges::stable_sort(holes, std::greater<>(), &Probe::room);
   auto hole = holes.begin();
   for (const std::uint32_t i : ids) {
     const double r = spheres.r[i], apart = 0.5 * (r + least);
@@ -60,5 +60,6 @@ void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std:
   template void move_to_holes<D>(Spheres<D>&, const Vector<D>&, std::vector<std::uint32_t>, Random&, \
                                  const std::vector<bool>&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

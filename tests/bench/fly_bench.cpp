@@ -33,7 +33,7 @@ double edge_for(std::size_t n) {
 template <int D>
 void near_pairs(benchmark::State& state, std::size_t n, int axes) {
   const Vector<D> edges = Vector<D>::Constant(edge_for<D>(n));
-  std::array<bool, D> repeats;
+  PartialGrid::EachAxis<bool> repeats;
   repeats.fill(true);
   Random random(1, stream(Stream::test));
   Spheres<D> spheres;
@@ -42,13 +42,13 @@ void near_pairs(benchmark::State& state, std::size_t n, int axes) {
   std::size_t found = 0;
   int used = 0;
   for (auto _ : state) {
-    PartialGrid<D> grid(edges, repeats, reach, 0, n, axes);
+    PartialGrid grid(edges, repeats, reach, 0, n, axes);
     grid.set_largest(1);
-    grid.sort(spheres.x, spheres.r, n);
+    grid.sort(columns_of(spheres.x), spheres.r, n);
     used = grid.axes();
     found = 0;
     for (std::size_t i = 0; i < n; ++i)
-      grid.for_each_near(spheres.center(i), 1.3, [&](std::uint32_t, double) { ++found; });
+      grid.for_each_near(spheres.center(i).data(), 1.3, [&](std::uint32_t, double) { ++found; });
   }
   benchmark::DoNotOptimize(found);
   state.SetLabel(used == 0 ? "all pairs" : "grid");
@@ -61,8 +61,8 @@ template <int D>
 void on_every_number_of_axes() {
   for (const std::size_t n : {64, 256, 1000, 4000, 16000}) {
     const int most = edge_for<D>(n) < 4 * reach ? 0 : std::min(D, 4);  // no grid has less than four cells
-    for (int axes = PartialGrid<D>::automatic; axes <= most; ++axes) {
-      const std::string grid = axes == PartialGrid<D>::automatic ? "chosen" : std::to_string(axes);
+    for (int axes = PartialGrid::automatic; axes <= most; ++axes) {
+      const std::string grid = axes == PartialGrid::automatic ? "chosen" : std::to_string(axes);
       const std::string name = fmt::format("near_pairs<{}>/N:{}/axes:{}", D, n, grid);
       benchmark::RegisterBenchmark(name.c_str(), near_pairs<D>, n, axes)
           ->Unit(benchmark::kMicrosecond)
@@ -87,11 +87,11 @@ void fill(benchmark::State& state, bool patent, std::size_t n, double phi, int b
   for (auto _ : state) {
     EffectLog effects;
     Work work{.spheres = Spheres<dynamic>(D),
-                      .edges = Vector<dynamic>::Constant(
-                          D, std::pow(static_cast<double>(n) * ball_volume(D, 1) / phi, 1.0 / D)),
-                      .seed = 1,
-                      .monitor = monitor,
-                      .effects = effects};
+              .edges = Vector<dynamic>::Constant(
+                  D, std::pow(static_cast<double>(n) * ball_volume(D, 1) / phi, 1.0 / D)),
+              .seed = 1,
+              .monitor = monitor,
+              .effects = effects};
     for (auto& column : work.spheres.x) column.assign(n, 0);
     work.spheres.r.assign(n, 1);
     work.target_edges = work.edges;

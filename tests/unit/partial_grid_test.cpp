@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -29,19 +30,19 @@ class Scatter {
     }
     return sum;
   }
-  PartialGrid<D> grid(int axes, double slack = 0) const {
-    PartialGrid<D> grid(edges_, repeats_, 0.5, slack, spheres_.size(), axes);
+  PartialGrid grid(int axes, double slack = 0) const {
+    PartialGrid grid(edges_, each_axis(), 0.5, slack, spheres_.size(), axes);
     grid.set_largest(0.2);
-    grid.sort(spheres_.x, spheres_.r, spheres_.size());
+    grid.sort(columns_of(spheres_.x), spheres_.r, spheres_.size());
     return grid;
   }
   /// Every sphere that is near comes once, with its distance, and no other.
-  void expect_complete(const PartialGrid<D>& grid) {
+  void expect_complete(const PartialGrid& grid) {
     for (int query = 0; query < 30; ++query) {
       const Vector<D> c = anywhere();
       const double reach = 0.3 * random_.uniform();
       std::map<std::uint32_t, double> found;
-      grid.for_each_near(c, reach, [&](std::uint32_t id, double squared) {
+      grid.for_each_near(c.data(), reach, [&](std::uint32_t id, double squared) {
         EXPECT_TRUE(found.emplace(id, squared).second) << "sphere " << id << " comes twice";
       });
       for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
@@ -61,6 +62,12 @@ class Scatter {
   Spheres<D> spheres_;
 
  private:
+  PartialGrid::EachAxis<bool> each_axis() const {
+    PartialGrid::EachAxis<bool> repeats{};
+    std::ranges::copy(repeats_, repeats.begin());
+    return repeats;
+  }
+
   std::array<bool, D> repeats_;
   Vector<D> edges_;
   Random random_{1, stream(Stream::test)};
@@ -73,7 +80,7 @@ void expect_complete_on_every_number_of_axes(double edge) {
     repeats.fill(images);
     repeats[D - 1] = true;  // mixed
     Scatter<D> scatter(300, edge, repeats);
-    for (int axes = PartialGrid<D>::automatic; axes <= D; ++axes) scatter.expect_complete(scatter.grid(axes));
+    for (int axes = PartialGrid::automatic; axes <= D; ++axes) scatter.expect_complete(scatter.grid(axes));
   }
 }
 
@@ -92,13 +99,13 @@ TEST(PartialGrid, FindsThemInABoxOfOneOrTwoCells) {
 
 TEST(PartialGrid, FindsThemWhenTheyHaveMovedAndWhenNewOnesCome) {
   Scatter<3> scatter(200, 3, {true, true, false});
-  PartialGrid<3> grid = scatter.grid(2, 0.1);
+  PartialGrid grid = scatter.grid(2, 0.1);
   scatter.drift(0.1);
-  grid.update(scatter.spheres_.x);
+  grid.update(columns_of(scatter.spheres_.x));
   scatter.expect_complete(grid);
   for (int k = 0; k < 40; ++k) {
     scatter.spheres_.push_back(scatter.anywhere(), 0.15);
-    grid.add(scatter.spheres_.center(scatter.spheres_.size() - 1), 0.15);
+    grid.add(scatter.spheres_.center(scatter.spheres_.size() - 1).data(), 0.15);
   }
   EXPECT_EQ(grid.unsorted(), 40u);
   scatter.expect_complete(grid);
@@ -109,13 +116,13 @@ TEST(PartialGrid, TakesMoreAxesTheMoreSpheresThereAre) {
   int before = 0;
   for (const double spheres : {10.0, 1e3, 1e5, 1e7}) {
     const double edge = 0.5 * std::pow(spheres, 1.0 / 5);
-    PartialGrid<5> grid(Vector<5>::Constant(edge), {true, true, true, true, true}, 0.5, 0,
-                        static_cast<std::size_t>(spheres));
+    PartialGrid grid(Vector<5>::Constant(edge), {true, true, true, true, true}, 0.5, 0,
+                     static_cast<std::size_t>(spheres));
     EXPECT_GE(grid.axes(), before);
     before = grid.axes();
   }
   EXPECT_EQ(before, 5);
-  PartialGrid<5> few(Vector<5>::Constant(0.8), {true, true, true, true, true}, 0.5, 0, 10);
+  PartialGrid few(Vector<5>::Constant(0.8), {true, true, true, true, true}, 0.5, 0, 10);
   EXPECT_EQ(few.axes(), 0);
 }
 

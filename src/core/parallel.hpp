@@ -1,0 +1,29 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+
+namespace bernal {
+
+// Work in as many threads as the run has. These stand before oneTBB, so that few files compile its templates.
+
+/// Calls body(first, last) for ranges that make up [0, n), of at most `grain` where that is possible. Returns
+/// when all have returned; what one throws passes through.
+void parallel_ranges(std::size_t n, std::size_t grain,
+                     const std::function<void(std::size_t first, std::size_t last)>& body);
+
+/// Calls body(k) for every k of [begin, end).
+template <class Body>
+void parallel_for(std::size_t begin, std::size_t end, const Body& body) {
+  parallel_ranges(end - begin, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = begin + first; k < begin + last; ++k) body(k);
+  });
+}
+template <class Body>
+void parallel_for(std::size_t n, const Body& body) {
+  parallel_for(0, n, body);
+}
+
+/// Calls both.
+void parallel_both(const std::function<void()>& one, const std::function<void()>& other);
+
+}  // namespace bernal
