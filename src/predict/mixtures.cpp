@@ -10,7 +10,6 @@
 
 #include "bernal/core/error.hpp"
 #include "predict/chord_table.hpp"
-#include "predict/from_chords.hpp"
 
 namespace bernal {
 namespace {
