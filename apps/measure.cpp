@@ -10,7 +10,7 @@
 #include <tbb/global_control.h>
 
 #include "bernal/core/text.hpp"
-#include "bernal/io/measurements_json.hpp"
+#include "bernal/io/json.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"

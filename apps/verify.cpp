@@ -9,7 +9,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/io/certificate_json.hpp"
+#include "bernal/io/json.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"

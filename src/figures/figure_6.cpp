@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "bernal/core/text.hpp"
 #include "bernal/predict/design.hpp"
 #include "figures/contours.hpp"
 #include "figures/drawing.hpp"
