@@ -41,29 +41,21 @@ int complain(std::string what) {
   return exit_code::bad_input;
 }
 
-void add_commands(Command bernal, int& status) {
-  bernal.footer(examples);
-  bernal.require_subcommand();
-  add_pack(bernal, status);
-  add_verify(bernal, status);
-  add_inspect(bernal, status);
-  add_explain(bernal, status);
-  add_keys(bernal, status);
-  add_measure(bernal, status);
-  add_predict(bernal, status);
-  add_design(bernal, status);
-  add_map(bernal, status);
-  add_reproduce(bernal, status);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is an error to report, not a reason to die
   int status = exit_code::done;
   try {
-    read_command_line(argc, argv, description, "bernal " + std::string(bernal::version()),
-                      [&](Command bernal) { add_commands(bernal, status); });
+    const Command command = {
+        "bernal",
+        description,
+        {},
+        examples,
+        {},
+        {pack_command(), verify_command(), inspect_command(), explain_command(), keys_command(),
+         measure_command(), predict_command(), design_command(), map_command(), reproduce_command()}};
+    status = run_command_line(argc, argv, command, "bernal " + std::string(bernal::version()));
   } catch (const std::bad_alloc&) {
     return complain("out of memory");
   } catch (const std::exception& error) {

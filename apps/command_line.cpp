@@ -2,10 +2,10 @@
 #include "command_line.hpp"
 
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
-#include <optional>
+#include <charconv>
 #include <string_view>
+#include <system_error>
+#include <type_traits>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -36,105 +36,57 @@ std::string unknown_command(const CLI::App& app, const std::vector<std::string>&
   return fmt::format("unknown command \"{}\"{}", *after, bernal::remedy(*after, names));
 }
 
+void add_option(CLI::App& app, const Option& option) {
+  CLI::Option& added = *std::visit(
+      [&]<class To>(const To& to) {
+        if constexpr (!std::is_pointer_v<To>) {
+          return app.add_option_function<std::string>(option.names, to, option.what);
+        } else if constexpr (std::is_same_v<To, bool*>) {
+          return app.add_flag(option.names, *to, option.what);
+        } else {
+          if constexpr (std::is_same_v<To, std::string*>)
+            if (option.names.ends_with('}')) return app.add_flag(option.names, *to, option.what);
+          return app.add_option(option.names, *to, option.what);
+        }
+      },
+      option.to);
+  if (!option.type_name.empty()) added.type_name(option.type_name);
+  for (const auto& demand : option.demands) demand(app, added);
+}
+
+void add(CLI::App& app, const Command& command, int& status) {
+  for (const Option& option : command.options) add_option(app, option);
+  app.footer(command.footer);
+  if (!command.commands.empty()) app.require_subcommand(1);
+  for (const Command& of : command.commands) add(*app.add_subcommand(of.name, of.what), of, status);
+  if (command.act) app.callback([&act = command.act, &status] { status = act(); });
+}
+
+Option demanding(Option option, std::function<void(CLI::App&, CLI::Option&)> demand) {
+  option.demands.push_back(std::move(demand));
+  return option;
+}
+Option demanding(Option option, const CLI::Validator& check) {
+  return demanding(std::move(option), [check](CLI::App&, CLI::Option& it) { it.check(check); });
+}
+
+constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 63) - 1;  ///< that a scene can hold
+
+/// CLI11 would take a number that is too large for the largest one.
+std::optional<std::uint64_t> parse_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc{} || end != text.data() + text.size() || seed > largest_seed) return {};
+  return seed;
+}
+
 }  // namespace
 
-Option Option::required() {
-  option_->required();
-  return *this;
-}
-
-Option Option::type_name(const std::string& name) {
-  option_->type_name(name);
-  return *this;
-}
-
-Option Option::within(int least, int most) {
-  option_->check(CLI::Range(least, most));
-  return *this;
-}
-
-Option Option::within(double least, double most) {
-  option_->check(CLI::Range(least, most));
-  return *this;
-}
-
-Option Option::one_of(const std::vector<std::string>& words) {
-  option_->check(CLI::IsMember(words));
-  return *this;
-}
-
-Option Option::one_of(const std::vector<int>& numbers) {
-  option_->check(CLI::IsMember(numbers));
-  return *this;
-}
-
-Option Option::check(const std::function<std::string(const std::string& word)>& complaint) {
-  option_->check(complaint);
-  return *this;
-}
-
-Option Option::list_of(int count) {
-  option_->delimiter(',')->expected(count);
-  return *this;
-}
-
-Option Option::repeated() {
-  option_->expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  return *this;
-}
-
-Option Option::needs(Option other) {
-  option_->needs(other.option_);
-  return *this;
-}
-
-Option Option::excludes(Option other) {
-  option_->excludes(other.option_);
-  return *this;
-}
-
-Command Command::add_subcommand(const std::string& name, const std::string& what) {
-  return Command(*app_->add_subcommand(name, what));
-}
-
-void Command::require_subcommand() { app_->require_subcommand(1); }
-
-template <typename T>
-Option Command::add_option(const std::string& names, T& value, const std::string& what) {
-  return Option(*app_->add_option(names, value, what));
-}
-
-template Option Command::add_option(const std::string&, int&, const std::string&);
-template Option Command::add_option(const std::string&, std::int64_t&, const std::string&);
-template Option Command::add_option(const std::string&, double&, const std::string&);
-template Option Command::add_option(const std::string&, std::string&, const std::string&);
-template Option Command::add_option(const std::string&, std::filesystem::path&, const std::string&);
-template Option Command::add_option(const std::string&, std::optional<double>&, const std::string&);
-template Option Command::add_option(const std::string&, std::vector<double>&, const std::string&);
-template Option Command::add_option(const std::string&, std::vector<std::string>&, const std::string&);
-
-Option Command::add_word(const std::string& names, const std::function<void(const std::string& word)>& take,
-                         const std::string& what) {
-  return Option(*app_->add_option_function<std::string>(names, take, what));
-}
-
-Option Command::add_flag(const std::string& name, bool& value, const std::string& what) {
-  return Option(*app_->add_flag(name, value, what));
-}
-
-Option Command::add_flag(const std::string& name, std::string& value, const std::string& what) {
-  return Option(*app_->add_flag(name, value, what));
-}
-
-void Command::footer(const std::string& text) { app_->footer(text); }
-
-void Command::callback(const std::function<void()>& act) { app_->callback(act); }
-
-void read_command_line(int argc, char** argv, const std::string& description, const std::string& version,
-                       const std::function<void(Command bernal)>& add) {
-  CLI::App app{description, "bernal"};
+int run_command_line(int argc, char** argv, const Command& bernal, const std::string& version) {
+  int status = 0;
+  CLI::App app{bernal.what, bernal.name};
   app.set_version_flag("--version", version);
-  add(Command(app));
+  add(app, bernal, status);
   const std::vector<std::string> words(argv + 1, argv + argc);
   try {
     if (words.empty()) throw CLI::CallForHelp();
@@ -147,4 +99,62 @@ void read_command_line(int argc, char** argv, const std::string& description, co
     if (what.empty()) what = fmt::format("{}; see {} --help", wrong.what(), whole_name(command));
     throw bernal::Error(bernal::ErrorCode::bad_argument, what);
   }
+  return status;
+}
+
+Option required(Option option) {
+  return demanding(std::move(option), [](CLI::App&, CLI::Option& it) { it.required(); });
+}
+Option within(Option option, int least, int most) {
+  return demanding(std::move(option), CLI::Range(least, most));
+}
+Option within(Option option, double least, double most) {
+  return demanding(std::move(option), CLI::Range(least, most));
+}
+Option one_of(Option option, const std::vector<std::string>& words) {
+  return demanding(std::move(option), CLI::IsMember(words));
+}
+Option checked(Option option, std::function<std::string(const std::string& word)> complaint) {
+  return demanding(std::move(option), [=](CLI::App&, CLI::Option& it) { it.check(complaint); });
+}
+Option list_of(int count, Option option) {
+  return demanding(std::move(option),
+                   [=](CLI::App&, CLI::Option& it) { it.delimiter(',')->expected(count); });
+}
+Option repeated(Option option) {
+  return demanding(std::move(option), [](CLI::App&, CLI::Option& it) {
+    it.expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  });
+}
+Option needs(Option option, const std::string& other) {
+  return demanding(std::move(option),
+                   [=](CLI::App& app, CLI::Option& it) { it.needs(app.get_option(other)); });
+}
+Option excludes(Option option, const std::string& other) {
+  return demanding(std::move(option),
+                   [=](CLI::App& app, CLI::Option& it) { it.excludes(app.get_option(other)); });
+}
+
+Option json_option(bool& json) { return {"--json", &json, "One JSON object on standard output"}; }
+
+Option quiet_option(bool& quiet, const std::string& what) { return {"--quiet", &quiet, what}; }
+
+Option rods_option(int& rods, int least, int most) {
+  const std::string otherwise = bernal::grouped(static_cast<std::uint64_t>(rods));
+  return within({"--rods", &rods, "Rods that stand for the sizes; " + otherwise + " if absent", "N"}, least,
+                most);
+}
+
+Option seed_option(const std::string& what, std::function<void(std::uint64_t)> take) {
+  const auto complaint = [](const std::string& text) {
+    if (parse_seed(text)) return std::string();
+    return fmt::format("must be a whole number from 0 to {}, not {}", largest_seed, text);
+  };
+  return checked({"--seed", [=](const std::string& text) { take(*parse_seed(text)); }, what, "N"}, complaint);
+}
+
+Option threads_option(int& threads, const std::string& what) {
+  return within(
+      {"--threads", &threads, "As many as the machine has if absent; " + what + " is the same", "N"}, 1,
+      1024);
 }

@@ -1,6 +1,10 @@
 #pragma once
+#include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace CLI {
@@ -8,61 +12,57 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// A word of the command line with a value, or a flag. What is asked of it is said in a chain; `--help` tells
-/// it.
-class Option {
- public:
-  explicit Option(CLI::Option& option) : option_(&option) {}
-
-  Option required();
-  /// What stands for its value in the help: "DIR".
-  Option type_name(const std::string& name);
-  Option within(int least, int most);
-  Option within(double least, double most);
-  Option one_of(const std::vector<std::string>& words);
-  Option one_of(const std::vector<int>& numbers);
-  /// `complaint` is empty where the word is fine.
-  Option check(const std::function<std::string(const std::string& word)>& complaint);
-  /// So many values, between commas.
-  Option list_of(int count);
-  /// May be given again, one value each time.
-  Option repeated();
-  Option needs(Option other);
-  Option excludes(Option other);
-
- private:
-  CLI::Option* option_;
+/// A word of the command line with a value, or a flag, whose variable outlives it; a function is told the
+/// word.
+struct Option {
+  /// "--unit", "-o,--output" or, for what is told from where it stands, "SCENE". A flag with a word,
+  /// "--list{all}": that in braces, unless --list=TEXT says another.
+  std::string names;
+  std::variant<bool*, int*, std::int64_t*, double*, std::string*, std::filesystem::path*,
+               std::optional<double>*, std::vector<double>*, std::vector<std::string>*,
+               std::function<void(const std::string& word)>>
+      to;
+  std::string what;
+  std::string type_name = {};  ///< what stands for its value in the help: "DIR"
+  /// What is asked of it, see below.
+  std::vector<std::function<void(CLI::App&, CLI::Option&)>> demands = {};
 };
 
-/// `bernal` itself, or one of its commands. The variables that options write into outlive it.
-class Command {
- public:
-  explicit Command(CLI::App& app) : app_(&app) {}
+// What is asked of an option, and told by the help.
+Option required(Option);
+Option within(Option, int least, int most);
+Option within(Option, double least, double most);
+Option one_of(Option, const std::vector<std::string>& words);
+/// `complaint` is empty where the word is fine.
+Option checked(Option, std::function<std::string(const std::string& word)> complaint);
+/// So many values, between commas.
+Option list_of(int count, Option);
+/// May be given again, one value each time.
+Option repeated(Option);
+/// Another option, which stands before it.
+Option needs(Option, const std::string& other);
+Option excludes(Option, const std::string& other);
 
-  Command add_subcommand(const std::string& name, const std::string& what);
-  /// One of its subcommands must be called.
-  void require_subcommand();
-  /// `names` are "--unit", "-o,--output" or, for what is told from where it stands, "SCENE". `T` is int,
-  /// double, std::string, a path, an optional or a vector: of those that command_line.cpp lists.
-  template <typename T>
-  Option add_option(const std::string& names, T& value, const std::string& what);
-  /// The word goes to `take`.
-  Option add_word(const std::string& names, const std::function<void(const std::string& word)>& take,
-                  const std::string& what);
-  Option add_flag(const std::string& name, bool& value, const std::string& what);
-  /// "--list{all}": the text in braces, unless --list=TEXT says another.
-  Option add_flag(const std::string& name, std::string& value, const std::string& what);
-  /// The end of its help.
-  void footer(const std::string& text);
-  /// What it does, once all options have their values.
-  void callback(const std::function<void()>& act);
-
- private:
-  CLI::App* app_;
+/// One of the commands of bernal, or of those of its commands that have some.
+struct Command {
+  std::string name, what;
+  std::vector<Option> options;
+  std::string footer;        ///< the end of its help
+  std::function<int()> act;  ///< once all options have their values; returns the exit code of the process
+  std::vector<Command> commands = {};  ///< one of them must be called
 };
 
-/// Reads the words and does what they ask for: --help and --version, or the callback of a command that `add`
-/// added. Throws bernal::Error{bad_argument} in one line for words that say nothing, and what the command
+/// Reads the words and does what they ask for: --help and --version, or what the command acts. Returns the
+/// exit code. Throws bernal::Error{bad_argument} in one line for words that say nothing, and what the command
 /// throws.
-void read_command_line(int argc, char** argv, const std::string& description, const std::string& version,
-                       const std::function<void(Command bernal)>& add);
+int run_command_line(int argc, char** argv, const Command& bernal, const std::string& version);
+
+// Options that several commands have.
+Option json_option(bool& json);
+Option quiet_option(bool& quiet, const std::string& what = "Print nothing but the files and errors");
+/// Of which there are `rods` if it is absent.
+Option rods_option(int& rods, int least, int most);
+/// A whole number that a scene can hold.
+Option seed_option(const std::string& what, std::function<void(std::uint64_t)> take);
+/// With 0 for as many as the machine has; `what` is the same for any number: "the answer".
+Option threads_option(int& threads, const std::string& what);

@@ -1,18 +1,17 @@
 #pragma once
 #include "command_line.hpp"
 
-/// Each of these adds one subcommand. When the user calls it, it runs while the command line is parsed and
-/// leaves the exit code of the process in `status`; bad input throws bernal::Error.
-void add_pack(Command app, int& status);
-void add_verify(Command app, int& status);
-void add_inspect(Command app, int& status);
-void add_explain(Command app, int& status);
-void add_keys(Command app, int& status);
-void add_measure(Command app, int& status);
-void add_predict(Command app, int& status);
-void add_design(Command app, int& status);
-void add_map(Command app, int& status);
-void add_reproduce(Command app, int& status);
+// One subcommand each; bad input throws bernal::Error.
+Command pack_command();
+Command verify_command();
+Command inspect_command();
+Command explain_command();
+Command keys_command();
+Command measure_command();
+Command predict_command();
+Command design_command();
+Command map_command();
+Command reproduce_command();
 
 /// Exit codes, the same for every subcommand.
 namespace exit_code {

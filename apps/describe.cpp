@@ -7,6 +7,9 @@
 
 using namespace bernal;
 
+namespace {
+
+/// "cylinder of 2 x 2 x 2 m, volume 6.28319 m³".
 std::string describe_container(const Plan& plan) {
   const std::string_view unit = name_of(plan.scene.unit);
   const Vector<dynamic> size = bounds_of<dynamic>(plan.domain).size();
@@ -17,6 +20,14 @@ std::string describe_container(const Plan& plan) {
   if (plan.box_follows) text += ", as large as the packing needs";
   return fmt::format("{}{} {:.6g} {}, volume {:.6g} {}^{}", text, plan.box_follows ? ": about" : ",",
                      fmt::join(size, " x "), unit, volume_of(plan.domain), unit, size.size());
+}
+
+}  // namespace
+
+std::string describe(const Plan& plan) {
+  std::string text = fmt::format("container  {}\n", describe_container(plan));
+  if (!plan.container_notes.empty()) text += fmt::format("           {}\n", plan.container_notes);
+  return text + fmt::format("spheres    {}; {}\n", describe_target(plan), describe_sizes(plan.scene));
 }
 
 std::string describe_sizes(const Scene& scene) {

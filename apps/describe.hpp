@@ -1,12 +1,11 @@
 #pragma once
-#include <cstdint>
 #include <string>
 
 #include "bernal/core/text.hpp"
 #include "bernal/run/run.hpp"
 
-/// "cylinder of 2 x 2 x 2 m, volume 6.28319 m³".
-std::string describe_container(const bernal::Plan& plan);
+/// Lines that tell what was understood: the container, what the importer did to it, the spheres.
+std::string describe(const bernal::Plan& plan);
 
 /// "diameter in mm: lognormal, basis number, median 1, sigma 0.3": what was understood, with the unit and
 /// with the word radius or diameter, which users mix up.

@@ -15,13 +15,6 @@
 
 using namespace bernal;
 
-void add_output(Command command, DesignOutput& output) {
-  command.add_option("--rods", output.rods, "Rods that stand for the sizes; 16,000 if absent")
-      .within(100, 10'000'000)
-      .type_name("N");
-  command.add_flag("--json", output.json, "One JSON object on standard output");
-}
-
 std::string number(double value) { return fmt::format("{}", std::stod(fmt::format("{:.10g}", value))); }
 
 void require_usable_lengths(double smallest, double largest) {
@@ -65,10 +58,14 @@ std::unique_ptr<SizeDistribution> sizes_of_table(const std::string& table) {
                               "the answer"));
 }
 
-void print_error_and_table(const Prediction& prediction, const std::string& table) {
+void print_error(const Prediction& prediction) {
   fmt::print("error             {:.1g}, from having {} rods{}\n", prediction.error,
              grouped(static_cast<std::uint64_t>(prediction.rods)),
              prediction.error > 1e-3 ? "; more --rods would help" : "; that of the model is about 0.01");
+}
+
+void print_error_and_table(const Prediction& prediction, const std::string& table) {
+  print_error(prediction);
   fmt::print("\nTo paste under [spheres] of a scene:\ndiameter = {}\n", table);
 }
 
@@ -80,17 +77,13 @@ nlohmann::ordered_json table_as_json(const Prediction& prediction, const std::st
           {"scene_line", "diameter = " + table}};
 }
 
-void add_design(Command app, int& status) {
-  Command command = app.add_subcommand("design", "Find the sizes that pack densest, or as densely as asked");
-  command.require_subcommand();
-  command.footer(R"(Examples:
+Command design_command() {
+  return {"design", "Find the sizes that pack densest, or as densely as asked", {}, R"(Examples:
   bernal design maximise --diameters 1,3,9             how much of each packs densest: 0.8336
   bernal design target --phi 0.7 --family lognormal    how wide: sigma = 0.4619
   bernal design best --min 1 --max 10                  the densest sizes between two limits
 
 Each ends with a line "diameter = { … }" to paste under [spheres] of a scene.
-All of it by the rod model: see bernal predict --help for what that is worth.)");
-  add_design_maximise(command, status);
-  add_design_target(command, status);
-  add_design_best(command, status);
+All of it by the rod model: see bernal predict --help for what that is worth.)",
+          {},       {maximise_command(), target_command(), best_command()}};
 }

@@ -11,16 +11,9 @@
 #include "populations.hpp"
 
 // bernal design: one file for each of its commands, and what they share.
-void add_design_maximise(Command design, int& status);
-void add_design_target(Command design, int& status);
-void add_design_best(Command design, int& status);
-
-/// --rods and --json, as in bernal predict.
-struct DesignOutput {
-  int rods = 16000;
-  bool json = false;
-};
-void add_output(Command command, DesignOutput& output);
+Command maximise_command();
+Command target_command();
+Command best_command();
 
 /// A length or an amount in the fewest digits, at most ten, that are good to 1e-10.
 std::string number(double value);
@@ -38,6 +31,7 @@ std::string mixture_table(const std::vector<Population>& populations, const std:
 /// pasted. Radii.
 std::unique_ptr<bernal::SizeDistribution> sizes_of_table(const std::string& table);
 
+void print_error(const bernal::Prediction& prediction);
 /// The lines that end every answer: the error, and the table to paste.
 void print_error_and_table(const bernal::Prediction& prediction, const std::string& table);
 /// phi, error, rods, and the table alone and as a line of a scene.

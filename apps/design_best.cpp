@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -7,12 +5,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bernal/core/error.hpp"
 #include "bernal/predict/design.hpp"
 #include "commands.hpp"
 #include "design.hpp"
 #include "design_families.hpp"
-#include "interrupt.hpp"
 #include "progress_bar.hpp"
 
 using namespace bernal;
@@ -26,7 +22,8 @@ constexpr std::size_t most_sizes = 5;
 struct BestCall {
   double min = 0, max = 0;
   int bins = 16;
-  DesignOutput output;
+  int rods = 16000;
+  bool json = false;
 };
 
 struct Answer {
@@ -64,26 +61,16 @@ std::string classes_table(const DensestSizes& sizes) {
 Answer find(const BestCall& call) {
   const SizeLimits limits = limits_of(call.min, call.max, {});
   ProgressBar bar(false);
-  watch_for_interrupts(false);
-  SearchOptions options;
-  options.rods = call.output.rods;
-  options.monitor.cancelled = interrupted;
-  const auto part = [&](double from, double to) {
-    options.monitor.on_progress = [&bar, from, to](Progress progress) {
-      progress.fraction = from + (to - from) * progress.fraction;
-      bar.show(progress);
-    };
-  };
-
-  const auto start = std::chrono::steady_clock::now();
+  SearchOptions options{.rods = call.rods, .from = {}, .monitor = bar.monitor(0, 0.4)};
+  const Stopwatch watch;
   const double min = 0.5 * *limits.min, max = 0.5 * *limits.max;
   Answer answer;
-  part(0, 0.4);
   answer.density = densest_density(min, max, call.bins, options);
-  part(0.4, 0.45);
+  options.monitor = bar.monitor(0.4, 0.45);
   answer.sizes = densest_sizes(min, max, 2, options);
   for (int count = 3; count <= static_cast<int>(most_sizes) && !interrupted(); ++count) {
-    part(0.25 + 0.02 * count * count, 0.25 + 0.02 * (count + 1) * (count + 1));  // each takes longer
+    const auto done = [](int sizes) { return 0.25 + 0.02 * sizes * sizes; };  // each takes longer
+    options.monitor = bar.monitor(done(count), done(count + 1));
     const DensestSizes more = densest_sizes(min, max, count, options);
     if (more.optimum.prediction.phi < answer.sizes.optimum.prediction.phi + worth_a_size) break;
     answer.sizes = more;
@@ -92,7 +79,7 @@ Answer find(const BestCall& call) {
   answer.sizes_table = classes_table(answer.sizes);
   answer.density_prediction = predict_packing_fraction(*sizes_of_table(answer.density_table), options.rods);
   answer.sizes_prediction = predict_packing_fraction(*sizes_of_table(answer.sizes_table), options.rods);
-  answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  answer.seconds = watch.seconds();
   return answer;
 }
 
@@ -147,6 +134,16 @@ nlohmann::ordered_json as_json(const Answer& answer) {
   return json;
 }
 
+int best(const BestCall& call) {
+  const Answer answer = find(call);
+  if (call.json)
+    fmt::print("{}\n", as_json(answer).dump(2));
+  else
+    print(answer);
+  const bool cancelled = answer.density.optimum.cancelled || answer.sizes.optimum.cancelled;
+  return cancelled ? exit_code::not_reached : exit_code::done;
+}
+
 constexpr const char* footer = R"(Two answers, each with a table to paste into a scene:
   a density by volume, constant in bins that are evenly spaced on a logarithmic axis (a sieve analysis);
   two to five sizes, the limits among them: as many as gain at least 0.002 each.
@@ -161,23 +158,15 @@ Exit codes: 0 done; 2 bad input; 3 stopped early, the answer is the best so far.
 
 }  // namespace
 
-void add_design_best(Command design, int& status) {
-  auto call = std::make_shared<BestCall>();
-  Command command = design.add_subcommand("best", "The sizes between two limits that pack densest");
-  command.add_option("--min", call->min, "The smallest diameter, in any unit").required().type_name("D");
-  command.add_option("--max", call->max, "The largest diameter, in the same unit").required().type_name("D");
-  command.add_option("--bins", call->bins, "Of the density: 2, 4, 8, 16, 32 or 64; 16 if absent")
-      .one_of({2, 4, 8, 16, 32, 64})
-      .type_name("N");
-  add_output(command, call->output);
-  command.footer(footer);
-  command.callback([call, &status] {
-    const Answer answer = find(*call);
-    if (call->output.json)
-      fmt::print("{}\n", as_json(answer).dump(2));
-    else
-      print(answer);
-    const bool cancelled = answer.density.optimum.cancelled || answer.sizes.optimum.cancelled;
-    status = cancelled ? exit_code::not_reached : exit_code::done;
-  });
+Command best_command() {
+  const auto call = std::make_shared<BestCall>();
+  return {"best",
+          "The sizes between two limits that pack densest",
+          {required({"--min", &call->min, "The smallest diameter, in any unit", "D"}),
+           required({"--max", &call->max, "The largest diameter, in the same unit", "D"}),
+           one_of({"--bins", &call->bins, "Of the density: 2, 4, 8, 16, 32 or 64; 16 if absent", "N"},
+                  {"2", "4", "8", "16", "32", "64"}),
+           rods_option(call->rods, 100, 10'000'000), json_option(call->json)},
+          footer,
+          [call] { return best(*call); }};
 }

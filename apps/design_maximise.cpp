@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -14,7 +13,6 @@
 #include "bernal/run/run.hpp"
 #include "commands.hpp"
 #include "design.hpp"
-#include "interrupt.hpp"
 #include "progress_bar.hpp"
 
 using namespace bernal;
@@ -24,7 +22,8 @@ namespace {
 struct MaximiseCall {
   std::string diameters;
   std::vector<std::string> lognormals;
-  DesignOutput output;
+  int rods = 16000;
+  bool json = false;
 };
 
 std::vector<Population> populations_of(const MaximiseCall& call) {
@@ -44,14 +43,14 @@ std::vector<Population> populations_of(const MaximiseCall& call) {
                             "neighbouring sizes together, or see bernal design best --help",
                             populations.size(), most_populations_to_mix));
   const auto [least, most] = std::ranges::minmax(populations, {}, &Population::d43);
-  if (most.d43 / least.d43 > widest_ratio(call.output.rods))
+  if (most.d43 / least.d43 > widest_ratio(call.rods))
     throw Error(
         ErrorCode::bad_argument,
         fmt::format(
             "{} rods stand for sizes no farther apart than 1 : {:.0f}, not for {} and {}; more --rods "
             "reach farther",
-            grouped(static_cast<std::uint64_t>(call.output.rods)), widest_ratio(call.output.rods),
-            number(least.d43), number(most.d43)));
+            grouped(static_cast<std::uint64_t>(call.rods)), widest_ratio(call.rods), number(least.d43),
+            number(most.d43)));
   require_usable_lengths(least.d43, most.d43);
   return populations;
 }
@@ -81,18 +80,14 @@ struct Answer {
   double seconds = 0;
 };
 
-Answer maximise(const MaximiseCall& call) {
+Answer find(const MaximiseCall& call) {
   Answer answer{.populations = populations_of(call)};
   ProgressBar bar(false);
-  watch_for_interrupts(false);
-  SearchOptions options;
-  options.rods = call.output.rods;
-  options.monitor = {[&](const Progress& progress) { bar.show(progress); }, interrupted};
-  const auto start = std::chrono::steady_clock::now();
-  answer.optimum = densest(answer.populations, options);
+  const Stopwatch watch;
+  answer.optimum = densest(answer.populations, {.rods = call.rods, .from = {}, .monitor = bar.monitor()});
   answer.table = mixture_table(answer.populations, answer.optimum.shares);
-  answer.prediction = predict_packing_fraction(*sizes_of_table(answer.table), call.output.rods);
-  answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  answer.prediction = predict_packing_fraction(*sizes_of_table(answer.table), call.rods);
+  answer.seconds = watch.seconds();
   return answer;
 }
 
@@ -135,6 +130,15 @@ nlohmann::ordered_json as_json(const Answer& answer) {
   return json;
 }
 
+int maximise(const MaximiseCall& call) {
+  const Answer answer = find(call);
+  if (call.json)
+    fmt::print("{}\n", as_json(answer).dump(2));
+  else
+    print(answer);
+  return answer.optimum.cancelled ? exit_code::not_reached : exit_code::done;
+}
+
 constexpr const char* footer = R"(Examples:
   bernal design maximise --diameters 1,5                          20.8 % of the volume small: 0.7878
   bernal design maximise --diameters 1,3,9 --json
@@ -147,26 +151,17 @@ Exit codes: 0 done; 2 bad input; 3 stopped early, the answer is the best so far.
 
 }  // namespace
 
-void add_design_maximise(Command design, int& status) {
-  auto call = std::make_shared<MaximiseCall>();
-  Command command =
-      design.add_subcommand("maximise", "The composition of two to six given populations that packs densest");
-  command.add_option("--diameters", call->diameters, "Populations of one diameter each, in any unit")
-      .type_name("D,D,…");
-  command
-      .add_option("--lognormal", call->lognormals,
-                  "A lognormal population by its volume- and its surface-weighted mean diameter; as often as "
-                  "needed")
-      .type_name("D43,D32")
-      .repeated();
-  add_output(command, call->output);
-  command.footer(footer);
-  command.callback([call, &status] {
-    const Answer answer = maximise(*call);
-    if (call->output.json)
-      fmt::print("{}\n", as_json(answer).dump(2));
-    else
-      print(answer);
-    status = answer.optimum.cancelled ? exit_code::not_reached : exit_code::done;
-  });
+Command maximise_command() {
+  const auto call = std::make_shared<MaximiseCall>();
+  return {"maximise",
+          "The composition of two to six given populations that packs densest",
+          {{"--diameters", &call->diameters, "Populations of one diameter each, in any unit", "D,D,…"},
+           repeated({"--lognormal", &call->lognormals,
+                     "A lognormal population by its volume- and its surface-weighted mean diameter; as "
+                     "often as needed",
+                     "D43,D32"}),
+           rods_option(call->rods, 100, 10'000'000),
+           json_option(call->json)},
+          footer,
+          [call] { return maximise(*call); }};
 }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -22,7 +21,8 @@ struct TargetCall {
   std::string family;
   std::optional<double> min, max, ratio;
   double exponent = 0.5;
-  DesignOutput output;
+  int rods = 16000;
+  bool json = false;
 };
 
 struct Answer {
@@ -37,7 +37,7 @@ struct Answer {
 Match match_member(const std::function<SizeFamily::Member(double)>& member, double from, double to,
                    const TargetCall& call) {
   return match_packing_fraction([&](double t) { return sizes_of_table(member(t).table); }, from, to, call.phi,
-                                call.output.rods);
+                                call.rods);
 }
 
 /// What of the volume of lognormal sizes lies beyond limits of this ratio about their median.
@@ -53,9 +53,9 @@ Answer find(const TargetCall& call) {
     throw Error(ErrorCode::bad_argument,
                 fmt::format("--exponent must lie above 0 and not above 10, not at {}", call.exponent));
   const SizeLimits limits = limits_of(call.min, call.max, call.ratio);
-  const SizeFamily family = family_of(call.family, limits, call.exponent, call.output.rods);
+  const SizeFamily family = family_of(call.family, limits, call.exponent, call.rods);
 
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   Answer answer{.what = family.what};
   answer.match = match_member(family.member, family.from, family.to, call);
   if (family.held && (answer.match.found || answer.match.most > call.phi)) {
@@ -72,7 +72,7 @@ Answer find(const TargetCall& call) {
   if (answer.match.found && call.family == "lognormal" && limits.min)
     answer.cut_off = beyond(*limits.max / *limits.min, answer.match.parameter);
   answer.can_be_wider = limits.min || call.family != "lognormal";
-  answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  answer.seconds = watch.seconds();
   return answer;
 }
 
@@ -100,6 +100,19 @@ nlohmann::ordered_json as_json(const TargetCall& call, const Answer& answer) {
   return json;
 }
 
+int target(const TargetCall& call) {
+  const Answer answer = find(call);
+  if (call.json)
+    fmt::print("{}\n", as_json(call, answer).dump(2));
+  else if (answer.match.found)
+    print(answer);
+  if (answer.match.found) return exit_code::done;
+  fmt::print(stderr, "bernal: no {} pack to {}: they reach from {:.6f} to {:.6f}{}\n", answer.what, call.phi,
+             answer.match.least, answer.match.most,
+             call.phi > answer.match.most && answer.can_be_wider ? "; wider limits reach farther" : "");
+  return exit_code::not_reached;
+}
+
 constexpr const char* footer =
     R"(Families, each by volume and from narrow to wide by one number; the narrowest that will do is taken:
   lognormal      sigma, about the middle of the limits (on a logarithmic axis), cut off at both
@@ -121,32 +134,18 @@ Exit codes: 0 done; 2 bad input; 3 no member of the family packs so, and what th
 
 }  // namespace
 
-void add_design_target(Command design, int& status) {
-  auto call = std::make_shared<TargetCall>();
-  Command command =
-      design.add_subcommand("target", "The sizes of a family that pack to a given packing fraction");
-  command.add_option("--phi", call->phi, "The packing fraction asked for").required().type_name("P");
-  command.add_option("--family", call->family, "One of the families below")
-      .required()
-      .one_of(family_names())
-      .type_name("NAME");
-  command.add_option("--max-ratio", call->ratio, "The largest over the smallest diameter, at most")
-      .type_name("R");
-  command.add_option("--min", call->min, "No diameter is smaller than this, in any unit").type_name("D");
-  command.add_option("--max", call->max, "No diameter is larger, in the same unit").type_name("D");
-  command.add_option("--exponent", call->exponent, "Of fuller; 0.5 if absent").type_name("Q");
-  add_output(command, call->output);
-  command.footer(footer);
-  command.callback([call, &status] {
-    const Answer answer = find(*call);
-    if (call->output.json)
-      fmt::print("{}\n", as_json(*call, answer).dump(2));
-    else if (answer.match.found)
-      print(answer);
-    if (!answer.match.found)
-      fmt::print(stderr, "bernal: no {} pack to {}: they reach from {:.6f} to {:.6f}{}\n", answer.what,
-                 call->phi, answer.match.least, answer.match.most,
-                 call->phi > answer.match.most && answer.can_be_wider ? "; wider limits reach farther" : "");
-    status = answer.match.found ? exit_code::done : exit_code::not_reached;
-  });
+Command target_command() {
+  const auto call = std::make_shared<TargetCall>();
+  return {"target",
+          "The sizes of a family that pack to a given packing fraction",
+          {required({"--phi", &call->phi, "The packing fraction asked for", "P"}),
+           one_of(required({"--family", &call->family, "One of the families below", "NAME"}), family_names()),
+           {"--max-ratio", &call->ratio, "The largest over the smallest diameter, at most", "R"},
+           {"--min", &call->min, "No diameter is smaller than this, in any unit", "D"},
+           {"--max", &call->max, "No diameter is larger, in the same unit", "D"},
+           {"--exponent", &call->exponent, "Of fuller; 0.5 if absent", "Q"},
+           rods_option(call->rods, 100, 10'000'000),
+           json_option(call->json)},
+          footer,
+          [call] { return target(*call); }};
 }

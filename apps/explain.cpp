@@ -21,9 +21,7 @@ struct ExplainCall {
 
 void print(const Plan& plan) {
   const Scene& scene = plan.scene;
-  fmt::print("container  {}\n", describe_container(plan));
-  if (!plan.container_notes.empty()) fmt::print("           {}\n", plan.container_notes);
-  fmt::print("spheres    {}; {}\n", describe_target(plan), describe_sizes(scene));
+  fmt::print("{}", describe(plan));
   fmt::print("accuracy   walls {}, overlap {}\n", name_of(scene.walls), scene.overlap);
   fmt::print("expected   about {:.3g} spheres, packing fraction {:.3f}, {:.3g} MB of memory\n\n",
              plan.expected_count, plan.expected_packing_fraction, plan.expected_memory_bytes / 1e6);
@@ -44,11 +42,10 @@ void print(const Plan& plan) {
 
 nlohmann::ordered_json as_json(const Plan& plan) {
   using nlohmann::ordered_json;
-  const auto point = [](const Vector<3>& p) { return ordered_json{p[0], p[1], p[2]}; };
   ordered_json container = {{"kind", kind_of(plan.domain)}, {"volume", volume_of(plan.domain)}};
   if (!plan.scene.is_periodic()) {
     const Bounds<3> bounds = bounds_of(plan.domain);
-    container["bounds"] = {point(bounds.lower), point(bounds.upper)};
+    container["bounds"] = {bounds.lower, bounds.upper};
   } else {
     const Vector<dynamic> edges = bounds_of<dynamic>(plan.domain).size();
     container["edges"] = std::vector<double>(edges.begin(), edges.end());
@@ -72,27 +69,25 @@ nlohmann::ordered_json as_json(const Plan& plan) {
           {"stages", stages_as_toml(plan.scene)}};
 }
 
-void explain(const ExplainCall& call) {
+int explain(const ExplainCall& call) {
   const Plan plan = build(read_scene(call.scene));
   if (call.json)
     fmt::print("{}\n", as_json(plan).dump(2));
   else
     print(plan);
+  return exit_code::done;
 }
 
 }  // namespace
 
-void add_explain(Command app, int& status) {
-  auto call = std::make_shared<ExplainCall>();
-  Command command = app.add_subcommand("explain", "Say what a scene would run and cost; run nothing");
-  command.add_option("SCENE", call->scene, "The scene, a TOML file").required();
-  command.add_flag("--json", call->json, "One JSON object on standard output");
-  command.footer(
-      "Prints what was understood, what would run, how many spheres to expect and, where the scene names\n"
-      "no stages, those that run, with all their defaults.\n"
-      "Exit codes: 0 done; 2 bad input.");
-  command.callback([call, &status] {
-    explain(*call);
-    status = exit_code::done;
-  });
+Command explain_command() {
+  const auto call = std::make_shared<ExplainCall>();
+  return {"explain",
+          "Say what a scene would run and cost; run nothing",
+          {required({"SCENE", &call->scene, "The scene, a TOML file"}), json_option(call->json)},
+          "Prints what was understood, what would run, how many spheres to expect and, where the scene "
+          "names\n"
+          "no stages, those that run, with all their defaults.\n"
+          "Exit codes: 0 done; 2 bad input.",
+          [call] { return explain(*call); }};
 }

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -101,8 +100,6 @@ void print(const InspectCall& call, const MeshReport& report, const std::optiona
   for (const auto& [name, value] : rows) fmt::print("{:<{}}  {}\n", name, width, value);
 }
 
-nlohmann::ordered_json point(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
-
 nlohmann::ordered_json as_json(const std::optional<Chambers>& found) {
   using nlohmann::ordered_json;
   if (!found) return nullptr;
@@ -110,7 +107,7 @@ nlohmann::ordered_json as_json(const std::optional<Chambers>& found) {
   for (const Chambers::Chamber& chamber : found->chambers)
     list.push_back({{"share", chamber.share},
                     {"share_error", chamber.share_error},
-                    {"position", point(chamber.position)},
+                    {"position", chamber.position},
                     {"clearance", chamber.clearance}});
   return {{"radius", found->radius},
           {"resolution", found->resolution},
@@ -133,7 +130,7 @@ nlohmann::ordered_json as_json(const InspectCall& call, const MeshReport& report
           {"orientation", report.orientation},
           {"volume", report.usable() ? ordered_json(report.volume) : ordered_json(nullptr)},
           {"area", report.area},
-          {"bounds", {{"lower", point(report.bounds.lower)}, {"upper", point(report.bounds.upper)}}},
+          {"bounds", {{"lower", report.bounds.lower}, {"upper", report.bounds.upper}}},
           {"open_edges", report.open_edges},
           {"non_manifold_edges", report.non_manifold_edges},
           {"non_manifold_vertices", report.non_manifold_vertices},
@@ -161,30 +158,27 @@ int inspect(const InspectCall& call) {
 
 }  // namespace
 
-void add_inspect(Command app, int& status) {
-  auto call = std::make_shared<InspectCall>();
-  Command command = app.add_subcommand("inspect", "Say what a CAD file is and whether it can be a container");
-  command.add_option("MESH", call->mesh, "The file: STL, OBJ, OFF, PLY, 3MF, glTF, …").required();
-  command
-      .add_option("--unit", call->unit,
-                  "Unit of the file's lengths: nm, um, mm, cm, m, in, ft; unknown if absent")
-      .type_name("UNIT");
-  command
-      .add_option("--radius", call->radius,
-                  "Count the chambers that spheres of this radius, in the file's lengths, cannot leave")
-      .check([](const std::string& text) {
-        char* end = nullptr;
-        const double radius = std::strtod(text.c_str(), &end);
-        const bool fine = *end == '\0' && radius > 0 && std::isfinite(radius);
-        return fine ? std::string() : text + " is no length above 0";
-      })
-      .type_name("LENGTH");
-  command.add_flag("--json", call->json, "One JSON object on standard output");
-  command.footer(
-      "A container is closed, does not cross itself, and hangs together in more than edges and corners.\n"
-      "\nExamples:\n"
-      "  bernal inspect part.stl --unit mm                can this CAD file be a container?\n"
-      "  bernal inspect part.stl --radius 0.5 --json      and into how many chambers does it fall?\n"
-      "Exit codes: 0 usable; 1 not usable; 2 bad input.");
-  command.callback([call, &status] { status = inspect(*call); });
+Command inspect_command() {
+  const auto call = std::make_shared<InspectCall>();
+  return {"inspect",
+          "Say what a CAD file is and whether it can be a container",
+          {required({"MESH", &call->mesh, "The file: STL, OBJ, OFF, PLY, 3MF, glTF, …"}),
+           {"--unit", &call->unit, "Unit of the file's lengths: nm, um, mm, cm, m, in, ft; unknown if absent",
+            "UNIT"},
+           checked({"--radius", &call->radius,
+                    "Count the chambers that spheres of this radius, in the file's lengths, cannot leave",
+                    "LENGTH"},
+                   [](const std::string& text) {
+                     char* end = nullptr;
+                     const double radius = std::strtod(text.c_str(), &end);
+                     const bool fine = *end == '\0' && radius > 0 && std::isfinite(radius);
+                     return fine ? std::string() : text + " is no length above 0";
+                   }),
+           json_option(call->json)},
+          "A container is closed, does not cross itself, and hangs together in more than edges and corners.\n"
+          "\nExamples:\n"
+          "  bernal inspect part.stl --unit mm                can this CAD file be a container?\n"
+          "  bernal inspect part.stl --radius 0.5 --json      and into how many chambers does it fall?\n"
+          "Exit codes: 0 usable; 1 not usable; 2 bad input.",
+          [call] { return inspect(*call); }};
 }

@@ -10,12 +10,11 @@
 #include <tbb/global_control.h>
 
 #include "bernal/core/text.hpp"
-#include "bernal/io/measurements_json.hpp"
+#include "bernal/io/json.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "commands.hpp"
-#include "threads.hpp"
 
 using namespace bernal;
 
@@ -230,7 +229,7 @@ void print(const Packing& packing, const Measurements& measured) {
   if (measured.sizes) print_sizes(packing, *measured.sizes);
 }
 
-void measure_folder(const MeasureCall& call) {
+int measure_folder(const MeasureCall& call) {
   std::optional<tbb::global_control> limit;
   if (call.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
@@ -243,33 +242,29 @@ void measure_folder(const MeasureCall& call) {
     fmt::print("{}", measurements_as_json(packing, measured));
   else
     print(packing, measured);
+  return exit_code::done;
 }
 
 }  // namespace
 
-void add_measure(Command app, int& status) {
-  auto call = std::make_shared<MeasureCall>();
-  Command command = app.add_subcommand(
+Command measure_command() {
+  const auto call = std::make_shared<MeasureCall>();
+  return {
       "measure",
-      "Contacts, rattlers, g(r), chambers, porosity near walls, order, sizes against those asked for");
-  command.add_option("DIR", call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read")
-      .required();
-  command
-      .add_option("--gap", call->options.contact_gap,
-                  "Spheres touch below this gap over the sum of their radii; 0.002 if absent")
-      .within(0.0, 1.0)
-      .type_name("RATIO");
-  add_threads(command, call->threads, "the answer");
-  command.add_flag("--json", call->json, "One JSON object on standard output");
-  command.footer(
+      "Contacts, rattlers, g(r), chambers, porosity near walls, order, sizes against those asked for",
+      {required({"DIR", &call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read"}),
+       within({"--gap", &call->options.contact_gap,
+               "Spheres touch below this gap over the sum of their radii; 0.002 if absent", "RATIO"},
+              0.0, 1.0),
+       threads_option(call->threads, "the answer"), json_option(call->json)},
       "Rattlers are taken out one after the other until every sphere left is held by D + 1 contacts.\n"
-      "In a container: the chambers that the smallest spheres cannot leave, with the packing fraction of\n"
-      "each, and what no sphere can cover; porosity over the distance from the wall, the packing fraction\n"
-      "of the core (more than 3 mean diameters from it) and near it; whether small spheres gather there.\n"
+      "In a container: the chambers that the smallest spheres cannot leave, with the packing fraction "
+      "of\n"
+      "each, and what no sphere can cover; porosity over the distance from the wall, the packing "
+      "fraction\n"
+      "of the core (more than 3 mean diameters from it) and near it; whether small spheres gather "
+      "there.\n"
       "In three dimensions: the share of the spheres whose neighbours lie as in a crystal.\n"
-      "Exit codes: 0 done; 2 bad input.");
-  command.callback([call, &status] {
-    measure_folder(*call);
-    status = exit_code::done;
-  });
+      "Exit codes: 0 done; 2 bad input.",
+      [call] { return measure_folder(*call); }};
 }

@@ -12,10 +12,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "commands.hpp"
 #include "describe.hpp"
-#include "interrupt.hpp"
 #include "progress_bar.hpp"
-#include "seed.hpp"
-#include "threads.hpp"
 
 using namespace bernal;
 
@@ -59,13 +56,6 @@ Scene scene_of(const PackCall& call) {
   return read_scene(call.scene);
 }
 
-/// What was understood: told before the run, so that a wrong unit is seen at once.
-void print_plan(const Plan& plan) {
-  fmt::print(stderr, "container  {}\n", describe_container(plan));
-  if (!plan.container_notes.empty()) fmt::print(stderr, "           {}\n", plan.container_notes);
-  fmt::print(stderr, "spheres    {}; {}\n", describe_target(plan), describe_sizes(plan.scene));
-}
-
 void print_result(const Packing& packing, const WrittenPacking& written) {
   fmt::print(stderr, "packed     {} spheres, packing fraction {:.4f}, in {:.1f} s\n",
              grouped(packing.spheres.size()), packing.packing_fraction(), packing.seconds);
@@ -80,17 +70,10 @@ int pack(const PackCall& call) {
   const Plan plan = build(scene);
   const std::filesystem::path folder = call.folder.empty() ? call.scene.stem() : call.folder;
   check_writable(folder);
-  watch_for_interrupts(call.quiet);
-  if (!call.quiet && scene.file.empty()) fmt::print("{}", scene_as_toml(scene));
-  if (!call.quiet) print_plan(plan);
-
   ProgressBar bar(call.quiet);
-  RunOptions options;
-  options.seed = call.seed;
-  options.threads = call.threads;
-  options.monitor.on_progress = [&](const Progress& progress) { bar.show(progress); };
-  options.monitor.cancelled = interrupted;
-  const Packing packing = run(plan, options);
+  if (!call.quiet && scene.file.empty()) fmt::print("{}", scene_as_toml(scene));
+  if (!call.quiet) fmt::print(stderr, "{}", describe(plan));  // a wrong unit is seen at once
+  const Packing packing = run(plan, {call.seed, call.threads, bar.monitor()});
   const WrittenPacking written = write_packing(packing, folder);
   bar.clear();
 
@@ -105,37 +88,31 @@ int pack(const PackCall& call) {
 
 }  // namespace
 
-void add_pack(Command app, int& status) {
-  auto call = std::make_shared<PackCall>();
-  Command command = app.add_subcommand("pack", "Run a scene and write the packing, its report and its proof");
-  command.add_option("SCENE", call->scene, "The scene, a TOML file; or a mesh, with its unit and sizes")
-      .required()
-      .type_name("SCENE|MESH");
-  command
-      .add_option("-o,--output", call->folder,
-                  "Folder for the results; made if it does not exist; named after the scene if absent")
-      .type_name("DIR");
-  command.add_option("--unit", call->unit, "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft")
-      .type_name("UNIT");
-  Option diameter =
-      command.add_option("--diameter", call->diameter, "Of every sphere in a mesh").type_name("D");
-  command.add_option("--lognormal", call->lognormal, "Lognormal diameters in a mesh")
-      .type_name("MEDIAN,SIGMA")
-      .list_of(2)
-      .excludes(diameter);
-  add_seed(command, "Instead of the scene's; one seed gives one packing, bit for bit",
-           [call](std::uint64_t seed) { call->seed = seed; });
-  add_threads(command, call->threads, "the result");
-  command.add_flag("--quiet", call->quiet, "Print nothing but errors");
-  command.footer(
-      "Examples:\n"
-      "  bernal pack data/scenes/hopper.toml                   results in hopper/\n"
-      "  bernal pack bracket.stl --unit mm --diameter 2        no scene needed; results in bracket/\n"
-      "  bernal pack bracket.stl --unit mm --lognormal 2,0.3   median 2 mm, sigma 0.3\n\n"
-      "Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html and, in two and three\n"
-      "dimensions, packing.svg: all or none.\n"
-      "For a mesh, prints the scene that the flags stand for, ready to be kept and changed.\n"
-      "Ctrl-C ends the run at the next safe point and writes what is there, certified.\n"
-      "Exit codes: 0 done; 2 bad input, nothing written; 3 ended without reaching what the scene asks.");
-  command.callback([call, &status] { status = pack(*call); });
+Command pack_command() {
+  const auto call = std::make_shared<PackCall>();
+  return {"pack",
+          "Run a scene and write the packing, its report and its proof",
+          {required({"SCENE", &call->scene, "The scene, a TOML file; or a mesh, with its unit and sizes",
+                     "SCENE|MESH"}),
+           {"-o,--output", &call->folder,
+            "Folder for the results; made if it does not exist; named after the scene if absent", "DIR"},
+           {"--unit", &call->unit, "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft", "UNIT"},
+           {"--diameter", &call->diameter, "Of every sphere in a mesh", "D"},
+           excludes(
+               list_of(2, {"--lognormal", &call->lognormal, "Lognormal diameters in a mesh", "MEDIAN,SIGMA"}),
+               "--diameter"),
+           seed_option("Instead of the scene's; one seed gives one packing, bit for bit",
+                       [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
+           threads_option(call->threads, "the result"),
+           quiet_option(call->quiet, "Print nothing but errors")},
+          "Examples:\n"
+          "  bernal pack data/scenes/hopper.toml                   results in hopper/\n"
+          "  bernal pack bracket.stl --unit mm --diameter 2        no scene needed; results in bracket/\n"
+          "  bernal pack bracket.stl --unit mm --lognormal 2,0.3   median 2 mm, sigma 0.3\n\n"
+          "Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html and, in two and three\n"
+          "dimensions, packing.svg: all or none.\n"
+          "For a mesh, prints the scene that the flags stand for, ready to be kept and changed.\n"
+          "Ctrl-C ends the run at the next safe point and writes what is there, certified.\n"
+          "Exit codes: 0 done; 2 bad input, nothing written; 3 ended without reaching what the scene asks.",
+          [call] { return pack(*call); }};
 }

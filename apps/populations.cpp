@@ -31,11 +31,11 @@ void require_few(std::size_t populations) {
                             most_populations));
 }
 
-/// The words between separators; nothing between two of them is a word too.
-std::vector<std::string_view> split(std::string_view text, char separator) {
+/// The words between any of the separators; nothing between two of them is a word too.
+std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> words;
   for (;;) {
-    const std::size_t end = text.find(separator);
+    const std::size_t end = text.find_first_of(separators);
     words.push_back(text.substr(0, end));
     if (end == std::string_view::npos) return words;
     text.remove_prefix(end + 1);
@@ -76,37 +76,32 @@ Population of_means(double d43, double d32, double volume, const std::string& wh
   return checked({d43, std::sqrt(std::log(d43) - std::log(d32)), volume}, where);
 }
 
-std::vector<double> numbers_of_line(std::string_view line, const std::string& where) {
+std::vector<double> numbers_of(const std::vector<std::string_view>& words, const std::string& where) {
   std::vector<double> numbers;
-  constexpr std::string_view blanks = " \t\r,;";
-  for (;;) {
-    const std::size_t start = line.find_first_not_of(blanks);
-    if (start == std::string_view::npos) return numbers;
-    line.remove_prefix(start);
-    const std::string_view word = line.substr(0, line.find_first_of(blanks));
-    numbers.push_back(number_of(word, where));
-    line.remove_prefix(word.size());
-  }
+  for (const std::string_view word : words) numbers.push_back(number_of(word, where));
+  return numbers;
 }
 
 }  // namespace
 
 Population parse_lognormal(const std::string& text, const std::string& where) {
-  const std::vector<std::string_view> words = split(text, ',');
-  if (words.size() == 1) return checked({1, number_of(words[0], where), 1}, where);
-  if (words.size() != 3) refuse(where, fmt::format("\"{}\" is neither SIGMA nor D43,D32,VOLUME", text));
-  return of_means(number_of(words[0], where), number_of(words[1], where), number_of(words[2], where), where);
+  const std::vector<std::string_view> words = split(text, ",");
+  if (words.size() != 1 && words.size() != 3)
+    refuse(where, fmt::format("\"{}\" is neither SIGMA nor D43,D32,VOLUME", text));
+  const std::vector<double> n = numbers_of(words, where);
+  return n.size() == 1 ? checked({1, n[0], 1}, where) : of_means(n[0], n[1], n[2], where);
 }
 
 Population parse_lognormal_means(const std::string& text, const std::string& where) {
-  const std::vector<std::string_view> words = split(text, ',');
+  const std::vector<std::string_view> words = split(text, ",");
   if (words.size() != 2) refuse(where, fmt::format("\"{}\" is not D43,D32", text.substr(0, 40)));
-  return of_means(number_of(words[0], where), number_of(words[1], where), 1, where);
+  const std::vector<double> n = numbers_of(words, where);
+  return of_means(n[0], n[1], 1, where);
 }
 
 std::vector<Population> parse_diameters(const std::string& text, const std::string& where) {
   std::vector<Population> populations;
-  for (const std::string_view word : split(text, ',')) {
+  for (const std::string_view word : split(text, ",")) {
     populations.push_back(checked({number_of(word, where), 0, 1}, where));
     require_few(populations.size());
   }
@@ -115,8 +110,8 @@ std::vector<Population> parse_diameters(const std::string& text, const std::stri
 
 std::vector<Population> parse_classes(const std::string& text, const std::string& where) {
   std::vector<Population> populations;
-  for (const std::string_view item : split(text, ',')) {
-    const std::vector<std::string_view> words = split(item, ':');
+  for (const std::string_view item : split(text, ",")) {
+    const std::vector<std::string_view> words = split(item, ":");
     if (words.size() != 2) refuse(where, fmt::format("\"{}\" is not DIAMETER:VOLUME", item.substr(0, 40)));
     populations.push_back(checked({number_of(words[0], where), 0, number_of(words[1], where)}, where));
     require_few(populations.size());
@@ -137,9 +132,11 @@ std::vector<Population> read_populations(std::istream& in, char format) {
                                            : "d43 sigma volume";
   std::vector<Population> populations;
   std::size_t line_number = 0;
-  for (const std::string_view line : split(text, '\n')) {
+  for (const std::string_view line : split(text, "\n")) {
     const std::string where = fmt::format("standard input, line {}", ++line_number);
-    const std::vector<double> n = numbers_of_line(line.substr(0, line.find('#')), where);
+    std::vector<std::string_view> words = split(line.substr(0, line.find('#')), " \t\r,;");
+    std::erase(words, "");
+    const std::vector<double> n = numbers_of(words, where);
     if (n.empty()) continue;
     if (n.size() != columns)
       refuse(where, fmt::format("{} numbers, where {} are expected: {}", n.size(), columns, what));

@@ -1,6 +1,5 @@
 #include "bernal/predict/predict.hpp"
 
-#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -8,7 +7,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
@@ -16,10 +14,8 @@
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
-#include "populations.hpp"
+#include "design.hpp"
 #include "progress_bar.hpp"
-#include "seed.hpp"
 
 using namespace bernal;
 
@@ -87,10 +83,8 @@ double width_of(const Scene& scene) {
 
 /// Packs those very sizes.
 PredictionCheck check(const Scene& scene, PredictCall& call) {
-  watch_for_interrupts(call.quiet);
   ProgressBar bar(call.quiet);
-  call.packing.monitor.on_progress = [&](const Progress& progress) { bar.show(progress); };
-  call.packing.monitor.cancelled = interrupted;
+  call.packing.monitor = bar.monitor();
   return check_prediction(scene_to_check(scene.sizes, scene.sizes_are_diameters, call.packing), call.packing);
 }
 
@@ -106,16 +100,16 @@ void require_one_source(const PredictCall& call) {
     throw Error(ErrorCode::bad_argument, "--fit is for one lognormal population, not for a scene");
 }
 
-Answer predict(PredictCall& call) {
+Answer answer_to(PredictCall& call) {
   require_one_source(call);
   const Scene scene = scene_of(call);
   Answer answer;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   if (call.fit)
     answer.prediction = {fitted_packing_fraction(width_of(scene)), 0, 3e-4};
   else
     answer.prediction = predict_packing_fraction(*radii_of(scene), call.rods);
-  answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  answer.seconds = watch.seconds();
   if (call.solids) answer.viscosity = relative_viscosity(*call.solids, answer.prediction.phi, call.intrinsic);
   if (call.check) answer.packed = check(scene, call);
   return answer;
@@ -137,9 +131,7 @@ void print(const PredictCall& call, const Answer& answer) {
   if (call.fit)
     fmt::print("error             {:.1g}, of the fit to the rod model\n", p.error);
   else
-    fmt::print("error             {:.1g}, from having {} rods{}\n", p.error,
-               grouped(static_cast<std::uint64_t>(p.rods)),
-               p.error > 1e-3 ? "; more --rods would help" : "; that of the model is about 0.01");
+    print_error(p);
   if (answer.viscosity)
     fmt::print("viscosity         {:.6g} times that of the liquid, at a volume fraction of solids of {:g}\n",
                *answer.viscosity, *call.solids);
@@ -174,6 +166,15 @@ nlohmann::ordered_json as_json(const PredictCall& call, const Answer& answer) {
   return json;
 }
 
+int predict(PredictCall& call) {
+  const Answer answer = answer_to(call);
+  if (call.json)
+    fmt::print("{}\n", as_json(call, answer).dump(2));
+  else
+    print(call, answer);
+  return status_of(answer);
+}
+
 constexpr const char* footer = R"(Sizes, in one of three ways:
   --lognormal and --classes, as often as needed: one mixture of all. Diameters and volumes are
   in any unit; volumes are those of the spheres (or masses, of one material), not of the heap.
@@ -198,57 +199,39 @@ Exit codes: 0 done; 2 bad input; with --check 1 not certified, 3 the packing was
 
 }  // namespace
 
-void add_predict(Command app, int& status) {
-  auto call = std::make_shared<PredictCall>();
-  Command command =
-      app.add_subcommand("predict", "Say how densely spheres of these sizes pack, without packing them");
-  command
-      .add_option("--lognormal,--sigma", call->lognormals,
-                  "A lognormal population: its width alone, or its mean diameters and its volume")
-      .type_name("SIGMA|D43,D32,VOLUME")
-      .repeated();
-  command.add_option("--classes", call->classes, "Populations of one diameter each").type_name("D:V,D:V,…");
-  command.add_option("--scene", call->scene, "The sizes of a scene, a TOML file").type_name("SCENE");
-  command.add_option("--stdin", call->format, "Populations from standard input, in this format")
-      .one_of({"l", "d", "w"})
-      .type_name("FORMAT");
-  command.add_option("--rods", call->rods, "Rods that stand for the sizes; 16,000 if absent")
-      .within(2, 10'000'000)
-      .type_name("N");
-  command.add_flag("--fit", call->fit, "Farr's formula for one lognormal population, sigma up to 3");
-  Option solids = command
-                      .add_option("--solids", call->solids,
-                                  "Also the viscosity of a suspension with this volume fraction of spheres")
-                      .type_name("PHI");
-  command.add_option("--intrinsic", call->intrinsic, "Intrinsic viscosity; 2.5, that of spheres, if absent")
-      .needs(solids)
-      .type_name("ETA");
-  command.add_flag("--json", call->json, "One JSON object on standard output");
-  Option check = command.add_flag(
-      "--check", call->check, "Also pack these sizes in a periodic box, certify that, and say both numbers");
-  command
-      .add_option("--spheres", call->packing.spheres,
-                  "So many; 10,000 if absent, more for wide distributions")
-      .needs(check)
-      .within(1, 10'000'000)
-      .type_name("N");
-  command
-      .add_word(
-          "--stage", [call](const std::string& name) { call->packing.stage = stage_named(name); },
-          "What packs them, relax or grow; relax if absent")
-      .needs(check)
-      .type_name("NAME");
-  add_seed(command, "Of that packing; 1 if absent", [call](std::uint64_t seed) {
-    call->packing.seed = seed;
-  }).needs(check);
-  command.add_flag("--quiet", call->quiet, "Show no progress");
-  command.footer(footer);
-  command.callback([call, &status] {
-    const Answer answer = predict(*call);
-    if (call->json)
-      fmt::print("{}\n", as_json(*call, answer).dump(2));
-    else
-      print(*call, answer);
-    status = status_of(answer);
-  });
+Command predict_command() {
+  const auto call = std::make_shared<PredictCall>();
+  return {
+      "predict",
+      "Say how densely spheres of these sizes pack, without packing them",
+      {repeated({"--lognormal,--sigma", &call->lognormals,
+                 "A lognormal population: its width alone, or its mean diameters and its volume",
+                 "SIGMA|D43,D32,VOLUME"}),
+       {"--classes", &call->classes, "Populations of one diameter each", "D:V,D:V,…"},
+       {"--scene", &call->scene, "The sizes of a scene, a TOML file", "SCENE"},
+       one_of({"--stdin", &call->format, "Populations from standard input, in this format", "FORMAT"},
+              {"l", "d", "w"}),
+       rods_option(call->rods, 2, 10'000'000),
+       {"--fit", &call->fit, "Farr's formula for one lognormal population, sigma up to 3"},
+       {"--solids", &call->solids, "Also the viscosity of a suspension with this volume fraction of spheres",
+        "PHI"},
+       needs({"--intrinsic", &call->intrinsic, "Intrinsic viscosity; 2.5, that of spheres, if absent", "ETA"},
+             "--solids"),
+       json_option(call->json),
+       {"--check", &call->check,
+        "Also pack these sizes in a periodic box, certify that, and say both numbers"},
+       needs(within({"--spheres", &call->packing.spheres,
+                     "So many; 10,000 if absent, more for wide distributions", "N"},
+                    1, 10'000'000),
+             "--check"),
+       needs({"--stage",
+              [call = call.get()](const std::string& name) { call->packing.stage = stage_named(name); },
+              "What packs them, relax or grow; relax if absent", "NAME"},
+             "--check"),
+       needs(seed_option("Of that packing; 1 if absent",
+                         [call = call.get()](std::uint64_t seed) { call->packing.seed = seed; }),
+             "--check"),
+       quiet_option(call->quiet, "Show no progress")},
+      footer,
+      [call] { return predict(*call); }};
 }

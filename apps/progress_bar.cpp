@@ -4,17 +4,31 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <csignal>
 #include <cstdio>
+#include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
 namespace {
 
-using namespace std::chrono_literals;
+constexpr double silence = 2, between_redraws = 0.1, between_lines = 10;  ///< seconds
 
-constexpr auto silence = 2s;
-constexpr auto between_redraws = 100ms;
-constexpr auto between_lines = 10s;
+std::atomic<bool> signalled = false;
+std::atomic<bool> no_message = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may touch nothing else");
+
+extern "C" void on_signal(int) {
+  signalled = true;
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  constexpr std::string_view message = "\nbernal: stopping at the next safe point; once more kills\n";
+  if (!no_message) [[maybe_unused]]
+    const auto written = write(STDERR_FILENO, message.data(), message.size());
+}
 
 std::size_t terminal_width() {
   winsize size{};
@@ -29,16 +43,29 @@ std::string bar(double fraction) {
 
 }  // namespace
 
-ProgressBar::ProgressBar(bool quiet)
-    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), next_(start_ + silence) {}
+bool interrupted() { return signalled; }
+
+ProgressBar::ProgressBar(bool quiet, bool silent)
+    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), next_(silence) {
+  no_message = silent;
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+bernal::Monitor ProgressBar::monitor(double from, double to) {
+  return {[=, this](bernal::Progress progress) {
+            progress.fraction = from + (to - from) * progress.fraction;
+            show(progress);
+          },
+          interrupted};
+}
 
 void ProgressBar::show(const bernal::Progress& progress) {
-  const auto now = Clock::now();
+  const double now = watch_.seconds();
   if (quiet_ || now < next_) return;
-  next_ = now + (terminal_ ? Clock::duration(between_redraws) : Clock::duration(between_lines));
+  next_ = now + (terminal_ ? between_redraws : between_lines);
 
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now - start_).count();
-  std::string line = fmt::format("{:>5} s  {:<8}  ", seconds, progress.activity);
+  std::string line = fmt::format("{:>5.0f} s  {:<8}  ", std::floor(now), progress.activity);
   if (progress.fraction >= 0) line += bar(progress.fraction) + "  ";
   line += progress.detail;
   if (!terminal_) {

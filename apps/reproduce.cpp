@@ -7,9 +7,7 @@
 #include "bernal/figures/figures.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "progress_bar.hpp"
-#include "seed.hpp"
 
 using namespace bernal;
 
@@ -29,12 +27,9 @@ int reproduce(const ReproduceCall& call) {
       throw Error(ErrorCode::bad_argument,
                   fmt::format("{} has no packings to show; leave out --pack", call.name));
   check_writable(call.folder);
-  watch_for_interrupts(call.quiet);
   ProgressBar bar(call.quiet);
-  FigureOptions options{.pack = call.pack, .seed = call.seed};
-  options.monitor.on_progress = [&](const Progress& progress) { bar.show(progress); };
-  options.monitor.cancelled = interrupted;
-  const auto files = write_figure(call.name, call.folder, options);
+  const auto files =
+      write_figure(call.name, call.folder, {.pack = call.pack, .seed = call.seed, .monitor = bar.monitor()});
   bar.clear();
   for (const auto& file : files) fmt::print("{}\n", file.string());
   if (files.empty() && !call.quiet) fmt::print(stderr, "bernal: stopped by the user; nothing is written\n");
@@ -43,27 +38,27 @@ int reproduce(const ReproduceCall& call) {
 
 }  // namespace
 
-void add_reproduce(Command app, int& status) {
-  auto call = std::make_shared<ReproduceCall>();
-  Command command = app.add_subcommand("reproduce", "Compute a figure or table of Farr (2013) again");
+Command reproduce_command() {
+  const auto call = std::make_shared<ReproduceCall>();
   std::vector<std::string> names;
   std::string footer = "Figures and tables:\n";
   for (const Figure& figure : all_figures()) {
     names.emplace_back(figure.name);
     footer += fmt::format("  {:<8}{}{}\n", figure.name, figure.what, figure.packs ? " *" : "");
   }
-  command.add_option("NAME", call->name, "Which of those below").required().one_of(names);
-  command
-      .add_option("-o,--output", call->folder, "Folder for NAME.svg and NAME.csv; made if it does not exist")
-      .required()
-      .type_name("DIR");
-  command.add_flag("--pack", call->pack, "Also pack some of the sizes in three dimensions: minutes");
-  add_seed(command, "Of the packings; 1 if absent", [call](std::uint64_t seed) { call->seed = seed; });
-  command.add_flag("--quiet", call->quiet, "Print nothing but the files and errors");
-  command.footer(footer + R"(  * with --pack also packings of its own
+  return {"reproduce",
+          "Compute a figure or table of Farr (2013) again",
+          {one_of(required({"NAME", &call->name, "Which of those below"}), names),
+           required({"-o,--output", &call->folder,
+                     "Folder for NAME.svg and NAME.csv; made if it does not exist", "DIR"}),
+           {"--pack", &call->pack, "Also pack some of the sizes in three dimensions: minutes"},
+           seed_option("Of the packings; 1 if absent",
+                       [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
+           quiet_option(call->quiet)},
+          footer + R"(  * with --pack also packings of its own
 
 R. S. Farr: Random close packing fractions of lognormal distributions of hard spheres. Powder
 Technology 245, 28 (2013). KTS packings are printed there; all else is computed.
-Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.)");
-  command.callback([call, &status] { status = reproduce(*call); });
+Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.)",
+          [call] { return reproduce(*call); }};
 }

@@ -9,15 +9,13 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/io/certificate_json.hpp"
+#include "bernal/io/json.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "progress_bar.hpp"
-#include "threads.hpp"
 
 using namespace bernal;
 
@@ -77,13 +75,12 @@ int verify(const VerifyCall& call) {
       std::filesystem::is_directory(call.target) ? call.target / "spheres.csv" : call.target;
   const Spheres<dynamic> spheres = read_csv_of(scene, file);
 
-  watch_for_interrupts(true);
-  ProgressBar bar(call.json);
-  CertifyOptions options{
-      .allowed_overlap = scene.overlap, .list = listed(call.list), .threads = call.threads};
-  options.monitor.on_progress = [&](const Progress& progress) { bar.show(progress); };
-  options.monitor.cancelled = interrupted;
-  const Certificate certificate = certify(spheres, domain, options);
+  ProgressBar bar(call.json, true);
+  const Certificate certificate = certify(spheres, domain,
+                                          {.allowed_overlap = scene.overlap,
+                                           .list = listed(call.list),
+                                           .threads = call.threads,
+                                           .monitor = bar.monitor()});
   bar.clear();
   if (call.json)
     fmt::print("{}", certificate_as_json(certificate));
@@ -94,21 +91,20 @@ int verify(const VerifyCall& call) {
 
 }  // namespace
 
-void add_verify(Command app, int& status) {
-  auto call = std::make_shared<VerifyCall>();
-  Command command = app.add_subcommand("verify", "Certify files from scratch: no overlap, nothing outside");
-  command.add_option("DIR", call->target, "What bernal pack wrote, or one CSV file with x,y,z,r lines")
-      .required()
-      .type_name("DIR|FILE.csv");
-  command.add_option("--scene", call->scene, "The scene that names the container, if not DIR/scene.toml")
-      .type_name("SCENE.toml");
-  command.add_flag("--list{all}", call->list,
-                   "Name every overlapping pair and protruding sphere; --list=N: the N worst of each");
-  add_threads(command, call->threads, "the answer");
-  command.add_flag("--json", call->json, "One JSON object on standard output");
-  command.footer(
+Command verify_command() {
+  const auto call = std::make_shared<VerifyCall>();
+  return {
+      "verify",
+      "Certify files from scratch: no overlap, nothing outside",
+      {required({"DIR", &call->target, "What bernal pack wrote, or one CSV file with x,y,z,r lines",
+                 "DIR|FILE.csv"}),
+       {"--scene", &call->scene, "The scene that names the container, if not DIR/scene.toml", "SCENE.toml"},
+       {"--list{all}", &call->list,
+        "Name every overlapping pair and protruding sphere; --list=N: the N worst of each"},
+       threads_option(call->threads, "the answer"),
+       json_option(call->json)},
       "Every near pair and every near wall is decided: in double arithmetic where a proven error bound "
       "allows,\n"
-      "else exactly. Exit codes: 0 certified; 1 not; 2 bad input.");
-  command.callback([call, &status] { status = verify(*call); });
+      "else exactly. Exit codes: 0 certified; 1 not; 2 bad input.",
+      [call] { return verify(*call); }};
 }

@@ -1,5 +1,3 @@
-#include <limits>
-
 #include "bernal/predict/mixtures.hpp"
 #include "figures/drawing.hpp"
 #include "figures/figure_files.hpp"

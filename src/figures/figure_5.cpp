@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "bernal/predict/mixtures.hpp"
 #include "figures/drawing.hpp"
 #include "figures/figure_files.hpp"

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 
-#include "bernal/core/text.hpp"
 #include "bernal/predict/design.hpp"
 #include "core/parallel.hpp"
 #include "figures/contours.hpp"

@@ -11,6 +11,9 @@ struct File {
 };
 using Files = std::vector<File>;  ///< empty where the monitor stopped it
 
+/// Writes all of them or none; returns where they are.
+std::vector<std::filesystem::path> write_files(const Files&, const std::filesystem::path& folder);
+
 // One file a figure.
 Files figure_1(const FigureOptions&);
 Files figure_2(const FigureOptions&);

@@ -5,7 +5,8 @@
 
 #include "bernal/core/error.hpp"
 #include "figures/figure_files.hpp"
-#include "figures/write_files.hpp"
+#include "figures/published.hpp"
+#include "io/staged_folder.hpp"
 
 namespace bernal {
 namespace {
@@ -27,6 +28,14 @@ constexpr Entry entries[] = {
 
 }  // namespace
 
+std::vector<std::filesystem::path> figures::write_files(const Files& files,
+                                                        const std::filesystem::path& folder) {
+  if (files.empty()) return {};
+  StagedFolder staged(folder);
+  for (const File& file : files) staged.write(file.name, file.text);
+  return staged.publish();
+}
+
 std::span<const Figure> all_figures() {
   static const auto all = [] {
     std::vector<Figure> list;
@@ -42,6 +51,29 @@ std::vector<std::filesystem::path> write_figure(std::string_view name, const std
   if (entry == std::end(entries))
     throw Error(ErrorCode::bad_argument, "there is no figure \"" + std::string(name) + "\"");
   return figures::write_files(entry->make(options), folder);
+}
+
+std::optional<PredictionCheck> figures::packed_for_a_figure(const Scene& scene, std::string_view figure,
+                                                            double done, const FigureOptions& options) {
+  CheckOptions check;
+  check.monitor.cancelled = options.monitor.cancelled;
+  check.monitor.on_progress = [&](const Progress& progress) {
+    options.monitor.report({figure, done, progress.detail});
+  };
+  const PredictionCheck packed = check_prediction(scene, check);
+  if (packed.outcome == Outcome::cancelled) return std::nullopt;
+  if (!packed.certified || packed.outcome != Outcome::converged)
+    throw Error(ErrorCode::bad_argument, "a packing for the figure did not converge, or is not certified");
+  return packed;
+}
+
+std::optional<PredictionCheck> figures::packed_for_a_figure(const TwoPopulations& sizes,
+                                                            std::string_view figure, double done,
+                                                            const FigureOptions& options) {
+  CheckOptions check;
+  check.spheres = 10'000;
+  check.seed = options.seed;
+  return packed_for_a_figure(scene_to_check(sizes_of(sizes), true, check), figure, done, options);
 }
 
 }  // namespace bernal

@@ -1,13 +1,12 @@
 
 #include <algorithm>
-#include <cmath>
 
 #include "bernal/core/error.hpp"
 #include "bernal/predict/mixtures.hpp"
 #include "core/parallel.hpp"
 #include "figures/contours.hpp"
 #include "figures/drawing.hpp"
-#include "figures/write_files.hpp"
+#include "figures/figure_files.hpp"
 
 namespace bernal {
 namespace {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -65,11 +64,10 @@ Files table_1(const FigureOptions& options) {
     Prediction prediction;
     std::vector<double> milliseconds;
     for (int k = 0; k < repeats; ++k) {
-      const auto start = std::chrono::steady_clock::now();
+      const Stopwatch watch;
       prediction =
           predict_packing_fraction(*make_two_populations({.sigma_a = row.sigma, .share = 0}), row.rods);
-      milliseconds.push_back(
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+      milliseconds.push_back(1e3 * watch.seconds());
     }
     std::ranges::nth_element(milliseconds, milliseconds.begin() + repeats / 2);
     csv += fmt::format("{},{},{:.7f},{:.6f},{:.6f},{:.3f},{}\n", row.sigma, row.rods, prediction.phi,

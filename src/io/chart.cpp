@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <vector>
 
 #include <fmt/format.h>
@@ -66,6 +67,26 @@ std::string chart_of(const std::vector<Moment>& history, double y0, double y1, s
   return std::move(chart).finish();
 }
 
+/// A value with what its error takes off it and adds to it.
+struct Uncertain {
+  double x, y, below, above;
+};
+
+/// A line, and the band of its error; what is higher than the axis is cut.
+void add_band(Chart& chart, const std::vector<Uncertain>& points, double highest) {
+  const auto append = [&](std::string& path, double x, double y) {
+    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', chart.x(x),
+                        chart.y(std::clamp(y, 0.0, highest)));
+  };
+  std::string line, band;
+  for (const Uncertain& p : points) {
+    append(line, p.x, p.y);
+    append(band, p.x, p.y + p.above);
+  }
+  for (const Uncertain& p : points | std::views::reverse) append(band, p.x, p.y - p.below);
+  chart.add("<path class=\"band\" d=\"{}Z\"/><path class=\"first line\" d=\"{}\"/>", band, line);
+}
+
 }  // namespace
 
 std::string size_histogram(const SizeHistogram& histogram) {
@@ -112,25 +133,17 @@ std::string size_histogram(const SizeHistogram& histogram) {
 std::string radial_chart(const RadialDistribution& radial) {
   // The contact peak of equal spheres is as high as the bins are narrow; what follows is what there is to
   // see.
-  constexpr double fewest = 3;
-  double highest = fewest;
-  const auto diameters = [&](std::size_t k) { return radial.r[k] / radial.mean_diameter; };
-  for (std::size_t k = 0; k < radial.g.size(); ++k)
-    if (diameters(k) > 1.2) highest = std::max(highest, 1.1 * radial.g[k]);
+  double highest = 3;
+  std::vector<Uncertain> points;
+  for (std::size_t k = 0; k < radial.g.size(); ++k) {
+    const double diameters = radial.r[k] / radial.mean_diameter, g = radial.g[k], error = radial.error[k];
+    if (diameters > 1.2) highest = std::max(highest, 1.1 * g);
+    points.push_back({diameters, g, error, g > 0 ? error : 0});
+  }
   Chart chart({0, radial.bin_width * static_cast<double>(radial.g.size()) / radial.mean_diameter,
                "distance of the centres (mean diameters)"},
               {0, highest, "g(r)"});
-  const auto point = [&](std::string& path, std::size_t k, double g) {
-    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', chart.x(diameters(k)),
-                        chart.y(std::clamp(g, 0.0, highest)));
-  };
-  std::string line, band;
-  for (std::size_t k = 0; k < radial.g.size(); ++k) {
-    point(line, k, radial.g[k]);
-    point(band, k, radial.g[k] + (radial.g[k] > 0 ? radial.error[k] : 0));
-  }
-  for (std::size_t k = radial.g.size(); k-- > 0;) point(band, k, radial.g[k] - radial.error[k]);
-  chart.add("<path class=\"band\" d=\"{}Z\"/><path class=\"first line\" d=\"{}\"/>", band, line);
+  add_band(chart, points, highest);
   return std::move(chart).finish();
 }
 
@@ -138,25 +151,19 @@ std::string wall_chart(const WallProfile& profile) {
   const std::size_t even = profile.layers.size() - 1;  // the last layer holds all that is deeper
   if (even < 2) return {};
   double highest = 1;
-  for (const auto& layer : profile.layers) highest = std::max(highest, layer.porosity + layer.error);
+  std::vector<Uncertain> points;
+  for (const auto& layer : profile.layers) {
+    highest = std::max(highest, layer.porosity + layer.error);
+    points.push_back(
+        {0.5 * (layer.from + layer.to) / profile.mean_diameter, layer.porosity, layer.error, layer.error});
+  }
+  points.pop_back();
   Chart chart(
       {0, profile.layers[even].from / profile.mean_diameter, "distance from the wall (mean diameters)"},
       {0, highest, "porosity"});
-  const auto point = [&](std::string& path, std::size_t k, double porosity) {
-    const double middle = 0.5 * (profile.layers[k].from + profile.layers[k].to) / profile.mean_diameter;
-    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', chart.x(middle),
-                        chart.y(std::clamp(porosity, 0.0, highest)));
-  };
-  std::string line, band;
-  for (std::size_t k = 0; k < even; ++k) {
-    point(line, k, profile.layers[k].porosity);
-    point(band, k, profile.layers[k].porosity + profile.layers[k].error);
-  }
-  for (std::size_t k = even; k-- > 0;) point(band, k, profile.layers[k].porosity - profile.layers[k].error);
-  chart.add(
-      "<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/><path class=\"band\" d=\"{}Z\"/><path class=\"first "
-      "line\" d=\"{}\"/>",
-      left, chart.y(profile.mean_porosity), width - right, band, line);
+  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left, chart.y(profile.mean_porosity),
+            width - right);
+  add_band(chart, points, highest);
   return std::move(chart).finish();
 }
 

@@ -2,30 +2,15 @@
 #include <string>
 #include <string_view>
 
-#include "bernal/core/text.hpp"
-
 namespace bernal {
 
 /// Text made safe inside HTML elements and quoted attributes.
 inline std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
+    constexpr std::string_view unsafe = "&<>\"", names[] = {"&amp;", "&lt;", "&gt;", "&quot;"};
+    const std::size_t k = unsafe.find(c);
+    out += k == unsafe.npos ? std::string_view(&c, 1) : names[k];
   }
   return out;
 }

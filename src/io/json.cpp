@@ -1,23 +1,48 @@
-#include "io/json.hpp"
+// report.json and what --json prints; the only file of the library that sees nlohmann's JSON.
+#include "bernal/io/json.hpp"
+
+#include <sys/resource.h>
+
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "bernal/domain/domain.hpp"
+#include "io/report.hpp"
+
+using Json = nlohmann::ordered_json;  // writes NaN and infinity as null
+
+template <class T>
+struct nlohmann::adl_serializer<std::optional<T>> {
+  static void to_json(Json& json, const std::optional<T>& value) { json = value ? Json(*value) : Json(); }
+};
 
 namespace bernal {
-namespace {
 
-Json json_of(const Vector<3>& v) { return Json::array({v[0], v[1], v[2]}); }
-
-Json json_of(const BondOrder::Count& count) {
-  return {{"spheres", count.spheres}, {"crystalline", count.crystalline}, {"fraction", count.fraction()}};
-}
-Json json_of(const std::optional<BondOrder::Count>& count) { return count ? json_of(*count) : Json(); }
-
-}  // namespace
-
-std::string text_of(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+static void to_json(Json& json, const BondOrder::Count& count) {
+  json = {{"spheres", count.spheres}, {"crystalline", count.crystalline}, {"fraction", count.fraction()}};
 }
 
-Json contacts_json(const Contacts& contacts) {
-  return {{"contact_gap", contacts.contact_gap},
+/// Makes members of a struct keys of their own names. (Those of nlohmann know no ordered_json.)
+#define BERNAL_KEYS(Type, ...)                                               \
+  static void to_json(Json& nlohmann_json_j, const Type& nlohmann_json_t) {  \
+    NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(NLOHMANN_JSON_TO, __VA_ARGS__)) \
+  }
+BERNAL_KEYS(Bounds<3>, lower, upper)
+BERNAL_KEYS(BondOrder, all, near_wall, core)
+BERNAL_KEYS(Certificate::Overlap, pair, ratio)
+BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
+BERNAL_KEYS(Chambers::Uncovered, radius, share, error)
+BERNAL_KEYS(DrawnComparison, missing, largest_deviation, above_largest)
+BERNAL_KEYS(Effect, name, calls, seconds)
+BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
+BERNAL_KEYS(SizeComparison::Class, radius, asked_share, count)
+BERNAL_KEYS(SizeComparison::Quantile, share, realised, asked)
+BERNAL_KEYS(WallProfile::Layer, from, to, share, porosity, error)
+#undef BERNAL_KEYS
+
+static void to_json(Json& json, const Contacts& contacts) {
+  json = {{"contact_gap", contacts.contact_gap},
           {"coordination", contacts.coordination},
           {"contacts", contacts.pairs},
           {"wall_contacts", contacts.walls},
@@ -27,39 +52,31 @@ Json contacts_json(const Contacts& contacts) {
             {"contacts", contacts.backbone_pairs},
             {"wall_contacts", contacts.backbone_walls},
             {"coordination", contacts.backbone_coordination},
-            {"isostatic_contacts", or_null(contacts.isostatic)}}}};
+            {"isostatic_contacts", contacts.isostatic}}}};
 }
 
-Json crystalline_json(const std::optional<BondOrder>& order) {
-  if (!order) return {};
-  return {
-      {"all", json_of(order->all)}, {"near_wall", json_of(order->near_wall)}, {"core", json_of(order->core)}};
+static void to_json(Json& json, const Chambers::Chamber& chamber) {
+  json = {{"n", chamber.spheres},
+          {"share", chamber.share},
+          {"share_error", chamber.share_error},
+          {"phi", chamber.packing_fraction},
+          {"position", chamber.position},
+          {"clearance", chamber.clearance}};
 }
 
-Json chambers_json(const std::optional<Chambers>& found) {
-  if (!found) return {};
-  const auto uncovered = [](const Chambers::Uncovered& of) {
-    return Json{{"radius", of.radius}, {"share", of.share}, {"error", of.error}};
-  };
-  Json list = Json::array();
-  for (const Chambers::Chamber& chamber : found->chambers)
-    list.push_back({{"n", chamber.spheres},
-                    {"share", chamber.share},
-                    {"share_error", chamber.share_error},
-                    {"phi", chamber.packing_fraction},
-                    {"position", json_of(chamber.position)},
-                    {"clearance", chamber.clearance}});
-  return {{"radius", found->radius},
-          {"resolution", found->resolution},
-          {"misplaced", found->misplaced},
-          {"uncovered", {{"smallest", uncovered(found->by_smallest)}, {"mean", uncovered(found->by_mean)}}},
-          {"list", list}};
+static void to_json(Json& json, const Chambers& found) {
+  json = {{"radius", found.radius},
+          {"resolution", found.resolution},
+          {"misplaced", found.misplaced},
+          {"uncovered", {{"smallest", found.by_smallest}, {"mean", found.by_mean}}},
+          {"list", found.chambers}};
 }
 
-Json walls_json(const WallProfile& profile) {
+/// Without its layers.
+static void to_json(Json& json, const WallProfile& profile) {
   const auto& least = profile.first_minimum;
   const auto& segregation = profile.segregation;
-  return {{"mean_diameter", profile.mean_diameter},
+  json = {{"mean_diameter", profile.mean_diameter},
           {"mean_porosity", profile.mean_porosity},
           {"near_wall_phi", profile.near_wall_packing_fraction},
           {"core_phi", profile.core_packing_fraction},
@@ -76,30 +93,149 @@ Json walls_json(const WallProfile& profile) {
                                       : Json()}};
 }
 
-Json drawn_json(const SizeComparison& sizes) {
-  if (!sizes.drawn) return {};
-  return {{"missing", sizes.drawn->missing},
-          {"largest_deviation", sizes.drawn->largest_deviation},
-          {"above_largest", sizes.drawn->above_largest}};
+static void to_json(Json& json, const RadialDistribution& radial) {
+  Json peaks = Json::array();
+  for (const auto& peak : radial.peaks)
+    peaks.push_back({{"r", peak.r},
+                     {"r_over_diameter", peak.r / radial.mean_diameter},
+                     {"g", peak.g},
+                     {"error", peak.error}});
+  json = {{"mean_diameter", radial.mean_diameter},
+          {"radius_spread", radial.radius_spread},
+          {"bin_width", radial.bin_width},
+          {"references", radial.references},
+          {"peaks", peaks},
+          {"r", radial.r},
+          {"g", radial.g},
+          {"error", radial.error}};
 }
 
+static void to_json(Json& json, const SizeComparison& sizes) {
+  json = {{"ks_statistic", sizes.ks_statistic},
+          {"ks_p_value", sizes.ks_p_value},
+          {"chi_squared", sizes.classes.empty() ? Json() : Json(sizes.chi_squared)},
+          {"chi_squared_p_value", sizes.chi_squared_p_value},
+          {"mean_radius", {{"realised", sizes.mean_radius}, {"asked", sizes.asked_mean_radius}}},
+          {"mean_volume_ratio", sizes.volume_ratio},
+          {"mean_volume_ratio_error", sizes.volume_ratio_error},
+          {"drawn", sizes.drawn},
+          {"quantiles", sizes.quantiles},
+          {"classes", sizes.classes}};
+}
+
+static void to_json(Json& json, const Certificate& c) {
+  json = {{"certified", c.certified},
+          {"statement", c.statement},
+          {"allowed_overlap", c.allowed_overlap},
+          {"cancelled", c.cancelled},
+          {"spheres", c.spheres},
+          {"pairs_tested", c.pairs_tested},
+          {"walls_tested", c.walls_tested},
+          {"centers_tested", c.centers_tested},
+          {"decided_double", c.decided_double},
+          {"decided_exact", c.decided_exact},
+          {"overlapping_pairs", c.overlapping_pairs},
+          {"protruding_spheres", c.protruding_spheres},
+          {"worst_pair", c.worst_pair},
+          {"max_overlap", c.max_overlap},
+          {"worst_wall", c.worst_wall},
+          {"min_wall_gap", c.worst_wall ? Json(c.min_wall_gap) : Json()}};
+  if (!c.overlaps.empty()) json["overlaps"] = c.overlaps;
+  if (!c.protrusions.empty()) json["protrusions"] = c.protrusions;
+  json["seconds"] = c.seconds;
+}
+
+namespace {
+
+/// The key `box` with edges, axes that have walls and volume of a box that repeats itself or has not three
+/// dimensions; or `container` with kind, volume and bounds, and the periods of one that repeats itself, 0
+/// along open axes.
 Json::object_t::value_type domain_json(const Domain& domain) {
   const Box* box = std::get_if<Box>(&domain);
   if (box && (box->repeats() || box->dimension() != 3)) {
     std::vector<int> walls;
     for (int k = 0; k < box->dimension(); ++k)
       if (box->has_wall(k)) walls.push_back(k);
-    return {"box",
-            {{"edges", std::vector<double>(box->size.begin(), box->size.end())},
-             {"walls", walls},
-             {"volume", volume_of(domain)}}};
+    return {"box", {{"edges", box->size}, {"walls", walls}, {"volume", volume_of(domain)}}};
   }
-  const Bounds<3> bounds = bounds_of(domain);
-  Json container = {{"kind", kind_of(domain)},
-                    {"volume", volume_of(domain)},
-                    {"bounds", {{"lower", json_of(bounds.lower)}, {"upper", json_of(bounds.upper)}}}};
-  if (is_periodic(domain)) container["periods"] = json_of(boundary_of<3>(domain).edges);
+  Json container = {{"kind", kind_of(domain)}, {"volume", volume_of(domain)}, {"bounds", bounds_of(domain)}};
+  if (is_periodic(domain)) container["periods"] = boundary_of<3>(domain).edges;
   return {"container", container};
+}
+
+/// The figures; the tables are in the answer of `bernal measure`.
+Json figures_of(const std::optional<SizeComparison>& sizes) {
+  if (!sizes) return {};
+  return {{"ks_statistic", sizes->ks_statistic},
+          {"ks_p_value", sizes->ks_p_value},
+          {"chi_squared_p_value", sizes->chi_squared_p_value},
+          {"mean_volume_ratio", sizes->volume_ratio},
+          {"drawn", sizes->drawn}};
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024 * static_cast<std::uint64_t>(usage.ru_maxrss);
+}
+
+/// Names may hold any bytes; a report that is not valid UTF-8 would be worse than a replaced character.
+std::string text_of(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string certificate_as_json(const Certificate& c) { return text_of(c); }
+
+std::string measurements_as_json(const Packing& packing, const Measurements& measured) {
+  Json json = {{"n", packing.spheres.size()},
+               {"dimension", packing.spheres.dimension()},
+               {"unit", name_of(packing.scene.unit)},
+               {"phi", measured.packing_fraction},
+               domain_json(packing.domain)};
+  json.update(measured.contacts);
+  json["by_gap"] = measured.by_gap;
+  json["g_r"] = measured.radial;
+  json["crystalline"] = measured.order;
+  json["chambers"] = measured.chambers;
+  json["walls"] = measured.walls;
+  if (measured.walls) json["walls"]["layers"] = measured.walls->layers;
+  json["sizes"] = measured.sizes;
+  json["hash"] = hash_of(packing.spheres);
+  return text_of(json);
+}
+
+std::string json_of(const Report& report) {
+  const Packing& packing = report.packing;
+  const Certificate& certificate = report.certificate;
+  const Json of_certificate = certificate;
+  Json json = {{"version", packing.version},
+               {"seed", packing.seed},
+               {"threads", packing.threads},
+               {"outcome", name_of(packing.outcome)},
+               {"reason", packing.reason},
+               {"n", packing.spheres.size()},
+               {"dimension", packing.spheres.dimension()},
+               {"unit", name_of(packing.scene.unit)},
+               {"phi", packing.packing_fraction()},
+               {"expected_phi", packing.expected_packing_fraction}};
+  json.update(report.measured.contacts);
+  json.update({{"crystalline", report.measured.order},
+               {"chambers", report.measured.chambers},
+               {"walls", report.measured.walls},
+               {"sizes", figures_of(report.measured.sizes)},
+               {"max_overlap", certificate.max_overlap},
+               {"min_wall_gap", of_certificate.at("min_wall_gap")},
+               {"certified", certificate.certified},
+               {"certificate", of_certificate},
+               domain_json(packing.domain),
+               {"hash", report.hash},
+               {"effects", packing.effects},
+               {"history", packing.history},
+               {"seconds", packing.seconds},
+               {"peak_memory_bytes", peak_memory_bytes()}});
+  return text_of(json);
 }
 
 }  // namespace bernal

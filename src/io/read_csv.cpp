@@ -34,45 +34,29 @@ std::string quoted(std::string_view text) {
   return out + (text.size() > longest ? "…\"" : "\"");
 }
 
-/// The lines of a file, one after the other, with CRLF taken for LF. Holds a block of the file, not all of
-/// it.
+/// The lines of a file, one after the other, with CRLF taken for LF.
 class Lines {
  public:
   explicit Lines(const std::filesystem::path& file) : file_(file.string()) {
     if (std::filesystem::is_directory(file)) cannot_read("it is a folder");
     errno = 0;
+    stream_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
     stream_.open(file, std::ios::binary);
     if (!stream_) cannot_read(std::strerror(errno));
-    std::error_code unknown;  // of a pipe, say
-    const std::uintmax_t size = std::filesystem::file_size(file, unknown);
-    if (!unknown) file_bytes_ = size;
   }
 
   bool next() {
-    std::size_t length = rest_.find('\n');
-    while (length == std::string_view::npos && read_block()) length = rest_.find('\n');
-    if (rest_.empty()) return false;
+    errno = 0;
+    if (!std::getline(stream_, line_)) {
+      if (stream_.bad()) cannot_read(std::strerror(errno));
+      return false;
+    }
     ++number_;
-    if (length == std::string_view::npos)
-      fail("the file ends in the middle of this line; it was cut off, write it again");
-    line_ = rest_.substr(0, length);
-    rest_.remove_prefix(length + 1);
-    if (line_.ends_with('\r')) line_.remove_suffix(1);
+    if (stream_.eof()) fail("the file ends in the middle of this line; it was cut off, write it again");
+    if (line_.ends_with('\r')) line_.pop_back();
     return true;
   }
   std::string_view line() const { return line_; }
-
-  /// About how many lines are left, from those at hand, given that none is shorter than `least_bytes`.
-  std::size_t expected(std::size_t least_bytes) const {
-    if (rest_.empty()) return 0;
-    const auto bytes = static_cast<double>(rest_.size());
-    const double left =
-        std::max(bytes, static_cast<double>(file_bytes_) - static_cast<double>(bytes_read_) + bytes);
-    const auto lines = static_cast<double>(std::count(rest_.begin(), rest_.end(), '\n'));
-    constexpr double lines_may_become_shorter = 1.02;
-    const double likely = left == bytes ? lines : lines_may_become_shorter * lines / bytes * left;
-    return static_cast<std::size_t>(std::min(likely, left / static_cast<double>(least_bytes)));
-  }
 
   [[noreturn]] void fail(const std::string& message) const {
     throw Error(ErrorCode::bad_packing, message, {file_, number_});
@@ -83,29 +67,10 @@ class Lines {
     throw Error(ErrorCode::bad_packing, "cannot be read: " + why, {file_});
   }
 
-  /// Adds a block behind what is left; false at the end of the file.
-  bool read_block() {
-    constexpr std::size_t block_bytes = std::size_t{1} << 18;
-    block_.erase(0, block_.size() - rest_.size());
-    const std::size_t before = block_.size();
-    block_.resize(before + std::max(block_bytes, before));  // a long line is not searched again and again
-    errno = 0;
-    stream_.read(block_.data() + before, static_cast<std::streamsize>(block_.size() - before));
-    if (stream_.bad()) cannot_read(std::strerror(errno));
-    const auto read = static_cast<std::size_t>(stream_.gcount());
-    block_.resize(before + read);
-    bytes_read_ += read;
-    rest_ = block_;
-    return read > 0;
-  }
-
   std::string file_;
+  std::vector<char> buffer_ = std::vector<char>(std::size_t{1} << 18);
   std::ifstream stream_;
-  std::string block_;  ///< ends with `rest_`
-  std::string_view rest_;
-  std::string_view line_;
-  std::uintmax_t file_bytes_ = 0;
-  std::uintmax_t bytes_read_ = 0;
+  std::string line_;
   int number_ = 0;
 };
 
@@ -157,18 +122,6 @@ void read_sphere(const Lines& lines, const std::vector<std::string>& columns, Sp
   }
 }
 
-std::vector<std::string> split(std::string_view header) {
-  std::vector<std::string> names(1);
-  for (const char c : header) {
-    if (c == ',') {
-      names.emplace_back();
-    } else {
-      names.back() += c;
-    }
-  }
-  return names;
-}
-
 }  // namespace
 
 SpheresFile read_csv(const std::filesystem::path& file) {
@@ -182,8 +135,7 @@ SpheresFile read_csv(const std::filesystem::path& file) {
   }
   if (!found) lines.fail(fmt::format("the header {} is missing", csv_header(3)));
   SpheresFile result{Spheres<dynamic>(dimension_of_header(lines)), std::move(unit)};
-  const std::vector<std::string> columns = split(lines.line());
-  result.spheres.reserve(lines.expected(2 * columns.size()));  // a digit and a comma or line feed each
+  const std::vector<std::string> columns = csv_columns(result.spheres.dimension());
   while (lines.next()) read_sphere(lines, columns, result.spheres);
   return result;
 }

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "bernal/core/error.hpp"
+#include "io/output_file.hpp"
 
 namespace fs = std::filesystem;
 
@@ -53,6 +54,12 @@ void StagedFolder::make_folders() {
 fs::path StagedFolder::add(const std::string& name) {
   names_.push_back(name);
   return staging_ / name;
+}
+
+void StagedFolder::write(const std::string& name, std::string_view text) {
+  OutputFile file(add(name));
+  file.append(text);
+  file.close();
 }
 
 std::vector<fs::path> StagedFolder::publish() {

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace bernal {
@@ -20,6 +21,8 @@ class StagedFolder {
 
   /// Where the file that will be called `name` is to be written.
   std::filesystem::path add(const std::string& name);
+  /// Writes all of that file.
+  void write(const std::string& name, std::string_view text);
   /// Gives every added file its final name; returns those, in the order of `add`.
   std::vector<std::filesystem::path> publish();
 

@@ -5,15 +5,19 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace bernal {
 
-std::string csv_header(int dimension) {
-  if (dimension == 3) return "x,y,z,r";
-  std::string header;
-  for (int k = 0; k < dimension; ++k) header += fmt::format("x{},", k);
-  return header + "r";
+std::vector<std::string> csv_columns(int dimension) {
+  if (dimension == 3) return {"x", "y", "z", "r"};
+  std::vector<std::string> columns;
+  for (int k = 0; k < dimension; ++k) columns.push_back(fmt::format("x{}", k));
+  columns.push_back("r");
+  return columns;
 }
+
+std::string csv_header(int dimension) { return fmt::format("{}", fmt::join(csv_columns(dimension), ",")); }
 
 void write_csv(OutputFile& file, const Spheres<dynamic>& spheres, std::string_view unit) {
   file.append("# unit: " + std::string(unit) + "\n" + csv_header(spheres.dimension()) + "\n");

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bernal/core/text.hpp"
 #include "io/chart.hpp"
 #include "io/html_text.hpp"
 #include "io/page.hpp"
@@ -102,9 +102,10 @@ void write_course(Page& page, const Packing& packing) {
     return;
   }
   page.add("<h2>How the run went</h2>\n<div class=\"pair\"><div>{}</div><div>{}</div></div>\n", filling,
-           relaxed ? overlap_chart(packing.history)
-                   : history_chart(packing.history, &Milestone::potential,
-                                   fmt::format("mean height of the spheres ({})", name_of(packing.scene.unit))));
+           relaxed
+               ? overlap_chart(packing.history)
+               : history_chart(packing.history, &Milestone::potential,
+                               fmt::format("mean height of the spheres ({})", name_of(packing.scene.unit))));
   page.raw(!relaxed ? "<p class=\"dim\">The height is measured against the direction in which the spheres "
                       "are pushed; it falls as they settle and rises as new ones are put on top.</p>\n"
            : kind_of(packing.domain) == "periodic"

@@ -21,12 +21,6 @@ namespace {
 constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5;
 constexpr std::uint32_t points_for_a_report = 4000;
 
-void write_text(const std::filesystem::path& path, std::string_view text) {
-  OutputFile file(path);
-  file.append(text);
-  file.close();
-}
-
 /// The scene as it was run: with the seed that was used, which the caller may have given instead of the
 /// scene.
 std::string scene_as_run(const Packing& packing, const std::filesystem::path& folder) {
@@ -70,25 +64,25 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   }
   const Certificate certificate = certify_written(csv, packing);
   const std::unique_ptr<SizeDistribution> asked = asked_sizes(packing.scene);
-  const Measurements measured =
-      measure(packing.spheres, packing.domain, {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)},
-              {.radial = {.work = distances_for_a_report},
-               .chambers = {.points = points_for_a_report},
-               .walls = {.work = wall_distances_for_a_report}});
+  const Measurements measured = measure(
+      packing.spheres, packing.domain, {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)},
+      {.radial = {.work = distances_for_a_report},
+       .chambers = {.points = points_for_a_report},
+       .walls = {.work = wall_distances_for_a_report}});
   const Report report{packing, certificate, measured, asked.get(), hash_of(packing.spheres)};
   const std::string scene = scene_as_run(packing, folder);
   const std::string picture = svg_of(packing.spheres, packing.domain, name_of(packing.scene.unit));
 
-  write_text(staged.add("scene.toml"), scene);
-  write_text(staged.add("report.json"), json_of(report));
-  write_text(staged.add("report.html"), html_of(report, picture, scene));
-  if (!picture.empty()) write_text(staged.add("packing.svg"), picture);
+  staged.write("scene.toml", scene);
+  staged.write("report.json", json_of(report));
+  staged.write("report.html", html_of(report, picture, scene));
+  if (!picture.empty()) staged.write("packing.svg", picture);
   return {staged.publish(), certificate};
 }
 
 void check_writable(const std::filesystem::path& folder) {
   StagedFolder staged(folder);
-  write_text(staged.add("spheres.csv"), "x,y,z,r\n");
+  staged.write("spheres.csv", "x,y,z,r\n");
 }
 
 }  // namespace bernal

@@ -7,7 +7,17 @@ namespace bernal {
 /// Spheres in the container's own frame, where rounding errors are as small as they can be: far from the
 /// origin the scene's coordinates would lose the digits that tell a contact from a gap. The wall there is
 /// `make_local_container`'s.
-Spheres<3> localised(const Spheres<dynamic>&, const Frame&);
-Boundary<3> localised(const Boundary<3>&, const Frame&);
+inline Spheres<3> localised(const Spheres<dynamic>& spheres, const Frame& frame) {
+  Spheres<3> local;
+  local.reserve(spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    local.push_back(frame.to_local(spheres.center(i)), spheres.r[i] / frame.scale);
+  }
+  return local;
+}
+
+inline Boundary<3> localised(const Boundary<3>& boundary, const Frame& frame) {
+  return {boundary.edges / frame.scale, frame.to_local(boundary.origin)};
+}
 
 }  // namespace bernal

@@ -2,7 +2,7 @@
 #include <array>
 #include <vector>
 
-#include "bernal/sizes/size_distribution.hpp"
+#include "bernal/predict/predict.hpp"
 
 namespace bernal::predict {
 
@@ -57,5 +57,11 @@ class ChordTable {
   double all_ = 0;
   std::vector<Piece> pieces_;  ///< ascending
 };
+
+/// Throws Error{bad_argument} for fewer than 2 rods.
+void require_enough(int rods);
+
+/// The prediction for a table that was made for at least `rods`; `mean_chord` is 2 <r³> / 3 <r²>.
+Prediction predict_from_chords(const ChordTable&, double mean_chord, int rods);
 
 }  // namespace bernal::predict

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "bernal/core/error.hpp"
-#include "bernal/predict/design.hpp"
 
 namespace bernal::predict {
 namespace {
@@ -58,6 +57,28 @@ std::vector<double> even_composition(int k, int populations) {
     v = k == 0 ? 1 / (further + 1) : 1 - std::pow(v, 1 / further);
   }
   return shares_at(u);
+}
+
+std::unique_ptr<SizeDistribution> mixture_of(std::span<const double> radii, std::span<const double> shares) {
+  std::vector<double> of, amounts;
+  for (std::size_t k = 0; k < radii.size(); ++k) {
+    if (!(shares[k] > 0)) continue;
+    if (!of.empty() && of.back() == radii[k]) {
+      amounts.back() += shares[k];
+    } else {
+      of.push_back(radii[k]);
+      amounts.push_back(shares[k]);
+    }
+  }
+  return make_classes(std::move(of), std::move(amounts), Basis::volume);
+}
+
+void tell_certainty(Optimum& optimum, std::span<const double> ends, double same) {
+  const auto [worst, best] = std::ranges::minmax(ends);
+  optimum.starts = static_cast<int>(ends.size());
+  optimum.agreeing = static_cast<int>(
+      std::ranges::count_if(ends, [&, most = best](double end) { return end >= most - same; }));
+  optimum.spread = best - worst;
 }
 
 void require_few_enough(double ratio, int rods) {

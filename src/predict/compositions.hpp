@@ -1,11 +1,11 @@
 #pragma once
 #include <chrono>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bernal/core/monitor.hpp"
-#include "bernal/sizes/size_distribution.hpp"
+#include "bernal/predict/design.hpp"
 
 namespace bernal::predict {
 
@@ -20,6 +20,13 @@ std::vector<double> place_of(std::vector<double> shares, bool backward = false);
 std::vector<double> even_point(int k, int dimensions);
 /// The k-th of compositions spread evenly over the simplex; the 0th has equal shares.
 std::vector<double> even_composition(int k, int populations);
+
+/// These shares of the volume of spheres of these radii, in one order: none without a share, equal ones
+/// together.
+std::unique_ptr<SizeDistribution> mixture_of(std::span<const double> radii, std::span<const double> shares);
+
+/// How sure a search is whose starts came to these packing fractions; those within `same` of the best agree.
+void tell_certainty(Optimum&, std::span<const double> ends, double same);
 
 /// Throws Error{bad_argument} where sizes of this ratio, >= 1, are farther apart than rods can stand for.
 void require_few_enough(double ratio, int rods);

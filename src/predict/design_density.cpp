@@ -2,7 +2,6 @@
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <string>
 
 #include "bernal/core/error.hpp"
@@ -47,10 +46,7 @@ class DensitySearch {
         }
         inquiry_.fraction = std::min(1.0, inquiry_.fraction + 0.7 * bins / (8.0 * most_bins));
       }
-      answer.optimum.starts = static_cast<int>(ends.size());
-      answer.optimum.agreeing = static_cast<int>(
-          std::ranges::count_if(ends, [&](double end) { return end >= densest - same_for_classes; }));
-      answer.optimum.spread = densest - std::ranges::min(ends);
+      predict::tell_certainty(answer.optimum, ends, same_for_classes);
       answer.optimum.prediction = predict_packing_fraction(*sieve(best), options_.rods);
       answer.levels.push_back({bins, answer.optimum.prediction.phi});
     }

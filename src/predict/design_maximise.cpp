@@ -15,11 +15,6 @@ namespace {
 constexpr int starts_each_population = 4;
 constexpr int most_evaluations = 2000;
 
-struct Composition {
-  std::vector<double> shares;
-  double value;
-};
-
 class Search {
  public:
   Search(const MixtureOf& mixture, int populations, const SearchOptions& options)
@@ -34,7 +29,7 @@ class Search {
       starts.push_back(predict::shares_at(predict::place_of(options_.from)));
     }
 
-    std::vector<Composition> ends;
+    std::vector<predict::Place> ends;
     const int rods = predict::few_rods(options_.rods);
     for (const std::vector<double>& from : starts) {
       inquiry_.fraction = static_cast<double>(ends.size()) / static_cast<double>(starts.size() + 1);
@@ -42,12 +37,11 @@ class Search {
       ends.push_back(settled({from, value(from, rods)}, 0.2, 1e-6, rods));
       if (inquiry_.stopped()) break;
     }
-    std::ranges::stable_sort(ends, std::greater(), &Composition::value);
+    std::ranges::stable_sort(ends, std::greater(), &predict::Place::value);
     Optimum optimum;
-    optimum.starts = static_cast<int>(ends.size());
-    optimum.agreeing = static_cast<int>(std::ranges::count_if(
-        ends, [&](const Composition& end) { return end.value >= ends.front().value - predict::same_end; }));
-    optimum.spread = ends.front().value - ends.back().value;
+    std::vector<double> values;
+    for (const predict::Place& end : ends) values.push_back(end.value);
+    predict::tell_certainty(optimum, values, predict::same_end);
     optimum.shares = refined(ends);
     optimum.prediction = predict_packing_fraction(*mixture_(optimum.shares), options_.rods);
     optimum.evaluations = inquiry_.evaluations + 1;
@@ -57,42 +51,41 @@ class Search {
 
  private:
   /// The best with all rods: of the best few, for which is best can depend on their number.
-  std::vector<double> refined(const std::vector<Composition>& ends) {
+  std::vector<double> refined(const std::vector<predict::Place>& ends) {
     inquiry_.activity = "refining";
-    Composition best{ends.front().shares, -1};
-    for (const Composition& end : ends | std::views::take(predict::ends_to_refine)) {
+    predict::Place best{ends.front().x, -1};
+    for (const predict::Place& end : ends | std::views::take(predict::ends_to_refine)) {
       if (end.value < ends.front().value - 1e-3 || inquiry_.stopped()) continue;
-      const Composition fine =
-          settled({end.shares, value(end.shares, options_.rods)}, 0.01, 1e-7, options_.rods);
+      const predict::Place fine = settled({end.x, value(end.x, options_.rods)}, 0.01, 1e-7, options_.rods);
       if (fine.value > best.value) best = fine;
     }
     leave_out_idle(best);
-    return best.shares;
+    return best.x;
   }
 
   /// A population that next to nothing is left of, and that nothing is lost without, is not there.
-  void leave_out_idle(Composition& best) {
-    for (std::size_t k = 0; k < best.shares.size(); ++k) {
-      if (best.shares[k] == 0 || best.shares[k] > 1e-3) continue;
-      Composition without = best;
-      without.shares[k] = 0;
-      for (double& share : without.shares) share /= 1 - best.shares[k];
-      without.value = value(without.shares, options_.rods);
+  void leave_out_idle(predict::Place& best) {
+    for (std::size_t k = 0; k < best.x.size(); ++k) {
+      if (best.x[k] == 0 || best.x[k] > 1e-3) continue;
+      predict::Place without = best;
+      without.x[k] = 0;
+      for (double& share : without.x) share /= 1 - best.x[k];
+      without.value = value(without.x, options_.rods);
       if (without.value >= best.value - 1e-7) best = without;
     }
   }
 
   /// Climbs until neither of two climbs, one along either cut of the simplex, gains: at a kink or a face one
   /// simplex of Nelder and Mead can shrink where another does not.
-  Composition settled(Composition best, double step, double tolerance, int rods) {
+  predict::Place settled(predict::Place best, double step, double tolerance, int rods) {
     int idle = 0;
     for (bool backward = false; idle < 2 && !inquiry_.stopped(); backward = !backward) {
       const predict::Objective phi = [&](std::span<const double> u) {
         return value(predict::shares_at(u, backward), rods);
       };
       const predict::Place end =
-          predict::climb(phi, predict::place_of(best.shares, backward),
-                         {step, 0.1 * tolerance, most_evaluations}, [this] { return inquiry_.stopped(); });
+          predict::climb(phi, predict::place_of(best.x, backward), {step, 0.1 * tolerance, most_evaluations},
+                         [this] { return inquiry_.stopped(); });
       const double gain = end.value - best.value;
       if (gain > 0) best = {predict::shares_at(end.x, backward), end.value};
       idle = gain > tolerance ? 0 : idle + 1;
@@ -144,17 +137,7 @@ Optimum maximise_packing_fraction(std::span<const double> radii, const SearchOpt
   predict::require_few_enough(1 / sizes.back(), options.rods);
 
   const MixtureOf mixture = [&](std::span<const double> shares) {
-    std::vector<double> of, amounts;
-    for (std::size_t k = 0; k < sizes.size(); ++k) {
-      if (!(shares[k] > 0)) continue;
-      if (!of.empty() && of.back() == sizes[k]) {
-        amounts.back() += shares[k];
-      } else {
-        of.push_back(sizes[k]);
-        amounts.push_back(shares[k]);
-      }
-    }
-    return make_classes(std::move(of), std::move(amounts), Basis::volume);
+    return predict::mixture_of(sizes, shares);
   };
   SearchOptions ordered = options;
   if (ordered.from.size() == order.size())

@@ -29,6 +29,8 @@ class SizesSearch {
     }
     if (ends.empty()) ends.push_back({start(0), 0});
     std::ranges::stable_sort(ends, std::greater(), &predict::Place::value);
+    std::vector<double> values;
+    for (const predict::Place& end : ends) values.push_back(end.value);
     predict::Place best = ends.front();
     best.value = -1;
     for (std::size_t k = 0;
@@ -38,10 +40,7 @@ class SizesSearch {
     }
 
     DensestSizes answer = at(best.x);
-    answer.optimum.starts = static_cast<int>(ends.size());
-    for (const predict::Place& end : ends)
-      answer.optimum.agreeing += end.value >= ends.front().value - predict::same_end;
-    answer.optimum.spread = ends.front().value - ends.back().value;
+    predict::tell_certainty(answer.optimum, values, predict::same_end);
     answer.optimum.prediction = predict_packing_fraction(*mixture(best.x), options_.rods);
     answer.optimum.evaluations = inquiry_.evaluations + 1;
     answer.optimum.cancelled = inquiry_.stopped();
@@ -78,17 +77,7 @@ class SizesSearch {
 
   std::unique_ptr<SizeDistribution> mixture(std::span<const double> u) const {
     const DensestSizes of = at(u);
-    std::vector<double> radii, shares;
-    for (std::size_t k = 0; k < of.radii.size(); ++k) {
-      if (!(of.optimum.shares[k] > 0)) continue;
-      if (!radii.empty() && radii.back() == of.radii[k]) {
-        shares.back() += of.optimum.shares[k];
-      } else {
-        radii.push_back(of.radii[k]);
-        shares.push_back(of.optimum.shares[k]);
-      }
-    }
-    return make_classes(std::move(radii), std::move(shares), Basis::volume);
+    return predict::mixture_of(of.radii, of.optimum.shares);
   }
 
   /// Climbs again from where it ended until that gains nothing twice.

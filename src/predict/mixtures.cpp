@@ -9,7 +9,6 @@
 #include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
 #include "predict/chord_table.hpp"
-#include "predict/from_chords.hpp"
 
 namespace bernal {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "bernal/core/error.hpp"
 #include "predict/chord_table.hpp"
-#include "predict/from_chords.hpp"
 #include "predict/rods.hpp"
 
 namespace bernal {

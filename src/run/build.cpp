@@ -2,12 +2,10 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "run/estimate.hpp"
-#include "run/fill_task_of.hpp"
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
 

@@ -5,17 +5,8 @@
 namespace bernal {
 
 std::string_view name_of(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::converged:
-      return "converged";
-    case Outcome::full:
-      return "full";
-    case Outcome::hit_limit:
-      return "hit_limit";
-    case Outcome::cancelled:
-      return "cancelled";
-  }
-  return "";
+  constexpr std::string_view names[] = {"converged", "full", "hit_limit", "cancelled"};
+  return names[static_cast<std::size_t>(outcome)];
 }
 
 double Packing::packing_fraction() const {

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -15,7 +14,6 @@
 #include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
 #include "run/conclude.hpp"
-#include "run/fill_task_of.hpp"
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
 #include "work/keepsake.hpp"
@@ -30,16 +28,6 @@ constexpr int most_attempts = 6;
 constexpr double caution = 5e-4;
 /// A first attempt that leaves more than this of the volume free was too small.
 constexpr double too_much_room = 5e-3;
-
-/// Seconds since it was made.
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
 
 /// A container's own frame. Throws where coordinates are so large that neighbouring spheres could not be told
 /// apart.

@@ -1,6 +1,7 @@
 #pragma once
 #include <span>
 
+#include "bernal/run/run.hpp"
 #include "work/stage_entry.hpp"
 
 namespace bernal {
@@ -13,6 +14,9 @@ const StageEntry& entry_of(const Stage& stage);
 
 /// Whether spheres stand in a bed for any stage of the scene.
 bool any_in_bed(const Scene& scene);
+
+/// What a stage that fills a box of given edges has to do, by the plan's box, sizes and target.
+FillTask fill_task_of(const Plan& plan);
 
 /// Whether any stage of the scene has the trait.
 template <class Trait>

@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -35,108 +35,86 @@ bool is_absurd(const Value& value) {
 
 bool is_length(double v) { return v >= smallest_length && v <= largest_length; }
 bool is_coordinate(double v) { return std::abs(v) <= largest_length; }
+bool is_amount(double v) { return v == 0 || is_length(v); }
+bool is_axis(double v) { return v >= 0 && v < max_dimension && v == std::floor(v); }
 
-bool has_length(Type type) {
-  constexpr std::array types = {Type::length,  Type::direction, Type::position, Type::extents,
-                                Type::lengths, Type::shares,    Type::amounts,  Type::distribution};
-  return std::ranges::find(types, type) != types.end();
+/// An array whose numbers fit, `count` of them if that is not 0.
+template <bool (*fits)(double), std::size_t count = 0>
+bool all(const Value& value) {
+  const auto* numbers = std::get_if<std::vector<double>>(&value);
+  return numbers && !numbers->empty() && (count == 0 || numbers->size() == count) &&
+         std::ranges::all_of(*numbers, fits);
 }
 
-std::string kind_of_value(const Key& key) {
-  switch (key.type) {
-    case Type::flag:
-      return key.range.min > 0 ? "true or left out" : "true or false";
-    case Type::integer:
-      return key.range.max > 0x1p53
-                 ? fmt::format("a whole number of at least {}", key.range.min)
-                 : fmt::format("a whole number from {:.0f} to {:.0f}", key.range.min, key.range.max);
-    case Type::number:
-      return number_range(key.range) +
-             (key.words.empty() ? "" : fmt::format(" or \"{}\"", fmt::join(key.words, "\" or \"")));
-    case Type::length:
-      return "a positive length";
-    case Type::word:
-      return fmt::format("\"{}\"", fmt::join(key.words, "\" or \""));
-    case Type::file:
-      return "the path of a file";
-    case Type::direction:
-      return "a direction [x, y, z]";
-    case Type::position:
-      return "a point [x, y, z]";
-    case Type::extents:
-      return "three positive lengths [a, b, c]";
-    case Type::lengths:
-      return "an array of positive lengths";
-    case Type::shares:
-      return "an array of positive numbers";
-    case Type::amounts:
-      return "an array of numbers of at least 0";
-    case Type::axes:
-      return "an array of axes, counted from 0, each once";
-    case Type::distribution:
-      return "a positive length or a table { distribution = … }";
-    case Type::parts:
-      return "an array of lengths and tables { distribution = … }";
-  }
-  return {};
+bool is_direction(const Value& value) {
+  return all<is_coordinate, 3>(value) && std::ranges::any_of(std::get<std::vector<double>>(value),
+                                                             [](double v) { return is_length(std::abs(v)); });
 }
+bool are_axes(const Value& value) {
+  if (!all<is_axis>(value)) return false;
+  const auto& axes = std::get<std::vector<double>>(value);
+  return std::ranges::all_of(axes, [&](double axis) { return std::ranges::count(axes, axis) == 1; });
+}
+bool is_file(const Value& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return text && !text->empty() && text->find('\0') == std::string::npos;
+}
+/// Which are checked by themselves.
+bool are_sizes(const Value& value) { return std::holds_alternative<std::vector<SceneSizes>>(value); }
+
+/// What a value must be, for people and for `accepts`, where that does not depend on the key.
+struct Rule {
+  std::string_view kind;
+  bool (*accepts)(const Value&);
+  bool has_length = true;
+};
+const std::map<Type, Rule> rules = {
+    {Type::length,
+     {"a positive length",
+      [](const Value& v) { return std::holds_alternative<double>(v) && is_length(std::get<double>(v)); }}},
+    {Type::file, {"the path of a file", is_file, false}},
+    {Type::direction, {"a direction [x, y, z]", is_direction}},
+    {Type::position, {"a point [x, y, z]", all<is_coordinate, 3>}},
+    {Type::extents, {"three positive lengths [a, b, c]", all<is_length, 3>}},
+    {Type::lengths, {"an array of positive lengths", all<is_length>}},
+    {Type::shares, {"an array of positive numbers", all<is_length>}},
+    {Type::amounts, {"an array of numbers of at least 0", all<is_amount>}},
+    {Type::axes, {"an array of axes, counted from 0, each once", are_axes, false}},
+    {Type::distribution, {"a positive length or a table { distribution = … }", are_sizes}},
+    {Type::parts, {"an array of lengths and tables { distribution = … }", are_sizes, false}},
+};
 
 }  // namespace
 
 std::string expectation(const Key& key, const std::optional<Value>& given) {
-  std::string kind = kind_of_value(key);
-  if (given && has_length(key.type) && is_absurd(*given))
-    kind += fmt::format(" from {} to {}", smallest_length, largest_length);
-  return kind;
+  const std::string words = fmt::format("\"{}\"", fmt::join(key.words, "\" or \""));
+  const Range& range = key.range;
+  if (key.type == Type::flag) return range.min > 0 ? "true or left out" : "true or false";
+  if (key.type == Type::word) return words;
+  if (key.type == Type::number) return number_range(range) + (key.words.empty() ? "" : " or " + words);
+  if (key.type == Type::integer)
+    return range.max > 0x1p53 ? fmt::format("a whole number of at least {}", range.min)
+                              : fmt::format("a whole number from {:.0f} to {:.0f}", range.min, range.max);
+  const Rule& rule = rules.at(key.type);
+  return given && rule.has_length && is_absurd(*given)
+             ? fmt::format("{} from {} to {}", rule.kind, smallest_length, largest_length)
+             : std::string(rule.kind);
 }
 
 bool accepts(const Key& key, const Value& value) {
-  const auto* number = std::get_if<double>(&value);
-  const auto* text = std::get_if<std::string>(&value);
-  const auto* numbers = std::get_if<std::vector<double>>(&value);
-  const auto all = [&](const auto& fits) {
-    return numbers && !numbers->empty() && std::ranges::all_of(*numbers, fits);
+  const auto is_word = [&] {
+    const auto* text = std::get_if<std::string>(&value);
+    return text && std::ranges::find(key.words, *text) != key.words.end();
   };
-  const auto three = [&](const auto& fits) { return all(fits) && numbers->size() == 3; };
-  const auto is_word = [&] { return text && std::ranges::find(key.words, *text) != key.words.end(); };
-  switch (key.type) {
-    case Type::flag: {
-      const auto* flag = std::get_if<bool>(&value);
-      return flag && key.range.contains(*flag);
-    }
-    case Type::integer: {
-      const auto* whole = std::get_if<std::int64_t>(&value);
-      return whole && key.range.contains(static_cast<double>(*whole));
-    }
-    case Type::number:
-      return number ? std::isfinite(*number) && key.range.contains(*number) : is_word();
-    case Type::length:
-      return number && is_length(*number);
-    case Type::word:
-      return is_word();
-    case Type::file:
-      return text && !text->empty() && text->find('\0') == std::string::npos;
-    case Type::direction:
-      return three(is_coordinate) &&
-             std::ranges::any_of(*numbers, [](double v) { return is_length(std::abs(v)); });
-    case Type::position:
-      return three(is_coordinate);
-    case Type::extents:
-      return three(is_length);
-    case Type::lengths:
-    case Type::shares:
-      return all(is_length);
-    case Type::amounts:
-      return all([](double v) { return v == 0 || is_length(v); });
-    case Type::axes:
-      return all([&](double v) {
-        return v >= 0 && v < max_dimension && v == std::floor(v) && std::ranges::count(*numbers, v) == 1;
-      });
-    case Type::distribution:
-    case Type::parts:
-      return std::holds_alternative<std::vector<SceneSizes>>(value);  // which are checked by themselves
-  }
-  return false;
+  if (const auto* flag = std::get_if<bool>(&value))
+    return key.type == Type::flag && key.range.contains(*flag);
+  if (const auto* whole = std::get_if<std::int64_t>(&value))
+    return key.type == Type::integer && key.range.contains(static_cast<double>(*whole));
+  if (key.type == Type::flag || key.type == Type::integer) return false;
+  if (key.type == Type::word) return is_word();
+  if (key.type != Type::number) return rules.at(key.type).accepts(value);
+  const auto* number = std::get_if<double>(&value);
+  return number ? std::isfinite(*number) && key.range.contains(*number) : is_word();
 }
 
 }  // namespace bernal::schema

@@ -3,21 +3,79 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
-#include "scene/entry_reader.hpp"
+#include "bernal/core/text.hpp"
+#include "scene/read_columns.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
-#include "scene/toml_values.hpp"
+#include "scene/toml_text.hpp"
 
 namespace bernal {
 namespace {
 
+using schema::Entry;
+using schema::Key;
+using schema::Type;
+using schema::Value;
+using Names = std::vector<std::string_view>;
+
+Names names_of(const auto& entries) {
+  Names names;
+  for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+/// What the user wrote, short enough for an error of one line.
+std::string written(const toml::node& node) {
+  constexpr std::size_t longest = 60;
+  if (const auto* text = node.as_string()) {
+    std::string_view shown = text->get();
+    if (shown.size() <= longest) return toml_string(shown);
+    shown = shown.substr(0, longest);
+    while (!shown.empty() && (shown.back() & 0xC0) == 0x80) shown.remove_suffix(1);  // whole UTF-8 characters
+    return toml_string(shown.substr(0, shown.size() - 1)) + "…";
+  }
+  if (const auto* number = node.as_floating_point()) return toml_text(number->get());
+  if (const auto* number = node.as_integer()) return toml_text(number->get());
+  if (const auto* flag = node.as_boolean()) return toml_text(flag->get());
+  if (node.is_table()) return "a table";
+  if (const auto* array = node.as_array()) {
+    std::vector<std::string> items;
+    for (const toml::node& item : *array) {
+      if (items.size() == 6 || item.is_array()) return fmt::format("an array of {} values", array->size());
+      items.push_back(written(item));
+    }
+    return fmt::format("[{}]", fmt::join(items, ", "));
+  }
+  return "a date or time";
+}
+
+/// The node as a value, whole numbers as doubles if that is asked for; nothing for tables and dates.
+std::optional<schema::Value> value_in(const toml::node& node, bool as_double) {
+  if (const auto* flag = node.as_boolean()) return flag->get();
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* number = node.as_integer(); number && !as_double) return number->get();
+  if (node.is_number()) return *node.value<double>() + 0.0;  // -0 is 0
+  const toml::array* array = node.as_array();
+  if (!array) return std::nullopt;
+  std::vector<double> numbers;
+  for (const toml::node& item : *array) {
+    if (!item.is_number()) return std::nullopt;
+    numbers.push_back(*item.value<double>() + 0.0);
+  }
+  return numbers;
+}
+
+/// Reads tables of a scene's file into the structs of their entries. Every error is an Error{bad_scene} with
+/// the file, the line and the remedy; `where` is what it calls the table: "[container]".
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : path_(file), file_(file.string()), entries_(file) {}
+  explicit Reader(const std::filesystem::path& file) : path_(file), file_(file.string()) {}
 
   Scene read(std::string_view text) const {
     const toml::table root = parse(text);
@@ -46,16 +104,16 @@ class Reader {
       std::string what(error.description());
       std::ranges::replace_if(
           what, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-      entries_.fail(error.source(), "this is not TOML: {}", what);
+      fail(error.source(), "this is not TOML: {}", what);
     }
   }
 
   /// A misspelt table is reported as such, before anything is missed for it.
   void check_tables(const toml::table& root) const {
-    entries_.check_names(root, schema::scene_entry(), {tables.begin(), tables.end()}, "the scene");
+    check_names(root, schema::scene_entry(), {tables.begin(), tables.end()}, "the scene");
     for (const std::string_view name : tables)
       if (const toml::node* node = root.get(name); node && name != "stage" && !node->is_table())
-        entries_.fail(node->source(), "\"{0}\" must be a table [{0}], not {1}", name, written(*node));
+        fail(node->source(), "\"{0}\" must be a table [{0}], not {1}", name, written(*node));
   }
 
   const toml::table& table_in(const toml::table& root, std::string_view name) const {
@@ -65,32 +123,29 @@ class Reader {
   }
 
   /// A table whose keys are of the scene itself.
-  void read_own(const toml::table& table, const schema::Entry& entry, const std::string& name,
-                Scene& scene) const {
-    entries_.read(table, entry, {}, name, &scene, scene.locations);
+  void read_own(const toml::table& table, const Entry& entry, const std::string& name, Scene& scene) const {
+    read(table, entry, {}, name, &scene, scene.locations);
     scene.locations.whole = {file_};
   }
 
   void read_container(const toml::table& root, Scene& scene) const {
     const toml::table& table = table_in(root, "container");
-    EntryReader::Names kinds;
-    for (const schema::Entry& entry : schema::container_entries()) kinds.push_back(entry.name);
-    schema::hold(scene.container, entries_.choose(table, "kind", kinds, "[container]"));
-    entries_.read(table, schema::entry_of(scene.container), "kind", "[container]",
-                  schema::options_of(scene.container), scene.container.locations);
+    schema::hold(scene.container,
+                 choose(table, "kind", names_of(schema::container_entries()), "[container]"));
+    read(table, schema::entry_of(scene.container), "kind", "[container]", schema::options_of(scene.container),
+         scene.container.locations);
     auto* mesh = std::get_if<MeshFile>(&scene.container);
     if (!mesh) return;
     if (!root.contains("unit"))
-      entries_.fail(table.source(),
-                    "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
+      fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
     if (mesh->file.is_relative()) mesh->file = (path_.parent_path() / mesh->file).lexically_normal();
   }
 
   void read_spheres(const toml::table& table, Scene& scene) const {
     read_own(table, schema::spheres_entry(), "[spheres]", scene);
     if (!table.contains("radius") && !table.contains("diameter"))
-      entries_.fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
-    scene.target.where = entries_.at(table.source());
+      fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
+    scene.target.where = at(table.source());
     for (const char* key : {"count", "packing_fraction", "fill"})
       if (table.contains(key)) scene.target.where = scene.locations.of(key);
   }
@@ -100,23 +155,147 @@ class Reader {
     if (!node) return;
     const toml::array* stages = node->as_array();
     if (!stages || stages->empty() || !stages->is_array_of_tables())
-      entries_.fail(node->source(), "\"stage\" must be one table [[stage]] a stage, not {}", written(*node));
-    EntryReader::Names names;
+      fail(node->source(), "\"stage\" must be one table [[stage]] a stage, not {}", written(*node));
+    Names names;
     for (const StageTable* stage : stage_tables()) names.push_back(stage->name());
     for (const toml::node& item : *stages) {
       const toml::table& table = *item.as_table();
-      const StageTable& stage = *stage_tables()[entries_.choose(table, "do", names, "[[stage]]")];
+      const StageTable& stage = *stage_tables()[choose(table, "do", names, "[[stage]]")];
       Stage& made = scene.stages.emplace_back(stage.make());
-      entries_.read(table, stage.keys, "do", fmt::format("[[stage]] {}", stage.name()),
-                    stage.options_of(made), made.locations);
+      read(table, stage.keys, "do", fmt::format("[[stage]] {}", stage.name()), stage.options_of(made),
+           made.locations);
     }
+  }
+
+  Location at(const toml::source_region& where) const {
+    return {file_, static_cast<int>(where.begin.line), static_cast<int>(where.begin.column)};
+  }
+
+  /// Reports the first key, in the order of the file, that is neither one of the entry's nor one of `others`.
+  void check_names(const toml::table& table, const Entry& entry, const Names& others,
+                   std::string_view where) const {
+    Names known = names_of(entry.keys);
+    known.insert(known.end(), others.begin(), others.end());
+    const toml::key* unknown = nullptr;
+    for (const auto& [key, node] : table) {
+      if (std::ranges::find(known, key.str()) != known.end()) continue;
+      if (!unknown || key.source().begin < unknown->source().begin) unknown = &key;
+    }
+    if (unknown)
+      fail(unknown->source(), "unknown key {} in {}{}", toml_string(unknown->str()), where,
+           remedy(unknown->str(), known));
+  }
+
+  /// Which of several names a table has under `selector`, by its place among them.
+  std::size_t choose(const toml::table& table, std::string_view selector, const Names& names,
+                     std::string_view where) const {
+    const toml::node* node = table.get(selector);
+    if (!node)
+      fail(table.source(), "missing \"{}\" in {}; it is one of \"{}\"", selector, where,
+           fmt::join(names, "\", \""));
+    const auto* word = node->as_string();
+    if (!word)
+      fail(node->source(), "\"{}\" in {} must be one of \"{}\", not {}", selector, where,
+           fmt::join(names, "\", \""), written(*node));
+    const auto found = std::ranges::find(names, word->get());
+    if (found == names.end())
+      fail(node->source(), "unknown {} {} in {}{}", selector == "do" ? "stage" : selector, written(*node),
+           where, remedy(word->get(), names));
+    return static_cast<std::size_t>(found - names.begin());
+  }
+
+  Value read_value(const toml::node& node, const Key& key, const std::string& where) const {
+    if (key.type == Type::distribution) return std::vector{read_sizes(node, key, where)};
+    if (key.type == Type::parts) return read_parts(node, key, where);
+    const std::optional<Value> value = value_in(node, key.type != Type::integer);
+    if (value && schema::accepts(key, *value)) return *value;
+    if (key.type == Type::word && node.is_string())
+      fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
+           remedy(std::get<std::string>(*value), key.words));
+    fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
+         written(node));
+  }
+
+  /// All keys of an entry that the table has; what is missing, `complete` finds. Refuses unknown ones, except
+  /// at the top of the file, where the tables stand between the keys: there `check_names` does.
+  void read(const toml::table& table, const Entry& entry, std::string_view selector, const std::string& where,
+            void* options, Locations& locations) const {
+    if (&entry != &schema::scene_entry())
+      check_names(table, entry, selector.empty() ? Names{} : Names{selector}, where);
+    if (locations.whole.file.empty()) locations.whole = at(table.source());
+    for (const Key& key : entry.keys) {
+      const auto found = table.find(key.name);
+      if (found == table.end()) continue;
+      locations.keys[std::string(key.name)] = at(found->first.source());
+      if (key.member.set)
+        key.member.set(options, read_value(found->second, key, where));
+      else
+        take_columns(found->second, entry, where, options, locations);
+    }
+  }
+
+  /// Puts what stands in the file in its place, so that the scene is whole without the file.
+  void take_columns(const toml::node& node, const Entry& entry, const std::string& where, void* options,
+                    Locations& locations) const {
+    const std::string file = std::get<std::string>(read_value(node, *entry.find("file"), where));
+    const Location at_file = locations.of("file");
+    const std::array keys = {entry.find(entry.columns.at(0)), entry.find(entry.columns.at(1))};
+    try {
+      const auto columns = read_columns(path_.parent_path() / file, keys);
+      for (std::size_t k = 0; k < keys.size(); ++k) {
+        keys[k]->member.set(options, columns[k]);
+        locations.keys[std::string(keys[k]->name)] = at_file;
+      }
+    } catch (const Error& error) {
+      if (!error.location().file.empty()) throw;
+      throw Error(error.code(), fmt::format("\"file\" in {}: {}", where, error.what()), at_file);
+    }
+  }
+
+  /// A plain length, whose key says what it must be, is a constant distribution.
+  SceneSizes read_sizes(const toml::node& node, const Key& key, const std::string& where) const {
+    SceneSizes sizes;
+    if (const toml::table* table = node.as_table()) {
+      const std::string named = fmt::format("{} of {}", key.name, where);
+      const auto& entries = schema::size_entries();
+      const std::size_t n = choose(*table, "distribution", names_of(entries), named);
+      schema::hold(sizes, n);
+      read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
+      return sizes;
+    }
+    const auto value = value_in(node, true);
+    const Key length = {.name = key.name, .type = Type::length};
+    if (!value || !schema::accepts(length, *value))
+      fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
+           written(node));
+    sizes = Constant{std::get<double>(*value)};
+    sizes.locations.whole = sizes.locations.keys["value"] = at(node.source());
+    return sizes;
+  }
+
+  std::vector<SceneSizes> read_parts(const toml::node& node, const Key& key, const std::string& where) const {
+    const toml::array* array = node.as_array();
+    if (!array || array->empty())
+      fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key),
+           written(node));
+    std::vector<SceneSizes> parts;
+    for (const toml::node& item : *array) {
+      const std::string name = fmt::format("part {}", parts.size() + 1);
+      parts.push_back(read_sizes(item, {.name = name, .type = Type::distribution}, where));
+    }
+    return parts;
+  }
+
+  template <class... Args>
+  [[noreturn]] void fail(const toml::source_region& where, fmt::format_string<Args...> format,
+                         Args&&... args) const {
+    throw Error(ErrorCode::bad_scene, fmt::format(format, std::forward<Args>(args)...), at(where));
   }
 
   static constexpr std::array<std::string_view, 4> tables = {"container", "spheres", "accuracy", "stage"};
 
   std::filesystem::path path_;
   std::string file_;
-  EntryReader entries_;
 };
 
 }  // namespace

@@ -1,7 +1,4 @@
-#include <algorithm>
-
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"

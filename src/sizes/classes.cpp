@@ -21,7 +21,8 @@ struct Class {
 class Classes final : public SizeDistribution {
  public:
   /// Precondition: ascending radii, shares that add up to 1.
-  explicit Classes(std::vector<Class> classes) : classes_(std::move(classes)) {
+  explicit Classes(std::vector<Class> classes)
+      : SizeDistribution(classes.front().radius, classes.back().radius), classes_(std::move(classes)) {
     std::array<double, 4> from = {};
     for (Class& c : classes_ | std::views::reverse) {
       double part = c.share;
@@ -32,8 +33,6 @@ class Classes final : public SizeDistribution {
       c.from = from;
     }
   }
-
-  std::string_view name() const override { return "classes"; }
 
   double quantile(double p) const override {
     const auto reaches = [](const Class& c, double value) { return c.up_to < value; };
@@ -61,9 +60,6 @@ class Classes final : public SizeDistribution {
     return sum;
   }
 
-  double min() const override { return classes_.front().radius; }
-  double max() const override { return classes_.back().radius; }
-
   std::vector<double> atoms() const override {
     std::vector<double> radii;
     for (const Class& c : classes_) radii.push_back(c.radius);
@@ -78,7 +74,23 @@ class Classes final : public SizeDistribution {
   std::vector<Class> classes_;
 };
 
+class Constant final : public SizeDistribution {
+ public:
+  explicit Constant(double radius) : SizeDistribution(radius, radius) {}
+
+  double quantile(double) const override { return min(); }
+  double cumulative(double radius) const override { return radius < min() ? 0 : 1; }
+  double moment(int k) const override { return std::pow(min(), k); }
+  double moment_above(int k, double radius) const override { return radius < min() ? moment(k) : 0; }
+  std::vector<double> atoms() const override { return {min()}; }
+};
+
 }  // namespace
+
+std::unique_ptr<SizeDistribution> make_constant(double radius) {
+  require_positive("the radius", radius);
+  return std::make_unique<Constant>(radius);
+}
 
 std::unique_ptr<SizeDistribution> make_classes(std::vector<double> radii, std::vector<double> shares,
                                                Basis basis) {

@@ -35,7 +35,7 @@ struct Piece {
 class Density final : public SizeDistribution {
  public:
   Density(std::string_view name, std::function<double(double)> density, const std::vector<double>& breaks)
-      : name_(name), density_(std::move(density)) {
+      : density_(std::move(density)) {
     const std::vector<double> limits = cut(breaks);
     double about = 0;
     for (std::size_t i = 1; i < limits.size(); ++i) about += integral(0, limits[i - 1], limits[i]);
@@ -44,6 +44,7 @@ class Density final : public SizeDistribution {
     if (pieces_.empty())
       throw Error(ErrorCode::bad_argument,
                   fmt::format("the density of this {} distribution is zero everywhere", name));
+    set_limits(pieces_.front().a, pieces_.back().b);
     for (std::size_t k = 0; k < above_.size(); ++k) {
       above_[k].assign(pieces_.size() + 1, 0);
       for (std::size_t i = pieces_.size(); i-- > 0;)
@@ -61,8 +62,6 @@ class Density final : public SizeDistribution {
       below += probability(piece.a, piece.b);
     }
   }
-
-  std::string_view name() const override { return name_; }
 
   double quantile(double p) const override {
     if (p <= 0) return min();
@@ -86,8 +85,6 @@ class Density final : public SizeDistribution {
     return std::min(1.0, piece.below + probability(piece.a, std::min(radius, piece.b)));
   }
 
-  double moment(int k) const override { return moment_above(k, 0); }
-
   double moment_above(int k, double radius) const override {
     const auto beyond = first_beyond(radius);
     double sum = whole_from(k, static_cast<std::size_t>(beyond - pieces_.begin()));
@@ -95,9 +92,6 @@ class Density final : public SizeDistribution {
       sum += integral(k, radius, std::prev(beyond)->b);
     return sum / total_;
   }
-
-  double min() const override { return pieces_.front().a; }
-  double max() const override { return pieces_.back().b; }
 
  private:
   /// The first piece that begins above a radius.
@@ -155,7 +149,6 @@ class Density final : public SizeDistribution {
     halve(middle, b, right, tolerance, halvings - 1);
   }
 
-  std::string_view name_;
   std::function<double(double)> density_;
   std::vector<Piece> pieces_;
   double total_ = 1;

@@ -30,10 +30,9 @@ double normal_quantile(double p) {
 class Lognormal final : public SizeDistribution {
  public:
   Lognormal(double mu, double sigma, double min, double max)
-      : mu_(mu),
+      : SizeDistribution(min, max),
+        mu_(mu),
         sigma_(sigma),
-        min_(min),
-        max_(max),
         alpha_(min > 0 ? (std::log(min) - mu) / sigma : -std::numeric_limits<double>::infinity()),
         beta_(max < std::numeric_limits<double>::infinity() ? (std::log(max) - mu) / sigma
                                                             : std::numeric_limits<double>::infinity()),
@@ -42,44 +41,31 @@ class Lognormal final : public SizeDistribution {
   /// The fraction of the untruncated distribution that is kept.
   double mass() const { return mass_; }
 
-  std::string_view name() const override { return "lognormal"; }
-
   double quantile(double p) const override {
-    if (p <= 0) return min_;
-    if (p >= 1) return max_;
+    if (p <= 0) return min();
+    if (p >= 1) return max();
     // From whichever tail is nearer, where probabilities are small and so precise.
     const double below = normal_below(alpha_) + p * mass_;
     const double above = normal_below(-beta_) + (1 - p) * mass_;
     const double z = below < above ? normal_quantile(below) : -normal_quantile(above);
-    return std::clamp(std::exp(mu_ + sigma_ * z), min_, max_);
+    return std::clamp(std::exp(mu_ + sigma_ * z), min(), max());
   }
 
   double cumulative(double radius) const override {
-    if (radius <= min_) return 0;
-    if (radius >= max_) return 1;
+    if (radius <= min()) return 0;
+    if (radius >= max()) return 1;
     return normal_between(alpha_, (std::log(radius) - mu_) / sigma_) / mass_;
   }
 
-  double moment(int k) const override { return moment_above(k, min_); }
-
   double moment_above(int k, double radius) const override {
-    if (radius >= max_) return 0;
-    const double from = radius > min_ ? (std::log(radius) - mu_) / sigma_ : alpha_;
+    if (radius >= max()) return 0;
+    const double from = radius > min() ? (std::log(radius) - mu_) / sigma_ : alpha_;
     const double shift = k * sigma_;
     return std::exp(k * mu_ + 0.5 * shift * shift) * normal_between(from - shift, beta_ - shift) / mass_;
   }
 
-  double min() const override { return min_; }
-  double max() const override { return max_; }
-
  private:
-  double mu_;
-  double sigma_;
-  double min_;
-  double max_;
-  double alpha_;
-  double beta_;
-  double mass_;
+  double mu_, sigma_, alpha_, beta_, mass_;
 };
 
 }  // namespace

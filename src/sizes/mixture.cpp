@@ -1,18 +1,15 @@
-#include "sizes/mixture.hpp"
-
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <tuple>
 
 #include <boost/math/tools/toms748_solve.hpp>
 
+#include "bernal/sizes/size_distribution.hpp"
 #include "sizes/check.hpp"
 
 namespace bernal {
 namespace {
-
 
 /// The smallest double r with f(r) >= p, for a nondecreasing f that may jump and rest, f(low) < p <= f(high).
 template <class F>
@@ -41,14 +38,14 @@ struct Part {
 /// F = Σ share F_part, and so are the moments.
 class Mixture final : public SizeDistribution {
  public:
-  Mixture(std::string_view name, std::vector<Part> parts) : name_(name), parts_(std::move(parts)) {
+  explicit Mixture(std::vector<Part> parts) : parts_(std::move(parts)) {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
     for (const Part& part : parts_) {
-      min_ = std::min(min_, part.sizes->min());
-      max_ = std::max(max_, part.sizes->max());
+      least = std::min(least, part.sizes->min());
+      most = std::max(most, part.sizes->max());
     }
+    set_limits(least, most);
   }
-
-  std::string_view name() const override { return name_; }
 
   double quantile(double p) const override {
     if (p <= 0) return min();
@@ -77,9 +74,6 @@ class Mixture final : public SizeDistribution {
     return sum([&](const SizeDistribution& part) { return part.moment_above(k, radius); });
   }
 
-  double min() const override { return min_; }
-  double max() const override { return max_; }
-
   std::vector<double> atoms() const override {
     std::vector<double> radii;
     for (const Part& part : parts_) std::ranges::copy(part.sizes->atoms(), std::back_inserter(radii));
@@ -105,16 +99,12 @@ class Mixture final : public SizeDistribution {
     return total;
   }
 
-  std::string_view name_;
   std::vector<Part> parts_;
-  double min_ = std::numeric_limits<double>::infinity();
-  double max_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<SizeDistribution> make_mixture(std::string_view name,
-                                               std::vector<std::unique_ptr<SizeDistribution>> of,
+std::unique_ptr<SizeDistribution> make_mixture(std::vector<std::unique_ptr<SizeDistribution>> of,
                                                std::vector<double> shares, Basis basis) {
   if (of.empty() || of.size() != shares.size())
     throw Error(ErrorCode::bad_argument,
@@ -134,12 +124,7 @@ std::unique_ptr<SizeDistribution> make_mixture(std::string_view name,
     const double share = shares[i] / total;
     parts.push_back({std::move(of[i]), share, up_to += share});
   }
-  return std::make_unique<Mixture>(name, std::move(parts));
-}
-
-std::unique_ptr<SizeDistribution> make_mixture(std::vector<std::unique_ptr<SizeDistribution>> of,
-                                               std::vector<double> shares, Basis basis) {
-  return make_mixture("mixture", std::move(of), std::move(shares), basis);
+  return std::make_unique<Mixture>(std::move(parts));
 }
 
 }  // namespace bernal

@@ -1,20 +1,21 @@
-#include "sizes/power_law.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "bernal/sizes/size_distribution.hpp"
+#include "sizes/check.hpp"
 
 namespace bernal {
 namespace {
 
-/// With l = ln(b / a) and g(n) = (e^(n l) - 1) / n,
+/// The number density is proportional to r^(n-1) on [a, b]: n = 1 is uniform by number; where the share of
+/// the volume below r grows as r^q, n is q - 3, because a sphere's volume grows as r³; q = 0 is its limit, ln
+/// r. Preconditions: 0 < a < b, finite. With l = ln(b / a) and g(n) = (e^(n l) - 1) / n,
 ///   F(r) = (e^(n ln(r/a)) - 1) / (e^(n l) - 1),   <r^k> = a^k g(n + k) / g(n);
 /// the same with r for a, times (r/a)^n, is what radii above r contribute.
 class PowerLaw final : public SizeDistribution {
  public:
-  PowerLaw(std::string_view name, double a, double b, double n)
-      : name_(name), a_(a), b_(b), n_(n), l_(std::log1p((b - a) / a)) {}
-
-  std::string_view name() const override { return name_; }
+  PowerLaw(double a, double b, double n)
+      : SizeDistribution(a, b), a_(a), b_(b), n_(n), l_(std::log1p((b - a) / a)) {}
 
   double quantile(double p) const override {
     double r;
@@ -34,31 +35,59 @@ class PowerLaw final : public SizeDistribution {
     return integral(n_, std::log1p((r - a_) / a_)) / integral(n_, l_);
   }
 
-  double moment(int k) const override { return moment_above(k, a_); }
-
   double moment_above(int k, double radius) const override {
     const double r = std::clamp(radius, a_, b_);
     return std::pow(r, k) * std::pow(r / a_, n_) * integral(n_ + k, std::log1p((b_ - r) / r)) /
            integral(n_, l_);
   }
 
-  double min() const override { return a_; }
-  double max() const override { return b_; }
-
  private:
   static double integral(double n, double l) { return n == 0 ? l : std::expm1(n * l) / n; }
 
-  std::string_view name_;
-  double a_;
-  double b_;
-  double n_;
-  double l_;
+  double a_, b_, n_, l_;
 };
 
 }  // namespace
 
-std::unique_ptr<SizeDistribution> make_power_law(std::string_view name, double a, double b, double n) {
-  return std::make_unique<PowerLaw>(name, a, b, n);
+std::unique_ptr<SizeDistribution> make_uniform(double min, double max, Basis basis) {
+  require_positive("the smallest radius", min);
+  require_positive("the largest radius", max);
+  if (min > max)
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("the smallest radius {} is larger than the largest {}", min, max));
+  if (min == max) return make_constant(min);
+  return std::make_unique<PowerLaw>(min, max, basis == Basis::number ? 1 : -2);
+}
+
+std::unique_ptr<SizeDistribution> make_fuller(double max, double exponent, double min) {
+  require_positive("the largest radius", max);
+  require_positive("the exponent", exponent);
+  require_interval(min, max);
+  return std::make_unique<PowerLaw>(min, max, exponent - 3);
+}
+
+std::unique_ptr<SizeDistribution> make_sieve(std::vector<double> radii, std::vector<double> passing) {
+  if (radii.size() < 2 || radii.size() != passing.size())
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("a sieve analysis needs two sieves or more and what passes each of them; got {} "
+                            "and {}",
+                            radii.size(), passing.size()));
+  require_ascending("the sieves", radii);
+  if (passing.front() != 0)
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("nothing may pass the finest sieve, but {} does", passing.front()));
+  std::vector<std::unique_ptr<SizeDistribution>> fractions;
+  std::vector<double> volumes;
+  for (std::size_t i = 1; i < radii.size(); ++i) {
+    if (!(passing[i] >= passing[i - 1] && std::isfinite(passing[i])))
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("less passes the sieve {} than a finer one", radii[i]));
+    if (passing[i] == passing[i - 1]) continue;
+    constexpr double even_over_the_logarithm = -3;
+    fractions.push_back(std::make_unique<PowerLaw>(radii[i - 1], radii[i], even_over_the_logarithm));
+    volumes.push_back(passing[i] - passing[i - 1]);
+  }
+  return make_mixture(std::move(fractions), std::move(volumes), Basis::volume);
 }
 
 }  // namespace bernal

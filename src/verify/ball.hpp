@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 
 #include "bernal/core/vector.hpp"
 #include "verify/box_tree.hpp"
@@ -19,5 +20,11 @@ struct Ball {
 
 template <int D>
 using BallTree = BoxTree<Ball<D>, D>;
+
+/// Whether a ball lies inside, and its least gap from a near wall over its radius; infinite if none is near.
+struct Stand {
+  bool inside = true;
+  double gap = std::numeric_limits<double>::infinity();
+};
 
 }  // namespace bernal::verify

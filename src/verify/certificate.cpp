@@ -1,6 +1,5 @@
 #include "bernal/verify/certificate.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -12,8 +11,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "verify/judge_pairs.hpp"
-#include "verify/judge_walls.hpp"
+#include "verify/judge.hpp"
 
 namespace bernal {
 namespace {
@@ -138,7 +136,7 @@ std::string pair_text(const std::array<std::uint64_t, 2>& pair) {
 std::string worst_pair_text(const Certificate& c) { return c.worst_pair ? pair_text(*c.worst_pair) : "none"; }
 
 Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, const CertifyOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   check_arguments(spheres, domain, options.allowed_overlap);
 
   Certificate result;
@@ -174,7 +172,7 @@ Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, const
     result.certified = !result.cancelled && tally.overlapping == 0 && tally.protruding == 0;
     result.statement = statement_of(result, domain);
   }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.seconds = watch.seconds();
   return result;
 }
 

@@ -1,9 +1,90 @@
-#include "verify/judge_pairs.hpp"
+#include "verify/judge.hpp"
+
+#include <cmath>
+#include <span>
 
 #include "core/every_dimension.hpp"
-#include "verify/pair_judge.hpp"
+#include "verify/predicates.hpp"
 
 namespace bernal::verify {
+namespace {
+
+/// Tries the pairs of balls of a tree in an OpenSpace or a PeriodicSpace.
+template <int D, class Space>
+class PairJudge {
+ public:
+  PairJudge(const BallTree<D>& balls, const Space& space, const Course& course)
+      : balls_(balls), space_(space), course_(course) {}
+
+  Tally judge_all() const {
+    return course_.for_each("pairs", balls_.leaves(), 16,
+                            [this](std::size_t l, Tally& tally) { judge_leaf(l, tally); });
+  }
+
+ private:
+  /// Every near pair within a leaf, and of it with a later leaf.
+  void judge_leaf(std::size_t l, Tally& tally) const {
+    const auto mine = balls_.leaf(l);
+    for (std::size_t i = 0; i < mine.size(); ++i) {
+      if constexpr (Space::repeats) judge_own_images(mine[i], tally);
+      judge_near(mine[i], mine.subspan(i + 1), tally);
+    }
+    balls_.for_each_leaf_touching_after(l, space_.reach_of(balls_.box_of_leaf(l)), [&](std::size_t m) {
+      const auto reach = space_.reach_of(balls_.box_of_leaf(m));
+      for (const Ball<D>& ball : mine)
+        if (touch(ball.box(), reach)) judge_near(ball, balls_.leaf(m), tally);
+    });
+  }
+
+  void judge_near(const Ball<D>& ball, std::span<const Ball<D>> others, Tally& tally) const {
+    const auto reach = space_.reach_of(ball.box());
+    for (const Ball<D>& other : others)
+      if (touch(other.box(), reach))
+        ball.index < other.index ? judge(ball, other, tally) : judge(other, ball, tally);
+  }
+
+  void judge(const Ball<D>& a, const Ball<D>& b, Tally& tally) const {
+    const double reach = a.r + b.r;
+    record(a.index, b.index, (distance(a, b) - reach) / reach, tally,
+           [&]<class Number>(double allowed) { return balls_clear<Number>(space_, a, b, allowed); });
+  }
+
+  /// A ball and its nearest images, an edge away.
+  void judge_own_images(const Ball<D>& ball, Tally& tally) const {
+    const double edge = space_.edges.minCoeff(), diameter = 2 * ball.r;
+    if (diameter < edge) return;
+    record(ball.index, ball.index, (edge - diameter) / diameter, tally,
+           [&]<class Number>(double allowed) { return own_images_clear<Number>(ball.r, edge, allowed); });
+  }
+
+  /// Decides one near pair. `gap` is its gap over its sum of radii, in double.
+  template <class Predicate>
+  void record(std::uint64_t first, std::uint64_t second, double gap, Tally& tally,
+              const Predicate& clear) const {
+    const auto holds = [&](double allowed, Decisions& decisions) {
+      return decide(course_.options().arithmetic, decisions,
+                    [&]<class Number>() { return clear.template operator()<Number>(allowed); }) == Truth::yes;
+    };
+    const double allowed = course_.options().allowed_overlap;
+    const bool as_allowed = holds(allowed, tally.decisions);
+    Decisions only_for_the_sign;
+    const bool strictly = allowed == 0 ? as_allowed : holds(0, only_for_the_sign);
+    tally.add_pair({{first, second}, 0.0 - with_sign(gap, strictly)}, as_allowed);
+  }
+
+  double distance(const Ball<D>& a, const Ball<D>& b) const {
+    Vector<D> d;
+    for (int k = 0; k < D; ++k) d[k] = space_.template offset<double>(k, a.c[k], b.c[k]);
+    const double squared = d.squaredNorm();
+    return squared > 0x1p-900 && squared < 0x1p900 ? std::sqrt(squared) : d.stableNorm();
+  }
+
+  const BallTree<D>& balls_;
+  const Space& space_;
+  const Course& course_;
+};
+
+}  // namespace
 
 Tally judge_pairs(const BallTree<3>& balls, const OpenSpace<3>& space, const Course& course) {
   return PairJudge(balls, space, course).judge_all();

@@ -1,4 +1,4 @@
-#include "verify/judge_walls.hpp"
+#include "verify/judge.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 #include "core/every_dimension.hpp"
 #include "verify/mesh_wall.hpp"
 #include "verify/predicates.hpp"
-#include "verify/stand.hpp"
 
 namespace bernal::verify {
 namespace {

@@ -4,7 +4,6 @@
 #include "bernal/domain/domain.hpp"
 #include "verify/ball.hpp"
 #include "verify/predicates.hpp"
-#include "verify/stand.hpp"
 #include "verify/tally.hpp"
 
 namespace bernal::verify {

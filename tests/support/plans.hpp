@@ -18,9 +18,10 @@ namespace bernal::testing {
 class ScaledSizes : public SizeDistribution {
  public:
   ScaledSizes(std::unique_ptr<SizeDistribution> sizes, double factor)
-      : sizes_(std::move(sizes)), factor_(factor) {}
+      : SizeDistribution(factor * sizes->min(), factor * sizes->max()),
+        sizes_(std::move(sizes)),
+        factor_(factor) {}
 
-  std::string_view name() const override { return sizes_->name(); }
   double quantile(double p) const override { return factor_ * sizes_->quantile(p); }
   double cumulative(double radius) const override { return sizes_->cumulative(radius / factor_); }
   double moment(int k) const override { return std::pow(factor_, k) * sizes_->moment(k); }
@@ -28,8 +29,6 @@ class ScaledSizes : public SizeDistribution {
     return std::pow(factor_, k) * sizes_->moment_above(k, radius / factor_);
   }
   double radius_at(double u) const override { return factor_ * sizes_->radius_at(u); }
-  double min() const override { return factor_ * sizes_->min(); }
-  double max() const override { return factor_ * sizes_->max(); }
 
  private:
   std::unique_ptr<SizeDistribution> sizes_;

@@ -92,7 +92,7 @@ std::vector<std::unique_ptr<SizeDistribution>> all_kinds() {
 
 TEST(SizeDistributionLaw, MomentsAboveARadius) {
   for (const auto& d : all_kinds()) {
-    SCOPED_TRACE(d->name());
+    SCOPED_TRACE(::testing::Message() << "radii from " << d->min() << " to " << d->max());
     const double above_all = std::min(d->max(), d->quantile(1 - 1e-12)) * 1.01;
     for (int k = -2; k <= 4; ++k) {
       const double all = d->moment(k);
@@ -115,7 +115,7 @@ TEST(SizeDistributionLaw, MomentsAboveARadius) {
 TEST(Rods, AreQuantilesOfChordLengths) {
   constexpr int count = 200;
   for (const auto& d : all_kinds()) {
-    SCOPED_TRACE(d->name());
+    SCOPED_TRACE(::testing::Message() << "radii from " << d->min() << " to " << d->max());
     const auto lengths = predict::ChordTable(*d, count).rod_lengths(count);
     EXPECT_TRUE(std::ranges::is_sorted(lengths, std::greater()));
     EXPECT_LE(lengths.front(), d->max());

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bernal/io/certificate_json.hpp"
+#include "bernal/io/json.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "support/written_files.hpp"

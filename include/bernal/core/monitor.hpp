@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <functional>
 #include <string_view>
 
@@ -23,6 +24,16 @@ struct Monitor {
     if (on_progress) on_progress(p);
   }
   bool stop() const { return cancelled && cancelled(); }
+};
+
+/// Seconds since it was made.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
 };
 
 }  // namespace bernal

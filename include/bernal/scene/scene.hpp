@@ -12,7 +12,6 @@
 #include "bernal/core/unit.hpp"
 #include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
-#include "bernal/scene/locations.hpp"
 #include "bernal/scene/sizes.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 

@@ -1,12 +1,27 @@
 #pragma once
+#include <map>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
-#include "bernal/scene/locations.hpp"
+#include "bernal/core/error.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
+
+/// Where a part of a scene stands in the user's file, whole and key by key; empty for what was made in C++.
+struct Locations {
+  Location whole;
+  std::map<std::string, Location, std::less<>> keys;
+
+  /// Of the key if it is written there, else of the whole.
+  const Location& of(std::string_view key) const {
+    const auto found = keys.find(key);
+    return found == keys.end() ? whole : found->second;
+  }
+};
 
 // The kinds of size distributions as a scene states them: plain data. Lengths are radii or, where
 // `Scene::sizes_are_diameters` says so, diameters; those called d… are diameters always. sizes/ says what

@@ -1,7 +1,6 @@
 #pragma once
 #include <algorithm>
 #include <memory>
-#include <string_view>
 #include <vector>
 
 #include "bernal/core/random.hpp"
@@ -15,19 +14,18 @@ class SizeDistribution {
  public:
   virtual ~SizeDistribution() = default;
 
-  virtual std::string_view name() const = 0;
   /// The radius below which the fraction `p` of the number lies, p in [0, 1]; quantile(0) = min().
   virtual double quantile(double p) const = 0;
   /// The fraction of the number at or below `radius`.
   virtual double cumulative(double radius) const = 0;
   /// Mean of radius^k, any integer k.
-  virtual double moment(int k) const = 0;
+  virtual double moment(int k) const { return moment_above(k, 0); }
   /// What radii above `radius` >= 0 contribute to moment(k): the integral of r^k over them. Precise in the
   /// upper tail, where 1 - cumulative is not.
   virtual double moment_above(int k, double radius) const = 0;
-  virtual double min() const = 0;
+  double min() const { return min_; }
   /// Infinity where the distribution has an unbounded tail.
-  virtual double max() const = 0;
+  double max() const { return max_; }
   /// The radii that a share of the number has exactly, ascending: the size classes. `cumulative` jumps there.
   virtual std::vector<double> atoms() const { return {}; }
 
@@ -39,6 +37,13 @@ class SizeDistribution {
   /// One radius, always positive and finite: the k-th draw is a function of the k-th number. An unbounded
   /// lower tail is cut at its quantile 2^-54, below the smallest number that can be drawn but 0.
   double sample(Random& random) const { return radius_at(std::max(random.uniform(), 0x1p-54)); }
+
+ protected:
+  explicit SizeDistribution(double min = 0, double max = 0) : min_(min), max_(max) {}
+  void set_limits(double min, double max) { min_ = min, max_ = max; }
+
+ private:
+  double min_, max_;
 };
 
 /// What the shares or the density of a distribution count: every sphere alike, or its volume, r³ in any

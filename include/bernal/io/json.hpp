@@ -1,6 +1,8 @@
 #pragma once
 #include <string>
 
+#include "bernal/measure/measure.hpp"
+#include "bernal/run/packing.hpp"
 #include "bernal/verify/certificate.hpp"
 
 namespace bernal {
@@ -11,5 +13,10 @@ namespace bernal {
 /// null where no sphere is near a wall. `overlaps` and `protrusions` are there where a list was asked for and
 /// has entries. Numbers that are not finite become null.
 std::string certificate_as_json(const Certificate&);
+
+/// Measurements as one JSON object: what `bernal measure --json` prints. Lengths are in the scene's unit,
+/// radii are radii. What there is not is null: `g_r` where there are walls, `chambers` and `walls` where
+/// there are none, p-values that would mean nothing.
+std::string measurements_as_json(const Packing&, const Measurements&);
 
 }  // namespace bernal
