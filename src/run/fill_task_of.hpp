@@ -1,6 +1,6 @@
 #pragma once
 #include "bernal/run/run.hpp"
-#include "work/fill_task.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 

@@ -18,7 +18,7 @@
 #include "run/fill_task_of.hpp"
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
-#include "work/keepsake.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 namespace {

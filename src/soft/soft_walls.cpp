@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace bernal {
 namespace {
@@ -36,15 +35,9 @@ double distance_after(const std::variant<Facet, PreparedTriangle>& piece, const 
   return distance_before + move.dot(from) / distance_before;
 }
 
-/// In units of the coordinates.
-std::int32_t steps_between(const SoftSphere& from, const SoftSphere& to, int k) {
-  return static_cast<std::int32_t>(static_cast<std::uint32_t>(to.x[k]) -
-                                   static_cast<std::uint32_t>(from.x[k]));
-}
-
 /// Takes back all but a share of the way.
 void shorten(SoftSphere& to, const SoftSphere& from, double share) {
-  for (int k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < 3; ++k) {
     const auto steps = static_cast<std::int32_t>(share * steps_between(from, to, k));
     to.x[k] =
         static_cast<std::int32_t>(static_cast<std::uint32_t>(from.x[k]) + static_cast<std::uint32_t>(steps));
@@ -91,6 +84,11 @@ Vector<3> SoftWalls::place(const SoftSphere& s) const {
   return p;
 }
 
+Vector<3> SoftWalls::way_between(const SoftSphere& from, const SoftSphere& to) const {
+  return unit_.cwiseProduct(
+      Vector<3>(steps_between(from, to, 0), steps_between(from, to, 1), steps_between(from, to, 2)));
+}
+
 void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<SoftSphere>& built_at,
                             const std::vector<std::uint32_t>& ids) const {
   std::vector<bool> near(spheres.size(), false);
@@ -99,8 +97,7 @@ void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<
   for (std::size_t p = 0; p < spheres.size(); ++p) {
     if (!(spheres[p].r > 0) || near[p]) continue;
     const Vector<3> from = place(built_at[p]);
-    Vector<3> way;
-    for (int k = 0; k < 3; ++k) way[k] = unit_[k] * steps_between(built_at[p], spheres[p], k);
+    const Vector<3> way = way_between(built_at[p], spheres[p]);
     const double length = way.norm();
     if (!(length > 0)) continue;
     const View& view = views_[ids[p]];
@@ -225,8 +222,7 @@ void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spher
     const NearSphere& near = near_[n];
     SoftSphere& now = spheres[near.lane];
     const SoftSphere& before = push.before[near.lane];
-    Vector<3> move;
-    for (int k = 0; k < 3; ++k) move[k] = unit_[k] * steps_between(before, now, k);
+    const Vector<3> move = way_between(before, now);
     const double length = move.norm();
     if (length <= (1 - kept) * push.free[near.lane]) continue;
     const std::vector<Piece>& pieces = views_[near.id].pieces;

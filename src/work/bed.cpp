@@ -10,7 +10,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
-#include "work/room.hpp"
+#include "work/holes.hpp"
 
 namespace bernal {
 namespace {
