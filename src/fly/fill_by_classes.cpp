@@ -8,8 +8,8 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "neighbors/cell_grid.hpp"
-#include "work/periodic_holes.hpp"
-#include "work/resize_box.hpp"
+#include "work/free_of_overlap.hpp"
+#include "work/holes.hpp"
 
 namespace bernal {
 namespace {

@@ -177,10 +177,7 @@ std::span<const CollisionKernel<D>> collision_kernels() {
   return kernels;
 }
 
-template std::span<const CollisionKernel<2>> collision_kernels<2>();
-template std::span<const CollisionKernel<3>> collision_kernels<3>();
-template std::span<const CollisionKernel<4>> collision_kernels<4>();
-template std::span<const CollisionKernel<5>> collision_kernels<5>();
-template std::span<const CollisionKernel<6>> collision_kernels<6>();
+#define BERNAL_INSTANTIATE(D) template std::span<const CollisionKernel<D>> collision_kernels<D>();
+BERNAL_IN_FLYING_DIMENSIONS(BERNAL_INSTANTIATE)
 
 }  // namespace bernal

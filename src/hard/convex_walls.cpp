@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numeric>
@@ -23,11 +22,6 @@ constexpr double band = 2, outside = 4;
 Wall<3> plane(const Vector<3>& normal, const Vector<3>& point) {
   return {.along = normal, .extent = normal.dot(point)};
 }
-
-struct Plane {
-  Vector<3> normal;
-  double offset;
-};
 
 /// The corners of a mesh in a tree of boxes, to find those that a plane leaves outside.
 class CornerTree {
@@ -131,23 +125,23 @@ class Planes {
   static constexpr double below = -std::numeric_limits<double>::infinity();
 
   Wall<3> wall_of(std::uint32_t facet, const Vector<3>& normal) {
-    const Plane best = plane_about(facet, normal);
-    double highest = best.offset;
+    const Wall<3> best = plane_about(facet, normal);
+    double highest = best.extent;
     std::vector<std::uint32_t> near;
     const auto note = [&](std::uint32_t v, double height) {
       near.push_back(v);
       height_[v] = height;
       highest = std::max(highest, height);
     };
-    tree_.for_each_above(best.normal, best.offset - band * tolerance_, note);
-    if (highest - best.offset > outside * tolerance_)
+    tree_.for_each_above(best.along, best.extent - band * tolerance_, note);
+    if (highest - best.extent > outside * tolerance_)
       throw Error(
           ErrorCode::bad_scene,
           fmt::format("\"grow\" packs convex containers, and this one is not: a corner of the mesh lies "
                       "{:.1g} of its diameter outside of the plane of a facet; \"relax\" packs any",
-                      (highest - best.offset) / bounds_of(Domain(mesh_)).diagonal()));
-    for (const auto v : mesh_.triangles[facet]) note(v, best.normal.dot(mesh_.vertices[v]));
-    double innermost = best.offset;
+                      (highest - best.extent) / bounds_of(Domain(mesh_)).diagonal()));
+    for (const auto v : mesh_.triangles[facet]) note(v, best.along.dot(mesh_.vertices[v]));
+    double innermost = best.extent;
     for (const auto v : near)
       for (const auto t : facets_at_[v]) {
         const auto& [i, j, k] = mesh_.triangles[t];
@@ -157,19 +151,19 @@ class Planes {
         innermost = std::min(innermost, lowest);
       }
     for (const auto v : near) height_[v] = below;
-    return {.along = best.normal, .extent = innermost};
+    return {.along = best.along, .extent = innermost};
   }
 
   /// The plane of the facet, and then the best one through all corners near it as long as these become more.
-  Plane plane_about(std::uint32_t facet, const Vector<3>& normal) const {
+  Wall<3> plane_about(std::uint32_t facet, const Vector<3>& normal) const {
     const auto& corners = mesh_.triangles[facet];
-    Plane best{normal, 0};
-    for (const auto v : corners) best.offset += normal.dot(mesh_.vertices[v]) / 3;
+    Wall<3> best{.along = normal};
+    for (const auto v : corners) best.extent += normal.dot(mesh_.vertices[v]) / 3;
     std::size_t known = corners.size();
     for (int k = 0; k < most_fits; ++k) {
       std::vector<std::uint32_t> near;
-      tree_.for_each_above(best.normal, best.offset - tolerance_, [&](std::uint32_t v, double height) {
-        if (height <= best.offset + tolerance_) near.push_back(v);
+      tree_.for_each_above(best.along, best.extent - tolerance_, [&](std::uint32_t v, double height) {
+        if (height <= best.extent + tolerance_) near.push_back(v);
       });
       if (near.size() <= known) break;
       known = near.size();
@@ -179,7 +173,7 @@ class Planes {
   }
 
   /// Through their centre, across the direction in which they scatter least.
-  Plane fit(const std::vector<std::uint32_t>& corners, const Vector<3>& facing) const {
+  Wall<3> fit(const std::vector<std::uint32_t>& corners, const Vector<3>& facing) const {
     Vector<3> center = Vector<3>::Zero();
     for (const auto v : corners) center += mesh_.vertices[v];
     center /= static_cast<double>(corners.size());
@@ -190,7 +184,7 @@ class Planes {
     }
     Vector<3> normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
     if (normal.dot(facing) < 0) normal = -normal;
-    return {normal, normal.dot(center)};
+    return plane(normal, center);
   }
 
   const Mesh& mesh_;

@@ -1,6 +1,9 @@
 #pragma once
 #include "bernal/core/vector.hpp"
 
+/// For explicit instantiations in all dimensions that spheres fly in.
+#define BERNAL_IN_FLYING_DIMENSIONS(F) F(2) F(3) F(4) F(5) F(6)
+
 namespace bernal {
 
 /// A sphere in free flight: at its own `time` it is at x; later, at t, at x + v (t - time). In three

@@ -2,19 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
-#include "hard/grow_in_container.hpp"
-#include "hard/growth_schedule.hpp"
 #include "hard/hard_spheres.hpp"
-#include "jam/finish_in_periodic_box.hpp"
+#include "jam/polish.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/random_insertion.hpp"
-#include "work/resize_box.hpp"
 #include "work/stage_entry.hpp"
 
 namespace bernal {
@@ -24,8 +20,11 @@ namespace {
 constexpr int most_trials = 100000;
 /// Spheres grow by this much beyond the size that was asked for, so that the box has room for rounding.
 constexpr double room_for_rounding = 1e-12;
-/// A milestone for each growth by this much of the logarithm of the compressibility.
-constexpr double milestone_every = 0.1;
+/// A milestone for each growth by this much of the volume, or of the logarithm of the compressibility factor.
+constexpr double volume_a_milestone = 0.01, squeeze_a_milestone = 0.1;
+/// Spheres below this compressibility factor, a dimension, are a fluid that forgets how fast it was
+/// compressed.
+constexpr double fluid = 4, haste_of_fluid = 10;
 
 /// The papers' phi_init; in other than three dimensions as far below where random insertion ends.
 constexpr double loose_start[] = {0.28, 0.2, 0.135, 0.089, 0.057};
@@ -49,27 +48,6 @@ bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::ve
                                      {Vector<D>::Zero(), boundary.edges}, boundary, most_trials,
                                      between_walls, [](const Vector<D>&, double) { return true; });
 }
-
-/// Tells the run how far it has come, now and then.
-class Milestones {
- public:
-  Milestones(Work& work, double pressure) : work_(work), pressure_(pressure) {}
-
-  void pass(const Vector<dynamic>& edges, double filled, const FlightPeriod& period) {
-    work_.edges = edges;
-    const double squeezed = std::log(std::max(1.0, period.compressibility));
-    const double done = std::max(filled, squeezed / std::log(pressure_));
-    if (squeezed < next_ && filled < next_filled_) return;
-    next_ = squeezed + milestone_every;
-    next_filled_ = filled + 0.01;
-    work_.milestone("grow", std::clamp(done, 0.0, 0.99), 0);
-  }
-
- private:
-  Work& work_;
-  double pressure_;
-  double next_ = 0, next_filled_ = 0;
-};
 
 /// Those of the box, in its coordinates.
 template <int D>
@@ -117,50 +95,83 @@ void start(Spheres<D>& spheres, Vector<D>& edges, Work& work, double phi_init) {
 }
 
 template <int D>
-StageEnd grow_in(Work& work, const GrowOptions& options) {
+StageEnd grow_in(Work& work, const Grow& options) {
   if (options.polish > 0 && !work.walls.empty())
     throw Error(ErrorCode::bad_scene, "\"polish\" knows no walls; leave it out");
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
   start<D>(spheres, edges, work, options.phi_init.value_or(loose_start[D - 2]));
-
-  HardSpheres<D> flight(spheres, edges_around_walls(edges, work.walls), work.random(Stream::grow),
-                        {.walls = walls_of(work, edges), .masses = options.masses});
   const double volume = edges.prod();
   double largest = std::numeric_limits<double>::infinity();
   if (work.target_edges)
     largest = std::max(1.0, std::pow(volume / work.target_edges->prod(), 1.0 / D)) * (1 + room_for_rounding);
-  const GrowthSchedule<D> schedule(spheres, volume, options);
-
-  Effect& collisions = work.effects["collisions"];
-  Effect& shells = work.effects["neighbour shells"];
-  Milestones milestones(work, options.pressure);
-  StageEnd end = StageEnd::converged;
-  FlightPeriod period;
-  while (flight.size() < largest && period.compressibility < options.pressure) {
-    if (!flight.has_room()) {
-      end = StageEnd::hit_limit;
-      break;
-    }
-    period = flight.fly(schedule.at(period.compressibility), largest, work.monitor);
-    collisions.calls += period.collisions;
-    shells.calls += period.departures + period.builds;
-    if (period.reflections > 0) work.effects["reflections"].calls += period.reflections;
-    if (period.stopped) {
-      end = StageEnd::cancelled;
-      break;
-    }
-    const double filled = std::isfinite(largest) ? std::pow(flight.size() / largest, D) : 0;
-    milestones.pass(edges / flight.size(), filled, period);
-  }
-  flight.write_to(spheres);
+  const Arena<D> arena{edges_around_walls(edges, work.walls), walls_of(work, edges), volume};
+  const StageEnd end = grow_to<D>(largest, spheres, arena, work, options, [&](double size_now, double done) {
+                         work.edges = edges / size_now;
+                         work.milestone("grow", std::clamp(done, 0.0, 0.99), 0);
+                       }).end;
   free_of_overlap<D>(spheres, edges, work);
   return finish_in_periodic_box<D>(std::move(spheres), edges, end, options.polish, work);
 }
 
 }  // namespace
 
-StageEnd grow(Work& work, const GrowOptions& options) {
+/// Of the mean diameter over the thermal speed: see `grow`.
+template <int D>
+double growth_rate(const Spheres<D>& spheres, double volume, const Grow& options) {
+  double volumes = 0, by_number = 0, by_volume = 0;
+  for (const double r : spheres.r) {
+    const double v = ball_volume(D, r);
+    volumes += v;
+    by_number += 2 * r;
+    by_volume += v * 2 * r;
+  }
+  by_number /= static_cast<double>(spheres.size());
+  by_volume /= volumes;
+  return options.delta ? *options.delta * by_number / std::pow(volume, 1.0 / D)
+                       : options.rate * by_number / by_volume;
+}
+
+template <int D>
+Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Work& work, const Grow& options,
+              const std::function<void(double size, double done)>& report) {
+  HardSpheres<D> flight(spheres, arena.edges, work.random(Stream::grow),
+                        {.walls = arena.walls, .masses = options.masses});
+  const double rate = growth_rate<D>(spheres, arena.volume, options);
+  StageEnd end = StageEnd::converged;
+  double next_squeezed = 0, next_filled = 0;
+  FlightPeriod period;
+  while (flight.size() < largest && period.compressibility_factor < options.pressure) {
+    if (!flight.has_room()) {
+      end = StageEnd::hit_limit;
+      break;
+    }
+    const bool in_haste = !options.delta && period.compressibility_factor < fluid * D;
+    period = flight.fly(in_haste ? haste_of_fluid * rate : rate, largest, work.monitor);
+    const auto count = [&](const char* effect, std::uint64_t calls) {
+      if (calls > 0) work.effects[effect].calls += calls;
+    };
+    count("collisions", period.collisions);
+    count("reflections", period.reflections);
+    count("neighbour shells", period.departures + period.builds);
+    if (period.stopped) {
+      end = StageEnd::cancelled;
+      break;
+    }
+    const double filled = std::pow(flight.size() / largest, D);
+    const double squeezed = std::log(std::max(1.0, period.compressibility_factor));
+    if (squeezed < next_squeezed && filled < next_filled) continue;
+    next_squeezed = squeezed + squeeze_a_milestone;
+    next_filled = filled + volume_a_milestone;
+    report(flight.size(), std::max(filled, squeezed / std::log(options.pressure)));
+  }
+  flight.write_to(spheres);
+  return {end, flight.size()};
+}
+template Grown grow_to<3>(double, Spheres<3>&, const Arena<3>&, Work&, const Grow&,
+                          const std::function<void(double, double)>&);
+
+StageEnd grow(Work& work, const Grow& options) {
   EffectTimer timer(work.effects["growth"]);
   return with_dimension(work.dimension(), std::integer_sequence<int, 2, 3, 4, 5, 6>{},
                         [&](auto dimension) { return grow_in<decltype(dimension)::value>(work, options); });
@@ -169,6 +180,9 @@ StageEnd grow(Work& work, const GrowOptions& options) {
 template <>
 const StageEntry& entry_of<Grow>() {
   using namespace schema;
+  const PlanItem insertion{"insertion", "random places at the start, the largest first", "O(1) a trial"};
+  const PlanItem collisions{"collisions", "of growing spheres, from a calendar of events", "0.5 to 0.8 µs"};
+  const PlanItem reflections{"reflections", "of growing spheres from the walls", "0.5 to 0.8 µs"};
   static const StageEntry entry = {
       .table = stage_table<Grow>(
           {.name = "grow",
@@ -211,20 +225,19 @@ const StageEntry& entry_of<Grow>() {
            .reaches = Reaches::close_packing}),
       .act_in_bed = act(grow_in_container),
       .act_in_box = act(grow),
-      .bed_effects = {{"insertion", "random places at the start, the largest first", "O(1) a trial"},
+      .bed_effects = {insertion,
                       {"neighbour shells", "each sphere renews its own list, and that of its walls",
                        "about 1 µs"},
-                      {"collisions", "of growing spheres, from a calendar of events", "0.5 to 0.8 µs"},
-                      {"reflections", "of growing spheres from the walls, from the same calendar",
-                       "0.5 to 0.8 µs"},
+                      collisions,
+                      reflections,
                       {"growth",
                        "until the spheres have their radii; what jams before loses the last of the drawn "
                        "sequence",
                        "some 2,000 collisions a sphere"}},
-      .box_effects = {{"insertion", "random places at the start, the largest first", "O(1) a trial"},
+      .box_effects = {insertion,
                       {"neighbour shells", "each sphere renews its own list", "about 1 µs"},
-                      {"collisions", "of growing spheres, from a calendar of events", "0.5 to 0.8 µs"},
-                      {"reflections", "of growing spheres from the walls", "0.5 to 0.8 µs"},
+                      collisions,
+                      reflections,
                       {"growth", "until the spheres jam", "some 2,000 collisions a sphere"}},
       .chosen_effects =
           [](const void*, const FillTask& task) {

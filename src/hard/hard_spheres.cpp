@@ -252,9 +252,9 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   period_.time = horizon_;
   period_.heating = kinetic_energy() / energy - 1;
   if (horizon_ > 0)
-    period_.compressibility = 1 + virial_ / (2 * energy * horizon_);
+    period_.compressibility_factor = 1 + virial_ / (2 * energy * horizon_);
   else if (period_.collisions + period_.reflections > 0)
-    period_.compressibility = infinite;  // they cannot get apart
+    period_.compressibility_factor = infinite;  // they cannot get apart
   return period_;
 }
 
@@ -338,7 +338,10 @@ void HardSpheres<D>::predict(Id i) {
   scan_.count = neighbors.size();
   scan_.now = now_;
   const double leaves = time_to_leave(i);
-  const double touches = walls_.empty() ? infinite : time_to_touch_wall(i);
+  const FlyingSphere<D>& me = spheres_[i];
+  const double touches = walls_.empty()
+                             ? infinite
+                             : walls_.time_to_touch(i, me, me.r * (size_ + growth_ * now_), me.r * growth_);
   const double limit = std::min(std::min(leaves, horizon_ - now_), touches);
   for (FirstCollision first = kernel_.scan(scan_); first.delay < limit;) {
     const Id j = neighbors[first.neighbor];
@@ -387,12 +390,6 @@ void HardSpheres<D>::collide(Id i, Id j) {
 }
 
 template <int D>
-double HardSpheres<D>::time_to_touch_wall(Id i) {
-  const FlyingSphere<D>& s = spheres_[i];
-  return walls_.time_to_touch(i, s, s.r * (size_ + growth_ * now_), s.r * growth_);
-}
-
-template <int D>
 void HardSpheres<D>::reflect(Id i) {
   FlyingSphere<D>& s = spheres_[i];
   const double kick = walls_.reflect(i, s, s.r * growth_, 2 * least_kick);
@@ -401,10 +398,8 @@ void HardSpheres<D>::reflect(Id i) {
   virial_ += mass(s.r) * kick * s.r * (size_ + growth_ * now_);
 }
 
-template class HardSpheres<2>;
-template class HardSpheres<3>;
-template class HardSpheres<4>;
-template class HardSpheres<5>;
-template class HardSpheres<6>;
+#define BERNAL_INSTANTIATE(D) template class HardSpheres<D>;
+BERNAL_IN_FLYING_DIMENSIONS(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

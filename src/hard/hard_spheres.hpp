@@ -25,7 +25,7 @@ struct FlightPeriod {
   /// P V / N k T by the temperature at the start, from the virial theorem: 1 + Σ q b / 2 E t over all
   /// momenta q that were exchanged, along b: the line of centres of a pair, the radius at a wall. On average
   /// it is the pressure on the walls, but scatters less.
-  double compressibility = 1;
+  double compressibility_factor = 1;
   /// That walls took, sum of magnitudes: on average P times their area and the time.
   double wall_momentum = 0;
   double heating = 0;    ///< relative growth of the kinetic energy
@@ -98,7 +98,6 @@ class HardSpheres {
   void predict(Id i);
   void forget_partner(Id i);
   double time_to_leave(Id i) const;
-  double time_to_touch_wall(Id i);
   void collide(Id i, Id j);
   void reflect(Id i);
   void rescale_velocities();

@@ -1,4 +1,4 @@
-#include "hard/largest_sphere.hpp"
+#include "hard/convex_walls.hpp"
 
 #include <algorithm>
 #include <limits>

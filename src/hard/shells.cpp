@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hard/flying_sphere.hpp"
+
 namespace bernal {
 namespace {
 
@@ -56,10 +58,8 @@ void Shells<D>::settle(Id i, const Vector<D>& home) {
   for_each_only_in(after_, before_, [&](Id j) { lists_.append(j, i); });
 }
 
-template class Shells<2>;
-template class Shells<3>;
-template class Shells<4>;
-template class Shells<5>;
-template class Shells<6>;
+#define BERNAL_INSTANTIATE(D) template class Shells<D>;
+BERNAL_IN_FLYING_DIMENSIONS(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

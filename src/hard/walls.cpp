@@ -1,9 +1,10 @@
 #include "hard/walls.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "hard/place_on_curve.hpp"
 
 namespace bernal {
 namespace {
@@ -25,18 +26,18 @@ void Walls<D>::start(std::size_t count, double most) {
   next_.assign(count, 0);
   if (most <= reach_) return;
   reach_ = spare_reach * most;
-  const int levels = walls_.size() > few_walls ? divisions : 0;
-  cells_an_edge_ = 1 << levels;
-  cells_.assign(std::size_t{1} << (levels * D), {});
+  levels_ = walls_.size() > few_walls ? divisions : 0;
+  cells_.assign(std::size_t{1} << (levels_ * D), {});
   std::vector<Id> all(walls_.size());
   std::iota(all.begin(), all.end(), Id{0});
-  if (levels == 0)
+  if (levels_ == 0)
     cells_[0] = std::move(all);
   else
-    fill_cells(Vector<D>::Zero(), edges_, levels, 0, all);
+    fill_cells(Vector<D>::Zero(), edges_, levels_, 0, all);
 }
 
-/// The cells of the part of the box that is divided `level` times more, which are numbered from `first` on.
+/// The cells of the part of the box that is divided `level` times more, which are numbered from `first` on,
+/// along the curve of `place_on_curve`.
 template <int D>
 void Walls<D>::fill_cells(const Vector<D>& lower, const Vector<D>& size, int level, std::size_t first,
                           const std::vector<Id>& near) {
@@ -62,21 +63,9 @@ void Walls<D>::fill_cells(const Vector<D>& lower, const Vector<D>& size, int lev
 }
 
 template <int D>
-std::size_t Walls<D>::cell_at(const Vector<D>& home) const {
-  std::size_t index = 0;
-  std::size_t at[D];
-  for (int k = 0; k < D; ++k)
-    at[k] = static_cast<std::size_t>(
-        std::clamp(static_cast<int>(home[k] / edges_[k] * cells_an_edge_), 0, cells_an_edge_ - 1));
-  for (int bit = cells_an_edge_ / 2; bit > 0; bit /= 2)
-    for (int k = D - 1; k >= 0; --k) index = 2 * index + ((at[k] & static_cast<std::size_t>(bit)) != 0);
-  return index;
-}
-
-template <int D>
 void Walls<D>::settle(Id i, const Vector<D>& home, double reach) {
   found_.clear();
-  for (const Id w : cells_[cell_at(home)])
+  for (const Id w : cells_[place_on_curve<D>(home, edges_) >> (63 / D - levels_) * D])
     if (walls_[w].clearance(home) < reach) found_.push_back(w);
   near_.replace(i, found_);
 }
@@ -102,10 +91,8 @@ double Walls<D>::reflect(Id i, FlyingSphere<D>& sphere, double growth, double le
   return kick;
 }
 
-template class Walls<2>;
-template class Walls<3>;
-template class Walls<4>;
-template class Walls<5>;
-template class Walls<6>;
+#define BERNAL_INSTANTIATE(D) template class Walls<D>;
+BERNAL_IN_FLYING_DIMENSIONS(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

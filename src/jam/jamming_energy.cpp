@@ -4,9 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include <Eigen/Cholesky>
+
 #include "bernal/domain/boundary.hpp"
 #include "core/every_dimension.hpp"
-#include "jam/invert.hpp"
 
 namespace bernal {
 namespace {
@@ -56,6 +57,20 @@ double smoothed(double overlap, double t) {
 template <int D>
 Eigen::Index at(std::size_t i) {
   return static_cast<Eigen::Index>(D * i);
+}
+
+/// Inverts a symmetric positive definite matrix of n rows in place, 1 <= n <= 8, by its Cholesky factors. It
+/// knows n only when it runs: Eigen's factorisation for a size known beforehand takes the compiler seconds
+/// for each size, and gives the same numbers.
+void invert_positive_definite(double* matrix, int n) {
+  if (n == 1) {  // Eigen would multiply by the reciprocal of the root
+    const double root = std::sqrt(*matrix);
+    *matrix = 1 / root / root;
+    return;
+  }
+  using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8>;
+  Eigen::Map<Block> block(matrix, n, n);
+  block = block.llt().solve(Block::Identity(n, n)).eval();
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "core/every_dimension.hpp"
 #include "jam/jamming_energy.hpp"
 #include "jam/trust_region.hpp"
+#include "work/free_of_overlap.hpp"
 
 namespace bernal {
 namespace {
@@ -39,7 +40,7 @@ class Polish {
     slenderness_ = edges.maxCoeff() / *std::ranges::min_element(spheres.r);
   }
 
-  Polished run() {
+  StageEnd run() {
     soft_.set_level(gentlest_start, 0);
     start_ = std::clamp(soft_.largest_overlap(), gentlest_start, hardest_start);
     double overlap = start_;
@@ -83,7 +84,6 @@ class Polish {
     if (excess() < 0 || excess() > most_let_go) return false;
     std::ptrdiff_t spare = excess();
     const JammingEnergy<D> before = soft_;
-    const Polished reached_before = reached_;
     const double fall = 0.5 * tolerance_ / soft_.largest_overlap();
     soft_.hold(bears_);
     for (;;) {
@@ -101,7 +101,6 @@ class Polish {
     count_contacts();
     if (excess() >= 0 && soft_.largest_overlap() <= tolerance_ && imbalance_ < balanced) return true;
     soft_ = before;
-    reached_ = reached_before;
     return false;
   }
 
@@ -137,8 +136,8 @@ class Polish {
 
   /// Contacts beyond the isostatic number.
   std::ptrdiff_t excess() const {
-    return static_cast<std::ptrdiff_t>(reached_.contacts) -
-           static_cast<std::ptrdiff_t>(D * (soft_.size() - reached_.rattlers - 1) + 1);
+    return static_cast<std::ptrdiff_t>(contacts_) -
+           static_cast<std::ptrdiff_t>(D * (soft_.size() - rattlers_ - 1) + 1);
   }
 
   /// Minimises at one level of pressure. Returns false if cancelled.
@@ -156,9 +155,7 @@ class Polish {
         return false;
       }
       region.step(std::max(1e-6, noise) * soft_.elastic_energy());
-      ++reached_.steps;
     }
-    reached_.products += region.products();
     work_.milestone("polish",
                     std::min(0.99, std::log(overlap / start_) / std::log(0.1 * tolerance_ / start_)),
                     soft_.largest_overlap());
@@ -168,35 +165,31 @@ class Polish {
   /// An overlap ratio that is lost in the rounding of coordinates.
   double resolution() const { return 2 * tolerance::roundoff * slenderness_; }
 
-  Polished result() {
-    reached_.largest_overlap = soft_.largest_overlap();
-    reached_.imbalance = imbalance_;
-    count_contacts();
-    if (cancelled_)
-      reached_.end = StageEnd::cancelled;
-    else if (reached_.largest_overlap > tolerance_ || !(imbalance_ < balanced))
-      reached_.end = StageEnd::hit_limit;
-    return reached_;
+  StageEnd result() const {
+    if (cancelled_) return StageEnd::cancelled;
+    return soft_.largest_overlap() > tolerance_ || !(imbalance_ < balanced) ? StageEnd::hit_limit
+                                                                            : StageEnd::converged;
   }
 
+  /// Spheres that bear no force: fewer than D + 1 contacts, removed until none is left.
   void count_contacts() {
     std::vector<int> held(soft_.size(), D + 1);
     bears_.assign(soft_.size(), 1);
     for (std::size_t loose = 1; loose > 0;) {
       const std::vector<int> last = held;
       std::ranges::fill(held, 0);
-      reached_.contacts = 0;
+      contacts_ = 0;
       for (const auto& c : soft_.contacts()) {
         if (last[c.first] <= D || last[c.second] <= D || !(c.tension > 0)) continue;
         ++held[c.first];
         ++held[c.second];
-        ++reached_.contacts;
+        ++contacts_;
       }
       loose = 0;
-      reached_.rattlers = 0;
+      rattlers_ = 0;
       for (std::size_t i = 0; i < held.size(); ++i) {
         if (held[i] > D) continue;
-        ++reached_.rattlers;
+        ++rattlers_;
         bears_[i] = 0;
         if (last[i] > D) ++loose;
       }
@@ -210,21 +203,47 @@ class Polish {
   bool cancelled_ = false;
   Work& work_;
   std::vector<char> bears_;  // force, by place in soft_
-  Polished reached_;
+  std::size_t rattlers_ = 0;
+  std::size_t contacts_ = 0;  // that bear force between the others; D (N - rattlers - 1) + 1 are isostatic
 };
 
 }  // namespace
 
 template <int D>
-Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work) {
-  if (spheres.empty()) return {};
+StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work) {
+  if (spheres.empty()) return StageEnd::converged;
   Polish<D> act(spheres, edges, tolerance, work);
-  const Polished reached = act.run();
+  const StageEnd end = act.run();
   act.write(spheres, edges);
-  return reached;
+  return end;
 }
 
-#define BERNAL_INSTANTIATE(D) template Polished polish<D>(Spheres<D>&, Vector<D>&, double, Work&);
+template <int D>
+bool lies_within(const Spheres<D>& spheres, const Vector<D>& edges, const Vector<D>& target) {
+  const double rounding = tolerance::growth(target.maxCoeff() / std::ranges::min(spheres.r));
+  return (target.array() >= edges.array() * (1 + rounding)).all();
+}
+
+template <int D>
+StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish_to,
+                                Work& work) {
+  if (polish_to > 0 && end == StageEnd::converged) {
+    end = polish<D>(spheres, edges, polish_to, work);
+    free_of_overlap<D>(spheres, edges, work);
+  }
+  work.needed_volume = edges.prod();
+  if (work.target_edges && lies_within<D>(spheres, edges, *work.target_edges))
+    resize_box<D>(spheres, edges, *work.target_edges);
+  work.spheres = std::move(spheres);
+  work.edges = edges;
+  work.placed = true;
+  return end;
+}
+
+#define BERNAL_INSTANTIATE(D)                                                                  \
+  template StageEnd polish<D>(Spheres<D>&, Vector<D>&, double, Work&);                         \
+  template StageEnd finish_in_periodic_box<D>(Spheres<D>, Vector<D>, StageEnd, double, Work&); \
+  template bool lies_within<D>(const Spheres<D>&, const Vector<D>&, const Vector<D>&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

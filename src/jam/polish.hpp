@@ -1,25 +1,7 @@
 #pragma once
-#include <cstddef>
-#include <cstdint>
-
 #include "work/work.hpp"
 
 namespace bernal {
-
-/// What `polish` reached.
-struct Polished {
-  StageEnd end = StageEnd::converged;
-  /// Largest overlap ratio (ri + rj - d) / (ri + rj) of a pair, images included.
-  double largest_overlap = 0;
-  /// What is missing to equilibrium: the force left on the spheres, relative to the forces of the contacts.
-  double imbalance = 0;
-  /// Spheres that bear no force: fewer than D + 1 contacts, removed until none is left.
-  std::size_t rattlers = 0;
-  /// Contacts that bear force between the others. D (N - rattlers - 1) + 1 of them make a packing isostatic.
-  std::size_t contacts = 0;
-  std::uint64_t steps = 0;     ///< Newton steps
-  std::uint64_t products = 0;  ///< of the Hessian with a vector: what a polish costs
-};
 
 /// Takes spheres that overlap a little, or are a little apart, to a jammed, isostatic packing: afterwards the
 /// largest overlap ratio of a pair is at most `tolerance`, and every contact that bears force is closed to
@@ -43,6 +25,17 @@ struct Polished {
 /// 1,000 spheres, more than half a minute for 3,000, more than a minute for 10,000. Cancelled, it ends within
 /// a step. Memory about 1 kB a sphere. One thread; the same bits each time.
 template <int D>
-Polished polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work);
+StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work);
+
+/// The end of every stage that lets a periodic box follow from the packing: polishes contacts to the overlap
+/// ratio `polish`, if that is above 0; grows or shrinks the box until nothing overlaps more than is allowed;
+/// moves the spheres apart in proportion where the scene asks for a larger box; and hands all of it to
+/// `work`. Returns `end`, or why polishing ended. Cost: a look at all near pairs, and `polish`.
+template <int D>
+StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish, Work& work);
+
+/// Whether the target edges have room for a box of these edges, and for the rounding of moving to them.
+template <int D>
+bool lies_within(const Spheres<D>& spheres, const Vector<D>& edges, const Vector<D>& target);
 
 }  // namespace bernal

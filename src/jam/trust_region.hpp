@@ -61,7 +61,6 @@ class TrustRegion {
     return false;
   }
 
-  double radius() const { return radius_; }
   std::uint64_t products() const { return products_; }
 
  private:

@@ -16,7 +16,7 @@
 #include "run/conclude.hpp"
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
-#include "work/keepsake.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
 namespace {

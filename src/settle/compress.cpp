@@ -6,8 +6,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "settle/slide.hpp"
-#include "work/stage_entry.hpp"
+#include "settle/mover.hpp"
 
 namespace bernal {
 namespace {
@@ -59,7 +58,7 @@ class GlobalSweeps {
   void sweep() {
     for (Bed::Id i = 0; i < bed_.size(); ++i) {
       if (!awake_[i]) continue;
-      const double way = slide(mover_, i, direction_, std::numeric_limits<double>::infinity());
+      const double way = mover_.slide(i, direction_, std::numeric_limits<double>::infinity());
       ways_ += way;
       awake_[i] = way > resting * bed_[i].r;
       if (way <= waking * bed_[i].r) continue;
@@ -93,7 +92,7 @@ void sweep_at_random(Bed& bed, const Vector<3>& pull, double tilt, const Vector<
     u -= u.dot(across) * across;
     u = pull + tilt * u;
     const double length = u.norm();
-    if (length > 1e-6) slide(mover, i, u / length, limit);
+    if (length > 1e-6) mover.slide(i, u / length, limit);
   }
 }
 
@@ -113,23 +112,24 @@ void require_support(const Boundary<3>& boundary, const Vector<3>& direction) {
               "\"relax\" or \"grow\"");
 }
 
-StageEnd compress(Work& work, const CompressOptions& options) {
+StageEnd compress(Work& work, const Compress& options) {
   Bed& bed = work.bed();
-  require_support(bed.container().boundary(), options.direction);
+  const Vector<3> direction = options.direction.normalized();
+  require_support(bed.container().boundary(), direction);
   if (bed.size() == 0) return StageEnd::converged;
   const EffectTimer timer(work.effects["compression"]);
-  const double floor = floor_of(bed.container().bounds(), options.direction);
+  const double floor = floor_of(bed.container().bounds(), direction);
   const double radius = bed.mean_radius();
   Random random = work.random(Stream::compress);
-  bed.sort_by_height(options.direction);
-  GlobalSweeps global(bed, options.direction);
+  bed.sort_by_height(direction);
+  GlobalSweeps global(bed, direction);
 
   double box = options.buffer * radius;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     if (work.monitor.stop()) return StageEnd::cancelled;
     box = bed.enclose(box);
     global.wake_all();  // the ends of the old boxes held some
-    const double before = bed.potential(options.direction);
+    const double before = bed.potential(direction);
     const double way = global.settle();
     const bool resting_bed = way < at_rest * radius;
     const double factor = bed.mean_neighbors() < few_neighbors ? 2 : 0.5;
@@ -137,12 +137,12 @@ StageEnd compress(Work& work, const CompressOptions& options) {
     box = way > moving * box ? std::max(least_box, factor * box) : least_box;
     if (resting_bed && options.tilt > 0) {
       for (int k = 0; k < local_sweeps; ++k) {
-        sweep_at_random(bed, options.direction, options.tilt, Vector<3>::Zero(), 2 * radius, random);
+        sweep_at_random(bed, direction, options.tilt, Vector<3>::Zero(), 2 * radius, random);
       }
       global.wake_all();
       global.settle();
     }
-    const double after = bed.potential(options.direction);
+    const double after = bed.potential(direction);
     work.milestone("compress");
     if (resting_bed && before - after < options.tolerance * (before - floor)) return StageEnd::converged;
   }
@@ -162,9 +162,8 @@ std::vector<schema::Key> compression_keys() {
                  {0.01, 10})};
 }
 
-Compress with_unit_direction(Compress options) {
-  options.direction.normalize();
-  return options;
+PlanItem compressing(std::string when) {
+  return {"compression", std::move(when), "about 0.5 µs a sphere and sweep"};
 }
 
 template <>
@@ -174,12 +173,8 @@ const StageEntry& entry_of<Compress>() {
                                       .help = "move every sphere along a direction until it touches",
                                       .keys = compression_keys()},
                                      {.in_bed = true}),
-      .act_in_bed = act(
-          +[](Work& work, const Compress& options) { return compress(work, with_unit_direction(options)); }),
-      .bed_effects = {
-          {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
-          {"compression", "to first touch along the global and local directions",
-           "about 0.5 µs a sphere and sweep"}}};
+      .act_in_bed = act(compress),
+      .bed_effects = {neighbor_lists, compressing("to first touch along the global and local directions")}};
   return entry;
 }
 

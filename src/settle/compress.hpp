@@ -1,13 +1,10 @@
 #pragma once
 #include <vector>
 
-#include "bernal/settle/compress.hpp"
-#include "scene/entry.hpp"
-#include "work/work.hpp"
+#include "bernal/settle/shake.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
-
-using CompressOptions = Compress;
 
 /// Compression (Han, Feng & Owen 2005, section 2.1). In an iteration all spheres get a bounding box and all
 /// neighbour lists are built together; then sphere after sphere, from the bottom up, moves along the global
@@ -21,16 +18,20 @@ using CompressOptions = Compress;
 /// a packing fraction of 0.527 and with local directions to 0.58; the sleeping of spheres whose surroundings
 /// have not changed; and the skin. Cost: about 0.5 µs a sphere and sweep; an iteration makes up to 8 sweeps
 /// along the global direction, over the spheres that are awake, and 10 along local directions.
-///
-/// Precondition: the direction is of unit length.
-StageEnd compress(Work& work, const CompressOptions& options);
+StageEnd compress(Work& work, const Compress& options);
+
+/// Shaking (Han, Feng & Owen 2005): arches that hold against the compression direction are broken by
+/// iterations in which every sphere moves along a random local direction *perpendicular* to the global one,
+/// to first touch and on along its contacts; then the bed is compressed again. Cost: 10 sweeps a round, and
+/// those of the compression.
+StageEnd shake(Work& work, const Shake& options);
 
 /// Throws Error{bad_scene} if spheres that are pressed along `direction` would fall for ever: it must have no
 /// component along an axis that repeats itself.
 void require_support(const Boundary<3>& boundary, const Vector<3>& direction);
-/// What every stage has that ends with a compression: its keys; its options, as the engine takes them.
+/// What every stage has that ends with a compression: its keys, and its item of the plan.
 std::vector<schema::Key> compression_keys();
-Compress with_unit_direction(Compress options);
+PlanItem compressing(std::string when);
 
 /// One sweep: every sphere slides along a random direction of its own, normalised
 /// `pull` + `tilt`·(random unit vector, its part along `across` removed if that is not zero), at most

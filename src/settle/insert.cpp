@@ -11,7 +11,7 @@ constexpr std::size_t milestone_every = 8192;
 
 }  // namespace
 
-StageEnd insert(Work& work, const InsertOptions& options) {
+StageEnd insert(Work& work, const Insert& options) {
   const EffectTimer timer(work.effects["insertion"]);
   Bed& bed = work.bed();
   Supply& supply = *work.supply;

@@ -39,7 +39,14 @@ class Mover {
   /// Moves the sphere along u by a length that `free_path` allowed.
   void advance(const Vector<3>& u, double length);
 
-  double skin() const { return bed_.skin(); }
+  /// Moves sphere i to first touch along the unit vector `direction`, and on along what its contacts leave of
+  /// that direction: in the plane of one contact or along the line of two, until they hold it, the `limit` on
+  /// the length of the way is used up or its bounding box ends. That is rolling without friction. Every leg
+  /// is one `free_path`, so no gap ever falls below skin/2.
+  ///
+  /// Returns how far the sphere is from where it was. Cost: one pass over the neighbours, and one more a leg.
+  double slide(Bed::Id i, const Vector<3>& direction, double limit);
+
   const Bed::Ball& ball() const { return bed_.balls_[i_]; }
 
  private:

@@ -1,9 +1,9 @@
-#include "settle/refill.hpp"
+#include "bernal/settle/refill.hpp"
 
 #include <cmath>
 
 #include "bernal/core/dimension.hpp"
-#include "work/stage_entry.hpp"
+#include "settle/compress.hpp"
 
 namespace bernal {
 namespace {
@@ -85,9 +85,13 @@ void fill_free_space(Work& work, std::vector<Probe>& probes) {
   }
 }
 
-}  // namespace
-
-StageEnd refill(Work& work, const RefillOptions& options) {
+/// Refilling (Han, Feng & Owen 2005, section 2): spheres still to come are put wherever the free space holds
+/// them, the bed is compressed and shaken, and so on until the domain is full or the target is reached.
+///
+/// In a round, random places are probed for the largest sphere that each of them holds; then the spheres to
+/// come, in their order, take the first place that is large enough. Cost: O(1) a probe, and that of the
+/// compression.
+StageEnd refill(Work& work, const Refill& options) {
   require_support(work.bed().container().boundary(), options.shake.compress.direction);
   if (work.supply->exhausted()) return StageEnd::converged;
   std::vector<Probe> probes = draw_probes(work, options.probes);
@@ -104,6 +108,8 @@ StageEnd refill(Work& work, const RefillOptions& options) {
   }
   return StageEnd::hit_limit;
 }
+
+}  // namespace
 
 template <>
 const StageEntry& entry_of<Refill>() {
@@ -125,16 +131,11 @@ const StageEntry& entry_of<Refill>() {
                                      "longest way in one sweep of shaking, in mean radii", above(0, 100))},
                              inside(&Shake::compress, compression_keys()))))},
           {.in_bed = true, .reaches = Reaches::settled}),
-      .act_in_bed = act(+[](Work& work, const Refill& options) {
-        Refill filling = options;
-        filling.shake.compress = with_unit_direction(options.shake.compress);
-        return refill(work, filling);
-      }),
-      .bed_effects = {
-          {"refilling", "random probes of the free space", "O(1) a probe"},
-          {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
-          {"compression", "after each refilling", "about 0.5 µs a sphere and sweep"},
-          {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}}};
+      .act_in_bed = act(refill),
+      .bed_effects = {{"refilling", "random probes of the free space", "O(1) a probe"},
+                      neighbor_lists,
+                      compressing("after each refilling"),
+                      {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}}};
   return entry;
 }
 

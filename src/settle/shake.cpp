@@ -1,6 +1,4 @@
-#include "settle/shake.hpp"
-
-#include "work/stage_entry.hpp"
+#include "settle/compress.hpp"
 
 namespace bernal {
 namespace {
@@ -9,9 +7,9 @@ constexpr int sweeps_a_round = 10;
 
 }  // namespace
 
-StageEnd shake(Work& work, const ShakeOptions& options) {
+StageEnd shake(Work& work, const Shake& options) {
   Bed& bed = work.bed();
-  const Vector<3>& direction = options.compress.direction;
+  const Vector<3> direction = options.compress.direction.normalized();
   require_support(bed.container().boundary(), direction);
   for (int round = 0; round < options.rounds; ++round) {
     if (work.monitor.stop()) return StageEnd::cancelled;
@@ -44,15 +42,11 @@ const StageEntry& entry_of<Shake>() {
                                   above(0, 100))},
                           inside(&Shake::compress, compression_keys()))},
           {.in_bed = true}),
-      .act_in_bed = act(+[](Work& work, const Shake& options) {
-        Shake shaking = options;
-        shaking.compress = with_unit_direction(options.compress);
-        return shake(work, shaking);
-      }),
+      .act_in_bed = act(shake),
       .bed_effects = {
-          {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
+          neighbor_lists,
           {"shaking", "local directions across the global one", "about 0.5 µs a sphere and sweep"},
-          {"compression", "after each round", "about 0.5 µs a sphere and sweep"}}};
+          compressing("after each round")}};
   return entry;
 }
 

@@ -15,7 +15,15 @@ constexpr double share_of_margin = 0.97;
 constexpr int sweeps_a_look = 25;
 /// Stuck: at so many looks in a row the mean squeeze is more than this share of the least so far.
 constexpr double hardly_freer = 0.85;
-constexpr int most_slow_looks = 2;
+constexpr int patience = 2;
+/// Stirring helps as long as the mean squeeze falls below this share of the least so far.
+constexpr double progress = 0.9;
+/// Mean squeeze at which there are so many spheres too many that stirring is of no use.
+constexpr double hopeless = 0.02;
+/// The share of the spheres that is put elsewhere at a time.
+constexpr double relocated = 0.002;
+/// Largest overlap ratio, in mean squeezes, above which it is only a few spheres that are stuck.
+constexpr double local_jam = 40;
 constexpr int burst_sweeps = 50;
 /// Sum of squared overlap ratios of a sphere that will not find its way by itself.
 constexpr float severe_squeeze = 0.05f;
@@ -31,9 +39,9 @@ Crowd<Ground>::Crowd(Ground ground, Spheres<D> spheres)
 template <class Ground>
 void Crowd<Ground>::measure() {
   const Pace pace = pace_for(0);
-  ground_.wear_lists(pace.wear);
-  largest_overlap_ = ground_.sweep_and_measure(pace.omega);
-  squeeze_ = ground_.squeeze();
+  ground_.engine().wear_lists(pace.wear);
+  largest_overlap_ = ground_.engine().sweep_and_measure(pace.omega * D / 3);
+  squeeze_ = ground_.engine().squeeze();
   ++sweeps_;
   double sum = 0;
   severe_ = 0;
@@ -45,41 +53,60 @@ void Crowd<Ground>::measure() {
 }
 
 template <class Ground>
-typename Crowd<Ground>::Rest Crowd<Ground>::settle(const Monitor& monitor,
-                                                   const std::function<void()>& milestone,
-                                                   double most_sweeps) {
-  Rest rest = Rest::stuck;
+StageEnd Crowd<Ground>::settle(const Monitor& monitor, const std::function<void()>& milestone,
+                               double most_sweeps) {
+  StageEnd end = StageEnd::full;
   double least_squeeze = 1e300;
-  for (int slow = 0; slow < most_slow_looks;) {
+  for (int slow = 0; slow < patience;) {
     const Pace pace = pace_for(largest_overlap_);
-    ground_.wear_lists(pace.wear);
-    bool cancelled = false;
-    for (int k = 1; k < sweeps_a_look && !cancelled; ++k) {
-      ground_.sweep(pace.omega);
+    ground_.engine().wear_lists(pace.wear);
+    for (int k = 1; k < sweeps_a_look && end != StageEnd::cancelled; ++k) {
+      ground_.engine().sweep(pace.omega * D / 3);
       ++sweeps_;
-      cancelled = monitor.stop();
+      if (monitor.stop()) end = StageEnd::cancelled;
     }
-    if (cancelled) {
-      rest = Rest::cancelled;
-      break;
-    }
+    if (end == StageEnd::cancelled) break;
     measure();
     if (milestone) milestone();
-    if (largest_overlap_ < share_of_margin * margin()) rest = Rest::free;
-    if (rest == Rest::stuck && sweeps_ > most_sweeps) rest = Rest::over;
-    if (rest != Rest::stuck) break;
+    if (largest_overlap_ < share_of_margin * ground_.margin())
+      end = StageEnd::converged;
+    else if (sweeps_ > most_sweeps)
+      end = StageEnd::hit_limit;
+    if (end != StageEnd::full) break;
     slow = mean_squeeze_ > hardly_freer * least_squeeze ? slow + 1 : 0;
     // May swing: only a new low counts, so that this ends.
     least_squeeze = std::min(least_squeeze, mean_squeeze_);
   }
   ground_.read_places(spheres_);
-  return rest;
+  return end;
+}
+
+template <class Ground>
+StageEnd Crowd<Ground>::relax(const Stirring& how, const Monitor& monitor, Random& random) {
+  double least_squeeze = 1e300;
+  for (int failures = 0;;) {
+    const StageEnd end = settle(monitor, how.milestone, how.most_sweeps);
+    if (end == StageEnd::cancelled || (end == StageEnd::converged && how.is_free())) return end;
+    if (how.is_over()) return StageEnd::hit_limit;
+    if (mean_squeeze_ < progress * least_squeeze) {
+      least_squeeze = mean_squeeze_;
+      failures = 0;
+    } else if (++failures > (mean_squeeze_ > hopeless ? how.hopeless_patience : how.patience)) {
+      return StageEnd::full;
+    }
+    // Bursts do most; what they do not help to is where there is no room, or in the wrong chamber.
+    const bool local = severe_ > 0 || largest_overlap_ > local_jam * mean_squeeze_;
+    if (failures % how.failures_a_burst == 0 && !local)
+      burst();
+    else
+      relocate(relocated, random);
+  }
 }
 
 template <class Ground>
 void Crowd<Ground>::burst() {
   ground_.swell(Ground::burst_swelling);
-  for (int k = 0; k < burst_sweeps; ++k) ground_.sweep(pace_for(0).omega);
+  for (int k = 0; k < burst_sweeps; ++k) ground_.engine().sweep(pace_for(0).omega * D / 3);
   sweeps_ += burst_sweeps;
   ground_.swell(1);
 }
@@ -105,8 +132,8 @@ void Crowd<Ground>::relocate(double share, Random& random) {
 }
 
 template <class Ground>
-void Crowd<Ground>::drop_last(std::size_t count, Random& random) {
-  count = std::min(count, size() - 1);
+void Crowd<Ground>::drop_last(double most, Random& random) {
+  const std::size_t count = std::min(std::max<std::size_t>(1, static_cast<std::size_t>(most)), size() - 1);
   ground_.read_places(spheres_);
   spheres_.resize(size() - count);
   squeeze_.resize(size());
@@ -115,7 +142,7 @@ void Crowd<Ground>::drop_last(std::size_t count, Random& random) {
 }
 
 template <class Ground>
-std::size_t Crowd<Ground>::add(std::span<const double> radii, Random& random) {
+bool Crowd<Ground>::add(std::span<const double> radii, Random& random) {
   ground_.read_places(spheres_);
   std::vector<std::size_t> order(radii.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -123,12 +150,12 @@ std::size_t Crowd<Ground>::add(std::span<const double> radii, Random& random) {
   std::vector<double> descending;
   for (const std::size_t i : order) descending.push_back(radii[i]);
   const std::vector<Vector<D>> holes = ground_.holes_for(descending, spheres_, random);
-  if (holes.size() < radii.size()) return 0;
-  std::vector<Vector<D>> place(radii.size());
-  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = holes[k];
-  for (std::size_t i = 0; i < radii.size(); ++i) spheres_.push_back(place[i], radii[i]);
+  if (holes.size() < radii.size()) return false;
+  const std::size_t before = size();
+  for (const double r : radii) spheres_.push_back(Vector<D>::Zero(), r);
+  for (std::size_t k = 0; k < order.size(); ++k) spheres_.set_center(before + order[k], holes[k]);
   ground_.place(spheres_);
-  return radii.size();
+  return true;
 }
 
 template <class Ground>
@@ -138,13 +165,10 @@ void Crowd<Ground>::restore(Spheres<D> spheres) {
 }
 
 template class Crowd<ContainerGround>;
-#define BERNAL_INSTANTIATE(D)                                                                           \
-  template Crowd<BoxGround<D>>::Crowd(BoxGround<D>, Spheres<D>);                                        \
-  template Crowd<BoxGround<D>>::Rest Crowd<BoxGround<D>>::settle(const Monitor&,                        \
-                                                                 const std::function<void()>&, double); \
-  template void Crowd<BoxGround<D>>::burst();                                                           \
-  template void Crowd<BoxGround<D>>::relocate(double, Random&);                                         \
-  template void Crowd<BoxGround<D>>::drop_last(std::size_t, Random&);
+#define BERNAL_INSTANTIATE(D)                                                             \
+  template Crowd<BoxGround<D>>::Crowd(BoxGround<D>, Spheres<D>);                          \
+  template StageEnd Crowd<BoxGround<D>>::relax(const Stirring&, const Monitor&, Random&); \
+  template void Crowd<BoxGround<D>>::drop_last(double, Random&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -8,10 +9,25 @@
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
-#include "soft/box_ground.hpp"
-#include "soft/container_ground.hpp"
+#include "soft/ground.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
+
+/// How what is stuck is stirred, and for how long.
+struct Stirring {
+  double patience;           ///< so often in a row it may leave the spheres no freer than before
+  double hopeless_patience;  ///< and this often while there are so many too many that it is of no use
+  int failures_a_burst;      ///< of attempts in a row that fail one in so many is followed by a burst
+  std::function<void()> milestone;
+  std::function<bool()> is_over;                                 ///< asked between two attempts
+  double most_sweeps = std::numeric_limits<double>::infinity();  ///< and within each
+  std::function<bool()> is_free = [] { return true; };  ///< for certain, as far as the engine can tell
+};
+
+/// What is taken out where not all spheres find room, in mean squeezes times spheres; and the factor from one
+/// time to the next.
+inline constexpr double taken_out = 0.7, taken_out_faster = 1.25;
 
 /// Spheres that overlap in a domain of fixed size, and what can be done about that. The ground they stand on,
 /// a container or a box, knows the engine that pushes them apart, and the holes between them.
@@ -23,13 +39,6 @@ template <class Ground>
 class Crowd {
  public:
   static constexpr int D = Ground::dimension;
-  enum class Rest {
-    free,   ///< of overlap
-    stuck,  ///< what overlaps has nowhere to go
-    over,   ///< the limit on sweeps came first
-    cancelled,
-  };
-
   /// Precondition: there are spheres, with centres where the ground wants them.
   Crowd(Ground ground, Spheres<D> spheres);
 
@@ -37,10 +46,14 @@ class Crowd {
   const Spheres<D>& spheres() const { return spheres_; }
   std::size_t size() const { return spheres_.size(); }
 
-  /// Sweeps until the spheres are free of overlap or hardly get any freer, or there have been more than
-  /// `most_sweeps` in all. `milestone` is called now and then.
-  Rest settle(const Monitor& monitor, const std::function<void()>& milestone = {},
-              double most_sweeps = std::numeric_limits<double>::infinity());
+  /// Sweeps until the spheres are free of overlap, `converged`, or hardly get any freer, `full`, or there
+  /// have been more than `most_sweeps` in all, `hit_limit`. `milestone` is called now and then.
+  StageEnd settle(const Monitor& monitor, const std::function<void()>& milestone = {},
+                  double most_sweeps = std::numeric_limits<double>::infinity());
+
+  /// Settles and stirs again and again, until the spheres are free of overlap, it does not help any more, or
+  /// it is over.
+  StageEnd relax(const Stirring& how, const Monitor& monitor, Random& random);
 
   /// Sweeps with larger radii for a while and then goes back, which shakes what is stuck out of its place.
   void burst();
@@ -49,24 +62,22 @@ class Crowd {
   /// largest holes, the largest first.
   void relocate(double share, Random& random);
 
-  /// Takes away the last `count` spheres, and puts as many that are squeezed most into holes: so the places
-  /// that become empty are those where there is least room.
-  void drop_last(std::size_t count, Random& random);
+  /// Takes away the last `count` spheres, at least one and never all, and puts as many that are squeezed most
+  /// into holes: so the places that become empty are those where there is least room.
+  void drop_last(double count, Random& random);
 
-  /// Adds spheres in the largest holes. Returns how many, which is none if there were not holes for all.
-  std::size_t add(std::span<const double> radii, Random& random);
+  /// Adds spheres in the largest holes, if there are holes for all.
+  bool add(std::span<const double> radii, Random& random);
 
   /// Puts everything back to where `spheres` are: fewer, perhaps.
   void restore(Spheres<D> spheres);
 
   /// Of the spheres as they are relaxed, which are a little larger than asked for.
   double largest_overlap() const { return largest_overlap_; }
-  /// What these overlap.
-  double margin() const { return ground_.margin(); }
+  /// How far that is from 1 to where the spheres are free.
+  double done() const { return std::log(largest_overlap_) / std::log(ground_.margin()); }
   /// Mean over the spheres of the root of the sum of their squared overlap ratios.
   double mean_squeeze() const { return mean_squeeze_; }
-  /// How many spheres overlap so much that they will not find a place by themselves.
-  std::size_t severely_squeezed() const { return severe_; }
 
   double sweeps() const { return sweeps_; }
   std::uint64_t list_builds() const { return ground_.list_builds(); }
@@ -80,7 +91,7 @@ class Crowd {
   Spheres<D> spheres_;
   std::vector<float> squeeze_;  // of each sphere the sum of its squared overlap ratios, when last measured
   double largest_overlap_ = 1, mean_squeeze_ = 1;
-  std::size_t severe_ = 0;
+  std::size_t severe_ = 0;  // so many overlap so much that they will not find a place by themselves
   double sweeps_ = 0;
 };
 

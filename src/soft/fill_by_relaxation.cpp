@@ -1,8 +1,8 @@
 #include "soft/fill_by_relaxation.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,26 +10,17 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "soft/crowd.hpp"
-#include "work/overlapping.hpp"
-#include "work/resize_box.hpp"
+#include "work/free_of_overlap.hpp"
+#include "work/random_insertion.hpp"
 
 namespace bernal {
 namespace {
 
-/// Stirring helps as long as the mean squeeze falls below this share of the least so far.
-constexpr double progress = 0.9;
-/// Mean squeeze at which there are so many spheres too many that stirring is of no use.
-constexpr double hopeless = 0.02;
-constexpr int patience_when_hopeless = 3;
-/// The share of the spheres that is put elsewhere at a time.
-constexpr double relocated = 0.002;
-/// Largest overlap ratio, in mean squeezes, above which it is only a few spheres that are stuck.
-constexpr double local_jam = 40;
-/// What is taken out when not all fit, in mean squeezes times spheres; and the factor from one time to the
-/// next.
-constexpr double taken_out = 0.7, taken_out_faster = 1.25;
-/// Of the spheres, at most, at a time: squeeze says little where a box is asked to hold several times its
-/// fill.
+/// So often in a row stirring may leave the spheres no freer than before; and where there are far too many.
+constexpr double patience = 20, hopeless_patience = 3;
+constexpr int failures_a_burst = 2;
+/// Taken out of the spheres, at most, at a time: squeeze says little where a box is asked to hold several
+/// times its fill.
 constexpr double most_taken_out = 0.2;
 /// For that there are so many sweeps more, in those of the limit.
 constexpr double more_sweeps = 1;
@@ -37,9 +28,6 @@ constexpr double more_sweeps = 1;
 constexpr double jitter = 1e-6;
 /// Radii that centres stay away from walls, for the rounding of who adds them up.
 constexpr double before_wall = 1 + 1e-12;
-/// In place of the number of overlaps of a sphere that has been taken away.
-constexpr auto gone = static_cast<std::size_t>(-1);
-
 /// Rods along a line, in random order, with gaps between them as they come by chance but none of which is
 /// less than half of the mean. They overlap where they have to.
 Spheres<1> in_line(Spheres<1> spheres, double edge, double allowed, Random& random) {
@@ -86,20 +74,9 @@ Spheres<D> starting_places(const Work& work, Random& random) {
   } else if constexpr (D == 1) {
     spheres = in_line(std::move(spheres), edges[0], work.allowed_overlap, random);
   } else {
-    const Bounds<D> box{Vector<D>::Zero(), edges};
-    for (std::size_t i = 0; i < spheres.size(); ++i) spheres.set_center(i, uniform_point(random, box));
+    place_at_random(spheres, edges, random);
   }
   move_between_walls<D>(spheres, edges, work);
-  return spheres;
-}
-
-/// Moves by nothing that matters, so that a lattice or a line of spheres does not last for ever.
-template <int D>
-Spheres<D> shaken(Spheres<D> spheres, const Vector<D>& edges, Random& random) {
-  const Boundary<D> boundary{edges};
-  const double step = jitter * std::ranges::min(spheres.r);
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    spheres.set_center(i, boundary.wrap(spheres.center(i) + step * uniform_direction<D>(random)));
   return spheres;
 }
 
@@ -113,27 +90,22 @@ Spheres<D> without_overlap(const Spheres<D>& spheres, const Vector<D>& edges, do
     others[j].push_back(i);
   }
   std::vector<std::size_t> overlaps(spheres.size());
-  for (std::size_t i = 0; i < spheres.size(); ++i) overlaps[i] = others[i].size();
-  // By number of overlaps; an entry is outdated where that has fallen since.
-  std::vector<std::pair<std::size_t, std::size_t>> heap;
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    if (overlaps[i] > 0) heap.emplace_back(overlaps[i], i);
-  std::ranges::make_heap(heap);
-  while (!heap.empty()) {
-    std::ranges::pop_heap(heap);
-    const auto [count, i] = heap.back();
-    heap.pop_back();
-    if (count != overlaps[i]) continue;
-    overlaps[i] = gone;
-    for (const std::uint32_t j : others[i]) {
-      if (overlaps[j] == gone || --overlaps[j] == 0) continue;
-      heap.emplace_back(overlaps[j], j);
-      std::ranges::push_heap(heap);
-    }
+  std::set<std::pair<std::size_t, std::uint32_t>> most;  // ascending in the number of overlaps
+  for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+    overlaps[i] = others[i].size();
+    if (overlaps[i] > 0) most.emplace(overlaps[i], i);
+  }
+  std::vector<bool> gone(spheres.size(), false);
+  while (!most.empty()) {
+    const std::uint32_t i = most.rbegin()->second;
+    most.erase(std::prev(most.end()));
+    gone[i] = true;
+    for (const std::uint32_t j : others[i])
+      if (most.erase({overlaps[j], j}) > 0 && --overlaps[j] > 0) most.emplace(overlaps[j], j);
   }
   Spheres<D> left;
   for (std::size_t i = 0; i < spheres.size(); ++i)
-    if (overlaps[i] == 0) left.push_back(spheres.center(i), spheres.r[i]);
+    if (!gone[i]) left.push_back(spheres.center(i), spheres.r[i]);
   return left;
 }
 
@@ -146,11 +118,10 @@ class Filling {
         most_sweeps_(options.sweeps),
         random_(random),
         edges_(*work.target_edges),
-        crowd_(BoxGround<D>(edges_, work.allowed_overlap, work.walls),
-               shaken<D>(std::move(spheres), edges_, random_)) {}
+        crowd_(BoxGround<D>(edges_, work.allowed_overlap, work.walls), shaken(std::move(spheres))) {}
 
   StageEnd run() {
-    const StageEnd end = relax(options_.patience);
+    const StageEnd end = relax(patience);
     if (end != StageEnd::converged && end != StageEnd::cancelled) take_out(end);
     work_.effects["neighbour lists"].calls += crowd_.list_builds();
     work_.spheres = without_overlap<D>(crowd_.spheres(), edges_, work_.allowed_overlap);
@@ -158,33 +129,25 @@ class Filling {
   }
 
  private:
-  using Rest = typename CrowdInBox<D>::Rest;
+  /// Moved by nothing that matters, so that a lattice or a line of spheres does not last for ever.
+  Spheres<D> shaken(Spheres<D> spheres) {
+    displace_at_random<D>(spheres, edges_, work_.walls, jitter * std::ranges::min(spheres.r), random_);
+    return spheres;
+  }
 
   /// Settles and stirs.
-  StageEnd relax(int patience) {
-    double least_squeeze = 1e300;
-    for (int failures = 0;;) {
-      const Rest rest = crowd_.settle(work_.monitor, {}, most_sweeps_);
-      report();
-      if (rest == Rest::cancelled) return StageEnd::cancelled;
-      if (rest == Rest::free && overlapping<D>(crowd_.spheres(), edges_, work_.allowed_overlap).empty())
-        return StageEnd::converged;
-      if (crowd_.sweeps() > most_sweeps_) return StageEnd::hit_limit;
-      if (crowd_.mean_squeeze() < progress * least_squeeze) {
-        least_squeeze = crowd_.mean_squeeze();
-        failures = 0;
-      } else if (++failures >
-                 (crowd_.mean_squeeze() > hopeless ? std::min(patience, patience_when_hopeless) : patience)) {
-        return StageEnd::full;
-      }
-      // Bursts do most; what they do not help to is where there is no room.
-      const bool local =
-          crowd_.severely_squeezed() > 0 || crowd_.largest_overlap() > local_jam * crowd_.mean_squeeze();
-      if (failures % 2 == 0 && !local)
-        crowd_.burst();
-      else
-        crowd_.relocate(relocated, random_);
-    }
+  StageEnd relax(double patience_now) {
+    const auto is_free = [this] {
+      return overlapping<D>(crowd_.spheres(), edges_, work_.allowed_overlap).empty();
+    };
+    return crowd_.relax({.patience = patience_now,
+                         .hopeless_patience = std::min(patience_now, hopeless_patience),
+                         .failures_a_burst = failures_a_burst,
+                         .milestone = [this] { report(); },
+                         .is_over = [this] { return crowd_.sweeps() > most_sweeps_; },
+                         .most_sweeps = most_sweeps_,
+                         .is_free = is_free},
+                        work_.monitor, random_);
   }
 
   /// Fewer and fewer, the last ones first, until the others are free of overlap.
@@ -195,15 +158,16 @@ class Filling {
            crowd_.sweeps() <= most_sweeps_) {
       const double count =
           std::min(share * crowd_.mean_squeeze(), most_taken_out) * static_cast<double>(crowd_.size());
-      crowd_.drop_last(std::max<std::size_t>(1, static_cast<std::size_t>(count)), random_);
+      crowd_.drop_last(count, random_);
       share *= taken_out_faster;
       end = relax(0);
     }
   }
 
   void report() {
-    const double done = std::log(crowd_.largest_overlap()) / std::log(crowd_.margin());
-    work_.milestone("fill", std::clamp(done, 0.0, 0.99), crowd_.largest_overlap());
+    if (crowd_.done() < reported_) return;
+    reported_ = crowd_.done() + 0.005;
+    work_.milestone("fill", std::clamp(crowd_.done(), 0.0, 0.99), crowd_.largest_overlap());
   }
 
   Work& work_;
@@ -212,6 +176,7 @@ class Filling {
   Random random_;
   const Vector<D> edges_;
   CrowdInBox<D> crowd_;
+  double reported_ = 0;
 };
 
 template <int D>

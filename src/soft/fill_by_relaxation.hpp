@@ -5,8 +5,6 @@ namespace bernal {
 
 /// When filling a box that does not take all spheres comes to its end.
 struct FillOptions {
-  /// So often in a row stirring may leave the spheres no freer than before.
-  int patience = 20;
   /// Limit on the sweeps over all spheres.
   double sweeps = 20000;
 };

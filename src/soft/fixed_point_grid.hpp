@@ -1,11 +1,67 @@
 #pragma once
+#include <immintrin.h>
+
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "bernal/core/vector.hpp"
-#include "soft/fixed_point.hpp"
 
 namespace bernal {
+
+/// Registers of 4 or 8 numbers.
+template <int width>
+struct Registers;
+template <>
+struct Registers<4> {
+  using Floats = float __attribute__((vector_size(16)));
+  using Ints = std::int32_t __attribute__((vector_size(16)));
+  using Whole = std::uint32_t __attribute__((vector_size(16)));
+};
+template <>
+struct Registers<8> {
+  using Floats = float __attribute__((vector_size(32)));
+  using Ints = std::int32_t __attribute__((vector_size(32)));
+  using Whole = std::uint32_t __attribute__((vector_size(32)));
+};
+
+/// Those that hold one number for each of D axes; what is beyond D is always 0.
+template <int D>
+using RegistersFor = Registers<D <= 4 ? 4 : 8>;
+
+/// A place in a periodic box: coordinates in whole numbers of edge / 2^32, so that differences wrap round to
+/// the shortest image by themselves.
+template <int D>
+struct FixedPlace {
+  typename RegistersFor<D>::Whole x;
+};
+
+inline std::uint32_t to_fixed(double x, double edge) {
+  const double share = x / edge;
+  return static_cast<std::uint32_t>(
+      static_cast<std::int64_t>(std::llround((share - std::floor(share)) * 0x1p32)));
+}
+
+/// Four components, of which those four apart are added.
+template <class Floats>
+inline __m128 to_four(const Floats& v) {
+  struct Halves {
+    __m128 low, high;
+  };
+  if constexpr (sizeof(Floats) == sizeof(__m128)) {
+    return __builtin_bit_cast(__m128, v);
+  } else {
+    const Halves halves = __builtin_bit_cast(Halves, v);
+    return _mm_add_ps(halves.low, halves.high);
+  }
+}
+
+/// The sums of the components of four vectors.
+inline __m128 sums(__m128 a, __m128 b, __m128 c, __m128 d) {
+  const __m128 ab = _mm_add_ps(_mm_unpacklo_ps(a, b), _mm_unpackhi_ps(a, b));
+  const __m128 cd = _mm_add_ps(_mm_unpacklo_ps(c, d), _mm_unpackhi_ps(c, d));
+  return _mm_add_ps(_mm_movelh_ps(ab, cd), _mm_movehl_ps(cd, ab));
+}
 
 /// Cells over those axes of a periodic box that are worth cutting, for points in fixed point: with k of them
 /// a sphere looks at 3^k cells, and at the share Π (3 / cells) of all spheres. In many dimensions, or where

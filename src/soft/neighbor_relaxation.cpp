@@ -106,18 +106,18 @@ inline typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::away(const 
   return __builtin_convertvector(__builtin_bit_cast(Ints, Whole(to.x - from.x)), Floats) * scale_;
 }
 
+/// Of the distances from four spheres.
 template <int D>
-void NeighborRelaxation<D>::sweep(float omega) {
-  move_all(omega);
+inline __m128 NeighborRelaxation<D>::squares_of(const Place& from, Id a, Id b, Id c, Id d) const {
+  const auto square = [&](Id k) {
+    const Floats way = away(places_[k], from);
+    return to_four(Floats(way * way));
+  };
+  return sums(square(a), square(b), square(c), square(d));
 }
 
 template <int D>
 double NeighborRelaxation<D>::sweep_and_measure(float omega) {
-  return move_all(omega);
-}
-
-template <int D>
-float NeighborRelaxation<D>::move_all(float omega) {
   keep_lists_valid();
   const bool in_images = edges_.minCoeff() < narrow * largest_radius_;
   float largest = 0;
@@ -148,11 +148,7 @@ const typename NeighborRelaxation<D>::Id* NeighborRelaxation<D>::find_overlappin
   Id* end = hits_.data();
   for (std::size_t n = list_[i]; n < list_[i + 1]; n += block) {
     const Id* j = &neighbors_[n];
-    const auto square = [&](Id k) {
-      const Floats d = away(places_[k], me);
-      return to_four(Floats(d * d));
-    };
-    const __m128 squared = sums(square(j[0]), square(j[1]), square(j[2]), square(j[3]));
+    const __m128 squared = squares_of(me, j[0], j[1], j[2], j[3]);
     const __m128 reach = _mm_add_ps(r, _mm_setr_ps(radii_[j[0]], radii_[j[1]], radii_[j[2]], radii_[j[3]]));
     const int near = _mm_movemask_ps(_mm_cmplt_ps(squared, _mm_mul_ps(reach, reach)));
     for (std::size_t k = 0; k < block; ++k) {
@@ -163,22 +159,28 @@ const typename NeighborRelaxation<D>::Id* NeighborRelaxation<D>::find_overlappin
   return end;
 }
 
+/// What sphere j does at that distance; d is the way from it.
+template <int D>
+inline void NeighborRelaxation<D>::add_to(Push& push, Id i, Id j, Floats d, float distance) const {
+  const float reach = radii_[i] + radii_[j], weight = 2 * radii_[j] / reach;
+  const float ratio = 1 - distance / reach;
+  push.squeeze += ratio * ratio;
+  push.largest = ratio > push.largest ? ratio : push.largest;
+  if (!(distance > 0)) {
+    distance = least_distance * reach;
+    d = any_direction(i, j) * distance;
+  }
+  push.sum += d * (weight * (reach / distance - 1));
+  push.contacts += weight;
+}
+
 template <int D>
 typename NeighborRelaxation<D>::Push NeighborRelaxation<D>::push_from_nearest(Id i, const Id* end) const {
   Push push;
   for (const Id* j = hits_.data(); j < end; ++j) {
-    Floats d = away(places_[*j], places_[i]);
+    const Floats d = away(places_[*j], places_[i]);
     const __m128 four = to_four(Floats(d * d));
-    float distance = std::sqrt((four[0] + four[1]) + (four[2] + four[3]));
-    const float reach = radii_[i] + radii_[*j];
-    push.measure(1 - distance / reach);
-    if (!(distance > 0)) {
-      distance = least_distance * reach;
-      d = any_direction(i, *j) * distance;
-    }
-    const float weight = 2 * radii_[*j] / reach;
-    push.sum += d * (weight * (reach / distance - 1));
-    push.contacts += weight;
+    add_to(push, i, *j, d, std::sqrt((four[0] + four[1]) + (four[2] + four[3])));
   }
   return push;
 }
@@ -190,22 +192,16 @@ typename NeighborRelaxation<D>::Push NeighborRelaxation<D>::push_from_images(Id 
   push.contacts =
       std::numeric_limits<float>::min();  // in case the nearest image is a contact to rounding only
   for (const Id* j = hits_.data(); j < end; ++j) {
-    const float reach = radii_[i] + radii_[*j], weight = 2 * radii_[*j] / reach;
+    const float reach = radii_[i] + radii_[*j];
     const Floats nearest = away(places_[*j], places_[i]);
     Vector<D> displacement;
     for (int k = 0; k < D; ++k) displacement[k] = nearest[k];
     boundary.for_each_image(displacement, reach, [&](const Vector<D>& image) {
-      auto distance = static_cast<float>(image.norm());
+      const auto distance = static_cast<float>(image.norm());
       if (!(distance < reach)) return;
-      push.measure(1 - distance / reach);
       Floats d{};
       for (int k = 0; k < D; ++k) d[k] = static_cast<float>(image[k]);
-      if (!(distance > 0)) {
-        distance = least_distance * reach;
-        d = any_direction(i, *j) * distance;
-      }
-      push.sum += d * (weight * (reach / distance - 1));
-      push.contacts += weight;
+      add_to(push, i, *j, d, distance);
     });
   }
   return push;
@@ -286,11 +282,7 @@ void NeighborRelaxation<D>::build_lists() {
     const __m128 blown_up = _mm_set1_ps(radii_[i] + static_cast<float>(skin_));
     for (const auto& row : rows) {
       for (Id j = row.first; j < row.last; j += block) {
-        const auto squares = [&](Id k) {
-          const Floats d = away(places_[k], me);
-          return to_four(Floats(d * d));
-        };
-        const __m128 squared = sums(squares(j), squares(j + 1), squares(j + 2), squares(j + 3));
+        const __m128 squared = squares_of(me, j, j + 1, j + 2, j + 3);
         const __m128 reach = _mm_add_ps(blown_up, _mm_loadu_ps(&radii_[j]));
         int near = _mm_movemask_ps(_mm_cmplt_ps(squared, _mm_mul_ps(reach, reach)));
         if (row.last - j < block) near &= (1 << (row.last - j)) - 1;

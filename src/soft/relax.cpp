@@ -7,11 +7,10 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "core/close_packing.hpp"
-#include "jam/finish_in_periodic_box.hpp"
-#include "soft/relax_fast.hpp"
-#include "soft/relax_in_container.hpp"
-#include "soft/relax_reference.hpp"
-#include "work/resize_box.hpp"
+#include "jam/polish.hpp"
+#include "soft/soft_engine.hpp"
+#include "work/free_of_overlap.hpp"
+#include "work/random_insertion.hpp"
 #include "work/stage_entry.hpp"
 
 namespace bernal {
@@ -24,21 +23,35 @@ constexpr double loose = 0.9;
 constexpr double room_to_grow = 0.03;
 constexpr int most_starts_in_a_loose_box = 20;
 /// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
-constexpr double first_jitter = 1e-6;
+constexpr double jitter = 1e-6;
+
+/// Where the overlap falls linearly with the growth of the box. Earlier, prediction costs contacts.
+constexpr double predictable = 3e-3;
+constexpr double share_of_prediction = 0.9;
+constexpr double longest_predicted = 1.0 / 6;
+/// From so many spheres on more sweeps a growth are not needed for the packing fraction to stay what it is.
+constexpr std::size_t enough = 10000;
+/// What is left of `stop`: a few more growths are cheap, and the packing fraction that the exact growth of
+/// the box at the end takes away is three times the overlap that is left.
+constexpr double share_of_stop = 0.05;
+/// Single precision shows no less.
+constexpr double least_overlap = 4e-6;
 
 /// The paper's phi0, and in other than three dimensions what is as far above random close packing.
 constexpr double dense_start[] = {1.34, 1.13, 0.86, 0.62, 0.42, 0.27, 0.16, 0.093};
 
-}  // namespace
-
-template <>
-const StageEntry& entry_of<Relax>();
-
-namespace {
+constexpr StageTraits traits = {.in_bed = true,
+                                .in_box = true,
+                                .box_between_walls = true,
+                                .prefers_bed = true,
+                                .keeps_sizes = true,
+                                .places_expected = true,
+                                .leaves_overlap = true,
+                                .is_default = true,
+                                .reaches = Reaches::close_packing};
 
 void complete_relax(Relax& relax, Scene& scene, const schema::Section&) {
-  if (!relax.phi0 && !entry_of<Relax>().table.traits.stands_in_bed(scene))
-    relax.phi0 = dense_start[scene.dimension() - 1];
+  if (!relax.phi0 && !traits.stands_in_bed(scene)) relax.phi0 = dense_start[scene.dimension() - 1];
 }
 
 bool is_loose(const Work& work) {
@@ -61,35 +74,78 @@ Vector<dynamic> edges_to_start_from(const Work& work, double phi0) {
   return needed > 1 ? Vector<dynamic>(edges * (needed * (1 + 4 * tolerance::roundoff))) : edges;
 }
 
-template <int D>
-void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random random) {
-  const Bounds<D> bounds{Vector<D>::Zero(), edges};
-  for (std::size_t i = 0; i < spheres.size(); ++i) spheres.set_center(i, uniform_point(random, bounds));
-}
-
 /// Places for spheres that have none. Those of others are moved by nothing that matters, so that a lattice or
 /// a line of spheres does not last for ever.
 template <int D>
 void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& work) {
+  Random random = work.random(Stream::relax);
   if (work.placed) {
     resize_box<D>(spheres, edges, start);
-    shake<D>(spheres, edges, work.walls, first_jitter * std::ranges::max(spheres.r),
-             work.random(Stream::relax));
+    displace_at_random<D>(spheres, edges, work.walls, jitter * std::ranges::max(spheres.r), random);
   } else {
     edges = start;
-    place_at_random<D>(spheres, edges, work.random(Stream::relax));
+    place_at_random<D>(spheres, edges, random);
   }
 }
 
+/// The published relaxation on sorted arrays, with neighbour lists and over-relaxed steps: some hundred times
+/// as fast as the loop of the paper, and a little denser. It differs from that in six things.
+///  - A sphere moves by min(omega / n, 1) times the sum of its n overlaps, omega about 5. The paper's 1 / n
+///  is
+///    a third of a Newton step at the five or six contacts of a packed sphere.
+///  - Of a pair the larger sphere gives way less, in proportion to the radii (SoftKernels::sweep): the mean
+///    over all contacts would leave it where its many small neighbours hold it.
+///  - Spheres are swept in an order in which many can be moved at once.
+///  - Where molr < 0.003, when it falls in proportion with the growth of the box, the next growth is 0.9 of
+///    what the last two predict, at most molr / 6.
+///  - Beyond 10,000 spheres the number of sweeps between two growths stays what it is there: the packing
+///    fraction does so too.
+///  - It ends with overlaps far below `options.stop`.
+/// From four dimensions on, and between walls, spheres are swept one after the other, on lists for one size
+/// (NeighborRelaxation).
+/// Preconditions and results are those of `relax_by_the_book`. Cost: about 13 ns a sphere and sweep, lists
+/// included; 0.07 µs in four dimensions and 0.13 µs in eight, lists not included.
 template <int D>
-StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const RelaxOptions& options) {
-  if (options.method == RelaxMethod::fast && (!work.walls.empty() || fast_path_exists<D>(spheres, edges)))
-    return relax_fast<D>(spheres, edges, work, options);
-  return relax_by_the_book<D>(spheres, edges, work, options);
+StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
+  SoftEngine<D> packing(spheres, edges, 1, work.walls);
+  const int sweeps = sweeps_a_cycle(options.alpha, std::min(spheres.size(), enough));
+  const double stop =
+      std::max({share_of_stop * options.stop, std::min(work.allowed_overlap, options.stop), least_overlap});
+  StageEnd end = StageEnd::converged;
+  for (double molr = 1, last_molr = 0, growth = 0;;) {
+    const Pace pace = pace_for(molr);
+    packing.wear_lists(pace.wear);
+    const float omega = pace.omega * D / 3;
+    for (int k = 1; k < sweeps && end == StageEnd::converged; ++k) {
+      packing.sweep(omega);
+      if (work.monitor.stop()) end = StageEnd::cancelled;
+    }
+    molr = packing.sweep_and_measure(omega);
+    if (end == StageEnd::cancelled || molr < stop) break;
+    const double predicted = growth * molr / (last_molr - molr);
+    growth = molr / options.beta;
+    if (molr < predictable && molr < last_molr)
+      growth = std::max(growth, std::min(share_of_prediction * predicted, longest_predicted * molr));
+    last_molr = molr;
+    packing.grow(1 + growth);
+    work.edges *= 1 + growth;
+    work.milestone("relax", std::min(0.99, std::log(molr) / std::log(stop)), molr);
+  }
+  work.effects["neighbour lists"].calls += packing.builds();
+  packing.write_to(spheres, edges);
+  return end;
 }
 
 template <int D>
-StageEnd relax_in(Work& work, const RelaxOptions& options) {
+StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
+  const bool engine_works = D > 3 || !work.walls.empty() || SoftEngine<D>::is_wide(spheres, edges);
+  return options.method == RelaxMethod::fast && engine_works
+             ? relax_fast<D>(spheres, edges, work, options)
+             : relax_by_the_book<D>(spheres, edges, work, options);
+}
+
+template <int D>
+StageEnd relax_in(Work& work, const Relax& options) {
   const bool by_the_book = options.method == RelaxMethod::reference;
   if (!work.walls.empty() && (by_the_book || options.polish > 0))
     throw Error(ErrorCode::bad_scene,
@@ -106,7 +162,8 @@ StageEnd relax_in(Work& work, const RelaxOptions& options) {
     work.edges = edges;
     end = push_apart<D>(spheres, edges, work, options);
     free_of_overlap<D>(spheres, edges, work);
-    if (end != StageEnd::converged || starts == most_starts || fits<D>(spheres, edges, *work.target_edges))
+    if (end != StageEnd::converged || starts == most_starts ||
+        lies_within<D>(spheres, edges, *work.target_edges))
       break;
     resize_box<D>(spheres, edges, start);
   }
@@ -122,7 +179,7 @@ int sweeps_a_cycle(double alpha, std::size_t spheres) {
   return std::max(1, static_cast<int>(std::lround(alpha * decades * decades)));
 }
 
-StageEnd relax(Work& work, const RelaxOptions& options) {
+StageEnd relax(Work& work, const Relax& options) {
   EffectTimer timer(work.effects["relaxation"]);
   return with_dimension(work.dimension(), EveryDimension{},
                         [&](auto dimension) { return relax_in<decltype(dimension)::value>(work, options); });
@@ -167,29 +224,19 @@ const StageEntry& entry_of<Relax>() {
                            "after which it stops, and then one seed need not give one packing; 0: any time",
                            {0, 1e9})})),
            .complete = completion(complete_relax)},
-          {.in_bed = true,
-           .in_box = true,
-           .box_between_walls = true,
-           .prefers_bed = true,
-           .keeps_sizes = true,
-           .places_expected = true,
-           .leaves_overlap = true,
-           .is_default = true,
-           .reaches = Reaches::close_packing}),
+          traits),
       .act_in_bed = act(relax_in_container),
       .act_in_box = act(relax),
       .bed_effects = {{"insertion", "random places, where so few are asked for that these are enough",
                        "O(1) a trial"},
-                      {"neighbour lists", "of all spheres together, from the background grid",
-                       "O(N) an iteration"},
+                      neighbor_lists,
                       {"relaxation",
                        "overlapping spheres and walls push; what is stuck is stirred or put into "
                        "holes",
                        "some 1,000 sweeps of O(N)"}},
-      .box_effects = {
-          {"neighbour lists", "of all spheres together, from the background grid", "O(N) an iteration"},
-          {"relaxation", "overlapping spheres push each other apart while the box grows",
-           "some 1,000 sweeps of O(N)"}}};
+      .box_effects = {neighbor_lists,
+                      {"relaxation", "overlapping spheres push each other apart while the box grows",
+                       "some 1,000 sweeps of O(N)"}}};
   return entry;
 }
 

@@ -1,4 +1,4 @@
-#include "soft/relax_reference.hpp"
+#include "soft/relax.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "bernal/domain/boundary.hpp"
 #include "core/every_dimension.hpp"
 #include "neighbors/cell_grid.hpp"
-#include "work/resize_box.hpp"
+#include "work/free_of_overlap.hpp"
 
 namespace bernal {
 namespace {
@@ -119,7 +119,7 @@ class Loop {
 }  // namespace
 
 template <int D>
-StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, const RelaxOptions& options) {
+StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
   Loop<D> loop(spheres, edges, options.settle, work.random(Stream::relax));
   const int sweeps = sweeps_a_cycle(options.alpha, spheres.size());
   double reported = 0;
@@ -140,7 +140,7 @@ StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, co
 }
 
 #define BERNAL_INSTANTIATE(D) \
-  template StageEnd relax_by_the_book<D>(Spheres<D>&, Vector<D>&, Work&, const RelaxOptions&);
+  template StageEnd relax_by_the_book<D>(Spheres<D>&, Vector<D>&, Work&, const Relax&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

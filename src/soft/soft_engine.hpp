@@ -16,25 +16,49 @@ class SoftEngine {
   /// Centres in [0, edge). The box may become smaller than it is by the factor `room` later on. Axes with
   /// `walls` (empty: none) keep centres `share` times their radius away from both ends.
   SoftEngine(const Spheres<D>& spheres, const Vector<D>& edges, double room = 1,
-             const std::vector<bool>& walls = {}, double share = 1);
+             const std::vector<bool>& walls = {}, double share = 1)
+      : engine_(make(spheres, edges, walls.empty() && is_wide(spheres, edges, room))) {
+    if (!walls.empty()) std::get<NeighborRelaxation<D>>(engine_).keep_between_walls(walls, share);
+  }
 
   /// Whether the box is wide enough for the sorted arrays of `SoftPacking`, whose lists know sizes.
-  static bool is_wide(const Spheres<D>& spheres, const Vector<D>& edges, double room = 1);
+  static bool is_wide(const Spheres<D>& spheres, const Vector<D>& edges, double room = 1) {
+    return D <= 3 && edges.minCoeff() >= room * SoftPacking::smallest_edge(spheres.r);
+  }
 
-  void wear_lists(double wear);
-  void sweep(float omega);
-  double sweep_and_measure(float omega);
-  std::vector<float> squeeze() const;
-  void grow(double factor);
-  void write_to(Spheres<D>& spheres, Vector<D>& edges) const;
-  std::uint64_t builds() const;
+  void wear_lists(double wear) {
+    std::visit([&](auto& engine) { engine.wear_lists(wear); }, engine_);
+  }
+  void sweep(float omega) {
+    std::visit([&](auto& engine) { engine.sweep(omega); }, engine_);
+  }
+  double sweep_and_measure(float omega) {
+    return std::visit([&](auto& engine) { return engine.sweep_and_measure(omega); }, engine_);
+  }
+  std::vector<float> squeeze() const {
+    return std::visit([](const auto& engine) { return engine.squeeze(); }, engine_);
+  }
+  void grow(double factor) {
+    std::visit([&](auto& engine) { engine.grow(factor); }, engine_);
+  }
+  void write_to(Spheres<D>& spheres, Vector<D>& edges) const {
+    std::visit([&](const auto& engine) { engine.write_to(spheres, edges); }, engine_);
+  }
+  std::uint64_t builds() const {
+    return std::visit([](const auto& engine) { return engine.builds(); }, engine_);
+  }
 
  private:
   // In more than three dimensions there is but one kind.
   using Engine = std::conditional_t<D <= 3, std::variant<NeighborRelaxation<D>, SoftPacking>,
                                     std::variant<NeighborRelaxation<D>>>;
 
-  static Engine make(const Spheres<D>& spheres, const Vector<D>& edges, bool wide);
+  static Engine make(const Spheres<D>& spheres, const Vector<D>& edges, bool wide) {
+    if constexpr (D <= 3) {
+      if (wide) return Engine(std::in_place_type<SoftPacking>, spheres, edges, soft_kernels().front());
+    }
+    return Engine(std::in_place_type<NeighborRelaxation<D>>, spheres, edges);
+  }
 
   Engine engine_;
 };

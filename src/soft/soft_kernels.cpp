@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "soft/soft_walls.hpp"
@@ -33,6 +34,13 @@ struct SetBitsOfByte {
 };
 constexpr SetBitsOfByte set_bits_of_byte;
 
+BERNAL_INLINE __m128i sphere(const SoftSphere* at) {
+  return _mm_load_si128(reinterpret_cast<const __m128i*>(at));
+}
+BERNAL_INLINE void store(SoftSphere* to, __m128i sphere) {
+  _mm_store_si128(reinterpret_cast<__m128i*>(to), sphere);
+}
+
 namespace sse2 {
 #include "soft/soft_kernels_body.hpp"
 }
@@ -59,10 +67,10 @@ std::vector<SoftKernels> runnable_kernels() {
   std::vector<SoftKernels> kernels;
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw"))
-    kernels.push_back({"AVX-512", avx512::only_sweep, avx512::sweep<true>, avx512::search});
+    kernels.push_back({"AVX-512", avx512::sweep, avx512::search});
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt"))
-    kernels.push_back({"AVX2", avx2::only_sweep, avx2::sweep<true>, avx2::search});
-  kernels.push_back({"SSE2", sse2::only_sweep, sse2::sweep<true>, sse2::search});
+    kernels.push_back({"AVX2", avx2::sweep, avx2::search});
+  kernels.push_back({"SSE2", sse2::sweep, sse2::search});
   return kernels;
 }
 

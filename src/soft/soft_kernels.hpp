@@ -4,9 +4,31 @@
 #include <span>
 #include <string_view>
 
-#include "soft/soft_sphere.hpp"
-
 namespace bernal {
+
+/// A sphere of the fast relaxation. Its place on axis k is x[k] in units of edge / 2^32, so that differences
+/// wrap round to the minimum image by themselves and a growing box leaves the coordinates as they are.
+/// Resolution: 2^-33 of the edge, 1e-8 radii in a box of 10,000 spheres. A radius of NaN stands for no
+/// sphere: it touches nothing.
+struct alignas(16) SoftSphere {
+  std::int32_t x[3];
+  float r;
+};
+
+/// The short way from one place of a sphere to another, in units of the coordinates.
+inline std::int32_t steps_between(const SoftSphere& from, const SoftSphere& to, std::size_t k) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(to.x[k]) -
+                                   static_cast<std::uint32_t>(from.x[k]));
+}
+/// These units, in a box of those edges.
+inline std::array<float, 3> scale_of(const std::array<double, 3>& edges) {
+  std::array<float, 3> scale;
+  for (std::size_t k = 0; k < 3; ++k) scale[k] = static_cast<float>(edges[k] * 0x1p-32);
+  return scale;
+}
+
+/// So many spheres that do not touch each other are moved together.
+inline constexpr std::size_t lanes = 16;
 
 class SoftWalls;
 
@@ -23,8 +45,7 @@ struct SweepTask {
   std::array<float, 3> scale;  ///< edge / 2^32 on each axis
   float omega;       ///< over-relaxation: the step is min(omega / contacts, 1) times the sum of overlaps
   SoftWalls* walls;  ///< of a container; null in a periodic box
-  float*
-      squeeze;  ///< receives, of each sphere, the sum of its squared overlap ratios when these are measured
+  float* squeeze;    ///< receives, of each sphere, the sum of its squared overlap ratios; null: not measured
 };
 
 /// One level of the background grid: spheres with radii in (largest / 2, largest], sorted by cell.
@@ -55,10 +76,9 @@ struct SoftKernels {
   /// and n = Σ w: of a pair the larger one gives way less, so that a large sphere among many small ones is
   /// moved by its large neighbours (Zhao, Li & Liu 2007, equations 3 and 4, for omega = 1 and equal radii). A
   /// wall counts as a neighbour with w = 1. Precondition: no two spheres of a group are neighbours. Cost:
-  /// about 1 ns a neighbour.
-  void (*sweep)(const SweepTask&, std::size_t begin, std::size_t end);
-  /// The same; returns the largest overlap ratio (ri + rj - d) / (ri + rj) that was met, and fills `squeeze`.
-  float (*sweep_and_measure)(const SweepTask&, std::size_t begin, std::size_t end);
+  /// about 1 ns a neighbour. Where there is a `squeeze` to fill, returns the largest overlap ratio
+  /// (ri + rj - d) / (ri + rj) that was met.
+  float (*sweep)(const SweepTask&, std::size_t begin, std::size_t end);
   /// Writes the places of all neighbours of a sphere but itself, `self`, to `out` and returns their end; up
   /// to `lanes` more entries are scribbled over. Cost: about 10 ns a row of three cells.
   std::uint32_t* (*search)(const SearchTask&, const SoftSphere&, std::uint32_t self, std::uint32_t* out);

@@ -23,39 +23,22 @@ struct Columns {
 
 #if defined(BERNAL_AVX512)
 
-/// Spheres *at(0), …, *at(width - 1): four rows of four a register, transposed.
+/// Spheres *at(k), *at(k + 4), …, as many as there is room for.
 template <class At>
-BERNAL_INLINE Columns load(At at) {
-  const auto four = [&](int k) BERNAL_INLINE_LAMBDA {
-    __m512i v = _mm512_castsi128_si512(_mm_load_si128(reinterpret_cast<const __m128i*>(at(k))));
-    v = _mm512_inserti32x4(v, _mm_load_si128(reinterpret_cast<const __m128i*>(at(k + 4))), 1);
-    v = _mm512_inserti32x4(v, _mm_load_si128(reinterpret_cast<const __m128i*>(at(k + 8))), 2);
-    return _mm512_inserti32x4(v, _mm_load_si128(reinterpret_cast<const __m128i*>(at(k + 12))), 3);
-  };
-  const __m512i a = four(0), b = four(1), c = four(2), d = four(3);
-  const __m512i ab_low = _mm512_unpacklo_epi32(a, b), ab_high = _mm512_unpackhi_epi32(a, b);
-  const __m512i cd_low = _mm512_unpacklo_epi32(c, d), cd_high = _mm512_unpackhi_epi32(c, d);
-  return {Ints(_mm512_unpacklo_epi64(ab_low, cd_low)), Ints(_mm512_unpackhi_epi64(ab_low, cd_low)),
-          Ints(_mm512_unpacklo_epi64(ab_high, cd_high)), Floats(_mm512_unpackhi_epi64(ab_high, cd_high))};
+BERNAL_INLINE Ints every_fourth(At at, int k) {
+  __m512i v = _mm512_castsi128_si512(sphere(at(k)));
+  v = _mm512_inserti32x4(v, sphere(at(k + 4)), 1);
+  v = _mm512_inserti32x4(v, sphere(at(k + 8)), 2);
+  return Ints(_mm512_inserti32x4(v, sphere(at(k + 12)), 3));
 }
-
-BERNAL_INLINE void store(SoftSphere* to, const Columns& s) {
-  const __m512i xy_low = _mm512_unpacklo_epi32(__m512i(s.x), __m512i(s.y)),
-                xy_high = _mm512_unpackhi_epi32(__m512i(s.x), __m512i(s.y)),
-                zr_low = _mm512_unpacklo_epi32(__m512i(s.z), __m512i(s.r)),
-                zr_high = _mm512_unpackhi_epi32(__m512i(s.z), __m512i(s.r));
-  const __m512i rows[4] = {_mm512_unpacklo_epi64(xy_low, zr_low), _mm512_unpackhi_epi64(xy_low, zr_low),
-                           _mm512_unpacklo_epi64(xy_high, zr_high), _mm512_unpackhi_epi64(xy_high, zr_high)};
-  for (int k = 0; k < 4; ++k) {
-    _mm_store_si128(reinterpret_cast<__m128i*>(to + k), _mm512_castsi512_si128(rows[k]));
-    _mm_store_si128(reinterpret_cast<__m128i*>(to + k + 4), _mm512_extracti32x4_epi32(rows[k], 1));
-    _mm_store_si128(reinterpret_cast<__m128i*>(to + k + 8), _mm512_extracti32x4_epi32(rows[k], 2));
-    _mm_store_si128(reinterpret_cast<__m128i*>(to + k + 12), _mm512_extracti32x4_epi32(rows[k], 3));
-  }
+BERNAL_INLINE void store_every_fourth(SoftSphere* to, Ints four) {
+  store(to, _mm512_castsi512_si128(__m512i(four)));
+  store(to + 4, _mm512_extracti32x4_epi32(__m512i(four), 1));
+  store(to + 8, _mm512_extracti32x4_epi32(__m512i(four), 2));
+  store(to + 12, _mm512_extracti32x4_epi32(__m512i(four), 3));
 }
 
 BERNAL_INLINE Floats root(Floats v) { return Floats(_mm512_sqrt_ps(__m512(v))); }
-BERNAL_INLINE Floats to_floats(Ints v) { return Floats(_mm512_cvtepi32_ps(__m512i(v))); }
 BERNAL_INLINE Ints to_ints(Floats v) { return Ints(_mm512_cvtps_epi32(__m512(v))); }
 BERNAL_INLINE unsigned mask_of(Ints v) { return _mm512_movepi32_mask(__m512i(v)); }
 
@@ -69,33 +52,15 @@ BERNAL_INLINE std::uint32_t* append(std::uint32_t* out, const std::uint32_t* fro
 #elif defined(BERNAL_AVX2)
 
 template <class At>
-BERNAL_INLINE Columns load(At at) {
-  const auto two = [&](int k) BERNAL_INLINE_LAMBDA {
-    const __m256i v = _mm256_castsi128_si256(_mm_load_si128(reinterpret_cast<const __m128i*>(at(k))));
-    return _mm256_inserti128_si256(v, _mm_load_si128(reinterpret_cast<const __m128i*>(at(k + 4))), 1);
-  };
-  const __m256i a = two(0), b = two(1), c = two(2), d = two(3);
-  const __m256i ab_low = _mm256_unpacklo_epi32(a, b), ab_high = _mm256_unpackhi_epi32(a, b);
-  const __m256i cd_low = _mm256_unpacklo_epi32(c, d), cd_high = _mm256_unpackhi_epi32(c, d);
-  return {Ints(_mm256_unpacklo_epi64(ab_low, cd_low)), Ints(_mm256_unpackhi_epi64(ab_low, cd_low)),
-          Ints(_mm256_unpacklo_epi64(ab_high, cd_high)), Floats(_mm256_unpackhi_epi64(ab_high, cd_high))};
+BERNAL_INLINE Ints every_fourth(At at, int k) {
+  return Ints(_mm256_inserti128_si256(_mm256_castsi128_si256(sphere(at(k))), sphere(at(k + 4)), 1));
 }
-
-BERNAL_INLINE void store(SoftSphere* to, const Columns& s) {
-  const __m256i xy_low = _mm256_unpacklo_epi32(__m256i(s.x), __m256i(s.y)),
-                xy_high = _mm256_unpackhi_epi32(__m256i(s.x), __m256i(s.y)),
-                zr_low = _mm256_unpacklo_epi32(__m256i(s.z), __m256i(s.r)),
-                zr_high = _mm256_unpackhi_epi32(__m256i(s.z), __m256i(s.r));
-  const __m256i rows[4] = {_mm256_unpacklo_epi64(xy_low, zr_low), _mm256_unpackhi_epi64(xy_low, zr_low),
-                           _mm256_unpacklo_epi64(xy_high, zr_high), _mm256_unpackhi_epi64(xy_high, zr_high)};
-  for (int k = 0; k < 4; ++k) {
-    _mm_store_si128(reinterpret_cast<__m128i*>(to + k), _mm256_castsi256_si128(rows[k]));
-    _mm_store_si128(reinterpret_cast<__m128i*>(to + k + 4), _mm256_extracti128_si256(rows[k], 1));
-  }
+BERNAL_INLINE void store_every_fourth(SoftSphere* to, Ints four) {
+  store(to, _mm256_castsi256_si128(__m256i(four)));
+  store(to + 4, _mm256_extracti128_si256(__m256i(four), 1));
 }
 
 BERNAL_INLINE Floats root(Floats v) { return Floats(_mm256_sqrt_ps(__m256(v))); }
-BERNAL_INLINE Floats to_floats(Ints v) { return Floats(_mm256_cvtepi32_ps(__m256i(v))); }
 BERNAL_INLINE Ints to_ints(Floats v) { return Ints(_mm256_cvtps_epi32(__m256(v))); }
 BERNAL_INLINE unsigned mask_of(Ints v) { return static_cast<unsigned>(_mm256_movemask_ps(__m256(v))); }
 
@@ -110,29 +75,12 @@ BERNAL_INLINE std::uint32_t* append(std::uint32_t* out, const std::uint32_t* fro
 #else
 
 template <class At>
-BERNAL_INLINE Columns load(At at) {
-  const auto one = [&](int k) BERNAL_INLINE_LAMBDA {
-    return _mm_load_si128(reinterpret_cast<const __m128i*>(at(k)));
-  };
-  const __m128i a = one(0), b = one(1), c = one(2), d = one(3);
-  const __m128i ab_low = _mm_unpacklo_epi32(a, b), ab_high = _mm_unpackhi_epi32(a, b);
-  const __m128i cd_low = _mm_unpacklo_epi32(c, d), cd_high = _mm_unpackhi_epi32(c, d);
-  return {Ints(_mm_unpacklo_epi64(ab_low, cd_low)), Ints(_mm_unpackhi_epi64(ab_low, cd_low)),
-          Ints(_mm_unpacklo_epi64(ab_high, cd_high)), Floats(_mm_unpackhi_epi64(ab_high, cd_high))};
+BERNAL_INLINE Ints every_fourth(At at, int k) {
+  return Ints(sphere(at(k)));
 }
-
-BERNAL_INLINE void store(SoftSphere* to, const Columns& s) {
-  const __m128i xy_low = _mm_unpacklo_epi32(__m128i(s.x), __m128i(s.y)),
-                xy_high = _mm_unpackhi_epi32(__m128i(s.x), __m128i(s.y)),
-                zr_low = _mm_unpacklo_epi32(__m128i(s.z), __m128i(s.r)),
-                zr_high = _mm_unpackhi_epi32(__m128i(s.z), __m128i(s.r));
-  const __m128i rows[4] = {_mm_unpacklo_epi64(xy_low, zr_low), _mm_unpackhi_epi64(xy_low, zr_low),
-                           _mm_unpacklo_epi64(xy_high, zr_high), _mm_unpackhi_epi64(xy_high, zr_high)};
-  for (int k = 0; k < 4; ++k) _mm_store_si128(reinterpret_cast<__m128i*>(to + k), rows[k]);
-}
+BERNAL_INLINE void store_every_fourth(SoftSphere* to, Ints four) { store(to, __m128i(four)); }
 
 BERNAL_INLINE Floats root(Floats v) { return Floats(_mm_sqrt_ps(__m128(v))); }
-BERNAL_INLINE Floats to_floats(Ints v) { return Floats(_mm_cvtepi32_ps(__m128i(v))); }
 BERNAL_INLINE Ints to_ints(Floats v) { return Ints(_mm_cvtps_epi32(__m128(v))); }
 BERNAL_INLINE unsigned mask_of(Ints v) { return static_cast<unsigned>(_mm_movemask_ps(__m128(v))); }
 
@@ -145,6 +93,41 @@ BERNAL_INLINE std::uint32_t* append(std::uint32_t* out, const std::uint32_t* fro
 }
 
 #endif
+
+BERNAL_INLINE Floats to_floats(Ints v) { return __builtin_convertvector(v, Floats); }
+
+/// Of every four numbers of a and b two each from the one at `first` on, by turns.
+template <int first, int... k>
+BERNAL_INLINE Ints by_turns(Ints a, Ints b, std::integer_sequence<int, k...>) {
+  return __builtin_shuffle(a, b, Ints{(k / 4 * 4 + first + k % 4 / 2 + k % 2 * width)...});
+}
+
+/// Four registers of spheres, transposed: x, y, z and r of all, or these back to spheres.
+struct Four {
+  Ints a, b, c, d;
+};
+BERNAL_INLINE Four transposed(const Four& v) {
+  constexpr std::make_integer_sequence<int, width> all;
+  const Ints ac_low = by_turns<0>(v.a, v.c, all), ac_high = by_turns<2>(v.a, v.c, all),
+             bd_low = by_turns<0>(v.b, v.d, all), bd_high = by_turns<2>(v.b, v.d, all);
+  return {by_turns<0>(ac_low, bd_low, all), by_turns<2>(ac_low, bd_low, all),
+          by_turns<0>(ac_high, bd_high, all), by_turns<2>(ac_high, bd_high, all)};
+}
+
+/// Spheres *at(0), …, *at(width - 1).
+template <class At>
+BERNAL_INLINE Columns load(At at) {
+  const Four v =
+      transposed({every_fourth(at, 0), every_fourth(at, 1), every_fourth(at, 2), every_fourth(at, 3)});
+  return {v.a, v.b, v.c, Floats(v.d)};
+}
+BERNAL_INLINE void store(SoftSphere* to, const Columns& s) {
+  const Four v = transposed({s.x, s.y, s.z, Ints(s.r)});
+  store_every_fourth(to, v.a);
+  store_every_fourth(to + 1, v.b);
+  store_every_fourth(to + 2, v.c);
+  store_every_fourth(to + 3, v.d);
+}
 
 // Coordinates wrap round on purpose, which signed integers may not.
 using Unsigned = unsigned __attribute__((vector_size(4 * width)));
@@ -161,7 +144,7 @@ BERNAL_INLINE Floats numbers_at(const std::array<float, lanes>& of, std::size_t 
 }
 
 template <bool measure>
-float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
+float sweep_groups(const SweepTask& task, std::size_t begin, std::size_t end) {
   const Floats scale_x = all(task.scale[0]), scale_y = all(task.scale[1]), scale_z = all(task.scale[2]);
   const Floats inverse_x = 1 / scale_x, inverse_y = 1 / scale_y, inverse_z = 1 / scale_z;
   Floats worst{};
@@ -220,8 +203,8 @@ float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
   return largest;
 }
 
-inline void only_sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
-  sweep<false>(task, begin, end);
+inline float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
+  return task.squeeze ? sweep_groups<true>(task, begin, end) : sweep_groups<false>(task, begin, end);
 }
 
 /// The cells of a level, on one axis, that a cube around a point may meet: `count` of them from `first` on,

@@ -20,6 +20,7 @@ constexpr double share_of_large = 0.01;
 /// Where no more than this share of the spheres is smaller than a level, they join it: a level costs a search
 /// for every sphere.
 constexpr double share_of_level = 0.6;
+constexpr std::size_t most_levels = 24;
 /// Cells for each sphere of a level, at most.
 constexpr double cells_per_sphere = 2;
 constexpr std::size_t pencils_per_chain = 32;
@@ -54,24 +55,13 @@ struct Pencil {
   std::uint32_t next, end;
 };
 
-/// Room for the neighbours of the spheres of a group, as many as there may be: memory that is never touched
-/// costs nothing.
-class FoundNeighbors {
- public:
-  explicit FoundNeighbors(std::size_t most) : most_(most + lanes) {
-    for (auto& lane : of_lane_) lane.reset(new std::uint32_t[most_]);
-  }
-  std::uint32_t* of_lane(std::size_t l) { return of_lane_[l].get(); }
-
- private:
-  std::size_t most_;
-  std::array<std::unique_ptr<std::uint32_t[]>, lanes> of_lane_;
-};
+/// The neighbours of the spheres of a group, with room for as many as there may be: memory that is never
+/// touched costs nothing.
+using FoundNeighbors = std::array<std::unique_ptr<std::uint32_t[]>, lanes>;
 
 }  // namespace
 
-SoftLists::SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels,
-                     std::size_t max_levels)
+SoftLists::SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels)
     : kernels_(kernels), skin_(skin) {
   std::vector<float> ascending = radii;
   const auto nth = ascending.begin() + static_cast<std::ptrdiff_t>((1 - share_of_large) *
@@ -86,7 +76,7 @@ SoftLists::SoftLists(const std::vector<float>& radii, float skin, const SoftKern
     const auto smaller = std::ranges::count_if(radii, [r](float other) { return other <= r; });
     return static_cast<double>(smaller) > share_of_level * static_cast<double>(radii.size());
   };
-  for (float r = most / 2; worth_a_level(r) && level_count_ < max_levels; r /= 2) ++level_count_;
+  for (float r = most / 2; worth_a_level(r) && level_count_ < most_levels; r /= 2) ++level_count_;
 }
 
 void SoftLists::sort_into_cells(const std::vector<SoftSphere>& compact, const std::array<double, 3>& edges) {
@@ -201,14 +191,18 @@ std::vector<SoftLists::Place> SoftLists::sweep_order(const std::vector<SoftSpher
 }
 
 void SoftLists::find_neighbors(const std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges) {
-  SearchTask task{edges, {}, skin_, levels_, start_.data(), sorted_.data(), places_.data()};
-  for (std::size_t k = 0; k < 3; ++k) task.scale[k] = static_cast<float>(edges[k] * 0x1p-32);
+  const SearchTask task{edges,         scale_of(edges), skin_,         levels_,
+                        start_.data(), sorted_.data(),  places_.data()};
   const std::size_t groups = spheres.size() / lanes;
   const auto filler = static_cast<std::uint32_t>(groups * lanes);  // the gap behind the last group
   groups_.resize(groups);
   rows_.resize((groups + groups_per_block - 1) / groups_per_block);
 
-  tbb::enumerable_thread_specific<FoundNeighbors> of_thread([&] { return FoundNeighbors(sorted_.size()); });
+  tbb::enumerable_thread_specific<FoundNeighbors> of_thread([&] {
+    FoundNeighbors found;
+    for (auto& lane : found) lane.reset(new std::uint32_t[sorted_.size() + lanes]);
+    return found;
+  });
   tbb::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t block) {
     FoundNeighbors& found = of_thread.local();
     const std::size_t first = block * groups_per_block, last = std::min(groups, first + groups_per_block);
@@ -221,8 +215,7 @@ void SoftLists::find_neighbors(const std::vector<SoftSphere>& spheres, const std
         const SoftSphere& me = spheres[g * lanes + l];
         if (!(me.r > 0)) continue;
         const auto self = static_cast<std::uint32_t>(g * lanes + l);
-        count[l] =
-            static_cast<std::size_t>(kernels_.search(task, me, self, found.of_lane(l)) - found.of_lane(l));
+        count[l] = static_cast<std::size_t>(kernels_.search(task, me, self, found[l].get()) - found[l].get());
       }
       const std::size_t most = *std::ranges::max_element(count);
       begin[g - first] = rows.size();
@@ -230,7 +223,7 @@ void SoftLists::find_neighbors(const std::vector<SoftSphere>& spheres, const std
       rows.resize(rows.size() + most * lanes, filler);
       std::uint32_t* row = rows.data() + begin[g - first];
       for (std::size_t l = 0; l < lanes; ++l)
-        for (std::size_t k = 0; k < count[l]; ++k) row[k * lanes + l] = found.of_lane(l)[k];
+        for (std::size_t k = 0; k < count[l]; ++k) row[k * lanes + l] = found[l].get()[k];
     }
     for (std::size_t g = first; g < last; ++g) groups_[g].first = rows.data() + begin[g - first];
   });

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "soft/soft_kernels.hpp"
-#include "soft/soft_sphere.hpp"
 
 namespace bernal {
 
@@ -27,12 +26,8 @@ struct Chain {
 /// All this is a function of the places and radii alone, the same for any number of threads.
 class SoftLists {
  public:
-  static constexpr std::size_t most_levels = 24;
-
-  /// `radii` are all that there will be; `skin` is in the same unit. The background grid has up to
-  /// `max_levels` levels, at most `most_levels`.
-  SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels,
-            std::size_t max_levels = most_levels);
+  /// `radii` are all that there will be; `skin` is in the same unit.
+  SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels);
 
   /// Sorts the spheres anew and finds their neighbours. `spheres` and `ids` are in sweep order, with gaps
   /// where the radius is NaN, before and after; the sphere behind the last group is such a gap. Precondition:

@@ -6,10 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
-#include "soft/fixed_point.hpp"
+#include "soft/fixed_point_grid.hpp"
 
 namespace bernal {
 namespace {
@@ -44,34 +43,30 @@ Pace pace_for(double largest_overlap) {
   return largest_overlap > crowded ? Pace{5.4f, 1.6} : Pace{5, 0.9};
 }
 
+SoftPacking::SoftPacking(const std::vector<double>& radii, double most, int dimension,
+                         const SoftKernels& kernels)
+    : kernels_(kernels),
+      count_(radii.size()),
+      dimension_(dimension),
+      lists_(as_floats(radii, most), static_cast<float>(skin_for(radii)), kernels),
+      thickest_skin_(lists_.skin()),
+      spheres_(radii.size(), SoftSphere{}),
+      ids_(radii.size()),
+      radii_(as_floats(radii)) {
+  edges_.fill(smallest_edge(radii));  // of axes that are not there: all coordinates are 0
+  std::iota(ids_.begin(), ids_.end(), 0u);
+  for (std::size_t i = 0; i < count_; ++i) spheres_[i].r = radii_[i];
+}
+
 template <int D>
 SoftPacking::SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels)
-    : kernels_(kernels),
-      count_(spheres.size()),
-      dimension_(D),
-      lists_(as_floats(spheres.r), static_cast<float>(skin_for(spheres.r)), kernels),
-      thickest_skin_(lists_.skin()),
-      spheres_(spheres.size(), SoftSphere{}),
-      ids_(spheres.size()) {
-  edges_.fill(smallest_edge(spheres.r));  // of axes that are not there: all coordinates are 0
-  for (int k = 0; k < D; ++k) edges_[static_cast<std::size_t>(k)] = edges[k];
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    for (std::size_t k = 0; k < D; ++k)
-      spheres_[i].x[k] = static_cast<std::int32_t>(to_fixed(spheres.x[k][i], edges[static_cast<int>(k)]));
-    spheres_[i].r = static_cast<float>(spheres.r[i]);
-    ids_[i] = static_cast<std::uint32_t>(i);
-  }
+    : SoftPacking(spheres.r, 1, D, kernels) {
+  for (std::size_t k = 0; k < D; ++k) edges_[k] = edges[static_cast<int>(k)];
+  for (std::size_t i = 0; i < count_; ++i) set_place(spheres_[i], spheres.center(i));
 }
 
 SoftPacking::SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels)
-    : kernels_(kernels),
-      count_(spheres.size()),
-      dimension_(3),
-      lists_(as_floats(spheres.r, most_swelling), static_cast<float>(skin_for(spheres.r)), kernels),
-      thickest_skin_(lists_.skin()),
-      spheres_(spheres.size(), SoftSphere{}),
-      ids_(spheres.size()),
-      radii_(as_floats(spheres.r)) {
+    : SoftPacking(spheres.r, most_swelling, 3, kernels) {
   // Centres stay inside the bounds, so that images are a margin of this width apart; but for those along an
   // axis that repeats itself, which are meant.
   const double margin = most_swelling * smallest_edge(spheres.r);
@@ -88,52 +83,31 @@ SoftPacking::SoftPacking(const Spheres<3>& spheres, const Container& container, 
     }
     unit[k] = edge * 0x1p-32;
   }
-  walls_ = std::make_unique<SoftWalls>(container, corner_, unit, spheres.size());
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    set_place(spheres_[i], spheres.center(i));
-    spheres_[i].r = radii_[i];
-    ids_[i] = static_cast<std::uint32_t>(i);
-  }
+  walls_ = std::make_unique<SoftWalls>(container, corner_, unit, count_);
+  for (std::size_t i = 0; i < count_; ++i) set_place(spheres_[i], spheres.center(i));
 }
 
 double SoftPacking::smallest_edge(const std::vector<double>& radii) {
   return 4.001 * (std::ranges::max(radii) + skin_for(radii));
 }
 
-SweepTask SoftPacking::task(float omega) {
-  SweepTask task{spheres_.data(), lists_.groups(), {}, omega, walls_.get(), nullptr};
-  for (std::size_t k = 0; k < 3; ++k) task.scale[k] = static_cast<float>(edges_[k] * 0x1p-32);
-  return task;
-}
-
-template <class Sweep>
-void SoftPacking::for_each_chain(const Sweep& sweep) const {
+double SoftPacking::move_all(float omega, bool measure) {
+  if (measure) patience_ = 0;  // what is measured is measured on lists that are known to be good
+  keep_lists_valid();
+  if (measure) squeeze_.assign(spheres_.size(), 0);
+  const SweepTask task{spheres_.data(), lists_.groups(), scale_of(edges_),
+                       omega,           walls_.get(),    measure ? squeeze_.data() : nullptr};
+  std::vector<float> largest(spheres_.size() / lanes + 1, 0.0f);
   for (const std::vector<Chain>& chains : lists_.phases()) {
+    const auto sweep = [&](std::size_t c) {
+      largest[chains[c].first] = kernels_.sweep(task, chains[c].first, chains[c].last);
+    };
     if (count_ < worth_threads || chains.size() == 1) {
-      for (std::size_t c = 0; c < chains.size(); ++c) sweep(chains[c]);
+      for (std::size_t c = 0; c < chains.size(); ++c) sweep(c);
     } else {
-      tbb::parallel_for(std::size_t{0}, chains.size(), [&](std::size_t c) { sweep(chains[c]); });
+      tbb::parallel_for(std::size_t{0}, chains.size(), sweep);
     }
   }
-}
-
-void SoftPacking::sweep(float omega) {
-  keep_lists_valid();
-  const SweepTask work = task(omega);
-  for_each_chain([&](const Chain& chain) { kernels_.sweep(work, chain.first, chain.last); });
-  ++sweeps_;
-}
-
-double SoftPacking::sweep_and_measure(float omega) {
-  patience_ = 0;  // what is measured is measured on lists that are known to be good
-  keep_lists_valid();
-  squeeze_.assign(spheres_.size(), 0);
-  SweepTask work = task(omega);
-  work.squeeze = squeeze_.data();
-  std::vector<float> largest(spheres_.size() / lanes + 1, 0.0f);
-  for_each_chain([&](const Chain& chain) {
-    largest[chain.first] = kernels_.sweep_and_measure(work, chain.first, chain.last);
-  });
   ++sweeps_;
   return *std::ranges::max_element(largest);
 }
@@ -162,10 +136,12 @@ void SoftPacking::put(const std::vector<Move>& moves) {
   stale_ = true;
 }
 
-void SoftPacking::set_place(SoftSphere& sphere, const Vector<3>& center) const {
-  for (std::size_t k = 0; k < 3; ++k)
-    sphere.x[k] = static_cast<std::int32_t>(
-        to_fixed(center[static_cast<int>(k)] - corner_[static_cast<int>(k)], edges_[k]));
+template <int D>
+void SoftPacking::set_place(SoftSphere& sphere, const Vector<D>& center) const {
+  for (std::size_t k = 0; k < D; ++k) {
+    const int axis = static_cast<int>(k);
+    sphere.x[k] = static_cast<std::int32_t>(to_fixed(center[axis] - corner_[axis], edges_[k]));
+  }
 }
 
 std::vector<float> SoftPacking::squeeze() const {
@@ -176,15 +152,12 @@ std::vector<float> SoftPacking::squeeze() const {
 }
 
 double SoftPacking::largest_move() const {
-  std::array<float, 3> scale;
-  for (std::size_t k = 0; k < 3; ++k) scale[k] = static_cast<float>(edges_[k] * 0x1p-32);
+  const std::array<float, 3> scale = scale_of(edges_);
   const auto largest_square = [&](std::size_t begin, std::size_t end, float largest) {
     for (std::size_t p = begin; p < end; ++p) {
       float square = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto moved = static_cast<std::int32_t>(static_cast<std::uint32_t>(spheres_[p].x[k]) -
-                                                     static_cast<std::uint32_t>(built_at_[p].x[k]));
-        const float d = static_cast<float>(moved) * scale[k];
+        const float d = static_cast<float>(steps_between(built_at_[p], spheres_[p], k)) * scale[k];
         square += d * d;
       }
       largest = square > largest ? square : largest;
@@ -234,19 +207,16 @@ void SoftPacking::keep_lists_valid() {
 template <int D>
 void SoftPacking::write_to(Spheres<D>& spheres, Vector<D>& edges) const {
   for (int k = 0; k < D; ++k) edges[k] = edges_[static_cast<std::size_t>(k)];
-  for (std::size_t p = 0; p < spheres_.size(); ++p) {
-    if (!(spheres_[p].r > 0)) continue;
-    for (std::size_t k = 0; k < D; ++k)
-      spheres.x[k][ids_[p]] = static_cast<std::uint32_t>(spheres_[p].x[k]) * (edges_[k] * 0x1p-32);
-  }
+  write_to(spheres);
 }
 
-void SoftPacking::write_to(Spheres<3>& spheres) const {
+template <int D>
+void SoftPacking::write_to(Spheres<D>& spheres) const {
   std::vector<SoftSphere> stopped = spheres_;
-  if (builds_ > 0) walls_->stop_strays(stopped, built_at_, ids_);
+  if (walls_ && builds_ > 0) walls_->stop_strays(stopped, built_at_, ids_);
   for (std::size_t p = 0; p < stopped.size(); ++p) {
     if (!(stopped[p].r > 0)) continue;
-    for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t k = 0; k < D; ++k)
       spheres.x[k][ids_[p]] =
           corner_[static_cast<int>(k)] + static_cast<std::uint32_t>(stopped[p].x[k]) * (edges_[k] * 0x1p-32);
   }
@@ -254,6 +224,7 @@ void SoftPacking::write_to(Spheres<3>& spheres) const {
 
 #define BERNAL_INSTANTIATE(D)                                                                 \
   template SoftPacking::SoftPacking(const Spheres<D>&, const Vector<D>&, const SoftKernels&); \
+  template void SoftPacking::write_to(Spheres<D>&) const;                                     \
   template void SoftPacking::write_to(Spheres<D>&, Vector<D>&) const;
 BERNAL_INSTANTIATE(1)
 BERNAL_INSTANTIATE(2)

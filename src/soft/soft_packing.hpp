@@ -55,9 +55,9 @@ class SoftPacking {
 
   /// Every sphere is moved once, by min(omega / n, 1) times the sum of its n overlaps. Parallel where there
   /// are many spheres; the same bits for any number of threads.
-  void sweep(float omega);
+  void sweep(float omega) { move_all(omega, false); }
   /// The same; returns the largest overlap ratio that was met.
-  double sweep_and_measure(float omega);
+  double sweep_and_measure(float omega) { return move_all(omega, true); }
   /// Of each sphere the sum of its squared overlap ratios, as the last measuring sweep met them.
   std::vector<float> squeeze() const;
 
@@ -75,8 +75,9 @@ class SoftPacking {
 
   template <int D>
   void write_to(Spheres<D>& spheres, Vector<D>& edges) const;
-  /// Centres, in a container; all of them inside.
-  void write_to(Spheres<3>& spheres) const;
+  /// Centres; those in a container are inside.
+  template <int D>
+  void write_to(Spheres<D>& spheres) const;
 
   /// The unit of the coordinates on the longest edge.
   double resolution() const { return 0x1p-32 * *std::max_element(edges_.begin(), edges_.end()); }
@@ -87,10 +88,12 @@ class SoftPacking {
   std::uint64_t wall_queries() const { return walls_ ? walls_->queries() : 0; }
 
  private:
-  template <class Sweep>
-  void for_each_chain(const Sweep& sweep) const;
-  SweepTask task(float omega);
-  void set_place(SoftSphere& sphere, const Vector<3>& center) const;
+  /// Radii become up to `most` times these; places are still to be set.
+  SoftPacking(const std::vector<double>& radii, double most, int dimension, const SoftKernels& kernels);
+
+  double move_all(float omega, bool measure);
+  template <int D>
+  void set_place(SoftSphere& sphere, const Vector<D>& center) const;
   void choose_skin();
   void keep_lists_valid();
   double largest_move() const;
@@ -106,7 +109,7 @@ class SoftPacking {
   std::vector<SoftSphere> spheres_;   // in sweep order
   std::vector<std::uint32_t> ids_;
   std::vector<float> squeeze_;
-  std::vector<float> radii_;          // as given, by id; of spheres in a container
+  std::vector<float> radii_;          // as given, by id
   bool stale_ = true;                 // the lists
   std::vector<SoftSphere> built_at_;  // where they were when the lists were built
   std::uint64_t builds_ = 0;

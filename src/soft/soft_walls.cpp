@@ -1,9 +1,6 @@
 #include "soft/soft_walls.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <cmath>
 
 namespace bernal {
 namespace {
@@ -36,15 +33,9 @@ double distance_after(const std::variant<Facet, PreparedTriangle>& piece, const 
   return distance_before + move.dot(from) / distance_before;
 }
 
-/// In units of the coordinates.
-std::int32_t steps_between(const SoftSphere& from, const SoftSphere& to, int k) {
-  return static_cast<std::int32_t>(static_cast<std::uint32_t>(to.x[k]) -
-                                   static_cast<std::uint32_t>(from.x[k]));
-}
-
 /// Takes back all but a share of the way.
 void shorten(SoftSphere& to, const SoftSphere& from, double share) {
-  for (int k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < 3; ++k) {
     const auto steps = static_cast<std::int32_t>(share * steps_between(from, to, k));
     to.x[k] =
         static_cast<std::int32_t>(static_cast<std::uint32_t>(from.x[k]) + static_cast<std::uint32_t>(steps));
@@ -91,6 +82,11 @@ Vector<3> SoftWalls::place(const SoftSphere& s) const {
   return p;
 }
 
+Vector<3> SoftWalls::way_between(const SoftSphere& from, const SoftSphere& to) const {
+  return unit_.cwiseProduct(
+      Vector<3>(steps_between(from, to, 0), steps_between(from, to, 1), steps_between(from, to, 2)));
+}
+
 void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<SoftSphere>& built_at,
                             const std::vector<std::uint32_t>& ids) const {
   std::vector<bool> near(spheres.size(), false);
@@ -99,8 +95,7 @@ void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<
   for (std::size_t p = 0; p < spheres.size(); ++p) {
     if (!(spheres[p].r > 0) || near[p]) continue;
     const Vector<3> from = place(built_at[p]);
-    Vector<3> way;
-    for (int k = 0; k < 3; ++k) way[k] = unit_[k] * steps_between(built_at[p], spheres[p], k);
+    const Vector<3> way = way_between(built_at[p], spheres[p]);
     const double length = way.norm();
     if (!(length > 0)) continue;
     const View& view = views_[ids[p]];
@@ -140,7 +135,7 @@ void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<
   skin_ = skin;
   const std::size_t groups = spheres.size() / lanes;
   std::vector<std::uint16_t> near_lanes(groups, 0);
-  tbb::parallel_for(std::size_t{0}, (groups + groups_a_task - 1) / groups_a_task, [&](std::size_t b) {
+  parallel_for((groups + groups_a_task - 1) / groups_a_task, [&](std::size_t b) {
     for (std::size_t g = b * groups_a_task; g < std::min(groups, (b + 1) * groups_a_task); ++g) {
       for (std::size_t l = 0; l < lanes; ++l) {
         const SoftSphere& s = spheres[g * lanes + l];
@@ -225,8 +220,7 @@ void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spher
     const NearSphere& near = near_[n];
     SoftSphere& now = spheres[near.lane];
     const SoftSphere& before = push.before[near.lane];
-    Vector<3> move;
-    for (int k = 0; k < 3; ++k) move[k] = unit_[k] * steps_between(before, now, k);
+    const Vector<3> move = way_between(before, now);
     const double length = move.norm();
     if (length <= (1 - kept) * push.free[near.lane]) continue;
     const std::vector<Piece>& pieces = views_[near.id].pieces;

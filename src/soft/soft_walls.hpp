@@ -2,13 +2,12 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <span>
 #include <variant>
 #include <vector>
 
 #include "bernal/domain/container.hpp"
 #include "kernels/closest_point.hpp"
-#include "soft/soft_sphere.hpp"
+#include "soft/soft_kernels.hpp"
 
 namespace bernal {
 
@@ -83,6 +82,7 @@ class SoftWalls {
   };
 
   Vector<3> place(const SoftSphere& s) const;
+  Vector<3> way_between(const SoftSphere& from, const SoftSphere& to) const;
   /// The short way from one place of a sphere to another; along an axis that repeats itself the place jumps
   /// by a period when the sphere passes its end, while the sphere and the wall beside it go on.
   Vector<3> way(const Vector<3>& from, const Vector<3>& to) const {

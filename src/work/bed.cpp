@@ -9,7 +9,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "core/parallel.hpp"
-#include "work/room.hpp"
+#include "work/holes.hpp"
 
 namespace bernal {
 namespace {

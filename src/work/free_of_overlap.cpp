@@ -1,12 +1,14 @@
 #include "work/free_of_overlap.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 #include "bernal/core/tolerance.hpp"
 #include "bernal/domain/boundary.hpp"
 #include "core/every_dimension.hpp"
 #include "neighbors/cell_grid.hpp"
+#include "work/random_insertion.hpp"
 
 namespace bernal {
 namespace {
@@ -24,30 +26,53 @@ double wall_contact_factor(const Spheres<D>& spheres, const Vector<D>& edges,
   return factor;
 }
 
-}  // namespace
-
-template <int D>
-double contact_factor(const Spheres<D>& spheres, const Vector<D>& edges) {
+/// Calls visit(i, j, from j to i) for all pairs whose surfaces may be nearer than the reach beyond the first
+/// one's centre, reach(r, largest radius): the largest first, so that none has to look far for a larger one.
+template <int D, class Reach, class Visit>
+void for_each_pair(const Spheres<D>& spheres, const Vector<D>& edges, Reach&& reach, Visit&& visit) {
   const Boundary<D> boundary{edges};
   const auto [smallest, largest] = std::ranges::minmax(spheres.r);
   std::vector<std::uint32_t> order(spheres.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::ranges::stable_sort(order, [&](auto i, auto j) { return spheres.r[i] > spheres.r[j]; });
-
+  std::ranges::stable_sort(order, std::greater<>(), [&](auto i) { return spheres.r[i]; });
   CellGrid<D> grid(boundary, smallest, largest, spheres.size());
-  double factor = 2 * largest / edges.minCoeff();
   for (const std::uint32_t i : order) {
     const Vector<D> c = spheres.center(i);
-    const double r = spheres.r[i];
-    // d < (r + rj) / factor, less rj, for the rj up to the largest that makes it the most.
-    const double reach = r / factor + largest * std::max(0.0, 1 / factor - 1);
-    grid.for_each_near(c, reach, [&](std::uint32_t j) {
-      const double d = boundary.minimum_image(c - spheres.center(j)).norm();
-      factor = std::max(factor, (r + spheres.r[j]) / d);
-    });
-    grid.insert(i, c, r);
+    grid.for_each_near(c, reach(spheres.r[i], largest),
+                       [&](std::uint32_t j) { visit(i, j, boundary.minimum_image(c - spheres.center(j))); });
+    grid.insert(i, c, spheres.r[i]);
   }
+}
+
+}  // namespace
+
+template <int D>
+double contact_factor(const Spheres<D>& spheres, const Vector<D>& edges) {
+  double factor = 2 * std::ranges::max(spheres.r) / edges.minCoeff();
+  for_each_pair<D>(
+      spheres, edges,
+      [&](double r, double largest) {  // d < (r + rj) / factor, less rj, for the rj that makes it the most
+        return r / factor + largest * std::max(0.0, 1 / factor - 1);
+      },
+      [&](std::uint32_t i, std::uint32_t j, const Vector<D>& apart) {
+        factor = std::max(factor, (spheres.r[i] + spheres.r[j]) / apart.norm());
+      });
   return factor;
+}
+
+template <int D>
+std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping(const Spheres<D>& spheres,
+                                                                 const Vector<D>& edges, double allowed) {
+  const double least = std::ranges::min(spheres.r);
+  const double share = (1 - allowed) * (1 + tolerance::growth(edges.maxCoeff() / least));
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for_each_pair<D>(
+      spheres, edges, [&](double r, double) { return r + 1e-6 * least; },
+      [&](std::uint32_t i, std::uint32_t j, const Vector<D>& apart) {
+        const double reach = share * (spheres.r[i] + spheres.r[j]);
+        if (apart.squaredNorm() < reach * reach) pairs.emplace_back(i, j);
+      });
+  return pairs;
 }
 
 template <int D>
@@ -60,9 +85,23 @@ Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edge
   return edges * (factor * (1 + tolerance::growth(factor * edges.maxCoeff() / smallest)));
 }
 
-#define BERNAL_INSTANTIATE(D)                                                           \
-  template double contact_factor(const Spheres<D>&, const Vector<D>&);                  \
-  template Vector<D> edges_free_of_overlap(const Spheres<D>&, const Vector<D>&, double, \
+template <int D>
+void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, Work& work) {
+  Vector<D> free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap, work.walls);
+  while (!free.allFinite()) {  // cancelled while centres coincide
+    Random random = work.random(Stream::relax);
+    displace_at_random<D>(spheres, edges, work.walls, 1e-3 * std::ranges::max(spheres.r), random);
+    free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap, work.walls);
+  }
+  resize_box<D>(spheres, edges, free);
+}
+
+#define BERNAL_INSTANTIATE(D)                                                                          \
+  template std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping(const Spheres<D>&,         \
+                                                                            const Vector<D>&, double); \
+  template void free_of_overlap(Spheres<D>&, Vector<D>&, Work&);                                       \
+  template double contact_factor(const Spheres<D>&, const Vector<D>&);                                 \
+  template Vector<D> edges_free_of_overlap(const Spheres<D>&, const Vector<D>&, double,                \
                                            const std::vector<bool>&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE

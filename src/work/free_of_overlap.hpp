@@ -1,9 +1,26 @@
 #pragma once
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
+
+/// Gives a periodic box other edges, and every centre the same place relative to them, in [0, edge). Exact
+/// but for two roundings of each coordinate.
+template <int D>
+void resize_box(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& new_edges) {
+  for (int k = 0; k < D; ++k) {
+    const double factor = new_edges[k] / edges[k];
+    for (double& x : spheres.x[k]) {
+      x *= factor;
+      if (!(x < new_edges[k])) x = 0;  // rounded to the edge, which is the image of 0
+    }
+  }
+  edges = new_edges;
+}
 
 /// The smallest factor, to rounding, by which a periodic box and its centres have to grow so that no two
 /// spheres overlap, nor a sphere its own image: the largest (ri + rj) / d over all pairs of images. Below 1
@@ -32,5 +49,18 @@ Vector<D> edges_around_walls(Vector<D> edges, const std::vector<bool>& walls) {
 template <int D>
 Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edges, double allowed = 0,
                                 const std::vector<bool>& walls = {});
+
+/// Grows or shrinks the box until nothing overlaps more than is allowed, or crosses its walls. Centres that
+/// coincide are parted.
+template <int D>
+void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, Work& work);
+
+/// The pairs of spheres in a periodic box that overlap by more than the ratio `allowed`, or are so near to it
+/// that rounding leaves it open: d < (1 - allowed) (ri + rj), of the nearest images. Pairs that are not here
+/// certainly do not. Precondition: centres are in [0, edge), and there are spheres.
+/// Cost: O(N) where they do not overlap much.
+template <int D>
+std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping(const Spheres<D>& spheres,
+                                                                 const Vector<D>& edges, double allowed);
 
 }  // namespace bernal

@@ -1,10 +1,10 @@
 #pragma once
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <type_traits>
 #include <vector>
 
+#include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/boundary.hpp"
 #include "neighbors/cell_grid.hpp"
@@ -19,6 +19,28 @@ std::optional<std::invoke_result_t<Draw>> find_place(double trials, Draw&& draw,
     if (is_free(place)) return place;
   }
   return std::nullopt;
+}
+
+/// Gives every sphere a place anywhere in a box.
+template <int D>
+void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random& random) {
+  const Bounds<D> box{Vector<D>::Zero(), edges};
+  for (std::size_t i = 0; i < spheres.size(); ++i) spheres.set_center(i, uniform_point(random, box));
+}
+
+/// Moves every sphere by `length` in a direction of its own; `walls` of the box stop its centre.
+template <int D>
+void displace_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls,
+                        double length, Random& random) {
+  Boundary<D> boundary{edges};
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    if (walls[k]) boundary.edges[static_cast<int>(k)] = 0;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    Vector<D> c = boundary.wrap(spheres.center(i) + length * uniform_direction<D>(random));
+    for (int k = 0; k < D; ++k)
+      if (!boundary.repeats(k)) c[k] = std::clamp(c[k], 0.0, edges[k]);
+    spheres.set_center(i, c);
+  }
 }
 
 /// Random sequential insertion of the spheres that are not `placed`, the largest first and all with the share

@@ -5,12 +5,9 @@
 
 #include "bernal/run/packing.hpp"
 #include "scene/stage_table.hpp"
-#include "work/fill_task.hpp"
-#include "work/stage_end.hpp"
+#include "work/work.hpp"
 
 namespace bernal {
-
-struct Work;
 
 /// All that there is to know of a stage. Each defines its own beside its act, as entry_of<Its options>().
 struct StageEntry {
@@ -31,6 +28,9 @@ struct StageEntry {
 
 template <class Options>
 const StageEntry& entry_of();
+
+inline const PlanItem neighbor_lists{"neighbour lists", "of all spheres together, from the background grid",
+                                     "O(N) an iteration"};
 
 /// The part of an entry that its scenes need.
 template <class Options>

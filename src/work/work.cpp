@@ -1,7 +1,6 @@
 #include "work/work.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace bernal {
 namespace {
@@ -17,25 +16,64 @@ std::vector<std::uint32_t> tags_of(const std::vector<double>& radii, const Suppl
   return tags;
 }
 
+double packing_fraction_of(const Work& work) {
+  if (work.stands_in_bed()) return work.bed().packing_fraction();
+  return work.placed ? work.volume_of_spheres() / work.edges.prod() : 0;
+}
+
 }  // namespace
 
-double Work::volume_of_spheres() const {
-  double sum = 0;
-  for (const double r : spheres.r) sum += ball_volume(dimension(), r);
-  return sum;
+void Work::Drawn::extend(std::size_t count, const Supply& supply) {
+  while (spheres.size() < count)
+    spheres.push_back(Vector<3>::Zero(), supply.radius(static_cast<std::uint32_t>(spheres.size())));
+  placed.resize(spheres.size(), false);
+}
+
+std::size_t Work::count_filling(double packing_fraction) const {
+  return supply->count_filling(packing_fraction * container->volume());
+}
+
+std::size_t Work::target_count() const {
+  return target.is_open() && !target.fill ? count_filling(attainable) : supply->wanted();
+}
+
+Work::Drawn Work::drawn(std::size_t count) const {
+  for (Bed::Id i = 0; i < bed().size(); ++i) count = std::max<std::size_t>(count, bed().tag(i) + 1);
+  Drawn drawn;
+  drawn.extend(count, *supply);
+  for (Bed::Id i = 0; i < bed().size(); ++i) {
+    drawn.spheres.set_center(bed().tag(i), bed()[i].center);
+    drawn.placed[bed().tag(i)] = true;
+  }
+  return drawn;
+}
+
+bool Work::put_in_bed(const Spheres<3>& first) {
+  bed().remove_tags_from(0);
+  std::vector<bool> fits(first.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    fits[i] = bed().fits(first.center(i), first.r[i]);
+    if (fits[i]) bed().insert(first.center(i), first.r[i], static_cast<std::uint32_t>(i));
+  }
+  supply->set_placed(fits);
+  return bed().size() == first.size();
+}
+
+void Work::insert_in_bed(const Spheres<dynamic>& others) {
+  const std::vector<std::uint32_t> tags = tags_of(others.r, *supply);
+  std::vector<bool> has_place(tags.empty() ? 0 : tags.back() + std::size_t{1}, false);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    bed_->insert(others.center(i), others.r[i], tags[i]);
+    has_place[tags[i]] = true;
+  }
+  supply->set_placed(has_place);
 }
 
 void Work::stand_in_bed() {
   if (bed_) return;
   bed_ = std::make_shared<Bed>(*container, supply->smallest(), supply->largest(), supply->wanted(), effects);
   if (!placed) return;
-  const std::vector<std::uint32_t> tags = tags_of(spheres.r, *supply);
-  std::vector<bool> has_place(tags.empty() ? 0 : tags.back() + std::size_t{1}, false);
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    bed_->insert(spheres.center(i), spheres.r[i], tags[i]);
-    has_place[tags[i]] = true;
-  }
-  supply->set_placed(has_place);
+  insert_in_bed(spheres);
   placed = false;
   spheres = Spheres<dynamic>(dimension());
 }
@@ -81,6 +119,26 @@ void Work::crowd_milestone(std::string_view stage, std::size_t count, double vol
              .packing_fraction = volume / container->volume(),
              .max_overlap = max_overlap,
              .done = std::clamp(done, 0.0, 0.99)});
+}
+
+Keepsake::Keepsake(const Work& work)
+    : packing_fraction_(packing_fraction_of(work)), edges_(work.edges), needed_volume_(work.needed_volume) {
+  if (packing_fraction_ > 0)
+    spheres_ = work.stands_in_bed() ? Spheres<dynamic>(work.bed().spheres()) : work.spheres;
+}
+
+void Keepsake::give_back_if_denser(Work& work) const {
+  if (packing_fraction_of(work) >= packing_fraction_) return;
+  if (work.stands_in_bed()) {
+    work.bed().remove_tags_from(0);
+    work.insert_in_bed(spheres_);
+    return;
+  }
+  work.spheres = spheres_;
+  work.edges = edges_;
+  work.needed_volume = needed_volume_;
+  work.placed = true;
+  work.placed_share = 1;
 }
 
 }  // namespace bernal

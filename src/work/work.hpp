@@ -15,11 +15,33 @@
 #include "bernal/scene/scene.hpp"
 #include "work/bed.hpp"
 #include "work/effect_log.hpp"
-#include "work/fill_task.hpp"
-#include "work/stage_end.hpp"
 #include "work/supply.hpp"
 
 namespace bernal {
+
+/// Why a stage came to its end.
+enum class StageEnd {
+  converged,  ///< it did what it is for
+  full,       ///< no place was left for the next sphere
+  hit_limit,  ///< its limit on iterations or rounds came first
+  cancelled,
+};
+
+/// What decides how a box of given edges is best filled with spheres of given radii.
+struct FillTask {
+  int dimension = 3;
+  double packing_fraction = 0;  ///< that is asked for
+  double attainable = 1;        ///< random close packing of these sizes
+  double size_ratio = 1;        ///< of the largest radius to the smallest, but for one in 10,000 of each
+  bool has_walls = false;
+};
+
+template <int D>
+double volume_of(const Spheres<D>& spheres) {
+  double sum = 0;
+  for (const double r : spheres.r) sum += ball_volume(static_cast<int>(spheres.x.size()), r);
+  return sum;
+}
 
 /// How far a stage has come, for the run's history and the progress bar.
 struct Course {
@@ -39,6 +61,13 @@ struct Course {
 /// all of them are there from the start and stages give them their places. `stand_in_bed` and `stand_in_box`
 /// lead from one to the other.
 struct Work {
+  /// The first of the drawn sequence, in its order, of which some have places.
+  struct Drawn {
+    Spheres<3> spheres;
+    std::vector<bool> placed;
+    void extend(std::size_t count, const Supply& supply);
+  };
+
   // ---- the spheres in a box
 
   /// Radii as drawn, which no stage changes. Centres in [0, edge) once `placed`.
@@ -84,13 +113,22 @@ struct Work {
   Random random(Stream purpose) { return {seed, stream(purpose, streams_used++)}; }
 
   int dimension() const { return spheres.dimension(); }
-  double volume_of_spheres() const;
+  double volume_of_spheres() const { return volume_of(spheres); }
   bool has_wall(int axis) const { return !walls.empty() && walls[static_cast<std::size_t>(axis)]; }
 
   /// Precondition: the spheres stand in a bed.
   Bed& bed() { return *bed_; }
   const Bed& bed() const { return *bed_; }
   bool stands_in_bed() const { return bed_ != nullptr; }
+  /// How many of the sequence fill this share of the container.
+  std::size_t count_filling(double packing_fraction) const;
+  /// How many spheres a stage that places what is expected is to place.
+  std::size_t target_count() const;
+  /// At least `count` of the sequence, and up to the last that stands in the bed; those have places.
+  Drawn drawn(std::size_t count) const;
+  /// The first of the sequence in place of all that is in the bed, but for those that do not fit where they
+  /// are. Returns whether all do.
+  bool put_in_bed(const Spheres<3>& first);
   /// Precondition: there is a container. What stood in a box keeps its places.
   void stand_in_bed();
   /// The first of the sequence, up to the last that stands in the bed, or as many as are wanted where a count
@@ -104,7 +142,26 @@ struct Work {
   void crowd_milestone(std::string_view stage, std::size_t count, double volume, double max_overlap,
                        double done) const;
 
+  /// Of the sequence, in its order, without those that have no place.
+  void insert_in_bed(const Spheres<dynamic>& others);
+
   std::shared_ptr<Bed> bed_ = {};
+};
+
+/// The spheres as they stand before a stage, so that a stage which is cut short takes nothing away from what
+/// the ones before it left. Cost: a copy of the spheres.
+class Keepsake {
+ public:
+  explicit Keepsake(const Work& work);
+
+  /// Puts everything back if less of the domain is filled now.
+  void give_back_if_denser(Work& work) const;
+
+ private:
+  double packing_fraction_;
+  Spheres<dynamic> spheres_;
+  Vector<dynamic> edges_;
+  double needed_volume_;
 };
 
 }  // namespace bernal

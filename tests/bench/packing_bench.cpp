@@ -6,7 +6,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/random.hpp"
-#include "settle/slide.hpp"
+#include "settle/mover.hpp"
 #include "support/meshes.hpp"
 #include "support/plans.hpp"
 #include "support/scenes.hpp"
@@ -109,7 +109,7 @@ void slide_sweep(benchmark::State& state, Plan (*plan)()) {
   for (auto _ : state) {
     for (Bed::Id i = 0; i < bed.size(); ++i) {
       const Vector<3> u = (2 * uniform_direction<3>(random) - Vector<3>::UnitZ()).normalized();
-      benchmark::DoNotOptimize(slide(mover, i, u, 2 * bed.mean_radius()));
+      benchmark::DoNotOptimize(mover.slide(i, u, 2 * bed.mean_radius()));
     }
   }
   per_sphere(state, bed);

@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "bernal/domain/boundary.hpp"
-#include "work/resize_box.hpp"
 #include "support/nearest_images.hpp"
 
 // How far a box must grow: against all pairs, and proved with rational numbers.

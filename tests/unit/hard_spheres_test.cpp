@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "work/free_of_overlap.hpp"
 #include "support/flights.hpp"
+#include "work/free_of_overlap.hpp"
 
 namespace bernal {
 namespace {
@@ -43,7 +43,7 @@ double pressure(HardSpheres<D> flight) {
   double sum = 0, time = 0;
   for (int k = 0; k < 40; ++k) {
     const FlightPeriod period = flight.fly(0);
-    sum += period.compressibility * period.time;
+    sum += period.compressibility_factor * period.time;
     time += period.time;
   }
   return sum / time;
@@ -81,11 +81,11 @@ void grow_until_jammed(const std::vector<double>& radii, double phi, double grow
   HardSpheres<D> flight(gas.spheres, gas.edges, velocities(), {.masses = masses});
   double most = -1;
   FlightPeriod period;
-  for (int k = 0; k < 1000 && period.compressibility < 1e8 && flight.has_room(); ++k) {
+  for (int k = 0; k < 1000 && period.compressibility_factor < 1e8 && flight.has_room(); ++k) {
     period = flight.fly(growth);
     most = std::max(most, overlap(flight, gas));
   }
-  EXPECT_GT(period.compressibility, 1e8);
+  EXPECT_GT(period.compressibility_factor, 1e8);
   EXPECT_LT(most, 1e-13) << "a lost collision shows as an overlap, even where energy looks perfect";
 }
 
@@ -117,7 +117,7 @@ TEST(HardSpheres, TakeNoSingleCollisionForPressure) {
   const Gas<3> gas(equal_radii(500), 0.2);
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     HardSpheres<3> flight(gas.spheres, gas.edges, velocities(seed));
-    for (int k = 0; k < 5; ++k) EXPECT_LT(flight.fly(0.1).compressibility, 10) << seed << ' ' << k;
+    for (int k = 0; k < 5; ++k) EXPECT_LT(flight.fly(0.1).compressibility_factor, 10) << seed << ' ' << k;
   }
 }
 

@@ -1,4 +1,4 @@
-#include "hard/largest_sphere.hpp"
+#include "hard/convex_walls.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "bernal/core/random.hpp"
-#include "hard/convex_walls.hpp"
 #include "support/meshes.hpp"
 
 namespace bernal {

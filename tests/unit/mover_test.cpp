@@ -1,4 +1,3 @@
-#include "settle/mover.hpp"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
@@ -6,7 +5,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
 #include "kernels/first_contact.hpp"
-#include "settle/slide.hpp"
+#include "settle/mover.hpp"
 #include "support/containers.hpp"
 
 // Bed and Mover against brute force: every sphere, every facet and every image, no list, no grid, no box.
@@ -202,7 +201,7 @@ TEST_P(BedInContainer, NoGapFallsBelowHalfTheSkinHoweverSpheresSlide) {
     for (Bed::Id i = 0; i < bed->size(); ++i) {
       const Vector<3> u = (sweep % 2 == 0 ? down : Vector<3>(down + 2 * uniform_direction<3>(random)));
       const Vector<3> before = (*bed)[i].center;
-      const double way = slide(mover, i, u.normalized(), 0.1);
+      const double way = mover.slide(i, u.normalized(), 0.1);
       EXPECT_NEAR(way, ((*bed)[i].center - before).norm(), 1e-14);
       EXPECT_LE(way, 0.1 * (1 + 1e-12));
       moved += way;
@@ -224,7 +223,7 @@ TEST_P(BedInContainer, BoxesEncloseWhatSpheresCanDo) {
   for (Bed::Id i = 0; i < bed->size(); ++i) box_centers.push_back((*bed)[i].center);
   Mover mover(*bed);
   for (int sweep = 0; sweep < 10; ++sweep)
-    for (Bed::Id i = 0; i < bed->size(); ++i) slide(mover, i, down, everywhere);
+    for (Bed::Id i = 0; i < bed->size(); ++i) mover.slide(i, down, everywhere);
   for (Bed::Id i = 0; i < bed->size(); ++i)
     EXPECT_LE(((*bed)[i].center - box_centers[i]).cwiseAbs().maxCoeff(), buffer * (1 + 1e-12)) << i;
 }
@@ -272,7 +271,7 @@ TEST_P(BedInContainer, FitsKnowsWhereSpheresHaveMovedTo) {
   RandomBed bed(GetParam(), 100, 0.03, 0.07);
   bed->enclose(0.3);
   Mover mover(*bed);
-  for (Bed::Id i = 0; i < bed->size(); ++i) slide(mover, i, down, everywhere);
+  for (Bed::Id i = 0; i < bed->size(); ++i) mover.slide(i, down, everywhere);
   bed->update_grid();
   for (Bed::Id i = 0; i < bed->size(); ++i) EXPECT_FALSE(bed->fits((*bed)[i].center, 0.03)) << i;
 }
@@ -349,7 +348,7 @@ TEST(Bed, ListsDoNotDependOnTheNumberOfThreads) {
     for (Bed::Id i = 0; i < bed->size(); ++i) {
       const std::span<const Bed::Id> listed = bed->neighbors(i);
       lists[threads - 1].emplace_back(listed.begin(), listed.end());
-      paths[threads - 1].push_back(slide(mover, i, down, everywhere));  // asks the walls, too
+      paths[threads - 1].push_back(mover.slide(i, down, everywhere));  // asks the walls, too
     }
   }
   EXPECT_EQ(lists[0], lists[1]);

@@ -60,7 +60,7 @@ StageEnd end_of_polish(int count, double tolerance, const Monitor& monitor) {
   EffectLog effects;
   Work work{
       .spheres = Spheres<dynamic>(3), .edges = edges, .seed = 1, .monitor = monitor, .effects = effects};
-  return polish<3>(spheres, edges, tolerance, work).end;
+  return polish<3>(spheres, edges, tolerance, work);
 }
 
 TEST(Polish, EndsSoonWhenCancelled) {

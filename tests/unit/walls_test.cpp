@@ -169,7 +169,7 @@ Pressures mean_pressures(const Room& room, std::size_t n, double r, int periods)
   double virial = 0, momentum = 0, time = 0;
   for (int k = 0; k < periods; ++k) {
     const FlightPeriod period = flight.fly(0);
-    virial += period.compressibility * period.time;
+    virial += period.compressibility_factor * period.time;
     momentum += period.wall_momentum;
     time += period.time;
   }
@@ -211,11 +211,11 @@ TEST(HardSpheresBetweenWalls, NeverCrossThemWhileTheyGrow) {
     const Flight gas(room.shape, 150, 0.05, 2);
     HardSpheres<3> flight = gas.start();
     FlightPeriod period;
-    for (int k = 0; k < 1000 && period.compressibility < 1e8; ++k) {
+    for (int k = 0; k < 1000 && period.compressibility_factor < 1e8; ++k) {
       period = flight.fly(0.05);
       ASSERT_LT(gas.protrusion(flight), 1e-13);
     }
-    EXPECT_GT(period.compressibility, 1e8);
+    EXPECT_GT(period.compressibility_factor, 1e8);
   }
 }
 
@@ -226,7 +226,7 @@ TEST(HardSpheresBetweenWalls, GrowToTheInscribedSphere) {
     const Flight alone(rooms()[k].shape, 1, 0.2, 3);
     HardSpheres<3> flight = alone.start();
     FlightPeriod period;
-    for (int j = 0; j < 10000 && period.compressibility < 1e8; ++j) period = flight.fly(0.05);
+    for (int j = 0; j < 10000 && period.compressibility_factor < 1e8; ++j) period = flight.fly(0.05);
     EXPECT_NEAR(flight.size() * 0.2, inscribed[k], 1e-6) << rooms()[k].name;
   }
 }

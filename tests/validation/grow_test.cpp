@@ -75,7 +75,9 @@ struct TestedMixture {
   const char* radius;
   const char* stage;
 
-  friend std::ostream& operator<<(std::ostream& out, const TestedMixture& mixture) { return out << mixture.radius; }
+  friend std::ostream& operator<<(std::ostream& out, const TestedMixture& mixture) {
+    return out << mixture.radius;
+  }
 };
 
 class RodModel : public ::testing::TestWithParam<TestedMixture> {};
@@ -99,7 +101,8 @@ TEST_P(RodModel, IsReached) {
 #define WITH_PATIENCE "masses = \"volume\"\nrate = 0.0025\n"
 INSTANTIATE_TEST_SUITE_P(
     Mixtures, RodModel,
-    ::testing::Values(TestedMixture{"Lognormal", "{ distribution = \"lognormal\", median = 1.0, sigma = 0.5 }", ""},
+    ::testing::Values(TestedMixture{"Lognormal",
+                                    "{ distribution = \"lognormal\", median = 1.0, sigma = 0.5 }", ""},
                       TestedMixture{"OneToFiveThreeQuartersSmall", ONE_TO_FIVE("25", "75"), ""},
                       TestedMixture{"OneToFiveHalfSmall", ONE_TO_FIVE("50", "50"), ""},
                       TestedMixture{"OneToFiveThreeTenthsSmall", ONE_TO_FIVE("70", "30"), ""},
@@ -135,7 +138,7 @@ TEST(Fluid, HasThePressureOfCarnahanAndStarling) {
     double sum = 0, time = 0;
     for (int k = 0; k < 100; ++k) {
       const FlightPeriod period = flight.fly(0);
-      sum += period.compressibility * period.time;
+      sum += period.compressibility_factor * period.time;
       time += period.time;
     }
     const double expected = (1 + eta + eta * eta - eta * eta * eta) / std::pow(1 - eta, 3);

@@ -1,13 +1,13 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "bernal/core/random.hpp"
-#include "bernal/core/spheres.hpp"
 #include "bernal/domain/container.hpp"
-#include "soft/soft_packing.hpp"
+#include "soft/soft_engine.hpp"
 #include "work/places.hpp"
 
 namespace bernal {
@@ -30,13 +30,10 @@ class ContainerGround {
   void place(const Spheres<3>& spheres);
   void read_places(Spheres<3>& spheres) const { packing_->write_to(spheres); }
 
-  void sweep(float omega) { packing_->sweep(omega); }
-  double sweep_and_measure(float omega) { return packing_->sweep_and_measure(omega); }
-  void wear_lists(double wear) { packing_->wear_lists(wear); }
-  std::vector<float> squeeze() const { return packing_->squeeze(); }
+  SoftPacking& engine() { return *packing_; }
   /// Radii become so many times those that are relaxed.
   void swell(double factor) { packing_->swell((1 + margin_) * factor); }
-  /// Share of the radii; it takes three times as much off the packing fraction.
+  /// Share of the radii; it takes D times as much off the packing fraction.
   double margin() const { return margin_; }
 
   /// Puts the spheres `ids` into the largest holes where they clear the wall, the largest first.
@@ -54,6 +51,45 @@ class ContainerGround {
   std::unique_ptr<SoftPacking> packing_;
   double margin_ = 0;
   std::uint64_t list_builds_ = 0, wall_queries_ = 0;
+};
+
+/// What a `Crowd` stands on in a box of 1 to 8 dimensions that repeats itself along all axes or along those
+/// without walls. What matters is how distances compare with radii: where spheres are to be larger, the box
+/// is smaller.
+template <int D>
+class BoxGround {
+ public:
+  static constexpr int dimension = D;
+  /// Of the radii, in a burst. Where there are more dimensions to give way in, more helps faster: N = 2,000,
+  /// in five dimensions at 0.302 and six at 0.197, 0.4 s and 0.85 s instead of 0.85 s and 1.3 s.
+  static constexpr double burst_swelling = D <= 4 ? 1.02 : 1.04;
+  static constexpr std::size_t always_stay = 1;
+
+  /// Every edge is at least the largest diameter less what overlap is allowed: the spheres are relaxed with
+  /// the share 1 - `allowed` of their radii. Axes with `walls` keep whole spheres between them; none: empty.
+  BoxGround(const Vector<D>& edges, double allowed, std::vector<bool> walls = {})
+      : edges_(edges), allowed_(allowed), walls_(std::move(walls)) {}
+
+  /// Puts the spheres, with centres in [0, edge), into the engine.
+  void place(const Spheres<D>& spheres);
+  void read_places(Spheres<D>& spheres) const;
+
+  SoftEngine<D>& engine() { return *engine_; }
+  void swell(double factor) { engine_->grow(factor == 1 ? burst_swelling : 1 / factor); }
+  double margin() const { return margin_; }
+
+  /// Puts the spheres `ids` into the largest holes, the largest first.
+  void move_to_holes(Spheres<D>& spheres, std::vector<std::uint32_t> ids, Random& random);
+
+  std::uint64_t list_builds() const { return list_builds_ + engine_->builds(); }
+
+ private:
+  Vector<D> edges_;
+  double allowed_;
+  std::vector<bool> walls_;
+  double margin_ = 0;
+  std::optional<SoftEngine<D>> engine_;
+  std::uint64_t list_builds_ = 0;
 };
 
 }  // namespace bernal

@@ -1,4 +1,4 @@
-#include "soft/container_ground.hpp"
+#include "soft/ground.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,14 +6,20 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "soft/fixed_point.hpp"
+#include "core/every_dimension.hpp"
+#include "work/free_of_overlap.hpp"
 #include "work/holes.hpp"
 
 namespace bernal {
 namespace {
 
+/// Of margins.
+constexpr double largest_margin = 0.01;
 /// Random places that are looked at for each sphere to find holes.
 constexpr double probes_a_sphere = 2, least_probes = 1000;
+
+/// A hundred times the resolution of the coordinates at least, that in smallest radii.
+double margin_for(double resolution) { return std::max(1e-4, 100 * resolution); }
 
 }  // namespace
 
@@ -24,8 +30,8 @@ void ContainerGround::place(const Spheres<3>& spheres) {
   }
   packing_ = std::make_unique<SoftPacking>(spheres, *container_, soft_kernels().front());
   if (margin_ == 0) {
-    const double resolution = packing_->resolution() / *std::ranges::min_element(spheres.r);
-    margin_ = std::max(least_margin, resolutions_a_margin * resolution);
+    const double resolution = packing_->resolution() / std::ranges::min(spheres.r);
+    margin_ = margin_for(resolution);
     if (margin_ > largest_margin)
       throw Error(ErrorCode::bad_scene,
                   fmt::format("spheres {:.0e} times smaller than the container cannot be relaxed in it; name "
@@ -57,5 +63,36 @@ std::vector<Vector<3>> ContainerGround::holes_for(std::span<const double> radii,
     places.push_back(hole.place);
   return places;
 }
+
+template <int D>
+void BoxGround<D>::place(const Spheres<D>& spheres) {
+  if (engine_) list_builds_ = list_builds();
+  if (margin_ == 0) {
+    const double resolution = 0x1p-32 * edges_.maxCoeff() / std::ranges::min(spheres.r);
+    margin_ = std::min(margin_for(resolution), largest_margin);
+  }
+  Spheres<D> shrunk = spheres;
+  for (double& r : shrunk.r) r *= 1 - allowed_;
+  Vector<D> edges = edges_;
+  resize_box<D>(shrunk, edges, edges_ / (1 + margin_));
+  engine_.emplace(shrunk, edges, burst_swelling, walls_, 1 / (1 - allowed_));
+}
+
+template <int D>
+void BoxGround<D>::read_places(Spheres<D>& spheres) const {
+  Vector<D> edges;
+  engine_->write_to(spheres, edges);
+  resize_box<D>(spheres, edges, edges_);
+}
+
+template <int D>
+void BoxGround<D>::move_to_holes(Spheres<D>& spheres, std::vector<std::uint32_t> ids, Random& random) {
+  bernal::move_to_holes<D>(spheres, edges_, std::move(ids), random, walls_);
+  place(spheres);
+}
+
+#define BERNAL_INSTANTIATE(D) template class BoxGround<D>;
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal
