@@ -26,7 +26,7 @@ struct BestCall {
   bool json = false;
 };
 
-struct Answer {
+struct BestAnswer {
   DensestDensity density{};
   DensestSizes sizes{};
   std::string density_table{}, sizes_table{};
@@ -58,13 +58,13 @@ std::string classes_table(const DensestSizes& sizes) {
   return mixture_table(populations, sizes.optimum.shares);
 }
 
-Answer find(const BestCall& call) {
+BestAnswer find(const BestCall& call) {
   const SizeLimits limits = limits_of(call.min, call.max, {});
   ProgressBar bar(false);
   SearchOptions options{.rods = call.rods, .from = {}, .monitor = bar.monitor(0, 0.4)};
   const Stopwatch watch;
   const double min = 0.5 * *limits.min, max = 0.5 * *limits.max;
-  Answer answer;
+  BestAnswer answer;
   answer.density = densest_density(min, max, call.bins, options);
   options.monitor = bar.monitor(0.4, 0.45);
   answer.sizes = densest_sizes(min, max, 2, options);
@@ -89,7 +89,7 @@ void print_certainty(const Optimum& optimum, double within) {
              optimum.cancelled ? "; stopped early" : "");
 }
 
-void print(const Answer& answer) {
+void print(const BestAnswer& answer) {
   const DensestDensity& density = answer.density;
   fmt::print("density           {:.6f}, random close packing without walls, by volume in {} bins\n",
              answer.density_prediction.phi, density.levels.back().bins);
@@ -121,7 +121,7 @@ nlohmann::ordered_json certainty_as_json(nlohmann::ordered_json json, const Opti
   return json;
 }
 
-nlohmann::ordered_json as_json(const Answer& answer) {
+nlohmann::ordered_json as_json(const BestAnswer& answer) {
   const DensestDensity& density = answer.density;
   nlohmann::ordered_json json =
       certainty_as_json(table_as_json(answer.density_prediction, answer.density_table), density.optimum);
@@ -135,7 +135,7 @@ nlohmann::ordered_json as_json(const Answer& answer) {
 }
 
 int best(const BestCall& call) {
-  const Answer answer = find(call);
+  const BestAnswer answer = find(call);
   if (call.json)
     fmt::print("{}\n", as_json(answer).dump(2));
   else
@@ -144,7 +144,7 @@ int best(const BestCall& call) {
   return cancelled ? exit_code::not_reached : exit_code::done;
 }
 
-constexpr const char* footer = R"(Two answers, each with a table to paste into a scene:
+constexpr const char* best_footer = R"(Two answers, each with a table to paste into a scene:
   a density by volume, constant in bins that are evenly spaced on a logarithmic axis (a sieve analysis);
   two to five sizes, the limits among them: as many as gain at least 0.002 each.
 There is no densest density. With more bins the best one is denser and gathers into narrow peaks, whose
@@ -167,6 +167,6 @@ Command best_command() {
            one_of({"--bins", &call->bins, "Of the density: 2, 4, 8, 16, 32 or 64; 16 if absent", "N"},
                   {"2", "4", "8", "16", "32", "64"}),
            rods_option(call->rods, 100, 10'000'000), json_option(call->json)},
-          footer,
+          best_footer,
           [call] { return best(*call); }};
 }

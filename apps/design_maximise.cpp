@@ -72,7 +72,7 @@ Optimum densest(const std::vector<Population>& populations, const SearchOptions&
   return maximise_packing_fraction(radii, options);
 }
 
-struct Answer {
+struct MaximiseAnswer {
   std::vector<Population> populations;
   Optimum optimum{};
   std::string table{};
@@ -80,8 +80,8 @@ struct Answer {
   double seconds = 0;
 };
 
-Answer find(const MaximiseCall& call) {
-  Answer answer{.populations = populations_of(call)};
+MaximiseAnswer find(const MaximiseCall& call) {
+  MaximiseAnswer answer{.populations = populations_of(call)};
   ProgressBar bar(false);
   const Stopwatch watch;
   answer.optimum = densest(answer.populations, {.rods = call.rods, .from = {}, .monitor = bar.monitor()});
@@ -96,7 +96,7 @@ std::string name_of(const Population& p) {
                      : fmt::format("diameter {}", number(p.d43));
 }
 
-void print(const Answer& answer) {
+void print(const MaximiseAnswer& answer) {
   const Optimum& optimum = answer.optimum;
   fmt::print(
       "packing fraction  {:.6f}, random close packing without walls: the densest composition found{}\n",
@@ -114,7 +114,7 @@ void print(const Answer& answer) {
   print_error_and_table(answer.prediction, answer.table);
 }
 
-nlohmann::ordered_json as_json(const Answer& answer) {
+nlohmann::ordered_json as_json(const MaximiseAnswer& answer) {
   nlohmann::ordered_json json = table_as_json(answer.prediction, answer.table);
   const Optimum& optimum = answer.optimum;
   for (std::size_t k = 0; k < answer.populations.size(); ++k)
@@ -131,7 +131,7 @@ nlohmann::ordered_json as_json(const Answer& answer) {
 }
 
 int maximise(const MaximiseCall& call) {
-  const Answer answer = find(call);
+  const MaximiseAnswer answer = find(call);
   if (call.json)
     fmt::print("{}\n", as_json(answer).dump(2));
   else
@@ -139,7 +139,7 @@ int maximise(const MaximiseCall& call) {
   return answer.optimum.cancelled ? exit_code::not_reached : exit_code::done;
 }
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* maximise_footer = R"(Examples:
   bernal design maximise --diameters 1,5                          20.8 % of the volume small: 0.7878
   bernal design maximise --diameters 1,3,9 --json
   bernal design maximise --lognormal 10,9 --lognormal 60,55 --diameters 300
@@ -162,6 +162,6 @@ Command maximise_command() {
                      "D43,D32"}),
            rods_option(call->rods, 100, 10'000'000),
            json_option(call->json)},
-          footer,
+          maximise_footer,
           [call] { return maximise(*call); }};
 }

@@ -25,7 +25,7 @@ struct TargetCall {
   bool json = false;
 };
 
-struct Answer {
+struct TargetAnswer {
   Match match{};
   SizeFamily::Member member{};
   std::string what;
@@ -45,7 +45,7 @@ double beyond(double ratio, double sigma) {
   return std::erfc(0.5 * std::log(ratio) / (sigma * std::sqrt(2.0)));
 }
 
-Answer find(const TargetCall& call) {
+TargetAnswer find(const TargetCall& call) {
   if (!(call.phi > 0 && call.phi < 1))
     throw Error(ErrorCode::bad_argument,
                 fmt::format("--phi: a packing fraction lies between 0 and 1, not at {}", call.phi));
@@ -56,7 +56,7 @@ Answer find(const TargetCall& call) {
   const SizeFamily family = family_of(call.family, limits, call.exponent, call.rods);
 
   const Stopwatch watch;
-  Answer answer{.what = family.what};
+  TargetAnswer answer{.what = family.what};
   answer.match = match_member(family.member, family.from, family.to, call);
   if (family.held && (answer.match.found || answer.match.most > call.phi)) {
     // Near where the best share is about right, with that share: a root of what is continuous.
@@ -76,7 +76,7 @@ Answer find(const TargetCall& call) {
   return answer;
 }
 
-void print(const Answer& answer) {
+void print(const TargetAnswer& answer) {
   fmt::print("packing fraction  {:.6f}, random close packing without walls\n", answer.match.prediction.phi);
   fmt::print("{:<18}{:.6g}; the narrowest of {}\n", answer.member.name, answer.member.value, answer.what);
   if (answer.cut_off)
@@ -85,7 +85,7 @@ void print(const Answer& answer) {
   print_error_and_table(answer.match.prediction, answer.member.table);
 }
 
-nlohmann::ordered_json as_json(const TargetCall& call, const Answer& answer) {
+nlohmann::ordered_json as_json(const TargetCall& call, const TargetAnswer& answer) {
   nlohmann::ordered_json json;
   if (answer.match.found)
     json = table_as_json(answer.match.prediction, answer.member.table);
@@ -101,7 +101,7 @@ nlohmann::ordered_json as_json(const TargetCall& call, const Answer& answer) {
 }
 
 int target(const TargetCall& call) {
-  const Answer answer = find(call);
+  const TargetAnswer answer = find(call);
   if (call.json)
     fmt::print("{}\n", as_json(call, answer).dump(2));
   else if (answer.match.found)
@@ -113,7 +113,7 @@ int target(const TargetCall& call) {
   return exit_code::not_reached;
 }
 
-constexpr const char* footer =
+constexpr const char* target_footer =
     R"(Families, each by volume and from narrow to wide by one number; the narrowest that will do is taken:
   lognormal      sigma, about the middle of the limits (on a logarithmic axis), cut off at both
   rosin_rammler  the slope n, with d63 at that middle, cut off at both limits
@@ -146,6 +146,6 @@ Command target_command() {
            {"--exponent", &call->exponent, "Of fuller; 0.5 if absent", "Q"},
            rods_option(call->rods, 100, 10'000'000),
            json_option(call->json)},
-          footer,
+          target_footer,
           [call] { return target(*call); }};
 }

@@ -36,7 +36,7 @@ struct PredictCall {
   bool quiet = false;
 };
 
-struct Answer {
+struct PredictAnswer {
   Prediction prediction;
   double seconds = 0;
   std::optional<double> viscosity;
@@ -100,10 +100,10 @@ void require_one_source(const PredictCall& call) {
     throw Error(ErrorCode::bad_argument, "--fit is for one lognormal population, not for a scene");
 }
 
-Answer answer_to(PredictCall& call) {
+PredictAnswer answer_to(PredictCall& call) {
   require_one_source(call);
   const Scene scene = scene_of(call);
-  Answer answer;
+  PredictAnswer answer;
   const Stopwatch watch;
   if (call.fit)
     answer.prediction = {fitted_packing_fraction(width_of(scene)), 0, 3e-4};
@@ -125,7 +125,7 @@ void print(const PredictionCheck& packed, double predicted) {
     fmt::print("outcome           {}: not as dense as it would become\n", name_of(packed.outcome));
 }
 
-void print(const PredictCall& call, const Answer& answer) {
+void print(const PredictCall& call, const PredictAnswer& answer) {
   const Prediction& p = answer.prediction;
   fmt::print("packing fraction  {:.6f}, random close packing without walls\n", p.phi);
   if (call.fit)
@@ -139,13 +139,13 @@ void print(const PredictCall& call, const Answer& answer) {
 }
 
 /// A packing is an answer of its own unless it was stopped, is not certified or did not become close.
-int status_of(const Answer& answer) {
+int status_of(const PredictAnswer& answer) {
   if (!answer.packed) return exit_code::done;
   if (!answer.packed->certified) return exit_code::no;
   return answer.packed->outcome == Outcome::converged ? exit_code::done : exit_code::not_reached;
 }
 
-nlohmann::ordered_json as_json(const PredictCall& call, const Answer& answer) {
+nlohmann::ordered_json as_json(const PredictCall& call, const PredictAnswer& answer) {
   nlohmann::ordered_json json = {{"phi", answer.prediction.phi},
                                  {"rods", answer.prediction.rods},
                                  {"error", answer.prediction.error},
@@ -167,7 +167,7 @@ nlohmann::ordered_json as_json(const PredictCall& call, const Answer& answer) {
 }
 
 int predict(PredictCall& call) {
-  const Answer answer = answer_to(call);
+  const PredictAnswer answer = answer_to(call);
   if (call.json)
     fmt::print("{}\n", as_json(call, answer).dump(2));
   else
@@ -175,7 +175,7 @@ int predict(PredictCall& call) {
   return status_of(answer);
 }
 
-constexpr const char* footer = R"(Sizes, in one of three ways:
+constexpr const char* predict_footer = R"(Sizes, in one of three ways:
   --lognormal and --classes, as often as needed: one mixture of all. Diameters and volumes are
   in any unit; volumes are those of the spheres (or masses, of one material), not of the heap.
   --scene: the [spheres] of a scene, of any distribution.
@@ -232,6 +232,6 @@ Command predict_command() {
                          [call = call.get()](std::uint64_t seed) { call->packing.seed = seed; }),
              "--check"),
        quiet_option(call->quiet, "Show no progress")},
-      footer,
+      predict_footer,
       [call] { return predict(*call); }};
 }

@@ -47,13 +47,13 @@ Mesh drawable(const Box& box) {
 
 Mesh drawable(const Cylinder& cylinder) {
   const Vector<3> axis = cylinder.axis.normalized();
-  const Vector<3> top = cylinder.base + cylinder.height * axis;
+  const Vector<3> top_center = cylinder.base + cylinder.height * axis;
   Mesh mesh;
   mesh.vertices = ring(cylinder.base, axis, cylinder.radius);
-  const std::vector<Vector<3>> upper = ring(top, axis, cylinder.radius);
+  const std::vector<Vector<3>> upper = ring(top_center, axis, cylinder.radius);
   mesh.vertices.insert(mesh.vertices.end(), upper.begin(), upper.end());
   mesh.vertices.push_back(cylinder.base);
-  mesh.vertices.push_back(top);
+  mesh.vertices.push_back(top_center);
   for (std::uint32_t i = 0; i < rim_points; ++i) {
     const std::uint32_t j = (i + 1) % rim_points, n = rim_points;
     mesh.triangles.push_back({i, j, n + i});

@@ -15,7 +15,7 @@ constexpr double share_of_margin = 0.97;
 constexpr int sweeps_a_look = 25;
 /// Stuck: at so many looks in a row the mean squeeze is more than this share of the least so far.
 constexpr double hardly_freer = 0.85;
-constexpr int patience = 2;
+constexpr int most_slow_looks = 2;
 /// Stirring helps as long as the mean squeeze falls below this share of the least so far.
 constexpr double progress = 0.9;
 /// Mean squeeze at which there are so many spheres too many that stirring is of no use.
@@ -57,7 +57,7 @@ StageEnd Crowd<Ground>::settle(const Monitor& monitor, const std::function<void(
                                double most_sweeps) {
   StageEnd end = StageEnd::full;
   double least_squeeze = 1e300;
-  for (int slow = 0; slow < patience;) {
+  for (int slow = 0; slow < most_slow_looks;) {
     const Pace pace = pace_for(largest_overlap_);
     ground_.engine().wear_lists(pace.wear);
     for (int k = 1; k < sweeps_a_look && end != StageEnd::cancelled; ++k) {

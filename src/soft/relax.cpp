@@ -23,7 +23,7 @@ constexpr double loose = 0.9;
 constexpr double room_to_grow = 0.03;
 constexpr int most_starts_in_a_loose_box = 20;
 /// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
-constexpr double jitter = 1e-6;
+constexpr double first_jitter = 1e-6;
 
 /// Where the overlap falls linearly with the growth of the box. Earlier, prediction costs contacts.
 constexpr double predictable = 3e-3;
@@ -81,7 +81,7 @@ void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& 
   Random random = work.random(Stream::relax);
   if (work.placed) {
     resize_box<D>(spheres, edges, start);
-    displace_at_random<D>(spheres, edges, work.walls, jitter * std::ranges::max(spheres.r), random);
+    displace_at_random<D>(spheres, edges, work.walls, first_jitter * std::ranges::max(spheres.r), random);
   } else {
     edges = start;
     place_at_random<D>(spheres, edges, random);
