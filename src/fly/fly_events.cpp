@@ -75,7 +75,7 @@ void EventFlight<D>::move_to(Id i, double t) {
   time_[i] = t;
   if (dt <= 0) return;
   for (int k = 0; k < D; ++k) spheres_.x(i, k) += dt * spheres_.v(i, k);
-  room_[i] -= dt * std::sqrt(spheres_.v.row(i).square().sum());
+  room_[i] -= dt * std::sqrt(spheres_.squared_norm(spheres_.v, i));
 }
 
 template <int D>
@@ -133,7 +133,7 @@ void EventFlight<D>::foresee_pair(Id i, Id j) {
 
 template <int D>
 void EventFlight<D>::foresee_alone(Id i) {
-  const double speed = std::sqrt(spheres_.v.row(i).square().sum());
+  const double speed = std::sqrt(spheres_.squared_norm(spheres_.v, i));
   if (const double time = time_[i] + std::max(0.0, room_[i]) / speed; time < end_)
     events_.push({time, i, leaves_list, hits_[i], 0});
   for (int k = 0; k < D; ++k) {
@@ -185,7 +185,7 @@ void EventFlight<D>::fly() {
     double least = reach;
     room_.assign(n, reach);
     for (Id i = 0; i < n; ++i) {
-      room_[i] -= std::sqrt((spheres_.x.row(i) - from_.row(i)).square().sum());
+      room_[i] -= std::sqrt(spheres_.squared_distance(spheres_.x, from_, i));
       least = std::min(least, room_[i]);
     }
     return least;

@@ -63,6 +63,24 @@ class FlyingSpheres {
     for (int k = 0; k < D; ++k) w[k] = columns(i, k);
     return w;
   }
+  /// |x_i - y_i|² and |x_i|², the sum of two halves, of which each is the sum of two halves.
+  template <int First = 0, int Count = D>
+  static double squared_distance(const Columns& x, const Columns& y, Id i) {
+    if constexpr (Count == 1) {
+      const double d = x(i, First) - y(i, First);
+      return d * d;
+    } else {
+      return squared_distance<First, Count / 2>(x, y, i) +
+             squared_distance<First + Count / 2, Count - Count / 2>(x, y, i);
+    }
+  }
+  template <int First = 0, int Count = D>
+  static double squared_norm(const Columns& x, Id i) {
+    if constexpr (Count == 1)
+      return x(i, First) * x(i, First);
+    else
+      return squared_norm<First, Count / 2>(x, i) + squared_norm<First + Count / 2, Count - Count / 2>(x, i);
+  }
   static void set_row(Columns& columns, Id i, const Vector<D>& w) {
     for (int k = 0; k < D; ++k) columns(i, k) = w[k];
   }
@@ -85,7 +103,7 @@ class FlyingSpheres {
   }
   double kinetic_energy() const {
     double sum = 0;
-    for (Id i = 0; i < size(); ++i) sum += 0.5 * mass_[i] * v.row(i).square().sum();
+    for (Id i = 0; i < size(); ++i) sum += 0.5 * mass_[i] * squared_norm(v, i);
     return sum;
   }
 

@@ -54,9 +54,14 @@ double smoothed(double overlap, double t) {
   return overlap > 0 ? 0.5 * (overlap + root) : 2 * t * t / (root - overlap);
 }
 
+/// The components of sphere i in a vector of all.
 template <int D>
-Eigen::Index at(std::size_t i) {
-  return static_cast<Eigen::Index>(D * i);
+Eigen::Map<Vector<D>> part(Eigen::VectorXd& v, std::size_t i) {
+  return Eigen::Map<Vector<D>>(v.data() + D * i);
+}
+template <int D>
+Eigen::Map<const Vector<D>> part(const Eigen::VectorXd& v, std::size_t i) {
+  return Eigen::Map<const Vector<D>>(v.data() + D * i);
 }
 
 /// Inverts a symmetric positive definite matrix of n rows in place, 1 <= n <= 8, by its Cholesky factors. It
@@ -78,11 +83,11 @@ void invert_positive_definite(double* matrix, int n) {
 template <int D>
 JammingEnergy<D>::JammingEnergy(const Spheres<D>& spheres, const Vector<D>& edges)
     : order_(spatial_order(spheres, edges)) {
-  state_.centers.resize(at<D>(spheres.size()));
+  state_.centers.resize(static_cast<Eigen::Index>(D * spheres.size()));
   state_.edges = edges;
   for (std::size_t i = 0; i < order_.size(); ++i) {
     radius_.push_back(spheres.r[order_[i]]);
-    state_.centers.template segment<D>(at<D>(i)) = spheres.center(order_[i]);
+    part<D>(state_.centers, i) = spheres.center(order_[i]);
     load_per_overlap_ += D * std::pow(2 * radius_[i], D);
   }
   least_radius_ = std::ranges::min(radius_);
@@ -110,10 +115,9 @@ bool JammingEnergy<D>::pairs_are_complete() const {
   if (held_) return true;
   const double scale = state_.edges[0] / at_finding_.edges[0];
   double squared = 0;
-  for (Eigen::Index i = 0; i < state_.centers.size(); i += D)
-    squared = std::max(
-        squared, (state_.centers.template segment<D>(i) - scale * at_finding_.centers.template segment<D>(i))
-                     .squaredNorm());
+  for (std::size_t i = 0; i < size(); ++i)
+    squared = std::max(squared,
+                       (part<D>(state_.centers, i) - scale * part<D>(at_finding_.centers, i)).squaredNorm());
   const double slack = scale * (1 + width_at_finding_) - (1 + width());
   const double s = 2 * (slack < 0 ? largest_radius_ : least_radius_);
   return 2 * std::sqrt(squared) <= scale * skin * least_radius_ + slack * s;
@@ -138,8 +142,7 @@ void JammingEnergy<D>::hold(const std::vector<char>& bears) {
 /// From the second to the first.
 template <int D>
 Vector<D> JammingEnergy<D>::away_of(const typename PeriodicPairs<D>::Pair& pair) const {
-  return state_.centers.template segment<D>(at<D>(pair.first)) -
-         state_.centers.template segment<D>(at<D>(pair.second)) -
+  return part<D>(state_.centers, pair.first) - part<D>(state_.centers, pair.second) -
          pairs_.images()[pair.image].cwiseProduct(state_.edges);
 }
 
@@ -158,8 +161,8 @@ void JammingEnergy<D>::evaluate() {
   double virial = 0;
   for (const Contact& c : now_.contacts) {
     const double force = c.tension * c.distance;
-    now_.gradient.template segment<D>(at<D>(c.first)) -= force * c.normal;
-    now_.gradient.template segment<D>(at<D>(c.second)) += force * c.normal;
+    part<D>(now_.gradient, c.first) -= force * c.normal;
+    part<D>(now_.gradient, c.second) += force * c.normal;
     virial += force * c.distance;
   }
   now_.gradient[unknowns() - 1] = load_ - virial;
@@ -171,7 +174,7 @@ template <int D>
 void JammingEnergy<D>::still(Eigen::VectorXd& v) const {
   if (fixed_.empty()) return;
   for (std::size_t i = 0; i < size(); ++i)
-    if (fixed_[i]) v.template segment<D>(at<D>(i)).setZero();
+    if (fixed_[i]) part<D>(v, i).setZero();
   v[unknowns() - 1] = 0;
 }
 
@@ -231,15 +234,20 @@ void JammingEnergy<D>::hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& 
 template <int D>
 void JammingEnergy<D>::factor_preconditioner() {
   inverse_blocks_.resize(size());
-  for (std::size_t i = 0; i < size(); ++i)
-    inverse_blocks_[i] = least_stiffness * stiffness_of<D>(2 * radius_[i]) * Block::Identity();
+  for (std::size_t i = 0; i < size(); ++i) {
+    inverse_blocks_[i].setZero();
+    inverse_blocks_[i].diagonal().setConstant(least_stiffness * stiffness_of<D>(2 * radius_[i]));
+  }
   double dilation = 1e-3 * load_per_overlap_;
   for (const Contact& c : now_.contacts) {
     dilation += c.stiffness * c.distance * c.distance;
     if (c.first == c.second) continue;
-    const Block block = c.stiffness * c.normal * c.normal.transpose();
-    inverse_blocks_[c.first] += block;
-    inverse_blocks_[c.second] += block;
+    for (int k = 0; k < D; ++k)
+      for (int l = 0; l < D; ++l) {
+        const double stiffness = c.stiffness * c.normal[l] * c.normal[k];
+        inverse_blocks_[c.first](l, k) += stiffness;
+        inverse_blocks_[c.second](l, k) += stiffness;
+      }
   }
   for (Block& block : inverse_blocks_) invert_positive_definite(block.data(), D);
   inverse_dilation_ = 1 / dilation;
@@ -247,8 +255,7 @@ void JammingEnergy<D>::factor_preconditioner() {
 
 template <int D>
 void JammingEnergy<D>::precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const {
-  for (std::size_t i = 0; i < size(); ++i)
-    out.template segment<D>(at<D>(i)).noalias() = inverse_blocks_[i] * v.template segment<D>(at<D>(i));
+  for (std::size_t i = 0; i < size(); ++i) part<D>(out, i).noalias() = inverse_blocks_[i] * part<D>(v, i);
   out[unknowns() - 1] = inverse_dilation_ * v[unknowns() - 1];
 }
 
@@ -274,7 +281,7 @@ template <int D>
 void JammingEnergy<D>::write(Spheres<D>& spheres) const {
   const Boundary<D> box{state_.edges};
   for (std::size_t i = 0; i < size(); ++i)
-    spheres.set_center(order_[i], box.wrap(state_.centers.template segment<D>(at<D>(i))));
+    spheres.set_center(order_[i], box.wrap(part<D>(state_.centers, i)));
 }
 
 #define BERNAL_INSTANTIATE(D) template class JammingEnergy<D>;

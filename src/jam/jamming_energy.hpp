@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "bernal/core/spheres.hpp"
+#include "jam/trust_region.hpp"
 #include "neighbors/periodic_pairs.hpp"
 
 namespace bernal {
@@ -33,7 +34,7 @@ namespace bernal {
 /// jamming; Dagois-Bohy, Tighe, Simon, Henkes & van Hecke, Phys. Rev. Lett. 109, 095703 (2012), the box as an
 /// unknown; Chen & Mangasarian, Comput. Optim. Appl. 5, 97 (1996), the smoothing.
 template <int D>
-class JammingEnergy {
+class JammingEnergy final : public SmoothFunction {
  public:
   struct Contact {
     Vector<D> normal;  // from the second to the first
@@ -68,27 +69,27 @@ class JammingEnergy {
   }
 
   std::size_t size() const { return radius_.size(); }
-  Eigen::Index unknowns() const { return static_cast<Eigen::Index>(D * size() + 1); }
+  Eigen::Index unknowns() const override { return static_cast<Eigen::Index>(D * size() + 1); }
   const Vector<D>& edges() const { return state_.edges; }
   const std::vector<Contact>& contacts() const { return now_.contacts; }
-  const Eigen::VectorXd& gradient() const { return now_.gradient; }
+  const Eigen::VectorXd& gradient() const override { return now_.gradient; }
   /// Of all springs, less what smoothing adds: a measure for changes of H. Above 0 where anything touches.
   double elastic_energy() const { return now_.elastic; }
   /// The largest o / s of a pair; 0 if none overlaps.
   double largest_overlap() const { return now_.largest_overlap; }
 
   /// out = Hessian · v.
-  void hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& out) const;
+  void hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& out) const override;
   /// Block Jacobi of the present state, a D x D block for each sphere: positive definite. It also is the
   /// metric of lengths of motions: none is free, not even that of a sphere that touches nothing.
-  void factor_preconditioner();
-  void precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const;
+  void factor_preconditioner() override;
+  void precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const override;
 
   /// Moves all and dilates the box. Returns the change of H.
-  double move(const Eigen::VectorXd& motion);
+  double move(const Eigen::VectorXd& motion) override;
   /// Takes the last move back. Precondition: there was one since the last set_level, and it has not been
   /// taken back.
-  void take_back();
+  void take_back() override;
 
   /// Sets the centres, wrapped into the box.
   void write(Spheres<D>& spheres) const;

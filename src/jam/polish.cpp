@@ -145,8 +145,8 @@ class Polish {
     const double overlap = level.overlap;
     soft_.set_level(overlap, level.smoothing);
     const double noise = resolution() / overlap;
-    TrustRegion<JammingEnergy<D>> region(
-        soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap), level.forcing, work_.monitor);
+    TrustRegion region(soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap), level.forcing,
+                       work_.monitor);
     for (int step = 0; step < most_steps_a_level; ++step) {
       imbalance_ = region.gradient_length() / std::sqrt(2 * soft_.elastic_energy());
       if (imbalance_ < std::max(level.balance, 4 * noise)) break;

@@ -10,7 +10,7 @@ namespace bernal {
 namespace {
 
 /// sum of l_i x_i² / 2 - x_i, with l_i from 1 to 1e6.
-struct Valley {
+struct Valley final : SmoothFunction {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(400), curvature = x, before = x, slope = x;
 
   Valley() {
@@ -18,22 +18,22 @@ struct Valley {
       curvature[i] = std::pow(1e6, static_cast<double>(i) / static_cast<double>(x.size() - 1));
     set_slope();
   }
-  Eigen::Index unknowns() const { return x.size(); }
-  const Eigen::VectorXd& gradient() const { return slope; }
-  void hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& out) const {
+  Eigen::Index unknowns() const override { return x.size(); }
+  const Eigen::VectorXd& gradient() const override { return slope; }
+  void hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& out) const override {
     out = curvature.cwiseProduct(v);
   }
-  void factor_preconditioner() {}
-  void precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const { out = v; }
+  void factor_preconditioner() override {}
+  void precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const override { out = v; }
   double value() const { return 0.5 * x.dot(curvature.cwiseProduct(x)) - x.sum(); }
-  double move(const Eigen::VectorXd& v) {
+  double move(const Eigen::VectorXd& v) override {
     before = x;
     const double from = value();
     x += v;
     set_slope();
     return value() - from;
   }
-  void take_back() {
+  void take_back() override {
     x = before;
     set_slope();
   }
@@ -43,7 +43,7 @@ struct Valley {
 TEST(TrustRegion, FindsTheMinimumOfALongValleyInOneStep) {
   Valley valley;
   const Monitor monitor;
-  TrustRegion<Valley> region(valley, 1e6, 1e-9, monitor);
+  TrustRegion region(valley, 1e6, 1e-9, monitor);
   const double slope = region.gradient_length();
   EXPECT_TRUE(region.step(0));
   // 1e-9 is asked for; the residual that conjugate gradients carry along drifts from the true one by roundoff
@@ -56,7 +56,7 @@ TEST(TrustRegion, AsksTheMonitorWithinAStepAndKeepsWhatItHas) {
   Valley valley;
   int asked = 0;
   const Monitor monitor{.on_progress = {}, .cancelled = [&] { return ++asked == 2; }};
-  TrustRegion<Valley> region(valley, 1e6, 1e-9, monitor);
+  TrustRegion region(valley, 1e6, 1e-9, monitor);
   region.gradient_length();
   const double from = valley.value();
   EXPECT_TRUE(region.step(0));
@@ -68,7 +68,7 @@ TEST(TrustRegion, AsksTheMonitorWithinAStepAndKeepsWhatItHas) {
 TEST(TrustRegion, StaysInTheRegion) {
   Valley valley;
   const Monitor monitor;
-  TrustRegion<Valley> region(valley, 1e-3, 1e-9, monitor);
+  TrustRegion region(valley, 1e-3, 1e-9, monitor);
   region.gradient_length();
   EXPECT_TRUE(region.step(0));
   EXPECT_NEAR(valley.x.norm(), 1e-3, 1e-12);
