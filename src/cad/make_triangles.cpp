@@ -65,8 +65,14 @@ Triangles make_triangles(const PolygonSoup& soup) {
       larger.push_back(std::move(corners));
     }
   }
-  for (const Polygon& polygon : larger)
-    for (const auto& t : triangulate(result.mesh.vertices, polygon)) triangles.push_back(t);
+  // One triangle of each polygon, then the others: packings depend on the order in their last bits.
+  std::vector<std::array<std::uint32_t, 3>> others;
+  for (const Polygon& polygon : larger) {
+    const auto pieces = triangulate(result.mesh.vertices, polygon);
+    triangles.push_back(pieces.front());
+    others.insert(others.end(), pieces.begin() + 1, pieces.end());
+  }
+  triangles.insert(triangles.end(), others.begin(), others.end());
   result.welded =
       static_cast<std::uint64_t>(std::count(used.begin(), used.end(), true)) - result.mesh.vertices.size();
 

@@ -41,8 +41,8 @@ Triangles halves(const std::vector<Vector<3>>& points, const Polygon& q) {
     return (points[q[b]] - points[q[a]]).cross(points[q[c]] - points[q[b]]);
   };
   if (across(1, 2, 3).dot(across(3, 0, 1)) >= across(0, 1, 2).dot(across(2, 3, 0)))
-    return {{q[0], q[1], q[3]}, {q[1], q[2], q[3]}};
-  return {{q[0], q[1], q[2]}, {q[0], q[2], q[3]}};
+    return {{q[3], q[0], q[1]}, {q[1], q[2], q[3]}};
+  return {{q[2], q[3], q[0]}, {q[0], q[1], q[2]}};
 }
 
 /// None if the polygon folds or touches itself in projection.
