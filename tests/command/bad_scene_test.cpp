@@ -4,7 +4,7 @@
 #include "support/scenes.hpp"
 
 namespace bernal::testing {
-namespace {
+namespace bad_scene_test {
 
 /// Every subcommand that reads a scene refuses it in one line, and nothing is written.
 void expect_bad_scene(const std::filesystem::path& scene, const std::vector<std::string>& words) {
@@ -108,8 +108,9 @@ TEST(Explain, SaysWhatAMixtureIsMadeOf) {
                "of = [1, { distribution = \"fuller\", min = 1, max = 2 }] }");
   const Ended ended = bernal({"explain", folder.write("scene.toml", text).string()});
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_NE(ended.out.find("diameter in mm: mixture, of (constant, value 1) and (fuller, max 2, exponent 0.5, min 1), "
-                           "shares [1, 3], basis number; drawn by quantiles"),
+  EXPECT_NE(ended.out.find(
+                "diameter in mm: mixture, of (constant, value 1) and (fuller, max 2, exponent 0.5, min 1), "
+                "shares [1, 3], basis number; drawn by quantiles"),
             std::string::npos)
       << ended.out;
 }
@@ -122,5 +123,5 @@ TEST(Explain, EveryExampleScene) {
   }
 }
 
-}  // namespace
+}  // namespace bad_scene_test
 }  // namespace bernal::testing

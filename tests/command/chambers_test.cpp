@@ -2,7 +2,7 @@
 #include "support/meshes.hpp"
 
 namespace bernal::testing {
-namespace {
+namespace chambers_test {
 
 constexpr const char* scene = R"(unit = "mm"
 [container]
@@ -51,5 +51,5 @@ TEST(ChambersOfAPacking, StandInEveryReport) {
   }
 }
 
-}  // namespace
+}  // namespace chambers_test
 }  // namespace bernal::testing

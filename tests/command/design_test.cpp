@@ -3,7 +3,7 @@
 #include "check.hpp"
 
 namespace bernal::testing {
-namespace {
+namespace design_test {
 
 using nlohmann::json;
 
@@ -207,5 +207,5 @@ TEST(DesignCommand, RefusesAbsurdInputInOneLine) {
   }
 }
 
-}  // namespace
+}  // namespace design_test
 }  // namespace bernal::testing

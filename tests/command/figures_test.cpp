@@ -7,7 +7,7 @@
 #include "check.hpp"
 
 namespace bernal::testing {
-namespace {
+namespace figures_test {
 
 using nlohmann::json;
 
@@ -121,5 +121,5 @@ TEST(PredictCheck, RefusesAbsurdInputInOneLine) {
   expect_refused_in_one_line(bernal({"predict", "--classes", "1:1", "--check", "--stage", "x\"\n"}), {});
 }
 
-}  // namespace
+}  // namespace figures_test
 }  // namespace bernal::testing

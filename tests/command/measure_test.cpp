@@ -1,7 +1,7 @@
 #include "check.hpp"
 
 namespace bernal::testing {
-namespace {
+namespace measure_test {
 
 constexpr const char* scene = R"(unit = "mm"
 [container]
@@ -108,5 +108,5 @@ TEST_F(Measure, BadInputIsOneLine) {
   expect_refused_in_one_line(bernal({"measure"}), {"DIR"});
 }
 
-}  // namespace
+}  // namespace measure_test
 }  // namespace bernal::testing

@@ -8,7 +8,7 @@
 #include "support/scenes.hpp"
 
 namespace bernal::testing {
-namespace {
+namespace pack_test {
 
 /// Name and text of every file of a folder.
 std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
@@ -188,5 +188,5 @@ TEST(Pack, InterruptLeavesAValidPartialResult) {
   }
 }
 
-}  // namespace
+}  // namespace pack_test
 }  // namespace bernal::testing

@@ -3,7 +3,7 @@
 #include "check.hpp"
 
 namespace bernal::testing {
-namespace {
+namespace predict_test {
 
 using nlohmann::json;
 
@@ -164,5 +164,5 @@ TEST(PredictCommand, TenThousandPopulationsAreNoTrouble) {
   EXPECT_NEAR(phi_of({"--stdin", "d"}, Input(many)), phi_of({"--stdin", "d"}, Input(fewer)), 1e-4);
 }
 
-}  // namespace
+}  // namespace predict_test
 }  // namespace bernal::testing

@@ -1,7 +1,7 @@
 #include "check.hpp"
 
 namespace bernal::testing {
-namespace {
+namespace usage_test {
 
 TEST(Usage, HelpNamesEverySubcommandWithExamples) {
   const Ended help = bernal({"--help"});
@@ -75,5 +75,5 @@ TEST(Usage, WrongOnesAreOneLineAndExitTwo) {
   }
 }
 
-}  // namespace
+}  // namespace usage_test
 }  // namespace bernal::testing

@@ -3,7 +3,7 @@
 #include "check.hpp"
 
 namespace bernal::testing {
-namespace {
+namespace verify_test {
 
 constexpr const char* box_scene = R"(unit = "mm"
 [container]
@@ -180,5 +180,5 @@ TEST_F(Verify, ASphereMayTouchItsOwnImageAndNoMore) {
       << ended.out;
 }
 
-}  // namespace
+}  // namespace verify_test
 }  // namespace bernal::testing

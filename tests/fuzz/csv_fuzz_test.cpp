@@ -14,7 +14,7 @@
 #include "support/folder.hpp"
 
 namespace bernal {
-namespace {
+namespace csv_fuzz_test {
 
 std::size_t below(Random& random, std::size_t n) { return static_cast<std::size_t>(random() % n); }
 
@@ -87,5 +87,5 @@ TEST(FuzzCsv, EveryMutationIsAPackingOrAnError) {
   EXPECT_LT(accepted, mutations / 2);
 }
 
-}  // namespace
+}  // namespace csv_fuzz_test
 }  // namespace bernal

@@ -10,7 +10,7 @@
 #include "support/scenes.hpp"
 
 namespace bernal {
-namespace {
+namespace scene_fuzz_test {
 
 std::size_t below(Random& random, std::size_t n) { return static_cast<std::size_t>(random() % n); }
 
@@ -105,5 +105,5 @@ TEST(FuzzScene, DeepNestingIsAnError) {
   EXPECT_FALSE(is_a_scene(inline_tables));
 }
 
-}  // namespace
+}  // namespace scene_fuzz_test
 }  // namespace bernal

@@ -15,7 +15,7 @@
 // What a scene packs to stays what it is, bit for bit: hashes.csv pins it for the scenes of this folder and a
 // few of data/scenes. tests/golden/table writes it, and says when it may.
 namespace bernal {
-namespace {
+namespace golden_test {
 
 const std::filesystem::path folder = BERNAL_SOURCE "/tests/golden";
 
@@ -70,5 +70,5 @@ TEST_P(GoldenScene, PacksToWhatIsPinned) {
   EXPECT_EQ(hash_of(packing.spheres), hash);
 }
 
-}  // namespace
+}  // namespace golden_test
 }  // namespace bernal

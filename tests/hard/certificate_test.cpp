@@ -11,7 +11,7 @@
 #include "support/packing_oracle.hpp"
 
 namespace bernal {
-namespace {
+namespace certificate_test {
 
 Certificate expect_truth(const Spheres<3>& s, const Domain& shape) {
   const Certificate filtered = certify(s, shape, {.arithmetic = Arithmetic::filtered});
@@ -41,7 +41,7 @@ TEST(HardCertificate, RayThroughVertexEdgeAndVerticalFace) {
     for (double x = -1; x <= 9; x += 1)
       for (double y = -1; y <= 9; y += 1)
         for (const double z : {-1.0, 0.5, 2.0, 4.0, 7.5, 9.0}) {
-          SCOPED_TRACE(testing::Message() << x << ' ' << y << ' ' << z);
+          SCOPED_TRACE(::testing::Message() << x << ' ' << y << ' ' << z);
           expect_truth(one({x, y, z}, 0.125), mesh);
         }
 }
@@ -183,5 +183,5 @@ TEST(HardCertificate, NeedlesSliversAndFacesWithoutArea) {
       expect_truth(one({x, x, z}, 3.5), flat);
 }
 
-}  // namespace
+}  // namespace certificate_test
 }  // namespace bernal

@@ -12,7 +12,7 @@
 #include "bernal/core/tolerance.hpp"
 
 namespace bernal::cad {
-namespace {
+namespace certified_distance_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -82,5 +82,5 @@ TEST(CertifiedDistance, APointOnTheTriangleTouchesIt) {
   }
 }
 
-}  // namespace
+}  // namespace certified_distance_test
 }  // namespace bernal::cad

@@ -10,7 +10,7 @@
 #include "support/packings.hpp"
 
 namespace bernal {
-namespace {
+namespace chambers_test {
 
 using namespace test;
 
@@ -118,5 +118,5 @@ TEST(HardChambers, DoNotDependOnTheCells) {
   }
 }
 
-}  // namespace
+}  // namespace chambers_test
 }  // namespace bernal

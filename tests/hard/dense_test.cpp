@@ -12,7 +12,7 @@
 // Relaxation in containers that make it hard: parts that no sphere passes between, walls without thickness,
 // sharp tips, spheres of very different sizes, more of them than fit.
 namespace bernal {
-namespace {
+namespace dense_test {
 
 using testing::plan_of;
 
@@ -185,5 +185,5 @@ TEST(DenseRelaxation, FarAwayAndAtAnyScale) {
   expect_as_dense(testing::shifted(plan_in(two_chambers(), spheres), {3e5, -2e5, 1e5}));
 }
 
-}  // namespace
+}  // namespace dense_test
 }  // namespace bernal

@@ -12,7 +12,7 @@
 #include "domain/exact_analytic.hpp"
 
 namespace bernal {
-namespace {
+namespace far_and_scaled_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -22,7 +22,7 @@ bool contains_exactly(const Domain& shape, const Vector<3>& c, double r) {
   return bernal::contains_exactly(std::get<Sphere>(shape), c, r);
 }
 
-class FarAndScaled : public testing::TestWithParam<std::tuple<double, double>> {
+class FarAndScaled : public ::testing::TestWithParam<std::tuple<double, double>> {
  protected:
   double size = std::get<0>(GetParam());
   Vector<3> offset = size * std::get<1>(GetParam()) * Vector<3>(0.48, -0.6, 0.64);
@@ -93,8 +93,8 @@ TEST_P(FarAndScaled, FilteredIsExactNearTheWall) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, FarAndScaled,
-                         testing::Combine(testing::Values(1e-9, 1e-6, 1.0, 1e6, 1e9),
-                                          testing::Values(0.0, 1.0, 1e4, 1e8)));
+                         ::testing::Combine(::testing::Values(1e-9, 1e-6, 1.0, 1e6, 1e9),
+                                            ::testing::Values(0.0, 1.0, 1e4, 1e8)));
 
-}  // namespace
+}  // namespace far_and_scaled_test
 }  // namespace bernal

@@ -18,7 +18,7 @@
 // over a neighbour; targets that nothing reaches. It ends by itself, says how, and nothing overlaps, by
 // rational arithmetic.
 namespace bernal {
-namespace {
+namespace fly_test {
 
 using testing::plan_of;
 
@@ -166,9 +166,9 @@ TEST_P(HardFlight, OfOneSphereAsLargeAsTheBox) {
 }
 
 TEST_P(HardFlight, OfSpheresWiderThanTheBoxIsRefused) {
-  for (const char* spheres :
-       {"count = 3\nradius = 1.0", "count = 40\nradius = { distribution = \"classes\", values = [0.6, 0.1], "
-                                   "shares = [1, 9] }\ndraw = \"quantiles\""}) {
+  for (const char* spheres : {"count = 3\nradius = 1.0",
+                              "count = 40\nradius = { distribution = \"classes\", values = [0.6, 0.1], "
+                              "shares = [1, 9] }\ndraw = \"quantiles\""}) {
     try {
       packed(scene("edge = 1.0", spheres));
       ADD_FAILURE() << "was packed: " << spheres;
@@ -272,5 +272,5 @@ TEST(Fly, BelowALastPlaceKeepsTheLargestOfTheQueue) {
   EXPECT_NE(packing.reason.find(" of "), std::string::npos) << packing.reason;
 }
 
-}  // namespace
+}  // namespace fly_test
 }  // namespace bernal

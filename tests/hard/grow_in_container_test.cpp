@@ -14,7 +14,7 @@
 // Growth in containers where there is hardly room, very little to hold on to, or too much asked for: what is
 // there is certified by rational arithmetic, and what is not is said.
 namespace bernal {
-namespace {
+namespace grow_in_container_test {
 
 using testing::error_of;
 using testing::plan_of;
@@ -193,5 +193,5 @@ TEST(GrowthBetweenWalls, RefusesWhatItCannotDo) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace grow_in_container_test
 }  // namespace bernal

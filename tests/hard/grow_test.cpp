@@ -18,7 +18,7 @@
 // extreme speeds: it ends by itself, radii are the drawn ones to the bit, and nothing overlaps by rational
 // arithmetic.
 namespace bernal {
-namespace {
+namespace grow_test {
 
 using testing::error_of;
 using testing::plan_of;
@@ -161,11 +161,10 @@ TEST(Growth, EndsWhenCancelled) {
 
 TEST(Growth, RefusesWhatItCannotDo) {
   EXPECT_NE(error_of(scene("", "count = 3\nradius = 1.0")).find("more spheres"), std::string::npos);
-  EXPECT_NE(error_of(scene("dimension = 7", "count = 300\nradius = 1.0")).find("2 to 6"),
-            std::string::npos);
+  EXPECT_NE(error_of(scene("dimension = 7", "count = 300\nradius = 1.0")).find("2 to 6"), std::string::npos);
   EXPECT_NE(error_of(scene("", "count = 2000\nradius = 1.0", "phi_init = 0.45")).find("phi_init"),
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace grow_test
 }  // namespace bernal

@@ -10,7 +10,7 @@
 #include "support/meshes.hpp"
 
 namespace bernal {
-namespace {
+namespace meshes_test {
 
 using namespace test;
 
@@ -307,5 +307,5 @@ TEST_F(HardMesh, TiesAreDecidedExactly) {
   }
 }
 
-}  // namespace
+}  // namespace meshes_test
 }  // namespace bernal

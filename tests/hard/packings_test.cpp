@@ -10,7 +10,7 @@
 // Scenes at the edge of what can be packed: all end by themselves, and what they leave is certified, whether
 // spheres are relaxed or compressed.
 namespace bernal {
-namespace {
+namespace packings_test {
 
 using testing::plan_of;
 
@@ -164,5 +164,5 @@ TEST(HardPacking, OfAHeavyTail) {
   }
 }
 
-}  // namespace
+}  // namespace packings_test
 }  // namespace bernal

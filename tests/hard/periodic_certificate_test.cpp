@@ -8,7 +8,7 @@
 #include "support/periodic_certificates.hpp"
 
 namespace bernal {
-namespace {
+namespace periodic_certificate_test {
 
 using testing::expect_same_verdict;
 using testing::expect_truth;
@@ -124,5 +124,5 @@ TEST(HardPeriodicCertificate, ABoulderAcrossEveryFaceAndItsDust) {
   EXPECT_GT(c.decided_exact, 50u);
 }
 
-}  // namespace
+}  // namespace periodic_certificate_test
 }  // namespace bernal

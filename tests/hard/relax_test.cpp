@@ -13,7 +13,7 @@
 // Relaxation where there are few spheres, small boxes, bad starts or extreme sizes: it ends by itself, and
 // what it leaves is free of overlap, by rational arithmetic.
 namespace bernal {
-namespace {
+namespace relax_test {
 
 using testing::plan_of;
 
@@ -62,13 +62,14 @@ class HardRelaxation : public ::testing::TestWithParam<const char*> {
     static const Monitor monitor;
     static EffectLog effects;
     Work work{.spheres = Spheres<dynamic>(3),
-                      .edges = Vector<dynamic>::Constant(3, edge),
-                      .placed = true,
-                      .seed = 1,
-                      .monitor = monitor,
-                      .effects = effects};
+              .edges = Vector<dynamic>::Constant(3, edge),
+              .placed = true,
+              .seed = 1,
+              .monitor = monitor,
+              .effects = effects};
     for (int i = 0; i < count; ++i) work.spheres.push_back(place(i), 1.0);
-    EXPECT_EQ(relax(work, {.method = reference() ? RelaxMethod::reference : RelaxMethod::fast}), StageEnd::converged);
+    EXPECT_EQ(relax(work, {.method = reference() ? RelaxMethod::reference : RelaxMethod::fast}),
+              StageEnd::converged);
     expect_free_of_overlap(work.spheres, work.edges);
     return work;
   }
@@ -168,8 +169,7 @@ double packing_fraction(const Work& work) {
 }
 
 TEST_P(HardRelaxation, FromCoincidentCentres) {
-  const Work work =
-      placed_and_relaxed(64, 5, [](int) -> Vector<dynamic> { return Vector<3>(1, 2, 3); });
+  const Work work = placed_and_relaxed(64, 5, [](int) -> Vector<dynamic> { return Vector<3>(1, 2, 3); });
   EXPECT_GT(packing_fraction(work), 0.58);
 }
 
@@ -239,5 +239,5 @@ TEST_P(HardRelaxation, CancelledIsFreeOfOverlapNevertheless) {
   }
 }
 
-}  // namespace
+}  // namespace relax_test
 }  // namespace bernal

@@ -13,7 +13,7 @@
 #include "support/precise_distance.hpp"
 
 namespace bernal {
-namespace {
+namespace sliver_test {
 
 using Real = boost::multiprecision::cpp_bin_float_50;
 using test::Point;
@@ -57,7 +57,7 @@ double least_at(const Triangle& t, const Vector<3>& c, const Vector<3>& directio
   return (low + high) / 2;
 }
 
-class Slivers : public testing::TestWithParam<Form> {
+class Slivers : public ::testing::TestWithParam<Form> {
  protected:
   template <class Check>
   void for_many(Check check) {
@@ -189,13 +189,13 @@ TEST_P(Slivers, ARestingSphereLeaves) {
   });
 }
 
-std::string name_of(const testing::TestParamInfo<Form>& form) {
+std::string name_of(const ::testing::TestParamInfo<Form>& form) {
   constexpr std::array names = {"Needles", "Caps", "Collinear", "Coinciding"};
   return names[static_cast<int>(form.param)];
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Slivers,
-                         testing::Values(Form::needle, Form::cap, Form::collinear, Form::coinciding),
+                         ::testing::Values(Form::needle, Form::cap, Form::collinear, Form::coinciding),
                          name_of);
 
 TEST(SliverOfNoLength, ATriangleThatIsAPointIsAPoint) {
@@ -205,5 +205,5 @@ TEST(SliverOfNoLength, ATriangleThatIsAPointIsAPoint) {
   EXPECT_NEAR(first_contact_with_triangle(p, 1, {0, 0, -1}, 5, v, v, v, 1e-9), 3 - 1e-9, 1e-10);
 }
 
-}  // namespace
+}  // namespace sliver_test
 }  // namespace bernal

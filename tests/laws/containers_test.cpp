@@ -11,7 +11,7 @@
 #include "bernal/core/tolerance.hpp"
 
 namespace bernal {
-namespace {
+namespace containers_test {
 
 using test::ContainerUnderTest;
 using test::precise_clearance;
@@ -19,7 +19,7 @@ using test::precise_clearance;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double endless = 100;  // many times the size of a container
 
-class ContainerLaws : public testing::TestWithParam<ContainerUnderTest> {
+class ContainerLaws : public ::testing::TestWithParam<ContainerUnderTest> {
  protected:
   const ContainerUnderTest& under_test() const { return GetParam(); }
 
@@ -337,7 +337,7 @@ TEST_P(ContainerLaws, EveryPeriodIsLikeTheFirst) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ContainerLaws, testing::ValuesIn(test::containers_under_test()),
+INSTANTIATE_TEST_SUITE_P(All, ContainerLaws, ::testing::ValuesIn(test::containers_under_test()),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST(AnalyticContainer, AbsurdShapesAreRefused) {
@@ -373,5 +373,5 @@ TEST(AnalyticContainer, AnAxisOfAnyLengthGivesTheSameCylinder) {
   }
 }
 
-}  // namespace
+}  // namespace containers_test
 }  // namespace bernal

@@ -16,7 +16,7 @@
 // What is true of every packing, whatever its scene. A new container, size distribution or stage is held to
 // these laws by its example in data/scenes, or by one line here.
 namespace bernal {
-namespace {
+namespace packings_test {
 
 using testing::plan_of;
 
@@ -385,5 +385,5 @@ TEST(Packing, ThatNeedsALargerBoxIsFullAndStillWhole) {
   expect_certified(packing);
 }
 
-}  // namespace
+}  // namespace packings_test
 }  // namespace bernal

@@ -19,16 +19,16 @@ namespace bernal::oracle {
 template <int D>
 boost::multiprecision::cpp_rational squared_image_distance(const Spheres<D>& s, const Vector<D>& edges,
                                                            std::size_t i, std::size_t j) {
-  using Rational = boost::multiprecision::cpp_rational;
+  using Number = boost::multiprecision::cpp_rational;
   if (i == j) {
-    const Rational edge(edges.minCoeff());
+    const Number edge(edges.minCoeff());
     return edge * edge;
   }
-  Rational sum = 0;
+  Number sum = 0;
   for (std::size_t k = 0; k < D; ++k) {
-    const Rational edge(edges[static_cast<int>(k)]);
-    Rational d = abs(Rational(s.x[k][i]) - Rational(s.x[k][j]));
-    d = std::min(d, Rational(abs(d - edge)));  // both lie in [0, edge)
+    const Number edge(edges[static_cast<int>(k)]);
+    Number d = abs(Number(s.x[k][i]) - Number(s.x[k][j]));
+    d = std::min(d, Number(abs(d - edge)));  // both lie in [0, edge)
     sum += d * d;
   }
   return sum;

@@ -19,7 +19,7 @@ Packing periodic_packing(Spheres<D> spheres, const Vector<D>& edges,
                          const std::string& sizes = "radius = 1.0") {
   Packing packing;
   packing.spheres = std::move(spheres);
-  packing.domain = periodic_box(edges);
+  packing.domain = bernal::periodic_box(edges);
   packing.volume = volume_of(packing.domain);
   packing.scene = parse_scene(
       fmt::format("unit = \"mm\"\n[container]\nkind = \"periodic\"\ndimension = {}\nsize = [{:#}]\n"

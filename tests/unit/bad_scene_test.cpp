@@ -7,7 +7,7 @@
 #include "support/scene_texts.hpp"
 
 namespace bernal {
-namespace {
+namespace bad_scene_test {
 
 using testing::with_container;
 using testing::with_spheres;
@@ -229,5 +229,5 @@ TEST(BadScene, FileIsNamed) {
   EXPECT_NE(refusal(large).find("larger than 1 MiB"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace bad_scene_test
 }  // namespace bernal

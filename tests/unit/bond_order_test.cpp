@@ -12,7 +12,7 @@
 #include "support/plans.hpp"
 
 namespace bernal {
-namespace {
+namespace bond_order_test {
 
 using testing::face_centred;
 using testing::lattice;
@@ -107,5 +107,5 @@ TEST(BondOrder, IsOfThreeDimensions) {
   EXPECT_FALSE(bond_order(testing::lattice<2>({{.5, .5}}, {2, 2}, {3, 3}, 1)));
 }
 
-}  // namespace
+}  // namespace bond_order_test
 }  // namespace bernal

@@ -7,7 +7,7 @@
 #include "hard/calendar.hpp"
 
 namespace bernal {
-namespace {
+namespace calendar_test {
 
 /// The oracle is a sorted set. Events are replaced as collisions replace them: two or three for each that
 /// comes up.
@@ -65,5 +65,5 @@ TEST(Calendar, ChangesWhatWithoutWhen) {
   EXPECT_EQ(calendar.time(1), 0.25);
 }
 
-}  // namespace
+}  // namespace calendar_test
 }  // namespace bernal

@@ -10,7 +10,7 @@
 
 // The oracle is a map of all spheres that is searched from end to end.
 namespace bernal {
-namespace {
+namespace cell_grid_test {
 
 template <int D>
 struct Sphere {
@@ -208,5 +208,5 @@ TEST(CellGrid, IsEmptyAfterClearAndCanBeFilledAgain) {
   }
 }
 
-}  // namespace
+}  // namespace cell_grid_test
 }  // namespace bernal

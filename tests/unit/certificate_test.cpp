@@ -15,7 +15,7 @@
 #include "support/packing_oracle.hpp"
 
 namespace bernal {
-namespace {
+namespace certificate_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -246,7 +246,7 @@ std::vector<Case> cases() {
           {"prism", meshes::moved(meshes::regular_prism(7, 4, 8), 1, {4, 4, 0}), low, high}};
 }
 
-class CertificateLaw : public testing::TestWithParam<Case> {};
+class CertificateLaw : public ::testing::TestWithParam<Case> {};
 
 TEST_P(CertificateLaw, AgreesWithTheOracleOnRandomPackings) {
   const auto& [name, shape, lower, upper] = GetParam();
@@ -289,7 +289,7 @@ TEST_P(CertificateLaw, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.decided_exact, two.decided_exact);
 }
 
-INSTANTIATE_TEST_SUITE_P(Containers, CertificateLaw, testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(Containers, CertificateLaw, ::testing::ValuesIn(cases()),
                          [](const auto& test) { return test.param.name; });
 
 TEST(Certificate, FindsEveryNearPair) {
@@ -320,5 +320,5 @@ TEST(Certificate, FindsEveryNearPair) {
   }
 }
 
-}  // namespace
+}  // namespace certificate_test
 }  // namespace bernal

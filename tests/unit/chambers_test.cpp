@@ -13,7 +13,7 @@
 #include "support/periodic.hpp"
 
 namespace bernal {
-namespace {
+namespace chambers_test {
 
 using std::numbers::pi;
 using testing::packing_of;
@@ -182,5 +182,5 @@ TEST(Chambers, AreAbsentWithoutSpheresOrWalls) {
   EXPECT_FALSE(chambers(testing::periodic_packing<3>(spheres, Vector<3>::Constant(2))));
 }
 
-}  // namespace
+}  // namespace chambers_test
 }  // namespace bernal

@@ -9,7 +9,7 @@
 #include "hard/collision_kernels.hpp"
 
 namespace bernal {
-namespace {
+namespace collision_kernels_test {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
@@ -139,5 +139,5 @@ TEST(CollisionKernels, HaveNothingToSayWithoutNeighbors) {
   EXPECT_EQ(collision_kernels<2>().front().scan(swarm.scan).delay, never);
 }
 
-}  // namespace
+}  // namespace collision_kernels_test
 }  // namespace bernal

@@ -9,7 +9,7 @@
 #include "support/meshes.hpp"
 
 namespace bernal {
-namespace {
+namespace crowd_test {
 
 struct CrowdUnderTest {
   std::unique_ptr<Container> container;
@@ -199,5 +199,5 @@ TEST(Crowd, OfSpheresThatSinglePrecisionCannotTellApartIsRefused) {
   EXPECT_EQ(tested.settle(), StageEnd::converged);
 }
 
-}  // namespace
+}  // namespace crowd_test
 }  // namespace bernal

@@ -14,7 +14,7 @@
 #include "support/written_files.hpp"
 
 namespace bernal {
-namespace {
+namespace csv_test {
 
 using testing::error_of;
 using testing::example_in;
@@ -190,5 +190,5 @@ TEST(Csv, SaysWhyAFileCannotBeRead) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace csv_test
 }  // namespace bernal

@@ -11,7 +11,7 @@
 #include "bernal/core/error.hpp"
 
 namespace bernal {
-namespace {
+namespace design_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -324,5 +324,5 @@ TEST(DensestDensity, RefusesWhatIsNoQuestion) {
   for (const int count : {-1, 1, 7}) EXPECT_THROW(densest_sizes(1, 2, count), Error) << count;
 }
 
-}  // namespace
+}  // namespace design_test
 }  // namespace bernal

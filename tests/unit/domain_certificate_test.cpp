@@ -15,7 +15,7 @@
 #include "support/periodic_certificates.hpp"
 
 namespace bernal {
-namespace {
+namespace domain_certificate_test {
 
 using testing::expect_same_verdict;
 using testing::expect_truth;
@@ -332,5 +332,5 @@ TEST(WatchedCertificate, CertifiesNothingOnceItIsStopped) {
   }
 }
 
-}  // namespace
+}  // namespace domain_certificate_test
 }  // namespace bernal

@@ -10,7 +10,7 @@
 #include "bernal/core/random.hpp"
 
 namespace bernal {
-namespace {
+namespace domain_test {
 
 using std::numbers::pi;
 
@@ -171,7 +171,7 @@ TEST(Frame, AnySizeAnywhereComesToTheSameLocalSize) {
   for (const double size : {1e-9, 1e-3, 1.0, 123.0, 1e9}) {
     for (const double diagonals : {0.0, 1.0, 1e4, 1e8}) {
       for (const Domain& shape : one_of_each_kind(size, size * diagonals * Vector<3>(0.3, -0.8, 0.6))) {
-        SCOPED_TRACE(testing::Message()
+        SCOPED_TRACE(::testing::Message()
                      << kind_of(shape) << " of size " << size << ", " << diagonals << " away");
         const Frame frame = frame_of(shape);
         int exponent = 0;
@@ -223,5 +223,5 @@ TEST(Frame, AShapeWithoutExtentIsRefused) {
   EXPECT_THROW(frame_of(Box{{0, 0, 0}, {1, std::numeric_limits<double>::infinity(), 1}}), Error);
 }
 
-}  // namespace
+}  // namespace domain_test
 }  // namespace bernal

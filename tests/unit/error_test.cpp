@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace bernal {
-namespace {
+namespace error_test {
 
 TEST(Error, SaysWhereAsFarAsKnown) {
   EXPECT_STREQ(Error(ErrorCode::bad_scene, "no such key", {"a.toml", 7, 3}).what(), "a.toml:7: no such key");
@@ -12,5 +12,5 @@ TEST(Error, SaysWhereAsFarAsKnown) {
   EXPECT_STREQ(Error(ErrorCode::bad_packing, "no number", {"", 2}).what(), "line 2: no number");
 }
 
-}  // namespace
+}  // namespace error_test
 }  // namespace bernal

@@ -10,7 +10,7 @@
 #include "support/plans.hpp"
 
 namespace bernal {
-namespace {
+namespace estimate_test {
 
 using std::numbers::pi;
 
@@ -110,5 +110,5 @@ TEST(Estimate, IsALittleLessThanWhatRelaxationReachesWithPatience) {
   }
 }
 
-}  // namespace
+}  // namespace estimate_test
 }  // namespace bernal

@@ -12,7 +12,7 @@
 #include "verify/exact.hpp"
 
 namespace bernal::verify {
-namespace {
+namespace exact_arithmetic_test {
 
 using Rational = boost::multiprecision::cpp_rational;
 
@@ -51,7 +51,7 @@ Number image_distance(const double* v) {
   return smaller(direct, Number(edge) - direct) - Number(std::min(d, edge - d));
 }
 
-class Signs : public testing::TestWithParam<std::pair<int, int>> {};
+class Signs : public ::testing::TestWithParam<std::pair<int, int>> {};
 
 TEST_P(Signs, AreRightOrUnknown) {
   const auto [digits, spread] = GetParam();
@@ -86,8 +86,8 @@ TEST_P(Signs, AreRightOrUnknown) {
 
 // Small integers tie exactly; 53 bits round; the wide spreads underflow to subnormals and overflow.
 INSTANTIATE_TEST_SUITE_P(Widths, Signs,
-                         testing::Values(std::pair{3, 0}, std::pair{53, 0}, std::pair{53, 30},
-                                         std::pair{20, 500}, std::pair{53, 900}));
+                         ::testing::Values(std::pair{3, 0}, std::pair{53, 0}, std::pair{53, 30},
+                                           std::pair{20, 500}, std::pair{53, 900}));
 
 TEST(Signs, OfSubnormalProducts) {
   const double tiny = std::numeric_limits<double>::denorm_min();
@@ -104,5 +104,5 @@ TEST(Signs, OfOverflowAreUnknown) {
   EXPECT_EQ((Bounded(huge) + Bounded(huge) - Bounded(huge)).sign(), Sign::unknown);
 }
 
-}  // namespace
+}  // namespace exact_arithmetic_test
 }  // namespace bernal::verify

@@ -18,7 +18,7 @@
 #include "support/folder.hpp"
 
 namespace bernal {
-namespace {
+namespace figures_test {
 
 using testing::Folder;
 using testing::text_of;
@@ -213,5 +213,5 @@ TEST(PredictionCheck, WideDistributionsNeedMoreSpheres) {
   EXPECT_EQ(needed(2), 200'000);
 }
 
-}  // namespace
+}  // namespace figures_test
 }  // namespace bernal

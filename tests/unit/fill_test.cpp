@@ -11,7 +11,7 @@
 // What filling a box promises: the radii and the box that were asked for, to the last bit, and no overlap;
 // or, where that is too much, as many of the spheres as are free of overlap.
 namespace bernal {
-namespace {
+namespace fill_test {
 
 using testing::box_filled_to;
 using testing::cube_filled_to;
@@ -262,5 +262,5 @@ TEST(FillByClasses, SpheresThatHavePlacesKeepThem) {
   EXPECT_EQ(filled.work.spheres, before);
 }
 
-}  // namespace
+}  // namespace fill_test
 }  // namespace bernal

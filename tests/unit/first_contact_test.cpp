@@ -14,7 +14,7 @@
 #include "support/precise_distance.hpp"
 
 namespace bernal {
-namespace {
+namespace first_contact_test {
 
 using Real = long double;
 using test::Point;
@@ -199,7 +199,7 @@ struct NamedKernel {
   friend void PrintTo(const NamedKernel& kernel, std::ostream* out) { *out << kernel.name; }
 };
 
-class FirstContact : public testing::TestWithParam<NamedKernel> {
+class FirstContact : public ::testing::TestWithParam<NamedKernel> {
  protected:
   Tally run(Start start, Aim aim, int trials) {
     Tally tally;
@@ -245,11 +245,11 @@ TEST_P(FirstContact, OfAPenetratingSphere) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, FirstContact,
-                         testing::Values(NamedKernel{"Sphere", random_resting_sphere},
-                                         NamedKernel{"Plane", random_plane},
-                                         NamedKernel{"Cylinder", random_cylinder},
-                                         NamedKernel{"RoundWall", random_round_wall},
-                                         NamedKernel{"Triangle", random_triangle}),
+                         ::testing::Values(NamedKernel{"Sphere", random_resting_sphere},
+                                           NamedKernel{"Plane", random_plane},
+                                           NamedKernel{"Cylinder", random_cylinder},
+                                           NamedKernel{"RoundWall", random_round_wall},
+                                           NamedKernel{"Triangle", random_triangle}),
                          [](const auto& kernel) { return std::string(kernel.param.name); });
 
 // What a rolling sphere does all the time: it arrives, stops, turns and goes on. The invariant must not wear
@@ -313,5 +313,5 @@ TEST(FirstContactInside, ASphereThatDoesNotFitMovesToTheMiddleAndNoFurther) {
   }
 }
 
-}  // namespace
+}  // namespace first_contact_test
 }  // namespace bernal

@@ -9,7 +9,7 @@
 #include "bernal/domain/boundary.hpp"
 
 namespace bernal {
-namespace {
+namespace fixed_point_grid_test {
 
 /// Looks at all points from each of them and returns how many it looked at on average.
 template <int D>
@@ -65,5 +65,5 @@ TYPED_TEST(FixedPointGridTest, MeetsEveryNeighborOnce) {
   EXPECT_EQ(expect_complete<D>(3, edges, 0.11), 3);        // looking at cells costs more than at three points
 }
 
-}  // namespace
+}  // namespace fixed_point_grid_test
 }  // namespace bernal

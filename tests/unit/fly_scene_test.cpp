@@ -9,7 +9,7 @@
 
 // What a scene with `fly` may ask for, and what its plan says.
 namespace bernal {
-namespace {
+namespace fly_scene_test {
 
 Plan plan_of(const std::string& box, const std::string& spheres, const std::string& stage = "") {
   return build(parse_scene("[container]\nkind = \"periodic\"\n" + box + "\n[spheres]\n" + spheres +
@@ -65,5 +65,5 @@ TEST(FlyScene, IsExplained) {
   EXPECT_FALSE(leaves_out(dense, "relaxation"));
 }
 
-}  // namespace
+}  // namespace fly_scene_test
 }  // namespace bernal

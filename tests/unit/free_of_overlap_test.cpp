@@ -10,7 +10,7 @@
 
 // How far a box must grow: against all pairs, and proved with rational numbers.
 namespace bernal {
-namespace {
+namespace free_of_overlap_test {
 
 template <class Dimension>
 class FreeOfOverlap : public ::testing::Test {};
@@ -150,5 +150,5 @@ TEST(Boundary, VisitsAllImagesWithinReach) {
   }
 }
 
-}  // namespace
+}  // namespace free_of_overlap_test
 }  // namespace bernal

@@ -6,7 +6,7 @@
 #include "work/free_of_overlap.hpp"
 
 namespace bernal {
-namespace {
+namespace hard_spheres_test {
 
 using testing::equal_radii;
 using testing::Gas;
@@ -155,5 +155,5 @@ TEST(HardSpheres, EndAPeriodWhenToldTo) {
   EXPECT_LT(overlap(flight, gas), 1e-14);
 }
 
-}  // namespace
+}  // namespace hard_spheres_test
 }  // namespace bernal

@@ -5,7 +5,7 @@
 #include <numbers>
 
 namespace bernal {
-namespace {
+namespace holes_test {
 
 constexpr double r = 0.1;  // of the spheres that are there
 
@@ -144,5 +144,5 @@ TEST(Holes, AreFewerWhereThereAreNotSoMany) {
   EXPECT_EQ(holes_in(*container, spheres, std::vector<double>(10, 0.8), 2000).size(), 1u);
 }
 
-}  // namespace
+}  // namespace holes_test
 }  // namespace bernal

@@ -8,7 +8,7 @@
 #include "support/folder.hpp"
 
 namespace bernal::testing {
-namespace {
+namespace hopper_test {
 
 // data/meshes/hopper.stl is made by this project: BERNAL_REGENERATE=1 ctest --preset release -R Hopper writes
 // it.
@@ -40,5 +40,5 @@ TEST(Hopper, IsClosedAndOrientedOutwards) {
     }
 }
 
-}  // namespace
+}  // namespace hopper_test
 }  // namespace bernal::testing

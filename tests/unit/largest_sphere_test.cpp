@@ -12,7 +12,7 @@
 #include "support/meshes.hpp"
 
 namespace bernal {
-namespace {
+namespace largest_sphere_test {
 
 LargestSphere largest_in(const Domain& shape) {
   return largest_sphere_between(convex_walls(shape, 1e-9), bounds_of(shape));
@@ -85,5 +85,5 @@ TEST(LargestSphere, DoesNotMindPlanesThatHardlyDiffer) {
   EXPECT_NEAR(largest_sphere_between(planes, {{0, 0, 0}, {1, 1.5, 2}}).radius, 0.5, 1e-9);
 }
 
-}  // namespace
+}  // namespace largest_sphere_test
 }  // namespace bernal

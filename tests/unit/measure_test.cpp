@@ -10,7 +10,7 @@
 #include "support/packings.hpp"
 
 namespace bernal {
-namespace {
+namespace measure_test {
 
 using testing::packing_of;
 using testing::scattered;
@@ -158,5 +158,5 @@ TEST(Hash, IsPinnedAndSeesEveryBitAndTheOrder) {
   EXPECT_NE(hash_of(changed), pinned);
 }
 
-}  // namespace
+}  // namespace measure_test
 }  // namespace bernal

@@ -13,7 +13,7 @@
 
 // A box that repeats itself along some axes and ends at walls along others.
 namespace bernal {
-namespace {
+namespace mixed_box_test {
 
 using testing::rows;
 
@@ -120,5 +120,5 @@ TEST(MixedBox, IsRefusedByWhatDoesNotKnowWalls) {
   EXPECT_EQ(message("do = \"fly\"\n"), "");
 }
 
-}  // namespace
+}  // namespace mixed_box_test
 }  // namespace bernal

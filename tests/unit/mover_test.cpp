@@ -10,7 +10,7 @@
 
 // Bed and Mover against brute force: every sphere, every facet and every image, no list, no grid, no box.
 namespace bernal {
-namespace {
+namespace mover_test {
 
 using test::ContainerUnderTest;
 
@@ -355,5 +355,5 @@ TEST(Bed, ListsDoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(paths[0], paths[1]);
 }
 
-}  // namespace
+}  // namespace mover_test
 }  // namespace bernal

@@ -9,7 +9,7 @@
 #include "support/periodic.hpp"
 
 namespace bernal {
-namespace {
+namespace neighbor_relaxation_test {
 
 /// With omega = 0 nothing moves: a measuring sweep finds what a look at all images of all pairs finds, with
 /// the grid or without it.
@@ -92,5 +92,5 @@ TYPED_TEST(NeighborRelaxationTest, AGrowingBoxKeepsCentresInProportion) {
   EXPECT_EQ(after.r, before.r);
 }
 
-}  // namespace
+}  // namespace neighbor_relaxation_test
 }  // namespace bernal

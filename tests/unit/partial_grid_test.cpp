@@ -10,7 +10,7 @@
 // The grid over the first few axes against a look at every sphere, on every number of axes, with and without
 // images.
 namespace bernal {
-namespace {
+namespace partial_grid_test {
 
 template <int D>
 class Scatter {
@@ -126,5 +126,5 @@ TEST(PartialGrid, TakesMoreAxesTheMoreSpheresThereAre) {
   EXPECT_EQ(few.axes(), 0);
 }
 
-}  // namespace
+}  // namespace partial_grid_test
 }  // namespace bernal

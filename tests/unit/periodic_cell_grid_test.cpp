@@ -10,7 +10,7 @@
 // The grid of a region that repeats itself along all axes, or along some, against a search of all images of
 // all spheres.
 namespace bernal {
-namespace {
+namespace periodic_cell_grid_test {
 
 /// The smallest max_k |c - image|_k over all images: axis by axis.
 template <int D>
@@ -189,5 +189,5 @@ TEST(PeriodicCells, LooksAtTwentySevenCells) {
   EXPECT_LE(static_cast<double>(visited), expected + 6 * std::sqrt(expected));
 }
 
-}  // namespace
+}  // namespace periodic_cell_grid_test
 }  // namespace bernal

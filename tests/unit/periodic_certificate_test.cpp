@@ -12,7 +12,7 @@
 #include "support/periodic_certificates.hpp"
 
 namespace bernal {
-namespace {
+namespace periodic_certificate_test {
 
 using testing::expect_truth;
 using testing::periodic_box;
@@ -349,5 +349,5 @@ TEST(PeriodicCertificate, FarFromTheFacesIsTheSameAsInAContainer) {
   EXPECT_EQ(periodic.worst_pair, open.worst_pair);
 }
 
-}  // namespace
+}  // namespace periodic_certificate_test
 }  // namespace bernal

@@ -10,7 +10,7 @@
 #include "support/periodic.hpp"
 
 namespace bernal {
-namespace {
+namespace periodic_contacts_test {
 
 using testing::ideal_gas;
 using testing::periodic_packing;
@@ -159,5 +159,5 @@ TEST(PointGrid, VisitsEveryImageOnce) {
   }
 }
 
-}  // namespace
+}  // namespace periodic_contacts_test
 }  // namespace bernal

@@ -12,7 +12,7 @@
 #include "bernal/measure/measure.hpp"
 
 namespace bernal {
-namespace {
+namespace periodic_walls_test {
 
 using std::numbers::pi;
 
@@ -243,5 +243,5 @@ TEST(SlabContacts, OfALatticeBetweenTwoPlates) {
   EXPECT_EQ(contacts.rattlers, 0u);
 }
 
-}  // namespace
+}  // namespace periodic_walls_test
 }  // namespace bernal

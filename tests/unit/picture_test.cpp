@@ -13,7 +13,7 @@
 #include "support/packings.hpp"
 
 namespace bernal {
-namespace {
+namespace picture_test {
 
 using testing::scattered;
 
@@ -213,5 +213,5 @@ TEST(DepthBuffer, HidesABallOnlyBehindWhatCoversAllOfIt) {
   EXPECT_FALSE(buffer.hides_ball({-50, 50, -20}, 10));  // off the canvas there is nothing to hide behind
 }
 
-}  // namespace
+}  // namespace picture_test
 }  // namespace bernal

@@ -10,7 +10,7 @@
 // What a polish promises: contacts that are closed to its tolerance, and no more of them than hold the
 // packing.
 namespace bernal {
-namespace {
+namespace polish_test {
 
 Packing polished(int dimension, int count, const std::string& radius) {
   RunOptions options;
@@ -76,5 +76,5 @@ TEST(Polish, SaysThatRoundingAllowsNoBetter) {
   EXPECT_EQ(end_of_polish(40, 1e-18, Monitor{}), StageEnd::hit_limit);
 }
 
-}  // namespace
+}  // namespace polish_test
 }  // namespace bernal

@@ -12,7 +12,7 @@
 #include "bernal/predict/predict.hpp"
 
 namespace bernal {
-namespace {
+namespace predict_oracle_test {
 
 using Real = long double;
 
@@ -81,5 +81,5 @@ TEST(PredictOracle, SixteenThousandRodsToNineDigits) {
   }
 }
 
-}  // namespace
+}  // namespace predict_oracle_test
 }  // namespace bernal

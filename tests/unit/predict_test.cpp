@@ -14,7 +14,7 @@
 #include "predict/rods.hpp"
 
 namespace bernal {
-namespace {
+namespace predict_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -145,5 +145,5 @@ TEST(Rods, PlacementByHand) {
   EXPECT_NEAR(predict::covered_fraction(std::vector{1.0, 0.1}), 1.1 / (1 + f), 1e-15);
 }
 
-}  // namespace
+}  // namespace predict_test
 }  // namespace bernal

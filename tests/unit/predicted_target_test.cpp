@@ -12,7 +12,7 @@
 #include "bernal/scene/read_scene.hpp"
 
 namespace bernal {
-namespace {
+namespace predicted_target_test {
 
 Scene scene_of(const std::string& container, const std::string& spheres) {
   return parse_scene("[container]\n" + container + "\n[spheres]\n" + spheres + "\n", "test.toml");
@@ -97,5 +97,5 @@ TEST(PredictedTarget, RefusesWhatItCannotMean) {
           "or \"predicted\", not \"guessed\"");
 }
 
-}  // namespace
+}  // namespace predicted_target_test
 }  // namespace bernal

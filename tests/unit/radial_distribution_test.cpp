@@ -11,7 +11,7 @@
 #include "support/periodic.hpp"
 
 namespace bernal {
-namespace {
+namespace radial_distribution_test {
 
 using testing::ideal_gas;
 using testing::periodic_packing;
@@ -109,5 +109,5 @@ TEST(RadialDistribution, IsOnlyThereWhereItMeansSomething) {
   EXPECT_NEAR(two->bin_width * static_cast<double>(two->g.size()), 5, 1e-9);  // half the edge
 }
 
-}  // namespace
+}  // namespace radial_distribution_test
 }  // namespace bernal

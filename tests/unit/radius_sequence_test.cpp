@@ -8,7 +8,7 @@
 #include "support/size_cases.hpp"
 
 namespace bernal {
-namespace {
+namespace radius_sequence_test {
 
 std::vector<double> first(const SizeDistribution& sizes, std::size_t n, Draw draw, std::uint64_t seed = 1) {
   RadiusSequence sequence(sizes, seed, draw);
@@ -78,5 +78,5 @@ TEST(RadiusSequence, OfQuantilesHasTheMeanVolumeOfTheDistribution) {
   EXPECT_GT(std::abs(random / lognormal->moment(3) - 1), 1e-3);  // about 1.1 / sqrt(n)
 }
 
-}  // namespace
+}  // namespace radius_sequence_test
 }  // namespace bernal

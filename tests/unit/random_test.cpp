@@ -11,7 +11,7 @@
 #include "core/philox.hpp"
 
 namespace bernal {
-namespace {
+namespace random_test {
 
 // Known answers published with the authors' Random123 library (kat_vectors: philox4x32, 10 rounds).
 TEST(Philox, KnownAnswers) {
@@ -128,5 +128,5 @@ TEST(Random, DirectionsAreIsotropic) {
   expect_isotropic_directions<5>();
 }
 
-}  // namespace
+}  // namespace random_test
 }  // namespace bernal

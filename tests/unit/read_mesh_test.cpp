@@ -10,7 +10,7 @@
 #include "support/meshes.hpp"
 
 namespace bernal {
-namespace {
+namespace read_mesh_test {
 
 using namespace test;
 
@@ -257,5 +257,5 @@ TEST_F(ReadMesh, TheHelixOfTheDataFolder) {
   EXPECT_NEAR(report.volume, 108197, 0.5);
 }
 
-}  // namespace
+}  // namespace read_mesh_test
 }  // namespace bernal

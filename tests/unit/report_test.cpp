@@ -14,7 +14,7 @@
 #include "support/written_files.hpp"
 
 namespace bernal {
-namespace {
+namespace report_test {
 
 using testing::example;
 using testing::example_box;
@@ -195,5 +195,5 @@ TEST(ReportHtml, DrawsWhatHardlyVaries) {
   EXPECT_LT(html.size(), 1'000'000u);
 }
 
-}  // namespace
+}  // namespace report_test
 }  // namespace bernal

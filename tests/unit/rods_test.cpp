@@ -15,7 +15,7 @@
 #include "predict/rods.hpp"
 
 namespace bernal {
-namespace {
+namespace rods_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 using Sizes = std::unique_ptr<SizeDistribution>;
@@ -222,5 +222,5 @@ TEST(Viscosity, OfKriegerAndDougherty) {
   EXPECT_THROW(relative_viscosity(std::nan(""), 0.64), Error);
 }
 
-}  // namespace
+}  // namespace rods_test
 }  // namespace bernal

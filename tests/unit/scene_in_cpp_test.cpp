@@ -14,7 +14,7 @@
 
 // Scenes that stand in no file.
 namespace bernal {
-namespace {
+namespace scene_in_cpp_test {
 
 /// 200 spheres in a cylinder.
 Scene in_a_cylinder() {
@@ -166,5 +166,5 @@ TEST(Reference, NamesEveryKeyWithItsDefault) {
   EXPECT_THROW(reference("cylindre"), Error);
 }
 
-}  // namespace
+}  // namespace scene_in_cpp_test
 }  // namespace bernal

@@ -9,7 +9,7 @@
 #include "support/scene_texts.hpp"
 
 namespace bernal {
-namespace {
+namespace scene_test {
 
 using testing::expect_equal;
 using testing::with_spheres;
@@ -161,5 +161,5 @@ TEST(Scene, SaysWhatIsWrongInAFileOfColumns) {
   expect(long_table, {"t.csv:4097", "4096"});
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace bernal

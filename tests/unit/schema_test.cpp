@@ -9,7 +9,7 @@
 #include "support/scene_texts.hpp"
 
 namespace bernal {
-namespace {
+namespace schema_test {
 
 using schema::Entry;
 using schema::Key;
@@ -188,5 +188,5 @@ TEST(SchemaLaw, EveryDefaultIsAcceptedByItsKey) {
   });
 }
 
-}  // namespace
+}  // namespace schema_test
 }  // namespace bernal

@@ -8,7 +8,7 @@
 #include "hard/shells.hpp"
 
 namespace bernal {
-namespace {
+namespace shells_test {
 
 template <int D>
 struct Homes {
@@ -70,5 +70,5 @@ TEST(Shells, ListThoseWhoseReachesMeet) {
 
 TEST(Shells, ListThemWhereSizesDifferTwentyfold) { settle_here_and_there(Homes<3>(600, 0.05, 1.0)); }
 
-}  // namespace
+}  // namespace shells_test
 }  // namespace bernal

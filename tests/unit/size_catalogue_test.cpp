@@ -11,7 +11,7 @@
 #include "scene/scene_entries.hpp"
 
 namespace bernal {
-namespace {
+namespace size_catalogue_test {
 
 /// How a user states each of them, in lengths between 1 and 3.
 const std::map<std::string, std::string, std::less<>> stated = {
@@ -71,5 +71,5 @@ TEST(SizeCatalogue, RefusesWhatOnlyTheNumbersTogetherShowAtItsLine) {
   }
 }
 
-}  // namespace
+}  // namespace size_catalogue_test
 }  // namespace bernal

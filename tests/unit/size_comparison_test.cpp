@@ -8,7 +8,7 @@
 #include "bernal/core/random.hpp"
 
 namespace bernal {
-namespace {
+namespace size_comparison_test {
 
 std::vector<double> drawn(const SizeDistribution& sizes, std::size_t n, std::uint64_t seed) {
   Random random(seed, stream(Stream::test));
@@ -159,5 +159,5 @@ TEST(DrawnComparison, PassesOverDrawsThatAContainerRefused) {
   EXPECT_FALSE(compare_with_drawn(std::vector<double>(10, 1e-3), sequence, true));
 }
 
-}  // namespace
+}  // namespace size_comparison_test
 }  // namespace bernal

@@ -14,7 +14,7 @@
 #include "support/size_cases.hpp"
 
 namespace bernal {
-namespace {
+namespace size_kinds_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -249,5 +249,5 @@ TEST(SizeArguments, AreRefusedWhereAbsurd) {
   }
 }
 
-}  // namespace
+}  // namespace size_kinds_test
 }  // namespace bernal

@@ -10,7 +10,7 @@
 #include "support/size_cases.hpp"
 
 namespace bernal {
-namespace {
+namespace sizes_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double largest_draw = 1 - 0x1p-53;  ///< of Random::uniform
@@ -175,5 +175,5 @@ TEST_P(Sizes, MomentsLieBetweenThePowersOfTheLimits) {
 INSTANTIATE_TEST_SUITE_P(All, Sizes, ::testing::ValuesIn(testing::size_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
-}  // namespace
+}  // namespace sizes_test
 }  // namespace bernal

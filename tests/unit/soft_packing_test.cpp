@@ -10,7 +10,7 @@
 #include "soft/soft_packing.hpp"
 
 namespace bernal {
-namespace {
+namespace soft_packing_test {
 
 constexpr float omega = 5;
 
@@ -180,5 +180,5 @@ TEST(SoftLists, HoldEveryNeighbourOnce) {
   }
 }
 
-}  // namespace
+}  // namespace soft_packing_test
 }  // namespace bernal

@@ -13,7 +13,7 @@
 #include "support/meshes.hpp"
 
 namespace bernal {
-namespace {
+namespace soft_walls_test {
 
 std::unique_ptr<Container> container_of(const Domain& shape) {
   return make_container(shape, WallArithmetic::filtered, 0x1p-50);
@@ -248,5 +248,5 @@ INSTANTIATE_TEST_SUITE_P(
         Enclosed{"InASlabOfHalfARadius", Box{{0, 0, 0}, {1, 1, 0.05}}, any, 0.1, 1}),
     [](const auto& tested) { return tested.param.name; });
 
-}  // namespace
+}  // namespace soft_walls_test
 }  // namespace bernal

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace bernal {
-namespace {
+namespace spheres_test {
 
 template <int D>
 void expect_columns_of_equal_length() {
@@ -43,5 +43,5 @@ TEST(Bounds, SizeCenterVolume) {
   EXPECT_EQ(bounds.diagonal(), 7);
 }
 
-}  // namespace
+}  // namespace spheres_test
 }  // namespace bernal

@@ -9,7 +9,7 @@
 #include "bernal/core/error.hpp"
 
 namespace bernal {
-namespace {
+namespace supply_test {
 
 Target count_of(std::int64_t n) {
   Target target;
@@ -184,5 +184,5 @@ TEST(Supply, TrimmingIsCheapWhereFewStandBeyondTheFirstMissing) {
   EXPECT_FALSE(supply.trimming_is_cheap());
 }
 
-}  // namespace
+}  // namespace supply_test
 }  // namespace bernal

@@ -5,7 +5,7 @@
 #include <array>
 
 namespace bernal {
-namespace {
+namespace text_test {
 
 constexpr std::array<std::string_view, 6> names = {"box", "cylinder", "sphere", "mesh", "radius", "diameter"};
 
@@ -40,5 +40,5 @@ TEST(NearestName, TheNearestWinsAndTheFirstOfEquals) {
   EXPECT_EQ(nearest_name("shakee", three), "shake");
 }
 
-}  // namespace
+}  // namespace text_test
 }  // namespace bernal

@@ -7,7 +7,7 @@
 // The step of a quadratic function whose Hessian is so badly conditioned that conjugate gradients take
 // hundreds of products.
 namespace bernal {
-namespace {
+namespace trust_region_test {
 
 /// sum of l_i x_i² / 2 - x_i, with l_i from 1 to 1e6.
 struct Valley final : SmoothFunction {
@@ -74,5 +74,5 @@ TEST(TrustRegion, StaysInTheRegion) {
   EXPECT_NEAR(valley.x.norm(), 1e-3, 1e-12);
 }
 
-}  // namespace
+}  // namespace trust_region_test
 }  // namespace bernal

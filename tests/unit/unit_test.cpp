@@ -8,7 +8,7 @@
 #include "bernal/core/error.hpp"
 
 namespace bernal {
-namespace {
+namespace unit_test {
 
 TEST(Units, MetresAreTheDecimalFractionsPeopleWrite) {
   EXPECT_EQ(metres_per(Unit::nm), 1e-9);
@@ -66,5 +66,5 @@ TEST(Units, AnUnknownNameIsRefusedWithTheListOfNames) {
   }
 }
 
-}  // namespace
+}  // namespace unit_test
 }  // namespace bernal

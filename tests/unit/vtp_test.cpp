@@ -11,7 +11,7 @@
 #include "support/written_files.hpp"
 
 namespace bernal {
-namespace {
+namespace vtp_test {
 
 using testing::example_box;
 using testing::example_in;
@@ -99,5 +99,5 @@ TEST(Vtp, HasTheCoordinatesBeyondTheThirdAsPointData) {
   }
 }
 
-}  // namespace
+}  // namespace vtp_test
 }  // namespace bernal

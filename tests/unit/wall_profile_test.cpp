@@ -14,7 +14,7 @@
 #include "support/periodic.hpp"
 
 namespace bernal {
-namespace {
+namespace wall_profile_test {
 
 using testing::packing_of;
 
@@ -227,5 +227,5 @@ TEST(WallProfile, IsAbsentWithoutSpheresOrWalls) {
   EXPECT_FALSE(wall_profile(testing::periodic_packing<3>(spheres, Vector<3>::Constant(2))));
 }
 
-}  // namespace
+}  // namespace wall_profile_test
 }  // namespace bernal

@@ -12,7 +12,7 @@
 #include "support/meshes.hpp"
 
 namespace bernal {
-namespace {
+namespace walls_test {
 
 using Real = long double;
 using Point = Eigen::Matrix<Real, 3, 1>;
@@ -310,5 +310,5 @@ TEST(Walls, FindTheNearOnesOfMany) {
   EXPECT_GT(met, 100);
 }
 
-}  // namespace
+}  // namespace walls_test
 }  // namespace bernal

@@ -13,7 +13,7 @@
 #include "support/written_files.hpp"
 
 namespace bernal {
-namespace {
+namespace write_packing_test {
 
 namespace fs = std::filesystem;
 using testing::error_of;
@@ -175,5 +175,5 @@ TEST(CheckWritable, SaysWhatIsInTheWay) {
   EXPECT_EQ(names_in(folder.path()), std::set<std::string>{"file"});
 }
 
-}  // namespace
+}  // namespace write_packing_test
 }  // namespace bernal

@@ -6,7 +6,7 @@
 #include "support/scenes.hpp"
 
 namespace bernal {
-namespace {
+namespace write_scene_test {
 
 using testing::expect_equal;
 using testing::with_container;
@@ -50,5 +50,5 @@ TEST(WriteScene, RefusesASeedThatTomlCannotHold) {
   EXPECT_THROW(scene_as_toml(scene), Error);
 }
 
-}  // namespace
+}  // namespace write_scene_test
 }  // namespace bernal

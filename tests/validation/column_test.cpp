@@ -14,7 +14,7 @@
 // The endless column against a long closed cylinder of the same radius: away from its lids that does not know
 // that it ends.
 namespace bernal {
-namespace {
+namespace column_test {
 
 constexpr double radius = 5;         // of the column, in diameters
 constexpr double block_height = 4;   // a sample: spheres hardly know of each other over such a distance
@@ -150,5 +150,5 @@ TEST_P(Column, TouchesItselfAcrossItsSeamAsElsewhere) {
   EXPECT_GT(mean, 100);
 }
 
-}  // namespace
+}  // namespace column_test
 }  // namespace bernal

@@ -12,7 +12,7 @@
 // mixtures of three sizes. Four of its points are packed here in three dimensions, one of them with
 // all three sizes.
 namespace bernal {
-namespace {
+namespace densest_of_three_sizes_test {
 
 TEST(DensestOfThreeSizes, PacksAsDenselyAsTheRodModelSays) {
   const testing::Folder folder;
@@ -52,5 +52,5 @@ TEST(DensestOfThreeSizes, PacksAsDenselyAsTheRodModelSays) {
   EXPECT_GT(corner, 0.9);  // the last point of the grid, 1 : 10 : 100
 }
 
-}  // namespace
+}  // namespace densest_of_three_sizes_test
 }  // namespace bernal

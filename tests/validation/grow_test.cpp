@@ -13,7 +13,7 @@
 
 // Event-driven growth against what others have found with it.
 namespace bernal {
-namespace {
+namespace grow_test {
 
 /// Farr, Powder Technology 245, 28 (2013), table 2: two lognormal populations whose d43 differ by the ratio
 /// R, half the volume of each.
@@ -147,5 +147,5 @@ TEST(Fluid, HasThePressureOfCarnahanAndStarling) {
   }
 }
 
-}  // namespace
+}  // namespace grow_test
 }  // namespace bernal

@@ -8,7 +8,7 @@
 // 0.5289 for a cylinder whose measures are not in the text. These two hold as many spheres at that packing
 // fraction; the thresholds lie above it by what this project adds.
 namespace bernal {
-namespace {
+namespace han_cylinder_test {
 
 constexpr std::size_t spheres_of_han = 26'787;
 
@@ -45,5 +45,5 @@ TEST(HanCylinder, UniformRadiiAreAsDense) {
   EXPECT_GE(packing.packing_fraction(), 0.55);
 }
 
-}  // namespace
+}  // namespace han_cylinder_test
 }  // namespace bernal

@@ -14,7 +14,7 @@
 
 // What relaxation in a container must not depend on, and what is known of packings in tall cylinders.
 namespace bernal {
-namespace {
+namespace relax_in_container_test {
 
 using testing::plan_of;
 
@@ -103,5 +103,5 @@ TEST_P(TallCylinder, HasThePorosityOfItsWidth) {
   EXPECT_LT(profile.first_minimum->porosity, porosity - 0.05);
 }
 
-}  // namespace
+}  // namespace relax_in_container_test
 }  // namespace bernal

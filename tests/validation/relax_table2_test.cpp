@@ -15,7 +15,7 @@
 // tests/bench/relaxation_table. Here N = 1,000: the mean of a few seeds has a standard error of 0.001, and
 // the small box costs about 0.002.
 namespace bernal {
-namespace {
+namespace relax_table2_test {
 
 struct Expected {
   const char* name;
@@ -56,5 +56,5 @@ INSTANTIATE_TEST_SUITE_P(
                                0.6645, 5.0, 6.0}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
-}  // namespace
+}  // namespace relax_table2_test
 }  // namespace bernal
