@@ -169,10 +169,8 @@ Mixture sizes_of(const std::vector<Population>& populations) {
     if (p.sigma < 1e-9) {
       classes[radius] += share;
     } else {
-      mixture.of.push_back(Lognormal{// d43 = median by volume e^(s²/2)
-                                     .median = radius * std::exp(-0.5 * p.sigma * p.sigma),
-                                     .sigma = p.sigma,
-                                     .basis = Basis::volume});
+      const double median = radius * std::exp(-0.5 * p.sigma * p.sigma);  // d43 = median by volume e^(s²/2)
+      mixture.of.emplace_back(Lognormal{.median = median, .sigma = p.sigma, .basis = Basis::volume});
       mixture.shares.push_back(share);
     }
   }

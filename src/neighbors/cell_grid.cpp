@@ -88,6 +88,11 @@ std::size_t CellGrid<D>::level_of(double r) const {
   return l;
 }
 
+template <int D>
+bool CellGrid<D>::search(const Vector<D>& c, double reach, bool (*visitor)(void* it, Id id), void* it) const {
+  return walk(c, reach, [&](Id id) { return visitor(it, id); });
+}
+
 #define BERNAL_INSTANTIATE(D) template class CellGrid<D>;
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
@@ -70,32 +72,11 @@ class CellGrid {
   /// Returns whether it returned true.
   template <class Visit>
   bool any_near(const Vector<D>& c, double reach, Visit&& visit) const {
-    for (const Level& level : levels_) {
-      if (level.spheres == 0) continue;
-      const double half = reach + level.largest_radius;
-      std::array<Range, D> range;
-      std::array<int, D> at, step{};
-      for (int k = 0; k < D; ++k) {
-        range[k] = repeats_[k] ? cells_around(level, k, c[k], half) : cells_between(level, k, c[k], half);
-        at[k] = range[k].first;
-      }
-      for (;;) {
-        for (Id id = heads_[index(level, at)]; id != none; id = links_[id].next) {
-          if (visit(id)) return true;
-        }
-        int k = 0;
-        for (; k < D; ++k) {
-          if (++step[k] < range[k].count) {
-            if (++at[k] == level.cells[k]) at[k] = 0;
-            break;
-          }
-          step[k] = 0;
-          at[k] = range[k].first;
-        }
-        if (k == D) break;
-      }
-    }
-    return false;
+    if constexpr (D == 2 || D == 3) return walk(c, reach, visit);
+    using Plain = std::remove_reference_t<Visit>;
+    return search(
+        c, reach, [](void* it, Id id) -> bool { return (*static_cast<Plain*>(it))(id); },
+        const_cast<void*>(static_cast<const void*>(std::addressof(visit))));
   }
 
   /// As `any_near`, for all of them.
@@ -134,6 +115,40 @@ class CellGrid {
     std::uint32_t cell = 0;
     std::uint8_t level = 0;
   };
+
+  template <class Visit>
+  bool walk(const Vector<D>& c, double reach, Visit&& visit) const {
+    for (const Level& level : levels_) {
+      if (level.spheres == 0) continue;
+      const double half = reach + level.largest_radius;
+      std::array<Range, D> range;
+      std::array<int, D> at, step{};
+      for (int k = 0; k < D; ++k) {
+        range[k] = repeats_[k] ? cells_around(level, k, c[k], half) : cells_between(level, k, c[k], half);
+        at[k] = range[k].first;
+      }
+      for (;;) {
+        for (Id id = heads_[index(level, at)]; id != none; id = links_[id].next) {
+          if (visit(id)) return true;
+        }
+        int k = 0;
+        for (; k < D; ++k) {
+          if (++step[k] < range[k].count) {
+            if (++at[k] == level.cells[k]) at[k] = 0;
+            break;
+          }
+          step[k] = 0;
+          at[k] = range[k].first;
+        }
+        if (k == D) break;
+      }
+    }
+    return false;
+  }
+
+  /// The same, compiled once for every dimension in which the 3^D cells cost more than a call for each
+  /// sphere.
+  bool search(const Vector<D>& c, double reach, bool (*visitor)(void* it, Id id), void* it) const;
 
   /// Appends its cells behind `offset`, and moves that.
   Level make_level(double largest_radius, double max_cells, std::size_t& offset) const;
