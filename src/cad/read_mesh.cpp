@@ -71,9 +71,16 @@ ChosenSoup choose(const std::filesystem::path& file, ReadAttempt assimp, ReadAtt
     return {std::move(cgal.soup), fmt::format("CGAL, double precision (assimp: {})", assimp.failure)};
   if (agree(assimp.soup, cgal.soup))
     return {std::move(cgal.soup), "CGAL, double precision (assimp agrees to single precision)"};
-  return {std::move(assimp.soup),
-          fmt::format("assimp, single precision (CGAL disagrees: {} faces against {})",
-                      cgal.soup.polygons.size(), assimp.soup.polygons.size())};
+  const auto disagreement = [](std::string_view who, const PolygonSoup& other, const PolygonSoup& taken) {
+    return fmt::format("({} disagrees: {} faces against {})", who, other.polygons.size(),
+                       taken.polygons.size());
+  };
+  if (cad::extension_of(file) == ".off") {  // of which assimp leaves out the faces of ten corners and more
+    const std::string text = disagreement("assimp", assimp.soup, cgal.soup);
+    return {std::move(cgal.soup), "CGAL, double precision " + text};
+  }
+  const std::string text = disagreement("CGAL", cgal.soup, assimp.soup);
+  return {std::move(assimp.soup), "assimp, single precision " + text};
 }
 
 ChosenSoup read_soup(const std::filesystem::path& file) {

@@ -59,10 +59,11 @@ bool Work::put_in_bed(const Spheres<3>& first) {
   return bed().size() == first.size();
 }
 
-void Work::insert_in_bed(const Spheres<dynamic>& others) {
+void Work::insert_in_bed(const Spheres<dynamic>& others, bool only_those_that_fit) {
   const std::vector<std::uint32_t> tags = tags_of(others.r, *supply);
   std::vector<bool> has_place(tags.empty() ? 0 : tags.back() + std::size_t{1}, false);
   for (std::size_t i = 0; i < others.size(); ++i) {
+    if (only_those_that_fit && !bed_->fits(others.center(i), others.r[i])) continue;
     bed_->insert(others.center(i), others.r[i], tags[i]);
     has_place[tags[i]] = true;
   }
@@ -73,7 +74,9 @@ void Work::stand_in_bed() {
   if (bed_) return;
   bed_ = std::make_shared<Bed>(*container, supply->smallest(), supply->largest(), supply->wanted(), effects);
   if (!placed) return;
-  insert_in_bed(spheres);
+  const Vector<dynamic> asked = bounds_of<dynamic>(domain).size();
+  insert_in_bed(spheres, (edges.array() > asked.array()).any());
+  edges = asked;
   placed = false;
   spheres = Spheres<dynamic>(dimension());
 }

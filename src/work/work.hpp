@@ -143,7 +143,7 @@ struct Work {
                        double done) const;
 
   /// Of the sequence, in its order, without those that have no place.
-  void insert_in_bed(const Spheres<dynamic>& others);
+  void insert_in_bed(const Spheres<dynamic>& others, bool only_those_that_fit = false);
 
   std::shared_ptr<Bed> bed_ = {};
 };

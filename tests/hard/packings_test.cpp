@@ -127,6 +127,15 @@ TEST(HardPacking, OfANeedleThatLiesDown) {
   }
 }
 
+// Growth that is stopped short leaves a box that is larger than asked; whoever has no place in the one that
+// was stays out.
+TEST(HardPacking, OfABedInABoxThatHasBecomeTooLarge) {
+  const Packing packing = certified(plan_of(
+      "[container]\nkind = \"periodic\"\nsize = [2.0, 2.0, 2.0]\nwalls = [2]\n[spheres]\nradius = 0.2\n"
+      "[[stage]]\ndo = \"grow\"\n[[stage]]\ndo = \"insert\"\n"));
+  EXPECT_GT(packing.packing_fraction(), 0.25);
+}
+
 TEST(HardPacking, OfAFewTinySpheres) {
   for (const std::string& protocol : {relaxed, compressed}) {
     SCOPED_TRACE(protocol);

@@ -1,9 +1,13 @@
 // What the importer says about meshes whose answer is known, and which of two readers it believes.
 #include "bernal/cad/read_mesh.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
+#include <numbers>
+#include <string>
 
 #include "bernal/core/error.hpp"
 #include "support/folder.hpp"
@@ -255,6 +259,26 @@ TEST_F(ReadMesh, TheHelixOfTheDataFolder) {
   EXPECT_EQ(report.vertices, 252U);
   EXPECT_EQ(report.genus, 0);
   EXPECT_NEAR(report.volume, 108197, 0.5);
+}
+
+TEST_F(ReadMesh, FacesOfManyCornersAreNotLeftOut) {
+  constexpr int corners = 24;
+  std::string points, bottom = fmt::format("{}", corners), top = bottom, sides;
+  for (const double z : {0.0, 2.0})
+    for (int k = 0; k < corners; ++k)
+      points += fmt::format("{} {} {}\n", std::cos(2 * std::numbers::pi * k / corners),
+                            std::sin(2 * std::numbers::pi * k / corners), z);
+  for (int k = 0; k < corners; ++k) {
+    bottom += fmt::format(" {}", corners - 1 - k);
+    top += fmt::format(" {}", corners + k);
+    const int next = (k + 1) % corners;
+    sides += fmt::format("4 {} {} {} {}\n", k, next, corners + next, corners + k);
+  }
+  const MeshReport prism = read("prism.off", fmt::format("OFF\n{} {} 0\n{}{}\n{}\n{}", 2 * corners,
+                                                         corners + 2, points, bottom, top, sides))
+                               .report;
+  EXPECT_TRUE(prism.usable());
+  EXPECT_NEAR(prism.volume, corners * std::sin(2 * std::numbers::pi / corners), 1e-12);
 }
 
 }  // namespace read_mesh_test
