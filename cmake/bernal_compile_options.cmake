@@ -15,7 +15,7 @@ if(BERNAL_SANITIZE)
 endif()
 
 # Where CMAKE_UNITY_BUILD is on, the files of a folder are compiled a few together: what the same headers and templates
-# cost is paid once for all of them, which halves a build from nothing. Names in a folder are different anyway. Kernels
+# cost is paid once for all of them. Names in a folder are different anyway. Kernels
 # stay alone: what they tell the compiler about instruction sets is theirs.
 set(BERNAL_FILES_TOGETHER 8)
 function(bernal_compile_together folder)

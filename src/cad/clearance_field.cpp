@@ -1,9 +1,10 @@
 #include "cad/clearance_field.hpp"
-#include "core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/parallel.hpp"
 
 namespace bernal::cad {
 namespace {

@@ -1,10 +1,11 @@
 #include "measure/free_cells.hpp"
-#include "core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace bernal {
 namespace {

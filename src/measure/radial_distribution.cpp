@@ -14,7 +14,7 @@ namespace {
 /// How far below a bin a distance may lie and still count in it, in bins: a contact that was rounded.
 constexpr double slack = 1e-6;
 constexpr std::size_t fewest_references = 100;
-constexpr std::size_t references_a_part = 256;  // references
+constexpr std::size_t references_a_part = 256;
 
 /// The bins out to a distance, and what is found in them.
 class Histogram {

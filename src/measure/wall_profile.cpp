@@ -16,7 +16,7 @@
 namespace bernal {
 namespace {
 
-constexpr std::size_t spheres_a_part = 256;             // spheres
+constexpr std::size_t spheres_a_part = 256;
 constexpr double fewest_points = 8, most_points = 512;  // in a sphere
 /// In mean diameters: deeper, layers hardly differ and fewer points will do.
 constexpr double structured = 2;
