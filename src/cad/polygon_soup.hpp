@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,17 +9,37 @@
 
 namespace bernal::cad {
 
+/// A part that the file tells apart: the polygons from `first` up to those of the next one.
+struct Solid {
+  std::string name;  ///< may be empty
+  std::size_t first = 0;
+};
+
 /// Polygons as a file lists them: nothing is welded, closed or oriented, every index is valid and every
 /// coordinate is finite.
 struct PolygonSoup {
   std::vector<Vector<3>> points;
   std::vector<std::vector<std::uint32_t>> polygons;
+  std::vector<Solid> solids = {};  ///< in their order; none where the file tells no parts apart
 };
 
-/// What one reader made of a file: a soup, or why there is none.
+/// What the file says of its coordinates.
+struct FileFacts {
+  struct Length {
+    double metres;     ///< one unit of the file's
+    std::string name;  ///< as people call it: "inch"
+  };
+  std::optional<Length> unit = {};
+  char up = 0;                          ///< 'x', 'y' or 'z', where the file says which axis is up
+  std::vector<std::string> notes = {};  ///< what else a user should know, one phrase each
+};
+
+/// What one reader made of a file: a soup, or why there is none. Coordinates are those of the file: neither
+/// scaled to another unit nor turned.
 struct ReadAttempt {
   PolygonSoup soup;
   std::string failure;  ///< one line; empty if the soup is good
+  FileFacts facts = {};
 
   bool ok() const { return failure.empty(); }
 };

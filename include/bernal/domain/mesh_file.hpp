@@ -1,0 +1,45 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "bernal/core/unit.hpp"
+#include "bernal/core/vector.hpp"
+
+namespace bernal {
+
+/// Which side of a closed surface is meant.
+enum class Interior {
+  solid,  ///< what the surface encloses
+  cavity  ///< the hollow of what it encloses: the inside of a bucket whose walls have a thickness
+};
+
+/// What may be done to a surface that cannot be a container as it is; in this order.
+enum class Repair {
+  holes,               ///< are closed by patches
+  self_intersections,  ///< are cut out and closed
+  wrap                 ///< the surface is replaced by one that wraps it
+};
+
+/// Which axis of the file's points up.
+enum class Up { as_in_file, x, y, z };
+
+/// A container in a CAD file, and how the file becomes one. Lengths and coordinates are the scene's.
+struct MeshFile {
+  std::filesystem::path file = {};
+  std::optional<Unit> unit = {};     ///< of the file's coordinates; else as the file says; else the scene's
+  bool ignore_unit_of_file = false;  ///< `unit` holds though the file says otherwise
+  Up up = Up::as_in_file;            ///< this axis becomes z
+  std::vector<std::string> solids = {};  ///< by name, or by number from 1; all of them if empty
+  std::vector<std::filesystem::path> obstacles = {};  ///< closed surfaces that are taken out
+  std::optional<double> weld = {};        ///< corners of open edges up to this far apart are one
+  std::optional<double> deflection = {};  ///< of a tessellated surface from the true one
+  std::vector<Repair> repair = {};
+  std::vector<std::string> cap = {};      ///< planes, "z = 1.1" or "x < 0.5": what they cut off is outside
+  std::optional<double> fill_level = {};  ///< as `cap = "z < …"`
+  std::variant<Interior, Vector<3>> interior = Interior::solid;  ///< or a point that is inside
+};
+
+}  // namespace bernal
