@@ -23,6 +23,7 @@ struct InspectCall {
   std::filesystem::path mesh;
   std::string unit;
   std::optional<double> radius;
+  std::filesystem::path places;
   bool json = false;
 };
 
@@ -62,12 +63,45 @@ std::vector<Row> rows_of(const Chambers& found, const std::string& unit) {
   return rows;
 }
 
-void print(const InspectCall& call, const MeshReport& report, const std::optional<Chambers>& chambers) {
-  const std::string unit = call.unit.empty() ? "file units" : call.unit;
-  const auto power = [&](const char* sign) { return call.unit.empty() ? unit + sign : call.unit + sign; };
-  std::vector<Row> rows = {
-      {"file", call.mesh.string()},
-      {"coordinates from", report.reader},
+/// What the file tells about itself.
+std::vector<Row> rows_of_file(const InspectCall& call, const MeshReport& report) {
+  std::vector<Row> rows = {{"file", call.mesh.string()}, {"coordinates from", report.reader}};
+  if (!report.unit.empty()) rows.emplace_back("unit", report.unit + ", as the file says");
+  if (report.up != 0) rows.emplace_back("up", fmt::format("{}, as the file says", report.up));
+  constexpr std::size_t most = 20;
+  for (std::size_t i = 0; i < std::min(most, report.solids.size()); ++i)
+    rows.emplace_back(fmt::format("solid {}", i + 1), report.solids[i].empty() ? "-" : report.solids[i]);
+  if (report.solids.size() > most)
+    rows.emplace_back("", fmt::format("and {} more solids", report.solids.size() - most));
+  for (const std::string& note : report.notes) rows.emplace_back("note", note);
+  return rows;
+}
+
+std::vector<Row> rows_of(const MeshReport& report, const std::vector<std::string>& lines,
+                         const std::string& unit) {
+  std::vector<Row> rows;
+  for (const Defect& defect : report.defects)
+    rows.emplace_back(defect.what, fmt::format("at {}, {:.3g} {} across", text_of(defect.at), defect.across, unit));
+  for (const std::string& repair : report.repairs) rows.emplace_back("repair", repair);
+  for (const std::string& problem : report.problems) rows.emplace_back("problem", problem);
+  rows.emplace_back("verdict", report.usable()  ? "can be a container"
+                               : lines.empty() ? "cannot be a container"
+                                               : "cannot be a container as it is");
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    std::string text = lines[i];
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) text.replace(at, 1, "  and  ");
+    rows.emplace_back(i == 0 ? "in [container]" : "or", text);
+  }
+  return rows;
+}
+
+void print(const InspectCall& call, const MeshReport& report, const std::optional<Chambers>& chambers,
+           const std::vector<std::string>& lines) {
+  const std::string known = call.unit.empty() ? report.unit : call.unit;
+  const std::string unit = known.empty() ? "file units" : known;
+  const auto power = [&](const char* sign) { return unit + sign; };
+  std::vector<Row> rows = rows_of_file(call, report);
+  const std::vector<Row> measures = {
       {"faces", fmt::format("{}", report.faces)},
       {"vertices", fmt::format("{}", report.vertices)},
       {"components", fmt::format("{}", report.components)},
@@ -78,6 +112,7 @@ void print(const InspectCall& call, const MeshReport& report, const std::optiona
       {"size", fmt::format("{} {}", text_of(report.bounds.size()), unit)},
       {"area", fmt::format("{:.6g} {}", report.area, power("²"))},
   };
+  rows.insert(rows.end(), measures.begin(), measures.end());
   if (!call.unit.empty() && call.unit != "m")
     rows.insert(rows.end() - 1,
                 {"", text_of(metres_per(unit_named(call.unit)) * report.bounds.size()) + " m"});
@@ -91,9 +126,8 @@ void print(const InspectCall& call, const MeshReport& report, const std::optiona
   }
   const std::vector<Row> found = defects(report);
   rows.insert(rows.end(), found.begin(), found.end());
-  for (const std::string& repair : report.repairs) rows.emplace_back("repair", repair);
-  for (const std::string& problem : report.problems) rows.emplace_back("problem", problem);
-  rows.emplace_back("verdict", report.usable() ? "can be a container" : "cannot be a container");
+  const std::vector<Row> verdict = rows_of(report, lines, unit);
+  rows.insert(rows.end(), verdict.begin(), verdict.end());
 
   std::size_t width = 0;
   for (const Row& row : rows) width = std::max(width, row.first.size());
@@ -116,10 +150,22 @@ nlohmann::ordered_json as_json(const std::optional<Chambers>& found) {
 }
 
 nlohmann::ordered_json as_json(const InspectCall& call, const MeshReport& report,
-                               const std::optional<Chambers>& chambers) {
+                               const std::optional<Chambers>& chambers,
+                               const std::vector<std::string>& lines) {
   using nlohmann::ordered_json;
+  const auto known = [](const std::string& text) {
+    return text.empty() ? ordered_json(nullptr) : ordered_json(text);
+  };
+  ordered_json defects = ordered_json::array();
+  for (const Defect& defect : report.defects)
+    defects.push_back({{"what", defect.what}, {"at", defect.at}, {"across", defect.across}});
   return {{"file", call.mesh.string()},
-          {"unit", call.unit.empty() ? ordered_json(nullptr) : ordered_json(call.unit)},
+          {"unit", known(call.unit)},
+          {"unit_of_file", known(report.unit)},
+          {"metres_per_unit", report.metres > 0 ? ordered_json(report.metres) : ordered_json(nullptr)},
+          {"up_of_file", report.up == 0 ? ordered_json(nullptr) : ordered_json(std::string(1, report.up))},
+          {"solids", report.solids},
+          {"notes", report.notes},
           {"usable", report.usable()},
           {"reader", report.reader},
           {"faces", report.faces},
@@ -140,19 +186,25 @@ nlohmann::ordered_json as_json(const InspectCall& call, const MeshReport& report
           {"self_intersections", report.self_intersections},
           {"chambers", as_json(chambers)},
           {"repairs", report.repairs},
-          {"problems", report.problems}};
+          {"problems", report.problems},
+          {"defects", defects},
+          {"container_lines", lines}};
 }
 
 int inspect(const InspectCall& call) {
   if (!call.unit.empty()) unit_named(call.unit);  // refuses an unknown one before the file is read
-  const ImportedMesh imported = read_mesh(call.mesh);
+  const MeshFile file{.file = call.mesh};
+  const ImportedMesh imported = read_mesh(file);
   const MeshReport& report = imported.report;
+  const std::vector<std::string> lines =
+      report.usable() ? std::vector<std::string>() : lines_that_help(file, {}, imported);
+  if (!call.places.empty()) write_places(imported, call.places);
   std::optional<Chambers> chambers;
   if (call.radius && report.usable()) chambers = chambers_for(imported.mesh, *call.radius);
   if (call.json)
-    fmt::print("{}\n", as_json(call, report, chambers).dump(2));
+    fmt::print("{}\n", as_json(call, report, chambers, lines).dump(2));
   else
-    print(call, report, chambers);
+    print(call, report, chambers, lines);
   return report.usable() ? exit_code::done : exit_code::no;
 }
 
@@ -174,10 +226,15 @@ Command inspect_command() {
                      const bool fine = *end == '\0' && radius > 0 && std::isfinite(radius);
                      return fine ? std::string() : text + " is no length above 0";
                    }),
+           {"--places", &call->places,
+            "Write the faces at open edges (orange), at branching edges (blue) and of crossings (red), all "
+            "others grey, as a PLY file to look at",
+            "FILE.ply"},
            json_option(call->json)},
           "A container is closed, does not cross itself, and hangs together in more than edges and corners.\n"
           "\nExamples:\n"
           "  bernal inspect part.stl --unit mm                can this CAD file be a container?\n"
+          "  bernal inspect part.stl --places bad.ply         where does it fail? to look at in ParaView or MeshLab\n"
           "  bernal inspect part.stl --radius 0.5 --json      and into how many chambers does it fall?\n"
           "Exit codes: 0 usable; 1 not usable; 2 bad input.",
           [call] { return inspect(*call); }};

@@ -148,4 +148,18 @@ std::uint32_t orient_consistently(Mesh& mesh, const MeshTopology& topology) {
   return total;
 }
 
+void drop_unused_vertices(Mesh& mesh) {
+  std::vector<std::uint32_t> number(mesh.vertices.size(), none);
+  std::vector<Vector<3>> used;
+  for (FaceCorners& t : mesh.triangles)
+    for (std::uint32_t& v : t) {
+      if (number[v] == none) {
+        number[v] = static_cast<std::uint32_t>(used.size());
+        used.push_back(mesh.vertices[v]);
+      }
+      v = number[v];
+    }
+  mesh.vertices = std::move(used);
+}
+
 }  // namespace bernal::cad

@@ -9,6 +9,9 @@ namespace bernal::cad {
 
 inline constexpr std::uint32_t none = 0xFFFFFFFF;
 
+/// Of a triangle, by their numbers.
+using FaceCorners = std::array<std::uint32_t, 3>;
+
 /// How the triangles of a mesh hang together, by vertex indices alone; edge k of a triangle runs from its
 /// corner k to its corner k + 1 (mod 3).
 ///
@@ -38,5 +41,8 @@ MeshTopology topology_of(const Mesh& mesh);
 /// or `none` if the surface is one-sided, and then leaves the mesh as it was. `topology` keeps its numbering
 /// of components, but its corner-wise members no longer hold.
 std::uint32_t orient_consistently(Mesh& mesh, const MeshTopology& topology);
+
+/// Numbers the vertices anew, in the order in which the triangles first use them, without the unused ones.
+void drop_unused_vertices(Mesh& mesh);
 
 }  // namespace bernal::cad

@@ -4,100 +4,153 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
-#include <optional>
 
-#include "bernal/core/error.hpp"
+#include "cad/close_seams.hpp"
+#include "cad/defects.hpp"
 #include "cad/diagnose_mesh.hpp"
+#include "cad/interior.hpp"
 #include "cad/make_triangles.hpp"
-#include "cad/polygon_soup.hpp"
-#include "cad/stl_file.hpp"
+#include "cad/mesh_topology.hpp"
+#include "cad/read_soup.hpp"
+#include "cad/self_intersections.hpp"
+#include "cad/triangle_tree.hpp"
 
 namespace bernal {
 namespace {
 
-using cad::PolygonSoup;
-using cad::ReadAttempt;
+using cad::ChosenSoup;
+using cad::FileFacts;
 
-struct ChosenSoup {
-  PolygonSoup soup;
-  std::string reader;
-};
+/// A true surface is tessellated to within this part of the smallest sphere's radius.
+constexpr double deflection_over_radius = 0.02;
 
-Bounds<3> bounds_of_polygons(const PolygonSoup& soup) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  Bounds<3> bounds{Vector<3>::Constant(infinity), Vector<3>::Constant(-infinity)};
-  for (const auto& polygon : soup.polygons) {
-    for (const std::uint32_t i : polygon) {
-      bounds.lower = bounds.lower.cwiseMin(soup.points[i]);
-      bounds.upper = bounds.upper.cwiseMax(soup.points[i]);
-    }
-  }
-  return bounds;
-}
-
-/// Whether the soups are the same to single precision: as many faces, and bounds that differ by no more than
-/// the rounding of a parsed float (its last digit may be off by a few units).
-bool agree(const PolygonSoup& in_float, const PolygonSoup& in_double) {
-  if (in_float.polygons.size() != in_double.polygons.size()) return false;
-  if (in_float.polygons.empty()) return true;
-  const Bounds<3> a = bounds_of_polygons(in_float), b = bounds_of_polygons(in_double);
-  const double largest = std::max(b.lower.cwiseAbs().maxCoeff(), b.upper.cwiseAbs().maxCoeff());
-  const double rounding = 4.0 * std::numeric_limits<float>::epsilon() * largest;
-  return (a.lower - b.lower).cwiseAbs().maxCoeff() <= rounding &&
-         (a.upper - b.upper).cwiseAbs().maxCoeff() <= rounding;
-}
-
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reason) {
-  throw Error(ErrorCode::bad_mesh, reason, {file.string()});
-}
-
-/// OFF and PLY say in front how much they hold, and CGAL holds them to it; assimp bends indices that are out
-/// of range until they fit.
-bool cgal_is_strict(const std::filesystem::path& file) {
-  const std::string extension = cad::extension_of(file);
-  return extension == ".off" || extension == ".ply";
-}
-
-/// Two readers saw the file: assimp is right about what there is, CGAL keeps the doubles.
-ChosenSoup choose(const std::filesystem::path& file, ReadAttempt assimp, ReadAttempt cgal) {
-  if (!assimp.ok() && !cgal.ok())
-    refuse(file, fmt::format("cannot be read: {} (assimp), {} (CGAL)", assimp.failure, cgal.failure));
-  if (!cgal.ok() && cgal_is_strict(file)) refuse(file, fmt::format("cannot be read: {}", cgal.failure));
-  if (!cgal.ok())
-    return {std::move(assimp.soup), fmt::format("assimp, single precision (CGAL: {})", cgal.failure)};
-  if (!assimp.ok())
-    return {std::move(cgal.soup), fmt::format("CGAL, double precision (assimp: {})", assimp.failure)};
-  if (agree(assimp.soup, cgal.soup))
-    return {std::move(cgal.soup), "CGAL, double precision (assimp agrees to single precision)"};
-  const auto disagreement = [](std::string_view who, const PolygonSoup& other, const PolygonSoup& taken) {
-    return fmt::format("({} disagrees: {} faces against {})", who, other.polygons.size(),
-                       taken.polygons.size());
+/// From the file's unit to the one that is asked for.
+double factor_of(const MeshFile& options, const FileFacts& facts, std::optional<Unit> wanted) {
+  const auto& of_file = facts.unit;
+  const auto is_same = [&](Unit unit) {
+    return std::abs(metres_per(unit) / of_file->metres - 1) < 1e-9;
   };
-  if (cad::extension_of(file) == ".off") {  // of which assimp leaves out the faces of ten corners and more
-    const std::string text = disagreement("assimp", assimp.soup, cgal.soup);
-    return {std::move(cgal.soup), "CGAL, double precision " + text};
-  }
-  const std::string text = disagreement("CGAL", cgal.soup, assimp.soup);
-  return {std::move(assimp.soup), "assimp, single precision " + text};
+  if (of_file && options.unit && !options.ignore_unit_of_file && !is_same(*options.unit))
+    throw OptionError("unit", fmt::format("the file says that its lengths are in {}, and the scene that they are "
+                                          "in {}; leave \"unit\" out, or, if the file is wrong, add "
+                                          "ignore_unit_of_file = true",
+                                          of_file->name, name_of(*options.unit)));
+  if (!wanted) return 1;
+  if (options.unit) return conversion_factor(*options.unit, *wanted);
+  if (!of_file) return 1;
+  for (const std::string_view name : unit_names())
+    if (const Unit unit = unit_named(name); is_same(unit)) return conversion_factor(unit, *wanted);
+  return of_file->metres / metres_per(*wanted);
 }
 
-ChosenSoup read_soup(const std::filesystem::path& file) {
-  if (cad::extension_of(file) == ".stl") {
-    const cad::StlFile stl = cad::read_stl_file(file);
-    ReadAttempt assimp = cad::read_stl_with_assimp(stl.content);
-    if (!stl.binary) return choose(file, std::move(assimp), cad::read_stl_with_cgal(stl.content));
-    if (!assimp.ok()) refuse(file, "cannot be read: " + assimp.failure);
-    return {std::move(assimp.soup), "assimp (binary STL holds single precision)"};
-  }
-  ReadAttempt assimp = cad::read_with_assimp(file);
-  if (cad::cgal_reads(file)) return choose(file, std::move(assimp), cad::read_with_cgal(file));
-  if (!assimp.ok()) refuse(file, "cannot be read: " + assimp.failure);
-  return {std::move(assimp.soup), "assimp, single precision"};
+/// The number, from 1, that a text is; 0 if it is none.
+std::size_t number_in(const std::string& text) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? number : 0;
 }
 
-/// What the user can do about the first of the report's problems.
+/// Which of so many named or nameless parts the options choose.
+std::vector<bool> chosen_parts(const MeshFile& options, const std::vector<std::string>& names) {
+  std::vector<bool> chosen(names.size(), false);
+  for (const std::string& wanted : options.solids) {
+    bool found = false;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (names[i] == wanted) found = chosen[i] = true;
+    if (const std::size_t number = number_in(wanted); !found && number >= 1 && number <= names.size())
+      found = chosen[number - 1] = true;
+    if (found) continue;
+    constexpr std::size_t most = 12;
+    std::vector<std::string> known;
+    for (const std::string& name : names)
+      if (!name.empty() && known.size() < most) known.push_back(fmt::format("\"{}\"", name));
+    throw OptionError("solids", fmt::format("the file has no solid \"{}\"; it has {}{}", wanted,
+                                            cad::counted(names.size(), "solid", "solids"),
+                                            known.empty() ? fmt::format(", by number from 1 to {}", names.size())
+                                                          : fmt::format(": {}", fmt::join(known, ", "))));
+  }
+  return chosen;
+}
+
+/// Leaves those of the file's parts that are asked for, if it tells parts apart.
+void keep_solids(cad::PolygonSoup& soup, const MeshFile& options) {
+  std::vector<std::string> names;
+  for (const cad::Solid& solid : soup.solids) names.push_back(solid.name);
+  const std::vector<bool> chosen = chosen_parts(options, names);
+  std::vector<std::vector<std::uint32_t>> kept;
+  for (std::size_t i = 0; i < soup.solids.size(); ++i) {
+    const std::size_t end = i + 1 < soup.solids.size() ? soup.solids[i + 1].first : soup.polygons.size();
+    for (std::size_t k = soup.solids[i].first; chosen[i] && k < end; ++k)
+      kept.push_back(std::move(soup.polygons[k]));
+  }
+  soup.polygons = std::move(kept);
+}
+
+/// The same where it does not: the pieces that hang together, in the order of their first faces.
+void keep_pieces(Mesh& mesh, const MeshFile& options) {
+  const cad::MeshTopology topology = cad::topology_of(mesh);
+  const std::vector<bool> chosen = chosen_parts(options, std::vector<std::string>(topology.components));
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (chosen[topology.component[t]]) mesh.triangles[kept++] = mesh.triangles[t];
+  mesh.triangles.resize(kept);
+}
+
+/// Turns the axis that points up to z, without mirroring: as Collada's conventions lead into each other.
+void turn_up(Mesh& mesh, Up up) {
+  for (Vector<3>& v : mesh.vertices) {
+    if (up == Up::x) v = {-v[1], -v[2], v[0]};
+    if (up == Up::y) v = {v[0], -v[2], v[1]};
+  }
+}
+
+/// Closes seams, unless that makes nothing better.
+void close_seams_of(cad::Triangles& triangles, double tolerance, std::vector<std::string>& done) {
+  const cad::MeshTopology before = cad::topology_of(triangles.mesh);
+  if (before.closed() && cad::count_degenerate(triangles.mesh) == 0) return;
+  Mesh tried = triangles.mesh;
+  const cad::Seams seams = cad::close_seams(tried, tolerance);
+  if (!seams.any() || tried.triangles.empty()) return;
+  const cad::MeshTopology after = cad::topology_of(tried);
+  if (after.open_edges + after.non_manifold_edges > before.open_edges + before.non_manifold_edges) return;
+  triangles.mesh = std::move(tried);
+  for (std::string& words : seams.in_words()) done.push_back(std::move(words));
+}
+
+std::vector<cad::CutPlane> planes_of(const MeshFile& options) {
+  std::vector<cad::CutPlane> planes;
+  try {
+    for (const std::string& text : options.cap) planes.push_back(cad::plane_in(text));
+  } catch (const Error& error) {
+    throw OptionError("cap", error.what());
+  }
+  if (options.fill_level) planes.push_back(cad::plane_in(fmt::format("z < {}", *options.fill_level)));
+  return planes;
+}
+
+/// The key that decides on the interior, for errors.
+std::string_view interior_option(const MeshFile& options) {
+  if (!options.cap.empty()) return "cap";
+  return options.fill_level ? "fill_level" : "interior";
+}
+
+void take_interior(Mesh& mesh, const MeshFile& options, double tolerance, std::vector<std::string>& done) {
+  try {
+    cad::ChosenInterior chosen =
+        cad::choose_interior(mesh, {planes_of(options), options.interior}, tolerance);
+    mesh = std::move(chosen.mesh);
+    for (std::string& note : chosen.notes) done.push_back(std::move(note));
+  } catch (const OptionError&) {
+    throw;
+  } catch (const Error& error) {
+    throw OptionError(interior_option(options), error.what());
+  }
+}
+
+/// What the user can do about the first of the report's problems, where no line was found that helps.
 std::string_view remedy(const MeshReport& report) {
   if (report.open_edges > 0) return "the surface has a hole or is a shell; close it in CAD";
   if (report.non_manifold_edges > 0)
@@ -107,36 +160,97 @@ std::string_view remedy(const MeshReport& report) {
   return "export a closed solid";
 }
 
-}  // namespace
+void append(Mesh& mesh, const Mesh& other) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& [a, b, c] : other.triangles)
+    mesh.triangles.push_back({first + a, first + c, first + b});  // turned: its inside is outside
+}
 
-ImportedMesh read_mesh(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) refuse(file, "no such file");
-  if (!std::filesystem::is_regular_file(file, error)) refuse(file, "not a regular file");
-  if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
+/// Closed surfaces inside of the container are taken out of it.
+void take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& purpose,
+                        std::vector<std::string>& done) {
+  for (const std::filesystem::path& file : options.obstacles) {
+    MeshFile obstacle{.file = file,
+                      .unit = options.unit,
+                      .ignore_unit_of_file = options.ignore_unit_of_file,
+                      .up = options.up,
+                      .weld = options.weld,
+                      .deflection = options.deflection};
+    const ImportedMesh imported = read_container_mesh(obstacle, purpose);
+    const cad::TriangleTree tree(mesh);
+    const bool touches_inside = std::ranges::any_of(imported.mesh.vertices, [&](const Vector<3>& v) {
+      return tree.crossing(v, 0, std::numeric_limits<double>::infinity()) != cad::Crossing::even;
+    });
+    if (!touches_inside)
+      throw OptionError("obstacles", fmt::format("{} lies outside of the container; check its unit and place",
+                                                 file.string()));
+    append(mesh, imported.mesh);
+    done.push_back(fmt::format("took out {}, {} faces", file.filename().string(), imported.report.faces));
+  }
+}
 
-  ChosenSoup chosen = read_soup(file);
-  if (chosen.soup.polygons.empty()) refuse(file, "holds no faces; export the surface, not points or curves");
-  cad::Triangles triangles = cad::make_triangles(chosen.soup);
-  chosen.soup = {};
+ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
+  const double deflection = options.deflection.value_or(deflection_over_radius * purpose.smallest_radius);
+  ChosenSoup chosen =
+      cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0);
+  const double factor = factor_of(options, chosen.facts, purpose.unit);
 
   ImportedMesh result;
-  result.report = cad::diagnose_mesh(triangles);
-  result.report.reader = std::move(chosen.reader);
-  result.mesh = std::move(triangles.mesh);
+  std::vector<std::string> done;
+  const bool by_piece = chosen.soup.solids.empty();
+  for (const cad::Solid& solid : chosen.soup.solids) result.report.solids.push_back(solid.name);
+  if (!options.solids.empty() && !by_piece) keep_solids(chosen.soup, options);
+  cad::Triangles triangles = cad::make_triangles(chosen.soup);
+  chosen.soup = {};
+  Mesh& mesh = triangles.mesh;
+  const double rounding = factor * cad::rounding_of_coordinates(mesh);
+  if (factor != 1)
+    for (Vector<3>& v : mesh.vertices) v *= factor;
+  turn_up(mesh, options.up);
+  close_seams_of(triangles, options.weld.value_or(rounding), done);
+  if (!options.solids.empty() && by_piece) keep_pieces(mesh, options);
+  take_interior(mesh, options, options.weld.value_or(rounding), done);
+  take_out_obstacles(mesh, options, purpose, done);
+
+  MeshReport report = cad::diagnose_mesh(triangles);
+  report.reader = std::move(chosen.reader);
+  if (chosen.facts.unit) {
+    report.unit = chosen.facts.unit->name;
+    report.metres = chosen.facts.unit->metres;
+  }
+  report.up = chosen.facts.up;
+  report.notes = std::move(chosen.facts.notes);
+  report.solids = std::move(result.report.solids);
+  if (!report.usable()) report.defects = cad::defects_of(mesh);
+  report.repairs.insert(report.repairs.begin(), done.begin(), done.end());
+  result.report = std::move(report);
+  result.mesh = std::move(mesh);
   return result;
 }
 
-ImportedMesh read_container_mesh(const std::filesystem::path& file, double factor) {
-  if (!(factor > 0) || !std::isfinite(factor))
-    throw Error(ErrorCode::bad_argument, fmt::format("unit factor {} is not a positive number", factor));
-  ImportedMesh result = read_mesh(file);
-  const MeshReport& report = result.report;
-  if (!report.usable())
-    refuse(file,
-           fmt::format("cannot be a container: {} ({})", fmt::join(report.problems, ", "), remedy(report)));
-  for (Vector<3>& v : result.mesh.vertices) v *= factor;
-  return result;
+}  // namespace
+
+ImportedMesh read_mesh(const MeshFile& options, const ImportFor& purpose) {
+  try {
+    return import(options, purpose);
+  } catch (const OptionError&) {
+    throw;
+  } catch (const Error& error) {
+    if (!error.location().file.empty()) throw;
+    throw Error(error.code(), error.what(), {options.file.string()});
+  }
+}
+
+ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpose) {
+  ImportedMesh result = read_mesh(options, purpose);
+  if (result.report.usable()) return result;
+  const std::vector<std::string> lines = lines_that_help(options, purpose, result);
+  const std::string help = lines.empty() ? std::string(remedy(result.report))
+                                         : fmt::format("in [container], {} helps", fmt::join(lines, ", or "));
+  throw Error(ErrorCode::bad_mesh,
+              fmt::format("cannot be a container: {} ({})", fmt::join(result.report.problems, ", "), help),
+              {options.file.string()});
 }
 
 }  // namespace bernal

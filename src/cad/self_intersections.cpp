@@ -60,6 +60,10 @@ class TrianglePairs {
 
 }  // namespace
 
+bool is_degenerate(const Mesh& mesh, const Corners& triangle) {
+  return TrianglePairs(mesh).degenerate(triangle);
+}
+
 std::uint64_t count_degenerate(const Mesh& mesh) {
   const TrianglePairs pairs(mesh);
   return static_cast<std::uint64_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
@@ -67,6 +71,11 @@ std::uint64_t count_degenerate(const Mesh& mesh) {
 }
 
 std::uint64_t count_self_intersections(const Mesh& mesh) {
+  return count_self_intersections(mesh, [](std::uint32_t, std::uint32_t) {});
+}
+
+std::uint64_t count_self_intersections(const Mesh& mesh,
+                                       const std::function<void(std::uint32_t, std::uint32_t)>& see) {
   using Box = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const Corners*>;
   const TrianglePairs pairs(mesh);
   std::vector<Box> boxes;
@@ -76,7 +85,10 @@ std::uint64_t count_self_intersections(const Mesh& mesh) {
 
   std::uint64_t count = 0;
   CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& s, const Box& t) {
-    count += pairs.intersect(*s.handle(), *t.handle());
+    if (!pairs.intersect(*s.handle(), *t.handle())) return;
+    ++count;
+    const Corners* first = mesh.triangles.data();
+    see(static_cast<std::uint32_t>(s.handle() - first), static_cast<std::uint32_t>(t.handle() - first));
   });
   return count;
 }

@@ -5,11 +5,18 @@
 #include <CGAL/Projection_traits_3.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <unordered_map>
+
+#include "cad/mesh_topology.hpp"
+
 namespace bernal::cad {
 namespace {
 
 using Polygon = std::vector<std::uint32_t>;
-using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+using Triangles = std::vector<FaceCorners>;
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Plane = CGAL::Projection_traits_3<Kernel>;
@@ -45,38 +52,63 @@ Triangles halves(const std::vector<Vector<3>>& points, const Polygon& q) {
   return {{q[2], q[3], q[0]}, {q[0], q[1], q[2]}};
 }
 
+/// Across how many of the constrained edges each face is reached from infinity, at least. Nothing if it is
+/// odd on one way and even on another: then the edges form no closed lines.
+std::optional<std::map<Delaunay::Face_handle, int>> depths_in(const Delaunay& plane) {
+  std::map<Delaunay::Face_handle, int> depth;
+  std::vector<Delaunay::Face_handle> here = {plane.infinite_face()}, next;
+  for (int level = 0; !here.empty(); ++level, here.swap(next), next.clear()) {
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      const auto face = here[i];
+      if (!depth.try_emplace(face, level).second) continue;
+      for (int k = 0; k < 3; ++k) (plane.is_constrained({face, k}) ? next : here).push_back(face->neighbor(k));
+    }
+  }
+  for (const auto& [face, level] : depth)
+    for (int k = 0; k < 3; ++k)
+      if (plane.is_constrained({face, k}) && (depth.at(face->neighbor(k)) - level) % 2 == 0)
+        return std::nullopt;
+  return depth;
+}
+
+/// The Delaunay triangulation with these edges in the plane across the normal; nothing if they cross or two
+/// corners coincide in projection.
+template <class Edges>
+std::unique_ptr<Delaunay> constrained(const std::vector<Vector<3>>& points, const Edges& edges,
+                                      const std::vector<std::uint32_t>& corners, const Vector<3>& normal) {
+  auto plane = std::make_unique<Delaunay>(Plane({normal[0], normal[1], normal[2]}));
+  std::unordered_map<std::uint32_t, Delaunay::Vertex_handle> vertices;
+  for (const std::uint32_t corner : corners) {
+    const Vector<3>& p = points[corner];
+    const auto vertex = plane->insert({p[0], p[1], p[2]});
+    vertex->info() = corner;
+    vertices[corner] = vertex;
+  }
+  if (plane->dimension() != 2 || plane->number_of_vertices() != corners.size()) return nullptr;
+  try {
+    for (const auto& [a, b] : edges) plane->insert_constraint(vertices.at(a), vertices.at(b));
+  } catch (const Delaunay::Intersection_of_constraints_exception&) {
+    return nullptr;
+  }
+  return plane;
+}
+
+FaceCorners corners_of(Delaunay::Face_handle face) {
+  return {face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()};
+}
+
 /// None if the polygon folds or touches itself in projection.
 Triangles delaunay(const std::vector<Vector<3>>& points, const Polygon& polygon, const Vector<3>& normal) {
-  Delaunay plane{Plane({normal[0], normal[1], normal[2]})};
-  std::vector<Delaunay::Vertex_handle> corners;
-  for (const std::uint32_t corner : polygon) {
-    const Vector<3>& p = points[corner];
-    corners.push_back(plane.insert({p[0], p[1], p[2]}));
-    corners.back()->info() = corner;
-  }
-  try {
-    for (std::size_t k = 0; k < corners.size(); ++k)
-      plane.insert_constraint(corners[k], corners[(k + 1) % corners.size()]);
-  } catch (const Delaunay::Intersection_of_constraints_exception&) {
-    return {};
-  }
-  if (plane.dimension() != 2 || plane.number_of_vertices() != polygon.size()) return {};
-
-  // Outside is what can be reached from infinity without crossing an edge of the polygon.
-  CGAL::Unique_hash_map<Delaunay::Face_handle, bool> outside(false);
-  std::vector<Delaunay::Face_handle> reached = {plane.infinite_face()};
-  while (!reached.empty()) {
-    const auto face = reached.back();
-    reached.pop_back();
-    if (outside[face]) continue;
-    outside[face] = true;
-    for (int k = 0; k < 3; ++k)
-      if (!plane.is_constrained({face, k})) reached.push_back(face->neighbor(k));
-  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (std::size_t k = 0; k < polygon.size(); ++k)
+    edges.emplace_back(polygon[k], polygon[(k + 1) % polygon.size()]);
+  const auto plane = constrained(points, edges, polygon, normal);
+  if (!plane) return {};
+  const auto depths = depths_in(*plane);
+  if (!depths) return {};
   Triangles triangles;
-  for (const auto face : plane.finite_face_handles())
-    if (!outside[face])
-      triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+  for (const auto face : plane->finite_face_handles())
+    if (depths->at(face) > 0) triangles.push_back(corners_of(face));
   return triangles;
 }
 
@@ -88,6 +120,23 @@ Triangles triangulate(const std::vector<Vector<3>>& points, const Polygon& polyg
   if (polygon.size() == 4) return halves(points, polygon);
   const Triangles triangles = delaunay(points, polygon, normal);
   return triangles.empty() ? fan(polygon) : triangles;
+}
+
+std::optional<Triangles> triangulate_regions(const std::vector<Vector<3>>& points,
+                                             const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
+                                             const Vector<3>& normal) {
+  std::vector<std::uint32_t> corners;
+  for (const auto& [a, b] : edges) corners.insert(corners.end(), {a, b});
+  std::ranges::sort(corners);
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  const auto plane = constrained(points, edges, corners, normal);
+  if (!plane) return std::nullopt;
+  const auto depths = depths_in(*plane);
+  if (!depths) return std::nullopt;
+  Triangles triangles;
+  for (const auto face : plane->finite_face_handles())
+    if (depths->at(face) % 2 == 1) triangles.push_back(corners_of(face));
+  return triangles;
 }
 
 }  // namespace bernal::cad

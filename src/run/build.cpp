@@ -161,7 +161,7 @@ Plan build(const Scene& stated) {
   complete(plan.scene);
   const Scene& scene = plan.scene;
   require_effect_of_accuracy(scene);
-  plan.domain = domain_of(scene, &plan.container_notes);
+  plan.domain = domain_of(plan.scene, plan.container_notes);
   plan.radii = radii_of(scene);
   if (scene.is_periodic()) {
     expect_in_periodic_box(plan);

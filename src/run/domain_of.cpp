@@ -3,27 +3,48 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/run/run.hpp"
+#include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
 namespace {
 
+/// The rarest size that a true surface is tessellated for.
+constexpr double rare = 1e-2;
+
+/// What the import found, for people.
+std::string in_words(const MeshReport& report, const MeshFile& mesh, Unit unit) {
+  std::string of_file(name_of(mesh.unit.value_or(unit)));
+  if (!report.unit.empty() && !mesh.ignore_unit_of_file) of_file = report.unit + ", as the file says";
+  std::string text =
+      fmt::format("{} faces; {}; coordinates are {}", report.faces, report.reader, of_file);
+  if (report.up != 0 && report.up != 'z' && mesh.up == Up::as_in_file)
+    text += fmt::format("; the file says that {0} is up, which up = \"{0}\" turns to z", report.up);
+  for (const auto* list : {&report.notes, &report.repairs})
+    if (!list->empty()) text += fmt::format("; {}", fmt::join(*list, ", "));
+  if (report.is_repaired) text += "; the walls are those of the repaired surface, not the file's";
+  return text;
+}
+
 struct MakeDomain {
-  Unit unit;  // of the scene
-  std::string* notes;
+  Scene& scene;
+  std::string& notes;
 
   Domain operator()(const Box& box) const { return box; }
   Domain operator()(const Cylinder& cylinder) const { return cylinder; }
   Domain operator()(const Sphere& sphere) const { return sphere; }
-  Domain operator()(const MeshFile& mesh) const {
-    const Unit of_file = mesh.unit.value_or(unit);
-    ImportedMesh imported = read_container_mesh(mesh.file, conversion_factor(of_file, unit));
-    if (notes) {
-      *notes = fmt::format("{} faces; {}; coordinates are {}", imported.report.faces, imported.report.reader,
-                           name_of(of_file));
-      if (!imported.report.repairs.empty())
-        *notes += fmt::format("; {}", fmt::join(imported.report.repairs, ", "));
+  Domain operator()(MeshFile& mesh) const {
+    const Unit unit = scene.unit;
+    try {
+      const double smallest = radii_of(scene)->quantile(rare);
+      ImportedMesh imported = read_container_mesh(mesh, {unit, smallest});
+      notes = in_words(imported.report, mesh, unit);
+      if (imported.report.deflection > 0) mesh.deflection = imported.report.deflection;
+      if (imported.report.unit.empty() && !mesh.unit) mesh.unit = unit;
+      return std::move(imported.mesh);
+    } catch (const OptionError& error) {
+      const Location at = scene.container.locations.of(error.option);
+      throw Error(error.code(), error.what(), at.file.empty() ? Location{mesh.file.string()} : at);
     }
-    return std::move(imported.mesh);
   }
   /// The unit cube where the scene gives no size.
   Domain operator()(const PeriodicBox& box) const {
@@ -37,8 +58,14 @@ struct MakeDomain {
 
 }  // namespace
 
-Domain domain_of(const Scene& scene, std::string* notes) {
-  return std::visit(MakeDomain{scene.unit, notes}, scene.container);
+Domain domain_of(Scene& scene, std::string& notes) {
+  return std::visit(MakeDomain{scene, notes}, scene.container);
+}
+
+Domain domain_of(const Scene& scene) {
+  Scene copy = scene;
+  std::string notes;
+  return domain_of(copy, notes);
 }
 
 Domain packed_domain_of(const Scene& scene) {

@@ -55,6 +55,13 @@ bool are_axes(const Value& value) {
   const auto& axes = std::get<std::vector<double>>(value);
   return std::ranges::all_of(axes, [&](double axis) { return std::ranges::count(axes, axis) == 1; });
 }
+bool are_names(const Value& value) {
+  const auto* names = std::get_if<std::vector<std::string>>(&value);
+  const auto is_name = [](const std::string& name) {
+    return !name.empty() && name.find('\0') == std::string::npos;
+  };
+  return names && !names->empty() && std::ranges::all_of(*names, is_name);
+}
 bool is_file(const Value& value) {
   const auto* text = std::get_if<std::string>(&value);
   return text && !text->empty() && text->find('\0') == std::string::npos;
@@ -75,6 +82,7 @@ const std::map<Type, Rule> rules = {
     {Type::file, {"the path of a file", is_file, false}},
     {Type::direction, {"a direction [x, y, z]", is_direction}},
     {Type::position, {"a point [x, y, z]", all<is_coordinate, 3>}},
+    {Type::names, {"a name or an array of names", are_names, false}},
     {Type::extents, {"three positive lengths [a, b, c]", all<is_length, 3>}},
     {Type::lengths, {"an array of positive lengths", all<is_length>}},
     {Type::shares, {"an array of positive numbers", all<is_length>}},
@@ -95,6 +103,8 @@ std::string expectation(const Key& key, const std::optional<Value>& given) {
   if (key.type == Type::integer)
     return range.max > 0x1p53 ? fmt::format("a whole number of at least {}", range.min)
                               : fmt::format("a whole number from {:.0f} to {:.0f}", range.min, range.max);
+  if (key.type == Type::names && !key.words.empty()) return fmt::format("an array of {}", words);
+  if (key.type == Type::position && !key.words.empty()) return fmt::format("a point [x, y, z] or {}", words);
   const Rule& rule = rules.at(key.type);
   return given && rule.has_length && is_absurd(*given)
              ? fmt::format("{} from {} to {}", rule.kind, smallest_length, largest_length)
@@ -112,6 +122,11 @@ bool accepts(const Key& key, const Value& value) {
     return key.type == Type::integer && key.range.contains(static_cast<double>(*whole));
   if (key.type == Type::flag || key.type == Type::integer) return false;
   if (key.type == Type::word) return is_word();
+  if (const auto* names = std::get_if<std::vector<std::string>>(&value); names && !key.words.empty())
+    return key.type == Type::names && !names->empty() && std::ranges::all_of(*names, [&](const std::string& name) {
+             return std::ranges::find(key.words, name) != key.words.end();
+           });
+  if (key.type == Type::position && !key.words.empty() && is_word()) return true;
   if (key.type != Type::number) return rules.at(key.type).accepts(value);
   const auto* number = std::get_if<double>(&value);
   return number ? std::isfinite(*number) && key.range.contains(*number) : is_word();

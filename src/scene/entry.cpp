@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scene/toml_text.hpp"
+
 namespace bernal::schema {
 
 Key word(Member member, std::string_view name, std::string_view help, std::vector<std::string_view> words) {
@@ -20,6 +22,14 @@ Key word(Member member, std::string_view name, std::string_view help, std::vecto
   };
   made.words = std::move(words);
   return made;
+}
+
+Key unless(std::string otherwise, Key key) {
+  key.member.get = [get = key.member.get, otherwise = std::move(otherwise)](const void* options) -> std::optional<Value> {
+    const std::optional<Value> value = get(options);
+    return value && toml_text(*value) == otherwise ? std::nullopt : value;
+  };
+  return key;
 }
 
 std::vector<Key> acting(Acts acts, std::vector<Key> keys) {

@@ -17,8 +17,8 @@
 namespace bernal::schema {
 
 /// What a user may write to the right of an equals sign; a distribution is an array of one.
-using Value =
-    std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<SceneSizes>>;
+using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
+                           std::vector<std::string>, std::vector<SceneSizes>>;
 
 /// What the value of a key must be. Vectors have three components; arrays have at least one.
 enum class Type {
@@ -29,7 +29,8 @@ enum class Type {
   word,          ///< one of Key::words
   file,          ///< a path, relative to the scene's folder
   direction,     ///< [x, y, z], not all zero
-  position,      ///< [x, y, z] in the scene's unit
+  position,      ///< [x, y, z] in the scene's unit; or one of Key::words, if there are any
+  names,         ///< array of strings, or one: each one of Key::words, if there are any
   extents,       ///< [a, b, c], each a length
   lengths,       ///< array of lengths
   shares,        ///< array of positive numbers
@@ -64,7 +65,7 @@ std::optional<Value> value_of(const M& m) {
     return static_cast<std::int64_t>(m);
   else if constexpr (std::is_same_v<M, std::filesystem::path>)
     return m.string();
-  else if constexpr (std::is_same_v<M, std::vector<SceneSizes>>)
+  else if constexpr (std::is_same_v<M, std::vector<SceneSizes>> || std::is_same_v<M, std::vector<std::string>>)
     return m.empty() ? std::nullopt : std::optional<Value>(m);
   else
     return m.size() == 0 ? std::nullopt : std::optional<Value>(std::vector<double>(m.begin(), m.end()));
@@ -79,7 +80,8 @@ void take_value(M& m, const Value& value) {
   else if constexpr (std::is_same_v<M, std::filesystem::path>)
     m = std::get<std::string>(value);
   else if constexpr (std::is_same_v<M, bool> || std::is_same_v<M, double> ||
-                     std::is_same_v<M, std::vector<SceneSizes>>)
+                     std::is_same_v<M, std::vector<SceneSizes>> ||
+                     std::is_same_v<M, std::vector<std::string>>)
     m = std::get<M>(value);
   else if (const auto& v = std::get<std::vector<double>>(value); true) {
     if constexpr (requires { m.assign(v.begin(), v.end()); })
@@ -146,8 +148,16 @@ inline Key number(Member member, Text name, Text help, Range range) {
 inline Key length(Member member, Text name, Text help) {
   return key(Type::length, std::move(member), name, help);
 }
+/// Text, or a list of texts that one text may stand for.
+inline Key names(Member member, Text name, Text help, std::vector<std::string_view> words = {}) {
+  Key made = key(Type::names, std::move(member), name, help);
+  made.words = std::move(words);
+  return made;
+}
 /// Of an enumeration, whose words stand in the order of its enumerators.
 Key word(Member member, Text name, Text help, std::vector<std::string_view> words);
+/// A key that is said only where it is not `otherwise`.
+Key unless(std::string otherwise, Key key);
 inline Key required(Key key) {
   key.required = true;
   return key;

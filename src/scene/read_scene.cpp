@@ -71,6 +71,27 @@ std::optional<schema::Value> value_in(const toml::node& node, bool as_double) {
   return numbers;
 }
 
+/// The node as names, whole numbers among them; nothing for anything else.
+std::optional<schema::Value> names_in(const toml::node& node) {
+  std::vector<std::string> names;
+  const auto take = [&](const toml::node& item) {
+    if (const auto* text = item.as_string())
+      names.push_back(text->get());
+    else if (const auto* number = item.as_integer())
+      names.push_back(fmt::format("{}", number->get()));
+    else
+      return false;
+    return true;
+  };
+  if (const toml::array* array = node.as_array()) {
+    for (const toml::node& item : *array)
+      if (!take(item)) return std::nullopt;
+  } else if (!take(node)) {
+    return std::nullopt;
+  }
+  return names;
+}
+
 /// Reads tables of a scene's file into the structs of their entries. Every error is an Error{bad_scene} with
 /// the file, the line and the remedy; `where` is what it calls the table: "[container]".
 class Reader {
@@ -138,7 +159,11 @@ class Reader {
     if (!mesh) return;
     if (!root.contains("unit"))
       fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
-    if (mesh->file.is_relative()) mesh->file = (path_.parent_path() / mesh->file).lexically_normal();
+    const auto beside_the_scene = [&](std::filesystem::path& file) {
+      if (file.is_relative()) file = (path_.parent_path() / file).lexically_normal();
+    };
+    beside_the_scene(mesh->file);
+    std::ranges::for_each(mesh->obstacles, beside_the_scene);
   }
 
   void read_spheres(const toml::table& table, Scene& scene) const {
@@ -207,7 +232,8 @@ class Reader {
   Value read_value(const toml::node& node, const Key& key, const std::string& where) const {
     if (key.type == Type::distribution) return std::vector{read_sizes(node, key, where)};
     if (key.type == Type::parts) return read_parts(node, key, where);
-    const std::optional<Value> value = value_in(node, key.type != Type::integer);
+    const std::optional<Value> value =
+        key.type == Type::names ? names_in(node) : value_in(node, key.type != Type::integer);
     if (value && schema::accepts(key, *value)) return *value;
     if (key.type == Type::word && node.is_string())
       fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),

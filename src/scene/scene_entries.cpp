@@ -1,5 +1,7 @@
 #include "scene/scene_entries.hpp"
 
+#include "scene/toml_text.hpp"
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -9,6 +11,10 @@ namespace {
 
 constexpr std::string_view wall_words[] = {"double", "filtered", "exact"};
 constexpr std::string_view draw_words[] = {"random", "quantiles"};
+constexpr std::string_view up_words[] = {"as in the file", "x", "y", "z"};
+constexpr std::string_view interior_words[] = {"solid", "cavity"};
+constexpr std::string_view repair_words[] = {name_of(Repair::holes), name_of(Repair::self_intersections),
+                                             name_of(Repair::wrap)};
 
 }  // namespace
 
@@ -87,8 +93,64 @@ void complete_periodic(PeriodicBox& box, Scene&, const Section&) {
   if (box.size.empty() && !box.edge) box.scalable = true;
 }
 
-void complete_mesh(MeshFile& mesh, Scene& scene, const Section&) {
-  if (!mesh.unit) mesh.unit = scene.unit;
+/// A word, or a point.
+Member interior() {
+  Member member;
+  member.get = [](const void* mesh) -> std::optional<Value> {
+    const auto& of = static_cast<const MeshFile*>(mesh)->interior;
+    if (const auto* point = std::get_if<Vector<3>>(&of)) return value_of(*point);
+    return std::string(interior_words[static_cast<std::size_t>(std::get<Interior>(of))]);
+  };
+  member.set = [](void* mesh, const Value& value) {
+    auto& of = static_cast<MeshFile*>(mesh)->interior;
+    if (const auto* text = std::get_if<std::string>(&value))
+      of = static_cast<Interior>(std::ranges::find(interior_words, *text) - interior_words);
+    else
+      take_value(of.emplace<Vector<3>>(), value);
+  };
+  return member;
+}
+
+Key interior_key() {
+  Key made = key(Type::position, interior(), "interior",
+                 "what the surface encloses, the hollow of that (a bucket's inside), or the space around a point");
+  made.words = words(interior_words);
+  return made;
+}
+
+Member repair() {
+  Member member;
+  member.get = [](const void* mesh) {
+    std::vector<std::string> all;
+    for (const Repair r : static_cast<const MeshFile*>(mesh)->repair) all.emplace_back(name_of(r));
+    return value_of(all);
+  };
+  member.set = [](void* mesh, const Value& value) {
+    auto& of = static_cast<MeshFile*>(mesh)->repair;
+    of.clear();
+    for (const std::string& text : std::get<std::vector<std::string>>(value))
+      of.push_back(static_cast<Repair>(std::ranges::find(repair_words, text) - repair_words));
+  };
+  return member;
+}
+
+Member obstacles() {
+  Member member;
+  member.get = [](const void* mesh) {
+    std::vector<std::string> all;
+    for (const auto& file : static_cast<const MeshFile*>(mesh)->obstacles) all.push_back(file.string());
+    return value_of(all);
+  };
+  member.set = [](void* mesh, const Value& value) {
+    const auto& all = std::get<std::vector<std::string>>(value);
+    static_cast<MeshFile*>(mesh)->obstacles = {all.begin(), all.end()};
+  };
+  return member;
+}
+
+void mesh_rule(const MeshFile& mesh, const Section& section) {
+  if (mesh.ignore_unit_of_file && !mesh.unit)
+    section.refuse("ignore_unit_of_file", "needs a \"unit\" beside it, that of the file's coordinates");
 }
 
 }  // namespace
@@ -169,9 +231,34 @@ const std::vector<Entry>& container_entries() {
           {.name = "mesh",
            .help = "a closed surface from a CAD file",
            .keys = {required(key(Type::file, &MeshFile::file, "file", "STL, OBJ, PLY, OFF, 3MF, glTF, …")),
-                    word(&MeshFile::unit, "unit", "unit of the file's coordinates; the scene's if absent",
-                         words(unit_names()))},
-           .complete = completion(complete_mesh)}),
+                    word(&MeshFile::unit, "unit",
+                         "unit of the file's coordinates; if absent what the file says, else the scene's",
+                         words(unit_names())),
+                    unless("false", flag(&MeshFile::ignore_unit_of_file, "ignore_unit_of_file",
+                                         "true: \"unit\" holds though the file says otherwise")),
+                    unless(toml_string(up_words[0]),
+                           word(&MeshFile::up, "up", "the axis of the file that points up is turned to z",
+                                words(up_words))),
+                    names(&MeshFile::solids, "solids",
+                          "those of the file's solids that are meant, by name or by number from 1"),
+                    names(obstacles(), "obstacles", "files of closed surfaces that are taken out of it"),
+                    length(&MeshFile::weld, "weld",
+                           "corners of open edges up to this far apart are one; if absent, what rounding "
+                           "explains"),
+                    length(&MeshFile::deflection, "deflection",
+                           "of STEP, IGES and BREP: how far triangles may lie from the true surface; if absent "
+                           "a fiftieth of the smallest radius"),
+                    names(repair(), "repair",
+                          "what may be done to a surface that is no wall: close holes, cut out "
+                          "self-intersections, wrap it",
+                          words(repair_words)),
+                    names(&MeshFile::cap, "cap",
+                          "planes that close open ends, \"z = 1.1\" or \"x < 0.5\": what they cut off is "
+                          "outside"),
+                    key(Type::number, &MeshFile::fill_level, "fill_level",
+                        "what lies higher than this z is outside"),
+                    unless("\"solid\"", interior_key())},
+           .rule = rule(mesh_rule)}),
       entry<Sphere>({.name = "sphere",
                      .help = "a sphere",
                      .keys = {required(length(&Sphere::radius, "radius", "its radius")),

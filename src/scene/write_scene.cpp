@@ -39,6 +39,11 @@ std::string toml_text(const schema::Value& value) {
     std::string operator()(const std::vector<double>& v) const {
       return fmt::format("[{}]", fmt::join(v, ", "));
     }
+    std::string operator()(const std::vector<std::string>& v) const {
+      std::vector<std::string> all;
+      for (const std::string& text : v) all.push_back(toml_string(text));
+      return fmt::format("[{}]", fmt::join(all, ", "));
+    }
     std::string operator()(const std::vector<SceneSizes>& v) const {
       std::vector<std::string> parts;
       for (const SceneSizes& part : v) parts.push_back(text_of(part));
@@ -67,8 +72,10 @@ std::string lines(const schema::Entry& entry, const void* options, bool in_bed =
 }
 
 std::string container_as_toml(SceneContainer container, const std::filesystem::path& folder) {
-  if (auto* mesh = std::get_if<MeshFile>(&container); mesh && !folder.empty())
+  if (auto* mesh = std::get_if<MeshFile>(&container); mesh && !folder.empty()) {
     mesh->file = std::filesystem::proximate(mesh->file, folder);
+    for (std::filesystem::path& file : mesh->obstacles) file = std::filesystem::proximate(file, folder);
+  }
   const schema::Entry& entry = schema::entry_of(container);
   return fmt::format("[container]\nkind = {}\n{}", toml_string(entry.name),
                      lines(entry, schema::options_of(container)));

@@ -16,7 +16,7 @@ using namespace test;
 
 class HardMesh : public ::testing::Test {
  protected:
-  ImportedMesh imported(const Mesh& mesh) { return read_mesh(folder.write("mesh.off", as_off(mesh))); }
+  ImportedMesh imported(const Mesh& mesh) { return read_mesh({.file = folder.write("mesh.off", as_off(mesh))}); }
   MeshReport diagnosed(const Mesh& mesh) { return imported(mesh).report; }
 
   /// Usable, with this volume to the rounding of sums over a box of this size, before and after import.
@@ -53,7 +53,7 @@ TEST_F(HardMesh, TJunction) {
 TEST_F(HardMesh, CornersThatDifferByAMillionth) {
   std::string stl = as_text_stl(box);
   stl.replace(stl.find("vertex 0 0 0"), 12, "vertex 1e-6 0 0");
-  const MeshReport report = read_mesh(folder.write("mesh.stl", stl)).report;
+  const MeshReport report = read_mesh({.file = folder.write("mesh.stl", stl)}).report;
   EXPECT_EQ(report.vertices, 9U);
   EXPECT_GT(report.open_edges, 0U);
 }
@@ -218,7 +218,7 @@ TEST_F(HardMesh, FarFromTheOrigin) {
   for (const double offset : {1e3, 1e5, 1e6}) {
     const Mesh mesh = translated(torus_mesh(1, 0.4, 24, 12), {offset, -offset, 2 * offset});
     for (const auto& [name, content] : {std::pair{"far.off", as_off(mesh)}, {"far.obj", as_obj(mesh)}}) {
-      const MeshReport report = read_mesh(folder.write(name, content)).report;
+      const MeshReport report = read_mesh({.file = folder.write(name, content)}).report;
       EXPECT_TRUE(report.usable()) << name << " at " << offset;
       // A coordinate is off by eps · 2 offset, times the area of 16.
       EXPECT_NEAR(report.volume, volume_of(torus_mesh(1, 0.4, 24, 12)), 16 * 2.3e-16 * 2 * offset + 1e-13);
@@ -230,7 +230,7 @@ TEST_F(HardMesh, TinyAndHuge) {
   for (const double size : {1e-9, 1e-4, 1e4, 1e9}) {
     const Mesh mesh = scaled(helix_mesh(), size);
     expect_volume(mesh, volume_of(mesh));
-    const MeshReport report = read_mesh(folder.write("mesh.stl", as_binary_stl(scaled(box, size)))).report;
+    const MeshReport report = read_mesh({.file = folder.write("mesh.stl", as_binary_stl(scaled(box, size)))}).report;
     EXPECT_TRUE(report.usable());
     EXPECT_NEAR(report.volume / (size * size * size), 1, 1e-6);
   }
@@ -239,7 +239,7 @@ TEST_F(HardMesh, TinyAndHuge) {
 TEST_F(HardMesh, MinusZeroIsZero) {
   std::string stl = as_text_stl(box);
   stl.replace(stl.find("vertex 0 0 0"), 12, "vertex -0.0 -0.0 0");
-  const MeshReport report = read_mesh(folder.write("mesh.stl", stl)).report;
+  const MeshReport report = read_mesh({.file = folder.write("mesh.stl", stl)}).report;
   EXPECT_TRUE(report.usable());
   EXPECT_EQ(report.vertices, 8U);
 }

@@ -21,7 +21,7 @@ using namespace test;
 class ReadMesh : public ::testing::Test {
  protected:
   ImportedMesh read(std::string_view name, std::string_view content) {
-    return read_mesh(folder.write(name, content));
+    return read_mesh({.file = folder.write(name, content)});
   }
   std::string refusal(std::string_view name, std::string_view content) {
     try {
@@ -137,8 +137,8 @@ TEST_F(ReadMesh, FilesThatHoldNoMeshAreRefused) {
   EXPECT_NE(refusal("points.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"), "was read");
   EXPECT_NE(refusal("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "was read");
   EXPECT_NE(refusal("noise.xyz", "what is this"), "was read");
-  EXPECT_THROW(read_mesh(folder / "missing.stl"), Error);
-  EXPECT_THROW(read_mesh(folder.path()), Error);
+  EXPECT_THROW(read_mesh({.file = folder / "missing.stl"}), Error);
+  EXPECT_THROW(read_mesh({.file = folder.path()}), Error);
 }
 
 TEST_F(ReadMesh, WrongIndicesAndInfiniteCoordinatesAreRefused) {
@@ -235,25 +235,25 @@ TEST_F(ReadMesh, NodeTransformsAreAppliedAndMirrorsTurned) {
 }
 
 TEST_F(ReadMesh, AContainerIsScaledAndAProblemIsOneLine) {
-  const ImportedMesh mesh = read_container_mesh(folder.write("box.off", as_off(box)), 0.5);
-  EXPECT_NEAR(volume_of(mesh.mesh), 6.0 / 8, 1e-15);
+  const ImportedMesh mesh = read_container_mesh({.file = folder.write("box.off", as_off(box)), .unit = Unit::mm}, {Unit::cm});
+  EXPECT_NEAR(volume_of(mesh.mesh), 6.0 / 1000, 1e-17);
 
   Mesh open = box;
   open.triangles.pop_back();
   const auto file = folder.write("open.off", as_off(open));
   try {
-    read_container_mesh(file, 1);
+    read_container_mesh({.file = file}, {});
     FAIL() << "an open box is no container";
   } catch (const Error& error) {
     EXPECT_EQ(
         error.what(),
         file.string() +
-            ": cannot be a container: 3 open edges (the surface has a hole or is a shell; close it in CAD)");
+            ": cannot be a container: 3 open edges (in [container], cap = \"x = 0\" helps)");
   }
 }
 
 TEST_F(ReadMesh, TheHelixOfTheDataFolder) {
-  const MeshReport report = read_mesh(BERNAL_DATA "/meshes/lib3mf_helix.stl").report;
+  const MeshReport report = read_mesh({.file = BERNAL_DATA "/meshes/lib3mf_helix.stl"}).report;
   EXPECT_TRUE(report.usable());
   EXPECT_EQ(report.faces, 500U);
   EXPECT_EQ(report.vertices, 252U);

@@ -1,8 +1,13 @@
 #pragma once
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "bernal/cad/mesh_report.hpp"
+#include "bernal/core/error.hpp"
+#include "bernal/core/unit.hpp"
 #include "bernal/domain/domain.hpp"
+#include "bernal/domain/mesh_file.hpp"
 
 namespace bernal {
 
@@ -11,14 +16,38 @@ struct ImportedMesh {
   MeshReport report;
 };
 
-/// Reads any format that assimp knows and says what it is. Coordinates stay as in the file (node transforms
-/// applied in double). Throws Error{bad_mesh} when the file is missing, cannot be parsed, holds no faces or
-/// coordinates that are not finite; everything else is told in the report.
-/// Cost: 5 to 10 µs a face, half of it diagnosis; quadratic in the number of faces that meet at one vertex.
-ImportedMesh read_mesh(const std::filesystem::path& file);
+/// What the import of a file depends on beside its options.
+struct ImportFor {
+  std::optional<Unit> unit = {};  ///< of the coordinates that are made; the file's own if absent
+  /// Of the spheres, in that unit: true surfaces are tessellated to within a fiftieth of it. 0: unknown.
+  double smallest_radius = 0;
+};
 
-/// The mesh as a container: `read_mesh`, times `factor` (from the file's unit to the scene's). Throws
-/// Error{bad_mesh} with the report's problems in one line when it cannot be one.
-ImportedMesh read_container_mesh(const std::filesystem::path& file, double factor);
+/// What the options say is at odds with the file; `option` is the member's name, "unit" or "solids".
+class OptionError : public Error {
+ public:
+  OptionError(std::string_view of, const std::string& message)
+      : Error(ErrorCode::bad_mesh, message), option(of) {}
+  std::string option;
+};
+
+/// Reads a file of any known format, does what the options ask for, and says what came of it. Throws
+/// Error{bad_mesh} when the file is missing, cannot be parsed, holds no faces or coordinates that are not
+/// finite, and OptionError where an option is at odds with it; everything else is told in the report.
+/// Cost: 5 to 10 µs a face, half of it diagnosis; quadratic in the number of faces that meet at one vertex.
+ImportedMesh read_mesh(const MeshFile& options, const ImportFor& purpose = {});
+
+/// The same where it must be a container. Throws Error{bad_mesh} with the report's problems in one line, and
+/// what to do about them, when it cannot be one.
+ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpose);
+
+/// Lines for [container] that make a container of a file that is none as it is: each was tried. The first
+/// changes least; none if nothing helps.
+std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFor& purpose,
+                                         const ImportedMesh& as_it_is);
+
+/// Writes a surface as PLY, its faces coloured by what keeps it from being a wall: orange at open edges, blue
+/// at branching ones, red where it crosses itself, grey elsewhere. Throws Error{cannot_write}.
+void write_places(const ImportedMesh& imported, const std::filesystem::path& file);
 
 }  // namespace bernal

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -22,6 +23,12 @@ enum class Repair {
   self_intersections,  ///< are cut out and closed
   wrap                 ///< the surface is replaced by one that wraps it
 };
+
+/// As scenes have them: "holes", "self-intersections", "wrap".
+constexpr std::string_view name_of(Repair repair) {
+  constexpr std::string_view names[] = {"holes", "self-intersections", "wrap"};
+  return names[static_cast<int>(repair)];
+}
 
 /// Which axis of the file's points up.
 enum class Up { as_in_file, x, y, z };

@@ -35,10 +35,12 @@ struct Plan {
 Plan build(const Scene& scene);
 
 /// The container or the periodic box that a scene describes, in the scene's unit: what `build` and the
-/// certificate share. `notes` receives what the importer did. The size of a periodic box is taken as it
+/// certificate share. The size of a periodic box is taken as it
 /// stands, even where the packing is to decide how large it becomes and only its proportions matter to
 /// `build`; without a size it is the unit cube. Throws as `build`.
-Domain domain_of(const Scene& scene, std::string* notes = nullptr);
+Domain domain_of(const Scene& scene);
+/// The same, with what the importer did in `notes`; the scene then says itself what was left to the file.
+Domain domain_of(Scene& scene, std::string& notes);
 
 /// The same for a packing that is there: throws Error{bad_scene} where the scene leaves it to the packing how
 /// large the periodic box becomes and does not say how large it became.

@@ -12,16 +12,11 @@
 #include "bernal/core/unit.hpp"
 #include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
+#include "bernal/domain/mesh_file.hpp"
 #include "bernal/scene/sizes.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 
 namespace bernal {
-
-/// A container in a CAD file.
-struct MeshFile {
-  std::filesystem::path file;
-  std::optional<Unit> unit = {};  ///< of the file's coordinates; the scene's if absent
-};
 
 /// A box that repeats itself along every axis but those with walls. By `size` or `edge`; with neither, the
 /// packing decides how large it is.

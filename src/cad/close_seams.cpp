@@ -1,0 +1,242 @@
+#include "cad/close_seams.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/functional/hash.hpp>
+#include <boost/unordered/unordered_map.hpp>
+#include <cmath>
+#include <limits>
+
+#include "cad/diagnose_mesh.hpp"
+#include "cad/mesh_topology.hpp"
+#include "cad/point_cubes.hpp"
+#include "cad/self_intersections.hpp"
+
+namespace bernal::cad {
+namespace {
+
+
+PointCubes in_cubes(const Mesh& mesh, const std::vector<std::uint32_t>& corners, double edge) {
+  PointCubes cubes(edge);
+  for (const std::uint32_t v : corners) cubes.add(v, mesh.vertices[v]);
+  return cubes;
+}
+
+struct OpenEdge {
+  std::uint32_t triangle;
+  std::uint8_t edge;
+};
+
+std::vector<OpenEdge> open_edges(const Mesh& mesh) {
+  const MeshTopology topology = topology_of(mesh);
+  std::vector<OpenEdge> open;
+  if (topology.open_edges == 0) return open;
+  boost::unordered_map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+  const auto key = [&](std::uint32_t t, std::uint8_t k) {
+    const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+    return std::pair(std::min(a, b), std::max(a, b));
+  };
+  const auto each = [&](const auto& see) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      for (std::uint8_t k = 0; k < 3; ++k)
+        if (topology.neighbor[t][k] == none) see(t, k);
+  };
+  each([&](std::uint32_t t, std::uint8_t k) { ++uses[key(t, k)]; });
+  each([&](std::uint32_t t, std::uint8_t k) {
+    if (uses[key(t, k)] == 1) open.push_back({t, k});
+  });
+  return open;
+}
+
+std::vector<std::uint32_t> corners_of(const Mesh& mesh, const std::vector<OpenEdge>& edges) {
+  std::vector<std::uint32_t> corners;
+  for (const auto& [t, k] : edges) {
+    corners.push_back(mesh.triangles[t][k]);
+    corners.push_back(mesh.triangles[t][(k + 1) % 3]);
+  }
+  std::ranges::sort(corners);
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+/// FaceCorners of open edges that are nearer than the tolerance become the one with the smallest number.
+void weld(Mesh& mesh, double tolerance, Seams& seams) {
+  const std::vector<std::uint32_t> corners = corners_of(mesh, open_edges(mesh));
+  if (corners.empty()) return;
+  const PointCubes cubes = in_cubes(mesh, corners, 2 * tolerance);
+  std::vector<std::uint32_t> same(mesh.vertices.size());
+  for (std::uint32_t v = 0; v < same.size(); ++v) same[v] = v;
+  for (const std::uint32_t v : corners) {
+    if (same[v] != v) continue;
+    const Vector<3>& p = mesh.vertices[v];
+    const Vector<3> reach = Vector<3>::Constant(tolerance);
+    cubes.each_in(p - reach, p + reach, [&](std::uint32_t other) {
+      const double d = (mesh.vertices[other] - p).norm();
+      if (other <= v || same[other] != other || d > tolerance) return;
+      same[other] = v;
+      ++seams.welded;
+      seams.widest = std::max(seams.widest, d);
+    });
+  }
+  for (FaceCorners& t : mesh.triangles)
+    for (std::uint32_t& v : t) v = same[v];
+  std::erase_if(mesh.triangles,
+                [](const FaceCorners& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+}
+
+/// The corners that lie within an open edge, in their order along it.
+std::vector<std::uint32_t> corners_within(const Mesh& mesh, const PointCubes& cubes, std::uint32_t a,
+                                          std::uint32_t b, double tolerance) {
+  const Vector<3>&p = mesh.vertices[a], &q = mesh.vertices[b];
+  const Vector<3> along = q - p, reach = Vector<3>::Constant(tolerance);
+  std::vector<std::pair<double, std::uint32_t>> found;
+  cubes.each_in(p.cwiseMin(q) - reach, p.cwiseMax(q) + reach, [&](std::uint32_t v) {
+    if (v == a || v == b) return;
+    const double at = along.dot(mesh.vertices[v] - p) / along.squaredNorm();
+    if (at > 0 && at < 1 && (p + at * along - mesh.vertices[v]).norm() <= tolerance)
+      found.emplace_back(at, v);
+  });
+  std::ranges::sort(found);
+  std::vector<std::uint32_t> corners;
+  for (const auto& entry : found) corners.push_back(entry.second);
+  return corners;
+}
+
+/// Gives open edges the corners that lie within them, one edge of a triangle at a time. Returns whether there
+/// were any.
+bool split_edges(Mesh& mesh, double tolerance, Seams& seams) {
+  const std::vector<OpenEdge> edges = open_edges(mesh);
+  if (edges.empty()) return false;
+  const std::vector<std::uint32_t> corners = corners_of(mesh, edges);
+  double length = 0;
+  for (const auto& [t, k] : edges)
+    length += (mesh.vertices[mesh.triangles[t][k]] - mesh.vertices[mesh.triangles[t][(k + 1) % 3]]).norm();
+  const PointCubes cubes = in_cubes(mesh, corners, std::max(2 * tolerance, length / static_cast<double>(edges.size())));
+  std::uint32_t last = none;
+  bool any = false;
+  for (const auto& [t, k] : edges) {
+    if (t == last) continue;
+    const FaceCorners old = mesh.triangles[t];
+    const std::uint32_t a = old[k], b = old[(k + 1) % 3], apex = old[(k + 2) % 3];
+    std::vector<std::uint32_t> within = corners_within(mesh, cubes, a, b, tolerance);
+    std::erase(within, apex);
+    if (within.empty()) continue;
+    last = t;
+    any = true;
+    ++seams.split;
+    mesh.triangles[t] = {a, within.front(), apex};
+    within.push_back(b);
+    for (std::size_t i = 0; i + 1 < within.size(); ++i)
+      mesh.triangles.push_back({within[i], within[i + 1], apex});
+  }
+  return any;
+}
+
+/// Of two faces with the same corners that are turned against each other one goes, where every one of their
+/// edges has a single other face: the surface needs one there.
+void drop_doubled(Mesh& mesh, Seams& seams) {
+  boost::unordered_map<FaceCorners, std::vector<std::uint32_t>> faces;
+  boost::unordered_map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+  const auto edge = [](const FaceCorners& t, std::size_t k) {
+    return std::pair(std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3]));
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    FaceCorners sorted = mesh.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) ++uses[edge(sorted, k)];
+    std::ranges::sort(sorted);
+    faces[sorted].push_back(t);
+  }
+  std::vector<bool> gone(mesh.triangles.size(), false);
+  for (const auto& [corners, same] : faces) {
+    if (same.size() != 2) continue;
+    const FaceCorners& t = mesh.triangles[same[0]];
+    bool needed = true;
+    for (std::size_t k = 0; k < 3; ++k) needed = needed && uses[edge(t, k)] == 3;
+    if (!needed) continue;
+    gone[same[1]] = true;
+    ++seams.doubled;
+  }
+  if (seams.doubled == 0) return;
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < gone.size(); ++t)
+    if (!gone[t]) mesh.triangles[kept++] = mesh.triangles[t];
+  mesh.triangles.resize(kept);
+}
+
+/// Half of the last decimal of the coordinate that needs most of them to be told from its neighbours.
+double decimal_rounding(const Mesh& mesh) {
+  constexpr std::size_t most = 3000;
+  const std::size_t step = std::max<std::size_t>(1, mesh.vertices.size() / most);
+  double finest = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < mesh.vertices.size(); v += step)
+    for (int k = 0; k < 3; ++k) {
+      const double c = std::abs(mesh.vertices[v][k]);
+      if (c == 0) continue;
+      for (int digits = 1; digits <= 17; ++digits)
+        if (std::stod(fmt::format("{:.{}e}", c, digits - 1)) == c) {
+          finest = std::min(finest, 0.5 * std::pow(10.0, std::floor(std::log10(c)) + 1 - digits));
+          break;
+        }
+    }
+  return finest;
+}
+
+}  // namespace
+
+std::vector<std::string> Seams::in_words() const {
+  std::vector<std::string> words;
+  const auto say = [&](std::uint64_t n, const char* verb, const char* one, const char* many) {
+    if (n > 0) words.push_back(fmt::format("{} {}", verb, counted(n, one, many)));
+  };
+  say(collinear, "dropped", "face whose corners lie on a line", "faces whose corners lie on a line");
+  say(doubled, "dropped", "face that lies on another one", "faces that lie on another one");
+  if (welded > 0)
+    words.push_back(fmt::format("welded {} up to {:.2g} away", counted(welded, "corner", "corners"), widest));
+  say(split, "split", "edge at a neighbour's corner", "edges at neighbours' corners");
+  return words;
+}
+
+double rounding_of_coordinates(const Mesh& mesh) {
+  double largest = 0;
+  bool single = true;
+  for (const Vector<3>& v : mesh.vertices) {
+    largest = std::max(largest, v.cwiseAbs().maxCoeff());
+    for (int k = 0; k < 3; ++k) single = single && static_cast<double>(static_cast<float>(v[k])) == v[k];
+  }
+  // Some operations in that precision, such as a turn and a shift, stand between two readings of a corner.
+  constexpr double operations = 16;
+  const double in_double = std::numeric_limits<double>::epsilon() * largest;
+  const double rounding = single ? std::numeric_limits<float>::epsilon() * largest / 2 : decimal_rounding(mesh);
+  return operations * std::max(rounding, in_double);
+}
+
+Seams close_seams(Mesh& mesh, double tolerance) {
+  Seams seams;
+  const std::size_t before = mesh.triangles.size();
+  if (count_degenerate(mesh) > 0) {
+    std::erase_if(mesh.triangles, [&](const FaceCorners& t) { return is_degenerate(mesh, t); });
+    seams.collinear = before - mesh.triangles.size();
+  }
+  drop_doubled(mesh, seams);
+  weld(mesh, tolerance, seams);
+  // Each round halves, at least, what is left of an edge; more rounds mean that it does not end.
+  constexpr int most_rounds = 64;
+  for (int round = 0; round < most_rounds && split_edges(mesh, tolerance, seams); ++round) {
+  }
+  if (seams.any()) drop_unused_vertices(mesh);
+  return seams;
+}
+
+double closing_tolerance(const Mesh& mesh, double from, double widest) {
+  for (double tolerance = from; tolerance <= widest; tolerance *= 2) {
+    Mesh tried = mesh;
+    close_seams(tried, tolerance);
+    const MeshTopology topology = topology_of(tried);
+    if (!tried.triangles.empty() && topology.closed()) return tolerance;
+  }
+  return 0;
+}
+
+}  // namespace bernal::cad

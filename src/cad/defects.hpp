@@ -1,0 +1,28 @@
+#pragma once
+#include <vector>
+
+#include "bernal/cad/mesh_report.hpp"
+#include "bernal/domain/domain.hpp"
+
+namespace bernal::cad {
+
+/// Open edges that hang together: the rim of a hole, or of an opening.
+struct OpenRim {
+  Bounds<3> bounds;
+  std::vector<std::array<std::uint32_t, 2>> edges;
+};
+
+/// All of them, the widest first. Cost: O(T log T).
+std::vector<OpenRim> open_rims(const Mesh& mesh);
+
+/// The widest few of each kind of defect.
+std::vector<Defect> defects_of(const Mesh& mesh);
+
+/// The faces that have to do with a defect: those with an open or a branching edge, and those that cross
+/// another one.
+struct DefectiveFaces {
+  std::vector<std::uint32_t> at_open_edges, at_branching_edges, crossing;
+};
+DefectiveFaces defective_faces(const Mesh& mesh);
+
+}  // namespace bernal::cad

@@ -1,0 +1,331 @@
+#include "cad/interior.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "bernal/core/error.hpp"
+#include "cad/mesh_topology.hpp"
+#include "cad/triangle_tree.hpp"
+
+namespace bernal::cad {
+namespace {
+
+using Planes = std::vector<CutPlane>;
+
+[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::bad_mesh, why); }
+
+std::string text_of(const Vector<3>& p) { return fmt::format("({:g}, {:g}, {:g})", p[0], p[1], p[2]); }
+
+/// The pieces of a closed surface, and which of them lie in which.
+class Pieces {
+ public:
+  explicit Pieces(const Mesh& mesh)
+      : mesh_(mesh), topology_(topology_of(mesh)), tree_(mesh), corner_(count(), none), depth_(count(), 0) {
+    constexpr std::uint32_t most = 2000;
+    if (count() > most)
+      refuse(fmt::format("the surface has {} pieces, too many to ask each what it encloses; choose \"solids\"",
+                         count()));
+    for (std::size_t t = mesh.triangles.size(); t-- > 0;) corner_[piece_of(t)] = mesh.triangles[t][0];
+    for (std::uint32_t c = 0; c < count(); ++c)
+      for (std::uint32_t other = 0; other < count(); ++other) depth_[c] += encloses(other, c);
+  }
+
+  std::uint32_t count() const { return topology_.components; }
+  std::uint32_t piece_of(std::size_t triangle) const { return topology_.component[triangle]; }
+  /// How many others enclose it: the walls of a space are one of even depth, and those next in it.
+  std::uint32_t depth(std::uint32_t piece) const { return depth_[piece]; }
+
+  bool encloses(std::uint32_t piece, const Vector<3>& p) const {
+    return tree_.crossing(p, 0, std::numeric_limits<double>::infinity(),
+                          [&](std::uint32_t t) { return piece_of(t) != piece; }) == Crossing::odd;
+  }
+  bool encloses(std::uint32_t piece, std::uint32_t other) const {
+    return piece != other && encloses(piece, mesh_.vertices[corner_[other]]);
+  }
+
+  /// The walls of the spaces of which these are the outermost pieces: they and the ones next in them.
+  Mesh walls_of(std::vector<bool> outermost) const {
+    std::vector<bool> kept = outermost;
+    for (std::uint32_t c = 0; c < count(); ++c)
+      for (std::uint32_t other = 0; other < count(); ++other)
+        if (outermost[other] && depth_[c] == depth_[other] + 1 && encloses(other, c)) kept[c] = true;
+    Mesh result;
+    result.vertices = mesh_.vertices;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+      if (kept[piece_of(t)]) result.triangles.push_back(mesh_.triangles[t]);
+    drop_unused_vertices(result);
+    return result;
+  }
+
+  /// The innermost piece around a point, or none.
+  std::uint32_t around(const Vector<3>& p) const {
+    std::uint32_t found = none;
+    for (std::uint32_t c = 0; c < count(); ++c)
+      if (encloses(c, p) && (found == none || depth_[c] > depth_[found])) found = c;
+    return found;
+  }
+
+ private:
+  const Mesh& mesh_;
+  MeshTopology topology_;
+  TriangleTree tree_;
+  std::vector<std::uint32_t> corner_, depth_;
+};
+
+bool is_closed(const Mesh& mesh) { return topology_of(mesh).closed(); }
+
+Mesh cut_by(Mesh mesh, const Planes& planes, double tolerance) {
+  for (const CutPlane& plane : planes) mesh = cut(mesh, plane, tolerance);
+  return mesh;
+}
+
+Bounds<3> bounds_of_corners(const Mesh& mesh) {
+  Bounds<3> bounds{mesh.vertices.front(), mesh.vertices.front()};
+  for (const Vector<3>& v : mesh.vertices) {
+    bounds.lower = bounds.lower.cwiseMin(v);
+    bounds.upper = bounds.upper.cwiseMax(v);
+  }
+  return bounds;
+}
+
+CutPlane across(int axis, double level, bool upper_stays) {
+  CutPlane plane;
+  plane.normal = Vector<3>::Unit(axis);
+  plane.offset = level;
+  plane.text = fmt::format("{} = {:.6g}", "xyz"[axis], level);
+  return upper_stays ? plane.turned() : plane;
+}
+
+/// The space around a solid, in a box that is larger than it: what planes close off from that box is hollow.
+struct Surroundings {
+  explicit Surroundings(const Mesh& solid) : walls(solid), box(bounds_of_corners(solid)) {
+    const Vector<3> margin = Vector<3>::Constant(0.1 * box.diagonal());
+    box = {box.lower - margin, box.upper + margin};
+    const auto first = static_cast<std::uint32_t>(walls.vertices.size());
+    for (unsigned corner = 0; corner < 8; ++corner)
+      walls.vertices.emplace_back(corner & 1 ? box.upper[0] : box.lower[0],
+                                  corner & 2 ? box.upper[1] : box.lower[1],
+                                  corner & 4 ? box.upper[2] : box.lower[2]);
+    constexpr std::uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                            {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    for (const auto& [a, b, c] : faces) walls.triangles.push_back({first + a, first + b, first + c});
+  }
+
+  bool is_on_box(const Vector<3>& p) const {
+    return (p.array() == box.lower.array()).any() || (p.array() == box.upper.array()).any();
+  }
+
+  Mesh walls;
+  Bounds<3> box;
+};
+
+
+double enclosed_volume(const Mesh& mesh, const Pieces& pieces, std::uint32_t piece) {
+  double six = 0;
+  const Vector<3> center = bounds_of_corners(mesh).center();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (pieces.piece_of(t) != piece) continue;
+    const auto& [a, b, c] = mesh.triangles[t];
+    six += (mesh.vertices[a] - center).dot((mesh.vertices[b] - center).cross(mesh.vertices[c] - center));
+  }
+  return std::abs(six) / 6;
+}
+
+/// All spaces that the planes close off, or the largest one that is no mere crevice.
+enum class Which { all, largest };
+/// Of the volume of the box around the solid.
+constexpr double crevice = 1e-4;
+
+/// What planes close off around a solid, or of that the space around a point.
+std::optional<Mesh> closed_off(const Surroundings& around, const Planes& planes, double tolerance, Which which,
+                               const Vector<3>* point) {
+  const Mesh mesh = cut_by(around.walls, planes, tolerance);
+  if (!is_closed(mesh)) return std::nullopt;
+  const Pieces pieces(mesh);
+  std::vector<bool> hollow(pieces.count());
+  for (std::uint32_t c = 0; c < pieces.count(); ++c) hollow[c] = pieces.depth(c) % 2 == 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t])
+      if (around.is_on_box(mesh.vertices[v])) hollow[pieces.piece_of(t)] = false;
+  if (point) {
+    const std::uint32_t one = pieces.around(*point);
+    if (one == none || !hollow[one]) return std::nullopt;
+    hollow.assign(hollow.size(), false);
+    hollow[one] = true;
+  } else if (which == Which::largest) {
+    std::uint32_t largest = none;
+    double volume = crevice * around.box.volume();
+    for (std::uint32_t c = 0; c < pieces.count(); ++c)
+      if (hollow[c])
+        if (const double own = enclosed_volume(mesh, pieces, c); own > volume) {
+          volume = own;
+          largest = c;
+        }
+    hollow.assign(hollow.size(), false);
+    if (largest != none) hollow[largest] = true;
+  }
+  if (std::ranges::find(hollow, true) == hollow.end()) return std::nullopt;
+  return pieces.walls_of(hollow);
+}
+
+/// Every choice of the sides that the planes leave open, the one where all smaller values stay first.
+std::vector<Planes> choices_of(const Planes& planes) {
+  constexpr std::size_t most_open = 6;
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < planes.size(); ++i)
+    if (planes[i].side_is_open) open.push_back(i);
+  if (open.size() > most_open)
+    refuse(fmt::format("more than {} planes with \"=\" in \"cap\"; write < or > for the side that stays",
+                       most_open));
+  std::vector<Planes> choices;
+  for (std::size_t bits = 0; bits < (std::size_t{1} << open.size()); ++bits) {
+    choices.push_back(planes);
+    for (std::size_t k = 0; k < open.size(); ++k)
+      if ((bits >> k & 1) != 0) choices.back()[open[k]] = planes[open[k]].turned();
+  }
+  return choices;
+}
+
+std::string told(const Planes& planes) {
+  std::vector<std::string> all;
+  for (const CutPlane& plane : planes) {
+    std::string text = plane.text;
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(plane.normal[k]) == plane.normal.norm())
+        text = fmt::format("{} = {:.6g} from {}", "xyz"[k], plane.offset / plane.normal[k],
+                           plane.normal[k] > 0 ? "above" : "below");
+    all.push_back(std::move(text));
+  }
+  return fmt::format("closed at {}", fmt::join(all, ", "));
+}
+
+/// The highest level to which a hollow of a solid can be filled, along z.
+std::optional<ChosenInterior> filled_to_the_brim(const Surroundings& around, const Mesh& solid,
+                                                 double tolerance, const Vector<3>* point) {
+  std::vector<double> heights;
+  for (const Vector<3>& v : solid.vertices) heights.push_back(v[2]);
+  std::ranges::sort(heights, std::greater<>());
+  const auto near = [&](double a, double b) { return a - b <= tolerance; };
+  heights.erase(std::unique(heights.begin(), heights.end(), near), heights.end());
+  constexpr std::size_t most_levels = 200;
+  constexpr double hardly_lower = 1e-3;  // of the way to the next corner
+  for (std::size_t i = 0; i + 1 < std::min(heights.size(), most_levels); ++i) {
+    // At the corners' own height where the brim is flat, else just below.
+    for (const double level : {heights[i], heights[i] - hardly_lower * (heights[i] - heights[i + 1])}) {
+      try {
+        if (auto mesh = closed_off(around, {across(2, level, false)}, tolerance, Which::largest, point))
+          return ChosenInterior{std::move(*mesh),
+                                {fmt::format("the hollow, filled to its brim at z = {:.6g}", level)}};
+      } catch (const Error&) {  // nothing to close at this level
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// The largest hollow that is closed when the solid's surroundings end where it ends itself, on as few sides
+/// as will do.
+std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Mesh& solid,
+                                            const Planes& planes, double tolerance, const Vector<3>* point) {
+  const Bounds<3> bounds = bounds_of_corners(solid);
+  Planes sides;
+  for (int axis = 0; axis < 3; ++axis) {
+    sides.push_back(across(axis, bounds.lower[axis], true));
+    sides.push_back(across(axis, bounds.upper[axis], false));
+  }
+  std::vector<unsigned> subsets(1U << sides.size());
+  std::iota(subsets.begin(), subsets.end(), 0U);
+  std::ranges::stable_sort(subsets, {}, [](unsigned subset) { return std::popcount(subset); });
+  for (const unsigned subset : subsets) {
+    Planes all = planes;
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      if ((subset >> k & 1) != 0) all.push_back(sides[k]);
+    try {
+      if (auto mesh = closed_off(around, all, tolerance, Which::largest, point))
+        return ChosenInterior{std::move(*mesh), {"the hollow, " + told(all)}};
+    } catch (const Error&) {  // one of the sides touches what others have cut
+    }
+  }
+  return std::nullopt;
+}
+
+ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double tolerance, const Vector<3>* point) {
+  const Surroundings around(solid);
+  std::optional<Error> failure;
+  for (const Planes& choice : choices_of(planes)) {
+    try {
+      // Without planes these are the voids inside.
+      if (auto mesh = closed_off(around, choice, tolerance, Which::all, point))
+        return {std::move(*mesh), {planes.empty() ? "the voids of the solid" : "the hollow, " + told(choice)}};
+      if (planes.empty())
+        if (auto filled = filled_to_the_brim(around, solid, tolerance, point)) return std::move(*filled);
+    } catch (const Error& error) {
+      failure = error;
+    }
+  }
+  for (const Planes& choice : choices_of(planes))
+    if (auto mesh = within_bounds(around, solid, choice, tolerance, point)) return std::move(*mesh);
+  if (point)
+    refuse(fmt::format("the point {} of \"interior\" lies in no space that is closed; close it by \"cap\", a "
+                       "plane, or move the point",
+                       text_of(*point)));
+  if (failure && !planes.empty()) throw *failure;
+  refuse("the solid has no void and no hollow; close the one that is meant by \"cap\", a plane");
+}
+
+/// What a surface encloses on the planes' sides: the first choice of sides that leaves it closed; else the
+/// first that leaves anything.
+ChosenInterior enclosed(const Mesh& surface, const Planes& planes, double tolerance) {
+  if (planes.empty()) return {surface, {}};
+  std::optional<ChosenInterior> open;
+  std::optional<Error> failure;
+  for (const Planes& choice : choices_of(planes)) {
+    try {
+      ChosenInterior made{cut_by(surface, choice, tolerance), {told(choice)}};
+      if (is_closed(made.mesh)) return made;
+      if (!open) open = std::move(made);
+    } catch (const Error& error) {
+      if (!failure) failure = error;
+    }
+  }
+  if (open) return std::move(*open);
+  throw *failure;
+}
+
+}  // namespace
+
+ChosenInterior choose_interior(const Mesh& surface, const InteriorRequest& request, double tolerance) {
+  const auto* point = std::get_if<Vector<3>>(&request.interior);
+  if (!point && std::get<Interior>(request.interior) == Interior::solid)
+    return enclosed(surface, request.planes, tolerance);
+  const bool sheet = !is_closed(surface);
+  if (sheet && request.planes.empty())
+    refuse("the surface is open; close it by \"cap\", a plane such as \"z = 1\", where its interior ends");
+  if (point) {
+    ChosenInterior inside = enclosed(surface, request.planes, tolerance);
+    if (is_closed(inside.mesh)) {
+      const Pieces pieces(inside.mesh);
+      if (const std::uint32_t piece = pieces.around(*point); piece != none && pieces.depth(piece) % 2 == 0) {
+        std::vector<bool> outermost(pieces.count(), false);
+        outermost[piece] = true;
+        inside.notes.push_back(fmt::format("the space around {}", text_of(*point)));
+        return {pieces.walls_of(outermost), std::move(inside.notes)};
+      }
+    }
+    if (sheet)
+      refuse(fmt::format("the point {} of \"interior\" is not in what \"cap\" closes", text_of(*point)));
+  }
+  // A sheet without thickness has no hollow beside what it goes round.
+  return sheet ? enclosed(surface, request.planes, tolerance)
+               : hollow_of(surface, request.planes, tolerance, point);
+}
+
+}  // namespace bernal::cad

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "bernal/domain/mesh_file.hpp"
+#include "cad/plane_cut.hpp"
+
+namespace bernal::cad {
+
+/// What stands beside a surface to tell which space is meant.
+struct InteriorRequest {
+  std::vector<CutPlane> planes;
+  std::variant<Interior, Vector<3>> interior = Interior::solid;
+};
+
+struct ChosenInterior {
+  Mesh mesh;                       ///< the walls of the space that is meant, not yet turned outward
+  std::vector<std::string> notes;  ///< what was done, one phrase each
+};
+
+/// The walls of the space that is meant: what the planes cut off is outside, and of what is left either what
+/// the surface encloses, or its hollow, or the space around a point. A hollow that is not closed by planes is
+/// filled to its brim, along z. Corners within `tolerance` of a plane lie on it.
+/// Throws Error{bad_mesh}, in one line, where there is no such space.
+/// Cost: O(n log n) a plane, with two choices of its side for each that leaves it open.
+ChosenInterior choose_interior(const Mesh& surface, const InteriorRequest& request, double tolerance);
+
+}  // namespace bernal::cad

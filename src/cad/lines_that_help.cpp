@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "bernal/cad/read_mesh.hpp"
+#include "cad/close_seams.hpp"
+#include "cad/defects.hpp"
+
+namespace bernal {
+namespace {
+
+/// A line of a scene and what it says.
+struct Line {
+  std::string text;
+  std::function<void(MeshFile&)> say;
+};
+
+/// An opening is at least this wide, of the part's diagonal, and at most this deep, of its own width; what is
+/// smaller is a hole, and a plane closes it if it is flat.
+constexpr double narrowest_opening = 0.2, deepest_opening = 0.25;
+
+struct Openings {
+  std::vector<std::string> planes;  ///< across an axis, that close all of them
+  bool wide = false;                ///< and no hole
+};
+
+/// The number with the fewest digits that is `value` to within the rounding, or lies a little on the way from
+/// it towards the middle of the part, where there is wall to cut.
+std::string rounded(double value, double towards, double within) {
+  for (int digits = 1; digits < 17; ++digits) {
+    const std::string text = fmt::format("{:.{}g}", value, digits);
+    const double shift = std::stod(text) - value;
+    if (std::abs(shift) <= within || (shift * towards > 0 && std::abs(shift) <= 1e-4 * std::abs(towards)))
+      return text;
+  }
+  return fmt::format("{}", value);
+}
+
+Openings openings_of(const Mesh& mesh) {
+  Bounds<3> part{mesh.vertices.front(), mesh.vertices.front()};
+  for (const Vector<3>& v : mesh.vertices) {
+    part.lower = part.lower.cwiseMin(v);
+    part.upper = part.upper.cwiseMax(v);
+  }
+  const double rounding = cad::rounding_of_coordinates(mesh);
+  Openings found;
+  auto& planes = found.planes;
+  for (const cad::OpenRim& rim : cad::open_rims(mesh)) {
+    const Vector<3> size = rim.bounds.size();
+    const bool wide = size.norm() >= narrowest_opening * part.diagonal();
+    int axis = 0;
+    size.minCoeff(&axis);
+    if (size[axis] > (wide ? deepest_opening * size.maxCoeff() : rounding)) continue;
+    found.wide = found.wide || wide;
+    const double middle = part.center()[axis];
+    const bool at_top = rim.bounds.center()[axis] > middle;
+    const double level = at_top ? rim.bounds.lower[axis] : rim.bounds.upper[axis];
+    const std::string plane = fmt::format("{} = {}", "xyz"[axis], rounded(level, middle - level, rounding));
+    if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
+  }
+  constexpr std::size_t most_planes = 4;
+  if (planes.size() > most_planes) return {};
+  return found;
+}
+
+std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_is) {
+  const Mesh& mesh = as_it_is.mesh;
+  const MeshReport& report = as_it_is.report;
+  std::vector<Line> lines;
+  if (report.open_edges > 0 && !options.weld) {
+    const double widest = 1e-3 * report.bounds.diagonal();
+    const double tolerance = cad::closing_tolerance(mesh, cad::rounding_of_coordinates(mesh), widest);
+    if (tolerance > 0) {
+      const std::string text = fmt::format("{:.1g}", 1.5 * tolerance);
+      lines.push_back({fmt::format("weld = {}", text), [w = std::stod(text)](MeshFile& m) { m.weld = w; }});
+    }
+  }
+  std::vector<Line> caps;
+  bool caps_first = false;
+  if (report.open_edges > 0 && options.cap.empty() && !options.fill_level)
+    if (const auto& [planes, wide] = openings_of(mesh); !planes.empty()) {
+      caps_first = wide;
+      const std::string list = fmt::format("\"{}\"", fmt::join(planes, "\", \""));
+      caps.push_back({planes.size() == 1 ? fmt::format("cap = {}", list) : fmt::format("cap = [{}]", list),
+                      [all = planes](MeshFile& m) { m.cap = all; }});
+    }
+  std::vector<Line> repairs;
+  const auto offer = [&](const std::vector<Repair>& repair) {
+    std::vector<std::string_view> names;
+    for (const Repair r : repair) names.push_back(name_of(r));
+    repairs.push_back({fmt::format("repair = [\"{}\"]", fmt::join(names, "\", \"")),
+                       [repair](MeshFile& m) { m.repair = repair; }});
+  };
+  if (options.repair.empty()) {
+    if (report.open_edges > 0) offer({Repair::holes});
+    if (report.self_intersections > 0) offer({Repair::self_intersections});
+    if (report.open_edges > 0 && report.self_intersections > 0)
+      offer({Repair::holes, Repair::self_intersections});
+  }
+  for (const auto* some : {caps_first ? &caps : &repairs, caps_first ? &repairs : &caps})
+    lines.insert(lines.end(), some->begin(), some->end());
+  for (const Line& cap : caps)
+    for (const Line& repair : repairs)
+      lines.push_back({fmt::format("{}\n{}", cap.text, repair.text), [cap, repair](MeshFile& m) {
+                         cap.say(m);
+                         repair.say(m);
+                       }});
+  if (options.repair.empty()) {
+    repairs.clear();
+    offer({Repair::wrap});
+    lines.push_back(repairs.front());
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFor& purpose,
+                                         const ImportedMesh& as_it_is) {
+  constexpr std::size_t most_faces = 500000, enough = 2;
+  std::vector<std::string> lines;
+  if (as_it_is.mesh.triangles.empty() || as_it_is.mesh.triangles.size() > most_faces) return lines;
+  for (const Line& line : candidates(options, as_it_is)) {
+    const auto is_part = [&](const std::string& shorter) { return line.text.find(shorter) != std::string::npos; };
+    if (std::ranges::any_of(lines, is_part)) continue;  // less will do
+    MeshFile tried = options;
+    line.say(tried);
+    try {
+      if (read_mesh(tried, purpose).report.usable()) lines.push_back(line.text);
+    } catch (const Error&) {  // which says that this line does not help
+    }
+    if (lines.size() == enough) break;
+  }
+  return lines;
+}
+
+}  // namespace bernal
