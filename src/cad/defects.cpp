@@ -95,11 +95,11 @@ std::vector<Defect> defects_of(const Mesh& mesh) {
     stretch(bounds, mesh.vertices[c]);
     return bounds;
   };
-  count_self_intersections(mesh, [&](std::uint32_t s, std::uint32_t t) {
+  for (const auto& [s, t] : self_intersecting_pairs(mesh)) {
     const Bounds<3> one = bounds_of_triangle(s), other = bounds_of_triangle(t);
     const Bounds<3> both{one.lower.cwiseMax(other.lower), one.upper.cwiseMin(other.upper)};
     crossings.push_back({"crossing", both.center(), both.diagonal()});
-  });
+  }
   std::vector<Defect> all;
   for (std::vector<Defect>* kind : {&holes, &branches, &crossings}) {
     keep_widest(*kind);
@@ -122,9 +122,8 @@ DefectiveFaces defective_faces(const Mesh& mesh) {
     if (open) faces.at_open_edges.push_back(t);
     if (branching) faces.at_branching_edges.push_back(t);
   }
-  count_self_intersections(mesh, [&](std::uint32_t s, std::uint32_t t) {
-    faces.crossing.insert(faces.crossing.end(), {s, t});
-  });
+  for (const auto& pair : self_intersecting_pairs(mesh))
+    faces.crossing.insert(faces.crossing.end(), pair.begin(), pair.end());
   std::ranges::sort(faces.crossing);
   faces.crossing.erase(std::unique(faces.crossing.begin(), faces.crossing.end()), faces.crossing.end());
   return faces;

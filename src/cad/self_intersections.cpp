@@ -70,12 +70,11 @@ std::uint64_t count_degenerate(const Mesh& mesh) {
                                                   [&](const Corners& t) { return pairs.degenerate(t); }));
 }
 
-std::uint64_t count_self_intersections(const Mesh& mesh) {
-  return count_self_intersections(mesh, [](std::uint32_t, std::uint32_t) {});
-}
+namespace {
 
-std::uint64_t count_self_intersections(const Mesh& mesh,
-                                       const std::function<void(std::uint32_t, std::uint32_t)>& see) {
+/// Calls found(s, t) for each of the pairs, with their triangles.
+template <class Found>
+void for_each_intersecting_pair(const Mesh& mesh, const Found& found) {
   using Box = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const Corners*>;
   const TrianglePairs pairs(mesh);
   std::vector<Box> boxes;
@@ -83,14 +82,28 @@ std::uint64_t count_self_intersections(const Mesh& mesh,
   for (const Corners& t : mesh.triangles)
     if (!pairs.degenerate(t)) boxes.emplace_back(pairs.triangle(t).bbox(), &t);
 
-  std::uint64_t count = 0;
   CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& s, const Box& t) {
-    if (!pairs.intersect(*s.handle(), *t.handle())) return;
-    ++count;
-    const Corners* first = mesh.triangles.data();
-    see(static_cast<std::uint32_t>(s.handle() - first), static_cast<std::uint32_t>(t.handle() - first));
+    if (pairs.intersect(*s.handle(), *t.handle())) found(s.handle(), t.handle());
   });
+}
+
+}  // namespace
+
+std::uint64_t count_self_intersections(const Mesh& mesh) {
+  std::uint64_t count = 0;
+  for_each_intersecting_pair(mesh, [&](const Corners*, const Corners*) { ++count; });
   return count;
+}
+
+std::vector<std::array<std::uint32_t, 2>> self_intersecting_pairs(const Mesh& mesh) {
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  const auto number = [&](const Corners* t) { return static_cast<std::uint32_t>(t - mesh.triangles.data()); };
+  for_each_intersecting_pair(mesh, [&](const Corners* s, const Corners* t) {
+    const auto [low, high] = std::minmax({number(s), number(t)});
+    pairs.push_back({low, high});
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
 }
 
 }  // namespace bernal::cad

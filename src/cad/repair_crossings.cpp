@@ -1,0 +1,354 @@
+#include "cad/repair_crossings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/functional/hash.hpp>
+#include <boost/unordered/unordered_map.hpp>
+#include <map>
+#include <numeric>
+
+#include "cad/body_union.hpp"
+#include "cad/diagnose_mesh.hpp"
+#include "cad/mesh_topology.hpp"
+#include "cad/patch.hpp"
+#include "cad/self_intersections.hpp"
+
+namespace bernal::cad {
+namespace {
+
+using Pairs = std::vector<std::array<std::uint32_t, 2>>;
+
+/// The cut grows by a ring of neighbours a round.
+constexpr int most_rings = 6;
+/// More than this part of a component is not cut out of it.
+constexpr double most_cut = 0.5;
+/// A piece that the cut separates is dropped if it has no more than this part of the component's area.
+constexpr double small_piece = 0.05;
+/// CGAL cannot be interrupted; so many faces take it a few minutes.
+constexpr std::size_t most_faces = 2'000'000;
+
+double two_areas(const Mesh& mesh, std::size_t t) {
+  const auto& [i, j, k] = mesh.triangles[t];
+  const Vector<3> ij = mesh.vertices[j] - mesh.vertices[i], ik = mesh.vertices[k] - mesh.vertices[i];
+  return ij.cross(ik).norm();
+}
+
+/// Without the triangles that are not kept.
+void keep_only(Mesh& mesh, const std::vector<bool>& kept) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < kept.size(); ++t)
+    if (kept[t]) mesh.triangles[count++] = mesh.triangles[t];
+  mesh.triangles.resize(count);
+}
+
+Pairs within_components(const Pairs& pairs, const MeshTopology& topology) {
+  Pairs own;
+  std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(own),
+               [&](const auto& pair) { return topology.component[pair[0]] == topology.component[pair[1]]; });
+  return own;
+}
+
+/// Marks also the faces that have a corner with one of those marked.
+void add_ring(const Mesh& mesh, std::vector<bool>& marked) {
+  std::vector<bool> corner(mesh.vertices.size(), false);
+  for (std::size_t t = 0; t < marked.size(); ++t)
+    if (marked[t])
+      for (const std::uint32_t i : mesh.triangles[t]) corner[i] = true;
+  for (std::size_t t = 0; t < marked.size(); ++t)
+    for (const std::uint32_t i : mesh.triangles[t]) marked[t] = marked[t] || corner[i];
+}
+
+/// The small pieces into which a component falls without the marked faces are marked as well; and all of
+/// the component, if it is nearly gone, is spared.
+void judge_pieces(const Mesh& mesh, const MeshTopology& topology, std::vector<bool>& marked) {
+  Mesh rest = mesh;
+  std::vector<bool> kept = marked;
+  kept.flip();
+  keep_only(rest, kept);
+  std::vector<std::uint32_t> old;
+  for (std::uint32_t t = 0; t < marked.size(); ++t)
+    if (!marked[t]) old.push_back(t);
+
+  const MeshTopology pieces = topology_of(rest);
+  std::vector<double> of_component(topology.components, 0), left(topology.components, 0),
+      of_piece(pieces.components, 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    of_component[topology.component[t]] += two_areas(mesh, t);
+  for (std::size_t t = 0; t < old.size(); ++t) {
+    const double area = two_areas(rest, t);
+    of_piece[pieces.component[t]] += area;
+    left[topology.component[old[t]]] += area;
+  }
+  for (std::size_t t = 0; t < old.size(); ++t)
+    if (of_piece[pieces.component[t]] <= small_piece * of_component[topology.component[old[t]]])
+      marked[old[t]] = true;
+  for (std::size_t t = 0; t < marked.size(); ++t)
+    if (left[topology.component[t]] < (1 - most_cut) * of_component[topology.component[t]]) marked[t] = false;
+}
+
+/// One round of cutting; nothing if no face could be cut or a hole could not be filled.
+std::optional<Mesh> cut_once(const Mesh& mesh, const MeshTopology& topology, const Pairs& own, int rings) {
+  std::vector<bool> marked(mesh.triangles.size(), false);
+  for (const auto& [s, t] : own) marked[s] = marked[t] = true;
+  for (int ring = 0; ring < rings; ++ring) add_ring(mesh, marked);
+  judge_pieces(mesh, topology, marked);
+  if (std::find(marked.begin(), marked.end(), true) == marked.end()) return std::nullopt;
+
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> was_open;  // edges of faces as they run
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k)
+      if (!marked[t] && topology.neighbor[t][k] == none)
+        was_open[{mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}] = true;
+  Mesh result = mesh;
+  marked.flip();
+  keep_only(result, marked);
+  Patcher patcher(result);
+  for (const HoleLoop& hole : hole_loops(result, topology_of(result))) {
+    std::size_t old_edges = 0;
+    for (std::size_t k = 0; k < hole.corners.size(); ++k)
+      old_edges += was_open.count({hole.corners[(k + 1) % hole.corners.size()], hole.corners[k]});
+    if (old_edges == hole.corners.size()) continue;
+    if (old_edges > 0 || hole.branched || !patcher.fill(hole)) return std::nullopt;
+  }
+  return result;
+}
+
+/// Cuts until no component crosses itself, or in vain. Returns how many crossings within components are left.
+std::size_t cut_within_components(Mesh& mesh, const Monitor& monitor) {
+  MeshTopology topology = topology_of(mesh);
+  Pairs own = within_components(self_intersecting_pairs(mesh), topology);
+  for (int rings = 0; rings <= most_rings && !own.empty() && !monitor.stop(); ++rings) {
+    std::optional<Mesh> next = cut_once(mesh, topology, own, rings);
+    if (!next) continue;
+    MeshTopology next_topology = topology_of(*next);
+    Pairs next_own = within_components(self_intersecting_pairs(*next), next_topology);
+    if (next_own.size() >= own.size()) continue;
+    mesh = std::move(*next);
+    topology = std::move(next_topology);
+    own = std::move(next_own);
+  }
+  return own.size();
+}
+
+double six_volumes(const Mesh& mesh) {
+  double sum = 0;
+  const Vector<3>& origin = mesh.vertices[mesh.triangles.front()[0]];
+  for (const auto& [i, j, k] : mesh.triangles)
+    sum += (mesh.vertices[i] - origin).dot((mesh.vertices[j] - origin).cross(mesh.vertices[k] - origin));
+  return sum;
+}
+
+void turn_body(Mesh& mesh) {
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+}
+
+/// Closed components of which each crosses another one of them.
+struct Group {
+  std::vector<Mesh> outward, inward;
+  std::size_t faces = 0;
+};
+
+struct Bodies {
+  Mesh others;  ///< all faces in no group
+  std::vector<Group> groups;
+  std::size_t apart = 0;  ///< pairs of components that cross, of which one is no body
+};
+
+Bodies bodies_of(const Mesh& mesh) {
+  const MeshTopology topology = topology_of(mesh);
+  const Pairs pairs = self_intersecting_pairs(mesh);
+  std::vector<bool> is_body(topology.components, true);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t neighbor : topology.neighbor[t])
+      if (neighbor == none) is_body[topology.component[t]] = false;
+  for (const auto& [s, t] : within_components(pairs, topology)) is_body[topology.component[s]] = false;
+  std::vector<std::uint32_t> joined_to(topology.components);
+  std::iota(joined_to.begin(), joined_to.end(), 0U);
+  const auto root = [&](std::uint32_t c) {
+    while (joined_to[c] != c) c = joined_to[c] = joined_to[joined_to[c]];
+    return c;
+  };
+  std::vector<bool> grouped(topology.components, false);
+  Bodies result;
+  std::vector<std::array<std::uint32_t, 2>> apart;
+  for (const auto& [s, t] : pairs) {
+    const std::uint32_t a = topology.component[s], b = topology.component[t];
+    if (a == b) continue;
+    if (is_body[a] && is_body[b]) {
+      joined_to[root(std::max(a, b))] = root(std::min(a, b));
+      grouped[a] = grouped[b] = true;
+    } else {
+      apart.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(apart.begin(), apart.end());
+  result.apart = static_cast<std::size_t>(std::unique(apart.begin(), apart.end()) - apart.begin());
+
+  std::vector<Mesh> bodies(topology.components);
+  std::vector<std::uint32_t> number(mesh.vertices.size(), none);
+  std::vector<std::vector<std::uint32_t>> faces(topology.components);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) faces[topology.component[t]].push_back(t);
+  result.others.vertices = mesh.vertices;
+  for (std::uint32_t c = 0; c < topology.components; ++c) {
+    if (!grouped[c]) {
+      for (const std::uint32_t t : faces[c]) result.others.triangles.push_back(mesh.triangles[t]);
+      continue;
+    }
+    for (const std::uint32_t t : faces[c]) {
+      std::array<std::uint32_t, 3> triangle = mesh.triangles[t];
+      for (std::uint32_t& i : triangle) {
+        if (number[i] == none || number[i] >= bodies[c].vertices.size() ||
+            bodies[c].vertices[number[i]] != mesh.vertices[i]) {
+          number[i] = static_cast<std::uint32_t>(bodies[c].vertices.size());
+          bodies[c].vertices.push_back(mesh.vertices[i]);
+        }
+        i = number[i];
+      }
+      bodies[c].triangles.push_back(triangle);
+    }
+  }
+
+  std::map<std::uint32_t, std::vector<std::uint32_t>> members;
+  for (std::uint32_t c = 0; c < topology.components; ++c)
+    if (grouped[c]) members[root(c)].push_back(c);
+  for (const auto& [first, components] : members) {
+    double largest = 0;
+    for (const std::uint32_t c : components)
+      if (const double v = six_volumes(bodies[c]); std::abs(v) > std::abs(largest)) largest = v;
+    Group& made = result.groups.emplace_back();
+    for (const std::uint32_t c : components) {
+      const double volume = six_volumes(bodies[c]);
+      made.faces += bodies[c].triangles.size();
+      if (volume < 0) turn_body(bodies[c]);
+      ((volume < 0) == (largest < 0) ? made.outward : made.inward).push_back(std::move(bodies[c]));
+    }
+  }
+  return result;
+}
+
+void append_body(Mesh& mesh, const Mesh& part) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+  for (const auto& [i, j, k] : part.triangles) mesh.triangles.push_back({first + i, first + j, first + k});
+}
+
+/// Equal points become one, in the order in which faces use them.
+void weld_equal_points(Mesh& mesh) {
+  boost::unordered_map<std::array<double, 3>, std::uint32_t> index;
+  std::vector<Vector<3>> vertices;
+  for (auto& triangle : mesh.triangles)
+    for (std::uint32_t& i : triangle) {
+      const Vector<3>& p = mesh.vertices[i];
+      const auto [entry, is_new] = index.try_emplace({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0},
+                                                     static_cast<std::uint32_t>(vertices.size()));
+      if (is_new) vertices.push_back(p);
+      i = entry->second;
+    }
+  mesh.vertices = std::move(vertices);
+}
+
+struct Told {
+  std::size_t united = 0, made = 0, taken_out = 0, failed = 0, too_large = 0;
+};
+
+/// Unites the bodies two by two, so that each face takes part in few unions; those with which it does not
+/// work stay as they are.
+std::vector<Mesh> unite_all(std::vector<Mesh> bodies, const Monitor& monitor, Told& told) {
+  std::vector<Mesh> failed;
+  while (bodies.size() > 1 && !monitor.stop()) {
+    std::vector<Mesh> next;
+    for (std::size_t i = 0; i < bodies.size(); i += 2) {
+      if (i + 1 == bodies.size()) {
+        next.push_back(std::move(bodies[i]));
+      } else if (std::optional<Mesh> both = combine(bodies[i], bodies[i + 1], Combine::unite)) {
+        next.push_back(std::move(*both));
+      } else {
+        ++told.failed;
+        next.push_back(std::move(bodies[i]));
+        failed.push_back(std::move(bodies[i + 1]));
+      }
+    }
+    bodies = std::move(next);
+  }
+  bodies.insert(bodies.end(), failed.begin(), failed.end());
+  return bodies;
+}
+
+void combine_bodies(Mesh& mesh, const Monitor& monitor, Told& told) {
+  Bodies bodies = bodies_of(mesh);
+  if (bodies.groups.empty()) return;
+  mesh = std::move(bodies.others);
+  for (Group& own : bodies.groups) {
+    if (own.faces > most_faces || monitor.stop()) {
+      told.too_large += own.faces > most_faces;
+      for (Mesh& body : own.inward) turn_body(body);
+      for (const auto* side : {&own.outward, &own.inward})
+        for (const Mesh& body : *side) append_body(mesh, body);
+      continue;
+    }
+    const std::size_t failed_before = told.failed, count = own.outward.size();
+    std::vector<Mesh> united = unite_all(std::move(own.outward), monitor, told);
+    if (count > 1) {
+      told.united += count - (told.failed - failed_before);
+      ++told.made;
+    }
+    for (Mesh& hole : own.inward) {
+      std::optional<Mesh> rest = combine(united.front(), hole, Combine::take_out);
+      if (rest) {
+        ++told.taken_out;
+        united.front() = std::move(*rest);
+      } else {
+        ++told.failed;
+        turn_body(hole);
+        united.push_back(std::move(hole));
+      }
+    }
+    for (const Mesh& body : united) append_body(mesh, body);
+  }
+  weld_equal_points(mesh);
+}
+
+}  // namespace
+
+Mended cut_out_crossings(Mesh mesh, const Monitor& monitor) {
+  const Pairs pairs = self_intersecting_pairs(mesh);
+  if (pairs.empty()) return {std::move(mesh), "nothing crosses"};
+  const MeshTopology topology = topology_of(mesh);
+  if (orient_consistently(mesh, topology) == none)
+    return {std::move(mesh), "crossings stay: the surface is one-sided and has no inside"};
+
+  Told told;
+  const std::size_t before = pairs.size(), own_before = within_components(pairs, topology).size();
+  const std::size_t own_after = own_before > 0 ? cut_within_components(mesh, monitor) : 0;
+  combine_bodies(mesh, monitor, told);
+  cut_within_components(mesh, monitor);  // what rounding the corners of the unions has left
+
+  std::vector<std::string> said;
+  if (own_after < own_before)
+    said.push_back(fmt::format("cut out {} where a part crosses itself",
+                               counted(own_before - own_after, "crossing", "crossings")));
+  if (told.made > 0)
+    said.push_back(fmt::format("united {} that cross{}", counted(told.united, "body", "bodies"),
+                               told.made > 1 ? fmt::format(" into {}", told.made) : ""));
+  if (told.taken_out > 0)
+    said.push_back(fmt::format("took {} that {} oriented inward out of {} surroundings",
+                               counted(told.taken_out, "body", "bodies"), told.taken_out == 1 ? "is" : "are",
+                               told.taken_out == 1 ? "its" : "their"));
+  if (told.failed > 0)
+    said.push_back(fmt::format("{} could not be united: the result would touch itself along an edge",
+                               counted(told.failed, "body", "bodies")));
+  if (told.too_large > 0)
+    said.push_back(fmt::format("left {} of crossing bodies with more than {} faces",
+                               counted(told.too_large, "group", "groups"), most_faces));
+  const std::size_t after = self_intersecting_pairs(mesh).size();
+  if (after > 0) {
+    said.push_back(fmt::format("{} of {} remain", after, counted(before, "crossing", "crossings")));
+    if (bodies_of(mesh).apart > 0)
+      said.push_back("some of them with an open sheet, which encloses nothing: wrap keeps it as a wall");
+  }
+  return {std::move(mesh), fmt::format("{}", fmt::join(said, "; "))};
+}
+
+}  // namespace bernal::cad

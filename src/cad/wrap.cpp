@@ -1,0 +1,200 @@
+#include "cad/wrap.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/alpha_wrap_3.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "bernal/core/error.hpp"
+#include "cad/triangle_tree.hpp"
+#include "core/parallel.hpp"
+
+namespace bernal::cad {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Surface = CGAL::Surface_mesh<Point>;
+
+constexpr std::size_t most_points = 1'500'000;
+/// Points along the longest edge of the bounds at which to look for the inside.
+constexpr int looks_along_edge = 32;
+constexpr std::size_t most_seeds = 64;
+
+enum class Stopped { by_monitor, too_many };
+
+/// CGAL's door for a look at the work while it goes on.
+struct Watch {
+  const Monitor& monitor;
+  std::size_t points = 0;
+
+  template <class Wrapper>
+  void on_alpha_wrapping_begin(const Wrapper&) {}
+  template <class Wrapper>
+  void on_flood_fill_begin(const Wrapper&) {}
+  template <class Wrapper, class Gate>
+  void before_facet_treatment(const Wrapper&, const Gate&) {}
+  template <class Wrapper, class Place>
+  void before_Steiner_point_insertion(const Wrapper&, const Place&) {}
+  template <class Wrapper, class Vertex>
+  void after_Steiner_point_insertion(const Wrapper&, Vertex) {
+    if (++points > most_points) throw Stopped::too_many;
+    if (points % 256 == 0 && monitor.stop()) throw Stopped::by_monitor;
+  }
+  template <class Wrapper>
+  void on_flood_fill_end(const Wrapper&) {}
+  template <class Wrapper>
+  void on_alpha_wrapping_end(const Wrapper&) {}
+};
+
+Bounds<3> bounds_of_faces(const Mesh& mesh) {
+  Bounds<3> bounds{Vector<3>::Constant(std::numeric_limits<double>::infinity()),
+                   Vector<3>::Constant(-std::numeric_limits<double>::infinity())};
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t i : t) {
+      bounds.lower = bounds.lower.cwiseMin(mesh.vertices[i]);
+      bounds.upper = bounds.upper.cwiseMax(mesh.vertices[i]);
+    }
+  return bounds;
+}
+
+/// Whether at least five of the six ways along the axes leave the surface by an odd number of crossings.
+bool is_inside(const TriangleTree& tree, const Vector<3>& p) {
+  int odd = 0;
+  for (int way = 0; way < 6 && odd + 6 - way >= 5; ++way)
+    odd += tree.crossing(p, way / 2,
+                         way % 2 == 0 ? std::numeric_limits<double>::infinity()
+                                      : -std::numeric_limits<double>::infinity()) == Crossing::odd;
+  return odd >= 5;
+}
+
+struct Seed {
+  double distance;
+  Vector<3> place;
+};
+
+/// Points inside, the farthest from the surface first, none nearer to another than that is to the surface.
+/// Only those farther than `least` are of use.
+std::vector<Seed> points_inside(const Mesh& mesh, const Bounds<3>& bounds, double least,
+                                const Monitor& monitor) {
+  const TriangleTree tree(mesh);
+  const double step = bounds.size().maxCoeff() / looks_along_edge;
+  std::array<int, 3> count;
+  for (int k = 0; k < 3; ++k) count[k] = std::max(1, static_cast<int>(std::ceil(bounds.size()[k] / step)));
+  const Vector<3> cell = bounds.size().cwiseQuotient(Vector<3>(count[0], count[1], count[2]));
+  std::vector<Seed> all(static_cast<std::size_t>(count[0]) * count[1] * count[2], {0, Vector<3>::Zero()});
+  parallel_for(all.size(), [&](std::size_t i) {
+    if (monitor.stop()) return;
+    const auto n = static_cast<int>(i);
+    const Vector<3> at(n % count[0], n / count[0] % count[1], n / count[0] / count[1]);
+    // Off the middle of the cells, because faces of parts stand at halves and thirds.
+    const Vector<3> p = bounds.lower + (at + Vector<3>(0.4871, 0.5113, 0.4937)).cwiseProduct(cell);
+    const double d = tree.distance(p, std::numeric_limits<double>::infinity());
+    if (d > least && is_inside(tree, p)) all[i] = {d, p};
+  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Seed& a, const Seed& b) { return a.distance > b.distance; });
+  std::vector<Seed> seeds;
+  for (const Seed& candidate : all) {
+    if (candidate.distance == 0 || seeds.size() == most_seeds) break;
+    if (std::all_of(seeds.begin(), seeds.end(), [&](const Seed& s) {
+          return (s.place - candidate.place).norm() > std::max(candidate.distance, s.distance);
+        }))
+      seeds.push_back(candidate);
+  }
+  return seeds;
+}
+
+Point wrap_point(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
+
+/// Wrapped from these points, or from outside if there are none.
+Surface wrapped(const Mesh& mesh, double alpha, double offset, const std::vector<Seed>& seeds,
+                const Monitor& monitor) {
+  std::vector<Point> points, from;
+  for (const Vector<3>& v : mesh.vertices) points.push_back(wrap_point(v));
+  for (const Seed& seed : seeds) from.push_back(wrap_point(seed.place));
+  Watch watch{monitor};
+  Surface surface;
+  CGAL::alpha_wrap_3(points, mesh.triangles, alpha, offset, surface, CGAL::parameters::default_values(),
+                     CGAL::parameters::seed_points(std::ref(from)).visitor(std::ref(watch)));
+  return surface;
+}
+
+/// Oriented outwards.
+Mesh outward_mesh_of(const Surface& surface) {
+  Mesh mesh;
+  for (const auto v : surface.vertices()) {
+    const Point& p = surface.point(v);
+    mesh.vertices.emplace_back(p.x(), p.y(), p.z());
+  }
+  for (const auto face : surface.faces()) {
+    std::array<std::uint32_t, 3> triangle;
+    int k = 0;
+    for (const auto v : surface.vertices_around_face(surface.halfedge(face)))
+      triangle[k++] = static_cast<std::uint32_t>(v.idx());
+    mesh.triangles.push_back(triangle);
+  }
+  if (!mesh.triangles.empty() && volume_of(Domain(mesh)) < 0)
+    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+bool lies_within(const Mesh& mesh, const Bounds<3>& bounds) {
+  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const Vector<3>& v) {
+    return (v.array() >= bounds.lower.array()).all() && (v.array() <= bounds.upper.array()).all();
+  });
+}
+
+}  // namespace
+
+Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
+  if (!(alpha >= 0) || !(offset >= 0) || !std::isfinite(alpha) || !std::isfinite(offset))
+    throw Error(ErrorCode::bad_argument, "alpha and offset of a wrap are lengths, or 0 for the default");
+  if (mesh.triangles.empty()) return {std::move(mesh), "not wrapped: it has no faces"};
+  const Bounds<3> bounds = bounds_of_faces(mesh);
+  if (alpha == 0) alpha = bounds.diagonal() / 100;
+  if (offset == 0) offset = alpha / 30;
+  if (!(offset > 0)) return {std::move(mesh), "not wrapped: it has no extent"};
+  const std::string how = fmt::format("alpha {:.4g}, offset {:.4g}", alpha, offset);
+
+  try {
+    // A seed begins with a ball of 1.65 alpha, which may reach into the surface, though better not.
+    std::vector<Seed> seeds = points_inside(mesh, bounds, offset, monitor);
+    if (monitor.stop()) throw Stopped::by_monitor;
+    const auto deep = std::count_if(seeds.begin(), seeds.end(),
+                                    [&](const Seed& s) { return s.distance > 1.7 * alpha + offset; });
+    if (deep > 0) seeds.resize(static_cast<std::size_t>(deep));
+    std::string why = "no inside was found";
+    if (!seeds.empty()) {
+      Mesh inner = outward_mesh_of(wrapped(mesh, alpha, offset, seeds, monitor));
+      if (!inner.triangles.empty() && lies_within(inner, bounds))
+        return {std::move(inner),
+                fmt::format("wrapped from inside ({}): the result lies within the surface", how)};
+      why = inner.triangles.empty() ? "the inside is too narrow for alpha"
+                                    : "the inside is open to the outside through gaps wider than alpha";
+    }
+    Mesh outer = outward_mesh_of(wrapped(mesh, alpha, offset, {}, monitor));
+    if (outer.triangles.empty())
+      return {std::move(mesh), fmt::format("not wrapped ({}): nothing came out", how)};
+    return {
+        std::move(outer),
+        fmt::format("wrapped from outside ({}) because {}: the surface lies within the result", how, why)};
+  } catch (Stopped reason) {
+    return {std::move(mesh), reason == Stopped::by_monitor
+                                 ? "not wrapped: it was cancelled"
+                                 : fmt::format("not wrapped ({}): the result would have more than three "
+                                               "million faces; take a larger alpha",
+                                               how)};
+  } catch (const std::exception& error) {
+    std::string said = error.what();
+    std::replace(said.begin(), said.end(), '\n', ' ');
+    return {std::move(mesh), fmt::format("not wrapped ({}): {}", how, said)};
+  }
+}
+
+}  // namespace bernal::cad

@@ -1,0 +1,23 @@
+#pragma once
+#include "bernal/core/monitor.hpp"
+#include "cad/mended.hpp"
+
+namespace bernal::cad {
+
+/// Replaces a surface, whatever it is like, by a closed one that does not meet itself and that balls of the
+/// radius `alpha` reach as near as `offset`: CGAL's alpha wrapping (Portaneri et al. 2022).
+///
+/// Where the surface has an inside, its chambers are wrapped from there, and the result is contained in them:
+/// its corners are `offset` away from the surface, which it nowhere crosses; gaps narrower than alpha are
+/// closed, and what is narrower than that inside is lost. A point is inside if most of the six ways from it
+/// along the axes cross the surface an odd number of times; orientation does not matter, and holes matter
+/// little. Where there is none, or where the inside cannot be told from the outside because of gaps wider
+/// than alpha, the surface is wrapped from outside and so lies within the result. `done` says which, and
+/// alpha and offset.
+///
+/// alpha or offset 0: the diagonal of the bounds / 100, and alpha / 30. Cost: some 50 µs for each of about
+/// 3 A / alpha² faces that the result has for a surface of area A; it ends with the mesh as it was when these
+/// become more than three million or the monitor stops it.
+Mended wrap(Mesh mesh, double alpha = 0, double offset = 0, const Monitor& monitor = {});
+
+}  // namespace bernal::cad
