@@ -91,6 +91,11 @@ ChosenSoup read_soup(const std::filesystem::path& file) {
     if (!assimp.ok()) refuse(file, "cannot be read: " + assimp.failure);
     return {std::move(assimp.soup), "assimp (binary STL holds single precision)"};
   }
+  if (cad::opencascade_reads(file)) {
+    ReadAttempt step = cad::read_with_opencascade(file, 0);
+    if (!step.ok()) refuse(file, "cannot be read: " + step.failure);
+    return {std::move(step.soup), "OpenCASCADE"};
+  }
   ReadAttempt assimp = cad::read_with_assimp(file);
   if (cad::cgal_reads(file)) return choose(file, std::move(assimp), cad::read_with_cgal(file));
   if (!assimp.ok()) refuse(file, "cannot be read: " + assimp.failure);
