@@ -23,15 +23,24 @@ struct PolygonSoup {
   std::vector<Solid> solids = {};  ///< in their order; none where the file tells no parts apart
 };
 
+/// How far the true surface lies from the triangles that stand for it, measured at points of each triangle.
+struct SurfaceDeviation {
+  double outside = 0;  ///< of the triangles, where they stand inside of the surface
+  double inside = 0;
+};
+
 /// What the file says of its coordinates.
 struct FileFacts {
   struct Length {
     double metres;     ///< one unit of the file's
     std::string name;  ///< as people call it: "inch"
   };
-  std::optional<Length> unit = {};
-  char up = 0;                          ///< 'x', 'y' or 'z', where the file says which axis is up
-  std::vector<std::string> notes = {};  ///< what else a user should know, one phrase each
+  std::optional<Length> unit = {};                 ///< of the coordinates as they are delivered
+  std::optional<Length> written_in = {};           ///< the file's own unit, where the reader converts from it
+  char up = 0;                                     ///< 'x', 'y' or 'z', where the file says which axis is up
+  std::optional<SurfaceDeviation> deviation = {};  ///< of a tessellated surface, in `unit`
+  std::optional<double> deflection = {};           ///< that it was tessellated with, in `unit`
+  std::vector<std::string> notes = {};             ///< what else a user should know, one phrase each
 };
 
 /// What one reader made of a file: a soup, or why there is none. Coordinates are those of the file: neither
@@ -50,6 +59,15 @@ ReadAttempt read_with_assimp(const std::filesystem::path& file);
 
 /// The same for an STL that stands in memory.
 ReadAttempt read_stl_with_assimp(const std::string& content);
+
+/// Whether the file holds surfaces and solids, not triangles: STEP, IGES, BREP.
+bool opencascade_reads(const std::filesystem::path& file);
+
+/// The surfaces of STEP, IGES and BREP as triangles that are at most `deflection` away from them; a
+/// thousandth of the part's diagonal if that is not positive. STEP and IGES are converted to millimetres,
+/// `deflection` is in these (a BREP has no unit). Solids stand where the assembly puts them; surfaces that
+/// belong to no solid are sewn. One call at a time: others wait.
+ReadAttempt read_with_opencascade(const std::filesystem::path& file, double deflection);
 
 /// ".stl" of "Part.STL".
 std::string extension_of(const std::filesystem::path& file);

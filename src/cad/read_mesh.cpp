@@ -8,15 +8,20 @@
 #include <cmath>
 #include <limits>
 
+#include "cad/body_union.hpp"
 #include "cad/close_seams.hpp"
 #include "cad/defects.hpp"
 #include "cad/diagnose_mesh.hpp"
 #include "cad/interior.hpp"
 #include "cad/make_triangles.hpp"
+#include "cad/mesh_distance.hpp"
 #include "cad/mesh_topology.hpp"
 #include "cad/read_soup.hpp"
+#include "cad/repair_crossings.hpp"
+#include "cad/repair_holes.hpp"
 #include "cad/self_intersections.hpp"
 #include "cad/triangle_tree.hpp"
+#include "cad/wrap.hpp"
 
 namespace bernal {
 namespace {
@@ -160,6 +165,36 @@ std::string_view remedy(const MeshReport& report) {
   return "export a closed solid";
 }
 
+/// The repairs that are asked for, and what they did.
+struct Repairs {
+  Repairs(const std::vector<Repair>& wanted_ones, Mesh& surface, std::vector<std::string>& phrases)
+      : wanted(wanted_ones), mesh(surface), done(phrases) {}
+
+  void apply(Repair repair) {
+    if (std::ranges::find(wanted, repair) == wanted.end() || mesh.triangles.empty()) return;
+    cad::Mended mended = repair == Repair::holes ? cad::close_holes(mesh, infinity)
+                         : repair == Repair::wrap ? cad::wrap(mesh)
+                                                  : cad::cut_out_crossings(mesh);
+    done.push_back(mended.done);
+    if (mended.mesh.triangles == mesh.triangles && mended.mesh.vertices == mesh.vertices) return;
+    any = true;
+    if (mended.mesh.triangles.empty()) return;
+    const double tolerance = 1e-4 * bounds_of(mesh).diagonal();
+    const double made_up = cad::farthest(mended.mesh, mesh, tolerance).at_most;
+    const double lost = cad::farthest(mesh, mended.mesh, tolerance).at_most;
+    done.push_back(fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
+                               "{:.3g} from it",
+                               made_up, lost));
+    mesh = std::move(mended.mesh);
+  }
+
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<Repair>& wanted;
+  Mesh& mesh;
+  std::vector<std::string>& done;
+  bool any = false;  ///< it is no longer the file's surface
+};
+
 void append(Mesh& mesh, const Mesh& other) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
@@ -185,15 +220,30 @@ void take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& pu
     if (!touches_inside)
       throw OptionError("obstacles", fmt::format("{} lies outside of the container; check its unit and place",
                                                  file.string()));
-    append(mesh, imported.mesh);
+    Mesh both = mesh;
+    append(both, imported.mesh);
+    if (cad::count_self_intersections(both) > 0) {
+      cad::Triangles container{.mesh = mesh};
+      std::optional<Mesh> rest;
+      if (cad::diagnose_mesh(container).usable())  // which also turns it outward
+        rest = cad::combine(container.mesh, imported.mesh, cad::Combine::take_out);
+      if (!rest || rest->triangles.empty())
+        throw OptionError("obstacles", fmt::format("{} meets the wall in a way that cannot be cut out; move it a "
+                                                   "little, or take it out in CAD",
+                                                   file.string()));
+      both = std::move(*rest);
+    }
+    mesh = std::move(both);
     done.push_back(fmt::format("took out {}, {} faces", file.filename().string(), imported.report.faces));
   }
 }
 
 ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   const double deflection = options.deflection.value_or(deflection_over_radius * purpose.smallest_radius);
+  const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
   ChosenSoup chosen =
-      cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0);
+      cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
+                     assumed ? metres_per(*assumed) : 0);
   const double factor = factor_of(options, chosen.facts, purpose.unit);
 
   ImportedMesh result;
@@ -210,15 +260,25 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   turn_up(mesh, options.up);
   close_seams_of(triangles, options.weld.value_or(rounding), done);
   if (!options.solids.empty() && by_piece) keep_pieces(mesh, options);
+  const bool cuts = !options.cap.empty() || options.fill_level;
+  Repairs repairs(options.repair, mesh, done);
+  // An opening that a plane is to close is no hole.
+  if (!cuts) repairs.apply(Repair::holes);
+  repairs.apply(Repair::self_intersections);
+  if (!cuts) repairs.apply(Repair::wrap);
   take_interior(mesh, options, options.weld.value_or(rounding), done);
+  if (cuts) repairs.apply(Repair::holes);
+  if (cuts) repairs.apply(Repair::wrap);
   take_out_obstacles(mesh, options, purpose, done);
 
   MeshReport report = cad::diagnose_mesh(triangles);
+  report.is_repaired = repairs.any;
   report.reader = std::move(chosen.reader);
   if (chosen.facts.unit) {
-    report.unit = chosen.facts.unit->name;
+    report.unit = chosen.facts.written_in ? chosen.facts.written_in->name : chosen.facts.unit->name;
     report.metres = chosen.facts.unit->metres;
   }
+  if (chosen.facts.deflection) report.deflection = factor * *chosen.facts.deflection;
   report.up = chosen.facts.up;
   report.notes = std::move(chosen.facts.notes);
   report.solids = std::move(result.report.solids);

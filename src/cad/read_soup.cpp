@@ -111,13 +111,20 @@ ChosenSoup choose(const std::filesystem::path& file, ReadAttempt assimp, ReadAtt
   return chosen(std::move(assimp), "assimp, single precision " + text);
 }
 
-ChosenSoup read_by_extension(const std::filesystem::path& file, double /*deflection*/) {
+ChosenSoup read_by_extension(const std::filesystem::path& file, double deflection, double metres) {
+  constexpr double millimetre = 1e-3;
   if (extension_of(file) == ".stl") {
     const StlFile stl = read_stl_file(file);
     ReadAttempt assimp = read_stl_with_assimp(stl.content);
     if (!stl.binary) return choose(file, std::move(assimp), read_stl_with_cgal(stl.content));
     if (!assimp.ok()) refuse(file, "cannot be read: " + assimp.failure);
     return chosen(std::move(assimp), "assimp (binary STL holds single precision)");
+  }
+  if (opencascade_reads(file)) {
+    const bool has_unit = !extension_of(file).starts_with(".br");
+    ReadAttempt read = read_with_opencascade(file, deflection / (has_unit ? millimetre : metres));
+    if (!read.ok()) refuse(file, "cannot be read: " + read.failure);
+    return chosen(std::move(read), "OpenCASCADE, tessellated");
   }
   ReadAttempt assimp = read_with_assimp(file);
   if (cgal_reads(file)) return choose(file, std::move(assimp), read_with_cgal(file));
@@ -127,12 +134,12 @@ ChosenSoup read_by_extension(const std::filesystem::path& file, double /*deflect
 
 }  // namespace
 
-ChosenSoup read_soup(const std::filesystem::path& file, double deflection) {
+ChosenSoup read_soup(const std::filesystem::path& file, double deflection, double metres) {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) refuse(file, "no such file");
   if (!std::filesystem::is_regular_file(file, error)) refuse(file, "not a regular file");
   if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
-  ChosenSoup read = read_by_extension(file, deflection);
+  ChosenSoup read = read_by_extension(file, deflection, metres > 0 ? metres : 1);
   if (read.soup.polygons.empty()) refuse(file, "holds no faces; export the surface, not points or curves");
   return read;
 }
