@@ -197,7 +197,7 @@ int inspect(const InspectCall& call) {
   const ImportedMesh imported = read_mesh(file);
   const MeshReport& report = imported.report;
   const std::vector<std::string> lines =
-      report.usable() ? std::vector<std::string>() : lines_that_help(file, {}, imported);
+      report.usable() ? std::vector<std::string>() : lines_that_help(file, {}, imported, Effort::thorough);
   if (!call.places.empty()) write_places(imported, call.places);
   std::optional<Chambers> chambers;
   if (call.radius && report.usable()) chambers = chambers_for(imported.mesh, *call.radius);

@@ -165,22 +165,17 @@ void drop_doubled(Mesh& mesh, Seams& seams) {
   mesh.triangles.resize(kept);
 }
 
-/// Half of the last decimal of the coordinate that needs most of them to be told from its neighbours.
-double decimal_rounding(const Mesh& mesh) {
+/// Half of the last of so many decimals as some coordinate needs, in the largest one.
+double decimal_rounding(const Mesh& mesh, double largest) {
   constexpr std::size_t most = 3000;
   const std::size_t step = std::max<std::size_t>(1, mesh.vertices.size() / most);
-  double finest = std::numeric_limits<double>::infinity();
+  int digits = 1;
   for (std::size_t v = 0; v < mesh.vertices.size(); v += step)
     for (int k = 0; k < 3; ++k) {
       const double c = std::abs(mesh.vertices[v][k]);
-      if (c == 0) continue;
-      for (int digits = 1; digits <= 17; ++digits)
-        if (std::stod(fmt::format("{:.{}e}", c, digits - 1)) == c) {
-          finest = std::min(finest, 0.5 * std::pow(10.0, std::floor(std::log10(c)) + 1 - digits));
-          break;
-        }
+      while (digits < 17 && std::stod(fmt::format("{:.{}e}", c, digits - 1)) != c) ++digits;
     }
-  return finest;
+  return 0.5 * std::pow(10.0, std::floor(std::log10(largest)) + 1 - digits);
 }
 
 }  // namespace
@@ -205,10 +200,11 @@ double rounding_of_coordinates(const Mesh& mesh) {
     largest = std::max(largest, v.cwiseAbs().maxCoeff());
     for (int k = 0; k < 3; ++k) single = single && static_cast<double>(static_cast<float>(v[k])) == v[k];
   }
+  if (largest == 0) return std::numeric_limits<double>::min();
   // Some operations in that precision, such as a turn and a shift, stand between two readings of a corner.
   constexpr double operations = 16;
   const double in_double = std::numeric_limits<double>::epsilon() * largest;
-  const double rounding = single ? std::numeric_limits<float>::epsilon() * largest / 2 : decimal_rounding(mesh);
+  const double rounding = single ? std::numeric_limits<float>::epsilon() * largest / 2 : decimal_rounding(mesh, largest);
   return operations * std::max(rounding, in_double);
 }
 

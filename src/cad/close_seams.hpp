@@ -22,8 +22,8 @@ struct Seams {
 };
 
 /// How far two readings of one corner may be apart, as the coordinates themselves tell: a few units in the
-/// last place of single precision where all of them are such numbers, else of the decimals that the longest
-/// of them has.
+/// last place of single precision where all of them are such numbers, else of as many decimals as the longest
+/// of them has. Never 0.
 double rounding_of_coordinates(const Mesh& mesh);
 
 /// Closes seams up to `tolerance` wide. Only corners of open edges move, by at most that much; a surface

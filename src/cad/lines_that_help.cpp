@@ -108,32 +108,36 @@ std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_
                          cap.say(m);
                          repair.say(m);
                        }});
-  if (options.repair.empty()) {
-    repairs.clear();
-    offer({Repair::wrap});
-    lines.push_back(repairs.front());
-  }
   return lines;
 }
+
+/// The last resort.
+const Line wrap_line = {"repair = [\"wrap\"]", [](MeshFile& m) { m.repair = {Repair::wrap}; }};
 
 }  // namespace
 
 std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFor& purpose,
-                                         const ImportedMesh& as_it_is) {
+                                         const ImportedMesh& as_it_is, Effort effort) {
   constexpr std::size_t most_faces = 500000, enough = 2;
   std::vector<std::string> lines;
   if (as_it_is.mesh.triangles.empty() || as_it_is.mesh.triangles.size() > most_faces) return lines;
-  for (const Line& line : candidates(options, as_it_is)) {
-    const auto is_part = [&](const std::string& shorter) { return line.text.find(shorter) != std::string::npos; };
-    if (std::ranges::any_of(lines, is_part)) continue;  // less will do
+  const auto helps = [&](const Line& line) {
     MeshFile tried = options;
     line.say(tried);
     try {
-      if (read_mesh(tried, purpose).report.usable()) lines.push_back(line.text);
-    } catch (const Error&) {  // which says that this line does not help
+      return read_mesh(tried, purpose).report.usable();
+    } catch (const Error&) {
+      return false;
     }
+  };
+  for (const Line& line : candidates(options, as_it_is)) {
+    const auto is_part = [&](const std::string& shorter) { return line.text.find(shorter) != std::string::npos; };
+    if (std::ranges::any_of(lines, is_part)) continue;  // less will do
+    if (helps(line)) lines.push_back(line.text);
     if (lines.size() == enough) break;
   }
+  if (lines.empty() && effort == Effort::thorough && options.repair.empty() && helps(wrap_line))
+    lines.push_back(wrap_line.text);
   return lines;
 }
 

@@ -305,7 +305,7 @@ ImportedMesh read_mesh(const MeshFile& options, const ImportFor& purpose) {
 ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpose) {
   ImportedMesh result = read_mesh(options, purpose);
   if (result.report.usable()) return result;
-  const std::vector<std::string> lines = lines_that_help(options, purpose, result);
+  const std::vector<std::string> lines = lines_that_help(options, purpose, result, Effort::quick);
   const std::string help = lines.empty() ? std::string(remedy(result.report))
                                          : fmt::format("in [container], {} helps", fmt::join(lines, ", or "));
   throw Error(ErrorCode::bad_mesh,

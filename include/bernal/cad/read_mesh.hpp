@@ -41,10 +41,15 @@ ImportedMesh read_mesh(const MeshFile& options, const ImportFor& purpose = {});
 /// what to do about them, when it cannot be one.
 ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpose);
 
+enum class Effort {
+  quick,    ///< what takes about as long as reading the file
+  thorough  ///< also what takes minutes
+};
+
 /// Lines for [container] that make a container of a file that is none as it is: each was tried. The first
 /// changes least; none if nothing helps.
 std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFor& purpose,
-                                         const ImportedMesh& as_it_is);
+                                         const ImportedMesh& as_it_is, Effort effort);
 
 /// Writes a surface as PLY, its faces coloured by what keeps it from being a wall: orange at open edges, blue
 /// at branching ones, red where it crosses itself, grey elsewhere. Throws Error{cannot_write}.
