@@ -1,5 +1,6 @@
 #pragma once
 #include "bernal/cad/mesh_report.hpp"
+#include "cad/counted.hpp"
 #include "cad/make_triangles.hpp"
 
 namespace bernal::cad {
@@ -12,8 +13,5 @@ namespace bernal::cad {
 /// degenerate triangle, no self-intersection, two-sided, volume. Cost: O(T log² T), half of it the
 /// self-intersections.
 MeshReport diagnose_mesh(Triangles& triangles);
-
-/// "1 open edge", "72 open edges".
-std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 
 }  // namespace bernal::cad

@@ -126,15 +126,12 @@ Deviation farthest(const Mesh& surface, const Mesh& reference, double tolerance,
     if (found.largest > result.largest) result.largest = found.largest, result.place = found.place;
   };
 
-  std::vector<Deviation> found(parts.size());
-  parallel_ranges(parts.size(), 64, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      if (monitor.stop())
-        found[i].at_most = unbounded;
-      else
-        found[i] = measure.look(parts[i].corners);
-    }
-  });
+  std::vector<Deviation> found(parts.size(), {0, unbounded});
+  constexpr std::size_t batch = 16'384;
+  for (std::size_t first = 0; first < parts.size() && !monitor.stop(); first += batch)
+    parallel_ranges(std::min(batch, parts.size() - first), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = first + begin; i < first + end; ++i) found[i] = measure.look(parts[i].corners);
+    });
   for (std::size_t i = 0; i < parts.size(); ++i) {
     take(found[i]);
     parts[i].farthest = found[i].at_most;

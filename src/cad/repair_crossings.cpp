@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "cad/body_union.hpp"
-#include "cad/diagnose_mesh.hpp"
+#include "cad/counted.hpp"
 #include "cad/mesh_topology.hpp"
 #include "cad/patch.hpp"
 #include "cad/self_intersections.hpp"
@@ -20,8 +20,9 @@ namespace {
 
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
-/// The cut grows by a ring of neighbours a round.
+/// The cut grows by a ring of neighbours where a round has not helped much.
 constexpr int most_rings = 6;
+constexpr int most_rounds = 20;
 /// More than this part of a component is not cut out of it.
 constexpr double most_cut = 0.5;
 /// A piece that the cut separates is dropped if it has no more than this part of the component's area.
@@ -119,11 +120,16 @@ std::optional<Mesh> cut_once(const Mesh& mesh, const MeshTopology& topology, con
 std::size_t cut_within_components(Mesh& mesh, const Monitor& monitor) {
   MeshTopology topology = topology_of(mesh);
   Pairs own = within_components(self_intersecting_pairs(mesh), topology);
-  for (int rings = 0; rings <= most_rings && !own.empty() && !monitor.stop(); ++rings) {
+  for (int rings = 0, round = 0; rings <= most_rings && round < most_rounds; ++round) {
+    if (own.empty() || monitor.stop()) break;
     std::optional<Mesh> next = cut_once(mesh, topology, own, rings);
-    if (!next) continue;
+    if (!next) {
+      ++rings;
+      continue;
+    }
     MeshTopology next_topology = topology_of(*next);
     Pairs next_own = within_components(self_intersecting_pairs(*next), next_topology);
+    if (4 * next_own.size() > 3 * own.size()) ++rings;
     if (next_own.size() >= own.size()) continue;
     mesh = std::move(*next);
     topology = std::move(next_topology);
@@ -290,8 +296,8 @@ void combine_bodies(Mesh& mesh, const Monitor& monitor, Told& told) {
     }
     const std::size_t failed_before = told.failed, count = own.outward.size();
     std::vector<Mesh> united = unite_all(std::move(own.outward), monitor, told);
-    if (count > 1) {
-      told.united += count - (told.failed - failed_before);
+    if (const std::size_t made_of = count - (told.failed - failed_before); made_of > 1) {
+      told.united += made_of;
       ++told.made;
     }
     for (Mesh& hole : own.inward) {

@@ -14,7 +14,7 @@ namespace bernal::cad {
 ///
 /// What the cut has rounded across something is cut out too; what then remains is counted in `done`. Open
 /// components that cross bodies stay: they enclose nothing and have no union with them.
-/// Precondition: no degenerate faces. Cost: O(T log² T) for each of some ten rounds, and 50 µs a face of
+/// Precondition: no degenerate faces. Cost: O(T log² T) for each of up to twenty rounds, and 50 µs a face of
 /// bodies that cross; the monitor is heard between rounds and bodies.
 Mended cut_out_crossings(Mesh mesh, const Monitor& monitor = {});
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-#include "cad/diagnose_mesh.hpp"
+#include "cad/counted.hpp"
 #include "cad/mesh_topology.hpp"
 #include "cad/patch.hpp"
 #include "cad/self_intersections.hpp"

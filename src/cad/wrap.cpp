@@ -21,7 +21,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Surface = CGAL::Surface_mesh<Point>;
 
-constexpr std::size_t most_points = 1'500'000;
+constexpr std::size_t most_points = 500'000;
 /// Points along the longest edge of the bounds at which to look for the inside.
 constexpr int looks_along_edge = 32;
 constexpr std::size_t most_seeds = 64;
@@ -87,16 +87,17 @@ std::vector<Seed> points_inside(const Mesh& mesh, const Bounds<3>& bounds, doubl
   std::array<int, 3> count;
   for (int k = 0; k < 3; ++k) count[k] = std::max(1, static_cast<int>(std::ceil(bounds.size()[k] / step)));
   const Vector<3> cell = bounds.size().cwiseQuotient(Vector<3>(count[0], count[1], count[2]));
-  std::vector<Seed> all(static_cast<std::size_t>(count[0]) * count[1] * count[2], {0, Vector<3>::Zero()});
-  parallel_for(all.size(), [&](std::size_t i) {
-    if (monitor.stop()) return;
-    const auto n = static_cast<int>(i);
-    const Vector<3> at(n % count[0], n / count[0] % count[1], n / count[0] / count[1]);
-    // Off the middle of the cells, because faces of parts stand at halves and thirds.
-    const Vector<3> p = bounds.lower + (at + Vector<3>(0.4871, 0.5113, 0.4937)).cwiseProduct(cell);
-    const double d = tree.distance(p, std::numeric_limits<double>::infinity());
-    if (d > least && is_inside(tree, p)) all[i] = {d, p};
-  });
+  const std::size_t layer = static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]);
+  std::vector<Seed> all(layer * static_cast<std::size_t>(count[2]), {0, Vector<3>::Zero()});
+  for (int z = 0; z < count[2] && !monitor.stop(); ++z)
+    parallel_for(layer, [&](std::size_t i) {
+      const int n = static_cast<int>(i);
+      // Off the middle of the cells, because faces of parts stand at halves and thirds.
+      const Vector<3> at = Vector<3>(n % count[0], n / count[0], z) + Vector<3>(0.4871, 0.5113, 0.4937);
+      const Vector<3> p = bounds.lower + at.cwiseProduct(cell);
+      const double d = tree.distance(p, std::numeric_limits<double>::infinity());
+      if (d > least && is_inside(tree, p)) all[static_cast<std::size_t>(z) * layer + i] = {d, p};
+    });
   std::stable_sort(all.begin(), all.end(),
                    [](const Seed& a, const Seed& b) { return a.distance > b.distance; });
   std::vector<Seed> seeds;
@@ -187,7 +188,7 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
   } catch (Stopped reason) {
     return {std::move(mesh), reason == Stopped::by_monitor
                                  ? "not wrapped: it was cancelled"
-                                 : fmt::format("not wrapped ({}): the result would have more than three "
+                                 : fmt::format("not wrapped ({}): the result would have more than a "
                                                "million faces; take a larger alpha",
                                                how)};
   } catch (const std::exception& error) {

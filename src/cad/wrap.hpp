@@ -15,9 +15,9 @@ namespace bernal::cad {
 /// than alpha, the surface is wrapped from outside and so lies within the result. `done` says which, and
 /// alpha and offset.
 ///
-/// alpha or offset 0: the diagonal of the bounds / 100, and alpha / 30. Cost: some 50 µs for each of about
+/// alpha or offset 0: the diagonal of the bounds / 100, and alpha / 30. Cost: some 200 µs for each of about
 /// 3 A / alpha² faces that the result has for a surface of area A; it ends with the mesh as it was when these
-/// become more than three million or the monitor stops it.
+/// become more than a million or the monitor stops it.
 Mended wrap(Mesh mesh, double alpha = 0, double offset = 0, const Monitor& monitor = {});
 
 }  // namespace bernal::cad

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <numbers>
 #include <random>
+#include <string>
 
+#include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
 #include "cad/mesh_distance.hpp"
 #include "cad/mesh_topology.hpp"
@@ -266,6 +270,22 @@ TEST(RepairCrossings, BodiesThatCrossBecomeTheirUnion) {
   EXPECT_NEAR(volume(baffle.mesh), 1 + 0.02 * 0.4 * 0.2, 1e-14);
 }
 
+TEST(RepairCrossings, BodiesThatTouchAreUnitedWhereThatIsASurface) {
+  const Mended face = cut_out_crossings(joined(unit_box, translated(unit_box, {1, 0.5, 0})));
+  expect_sound(face);
+  EXPECT_DOUBLE_EQ(volume(face.mesh), 2);
+  EXPECT_EQ(topology_of(face.mesh).components, 1U);
+
+  const Mended shifted = cut_out_crossings(joined(unit_box, translated(unit_box, {1e-13, 2e-13, 1e-13})));
+  expect_sound(shifted);
+  EXPECT_NEAR(volume(shifted.mesh), 1, 1e-12);
+
+  const Mended edge = cut_out_crossings(joined(unit_box, translated(unit_box, {1, 1, 0})));
+  EXPECT_TRUE(says(edge, "1 body could not be united")) << edge.done;
+  EXPECT_FALSE(says(edge, "united 1")) << edge.done;
+  EXPECT_DOUBLE_EQ(volume(edge.mesh), 2);
+}
+
 TEST(RepairCrossings, WhatIsOrientedInwardIsTakenOut) {
   const Mesh hole = inverted(translated(unit_box, {0.5, 0.5, 0.5}));
   const Mended mended = cut_out_crossings(joined(unit_box, hole));
@@ -297,6 +317,31 @@ TEST(RepairCrossings, CutsOutWhereAPartCrossesItself) {
   expect_sound(mended);
   EXPECT_TRUE(says(mended, "where a part crosses itself")) << mended.done;
   EXPECT_NEAR(volume(mended.mesh), volume(icosphere_mesh(1, 3)), 0.2);
+}
+
+TEST(RepairCrossings, RepairsAPartOfSomebodyElse) {
+  const Mesh part = read_mesh(std::filesystem::path(BERNAL_DATA) / "meshes/openscad_bad_tardis.stl").mesh;
+  ASSERT_EQ(count_self_intersections(part), 6U);
+  const Mended mended = cut_out_crossings(part);
+  expect_sound(mended);
+  EXPECT_NEAR(volume(mended.mesh), volume(part), 1e-4 * volume(part));
+  EXPECT_LT(farthest(mended.mesh, part, 1e-3).at_most, 0.01);
+}
+
+TEST(RepairCrossings, WhatRemainsIsCounted) {
+  Mesh crumpled = divided(box_mesh({-1, -1, -1}, {2, 2, 2}), 4);
+  for (Vector<3>& v : crumpled.vertices)
+    v += 0.2 * Vector<3>(std::sin(91 * v[0] + 7 * v[1]), std::sin(53 * v[1] + 3 * v[2]),
+                         std::sin(71 * v[2] + 5 * v[0]));
+  const std::size_t before = count_self_intersections(crumpled);
+  const Mended mended = cut_out_crossings(crumpled);
+  const std::size_t after = count_self_intersections(mended.mesh);
+  EXPECT_LE(after, before);
+  EXPECT_TRUE(topology_of(mended.mesh).closed());
+  if (after > 0) {
+    EXPECT_TRUE(says(mended, std::to_string(after) + " of " + std::to_string(before) + " crossings remain"))
+        << mended.done;
+  }
 }
 
 TEST(RepairCrossings, AnOpenSheetStaysAndIsSaid) {
