@@ -10,6 +10,7 @@
 
 #include "bernal/core/error.hpp"
 #include "cad/diagnose_mesh.hpp"
+#include "cad/file_facts.hpp"
 #include "cad/make_triangles.hpp"
 #include "cad/polygon_soup.hpp"
 #include "cad/stl_file.hpp"
@@ -87,7 +88,12 @@ ChosenSoup read_soup(const std::filesystem::path& file) {
   if (cad::extension_of(file) == ".stl") {
     const cad::StlFile stl = cad::read_stl_file(file);
     ReadAttempt assimp = cad::read_stl_with_assimp(stl.content);
-    if (!stl.binary) return choose(file, std::move(assimp), cad::read_stl_with_cgal(stl.content));
+    cad::tell_parts(stl, assimp);
+    if (!stl.binary) {
+      ReadAttempt cgal = cad::read_stl_with_cgal(stl.content);
+      cad::tell_parts(stl, cgal);
+      return choose(file, std::move(assimp), std::move(cgal));
+    }
     if (!assimp.ok()) refuse(file, "cannot be read: " + assimp.failure);
     return {std::move(assimp.soup), "assimp (binary STL holds single precision)"};
   }
@@ -119,6 +125,9 @@ ImportedMesh read_mesh(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file, error)) refuse(file, "no such file");
   if (!std::filesystem::is_regular_file(file, error)) refuse(file, "not a regular file");
   if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
+
+  const std::string other = cad::known_not_to_be_a_mesh(file);
+  if (!other.empty()) refuse(file, other);
 
   ChosenSoup chosen = read_soup(file);
   if (chosen.soup.polygons.empty()) refuse(file, "holds no faces; export the surface, not points or curves");

@@ -1,6 +1,4 @@
-#ifdef BERNAL_WITH_OPENCASCADE
-
-#include "cad/tessellate_with_opencascade.hpp"
+#include "cad/opencascade/tessellate.hpp"
 
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
@@ -244,5 +242,3 @@ Tessellated append_tessellation(const TopoDS_Shape& shape, double deflection, Po
 }
 
 }  // namespace bernal::cad
-
-#endif
