@@ -40,7 +40,10 @@ ReadAttempt read_with_opencascade(const std::filesystem::path& file, double defl
   if (const auto reader = shape_reader()) {
     reader(file, shape_format(file).value(), deflection, result);
   } else {
-    result.failure = "this bernal was built without OpenCASCADE, which reads STEP, IGES and BREP; export STL";
+    result.failure =
+        "this bernal runs without OpenCASCADE, which reads STEP, IGES and BREP; install it and build again, "
+        "or "
+        "export STL";
   }
   return result;
 }
