@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bernal/core/error.hpp"
+#include "cad/file_facts.hpp"
 #include "cad/point_cubes.hpp"
 #include "cad/stl_file.hpp"
 
@@ -116,7 +117,12 @@ ChosenSoup read_by_extension(const std::filesystem::path& file, double deflectio
   if (extension_of(file) == ".stl") {
     const StlFile stl = read_stl_file(file);
     ReadAttempt assimp = read_stl_with_assimp(stl.content);
-    if (!stl.binary) return choose(file, std::move(assimp), read_stl_with_cgal(stl.content));
+    tell_parts(stl, assimp);
+    if (!stl.binary) {
+      ReadAttempt cgal = read_stl_with_cgal(stl.content);
+      tell_parts(stl, cgal);
+      return choose(file, std::move(assimp), std::move(cgal));
+    }
     if (!assimp.ok()) refuse(file, "cannot be read: " + assimp.failure);
     return chosen(std::move(assimp), "assimp (binary STL holds single precision)");
   }
@@ -139,6 +145,7 @@ ChosenSoup read_soup(const std::filesystem::path& file, double deflection, doubl
   if (!std::filesystem::exists(file, error)) refuse(file, "no such file");
   if (!std::filesystem::is_regular_file(file, error)) refuse(file, "not a regular file");
   if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
+  if (const std::string other = known_not_to_be_a_mesh(file); !other.empty()) refuse(file, other);
   ChosenSoup read = read_by_extension(file, deflection, metres > 0 ? metres : 1);
   if (read.soup.polygons.empty()) refuse(file, "holds no faces; export the surface, not points or curves");
   return read;

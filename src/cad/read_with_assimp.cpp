@@ -1,10 +1,14 @@
+#include <assimp/config.h>
 #include <assimp/scene.h>
+
+#include <fmt/format.h>
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 
+#include "cad/file_facts.hpp"
 #include "cad/polygon_soup.hpp"
 
 namespace bernal::cad {
@@ -35,11 +39,68 @@ void append_mesh(const aiMesh& mesh, const Eigen::Matrix4d& transform, PolygonSo
   }
 }
 
-void append_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& parent, PolygonSoup& soup) {
-  const Eigen::Matrix4d transform = parent * to_double(node.mTransformation);
-  for (unsigned i = 0; i < node.mNumMeshes; ++i)
-    append_mesh(*scene.mMeshes[node.mMeshes[i]], transform, soup);
-  for (unsigned i = 0; i < node.mNumChildren; ++i) append_node(scene, *node.mChildren[i], transform, soup);
+/// `above` is the transform of the node itself too.
+void append_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& above, PolygonSoup& soup) {
+  const std::size_t first = soup.polygons.size();
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) append_mesh(*scene.mMeshes[node.mMeshes[i]], above, soup);
+  if (soup.polygons.size() > first) soup.solids.push_back({node.mName.C_Str(), first});
+  for (unsigned i = 0; i < node.mNumChildren; ++i) {
+    const aiNode& child = *node.mChildren[i];
+    append_node(scene, child, above * to_double(child.mTransformation), soup);
+  }
+}
+
+std::string format_of(const aiScene& scene) {
+  aiString format;
+  if (scene.mMetaData != nullptr) scene.mMetaData->Get("SourceAsset_Format", format);
+  return format.C_Str();
+}
+
+/// In centimetres by its specification, times the factor that the file gives.
+FileFacts facts_of_fbx(const aiScene& scene) {
+  FileFacts facts;
+  double factor = 0;
+  float single = 0;
+  if (!scene.mMetaData->Get("UnitScaleFactor", factor) && scene.mMetaData->Get("UnitScaleFactor", single))
+    factor = double(single);
+  // The factor has been through single precision in most exporters.
+  for (const auto& [exact, name] :
+       {std::pair{0.1, "millimeter"}, {1.0, "centimeter"}, {100.0, "meter"}, {2.54, "inch"}, {30.48, "foot"}})
+    if (std::abs(factor - exact) < 1e-6 * exact) facts.unit = FileFacts::Length{exact / 100, name};
+  if (!facts.unit && factor > 0 && std::isfinite(factor))
+    facts.unit = FileFacts::Length{factor / 100, fmt::format("{} cm", factor)};
+  std::int32_t axis = -1;
+  if (scene.mMetaData->Get("UpAxis", axis) && axis >= 0 && axis <= 2) facts.up = "xyz"[axis];
+  return facts;
+}
+
+/// What the file says of its unit and axes, and of the names of its parts where assimp drops them.
+void add_facts(const std::filesystem::path& file, const aiScene& scene, ReadAttempt& result) {
+  const std::string format = format_of(scene);
+  if (format.starts_with("Collada")) {
+    result.facts =
+        facts_of_collada(extension_of(file) == ".zae" ? zip_entry(file, ".dae") : text_without_mark(file));
+  } else if (format.starts_with("glTF")) {
+    result.facts.unit = FileFacts::Length{1, "meter"};
+  } else if (format.starts_with("Autodesk FBX")) {
+    result.facts = facts_of_fbx(scene);
+  } else if (format.starts_with("Additive")) {
+    std::string text = text_without_mark(file);
+    if (text.starts_with("PK")) text = zip_entry(file, ".amf");
+    result.facts = facts_of_amf(text);
+  } else if (format.starts_with("3mf")) {
+    ThreeMfFacts model = facts_of_3mf(zip_entry(file, ".model"));
+    result.facts = std::move(model.facts);
+    for (Solid& solid : result.soup.solids)  // which assimp calls "Object_7" after the id
+      if (solid.name.starts_with("Object_")) solid.name = model.names[solid.name.substr(7)];
+  }
+}
+
+/// Of one part without a name there is nothing to tell; and names that assimp makes up are none.
+void drop_single_nameless(std::vector<Solid>& solids) {
+  for (Solid& solid : solids)
+    if (solid.name.starts_with("$ColladaAutoName$")) solid.name.clear();
+  if (solids.size() == 1 && solids.front().name.empty()) solids.clear();
 }
 
 std::string one_line(std::string text) {
@@ -54,7 +115,11 @@ ReadAttempt attempt(const Assimp::Importer& importer, const aiScene* scene) {
     result.failure = one_line(importer.GetErrorString());
     return result;
   }
-  append_node(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), result.soup);
+  // What assimp turns a Collada document by, so that y is up and a unit a metre, is the transform of its
+  // root, which has none of its own.
+  const bool turned = format_of(*scene).starts_with("Collada");
+  const aiMatrix4x4 root = turned ? aiMatrix4x4() : scene->mRootNode->mTransformation;
+  append_node(*scene, *scene->mRootNode, to_double(root), result.soup);
   const auto finite = [](const Vector<3>& p) { return p.allFinite(); };
   const auto valid = [&](const std::vector<std::uint32_t>& polygon) {
     return *std::max_element(polygon.begin(), polygon.end()) < result.soup.points.size();
@@ -72,12 +137,28 @@ ReadAttempt attempt(const Assimp::Importer& importer, const aiScene* scene) {
 // No post-processing: assimp's welding has an absolute tolerance, and its triangulation knows only floats.
 ReadAttempt read_with_assimp(const std::filesystem::path& file) {
   Assimp::Importer importer;
-  return attempt(importer, importer.ReadFile(file.string(), 0));
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else they are ids
+  const aiScene* scene = nullptr;
+  if (cgal_reads(file)) {  // text that assimp refuses with the mark of UTF-8 in front
+    const std::string text = text_without_mark(file);
+    scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, extension_of(file).c_str() + 1);
+  } else {
+    scene = importer.ReadFile(file.string(), 0);
+  }
+  ReadAttempt result = attempt(importer, scene);
+  if (result.ok()) add_facts(file, *scene, result);
+  drop_single_nameless(result.soup.solids);
+  if (extension_of(file) == ".dxf" && (!result.ok() || result.soup.polygons.empty()))
+    result.failure = "a drawing without faces (DXF); export STEP or STL";
+  return result;
 }
 
 ReadAttempt read_stl_with_assimp(const std::string& content) {
   Assimp::Importer importer;
-  return attempt(importer, importer.ReadFileFromMemory(content.data(), content.size(), 0, "stl"));
+  ReadAttempt result =
+      attempt(importer, importer.ReadFileFromMemory(content.data(), content.size(), 0, "stl"));
+  result.soup.solids.clear();  // whose names are not as written
+  return result;
 }
 
 }  // namespace bernal::cad

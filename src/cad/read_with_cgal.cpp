@@ -5,9 +5,9 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
 
+#include "cad/file_facts.hpp"
 #include "cad/polygon_soup.hpp"
 
 namespace bernal::cad {
@@ -42,6 +42,30 @@ ReadAttempt attempt(const Read& read) {
   return result;
 }
 
+/// The objects of an OBJ file, or its groups if it has none. `faces` is what was read: where that is not what
+/// the text holds, nothing is told.
+std::vector<Solid> obj_parts(std::string_view text, std::size_t faces) {
+  std::vector<Solid> objects, groups;
+  std::size_t face = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    std::string_view line = text.substr(at, end - at);
+    at = end + 1;
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+    if (line.starts_with("f ") || line.starts_with("f\t")) ++face;
+    if (line.starts_with("o ")) objects.push_back({std::string(line.substr(2)), face});
+    if (line.starts_with("g ")) groups.push_back({std::string(line.substr(2)), face});
+  }
+  std::vector<Solid>& parts = objects.empty() ? groups : objects;
+  if (face != faces || parts.empty()) return {};
+  if (parts.front().first > 0) parts.insert(parts.begin(), {"", 0});
+  std::vector<Solid> filled;  // parts that hold no face are none
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (parts[i].first < (i + 1 < parts.size() ? parts[i + 1].first : faces))
+      filled.push_back(std::move(parts[i]));
+  return filled;
+}
+
 }  // namespace
 
 std::string extension_of(const std::filesystem::path& file) {
@@ -58,12 +82,15 @@ bool cgal_reads(const std::filesystem::path& file) {
 
 ReadAttempt read_with_cgal(const std::filesystem::path& file) {
   const std::string extension = extension_of(file);
-  return attempt([&](Points& points, Polygons& polygons) {
-    std::ifstream in(file, std::ios::binary);
+  const std::string text = text_without_mark(file);
+  ReadAttempt result = attempt([&](Points& points, Polygons& polygons) {
+    std::istringstream in(text);
     if (extension == ".off") return CGAL::IO::read_OFF(in, points, polygons);
     if (extension == ".obj") return CGAL::IO::read_OBJ(in, points, polygons);
     return CGAL::IO::read_PLY(in, points, polygons);
   });
+  if (result.ok() && extension == ".obj") result.soup.solids = obj_parts(text, result.soup.polygons.size());
+  return result;
 }
 
 ReadAttempt read_stl_with_cgal(const std::string& content) {

@@ -6,11 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "bernal/core/error.hpp"
+#include "cad/file_facts.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -23,13 +22,23 @@ class StlGrammar {
  public:
   StlGrammar(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
 
+  /// Where the names of solids stand in the text, and the facets before each.
+  struct Part {
+    std::size_t begin, end, first;
+  };
+
   void check() {
     for (std::string_view word = next(); !word.empty(); word = next()) {
       if (word != "solid") fail("\"solid\"", word);
+      const std::size_t begin = at_;
       skip_line();
+      parts_.push_back({begin, at_, facets_});
       check_solid();
     }
   }
+
+  std::size_t facets() const { return facets_; }
+  const std::vector<Part>& parts() const { return parts_; }
 
  private:
   void check_solid() {
@@ -48,6 +57,7 @@ class StlGrammar {
       }
       expect("endloop");
       expect("endfacet");
+      ++facets_;
     }
   }
 
@@ -86,6 +96,8 @@ class StlGrammar {
   std::string_view text_;
   std::string file_;
   std::size_t at_ = 0;
+  std::size_t facets_ = 0;
+  std::vector<Part> parts_;
   int line_ = 1;
 };
 
@@ -100,32 +112,58 @@ bool begins_as_text(std::string_view content) {
   return word == "solid";
 }
 
+std::string trimmed_name(std::string_view name) {
+  const std::size_t first = name.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return std::string(name.substr(first, name.find_last_not_of(" \t\r") - first + 1));
+}
+
+StlFile checked_text(const std::string& written, const std::string& file) {
+  StlFile stl{false, written};
+  std::transform(stl.content.begin(), stl.content.end(), stl.content.begin(), lower_without_tab);
+  StlGrammar grammar(stl.content, file);
+  grammar.check();
+  stl.facets = grammar.facets();
+  for (const auto& [begin, end, first] : grammar.parts())
+    stl.solids.push_back({trimmed_name(std::string_view(written).substr(begin, end - begin)), first});
+  if (stl.solids.size() == 1 && stl.solids.front().name.empty()) stl.solids.clear();
+  return stl;
+}
+
 }  // namespace
 
 StlFile read_stl_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  StlFile stl{false, std::string(std::istreambuf_iterator<char>(in), {})};
+  StlFile stl{true, text_without_mark(file)};
 
   std::uint32_t triangles = 0;
   const std::size_t size = stl.content.size();
   if (size >= binary_header) std::memcpy(&triangles, stl.content.data() + binary_header - 4, 4);
   const std::size_t promised = binary_header + binary_triangle * std::size_t{triangles};
-  stl.binary = size >= binary_header && size == promised;
-  if (stl.binary) return stl;
+  stl.facets = triangles;
+  if (size >= binary_header && size == promised) return stl;
+  if (begins_as_text(stl.content)) return checked_text(stl.content, file.string());
 
-  if (!begins_as_text(stl.content)) {
-    const std::string message =
-        size < binary_header
-            ? fmt::format("not an STL file: {} bytes, neither text nor a binary header", size)
-            : fmt::format(
-                  "{} binary STL: its header promises {} triangles, so {} bytes, but it has {}; "
-                  "export the file again",
-                  size < promised ? "truncated" : "malformed", triangles, promised, size);
-    throw Error(ErrorCode::bad_mesh, message, {file.string()});
+  const std::size_t behind = size > promised ? size - promised : 0;
+  if (size >= binary_header && triangles > 0 && behind % binary_triangle != 0) {
+    stl.content.resize(promised);
+    stl.notes.push_back(fmt::format("{} bytes after the last triangle are ignored", behind));
+    return stl;
   }
-  std::transform(stl.content.begin(), stl.content.end(), stl.content.begin(), lower_without_tab);
-  StlGrammar(stl.content, file.string()).check();
-  return stl;
+  const std::string message =
+      size < binary_header
+          ? fmt::format("not an STL file: {} bytes, neither text nor a binary header", size)
+          : fmt::format(
+                "{} binary STL: its header promises {} triangles, so {} bytes, but it has {}; "
+                "export the file again",
+                size < promised ? "truncated" : "malformed", triangles, promised, size);
+  throw Error(ErrorCode::bad_mesh, message, {file.string()});
+}
+
+void tell_parts(const StlFile& stl, ReadAttempt& attempt) {
+  if (!attempt.ok()) return;
+  attempt.facts.notes.insert(attempt.facts.notes.end(), stl.notes.begin(), stl.notes.end());
+  attempt.soup.solids.clear();
+  if (attempt.soup.polygons.size() == stl.facets) attempt.soup.solids = stl.solids;
 }
 
 }  // namespace bernal::cad

@@ -2,6 +2,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
+
+#include "cad/polygon_soup.hpp"
 
 namespace bernal::cad {
 
@@ -12,6 +15,9 @@ struct StlFile {
   /// As the readers want it: the file's bytes if binary; else in lower case and without tabs, because upper
   /// case is refused by assimp and CGAL, and CGAL takes "solid<tab>" for a binary file.
   std::string content;
+  std::size_t facets = 0;
+  std::vector<Solid> solids = {};       ///< of a text file, their names as written
+  std::vector<std::string> notes = {};  ///< what was left out
 };
 
 /// Reads and checks an STL file. Throws Error{bad_mesh} with the line (text) or the sizes (binary) where it
@@ -19,6 +25,11 @@ struct StlFile {
 ///
 /// Text grammar, white space free: {"solid" [name] {"facet normal" 3 words "outer loop" 3 × ("vertex" 3
 /// numbers) "endloop" "endfacet"} "endsolid" [name]}, names up to the end of their line.
+///
+/// A binary file may go on behind its last triangle, as long as no triangle would fit there exactly.
 StlFile read_stl_file(const std::filesystem::path& file);
+
+/// Gives the solids and notes of the file to what a reader made of its content, if that has all facets.
+void tell_parts(const StlFile& stl, ReadAttempt& attempt);
 
 }  // namespace bernal::cad

@@ -101,9 +101,10 @@ Place place_of(const fs::path& below_root) {
 /// Why the include is forbidden, or "".
 std::string objection(const Include& include, const Place& place, const fs::path& folder, const Rule& rule,
                       const std::map<std::string, Rule>& rules) {
-  const bool reads_cad_library = include.path.starts_with("CGAL/") || include.path.starts_with("assimp/");
+  const bool reads_cad_library = include.path.starts_with("CGAL/") || include.path.starts_with("assimp/") ||
+                                 include.path.ends_with(".hxx");
   if (reads_cad_library && (place.room != "cad" || place.is_header))
-    return include.path + ": CGAL and assimp belong to src/cad/*.cpp";
+    return include.path + ": CGAL, assimp and OpenCASCADE belong to src/cad/*.cpp";
 
   const bool of_public = include.path.starts_with("bernal/");
   if (!of_public && !include.quoted) return "";  // the standard library and third parties
@@ -114,8 +115,8 @@ std::string objection(const Include& include, const Place& place, const fs::path
   if (place.room == "apps") return "";
   if (include.path == "bernal/version.hpp") return "";  // stands above the rooms
   const std::vector<std::string> parts = split(include.path.substr(of_public ? 7 : 0), '/');
-  if (parts.size() != 2 || !rules.contains(parts[0])) return include.path + ": names no room";
-  const std::string &room = parts[0], &header = parts[1];
+  if (parts.size() < 2 || !rules.contains(parts[0])) return include.path + ": names no room";
+  const std::string &room = parts[0], &header = parts.back();
   if (room == place.room || rule.public_headers_only || rule.rooms.contains(room)) return "";
   const auto some = rule.files.find(room);
   if (some != rule.files.end() && some->second.contains(header)) return "";

@@ -1,10 +1,9 @@
-#ifdef BERNAL_WITH_OPENCASCADE
-
-#include "cad/tessellate_with_opencascade.hpp"
+#include "cad/opencascade/tessellate.hpp"
 
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
+#include <ElSLib.hxx>
 #include <IMeshTools_Parameters.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
@@ -96,10 +95,38 @@ class Stitcher {
 
 Vector<3> vector_of(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
 
-/// From p to the surface's point nearest to it, by Gauss-Newton from parameters nearby. Any point of the
-/// surface bounds the distance, so the nearest of the iterates is taken.
+/// The parameters nearest to p, in closed form; false where the surface has none.
+bool nearest_parameters(const BRepAdaptor_Surface& surface, const gp_Pnt& p, gp_XY& at) {
+  double u = 0, v = 0;
+  switch (surface.GetType()) {
+    case GeomAbs_Plane:
+      ElSLib::Parameters(surface.Plane(), p, u, v);
+      break;
+    case GeomAbs_Cylinder:
+      ElSLib::Parameters(surface.Cylinder(), p, u, v);
+      break;
+    case GeomAbs_Cone:
+      ElSLib::Parameters(surface.Cone(), p, u, v);
+      break;
+    case GeomAbs_Sphere:
+      ElSLib::Parameters(surface.Sphere(), p, u, v);
+      break;
+    case GeomAbs_Torus:
+      ElSLib::Parameters(surface.Torus(), p, u, v);
+      break;
+    default:
+      return false;
+  }
+  at = {u, v};
+  return true;
+}
+
+/// From p to the surface's point nearest to it, in closed form or by Gauss-Newton from parameters nearby. Any
+/// point of the surface bounds the distance, so the nearest of the iterates is taken.
 Vector<3> offset_of_surface(const BRepAdaptor_Surface& surface, gp_XY at, const Vector<3>& p) {
-  constexpr int steps = 4;
+  constexpr int steps = 6;
+  if (nearest_parameters(surface, {p[0], p[1], p[2]}, at))
+    return vector_of(surface.Value(at.X(), at.Y())) - p;
   Vector<3> best = Vector<3>::Zero();
   for (int k = 0; k < steps; ++k) {
     gp_Pnt point;
@@ -232,7 +259,9 @@ Tessellated append_tessellation(const TopoDS_Shape& shape, double deflection, Po
   for (int k = 0; k < attempts && worst(best) > deflection; ++k) {
     finer *= std::clamp(0.9 * deflection / worst(best), 0.3, 0.9);
     Attempt next = tessellate(shape, finer);
+    const bool better = worst(next) < 0.9 * worst(best);
     if (worst(next) < worst(best)) best = std::move(next);
+    if (!better) break;
   }
   const auto first = static_cast<std::uint32_t>(soup.points.size());
   soup.points.insert(soup.points.end(), best.soup.points.begin(), best.soup.points.end());
@@ -244,5 +273,3 @@ Tessellated append_tessellation(const TopoDS_Shape& shape, double deflection, Po
 }
 
 }  // namespace bernal::cad
-
-#endif

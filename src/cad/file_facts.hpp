@@ -1,0 +1,36 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "cad/polygon_soup.hpp"
+
+namespace bernal::cad {
+
+/// What the text of a Collada document says in its own `asset` (those of its parts do not count): without a
+/// unit it is metre by its specification; the axis stays open where it is not said.
+FileFacts facts_of_collada(std::string_view xml);
+
+/// The unit of an AMF: millimetre by its specification where it is not said.
+FileFacts facts_of_amf(std::string_view xml);
+
+/// The unit of the model in a 3MF, millimetre where it is not said, and the names of its objects by their
+/// ids.
+struct ThreeMfFacts {
+  FileFacts facts;
+  std::map<std::string, std::string> names;
+};
+ThreeMfFacts facts_of_3mf(std::string_view xml);
+
+/// The first entry of a zip archive whose name ends so, whatever the case; empty if there is none.
+std::string zip_entry(const std::filesystem::path& archive, std::string_view ending);
+
+/// The whole file, without the mark of UTF-8 that editors put in front.
+std::string text_without_mark(const std::filesystem::path& file);
+
+/// Why a file is no mesh, and what to do about it, told by its name and its first bytes: native CAD formats,
+/// archives, web pages, pointers of git-lfs. Empty where a reader should try.
+std::string known_not_to_be_a_mesh(const std::filesystem::path& file);
+
+}  // namespace bernal::cad

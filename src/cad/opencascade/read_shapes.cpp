@@ -1,0 +1,344 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <Bnd_Box.hxx>
+#include <IGESCAFControl_Reader.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <ShapeFix_Shape.hxx>
+#include <Standard_Failure.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS_Compound.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <mutex>
+
+#include "cad/opencascade/read_shapes.hpp"
+#include "cad/opencascade/tessellate.hpp"
+
+namespace bernal::cad {
+
+namespace {
+
+constexpr double default_deflection = 1e-3;   // of the diagonal
+constexpr double smallest_deflection = 1e-5;  // of the diagonal: the mesher takes minutes then
+
+struct NamedShape {
+  TopoDS_Shape shape;
+  std::string name;
+};
+
+/// What a file holds: solids, and the faces that belong to none.
+struct Parts {
+  std::vector<NamedShape> solids;
+  std::vector<TopoDS_Shape> faces;
+  FileFacts facts;
+};
+
+/// OpenCASCADE reports to its messenger and here and there to std::cout. Its readers also share state, so one
+/// reads at a time.
+class Quiet {
+ public:
+  Quiet() : lock_(mutex()), printers_(Message::DefaultMessenger()->Printers()) {
+    Message::DefaultMessenger()->ChangePrinters().Clear();
+    standard_output_ = std::cout.rdbuf(nullptr);
+  }
+  ~Quiet() {
+    std::cout.rdbuf(standard_output_);
+    Message::DefaultMessenger()->ChangePrinters() = printers_;
+  }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+  std::lock_guard<std::mutex> lock_;
+  Message_SequenceOfPrinters printers_;
+  std::streambuf* standard_output_ = nullptr;
+};
+
+std::string name_of(const TDF_Label& label) {
+  opencascade::handle<TDataStd_Name> name;
+  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
+  const TCollection_ExtendedString& text = name->Get();
+  std::string utf8(static_cast<std::size_t>(text.LengthOfCString()) + 1, '\0');
+  Standard_PCharacter begin = utf8.data();
+  utf8.resize(static_cast<std::size_t>(text.ToUTF8CString(begin)));
+  return utf8;
+}
+
+void split(const TopoDS_Shape& shape, const std::string& name, Parts& parts) {
+  for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next())
+    parts.solids.push_back({solid.Current(), name});
+  for (TopExp_Explorer face(shape, TopAbs_FACE, TopAbs_SOLID); face.More(); face.Next())
+    parts.faces.push_back(face.Current());
+}
+
+/// A part as it is placed by the assemblies above it, under the name of its product.
+void collect(const TDF_Label& label, const TopLoc_Location& placement, Parts& parts) {
+  TDF_Label product = label;
+  TopLoc_Location location = placement;
+  if (XCAFDoc_ShapeTool::IsReference(label)) {
+    XCAFDoc_ShapeTool::GetReferredShape(label, product);
+    location = placement * XCAFDoc_ShapeTool::GetLocation(label);
+  }
+  if (XCAFDoc_ShapeTool::IsAssembly(product)) {
+    TDF_LabelSequence components;
+    XCAFDoc_ShapeTool::GetComponents(product, components);
+    for (const TDF_Label& component : components) collect(component, location, parts);
+    return;
+  }
+  split(XCAFDoc_ShapeTool::GetShape(product).Moved(location), name_of(product), parts);
+}
+
+void collect(const opencascade::handle<TDocStd_Document>& document, Parts& parts) {
+  TDF_LabelSequence roots;
+  XCAFDoc_DocumentTool::ShapeTool(document->Main())->GetFreeShapes(roots);
+  for (const TDF_Label& root : roots) collect(root, {}, parts);
+}
+
+opencascade::handle<TDocStd_Document> new_document() {
+  opencascade::handle<TDocStd_Document> document = new TDocStd_Document("BinXCAF");
+  XCAFDoc_DocumentTool::Set(document->Main(), false);
+  return document;
+}
+
+struct KnownUnit {
+  std::string_view step, iges;
+  FileFacts::Length length;
+};
+
+const std::vector<KnownUnit>& known_units() {
+  static const std::vector<KnownUnit> all = {
+      {"millimetre", "mm", {1e-3, "millimetre"}}, {"metre", "m", {1, "metre"}},
+      {"inch", "in", {0.0254, "inch"}},           {"inch", "inch", {0.0254, "inch"}},
+      {"foot", "ft", {0.3048, "foot"}},           {"centimetre", "cm", {1e-2, "centimetre"}},
+      {"micrometre", "um", {1e-6, "micrometre"}}, {"kilometre", "km", {1e3, "kilometre"}},
+      {"mile", "mi", {1609.344, "mile"}},         {"mil", "mil", {2.54e-5, "thousandth of an inch"}},
+      {"", "uin", {2.54e-8, "microinch"}},
+  };
+  return all;
+}
+
+/// "The file is in inch": what is converted to millimetres on the way.
+void note_units(const std::vector<std::string>& names, FileFacts& facts) {
+  facts.unit = FileFacts::Length{1e-3, "millimetre"};
+  std::vector<std::string> said;
+  for (std::string name : names) {
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const KnownUnit& known : known_units())
+      if (name == known.step || name == known.iges) {
+        name = known.length.name;
+        facts.written_in = known.length;
+      }
+    if (!name.empty() && std::find(said.begin(), said.end(), name) == said.end()) said.push_back(name);
+  }
+  if (said.size() != 1) facts.written_in.reset();
+  if (said.empty()) {
+    facts.unit.reset();
+    facts.notes.push_back("the file names no unit of length; OpenCASCADE takes millimetre");
+  } else if (said.size() > 1 || said.front() != "millimetre") {
+    facts.notes.push_back(
+        fmt::format("the file is in {}; OpenCASCADE converts to millimetre", fmt::join(said, " and ")));
+  } else {
+    facts.written_in.reset();
+  }
+}
+
+std::string read_step(const std::filesystem::path& file, Parts& parts) {
+  STEPCAFControl_Reader reader;
+  reader.SetNameMode(true);
+  reader.SetColorMode(false);
+  reader.SetLayerMode(false);
+  reader.SetPropsMode(false);
+  reader.SetSHUOMode(false);
+  reader.SetGDTMode(false);
+  reader.SetMatMode(false);
+  reader.SetViewMode(false);
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return "OpenCASCADE cannot parse it as STEP";
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
+  std::vector<std::string> names;
+  for (const TCollection_AsciiString& name : lengths) names.emplace_back(name.ToCString());
+  note_units(names, parts.facts);
+  auto document = new_document();
+  if (!reader.Transfer(document)) return "OpenCASCADE finds no shape in the STEP file";
+  collect(document, parts);
+  return {};
+}
+
+std::string read_iges(const std::filesystem::path& file, Parts& parts) {
+  IGESCAFControl_Reader reader;
+  reader.SetNameMode(true);
+  reader.SetColorMode(false);
+  reader.SetLayerMode(false);
+  reader.SetReadVisible(true);
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return "OpenCASCADE cannot parse it as IGES";
+  const auto unit = reader.IGESModel()->GlobalSection().UnitName();
+  note_units({unit.IsNull() ? "" : unit->ToCString()}, parts.facts);
+  auto document = new_document();
+  if (!reader.Transfer(document)) return "OpenCASCADE finds no shape in the IGES file";
+  collect(document, parts);
+  return {};
+}
+
+std::string read_brep(const std::filesystem::path& file, Parts& parts) {
+  TopoDS_Shape shape;
+  if (!BRepTools::Read(shape, file.c_str(), BRep_Builder()) || shape.IsNull())
+    return "OpenCASCADE cannot parse it as BREP";
+  BRepTools::Clean(shape);  // of triangles with another deflection
+  split(shape, {}, parts);
+  return {};
+}
+
+TopoDS_Compound together(const Parts& parts) {
+  TopoDS_Compound all;
+  BRep_Builder builder;
+  builder.MakeCompound(all);
+  for (const NamedShape& solid : parts.solids) builder.Add(all, solid.shape);
+  for (const TopoDS_Shape& face : parts.faces) builder.Add(all, face);
+  return all;
+}
+
+double diagonal_of(const TopoDS_Shape& shape) {
+  Bnd_Box box;
+  BRepBndLib::AddClose(shape, box);
+  return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
+}
+
+/// Sews what belongs to no solid, with the least of a few tolerances that leaves no edge free, or the fewest.
+void sew(Parts& parts, double diagonal) {
+  if (parts.faces.empty()) return;
+  TopoDS_Shape best;
+  int best_free = 0;
+  double best_tolerance = 0;
+  for (const double tolerance : {1e-7 * diagonal, 1e-6 * diagonal, 1e-5 * diagonal, 1e-4 * diagonal}) {
+    BRepBuilderAPI_Sewing sewing(tolerance);
+    for (const TopoDS_Shape& face : parts.faces) sewing.Add(face);
+    sewing.Perform();
+    if (sewing.SewedShape().IsNull()) continue;
+    if (best.IsNull() || sewing.NbFreeEdges() < best_free) {
+      best = sewing.SewedShape();
+      best_free = sewing.NbFreeEdges();
+      best_tolerance = tolerance;
+    }
+    if (best_free == 0) break;
+  }
+  if (best.IsNull()) return;
+  const std::string left =
+      best_free == 0 ? std::string("no edge is left open") : fmt::format("{} edges are left open", best_free);
+  parts.facts.notes.push_back(
+      fmt::format("{} surfaces that belong to no solid were sewn with a tolerance of {:.2g}{}; {}",
+                  parts.faces.size(), best_tolerance, parts.facts.unit ? " mm" : "", left));
+  for (TopExp_Explorer shell(best, TopAbs_SHELL); shell.More(); shell.Next())
+    parts.solids.push_back({shell.Current(), {}});
+  for (TopExp_Explorer face(best, TopAbs_FACE, TopAbs_SHELL); face.More(); face.Next())
+    parts.solids.push_back({face.Current(), {}});
+}
+
+void heal(Parts& parts) {
+  std::size_t healed = 0;
+  for (NamedShape& solid : parts.solids) {
+    if (BRepCheck_Analyzer(solid.shape).IsValid()) continue;
+    ShapeFix_Shape fix(solid.shape);
+    if (!fix.Perform() || fix.Shape().IsNull()) continue;
+    solid.shape = fix.Shape();
+    ++healed;
+  }
+  if (healed > 0)
+    parts.facts.notes.push_back(
+        fmt::format("{} of {} solids were healed by OpenCASCADE", healed, parts.solids.size()));
+}
+
+void tessellate(const Parts& parts, double deflection, ReadAttempt& result) {
+  std::size_t untriangulated = 0, without_area = 0;
+  SurfaceDeviation deviation;
+  for (const NamedShape& solid : parts.solids) {
+    const std::size_t first = result.soup.polygons.size();
+    const Tessellated made = append_tessellation(solid.shape, deflection, result.soup);
+    if (result.soup.polygons.size() > first) result.soup.solids.push_back({solid.name, first});
+    deviation.outside = std::max(deviation.outside, made.deviation.outside);
+    deviation.inside = std::max(deviation.inside, made.deviation.inside);
+    untriangulated += made.untriangulated;
+    without_area += made.without_area;
+  }
+  result.facts.deflection = deflection;
+  result.facts.deviation = deviation;
+  const std::string_view unit = result.facts.unit ? " mm" : "";
+  result.facts.notes.push_back(
+      fmt::format("tessellated with a deflection of {:.3g}{}: the surface of the file lies up to {:.3g}{} "
+                  "outside and {:.3g}{} "
+                  "inside of the triangles, measured at 15 points of each",
+                  deflection, unit, deviation.outside, unit, deviation.inside, unit));
+  if (untriangulated > 0)
+    result.facts.notes.push_back(
+        fmt::format("{} faces could not be triangulated and are missing", untriangulated));
+  if (without_area > 0)
+    result.facts.notes.push_back(fmt::format("{} faces without area were dropped", without_area));
+}
+
+ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double deflection) {
+  ReadAttempt result;
+  Parts parts;
+  result.failure = format == ShapeFormat::step   ? read_step(file, parts)
+                   : format == ShapeFormat::iges ? read_iges(file, parts)
+                                                 : read_brep(file, parts);
+  if (!result.ok()) return result;
+
+  const double diagonal = diagonal_of(together(parts));
+  if (parts.solids.empty() && parts.faces.empty()) {
+    result.failure = "holds no solids and no surfaces; export the solid, not curves, sketches or a drawing";
+    return result;
+  }
+  if (!(diagonal > 0) || !std::isfinite(diagonal)) {
+    result.failure = "its surfaces have no extent";
+    return result;
+  }
+  if (!(deflection > 0)) deflection = default_deflection * diagonal;
+  if (deflection < smallest_deflection * diagonal) {
+    result.failure = fmt::format(
+        "a deflection of {:.3g} is less than a hundred-thousandth of the part, which is {:.3g} across; "
+        "choose at least {:.1g}",
+        deflection, diagonal, smallest_deflection * diagonal);
+    return result;
+  }
+  sew(parts, diagonal);
+  heal(parts);
+  result.facts = std::move(parts.facts);
+  tessellate(parts, deflection, result);
+  if (!std::all_of(result.soup.points.begin(), result.soup.points.end(),
+                   [](const Vector<3>& p) { return p.allFinite(); }))
+    result.failure = "a coordinate is not finite";
+  return result;
+}
+
+}  // namespace
+}  // namespace bernal::cad
+
+void bernal_read_shapes(const std::filesystem::path& file, bernal::cad::ShapeFormat format, double deflection,
+                        bernal::cad::ReadAttempt& result) {
+  const bernal::cad::Quiet quiet;
+  try {
+    result = bernal::cad::read(file, format, deflection);
+  } catch (const Standard_Failure& failure) {
+    const std::string_view said = failure.GetMessageString();
+    result.failure = fmt::format("OpenCASCADE gives up: {}", said.empty() ? "no reason given" : said);
+  }
+}

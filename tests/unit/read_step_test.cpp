@@ -1,0 +1,201 @@
+// What OpenCASCADE makes of STEP, IGES and BREP: closed triangles in millimetres, no farther from the true
+// surface than said.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "cad/diagnose_mesh.hpp"
+#include "cad/make_triangles.hpp"
+#include "cad/polygon_soup.hpp"
+#include "support/folder.hpp"
+
+namespace bernal {
+namespace read_step_test {
+
+using cad::PolygonSoup;
+using cad::ReadAttempt;
+
+constexpr double pi = std::numbers::pi;
+
+class ReadStep : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (attempt("frustum.brep", 1).failure.find("without OpenCASCADE") != std::string::npos)
+      GTEST_SKIP() << "built without OpenCASCADE";
+  }
+
+  static ReadAttempt attempt(const std::string& name, double deflection) {
+    return cad::read_with_opencascade(std::filesystem::path(BERNAL_DATA) / "meshes" / name, deflection);
+  }
+
+  static MeshReport diagnosed(const PolygonSoup& soup) {
+    cad::Triangles triangles = cad::make_triangles(soup);
+    return cad::diagnose_mesh(triangles);
+  }
+
+  static MeshReport solid(const PolygonSoup& soup, std::size_t k) {
+    PolygonSoup part{soup.points, {}};
+    const auto at = [&](std::size_t i) {
+      return i < soup.solids.size() ? soup.polygons.begin() + std::ptrdiff_t(soup.solids[i].first)
+                                    : soup.polygons.end();
+    };
+    part.polygons.assign(at(k), at(k + 1));
+    return diagnosed(part);
+  }
+
+  static bool notes(const ReadAttempt& attempt, std::string_view text) {
+    for (const std::string& note : attempt.facts.notes)
+      if (note.find(text) != std::string::npos) return true;
+    return false;
+  }
+};
+
+// Corners of neighbouring faces are shared by index, so that nothing is left to welding.
+TEST_F(ReadStep, ARoundedBlockIsClosedWithoutWelding) {
+  const ReadAttempt block = attempt("block_fillets_bore.step", 0.05);
+  ASSERT_TRUE(block.ok()) << block.failure;
+  EXPECT_EQ(cad::make_triangles(block.soup).welded, 0U);
+  const MeshReport report = diagnosed(block.soup);
+  EXPECT_TRUE(report.usable());
+  EXPECT_EQ(report.genus, 1);
+  EXPECT_EQ(report.orientation, "outward");
+  EXPECT_NEAR(report.bounds.upper[0] - report.bounds.lower[0], 60, 1e-9);
+  ASSERT_EQ(block.soup.solids.size(), 1U);
+  EXPECT_EQ(block.soup.solids[0].first, 0U);
+  ASSERT_TRUE(block.facts.unit.has_value());
+  EXPECT_EQ(block.facts.unit->metres, 1e-3);
+  EXPECT_FALSE(block.facts.written_in.has_value());
+}
+
+// A frustum's volume is known, its surface curves one way and outwards: chords lie inside of it, by no more
+// than the deflection, and by nearly that.
+TEST_F(ReadStep, VolumesConvergeWithTheDeflection) {
+  const double volume = pi * 20 / 3 * (25 + 50 + 100);
+  double last_missing = volume;
+  for (const double deflection : {1.0, 0.1, 0.01}) {
+    const ReadAttempt frustum = attempt("frustum.brep", deflection);
+    ASSERT_TRUE(frustum.ok()) << frustum.failure;
+    EXPECT_FALSE(frustum.facts.unit.has_value());
+    const MeshReport report = diagnosed(frustum.soup);
+    EXPECT_TRUE(report.usable());
+    const double missing = volume - report.volume;
+    EXPECT_GT(missing, 0);
+    EXPECT_LT(missing, last_missing);
+    EXPECT_LT(missing, deflection * report.area);
+    last_missing = missing;
+
+    ASSERT_TRUE(frustum.facts.deviation.has_value());
+    EXPECT_LE(frustum.facts.deviation->outside, deflection);
+    EXPECT_GT(frustum.facts.deviation->outside, 0.01 * deflection);
+    EXPECT_LE(frustum.facts.deviation->inside, 1e-12);
+  }
+}
+
+// Against the closed form of the cone, at a thousand points of each triangle.
+TEST_F(ReadStep, TheDeviationIsMeasuredRightly) {
+  const ReadAttempt frustum = attempt("frustum.brep", 0.1);
+  const double slant = 1 / std::hypot(1, 0.25);
+  const auto below_cone = [&](const Vector<3>& p) { return slant * (5 + p[2] / 4 - std::hypot(p[0], p[1])); };
+  double deepest = 0;
+  for (const auto& t : frustum.soup.polygons) {
+    const Vector<3>&a = frustum.soup.points[t[0]], &b = frustum.soup.points[t[1]],
+          &c = frustum.soup.points[t[2]];
+    for (const Vector<3>* corner : {&a, &b, &c}) EXPECT_LT(std::abs(below_cone(*corner)), 1e-12);
+    if (a[2] == b[2] && b[2] == c[2]) continue;  // the flat ends
+    constexpr int fineness = 44;
+    for (int i = 0; i <= fineness; ++i) {
+      for (int j = 0; i + j <= fineness; ++j) {
+        const Vector<3> p = (a * i + b * j + c * (fineness - i - j)) / fineness;
+        deepest = std::max(deepest, below_cone(p));
+      }
+    }
+  }
+  EXPECT_GT(deepest, 0.01);
+  EXPECT_NEAR(frustum.facts.deviation->outside, deepest, 0.03 * deepest);
+}
+
+TEST_F(ReadStep, AnAssemblyInInchIsPlacedNamedAndConverted) {
+  const ReadAttempt assembly = attempt("assembly_inch.step", 0.02);
+  ASSERT_TRUE(assembly.ok()) << assembly.failure;
+  ASSERT_TRUE(assembly.facts.unit.has_value());
+  EXPECT_EQ(assembly.facts.unit->metres, 1e-3);
+  ASSERT_TRUE(assembly.facts.written_in.has_value());
+  EXPECT_EQ(assembly.facts.written_in->metres, 0.0254);
+  EXPECT_TRUE(notes(assembly, "the file is in inch"));
+  EXPECT_TRUE(notes(assembly, "tessellated with a deflection of 0.02 mm"));
+
+  const PolygonSoup& soup = assembly.soup;
+  ASSERT_EQ(soup.solids.size(), 3U);
+  EXPECT_EQ(soup.solids[0].name, "drum");
+  EXPECT_EQ(soup.solids[1].name, "drum");
+  EXPECT_EQ(soup.solids[2].name, "ball");
+  const double inch = 25.4, drum = 2 * pi * std::pow(inch, 3), ball = pi / 6 * std::pow(inch, 3);
+  EXPECT_NEAR(solid(soup, 0).volume, drum, 0.02 * solid(soup, 0).area);
+  EXPECT_NEAR(solid(soup, 1).volume, drum, 0.02 * solid(soup, 1).area);
+  EXPECT_NEAR(solid(soup, 2).volume, ball, 0.02 * solid(soup, 2).area);
+  const Bounds<3> standing = solid(soup, 0).bounds, lying = solid(soup, 1).bounds,
+                  above = solid(soup, 2).bounds;
+  EXPECT_NEAR(standing.upper[2], 2 * inch, 1e-9);
+  EXPECT_NEAR(lying.lower[1], -2 * inch, 1e-9);
+  EXPECT_NEAR(lying.upper[1], 0, 1e-9);
+  EXPECT_NEAR(0.5 * (lying.lower[0] + lying.upper[0]), 5 * inch, 0.02);
+  EXPECT_NEAR(above.upper[2], 4.5 * inch, 0.02);
+}
+
+TEST_F(ReadStep, LooseSurfacesOfIgesAreSewn) {
+  const ReadAttempt drum = attempt("drum_inch.igs", 0.01);
+  ASSERT_TRUE(drum.ok()) << drum.failure;
+  EXPECT_TRUE(notes(drum, "the file is in inch"));
+  EXPECT_TRUE(notes(drum, "3 surfaces that belong to no solid were sewn"));
+  EXPECT_TRUE(notes(drum, "no edge is left open"));
+  const MeshReport report = diagnosed(drum.soup);
+  EXPECT_TRUE(report.usable());
+  EXPECT_NEAR(report.volume, pi * 100 * 20, 0.01 * report.area);
+}
+
+TEST_F(ReadStep, AMissingFaceIsSaidAndStaysOpen) {
+  const ReadAttempt box = attempt("open_box_inch.igs", 0);
+  ASSERT_TRUE(box.ok()) << box.failure;
+  EXPECT_TRUE(notes(box, "4 edges are left open"));
+  EXPECT_EQ(diagnosed(box.soup).open_edges, 4U);
+}
+
+TEST_F(ReadStep, WithoutADeflectionItIsAThousandthOfTheDiagonal) {
+  const ReadAttempt block = attempt("block_fillets_bore.step", 0);
+  ASSERT_TRUE(block.facts.deflection.has_value());
+  EXPECT_NEAR(*block.facts.deflection, 1e-3 * std::sqrt(60 * 60 + 40 * 40 + 20 * 20), 1e-4);
+  EXPECT_NE(attempt("block_fillets_bore.step", 1e-5).failure.find("choose at least"), std::string::npos);
+}
+
+TEST_F(ReadStep, WhatIsNoStepIsRefusedInSilence) {
+  const bernal::testing::Folder folder;
+  const std::string whole =
+      bernal::testing::text_of(std::filesystem::path(BERNAL_DATA) / "meshes/assembly_inch.step");
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  for (const auto& [name, content] :
+       {std::pair<std::string, std::string>{"text.step", "this is no STEP"},
+        {"text.iges", "this is no IGES"},
+        {"text.brep", "this is no BREP"},
+        {"cut.step", whole.substr(0, whole.size() / 4)},
+        {"head.step", whole.substr(0, whole.find("DATA;")) + "DATA;\nENDSEC;\nEND-ISO-10303-21;\n"}}) {
+    const ReadAttempt read = cad::read_with_opencascade(folder.write(name, content), 0);
+    EXPECT_FALSE(read.ok()) << name;
+    EXPECT_EQ(read.failure.find('\n'), std::string::npos) << read.failure;
+  }
+  EXPECT_TRUE(attempt("assembly_inch.step", 1).ok());
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(ReadStep, ExtensionsInAnyCase) {
+  for (const char* name : {"a.step", "a.STP", "a.Iges", "a.igs", "a.BREP", "a.brp"})
+    EXPECT_TRUE(cad::opencascade_reads(name)) << name;
+  EXPECT_FALSE(cad::opencascade_reads("a.stl"));
+}
+
+}  // namespace read_step_test
+}  // namespace bernal
