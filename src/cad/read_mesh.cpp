@@ -248,8 +248,13 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
 
   ImportedMesh result;
   std::vector<std::string> done;
-  const bool by_piece = chosen.soup.solids.empty();
-  for (const cad::Solid& solid : chosen.soup.solids) result.report.solids.push_back(solid.name);
+  // A file of one part says no more than that it is whole.
+  const auto& parts = chosen.soup.solids;
+  const bool is_whole = parts.size() == 1 && options.solids == std::vector{parts.front().name};
+  const bool by_piece = parts.size() < 2 && !is_whole;
+  for (const cad::Solid& solid : parts)
+    if (parts.size() > 1 || !(solid.name.empty() || solid.name.starts_with('<')))
+      result.report.solids.push_back(solid.name);
   if (!options.solids.empty() && !by_piece) keep_solids(chosen.soup, options);
   cad::Triangles triangles = cad::make_triangles(chosen.soup);
   chosen.soup = {};

@@ -125,7 +125,7 @@ class FileUnits : public ::testing::Test {
 
   std::string refusal(std::string_view name, std::string_view content) {
     try {
-      read_mesh(folder.write(name, content));
+      read_mesh({.file = folder.write(name, content)});
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::bad_mesh);
       return std::string(error.what()).substr((folder / name).string().size());
@@ -304,8 +304,8 @@ TEST_F(FileUnits, AMarkOfUtf8InFrontIsNoMatter) {
                                       {"box.obj", as_obj(box)},
                                       {"box.stl", as_text_stl(box)},
                                       {"tetrahedron.ply", ply}}) {
-    const MeshReport plain = read_mesh(folder.write(name, content)).report;
-    const MeshReport marked = read_mesh(folder.write(name, "\xEF\xBB\xBF" + content)).report;
+    const MeshReport plain = read_mesh({.file = folder.write(name, content)}).report;
+    const MeshReport marked = read_mesh({.file = folder.write(name, "\xEF\xBB\xBF" + content)}).report;
     EXPECT_TRUE(marked.usable()) << name;
     EXPECT_EQ(marked.volume, plain.volume) << name;
     EXPECT_EQ(marked.reader, plain.reader) << name;
@@ -317,7 +317,7 @@ TEST_F(FileUnits, BytesBehindABinaryStlAreIgnoredAndSaid) {
   const cad::StlFile stl = cad::read_stl_file(folder.write("long.stl", whole + "twelve bytes"));
   EXPECT_TRUE(stl.binary);
   EXPECT_EQ(stl.notes, Names{"12 bytes after the last triangle are ignored"});
-  EXPECT_NEAR(read_mesh(folder / "long.stl").report.volume, 6, 1e-12);
+  EXPECT_NEAR(read_mesh({.file = folder / "long.stl"}).report.volume, 6, 1e-12);
   // Where whole triangles would fit, the header is what is wrong.
   EXPECT_NE(refusal("more.stl", whole + std::string(100, ' ')).find("malformed binary STL"),
             std::string::npos);

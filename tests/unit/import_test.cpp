@@ -258,7 +258,7 @@ TEST_F(Import, EdgesAreSplitAtTheirNeighboursCorners) {
 TEST_F(Import, FacesWithoutAreaAndDoubledFacesAreDropped) {
   Mesh part = box_mesh({0, 0, 0}, {1, 1, 1});
   // The middle of one edge, and a face of three corners on that edge.
-  const auto& [a, b, c] = part.triangles[0];
+  const auto [a, b, c] = part.triangles[0];
   part.vertices.push_back((part.vertices[a] + part.vertices[b]) / 2);
   const auto middle = index(part.vertices.size() - 1);
   part.triangles.push_back({a, middle, b});
@@ -268,7 +268,7 @@ TEST_F(Import, FacesWithoutAreaAndDoubledFacesAreDropped) {
   EXPECT_NEAR(volume(file(part)), 1, 1e-14);
 
   Mesh doubled = box_mesh({0, 0, 0}, {1, 1, 1});
-  const auto& [i, j, k] = doubled.triangles[3];
+  const auto [i, j, k] = doubled.triangles[3];
   doubled.triangles.push_back({i, k, j});
   EXPECT_NEAR(volume(file(doubled)), 1, 1e-14);
 }

@@ -320,7 +320,7 @@ TEST(RepairCrossings, CutsOutWhereAPartCrossesItself) {
 }
 
 TEST(RepairCrossings, RepairsAPartOfSomebodyElse) {
-  const Mesh part = read_mesh(std::filesystem::path(BERNAL_DATA) / "meshes/openscad_bad_tardis.stl").mesh;
+  const Mesh part = read_mesh({.file = BERNAL_DATA "/meshes/openscad_bad_tardis.stl"}).mesh;
   ASSERT_EQ(count_self_intersections(part), 6U);
   const Mended mended = cut_out_crossings(part);
   expect_sound(mended);
