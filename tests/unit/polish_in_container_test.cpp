@@ -64,7 +64,7 @@ TEST(PolishInContainer, LeavesTheSpheresAsTheyWereWhenCancelled) {
   bool polishing = false;
   RunOptions options;
   options.monitor.on_progress = [&](const Progress& progress) {
-    polishing = polishing || progress.stage == "polish";
+    polishing = polishing || progress.activity == "polish";
   };
   options.monitor.cancelled = [&] { return polishing; };
   const Packing packing =
