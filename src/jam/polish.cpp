@@ -22,8 +22,9 @@ constexpr double fall_of_pressure = 0.1, rise_of_pressure = 1000;
 constexpr double gentlest_start = 1e-4, hardest_start = 0.1;
 /// Where spheres come loose: they have some way to go before they hold each other, and steps are as long as
 /// overlaps are large.
-constexpr double loose_start = 3e-4;
-constexpr int most_climbs = 4;
+constexpr double loose_start = 1e-3;
+constexpr int most_steps_when_loose = 2000;
+constexpr int most_climbs = 2;
 constexpr std::size_t solved_closely = 3000;
 constexpr double close_balance = 1e-5, loose_balance = 1e-3;
 constexpr int most_steps_a_level = 500;
@@ -45,8 +46,9 @@ struct Task {
   double slenderness;             ///< longest edge over smallest radius
   int symmetries;                 ///< motions of all spheres together that the walls do not feel
   double start = gentlest_start;  ///< overlap ratio at the first level, at least
-  int most_climbs = 0;            ///< how often it may go back to a larger load
-  double least_scale = 0;         ///< of the box: it gives up before it is smaller
+  int most_steps = most_steps_a_level;
+  int most_climbs = 0;     ///< how often it may go back to a larger load
+  double least_scale = 0;  ///< of the box: it gives up before it is smaller
   const Monitor& monitor;
   std::function<void(double done, double largest_overlap)> report;
 };
@@ -180,7 +182,7 @@ class Polish {
     TrustRegion region(soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap), level.forcing,
                        task_.monitor);
     for (int step = 0;; ++step) {
-      if (step == most_steps_a_level) {
+      if (step == task_.most_steps) {
         unfinished_ = true;
         break;
       }
@@ -281,6 +283,7 @@ Jammed polish_in_container(const Spheres<3>& spheres, const Container& container
                  .slenderness = extent.maxCoeff() / std::ranges::min(spheres.r),
                  .symmetries = symmetries,
                  .start = loose_start,
+                 .most_steps = most_steps_when_loose,
                  .most_climbs = most_climbs,
                  .least_scale = 1 / Jammed::most_growth,
                  .monitor = monitor,
