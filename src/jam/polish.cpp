@@ -183,7 +183,7 @@ class Polish {
                        task_.monitor);
     for (int step = 0;; ++step) {
       if (step == task_.most_steps) {
-        unfinished_ = true;
+        unfinished_ = unfinished_ || imbalance_ > loose_balance;
         break;
       }
       imbalance_ = region.gradient_length() / std::sqrt(2 * soft_.elastic_energy());
@@ -239,7 +239,7 @@ class Polish {
   double balance_, settled_;
   double start_ = gentlest_start;
   double imbalance_ = 0;
-  bool unfinished_ = false;  // a level had steps left to go
+  bool unfinished_ = false;  // a level ended far from equilibrium
   int climbs_ = 0;
   bool cancelled_ = false;
   std::vector<char> bears_;  // force, by place in soft_
