@@ -27,6 +27,12 @@ struct MeasureCall {
   bool json = false;
 };
 
+/// From which gap on spheres hold each other.
+std::string where_contacts_tell(const Measurements& measured) {
+  if (measured.held_from) return fmt::format("of what holds what from a gap of {:g} on", *measured.held_from);
+  return "of what holds what at none of these gaps";
+}
+
 void print_contacts(const Packing& packing, const Measurements& measured) {
   const Contacts& c = measured.contacts;
   const bool walls = has_walls(packing.domain);
@@ -34,27 +40,31 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
   if (walls) fmt::print(", {} with the wall", grouped(c.walls));
   fmt::print(", at a gap below {:g} of the sum of the radii\n", c.contact_gap);
   fmt::print("coordination      {:.4f}\n", c.coordination);
-  fmt::print("rattlers          {} ({:.2f} %), held by fewer than {} contacts\n", grouped(c.rattlers),
-             packing.spheres.empty()
-                 ? 0.0
-                 : 100.0 * static_cast<double>(c.rattlers) / static_cast<double>(packing.spheres.size()),
-             packing.spheres.dimension() + 1);
-  fmt::print("backbone          {} spheres, {} contacts, coordination {:.4f}\n", grouped(c.backbone),
-             grouped(c.backbone_pairs), c.backbone_coordination);
-  if (c.isostatic) {
-    const double ratio = static_cast<double>(c.backbone_pairs) / static_cast<double>(*c.isostatic);
+  if (measured.holds(c)) {
+    fmt::print("rattlers          {} ({:.2f} %), held by fewer than {} contacts\n", grouped(c.rattlers),
+               100.0 * static_cast<double>(c.rattlers) / static_cast<double>(packing.spheres.size()),
+               packing.spheres.dimension() + 1);
+    fmt::print("backbone          {} spheres, {} contacts, coordination {:.4f}{}\n", grouped(c.backbone),
+               grouped(c.backbone_pairs), c.backbone_coordination,
+               walls ? fmt::format("; {} with the wall", grouped(c.backbone_walls)) : "");
+    const double ratio = static_cast<double>(c.backbone_contacts()) / static_cast<double>(*c.isostatic);
     fmt::print("isostatic         {} contacts would just hold the backbone; there are {:.3g} % {}\n",
                grouped(*c.isostatic), 100 * std::abs(ratio - 1), ratio < 1 ? "fewer" : "more");
   }
+  if (!packing.spheres.empty())
+    fmt::print("contacts tell     {}{}\n", where_contacts_tell(measured),
+               measured.holds(c) ? "" : ", so not at this one; \"polish\" of relax and grow closes them");
 
   fmt::print("\n{:>8} {:>12} {:>13} {:>10} {:>18} {:>13}\n", "gap", "contacts", "coordination", "rattlers",
              "backbone contacts", "of isostatic");
   for (const Contacts& at : measured.by_gap) {
+    const bool holds = measured.holds(at);
     fmt::print("{:>8.0e} {:>12} {:>13.4f} {:>10} {:>18} {:>13}\n", at.contact_gap, grouped(at.pairs),
-               at.coordination, grouped(at.rattlers), grouped(at.backbone_pairs),
-               at.isostatic ? fmt::format("{:.4f}", static_cast<double>(at.backbone_pairs) /
-                                                        static_cast<double>(*at.isostatic))
-                            : "-");
+               at.coordination, holds ? grouped(at.rattlers) : "-",
+               holds ? grouped(at.backbone_contacts()) : "-",
+               holds ? fmt::format("{:.4f}", static_cast<double>(at.backbone_contacts()) /
+                                                 static_cast<double>(*at.isostatic))
+                     : "-");
   }
 }
 
@@ -176,7 +186,10 @@ void print_walls(const Packing& packing, const WallProfile& profile) {
 }
 
 void print_drawn(const DrawnComparison& drawn) {
-  if (drawn.missing == 0)
+  if (drawn.missing == 0 && drawn.scale != 1)
+    fmt::print("drawn sequence    the same sizes, all times {:.9g} and here without that, less its tail",
+               drawn.scale);
+  else if (drawn.missing == 0)
     fmt::print("drawn sequence    the same sizes to the bit, less its tail");
   else
     fmt::print("drawn sequence    {} of as many draws are missing; quantiles differ by up to {:.2g} %",

@@ -115,6 +115,17 @@ bool has_walls(const Domain& domain) {
   return !box || box->has_walls();
 }
 
+int symmetries_of(const Domain& domain) {
+  return std::visit(Overloaded{[](const Box& s) {
+                                 int shifts = 0;
+                                 for (int k = 0; k < s.dimension(); ++k) shifts += s.repeats(k);
+                                 return shifts;
+                               },
+                               [](const Cylinder& s) { return s.periodic ? 2 : 1; },
+                               [](const Sphere&) { return 3; }, [](const Mesh&) { return 0; }},
+                    domain);
+}
+
 bool is_periodic(const Domain& domain) {
   return std::visit(
       Overloaded{[](const Box& s) { return s.repeats(); }, [](const Cylinder& s) { return s.periodic; },

@@ -96,8 +96,6 @@ void start(Spheres<D>& spheres, Vector<D>& edges, Work& work, double phi_init) {
 
 template <int D>
 StageEnd grow_in(Work& work, const Grow& options) {
-  if (options.polish > 0 && !work.walls.empty())
-    throw Error(ErrorCode::bad_scene, "\"polish\" knows no walls; leave it out");
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
   start<D>(spheres, edges, work, options.phi_init.value_or(loose_start[D - 2]));
@@ -183,71 +181,75 @@ const StageEntry& entry_of<Grow>() {
   const PlanItem insertion{"insertion", "random places at the start, the largest first", "O(1) a trial"};
   const PlanItem collisions{"collisions", "of growing spheres, from a calendar of events", "0.5 to 0.8 µs"};
   const PlanItem reflections{"reflections", "of growing spheres from the walls", "0.5 to 0.8 µs"};
-  static const StageEntry entry = {
-      .table = stage_table<Grow>(
-          {.name = "grow",
-           .help = "hard spheres fly, collide and grow, in convex containers to their radii, in periodic "
-                   "boxes of 2 to 6 dimensions until they jam",
-           .keys = joined(
-               {number(
-                    &Grow::delta, "delta",
-                    "as published: growth of the radii, relative to those at the start, in the time that a "
-                    "sphere of thermal speed takes across the box, or for the cube root of the "
-                    "container's volume; if absent see rate",
-                    above(0, 100)),
-                number(&Grow::phi_init, "phi_init",
-                       "packing fraction of the random insertion at the start, in a container half of it "
-                       "where spheres find no places; if absent 0.2, in other than three dimensions half of "
-                       "what insertion reaches",
-                       above(0, 0.5)),
-                number(&Grow::rate, "rate",
-                       "growth of the mean diameter by volume over the thermal speed where the packing "
-                       "forms; slower is denser; ten times that while the spheres are a fluid",
-                       {1e-6, 1}),
-                number(&Grow::pressure, "pressure",
-                       "compressibility factor P V / N k T at which the spheres count as jammed", {10, 1e13}),
-                word(&Grow::masses, "masses",
-                     "equal, as published; volume: as of one material, which packs denser where sizes differ "
-                     "several times, if the rate is low",
-                     {"equal", "volume"})},
-               acting(Acts::in_box,
-                      {number(&Grow::polish, "polish",
-                              "close the gaps and overlaps of all contacts to this ratio; 0: do not",
-                              {0, 0.5})})),
-           .complete = completion(complete_grow)},
-          {.in_bed = true,
-           .in_box = true,
-           .box_between_walls = true,
-           .least_dimension = 2,
-           .most_dimensions = 6,
-           .keeps_sizes = true,
-           .places_expected = true,
-           .reaches = Reaches::close_packing}),
-      .act_in_bed = act(grow_in_container),
-      .act_in_box = act(grow),
-      .bed_effects = {insertion,
-                      {"neighbour shells", "each sphere renews its own list, and that of its walls",
-                       "about 1 µs"},
-                      collisions,
-                      reflections,
-                      {"growth",
-                       "until the spheres have their radii; what jams before loses the last of the drawn "
-                       "sequence",
-                       "some 2,000 collisions a sphere"}},
-      .box_effects = {insertion,
-                      {"neighbour shells", "each sphere renews its own list", "about 1 µs"},
-                      collisions,
-                      reflections,
-                      {"growth", "until the spheres jam", "some 2,000 collisions a sphere"}},
-      .chosen_effects =
-          [](const void*, const FillTask& task) {
-            auto effects = entry_of<Grow>().box_effects;
-            if (!task.has_walls)
-              std::erase_if(effects, [](const PlanItem& e) { return e.name == "reflections"; });
-            return effects;
-          },
-      .require = [](const Domain& container,
-                    double smallest_radius) { walls_for_growth(container, smallest_radius); }};
+  static const StageEntry entry =
+      {.table = stage_table<Grow>(
+           {.name = "grow",
+            .help = "hard spheres fly, collide and grow, in convex containers to their radii, in periodic "
+                    "boxes of 2 to 6 dimensions until they jam",
+            .keys =
+                {number(
+                     &Grow::delta, "delta",
+                     "as published: growth of the radii, relative to those at the start, in the time that a "
+                     "sphere of thermal speed takes across the box, or for the cube root of the "
+                     "container's volume; if absent see rate",
+                     above(0, 100)),
+                 number(&Grow::phi_init, "phi_init",
+                        "packing fraction of the random insertion at the start, in a container half of it "
+                        "where spheres find no places; if absent 0.2, in other than three dimensions half of "
+                        "what insertion reaches",
+                        above(0, 0.5)),
+                 number(&Grow::rate, "rate",
+                        "growth of the mean diameter by volume over the thermal speed where the packing "
+                        "forms; slower is denser; ten times that while the spheres are a fluid",
+                        {1e-6, 1}),
+                 number(&Grow::pressure, "pressure",
+                        "compressibility factor P V / N k T at which the spheres count as jammed",
+                        {10, 1e13}),
+                 word(&Grow::masses, "masses",
+                      "equal, as published; volume: as of one material, which packs denser where sizes "
+                      "differ "
+                      "several times, if the rate is low",
+                      {"equal", "volume"}),
+                 number(
+                     &Grow::polish, "polish",
+                     "close the gaps and overlaps of all contacts to this ratio, and no more contacts than "
+                     "hold the spheres; in a container all sizes grow for that by one factor, which the "
+                     "report states; 0: do not",
+                     {0, 0.5})},
+            .complete = completion(complete_grow)},
+           {.in_bed = true,
+            .in_box = true,
+            .box_between_walls = true,
+            .least_dimension = 2,
+            .most_dimensions = 6,
+            .keeps_sizes = true,
+            .places_expected = true,
+            .reaches = Reaches::close_packing}),
+       .act_in_bed = act(grow_in_container),
+       .act_in_box = act(grow),
+       .bed_effects = {insertion,
+                       {"neighbour shells", "each sphere renews its own list, and that of its walls",
+                        "about 1 µs"},
+                       collisions,
+                       reflections,
+                       {"growth",
+                        "until the spheres have their radii; what jams before loses the last of the drawn "
+                        "sequence",
+                        "some 2,000 collisions a sphere"}},
+       .box_effects = {insertion,
+                       {"neighbour shells", "each sphere renews its own list", "about 1 µs"},
+                       collisions,
+                       reflections,
+                       {"growth", "until the spheres jam", "some 2,000 collisions a sphere"}},
+       .chosen_effects =
+           [](const void*, const FillTask& task) {
+             auto effects = entry_of<Grow>().box_effects;
+             if (!task.has_walls)
+               std::erase_if(effects, [](const PlanItem& e) { return e.name == "reflections"; });
+             return effects;
+           },
+       .require = [](const Domain& container,
+                     double smallest_radius) { walls_for_growth(container, smallest_radius); }};
   return entry;
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "hard/convex_walls.hpp"
+#include "jam/polish.hpp"
 #include "work/random_insertion.hpp"
 #include "work/work.hpp"
 
@@ -178,6 +179,9 @@ std::vector<Wall<3>> walls_for_growth(const Domain& shape, double smallest_radiu
   return convex_walls(shape, flatness * smallest_radius);
 }
 
-StageEnd grow_in_container(Work& work, const Grow& options) { return Growth(work, options).run(); }
+StageEnd grow_in_container(Work& work, const Grow& options) {
+  const StageEnd end = Growth(work, options).run();
+  return finish_in_bed(end, options.polish, work);
+}
 
 }  // namespace bernal

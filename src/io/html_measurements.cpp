@@ -11,12 +11,12 @@
 namespace bernal {
 namespace {
 
-void write_backbone(Page& page, const Contacts& c) {
+void write_backbone(Page& page, const Contacts& c, bool walls) {
   page.row("backbone", grouped(c.backbone), "spheres that are no rattlers");
-  page.row("contacts of the backbone", grouped(c.backbone_pairs),
-           fmt::format("a coordination of {:.3f}", c.backbone_coordination));
-  if (!c.isostatic) return;
-  const double ratio = static_cast<double>(c.backbone_pairs) / static_cast<double>(*c.isostatic);
+  page.row("contacts of the backbone", grouped(c.backbone_contacts()),
+           fmt::format("a coordination of {:.3f}{}", c.backbone_coordination,
+                       walls ? fmt::format("; {} are with the wall", grouped(c.backbone_walls)) : ""));
+  const double ratio = static_cast<double>(c.backbone_contacts()) / static_cast<double>(*c.isostatic);
   page.row("isostatic", grouped(*c.isostatic),
            fmt::format("contacts would just hold the backbone; there are {:.3g} % {}",
                        100 * std::abs(ratio - 1), ratio < 1 ? "fewer" : "more"));
@@ -31,7 +31,8 @@ void write_by_gap(Page& page, const Measurements& measured) {
     page.add(
         "<tr><td>{:.0e}</td><td class=\"n\">{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{}</td><td "
         "class=\"n\">{}</td></tr>\n",
-        c.contact_gap, grouped(c.pairs), c.coordination, grouped(c.rattlers), grouped(c.backbone_pairs));
+        c.contact_gap, grouped(c.pairs), c.coordination, measured.holds(c) ? grouped(c.rattlers) : "–",
+        measured.holds(c) ? grouped(c.backbone_contacts()) : "–");
   }
   page.raw("</table></div>\n");
 }
@@ -125,14 +126,22 @@ void write_contacts(Page& page, const Report& report) {
     page.row("with the wall", grouped(c.walls), "counted once for each face, edge or corner that is touched");
   page.row("coordination", fmt::format("{:.3f}", c.coordination),
            "how many spheres touch a sphere, on average");
-  page.row(
-      "rattlers", grouped(c.rattlers),
-      fmt::format(
-          "spheres that fewer than {} contacts hold, taken out one after the other until none is left{}",
-          report.packing.spheres.dimension() + 1,
-          walls ? "; where nothing is wedged in, as in a bed that was only let settle, that can be nearly all"
-                : ""));
-  if (c.backbone > 0) write_backbone(page, c);
+  const Measurements& measured = report.measured;
+  if (measured.holds(c)) {
+    page.row(
+        "rattlers", grouped(c.rattlers),
+        fmt::format("spheres that fewer than {} contacts hold, taken out one after the other until none is "
+                    "left",
+                    report.packing.spheres.dimension() + 1));
+    write_backbone(page, c, walls);
+  } else if (!report.packing.spheres.empty()) {
+    page.row("rattlers", "–",
+             "they tell nothing at this gap: fewer than half of the spheres hold each other");
+  }
+  if (measured.held_from)
+    page.row("contacts tell from", fmt::format("{:g}", *measured.held_from),
+             "the least gap of those in the table at which half of the spheres hold each other; contacts are "
+             "closed by \"polish\" of relax and grow");
   page.raw("</table></div>\n");
   write_by_gap(page, report.measured);
   page.raw("</div>\n");

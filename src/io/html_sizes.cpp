@@ -108,7 +108,12 @@ void write_comparison(Page& page, const SizeComparison& c, const Sizes& sizes) {
     page.add(", where independent draws have a standard error of {:.2g} %", 100 * c.volume_ratio_error);
   page.raw(".");
   if (c.drawn && c.drawn->missing == 0)
-    page.raw(" The sizes are those of the drawn sequence to the bit, less its tail: none was left out.");
+    page.raw(
+        c.drawn->scale == 1
+            ? " The sizes are those of the drawn sequence to the bit, less its tail: none was left out."
+            : fmt::format(" The sizes are those of the drawn sequence, less its tail, and all of them times "
+                          "{:.9g}, which is left out of this comparison: so the spheres jam.",
+                          c.drawn->scale));
   else if (c.drawn)
     page.add(
         " Of as many draws {} are missing, and other sizes are there instead; in ascending order the sizes "

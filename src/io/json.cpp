@@ -33,7 +33,7 @@ BERNAL_KEYS(BondOrder, all, near_wall, core)
 BERNAL_KEYS(Certificate::Overlap, pair, ratio)
 BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
 BERNAL_KEYS(Chambers::Uncovered, radius, share, error)
-BERNAL_KEYS(DrawnComparison, missing, largest_deviation, above_largest)
+BERNAL_KEYS(DrawnComparison, missing, scale, largest_deviation, above_largest)
 BERNAL_KEYS(Effect, name, calls, seconds)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
 BERNAL_KEYS(SizeComparison::Class, radius, asked_share, count)
@@ -195,6 +195,7 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
                {"phi", measured.packing_fraction},
                domain_json(packing.domain)};
   json.update(measured.contacts);
+  json["held_from_gap"] = measured.held_from;
   json["by_gap"] = measured.by_gap;
   json["g_r"] = measured.radial;
   json["crystalline"] = measured.order;
@@ -219,9 +220,11 @@ std::string json_of(const Report& report) {
                {"dimension", packing.spheres.dimension()},
                {"unit", name_of(packing.scene.unit)},
                {"phi", packing.packing_fraction()},
-               {"expected_phi", packing.expected_packing_fraction}};
+               {"expected_phi", packing.expected_packing_fraction},
+               {"size_scale", packing.size_scale}};
   json.update(report.measured.contacts);
-  json.update({{"crystalline", report.measured.order},
+  json.update({{"held_from_gap", report.measured.held_from},
+               {"crystalline", report.measured.order},
                {"chambers", report.measured.chambers},
                {"walls", report.measured.walls},
                {"sizes", figures_of(report.measured.sizes)},

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <span>
 
 #include <Eigen/Cholesky>
 
@@ -20,6 +22,9 @@ constexpr double widest = 0.1;
 /// Of a sphere's block of the preconditioner: what is added in all directions, in stiffnesses of a contact
 /// with a sphere of its size.
 constexpr double least_stiffness = 1;
+/// Between walls: how far a sphere moves at most at a time, in its radii. Its centre is farther from the
+/// wall.
+constexpr double longest_move = 0.5;
 
 /// Spheres in the order of cells that hold about one each, so that what touches lies close in memory.
 template <int D>
@@ -81,8 +86,9 @@ void invert_positive_definite(double* matrix, int n) {
 }  // namespace
 
 template <int D>
-JammingEnergy<D>::JammingEnergy(const Spheres<D>& spheres, const Vector<D>& edges)
-    : order_(spatial_order(spheres, edges)) {
+JammingEnergy<D>::JammingEnergy(const Spheres<D>& spheres, const Vector<D>& edges,
+                                std::shared_ptr<const Enclosure<D>> enclosure)
+    : order_(spatial_order(spheres, edges)), enclosure_(std::move(enclosure)) {
   state_.centers.resize(static_cast<Eigen::Index>(D * spheres.size()));
   state_.edges = edges;
   for (std::size_t i = 0; i < order_.size(); ++i) {
@@ -128,6 +134,26 @@ void JammingEnergy<D>::find_pairs() {
   width_at_finding_ = width();
   at_finding_ = state_;
   pairs_.find(state_.centers.data(), radius_, state_.edges, width_at_finding_, skin * least_radius_);
+  if (enclosure_) find_walls();
+}
+
+template <int D>
+void JammingEnergy<D>::find_walls() {
+  const auto found = std::make_shared<NearWalls>();
+  std::vector<WallPiece<D>> pieces;
+  for (std::size_t i = 0; i < size(); ++i) {
+    found->first.push_back(static_cast<std::uint32_t>(found->walls.size()));
+    const Vector<D> p = part<D>(state_.centers, i) / state_.scale;
+    pieces.clear();
+    enclosure_->pieces_near(p, ((1 + width_at_finding_) * radius_[i] + skin * least_radius_) / state_.scale,
+                            pieces);
+    for (WallPiece<D>& piece : pieces) {
+      const double distance = view_of<D>(piece, p).distance;
+      found->walls.push_back({std::move(piece), distance});
+    }
+  }
+  found->first.push_back(static_cast<std::uint32_t>(found->walls.size()));
+  near_walls_ = found;
 }
 
 template <int D>
@@ -136,7 +162,52 @@ void JammingEnergy<D>::hold(const std::vector<char>& bears) {
     const double s = radius_[pair.first] + radius_[pair.second];
     return bears[pair.first] && bears[pair.second] && away_of(pair).squaredNorm() < s * s;
   });
+  if (enclosure_) hold_walls(bears);
   held_ = true;
+  evaluate();
+}
+
+/// Of pieces that touch in one place the first stands for all.
+template <int D>
+void JammingEnergy<D>::hold_walls(const std::vector<char>& bears) {
+  const auto held = std::make_shared<NearWalls>();
+  std::vector<Vector<D>> ways;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const std::size_t first = held->walls.size();
+    held->first.push_back(static_cast<std::uint32_t>(first));
+    ways.clear();
+    for (std::uint32_t n = near_walls_->first[i]; n < near_walls_->first[i + 1] && bears[i]; ++n) {
+      const NearWall& near = near_walls_->walls[n];
+      const WallView<D> view = view_of<D>(near.piece, part<D>(state_.centers, i) / state_.scale);
+      if (!(state_.scale * view.distance < radius_[i])) continue;
+      const Vector<D> way = view.distance * view.normal;
+      const auto same = std::ranges::find_if(
+          ways, [&](const Vector<D>& other) { return (way - other).norm() <= enclosure_->same_place(); });
+      if (same != ways.end()) {
+        held->walls[first + static_cast<std::size_t>(same - ways.begin())].weight += 1;
+      } else {
+        ways.push_back(way);
+        held->walls.push_back(near);
+      }
+    }
+  }
+  held->first.push_back(static_cast<std::uint32_t>(held->walls.size()));
+  near_walls_ = held;
+}
+
+template <int D>
+void JammingEnergy<D>::let_go(std::size_t contact) {
+  const std::size_t pairs = pairs_.pairs().size();
+  if (contact < pairs) {
+    pairs_.erase(contact);
+    return evaluate();
+  }
+  const auto fewer = std::make_shared<NearWalls>(*near_walls_);
+  fewer->walls.erase(fewer->walls.begin() + static_cast<std::ptrdiff_t>(contact - pairs));
+  for (std::uint32_t& first : fewer->first)
+    if (first > contact - pairs) --first;
+  near_walls_ = fewer;
+  evaluate();
 }
 
 /// From the second to the first.
@@ -149,6 +220,7 @@ Vector<D> JammingEnergy<D>::away_of(const typename PeriodicPairs<D>::Pair& pair)
 template <int D>
 void JammingEnergy<D>::evaluate() {
   now_.contacts.clear();
+  now_.bends.clear();
   now_.gradient.setZero(unknowns());
   now_.energy = now_.elastic = now_.largest_overlap = 0;
   const double reach = 1 + width();
@@ -158,11 +230,12 @@ void JammingEnergy<D>::evaluate() {
     const double most = reach * (radius_[pair.first] + radius_[pair.second]);
     if (held_ || away.squaredNorm() < most * most) meet(pair.first, pair.second, away);
   }
+  if (enclosure_) meet_walls();
   double virial = 0;
   for (const Contact& c : now_.contacts) {
     const double force = c.tension * c.distance;
     part<D>(now_.gradient, c.first) -= force * c.normal;
-    part<D>(now_.gradient, c.second) += force * c.normal;
+    if (c.is_pair()) part<D>(now_.gradient, c.second) += force * c.normal;
     virial += force * c.distance;
   }
   now_.gradient[unknowns() - 1] = load_ - virial;
@@ -182,22 +255,64 @@ template <int D>
 void JammingEnergy<D>::meet(std::uint32_t first, std::uint32_t second, const Vector<D>& away) {
   const double s = radius_[first] + radius_[second], d = away.norm();
   if (!(d > 0)) return;  // coincident centres push in no direction
-  const double overlap = s - d, k = stiffness_of<D>(s), t = smoothing_ * s;
-  Contact contact{away / d, k, 0, d, first, second};
-  double x = overlap;
+  const double overlap = s - d;
+  const Spring spring = press(s, overlap, stiffness_of<D>(s));
+  now_.contacts.push_back({away / d, spring.stiffness, spring.force / d, d, first, second});
+}
+
+/// A spring of that stiffness where nothing is smoothed. Adds it to the energies.
+template <int D>
+JammingEnergy<D>::Spring JammingEnergy<D>::press(double s, double overlap, double k) {
+  const double t = smoothing_ * s;
+  double x = overlap, stiffness = k;
   if (t > 0) {
     const double range = width() * s, most = smoothed(overlap, t), least = smoothed(-range, t);
     x = most - least;
-    contact.stiffness = k * most * most / (most * most + t * t);
+    stiffness = k * most * most / (most * most + t * t);
     now_.energy += k * (0.5 * (most * most - least * least) + t * t * std::log(most / least) -
                         least * (overlap + range));
   } else {
     now_.energy += 0.5 * k * x * x;
   }
-  contact.tension = k * x / d;
   now_.elastic += 0.5 * k * x * x;
   now_.largest_overlap = std::max(now_.largest_overlap, overlap / s);
-  now_.contacts.push_back(contact);
+  return {k * x, stiffness};
+}
+
+template <int D>
+void JammingEnergy<D>::meet_walls() {
+  const double reach = 1 + width();
+  for (std::uint32_t i = 0; i < size(); ++i) {
+    const std::uint32_t begin = near_walls_->first[i], end = near_walls_->first[i + 1];
+    if (begin == end || is_fixed(i)) continue;
+    const std::size_t first = now_.contacts.size();
+    const Vector<D> p = part<D>(state_.centers, i) / state_.scale;
+    const double moved = (p - part<D>(at_finding_.centers, i) / at_finding_.scale).norm();
+    for (std::uint32_t n = begin; n < end; ++n) {
+      const NearWall& near = near_walls_->walls[n];
+      if (held_ || state_.scale * (near.distance - moved) < reach * radius_[i]) meet_wall(i, p, near, first);
+    }
+  }
+}
+
+/// `first`: the first contact of the sphere with walls.
+template <int D>
+void JammingEnergy<D>::meet_wall(std::uint32_t i, const Vector<D>& p, const NearWall& near,
+                                 std::size_t first) {
+  const WallView<D> view = view_of<D>(near.piece, p);
+  const double s = radius_[i], d = state_.scale * view.distance;
+  if (!(d > 0) || (!held_ && !(d < (1 + width()) * s))) return;
+  const Spring spring = press(s, s - d, 2 * near.weight * stiffness_of<D>(2 * s));
+  for (std::size_t c = first; c < now_.contacts.size() && !held_; ++c) {
+    Contact& other = now_.contacts[c];
+    const Vector<D> apart = other.distance * other.normal - d * view.normal;
+    if (apart.norm() > state_.scale * enclosure_->same_place()) continue;
+    other.stiffness += spring.stiffness;
+    other.tension += spring.force / d;
+    return;
+  }
+  now_.contacts.push_back({view.normal, spring.stiffness, spring.force / d, d, i, wall});
+  now_.bends.push_back(bend_of<D>(near.piece, p, view));
 }
 
 template <int D>
@@ -207,7 +322,8 @@ void JammingEnergy<D>::hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& 
   double* result = out.data();
   const double dilation = v[unknowns() - 1];
   double sum = 0;
-  for (const Contact& c : now_.contacts) {
+  const std::size_t pairs = now_.contacts.size() - now_.bends.size();
+  for (const Contact& c : std::span(now_.contacts).first(pairs)) {
     const double* a = in + D * std::size_t{c.first};
     const double* b = in + D * std::size_t{c.second};
     Vector<D> w;
@@ -226,6 +342,13 @@ void JammingEnergy<D>::hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& 
       to_a[k] += h;
       to_b[k] -= h;
     }
+  }
+  for (std::size_t k = 0; k < now_.bends.size(); ++k) {
+    const Contact& c = now_.contacts[pairs + k];
+    const Vector<D> w = part<D>(v, c.first);
+    const double spring = c.stiffness * (c.normal.dot(w) + dilation * c.distance);
+    sum += spring * c.distance;
+    part<D>(out, c.first) += spring * c.normal - c.tension * (now_.bends[k] * w);
   }
   out[unknowns() - 1] = sum - load_ * dilation;
   still(out);
@@ -246,7 +369,7 @@ void JammingEnergy<D>::factor_preconditioner() {
       for (int l = 0; l < D; ++l) {
         const double stiffness = c.stiffness * c.normal[l] * c.normal[k];
         inverse_blocks_[c.first](l, k) += stiffness;
-        inverse_blocks_[c.second](l, k) += stiffness;
+        if (c.is_pair()) inverse_blocks_[c.second](l, k) += stiffness;
       }
   }
   for (Block& block : inverse_blocks_) invert_positive_definite(block.data(), D);
@@ -266,9 +389,18 @@ double JammingEnergy<D>::move(const Eigen::VectorXd& motion) {
   const double e = motion[unknowns() - 1];
   state_.centers = (1 + e) * (state_.centers + motion.head(unknowns() - 1));
   state_.edges *= 1 + e;
+  state_.scale *= 1 + e;
+  if (enclosure_ && moves_too_far(motion)) return std::numeric_limits<double>::infinity();
   if (!pairs_are_complete()) find_pairs();
   evaluate();
   return now_.energy - before_.energy + load_ * std::log1p(e);
+}
+
+template <int D>
+bool JammingEnergy<D>::moves_too_far(const Eigen::VectorXd& motion) const {
+  for (std::size_t i = 0; i < size(); ++i)
+    if (!(part<D>(motion, i).norm() < longest_move * radius_[i])) return true;
+  return false;
 }
 
 template <int D>
@@ -282,6 +414,12 @@ void JammingEnergy<D>::write(Spheres<D>& spheres) const {
   const Boundary<D> box{state_.edges};
   for (std::size_t i = 0; i < size(); ++i)
     spheres.set_center(order_[i], box.wrap(part<D>(state_.centers, i)));
+}
+
+template <int D>
+void JammingEnergy<D>::write_to_scale(Spheres<D>& spheres) const {
+  for (std::size_t i = 0; i < size(); ++i)
+    spheres.set_center(order_[i], part<D>(state_.centers, i) / state_.scale);
 }
 
 #define BERNAL_INSTANTIATE(D) template class JammingEnergy<D>;

@@ -1,19 +1,22 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "bernal/core/spheres.hpp"
+#include "jam/enclosure.hpp"
 #include "jam/trust_region.hpp"
 #include "neighbors/periodic_pairs.hpp"
 
 namespace bernal {
 
-/// Soft spheres in a periodic box under pressure: a function of all centres and of the size of the box whose
-/// minimum, as the pressure goes to zero, is a jammed packing of hard spheres.
+/// Soft spheres in a periodic box, or between walls, under pressure: a function of all centres and of the
+/// size of the box, walls included, whose minimum, as the pressure goes to zero, is a jammed packing of hard
+/// spheres.
 ///
 /// Spheres whose centres are d apart and whose radii add up to s overlap by o = s - d. They repel each other
 /// with the force f = k x, where x >= max(0, o) is the smoothed overlap
@@ -30,6 +33,10 @@ namespace bernal {
 ///   f'(o) (n·w + e d)² - (f / d) |w - n (n·w)|²,   w = ui - uj,
 /// less p e² and less a term that vanishes in equilibrium.
 ///
+/// A wall is a mirror: the contact with it is half of that with the sphere's image, s = r and o = r - d for
+/// the distance d of the centre, k = 2 (2 r)^(D - 2). Walls dilate with the box, w = ui, and in place of |w -
+/// n (n·w)|² stands w·Bw, B being d times the second derivative of d (`bend_of`).
+///
 /// Sources: O'Hern, Silbert, Liu & Nagel, Phys. Rev. E 68, 011306 (2003), the potential and the way to
 /// jamming; Dagois-Bohy, Tighe, Simon, Henkes & van Hecke, Phys. Rev. Lett. 109, 095703 (2012), the box as an
 /// unknown; Chen & Mangasarian, Comput. Optim. Appl. 5, 97 (1996), the smoothing.
@@ -42,10 +49,14 @@ class JammingEnergy final : public SmoothFunction {
     double tension;    // f / d
     double distance;   // d
     std::uint32_t first, second;
+    bool is_pair() const { return second != wall; }
   };
+  static constexpr std::uint32_t wall = 0xffffffff;
 
-  /// Precondition: at least one sphere. Centres may be anywhere.
-  JammingEnergy(const Spheres<D>& spheres, const Vector<D>& edges);
+  /// Precondition: at least one sphere. Centres may be anywhere; between walls in these, and `edges` so large
+  /// along such axes that no sphere meets an image.
+  JammingEnergy(const Spheres<D>& spheres, const Vector<D>& edges,
+                std::shared_ptr<const Enclosure<D>> enclosure = nullptr);
 
   /// The load is set so that spheres held by 2 D contacts each have the mean overlap ratio `overlap`,
   /// roughly; the smoothing is a ratio too. Evaluates.
@@ -57,8 +68,8 @@ class JammingEnergy final : public SmoothFunction {
   /// From now on only the present overlaps of spheres i with bears[i] count, as springs that pull as well as
   /// push: the equations of equilibrium become smooth. Until `release`. Precondition: smoothing 0.
   void hold(const std::vector<char>& bears);
-  /// Of the held ones. To be followed by set_level.
-  void let_go(std::size_t contact) { pairs_.erase(contact); }
+  /// Of the held ones.
+  void let_go(std::size_t contact);
   /// From now on spheres i with fixed[i], and the box, stay where they are and do not meet each other. Until
   /// `release`. To be followed by set_level.
   void fix(std::vector<char> fixed) { fixed_ = std::move(fixed); }
@@ -71,11 +82,14 @@ class JammingEnergy final : public SmoothFunction {
   std::size_t size() const { return radius_.size(); }
   Eigen::Index unknowns() const override { return static_cast<Eigen::Index>(D * size() + 1); }
   const Vector<D>& edges() const { return state_.edges; }
+  /// Of the box and its walls, in what they were at first.
+  double scale() const { return state_.scale; }
+  /// Those of pairs come first.
   const std::vector<Contact>& contacts() const { return now_.contacts; }
   const Eigen::VectorXd& gradient() const override { return now_.gradient; }
   /// Of all springs, less what smoothing adds: a measure for changes of H. Above 0 where anything touches.
   double elastic_energy() const { return now_.elastic; }
-  /// The largest o / s of a pair; 0 if none overlaps.
+  /// The largest o / s; 0 if nothing overlaps.
   double largest_overlap() const { return now_.largest_overlap; }
 
   /// out = Hessian · v.
@@ -85,7 +99,8 @@ class JammingEnergy final : public SmoothFunction {
   void factor_preconditioner() override;
   void precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const override;
 
-  /// Moves all and dilates the box. Returns the change of H.
+  /// Moves all and dilates the box. Returns the change of H; infinite between walls where a sphere moves so
+  /// far that it might get through one.
   double move(const Eigen::VectorXd& motion) override;
   /// Takes the last move back. Precondition: there was one since the last set_level, and it has not been
   /// taken back.
@@ -93,25 +108,49 @@ class JammingEnergy final : public SmoothFunction {
 
   /// Sets the centres, wrapped into the box.
   void write(Spheres<D>& spheres) const;
+  /// Sets the centres as they are, in a box of its size at first: of scale 1.
+  void write_to_scale(Spheres<D>& spheres) const;
 
  private:
   struct State {
     Eigen::VectorXd centers;
     Vector<D> edges;
+    double scale = 1;
   };
+  using Block = Eigen::Matrix<double, D, D>;
   struct Evaluation {
     std::vector<Contact> contacts;
+    std::vector<Block> bends;  // of those with walls
     Eigen::VectorXd gradient;
     double energy = 0, elastic = 0, largest_overlap = 0;
   };
-  using Block = Eigen::Matrix<double, D, D>;
+  /// A piece of wall near a sphere.
+  struct NearWall {
+    WallPiece<D> piece;
+    double distance;    // when it was found
+    double weight = 1;  // held: how many pieces touch in that place
+  };
+  /// Those of all spheres, one after the other, nearest first.
+  struct NearWalls {
+    std::vector<std::uint32_t> first;
+    std::vector<NearWall> walls;
+  };
+  struct Spring {
+    double force, stiffness;
+  };
 
   bool pairs_are_complete() const;
   void find_pairs();
+  void find_walls();
+  void hold_walls(const std::vector<char>& bears);
   void evaluate();
   void meet(std::uint32_t first, std::uint32_t second, const Vector<D>& away);
+  void meet_walls();
+  void meet_wall(std::uint32_t i, const Vector<D>& p, const NearWall& near, std::size_t first);
+  Spring press(double s, double overlap, double stiffness);
   bool is_fixed(std::uint32_t i) const { return !fixed_.empty() && fixed_[i]; }
   void still(Eigen::VectorXd& v) const;
+  bool moves_too_far(const Eigen::VectorXd& motion) const;
   Vector<D> away_of(const typename PeriodicPairs<D>::Pair& pair) const;
   double width() const;
 
@@ -125,6 +164,8 @@ class JammingEnergy final : public SmoothFunction {
   Evaluation now_, before_;
 
   PeriodicPairs<D> pairs_;
+  std::shared_ptr<const Enclosure<D>> enclosure_;
+  std::shared_ptr<const NearWalls> near_walls_;  // null where there are no walls
   State at_finding_;
   double width_at_finding_ = 0;
   bool held_ = false;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "bernal/core/tolerance.hpp"
@@ -13,10 +16,15 @@
 namespace bernal {
 namespace {
 
-constexpr double fall_of_pressure = 0.1;
+constexpr double fall_of_pressure = 0.1, rise_of_pressure = 1000;
 /// Mean overlap ratio at the first level: at least the first, so that a network comes to bear the load; at
 /// most the second.
 constexpr double gentlest_start = 1e-4, hardest_start = 0.1;
+/// Where spheres come loose: they have some way to go before they hold each other, and steps are as long as
+/// overlaps are large.
+constexpr double loose_start = 1e-3;
+constexpr int most_steps_when_loose = 2000;
+constexpr int most_climbs = 2;
 constexpr std::size_t solved_closely = 3000;
 constexpr double close_balance = 1e-5, loose_balance = 1e-3;
 constexpr int most_steps_a_level = 500;
@@ -28,38 +36,56 @@ constexpr double room = 1e-4;
 constexpr double held_way = 0.01;
 /// Up to this imbalance the end counts as equilibrium.
 constexpr double balanced = 1e-2;
+/// Room beside a container in the periodic box around it, in largest diameters, along axes that do not repeat
+/// themselves: no sphere meets an image of another.
+constexpr double margin = 3;
+
+/// What is polished, and for whom.
+struct Task {
+  double tolerance;
+  double slenderness;             ///< longest edge over smallest radius
+  int symmetries;                 ///< motions of all spheres together that the walls do not feel
+  double start = gentlest_start;  ///< overlap ratio at the first level, at least
+  int most_steps = most_steps_a_level;
+  int most_climbs = 0;     ///< how often it may go back to a larger load
+  double least_scale = 0;  ///< of the box: it gives up before it is smaller
+  const Monitor& monitor;
+  std::function<void(double done, double largest_overlap)> report;
+};
 
 template <int D>
 class Polish {
  public:
-  Polish(const Spheres<D>& spheres, const Vector<D>& edges, double tolerance, Work& work)
-      : soft_(spheres, edges), tolerance_(tolerance), work_(work) {
-    const auto n = static_cast<double>(spheres.size());
-    balance_ = spheres.size() <= solved_closely ? close_balance : loose_balance;
+  Polish(JammingEnergy<D> soft, Task task) : soft_(std::move(soft)), task_(std::move(task)) {
+    const auto n = static_cast<double>(soft_.size());
+    balance_ = soft_.size() <= solved_closely ? close_balance : loose_balance;
     settled_ = std::min(1e-6, 0.1 / (n * n));
-    slenderness_ = edges.maxCoeff() / *std::ranges::min_element(spheres.r);
   }
 
   StageEnd run() {
-    soft_.set_level(gentlest_start, 0);
-    start_ = std::clamp(soft_.largest_overlap(), gentlest_start, hardest_start);
-    double overlap = start_;
-    for (;; overlap = std::max(settled_, overlap * fall_of_pressure)) {
-      if (!settle({overlap, overlap, balance_})) return result();
-      if (overlap == settled_) break;
-    }
-    for (;; overlap *= fall_of_pressure) {
-      if (!sharpen(overlap) || soft_.largest_overlap() <= tolerance_ || close_contacts(overlap)) break;
+    soft_.set_level(task_.start, 0);
+    start_ = std::clamp(soft_.largest_overlap(), task_.start, hardest_start);
+    for (double overlap = start_;;) {
+      unfinished_ = false;
+      if (!settle({overlap, overlap, balance_})) break;
+      if (overlap > settled_) {
+        overlap =
+            unfinished_ && may_climb() ? climb(overlap) : std::max(settled_, overlap * fall_of_pressure);
+        continue;
+      }
+      if (!sharpen(overlap) || soft_.largest_overlap() <= task_.tolerance || close_contacts(overlap)) break;
+      if (unfinished_ && may_climb()) {
+        overlap = climb(overlap);
+        continue;
+      }
       if (overlap * fall_of_pressure < resolution()) break;  // the coordinates allow no better
-      if (!settle({overlap * fall_of_pressure, overlap * fall_of_pressure, balance_})) break;
+      overlap *= fall_of_pressure;
     }
     return result();
   }
 
-  void write(Spheres<D>& spheres, Vector<D>& edges) const {
-    soft_.write(spheres);
-    edges = soft_.edges();
-  }
+  const JammingEnergy<D>& soft() const { return soft_; }
+  bool too_loose() const { return soft_.scale() < task_.least_scale; }
 
  private:
   struct Level {
@@ -68,6 +94,14 @@ class Polish {
     double radius = 0;  // of the trust region: a ratio; 0 for ten overlaps
     double forcing = 0.03;
   };
+
+  /// What slides on without an end at a small load has a longer way to go than its steps allow there: it goes
+  /// the way under a larger one.
+  bool may_climb() const { return climbs_ < task_.most_climbs; }
+  double climb(double overlap) {
+    ++climbs_;
+    return std::min(start_, overlap * rise_of_pressure);
+  }
 
   /// Takes the smoothing away. Returns false if cancelled.
   bool sharpen(double overlap) {
@@ -84,7 +118,7 @@ class Polish {
     if (excess() < 0 || excess() > most_let_go) return false;
     std::ptrdiff_t spare = excess();
     const JammingEnergy<D> before = soft_;
-    const double fall = 0.5 * tolerance_ / soft_.largest_overlap();
+    const double fall = 0.5 * task_.tolerance / soft_.largest_overlap();
     soft_.hold(bears_);
     for (;;) {
       const JammingEnergy<D> held = soft_;
@@ -99,7 +133,7 @@ class Polish {
     make_room_for_rattlers();
     soft_.set_level(overlap * fall, 0);
     count_contacts();
-    if (excess() >= 0 && soft_.largest_overlap() <= tolerance_ && imbalance_ < balanced) return true;
+    if (excess() >= 0 && soft_.largest_overlap() <= task_.tolerance && imbalance_ < balanced) return true;
     soft_ = before;
     return false;
   }
@@ -108,9 +142,9 @@ class Polish {
   void make_room_for_rattlers() {
     const double imbalance = imbalance_;
     soft_.fix(bears_);
-    for (double gap = room; gap > 1e-3 * tolerance_; gap *= 1e-2) {
+    for (double gap = room; gap > 1e-3 * task_.tolerance; gap *= 1e-2) {
       settle({gap, gap, loose_balance});
-      if (soft_.largest_overlap() <= tolerance_) break;
+      if (soft_.largest_overlap() <= task_.tolerance) break;
     }
     soft_.release();
     imbalance_ = imbalance;
@@ -137,7 +171,7 @@ class Polish {
   /// Contacts beyond the isostatic number.
   std::ptrdiff_t excess() const {
     return static_cast<std::ptrdiff_t>(contacts_) -
-           static_cast<std::ptrdiff_t>(D * (soft_.size() - rattlers_ - 1) + 1);
+           (static_cast<std::ptrdiff_t>(D * (soft_.size() - rattlers_)) - task_.symmetries + 1);
   }
 
   /// Minimises at one level of pressure. Returns false if cancelled.
@@ -146,29 +180,33 @@ class Polish {
     soft_.set_level(overlap, level.smoothing);
     const double noise = resolution() / overlap;
     TrustRegion region(soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap), level.forcing,
-                       work_.monitor);
-    for (int step = 0; step < most_steps_a_level; ++step) {
+                       task_.monitor);
+    for (int step = 0;; ++step) {
+      if (step == task_.most_steps) {
+        unfinished_ = unfinished_ || imbalance_ > loose_balance;
+        break;
+      }
       imbalance_ = region.gradient_length() / std::sqrt(2 * soft_.elastic_energy());
       if (imbalance_ < std::max(level.balance, 4 * noise)) break;
-      if (work_.monitor.stop()) {
+      if (task_.monitor.stop()) {
         cancelled_ = true;
         return false;
       }
+      if (too_loose()) return false;
       region.step(std::max(1e-6, noise) * soft_.elastic_energy());
     }
-    work_.milestone("polish",
-                    std::min(0.99, std::log(overlap / start_) / std::log(0.1 * tolerance_ / start_)),
-                    soft_.largest_overlap());
+    task_.report(std::min(0.99, std::log(overlap / start_) / std::log(0.1 * task_.tolerance / start_)),
+                 soft_.largest_overlap());
     return true;
   }
 
   /// An overlap ratio that is lost in the rounding of coordinates.
-  double resolution() const { return 2 * tolerance::roundoff * slenderness_; }
+  double resolution() const { return 2 * tolerance::roundoff * task_.slenderness; }
 
   StageEnd result() const {
     if (cancelled_) return StageEnd::cancelled;
-    return soft_.largest_overlap() > tolerance_ || !(imbalance_ < balanced) ? StageEnd::hit_limit
-                                                                            : StageEnd::converged;
+    const bool closed = soft_.largest_overlap() <= task_.tolerance && imbalance_ < balanced;
+    return closed && !too_loose() ? StageEnd::converged : StageEnd::hit_limit;
   }
 
   /// Spheres that bear no force: fewer than D + 1 contacts, removed until none is left.
@@ -180,9 +218,9 @@ class Polish {
       std::ranges::fill(held, 0);
       contacts_ = 0;
       for (const auto& c : soft_.contacts()) {
-        if (last[c.first] <= D || last[c.second] <= D || !(c.tension > 0)) continue;
+        if (last[c.first] <= D || (c.is_pair() && last[c.second] <= D) || !(c.tension > 0)) continue;
         ++held[c.first];
-        ++held[c.second];
+        if (c.is_pair()) ++held[c.second];
         ++contacts_;
       }
       loose = 0;
@@ -197,14 +235,16 @@ class Polish {
   }
 
   JammingEnergy<D> soft_;
-  double tolerance_, balance_, settled_, slenderness_;
+  const Task task_;
+  double balance_, settled_;
   double start_ = gentlest_start;
   double imbalance_ = 0;
+  bool unfinished_ = false;  // a level ended far from equilibrium
+  int climbs_ = 0;
   bool cancelled_ = false;
-  Work& work_;
   std::vector<char> bears_;  // force, by place in soft_
   std::size_t rattlers_ = 0;
-  std::size_t contacts_ = 0;  // that bear force between the others; D (N - rattlers - 1) + 1 are isostatic
+  std::size_t contacts_ = 0;  // that bear force between the others and with walls
 };
 
 }  // namespace
@@ -212,10 +252,46 @@ class Polish {
 template <int D>
 StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work) {
   if (spheres.empty()) return StageEnd::converged;
-  Polish<D> act(spheres, edges, tolerance, work);
+  const auto walls = static_cast<int>(std::ranges::count(work.walls, true));
+  std::shared_ptr<const Enclosure<D>> enclosure;
+  if (walls > 0) enclosure = std::make_shared<Enclosure<D>>(edges, work.walls);
+  Polish<D> act({spheres, edges_around_walls(edges, work.walls), enclosure},
+                {.tolerance = tolerance,
+                 .slenderness = edges.maxCoeff() / std::ranges::min(spheres.r),
+                 .symmetries = D - walls,
+                 .monitor = work.monitor,
+                 .report = [&](double done, double overlap) { work.milestone("polish", done, overlap); }});
   const StageEnd end = act.run();
-  act.write(spheres, edges);
+  act.soft().write(spheres);
+  if (walls > 0)
+    edges *= act.soft().scale();
+  else
+    edges = act.soft().edges();
   return end;
+}
+
+Jammed polish_in_container(const Spheres<3>& spheres, const Container& container, int symmetries,
+                           double tolerance, const Monitor& monitor,
+                           const std::function<void(double, double)>& report) {
+  const Boundary<3>& boundary = container.boundary();
+  const Vector<3> extent = container.bounds().size();
+  Vector<3> edges = extent.array() + margin * 2 * std::ranges::max(spheres.r);
+  for (int k = 0; k < 3; ++k)
+    if (boundary.repeats(k)) edges[k] = boundary.edges[k];
+  Polish<3> act({spheres, edges, std::make_shared<Enclosure<3>>(container)},
+                {.tolerance = tolerance,
+                 .slenderness = extent.maxCoeff() / std::ranges::min(spheres.r),
+                 .symmetries = symmetries,
+                 .start = loose_start,
+                 .most_steps = most_steps_when_loose,
+                 .most_climbs = most_climbs,
+                 .least_scale = 1 / Jammed::most_growth,
+                 .monitor = monitor,
+                 .report = report});
+  Jammed jammed{act.run(), spheres, 1, act.too_loose()};
+  act.soft().write_to_scale(jammed.spheres);
+  jammed.growth = (1 - act.soft().largest_overlap()) / act.soft().scale();
+  return jammed;
 }
 
 template <int D>

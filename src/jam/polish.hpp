@@ -1,4 +1,7 @@
 #pragma once
+#include <functional>
+
+#include "bernal/domain/container.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
@@ -24,8 +27,40 @@ namespace bernal {
 /// Newton steps are many and short rather than hard to solve, as contacts change along the way: seconds for
 /// 1,000 spheres, more than half a minute for 3,000, more than a minute for 10,000. Cancelled, it ends within
 /// a step. Memory about 1 kB a sphere. One thread; the same bits each time.
+///
+/// Along axes on which the box ends at walls, by `work.walls`, these are contacts like any other, and dilate
+/// with the box. In equilibrium the forces of C contacts balance D (N - rattlers) times, of which as many
+/// hold anyway as there are motions of all spheres together that no wall feels: D shifts in a periodic box,
+/// one for each axis without walls between walls. What bears a pressure has one solution of these equations
+/// but no second, so
+///   C = D (N - rattlers) - symmetries + 1:
+/// the isostatic number, of frictionless spheres that nothing but the pressure presses together.
 template <int D>
 StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work);
+
+/// Spheres that were polished in a container.
+struct Jammed {
+  /// More than that is not polishing: such spheres are too few to hold each other.
+  static constexpr double most_growth = 1.03;
+  StageEnd end;
+  Spheres<3> spheres;  ///< in the container as it is; with their radii as they were
+  double growth;   ///< by which all radii have to be multiplied so that contacts close and nothing overlaps
+  bool too_loose;  ///< it gave up because that would be more than `most_growth`
+};
+
+/// The same in a container, which stays as it is: neither can it dilate nor are there fewer or more spheres,
+/// so it is all radii that grow by one factor until they jam. It is the same problem: seen in units of the
+/// radii, it is the container that shrinks. `symmetries` is `symmetries_of` its domain. Precondition: there
+/// are spheres, with centres inside.
+Jammed polish_in_container(const Spheres<3>& spheres, const Container& container, int symmetries,
+                           double tolerance, const Monitor& monitor,
+                           const std::function<void(double done, double largest_overlap)>& report);
+
+/// The end of every stage that packs a bed: polishes contacts until their gap ratios are below `polish`, if
+/// that is above 0, or to the skin of the bed where that is wider. All sizes grow by one factor, which
+/// `work.size_scale` holds, for the stages to come too. Returns `end`, or why polishing ended; what is too
+/// loose to be polished stays as it is, and `work.missed` says so.
+StageEnd finish_in_bed(StageEnd end, double polish, Work& work);
 
 /// The end of every stage that lets a periodic box follow from the packing: polishes contacts to the overlap
 /// ratio `polish`, if that is above 0; grows or shrinks the box until nothing overlaps more than is allowed;

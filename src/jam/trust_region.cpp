@@ -32,7 +32,8 @@ bool TrustRegion::step(double resolution) {
     const Proposal proposal = std::move(proposals_.back());
     proposals_.pop_back();
     double change = function_.move(proposal.step);
-    if (proposal.gain < resolution) change = 0.5 * (proposal.slope + function_.gradient().dot(proposal.step));
+    if (proposal.gain < resolution && std::isfinite(change))
+      change = 0.5 * (proposal.slope + function_.gradient().dot(proposal.step));
     const double ratio = -change / proposal.gain;
     if (ratio < bad)
       radius_ = proposal.length / 4;

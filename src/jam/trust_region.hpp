@@ -21,7 +21,7 @@ class SmoothFunction {
   virtual void factor_preconditioner() = 0;
   /// out = M⁻¹ v, M being the preconditioner.
   virtual void precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const = 0;
-  /// Moves by v. Returns by how much the function changed.
+  /// Moves by v. Returns by how much the function changed; infinite where it must not go.
   virtual double move(const Eigen::VectorXd& v) = 0;
   /// Takes the last move back.
   virtual void take_back() = 0;

@@ -72,8 +72,8 @@ Contacts count(std::size_t spheres, const Domain& domain, const std::vector<Near
   if (contacts.backbone == 0) return contacts;
   contacts.backbone_coordination =
       2.0 * static_cast<double>(contacts.backbone_pairs) / static_cast<double>(contacts.backbone);
-  if (!has_walls(domain))
-    contacts.isostatic = static_cast<std::uint64_t>(dimension) * (contacts.backbone - 1) + 1;
+  contacts.isostatic = static_cast<std::uint64_t>(dimension) * contacts.backbone + 1 -
+                       static_cast<std::uint64_t>(symmetries_of(domain));
   return contacts;
 }
 

@@ -12,10 +12,22 @@ namespace {
 
 SizeComparison compare_sizes_of(const Spheres<dynamic>& spheres, const Domain& domain,
                                 const AskedRadii& asked) {
-  SizeComparison sizes = compare_sizes(spheres.r, *asked.sizes, spheres.dimension());
   const bool cut_tail = has_walls(domain) && !std::isfinite(asked.sizes->max());
-  sizes.drawn = compare_with_drawn(spheres.r, {*asked.sizes, asked.seed, asked.draw}, cut_tail);
+  const auto drawn = compare_with_drawn(spheres.r, {*asked.sizes, asked.seed, asked.draw}, cut_tail);
+  std::vector<double> radii = spheres.r;
+  if (drawn && drawn->scale != 1)
+    for (double& r : radii) r /= drawn->scale;
+  SizeComparison sizes = compare_sizes(radii, *asked.sizes, spheres.dimension());
+  sizes.drawn = drawn;
   return sizes;
+}
+
+std::optional<double> smallest_holding_gap(const std::vector<Contacts>& by_gap, std::size_t spheres) {
+  std::optional<double> smallest;
+  for (const Contacts& c : by_gap)
+    if (c.backbone > 0 && 2 * c.backbone >= spheres && !(smallest && *smallest <= c.contact_gap))
+      smallest = c.contact_gap;
+  return smallest;
 }
 
 // Fowler, Noll & Vo, 64-bit FNV-1a (RFC 9923).
@@ -44,6 +56,7 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
   std::vector<double> gaps = options.gaps;
   gaps.push_back(options.contact_gap);
   measured.by_gap = measure_contacts(spheres, domain, gaps);
+  measured.held_from = smallest_holding_gap(measured.by_gap, spheres.size());
   measured.contacts = measured.by_gap.back();
   measured.by_gap.pop_back();
   measured.radial = radial_distribution(spheres, domain, options.radial);

@@ -18,6 +18,8 @@ constexpr double same = 1e-12;
 constexpr double atom = 1e-6;
 constexpr double fewest_expected = 5;
 constexpr std::size_t most_classes = 1000;
+/// A factor of all radii that is farther from 1 is none.
+constexpr double most_scaled = 0.05;
 
 double below(const SizeDistribution& asked, double radius) { return asked.cumulative(radius * (1 - same)); }
 double up_to(const SizeDistribution& asked, double radius) { return asked.cumulative(radius * (1 + same)); }
@@ -137,6 +139,15 @@ std::optional<DrawnComparison> compare_with_drawn(std::span<const double> radii,
   result.missing = missing.size();
   for (std::size_t k = 0; k < drawn.size(); ++k)
     result.largest_deviation = std::max(result.largest_deviation, std::abs(there[k] / drawn[k] - 1));
+  const double scale = there.front() / drawn.front();
+  const auto is_scaled = [&](double there_k, double drawn_k) {
+    return std::abs(there_k / drawn_k / scale - 1) <= same;
+  };
+  if (result.missing > 0 && std::abs(scale - 1) <= most_scaled &&
+      std::ranges::equal(there, drawn, is_scaled)) {
+    result.scale = scale;
+    result.missing = 0;
+  }
   return result;
 }
 

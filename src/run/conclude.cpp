@@ -36,6 +36,8 @@ Conclusion of_box(const Packing& packing, const Work& work, StageEnd end) {
 Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, bool meets_expectation) {
   const Target& target = work.target;
   const std::string n = grouped(packing.spheres.size());
+  if (!work.missed.empty())
+    return {Outcome::hit_limit, fmt::format("{} spheres are placed; {}", n, work.missed)};
   if (!target.is_open() && work.supply->exhausted())
     return {Outcome::converged, fmt::format("all {} spheres are placed", n)};
   if (end == StageEnd::hit_limit) return limit_reached(n);
@@ -51,6 +53,12 @@ Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, bool m
           fmt::format("packing fraction {:.4f} of {} is reached with {} spheres; the stages of "
                       "the scene find no place for more",
                       packing.packing_fraction(), *target.packing_fraction, n)};
+}
+
+std::string resized(double size_scale) {
+  return size_scale == 1
+             ? ""
+             : fmt::format("; all sizes are {:.9g} times those drawn, so that they jam", size_scale);
 }
 
 /// What was left out of the drawn sequence.
@@ -79,7 +87,8 @@ void conclude(Packing& packing, const Work& work, StageEnd end, bool meets_expec
                                                              grouped(packing.spheres.size()))};
   }
   packing.outcome = conclusion.outcome;
-  packing.reason = conclusion.reason + (in_bed ? left_out(*work.supply) : "");
+  packing.reason =
+      conclusion.reason + (in_bed ? resized(work.size_scale) + left_out(*work.supply) : std::string());
 }
 
 }  // namespace bernal

@@ -227,6 +227,7 @@ class Run {
       stated.size.assign(edges.begin(), edges.end());
       stated.edge.reset();
     }
+    packing_.size_scale = work.size_scale;
     packing_.effects = effects_.all();
   }
 

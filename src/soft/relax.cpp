@@ -147,10 +147,8 @@ StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
 template <int D>
 StageEnd relax_in(Work& work, const Relax& options) {
   const bool by_the_book = options.method == RelaxMethod::reference;
-  if (!work.walls.empty() && (by_the_book || options.polish > 0))
-    throw Error(ErrorCode::bad_scene,
-                by_the_book ? "the reference method of relax knows no walls; leave \"method\" out"
-                            : "\"polish\" knows no walls; leave it out");
+  if (!work.walls.empty() && by_the_book)
+    throw Error(ErrorCode::bad_scene, "the reference method of relax knows no walls; leave \"method\" out");
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
   const Vector<D> start = edges_to_start_from(work, options.phi0.value_or(dense_start[D - 1]));
@@ -195,34 +193,41 @@ const StageEntry& entry_of<Relax>() {
                "start with overlaps; push spheres apart, in a periodic box while it grows, in a container "
                "off the walls too, and stir what is stuck",
            .keys = joined(
-               acting(
-                   Acts::in_box,
-                   {number(&Relax::alpha, "alpha",
-                           "sweeps between two growths of the box, in units of (log10 N)^2", above(0, 1e6)),
-                    number(&Relax::beta, "beta", "the box grows by the largest overlap ratio divided by this",
-                           {0.01, 1e6}),
-                    number(&Relax::phi0, "phi0",
-                           "packing fraction of the overlapping spheres at the start; if absent 0.86, in "
-                           "other than three dimensions 1.34 of random close packing",
-                           above(0, 10)),
-                    number(&Relax::stop, "stop",
-                           "largest overlap ratio that counts as none; the box then grows by it",
-                           {1e-12, 0.5}),
-                    number(&Relax::polish, "polish",
-                           "close the gaps and overlaps of all contacts to this ratio; 0: do not", {0, 0.5}),
-                    word(&Relax::method, "method",
-                         "fast, or reference: the published loop as it stands, a hundred times slower",
-                         {"fast", "reference"}),
-                    flag(&Relax::settle, "settle",
-                         "reference: what touches nothing moves to touch its nearest neighbour")}),
-               acting(
-                   Acts::in_bed,
-                   {integer(&Relax::patience, "patience",
-                            "how often what is stuck is stirred before some spheres are taken out", {0, 1e6}),
-                    integer(&Relax::sweeps, "sweeps", "of all spheres, after which it stops", {1, 1e9}),
-                    number(&Relax::seconds, "seconds",
-                           "after which it stops, and then one seed need not give one packing; 0: any time",
-                           {0, 1e9})})),
+               joined(
+                   acting(
+                       Acts::in_box,
+                       {number(&Relax::alpha, "alpha",
+                               "sweeps between two growths of the box, in units of (log10 N)^2",
+                               above(0, 1e6)),
+                        number(&Relax::beta, "beta",
+                               "the box grows by the largest overlap ratio divided by this", {0.01, 1e6}),
+                        number(&Relax::phi0, "phi0",
+                               "packing fraction of the overlapping spheres at the start; if absent 0.86, in "
+                               "other than three dimensions 1.34 of random close packing",
+                               above(0, 10)),
+                        number(&Relax::stop, "stop",
+                               "largest overlap ratio that counts as none; the box then grows by it",
+                               {1e-12, 0.5}),
+                        word(&Relax::method, "method",
+                             "fast, or reference: the published loop as it stands, a hundred times slower",
+                             {"fast", "reference"}),
+                        flag(&Relax::settle, "settle",
+                             "reference: what touches nothing moves to touch its nearest neighbour")}),
+                   acting(
+                       Acts::in_bed,
+                       {integer(&Relax::patience, "patience",
+                                "how often what is stuck is stirred before some spheres are taken out",
+                                {0, 1e6}),
+                        integer(&Relax::sweeps, "sweeps", "of all spheres, after which it stops", {1, 1e9}),
+                        number(
+                            &Relax::seconds, "seconds",
+                            "after which it stops, and then one seed need not give one packing; 0: any time",
+                            {0, 1e9})})),
+               {number(&Relax::polish, "polish",
+                       "close the gaps and overlaps of all contacts to this ratio, and no more contacts than "
+                       "hold the spheres; in a container all sizes grow for that by one factor, which the "
+                       "report states; 0: do not",
+                       {0, 0.5})}),
            .complete = completion(complete_relax)},
           traits),
       .act_in_bed = act(relax_in_container),

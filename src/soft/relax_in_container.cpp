@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "jam/polish.hpp"
 #include "settle/insert.hpp"
 #include "soft/crowd.hpp"
 
@@ -149,12 +150,15 @@ bool is_dilute(const Work& work) {
 }  // namespace
 
 StageEnd relax_in_container(Work& work, const Relax& options) {
-  if (is_dilute(work)) {
-    const StageEnd end = insert(work, insertion);
-    if (end != StageEnd::full) return end;
-  }
-  const EffectTimer timer(work.effects["relaxation"]);
-  return Relaxation(work, options).run();
+  const auto relaxed = [&] {
+    if (is_dilute(work)) {
+      const StageEnd end = insert(work, insertion);
+      if (end != StageEnd::full) return end;
+    }
+    const EffectTimer timer(work.effects["relaxation"]);
+    return Relaxation(work, options).run();
+  };
+  return finish_in_bed(relaxed(), options.polish, work);
 }
 
 }  // namespace bernal

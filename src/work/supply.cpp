@@ -55,6 +55,12 @@ void Supply::divide_by(double unit) {
   largest_ /= unit;
 }
 
+void Supply::multiply_by(double factor) {
+  for (double& r : radii_) r *= factor;
+  smallest_ *= factor;
+  largest_ *= factor;
+}
+
 void Supply::open_window() {
   while (window_.size() < width_ && next_ < radii_.size()) window_.push_back(next_++);
 }

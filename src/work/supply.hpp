@@ -39,6 +39,8 @@ class Supply {
 
   /// Lengths from now on are in units of `unit`, a power of two.
   void divide_by(double unit);
+  /// All sizes are so many times as large from now on.
+  void multiply_by(double factor);
   const std::vector<double>& radii() const { return radii_; }
 
   /// Nothing more is to be placed: the target has been reached.

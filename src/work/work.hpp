@@ -87,6 +87,10 @@ struct Work {
   FillTask fill_task = {};
   /// How a stage went about it, for people: follows "all 200 spheres are placed".
   std::string account = {};
+  /// What a stage was to do beside placing spheres, and did not: a sentence; empty where there is nothing.
+  std::string missed = {};
+  /// All sizes are that many times those that were drawn: a stage closed contacts by letting them grow.
+  double size_scale = 1;
   /// Volume of the box that the spheres needed, before it grew to the one that was asked for.
   double needed_volume = 0;
 

@@ -89,7 +89,10 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
   EXPECT_NEAR(integral, measured.at("walls").at("mean_porosity").get<double>(), 1e-9);
   EXPECT_EQ(measured.at("walls").at("mean_porosity"), report.at("walls").at("mean_porosity"));
   EXPECT_TRUE(measured.at("g_r").is_null());
-  EXPECT_TRUE(measured.at("backbone").at("isostatic_contacts").is_null());
+  EXPECT_EQ(measured.at("backbone").at("isostatic_contacts").is_null(),
+            measured.at("backbone").at("spheres") == 0);
+  EXPECT_EQ(measured.at("held_from_gap"), report.at("held_from_gap"));
+  EXPECT_EQ(report.at("size_scale"), 1);
 }
 
 TEST_F(Measure, BadInputIsOneLine) {

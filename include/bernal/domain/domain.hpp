@@ -75,6 +75,10 @@ int dimension_of(const Domain&);
 bool has_walls(const Domain&);
 /// Whether it repeats itself along some axis.
 bool is_periodic(const Domain&);
+/// How many independent motions, shifts and turns, take the domain into itself for as far as they go: a shift
+/// along each axis that repeats itself, a turn about the axis of a cylinder, three about a sphere's centre. A
+/// mesh has none.
+int symmetries_of(const Domain&);
 
 /// Smallest axis-aligned bounds, to rounding; along an axis that repeats itself, one period. Precondition: D
 /// is the dimension, or dynamic.

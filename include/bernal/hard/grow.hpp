@@ -25,7 +25,8 @@ struct Grow {
   double pressure = 1e6;
   /// Of one material large spheres are heavy and pack denser where sizes differ much.
   Masses masses = Masses::equal;
-  /// In a periodic box: overlap ratio to which the contacts of the jammed packing are closed; 0: not at all.
+  /// Gap and overlap ratio to which the contacts of the packing are closed in the end; 0: not at all. In a
+  /// container all sizes grow by one factor until the spheres jam.
   double polish = 0;
 };
 

@@ -26,10 +26,15 @@ struct Contacts {
   std::uint64_t backbone_pairs = 0;  ///< contacts among them
   std::uint64_t backbone_walls = 0;
   double backbone_coordination = 0;  ///< 2 backbone_pairs / backbone
-  /// Contacts that just hold the backbone of a frictionless packing in a periodic box: D (backbone - 1)
-  /// displacements and the size of the box, D (backbone - 1) + 1. Absent where there are walls, as it depends
-  /// on what these and the weight do, and where there is no backbone.
+  /// Contacts that just hold the backbone of frictionless spheres that are pressed together, those with walls
+  /// among them: as many as there are displacements, D backbone, less those of all spheres together that no
+  /// wall feels (`symmetries_of` the domain: D in a periodic box, 1 in a cylinder, 3 in a sphere), and one
+  /// for the size of the box, or of the spheres, at which they jam. In a bed that is held by its weight
+  /// instead there is one less, and such a bed has hardly any backbone by the count of D + 1. Absent where
+  /// there is no backbone.
   std::optional<std::uint64_t> isostatic;
+  /// Those that the backbone has.
+  std::uint64_t backbone_contacts() const { return backbone_pairs + backbone_walls; }
 };
 
 /// Cost O(N): about 1 µs a sphere in a periodic box of three dimensions. Any dimension, any size ratio, and

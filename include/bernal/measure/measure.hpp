@@ -20,6 +20,12 @@ struct Measurements {
   double packing_fraction = 0;
   Contacts contacts;             ///< at MeasureOptions::contact_gap
   std::vector<Contacts> by_gap;  ///< at the others, in their order
+  /// The smallest of these gaps at which half of the spheres or more are no rattlers. A stage leaves gaps of
+  /// its own between spheres that it presses together, and below them a count of rattlers says nothing of the
+  /// packing. Absent where no gap is large enough.
+  std::optional<double> held_from;
+  /// Whether a count of rattlers at the gap of these contacts says something.
+  bool holds(const Contacts& c) const { return held_from && c.contact_gap >= *held_from; }
   std::optional<RadialDistribution> radial;
   std::optional<Chambers> chambers;
   std::optional<WallProfile> walls;

@@ -13,14 +13,18 @@ namespace bernal {
 /// packing that ended early holds the drawn sequence less its tail: then the two agree to the bit. What a
 /// packer leaves out because it is hard to place shows here, however little it is.
 struct DrawnComparison {
-  std::uint64_t missing = 0;     ///< radii of the sequence that are not there
+  std::uint64_t missing = 0;  ///< radii of the sequence that are not there
+  /// What every radius is times the drawn one, to rounding, where that is one number near 1: polishing in a
+  /// container makes all spheres grow alike, and then none is missing. Otherwise 1.
+  double scale = 1;
   double largest_deviation = 0;  ///< of the k-th smallest radius, over all k, relative to the drawn one
   /// Draws that were passed over because no radius is so large. A container refuses draws from an unbounded
   /// tail that it has hardly any room for; elsewhere none are passed over.
   std::uint64_t above_largest = 0;
 };
 
-/// The radii that are there against the distribution that was asked for, by number.
+/// The radii that are there against the distribution that was asked for, by number; where all are those drawn
+/// times one factor, `drawn->scale`, without it.
 struct SizeComparison {
   /// Kolmogorov & Smirnov: the largest distance of the two cumulative distributions.
   double ks_statistic = 0;

@@ -17,9 +17,12 @@ struct Relax {
   /// Packing fraction at the start; without it 0.86, or what suits the dimension.
   std::optional<double> phi0 = {};
   double stop = 2e-4;  ///< largest overlap ratio that counts as none
-  double polish = 0;   ///< overlap ratio to which contacts are closed in the end; 0: not at all
   RelaxMethod method = RelaxMethod::fast;
   bool settle = false;  ///< reference: what touches nothing moves to touch its nearest neighbour
+  // in both
+  /// Gap and overlap ratio to which contacts, those with walls among them, are closed in the end; 0: not at
+  /// all. A periodic box follows; in a container all sizes grow by one factor until the spheres jam.
+  double polish = 0;
   // in containers
   int patience = 12;   ///< how often spheres that are stuck are stirred before some are taken out
   int sweeps = 40000;  ///< at most

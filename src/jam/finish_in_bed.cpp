@@ -1,0 +1,78 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bernal/core/tolerance.hpp"
+#include "jam/polish.hpp"
+
+namespace bernal {
+namespace {
+
+/// Of the gaps that are asked for: what overlaps may be left to the solver, before all are made gaps.
+constexpr double share_of_solver = 0.25;
+/// No overlap ratio is smaller than this, whatever is asked for: the skin is ten times that.
+constexpr double least_overlap = 1e-10;
+/// How often the skin is allowed for, each time twice as generously.
+constexpr int most_tries = 8;
+
+/// A bed with these spheres and all radii times `size`, or null if there is not room for all.
+std::shared_ptr<Bed> bed_of(const Spheres<3>& spheres, const std::vector<std::uint32_t>& tags, double size,
+                            Work& work) {
+  const Boundary<3>& boundary = work.container->boundary();
+  for (int k = 0; k < 3; ++k)
+    if (boundary.repeats(k) && boundary.edges[k] < Bed::least_period * 2 * size * work.supply->largest())
+      return nullptr;
+  const auto bed = std::make_shared<Bed>(*work.container, size * work.supply->smallest(),
+                                         size * work.supply->largest(), spheres.size(), work.effects);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    if (!bed->fits(spheres.center(i), size * spheres.r[i])) return nullptr;
+    bed->insert(spheres.center(i), size * spheres.r[i], tags[i]);
+  }
+  return bed;
+}
+
+}  // namespace
+
+StageEnd finish_in_bed(StageEnd end, double polish, Work& work) {
+  const Bed& bed = work.bed();
+  if (!(polish > 0) || end == StageEnd::cancelled || bed.size() == 0) return end;
+  const EffectTimer timer(work.effects["polish"]);
+  const Spheres<3> spheres = bed.spheres();
+  std::vector<std::uint32_t> tags;
+  for (Bed::Id i = 0; i < bed.size(); ++i) tags.push_back(bed.tag(i));
+  std::ranges::sort(tags);
+  const Jammed jammed = polish_in_container(
+      spheres, bed.container(), symmetries_of(work.domain), std::max(least_overlap, share_of_solver * polish),
+      work.monitor, [&](double done, double overlap) {
+        work.crowd_milestone("polish", spheres.size(), volume_of(spheres), overlap, done);
+      });
+  if (jammed.end == StageEnd::cancelled) return jammed.end;
+  if (jammed.too_loose) {
+    work.missed = fmt::format(
+        "the spheres are not polished, because they would have to grow by more than {:g} % to hold each "
+        "other: ask for more of them",
+        100 * (Jammed::most_growth - 1));
+    return StageEnd::hit_limit;
+  }
+  Effect& walls = work.effects["walls"];
+  const double skin = bed.skin() / work.supply->smallest();
+  for (int k = 0; k < most_tries; ++k) {
+    const double size = jammed.growth * (1 - std::ldexp(skin, k));
+    const std::shared_ptr<Bed> polished = bed_of(jammed.spheres, tags, size, work);
+    if (!polished) continue;
+    walls.calls += bed.wall_queries().calls;
+    walls.seconds += bed.wall_queries().seconds;
+    work.supply->multiply_by(size);
+    work.size_scale *= size;
+    work.bed_ = polished;
+    if (jammed.end == StageEnd::hit_limit)
+      work.missed = fmt::format("the contacts could not be closed to {:g}", polish);
+    return jammed.end == StageEnd::hit_limit ? jammed.end : end;
+  }
+  work.missed = "the spheres could not be polished";
+  return StageEnd::hit_limit;
+}
+
+}  // namespace bernal

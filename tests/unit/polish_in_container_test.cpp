@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/verify/certificate.hpp"
+#include "support/measured.hpp"
+#include "support/plans.hpp"
+
+// What polishing promises between walls: certified, contacts closed, as many as hold the spheres, and sizes
+// that are the drawn ones times one factor.
+namespace bernal {
+namespace polish_in_container_test {
+
+Packing polished(const std::string& container, const std::string& stage = "do = \"relax\"\n") {
+  RunOptions options;
+  options.threads = 1;
+  return run(testing::plan_of("[container]\n" + container + "[spheres]\nradius = 0.5\n[[stage]]\n" + stage +
+                              "polish = 1e-8\n"),
+             options);
+}
+
+void expect_isostatic(const Packing& packing) {
+  EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+  const Certificate certificate = certify(packing.spheres, packing.domain);
+  EXPECT_TRUE(certificate.certified) << certificate.statement;
+  const Contacts contacts = measure_contacts(packing, 1e-8);
+  ASSERT_TRUE(contacts.isostatic.has_value());
+  EXPECT_GT(2 * contacts.backbone, packing.spheres.size());
+  EXPECT_GT(contacts.backbone_walls, 0u);
+  const auto isostatic = static_cast<double>(*contacts.isostatic);
+  EXPECT_NEAR(static_cast<double>(contacts.backbone_contacts()), isostatic, 0.01 * isostatic + 1);
+  EXPECT_NE(packing.size_scale, 1);
+  EXPECT_NEAR(packing.size_scale, 1, 0.03);
+  for (const double r : packing.spheres.r) EXPECT_NEAR(r / (0.5 * packing.size_scale), 1, 1e-14);
+}
+
+TEST(PolishInContainer, LeavesABoxIsostatic) {
+  expect_isostatic(polished("kind = \"box\"\nsize = [6.0, 6.0, 6.0]\n"));
+}
+
+TEST(PolishInContainer, LeavesACylinderIsostatic) {
+  expect_isostatic(polished("kind = \"cylinder\"\nradius = 3.0\nheight = 7.0\n"));
+}
+
+TEST(PolishInContainer, LeavesAnEndlessColumnIsostatic) {
+  expect_isostatic(polished("kind = \"cylinder\"\nradius = 3.0\nheight = 7.0\nperiodic = true\n"));
+}
+
+TEST(PolishInContainer, LeavesASlabIsostatic) {
+  expect_isostatic(polished("kind = \"periodic\"\nsize = [6.0, 6.0, 6.0]\nwalls = [2]\n"));
+}
+
+TEST(PolishInContainer, SaysThatSpheresAreTooFewToJam) {
+  const Packing packing = run(testing::plan_of(
+      "[container]\nkind = \"box\"\nsize = [6.0, 6.0, 6.0]\n[spheres]\nradius = 0.5\ncount = "
+      "150\n[[stage]]\ndo = \"relax\"\npolish = 1e-8\n"));
+  EXPECT_EQ(packing.outcome, Outcome::hit_limit);
+  EXPECT_NE(packing.reason.find("ask for more"), std::string::npos) << packing.reason;
+  EXPECT_EQ(packing.size_scale, 1);
+  EXPECT_EQ(packing.spheres.size(), 150u);
+}
+
+TEST(PolishInContainer, LeavesTheSpheresAsTheyWereWhenCancelled) {
+  bool polishing = false;
+  RunOptions options;
+  options.monitor.on_progress = [&](const Progress& progress) {
+    polishing = polishing || progress.activity == "polish";
+  };
+  options.monitor.cancelled = [&] { return polishing; };
+  const Packing packing =
+      run(testing::plan_of("[container]\nkind = \"box\"\nsize = [6.0, 6.0, 6.0]\n[spheres]\nradius = "
+                           "0.5\n[[stage]]\ndo = \"relax\"\npolish = 1e-8\n"),
+          options);
+  EXPECT_TRUE(polishing);
+  EXPECT_EQ(packing.outcome, Outcome::cancelled);
+  EXPECT_EQ(packing.size_scale, 1);
+  EXPECT_TRUE(certify(packing.spheres, packing.domain).certified);
+}
+
+}  // namespace polish_in_container_test
+}  // namespace bernal
