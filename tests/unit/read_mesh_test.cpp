@@ -248,7 +248,7 @@ TEST_F(ReadMesh, AContainerIsScaledAndAProblemIsOneLine) {
     EXPECT_EQ(
         error.what(),
         file.string() +
-            ": cannot be a container: 3 open edges (in [container], cap = \"x = 0\" helps)");
+            ": cannot be a container: 3 open edges (in [container], cap = \"z = 0\" helps)");
   }
 }
 
