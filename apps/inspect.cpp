@@ -14,6 +14,7 @@
 #include "bernal/core/unit.hpp"
 #include "bernal/measure/chambers.hpp"
 #include "commands.hpp"
+#include "progress_bar.hpp"
 
 using namespace bernal;
 
@@ -145,10 +146,13 @@ nlohmann::ordered_json as_json(const InspectCall& call, const MeshReport& report
 
 int inspect(const InspectCall& call) {
   if (!call.unit.empty()) unit_named(call.unit);  // refuses an unknown one before the file is read
+  ProgressBar bar(call.json);
+  bar.now("diagnose");
   const ImportedMesh imported = read_mesh(call.mesh);
   const MeshReport& report = imported.report;
   std::optional<Chambers> chambers;
   if (call.radius && report.usable()) chambers = chambers_for(imported.mesh, *call.radius);
+  bar.clear();
   if (call.json)
     fmt::print("{}\n", as_json(call, report, chambers).dump(2));
   else

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/parallel.hpp"
+
 namespace bernal::cad {
 namespace {
 
@@ -76,6 +78,7 @@ std::uint64_t count_self_intersections(const Mesh& mesh) {
 
   std::uint64_t count = 0;
   CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& s, const Box& t) {
+    throw_if_interrupted();
     count += pairs.intersect(*s.handle(), *t.handle());
   });
   return count;
