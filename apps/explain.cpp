@@ -9,6 +9,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "commands.hpp"
 #include "describe.hpp"
+#include "progress_bar.hpp"
 
 using namespace bernal;
 
@@ -70,7 +71,10 @@ nlohmann::ordered_json as_json(const Plan& plan) {
 }
 
 int explain(const ExplainCall& call) {
+  ProgressBar bar(call.json);
+  bar.now("estimate");
   const Plan plan = build(read_scene(call.scene));
+  bar.clear();
   if (call.json)
     fmt::print("{}\n", as_json(plan).dump(2));
   else

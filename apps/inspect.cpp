@@ -14,6 +14,7 @@
 #include "bernal/core/unit.hpp"
 #include "bernal/measure/chambers.hpp"
 #include "commands.hpp"
+#include "progress_bar.hpp"
 
 using namespace bernal;
 
@@ -193,6 +194,8 @@ nlohmann::ordered_json as_json(const InspectCall& call, const MeshReport& report
 
 int inspect(const InspectCall& call) {
   if (!call.unit.empty()) unit_named(call.unit);  // refuses an unknown one before the file is read
+  ProgressBar bar(call.json);
+  bar.now("diagnose");
   const MeshFile file{.file = call.mesh};
   const ImportedMesh imported = read_mesh(file);
   const MeshReport& report = imported.report;
@@ -201,6 +204,7 @@ int inspect(const InspectCall& call) {
   if (!call.places.empty()) write_places(imported, call.places);
   std::optional<Chambers> chambers;
   if (call.radius && report.usable()) chambers = chambers_for(imported.mesh, *call.radius);
+  bar.clear();
   if (call.json)
     fmt::print("{}\n", as_json(call, report, chambers, lines).dump(2));
   else

@@ -15,6 +15,7 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "commands.hpp"
+#include "progress_bar.hpp"
 
 using namespace bernal;
 
@@ -246,11 +247,14 @@ int measure_folder(const MeasureCall& call) {
   std::optional<tbb::global_control> limit;
   if (call.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
+  ProgressBar bar(call.json);
+  bar.now("measure");
   const Packing packing = read_packing(call.folder);
   const std::unique_ptr<SizeDistribution> asked = radii_of(packing.scene);
   const Measurements measured =
       measure(packing.spheres, packing.domain,
               {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)}, call.options);
+  bar.clear();
   if (call.json)
     fmt::print("{}", measurements_as_json(packing, measured));
   else

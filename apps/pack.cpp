@@ -66,16 +66,25 @@ void print_result(const Packing& packing, const WrittenPacking& written) {
 }
 
 int pack(const PackCall& call) {
+  ProgressBar bar(call.quiet);
+  bar.now("read");
   const Scene scene = scene_of(call);
   const Plan plan = build(scene);
   const std::filesystem::path folder = call.folder.empty() ? call.scene.stem() : call.folder;
   check_writable(folder);
-  ProgressBar bar(call.quiet);
+  bar.clear();
   if (!call.quiet && scene.file.empty()) fmt::print("{}", scene_as_toml(scene));
   if (!call.quiet) fmt::print(stderr, "{}", describe(plan));  // a wrong unit is seen at once
-  const Packing packing = run(plan, {call.seed, call.threads, bar.monitor()});
-  const WrittenPacking written = write_packing(packing, folder);
+  const Monitor monitor = bar.monitor();
+  bar.now("prepare");
+  const Packing packing = run(plan, {call.seed, call.threads, monitor});
+  bar.now("measure");
+  // What was stopped is written as a whole; a second interrupt kills.
+  const bool stopped = packing.outcome == Outcome::cancelled;
+  const WrittenPacking written = write_packing(packing, folder, stopped ? Monitor{} : monitor);
   bar.clear();
+  if (!stopped && interrupted())
+    fmt::print(stderr, "bernal: measuring was stopped; bernal measure {} makes up for it\n", folder.string());
 
   if (!call.quiet) print_result(packing, written);
   if (!written.certificate.certified) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -16,6 +17,7 @@
 namespace {
 
 constexpr double silence = 2, between_redraws = 0.1, between_lines = 10;  ///< seconds
+constexpr std::chrono::milliseconds between_ticks(100);
 
 std::atomic<bool> signalled = false;
 std::atomic<bool> no_message = false;
@@ -46,28 +48,56 @@ std::string bar(double fraction) {
 bool interrupted() { return signalled; }
 
 ProgressBar::ProgressBar(bool quiet, bool silent)
-    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), next_(silence) {
-  no_message = silent;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+    : quiet_(quiet), silent_(silent), terminal_(isatty(STDERR_FILENO) == 1), next_(silence) {
+  if (!quiet) ticker_ = std::thread([this] { tick(); });
+}
+
+ProgressBar::~ProgressBar() {
+  clear();
+  if (!ticker_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+  }
+  end_.notify_one();
+  ticker_.join();
 }
 
 bernal::Monitor ProgressBar::monitor(double from, double to) {
+  no_message = silent_;
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
   return {[=, this](bernal::Progress progress) {
             progress.fraction = from + (to - from) * progress.fraction;
-            show(progress);
+            take(progress);
           },
           interrupted};
 }
 
-void ProgressBar::show(const bernal::Progress& progress) {
+void ProgressBar::now(std::string_view activity) { take({activity, -1, {}}); }
+
+void ProgressBar::take(const bernal::Progress& progress) {
+  if (quiet_) return;
+  const std::lock_guard lock(mutex_);
+  activity_ = progress.activity;
+  detail_ = progress.detail;
+  fraction_ = progress.fraction;
+  draw();
+}
+
+void ProgressBar::tick() {
+  std::unique_lock lock(mutex_);
+  while (!end_.wait_for(lock, between_ticks, [this] { return over_; })) draw();
+}
+
+void ProgressBar::draw() {
   const double now = watch_.seconds();
-  if (quiet_ || now < next_) return;
+  if (now < next_ || activity_.empty()) return;
   next_ = now + (terminal_ ? between_redraws : between_lines);
 
-  std::string line = fmt::format("{:>5.0f} s  {:<8}  ", std::floor(now), progress.activity);
-  if (progress.fraction >= 0) line += bar(progress.fraction) + "  ";
-  line += progress.detail;
+  std::string line = fmt::format("{:>5.0f} s  {:<8}  ", std::floor(now), activity_);
+  if (fraction_ >= 0) line += bar(fraction_) + "  ";
+  line += detail_;
   if (!terminal_) {
     fmt::print(stderr, "{}\n", line);
     return;
@@ -79,6 +109,8 @@ void ProgressBar::show(const bernal::Progress& progress) {
 }
 
 void ProgressBar::clear() {
+  const std::lock_guard lock(mutex_);
+  activity_.clear();
   if (!drawn_) return;
   fmt::print(stderr, "\r\x1b[K");
   drawn_ = false;

@@ -12,6 +12,7 @@ namespace {
 constexpr int cubes_along_longest_edge = 32;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double widening = 1e-6;  ///< of a cube's edge
+constexpr double slack = 0.02;     ///< of a cube's edge, by which distances may be too large
 
 /// Of a point outside the bounds.
 constexpr ClearanceBounds beyond = {-infinity, -std::numeric_limits<double>::denorm_min()};
@@ -35,10 +36,10 @@ ClearanceField::ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds
     bool inside = false;
     for (int x = 0; x < count_[0]; ++x) {
       const Vector<3> center = center_of(x, y, z);
-      const double most = (std::abs(last) + edge_) * (1 + widening);
-      if (x == 0 || std::abs(last) <= edge_ * (1 + widening))
+      const double most = (std::abs(last) + edge_) * (1 + widening);  // also where `last` is too large
+      if (x == 0 || std::abs(last) <= edge_ * (1 + slack + widening))
         inside = tree.crossing(center, 0, -infinity) == Crossing::odd;
-      const double distance = tree.distance(center, most);
+      const double distance = tree.rough_distance(center, most, slack * edge_);
       last = inside ? distance : -distance;
       clearance_[static_cast<std::size_t>(row) * count_[0] + x] = last;
     }
@@ -51,7 +52,7 @@ ClearanceBounds ClearanceField::at(const Vector<3>& p) const {
     if (!(p[k] >= lower_[k] && p[k] <= upper_[k])) return beyond;
     cell[k] = std::min(static_cast<int>((p[k] - lower_[k]) * per_edge_), count_[k] - 1);
   }
-  const double away = (p - center_of(cell[0], cell[1], cell[2])).norm() + widening * edge_;
+  const double away = (p - center_of(cell[0], cell[1], cell[2])).norm() + (slack + widening) * edge_;
   const std::size_t row = static_cast<std::size_t>(cell[2]) * count_[1] + cell[1];
   const double clearance = clearance_[row * count_[0] + cell[0]];
   return {clearance - away, clearance + away};

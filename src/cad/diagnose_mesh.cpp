@@ -9,6 +9,7 @@
 #include "cad/mesh_topology.hpp"
 #include "cad/self_intersections.hpp"
 #include "cad/triangle_tree.hpp"
+#include "core/parallel.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -46,10 +47,16 @@ std::vector<Crossing> nesting(const Mesh& mesh, const MeshTopology& topology) {
   std::vector<Crossing> nested(topology.components, Crossing::starts_on_wall);
   if (nested.size() == 1) return {Crossing::even};
   const TriangleTree tree(mesh);
+  const Bounds<3> bounds = bounds_of_vertices(mesh);
   const auto look_from = [&](const Vector<3>& p, std::uint32_t own) {
-    if (nested[own] == Crossing::starts_on_wall)
-      nested[own] = tree.crossing(p, 0, std::numeric_limits<double>::infinity(),
-                                  [&](std::uint32_t t) { return topology.component[t] == own; });
+    if (nested[own] != Crossing::starts_on_wall) return;
+    throw_if_interrupted();
+    // The shortest way out: of solids in a row it meets none, where the way along the row meets them all.
+    int down = 0, up = 0;
+    const double below = (p - bounds.lower).minCoeff(&down), above = (bounds.upper - p).minCoeff(&up);
+    constexpr double far = std::numeric_limits<double>::infinity();
+    nested[own] = tree.crossing(p, below < above ? down : up, below < above ? -far : far,
+                                [&](std::uint32_t t) { return topology.component[t] == own; });
   };
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t corner : mesh.triangles[t])

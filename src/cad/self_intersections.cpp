@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/parallel.hpp"
+
 namespace bernal::cad {
 namespace {
 
@@ -83,6 +85,7 @@ void for_each_intersecting_pair(const Mesh& mesh, const Found& found) {
     if (!pairs.degenerate(t)) boxes.emplace_back(pairs.triangle(t).bbox(), &t);
 
   CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& s, const Box& t) {
+    throw_if_interrupted();
     if (pairs.intersect(*s.handle(), *t.handle())) found(s.handle(), t.handle());
   });
 }

@@ -89,7 +89,7 @@ double distance(const Vector<3>& p, const WallTriangle& t) {
 class NearestTraversal {
  public:
   using Priority = double;
-  explicit NearestTraversal(double bound) : bound_(bound), squared_bound_(bound * bound) {}
+  explicit NearestTraversal(double bound, double slack = 0) : slack_(slack) { set_bound(bound); }
 
   bool go_further() const { return true; }
   bool do_intersect(const Vector<3>& p, const Node& node) const {
@@ -112,14 +112,19 @@ class NearestTraversal {
     const Vector<3> offset = PreparedTriangle(t.a, t.b, t.c).offset(p);
     const double d = offset.norm();
     if (d >= bound_) return;
-    bound_ = d;
-    squared_bound_ = d * d;
+    set_bound(d);
     if (d > 0) towards_ = offset / d;
   }
   double bound() const { return bound_; }
 
  private:
-  double bound_, squared_bound_;
+  void set_bound(double bound) {
+    bound_ = bound;
+    const double of_boxes = std::max(0.0, bound - slack_);
+    squared_bound_ = of_boxes * of_boxes;
+  }
+
+  double bound_, squared_bound_, slack_;
   Vector<3> towards_ = Vector<3>::Zero();  ///< from the nearest point so far to p
 };
 
@@ -300,6 +305,12 @@ TriangleTree::TriangleTree(TriangleTree&&) noexcept = default;
 
 double TriangleTree::distance(const Vector<3>& p, double bound) const {
   NearestTraversal traversal(bound);
+  impl_->tree.traversal_with_priority_and_group_traversal(p, traversal, group);
+  return traversal.bound();
+}
+
+double TriangleTree::rough_distance(const Vector<3>& p, double bound, double slack) const {
+  NearestTraversal traversal(bound, slack);
   impl_->tree.traversal_with_priority_and_group_traversal(p, traversal, group);
   return traversal.bound();
 }

@@ -26,6 +26,10 @@ class TriangleTree {
   /// largest coordinate.
   double distance(const Vector<3>& p, double bound) const;
 
+  /// The same, too large by at most `slack`: in the middle of a round part, from which everything is equally
+  /// near, the boxes of the tree then answer for thousands of triangles.
+  double rough_distance(const Vector<3>& p, double bound, double slack) const;
+
   /// Whether no triangle is nearer to c than r.
   bool clears(const Vector<3>& c, double r, WallArithmetic arithmetic) const;
 

@@ -2,9 +2,29 @@
 #include <cstddef>
 #include <functional>
 
+#include "bernal/core/monitor.hpp"
+
 namespace bernal {
 
 // Work in as many threads as the run has. These stand before oneTBB, so that few files compile its templates.
+
+/// While it lives, every loop that its thread begins here asks the monitor before each of its pieces, and
+/// throws Cancelled once that says stop. For work that takes long and has no partial result.
+class Interruptible {
+ public:
+  /// The monitor outlives this.
+  explicit Interruptible(const Monitor& monitor);
+  ~Interruptible();
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+
+ private:
+  const Monitor* outer_;
+};
+
+/// The same for loops in one thread: throws Cancelled if an Interruptible lives in this thread and its
+/// monitor says stop. Cost: some ns.
+void throw_if_interrupted();
 
 /// Calls body(first, last) for ranges that make up [0, n), of at most `grain` where that is possible. Returns
 /// when all have returned; what one throws passes through.

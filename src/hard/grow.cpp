@@ -36,7 +36,7 @@ void complete_grow(Grow& grow, Scene& scene, const schema::Section&) {
 /// Random sequential insertion between the walls. Returns whether all have found places.
 template <int D>
 bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls,
-                      Random random) {
+                      Random random, const Monitor& monitor) {
   const Boundary<D> boundary{edges_around_walls(edges, walls)};
   const auto between_walls = [&](double r) {
     Bounds<D> bounds{Vector<D>::Zero(), edges};
@@ -44,9 +44,9 @@ bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::ve
       if (!walls.empty() && walls[static_cast<std::size_t>(k)]) bounds.lower[k] += r, bounds.upper[k] -= r;
     return uniform_point(random, bounds);
   };
-  return bernal::insert_at_random<D>(spheres, std::vector<bool>(spheres.size(), false), 1,
-                                     {Vector<D>::Zero(), boundary.edges}, boundary, most_trials,
-                                     between_walls, [](const Vector<D>&, double) { return true; });
+  return bernal::insert_at_random<D>(
+      spheres, std::vector<bool>(spheres.size(), false), 1, {Vector<D>::Zero(), boundary.edges}, boundary,
+      most_trials, between_walls, [](const Vector<D>&, double) { return true; }, monitor);
 }
 
 /// Those of the box, in its coordinates.
@@ -87,7 +87,7 @@ void start(Spheres<D>& spheres, Vector<D>& edges, Work& work, double phi_init) {
   if (work.target_edges) volume = std::max(volume, work.target_edges->prod());
   edges *= std::pow(volume / edges.prod(), 1.0 / D);
   require_room<D>(spheres, edges, work.walls);
-  if (!insert_at_random<D>(spheres, edges, work.walls, work.random(Stream::grow)))
+  if (!insert_at_random<D>(spheres, edges, work.walls, work.random(Stream::grow), work.monitor))
     throw Error(ErrorCode::bad_scene,
                 fmt::format("grow cannot start at phi_init = {}: random insertion found no place for one of "
                             "the spheres; take a smaller one",

@@ -125,7 +125,8 @@ class Growth {
         most_trials_between_walls, [&](double) { return work_.bed().places().draw(random_); },
         [&](const Vector<3>& c, double r) {
           return container.clearance_within(c, r + clear_of_walls) >= r + clear_of_walls;
-        });
+        },
+        work_.monitor);
     if (all) growing.placed.assign(growing.spheres.size(), true);
     return all;
   }

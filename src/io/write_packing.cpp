@@ -49,7 +49,8 @@ std::unique_ptr<SizeDistribution> asked_sizes(const Scene& scene) {
 
 }  // namespace
 
-WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder) {
+WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
+                             const Monitor& monitor) {
   StagedFolder staged(folder);
   const std::filesystem::path csv = staged.add("spheres.csv");
   {
@@ -68,7 +69,8 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
       packing.spheres, packing.domain, {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)},
       {.radial = {.work = distances_for_a_report},
        .chambers = {.points = points_for_a_report},
-       .walls = {.work = wall_distances_for_a_report}});
+       .walls = {.work = wall_distances_for_a_report},
+       .monitor = monitor});
   const Report report{packing, certificate, measured, asked.get(), hash_of(packing.spheres)};
   const std::string scene = scene_as_run(packing, folder);
   const std::string picture = svg_of(packing.spheres, packing.domain, name_of(packing.scene.unit));

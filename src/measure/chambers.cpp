@@ -8,6 +8,7 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "core/parallel.hpp"
+#include "domain/places.hpp"
 #include "measure/convex.hpp"
 #include "measure/even_points.hpp"
 #include "measure/free_cells.hpp"
@@ -18,9 +19,7 @@ namespace bernal {
 namespace {
 
 constexpr double cells_per_radius = 4;
-constexpr double near_gap = 0.3;  ///< between spheres that a line of places may join
-/// A container that fills less of its bounds than one in so many has fewer points.
-constexpr double most_in_vain = 64;
+constexpr double near_gap = 0.3;        ///< between spheres that a line of places may join
 constexpr std::size_t most_known = 16;  ///< places that are tried for every point
 constexpr std::uint32_t none = Chambers::none;
 
@@ -55,6 +54,7 @@ class Components {
 
   double edge() const { return edge_; }
   double step() const { return cells_ ? cells_->step() : 0; }
+  double coarse_step() const { return cells_ ? cells_->coarse_step() : 0; }
   /// A place well inside each.
   const std::vector<Place>& deepest() const { return deepest_; }
 
@@ -106,7 +106,8 @@ std::vector<std::uint32_t> linked(const Components& components, const FreeSpace&
   });
   std::vector<std::uint8_t> joined(open.size());
   parallel_for(open.size(), [&](std::size_t k) {
-    joined[k] = space.joined(*centers[open[k].first], *centers[open[k].second], components.step());
+    joined[k] = space.joined(*centers[open[k].first], *centers[open[k].second], components.step(),
+                             components.coarse_step());
   });
   for (std::size_t k = 0; k < open.size(); ++k)
     if (joined[k])
@@ -138,12 +139,15 @@ Sampled sample(const FreeSpace& space, std::span<const Place> known, std::size_t
                std::uint32_t points, ChamberOf&& chamber_of) {
   enum : std::uint32_t { outside = none, uncovered = none - 1, elsewhere = none - 2 };
   const Bounds<3> bounds = space.container().bounds();
-  const double waste = std::clamp(bounds.volume() / space.container().volume(), 1.0, most_in_vain);
-  std::vector<std::uint32_t> kinds(static_cast<std::size_t>(waste * points));
+  const bool fills = fills_its_bounds(space.container());
+  std::vector<Vector<3>> inside;  // where even points of the bounds would hardly ever be
+  if (!fills) inside = points_inside(space.container(), points, 1, {});
+  const double waste = std::max(1.0, bounds.volume() / space.container().volume());
+  std::vector<std::uint32_t> kinds(fills ? static_cast<std::size_t>(waste * points) : inside.size());
   parallel_for(kinds.size(), [&](std::size_t k) {
-    const Vector<3> p = bounds.lower + bounds.size().cwiseProduct(even_point(k));
+    const Vector<3> p = fills ? bounds.lower + bounds.size().cwiseProduct(even_point(k)) : inside[k];
     kinds[k] = outside;
-    if (!space.container().contains(p, 0)) return;
+    if (fills && !space.container().contains(p, 0)) return;
     std::optional<Place> place;
     const auto near =
         std::ranges::find_if(known, [&](const Place& at) { return (at.point - p).norm() <= space.radius(); });

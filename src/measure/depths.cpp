@@ -7,6 +7,7 @@
 
 #include "bernal/core/random.hpp"
 #include "core/parallel.hpp"
+#include "domain/places.hpp"
 
 namespace bernal {
 namespace {
@@ -40,15 +41,36 @@ double deepest_of(const Cylinder& cylinder) {
 double deepest_of(const Sphere& sphere) { return sphere.radius; }
 double deepest_of(const Mesh&) { return 0; }
 
+/// How many cells a grid over the bounds has along each axis, so that there are about so many and they are
+/// about cubes; where the bounds are thinner than a cube, one layer of squares or one row.
+std::array<std::size_t, 3> cells_along(const Vector<3>& size, double wanted) {
+  std::array<int, 3> by_size = {0, 1, 2};
+  std::ranges::sort(by_size, {}, [&](int k) { return size[k]; });
+  double edge = std::cbrt(size.prod() / wanted);
+  if (size[by_size[0]] < edge) edge = std::sqrt(size[by_size[1]] * size[by_size[2]] / wanted);
+  if (size[by_size[1]] < edge) edge = size[by_size[2]] / wanted;
+  std::array<std::size_t, 3> cells;
+  for (int k = 0; k < 3; ++k)
+    cells[static_cast<std::size_t>(k)] = static_cast<std::size_t>(std::max(1.0, std::round(size[k] / edge)));
+  return cells;
+}
+
 /// One point in each cell of a grid over the bounds, at random in it: what is known of the error of
-/// independent points is a bound for these.
+/// independent points is a bound for these. Where the container fills next to nothing of its bounds, points
+/// of its `Places`.
 std::vector<double> sample(const Container& container, double reach, std::size_t points) {
   const Bounds<3> bounds = container.bounds();
   const Vector<3> size = bounds.size();
+  if (!fills_its_bounds(container)) {
+    const std::vector<Vector<3>> inside = points_inside(container, points, 1, {});
+    std::vector<double> depths(inside.size());
+    parallel_for(depths.size(),
+                 [&](std::size_t k) { depths[k] = container.clearance_within(inside[k], reach); });
+    std::ranges::sort(depths);
+    return depths;
+  }
   const double waste = std::clamp(size.prod() / container.volume(), 1.0, most_waste);
-  const double edge = std::cbrt(size.prod() / (waste * static_cast<double>(points)));
-  std::array<std::size_t, 3> cells;
-  for (int k = 0; k < 3; ++k) cells[k] = static_cast<std::size_t>(std::max(1.0, std::round(size[k] / edge)));
+  const std::array<std::size_t, 3> cells = cells_along(size, waste * static_cast<double>(points));
 
   std::vector<double> depths(cells[0] * cells[1] * cells[2], -1);
   parallel_for(depths.size(), [&](std::size_t cell) {

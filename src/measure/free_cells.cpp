@@ -11,7 +11,6 @@ namespace bernal {
 namespace {
 
 constexpr int block = 16;                          // cells along an edge of what one task refines
-constexpr double steps_per_cell = 16;              // in a line of places
 constexpr double steps_per_radius = 4;             // at least
 const double half_diagonal = 0.5 * std::sqrt(3.);  // of a cube of edge 1
 constexpr double widening = 1 + 1e-9;              // more than rounding takes
@@ -155,7 +154,7 @@ void FreeCells::connect() {
       best = place;
       towards = other;
     });
-    if (towards != none && space_.joined(node.place, best, step_)) upward[n] = towards;
+    if (towards != none && space_.joined(node.place, best, step_, coarse_step())) upward[n] = towards;
   });
   for (std::uint32_t n = 0; n < nodes_.size(); ++n)
     if (upward[n] != none) sets.unite(n, upward[n]);
@@ -167,7 +166,8 @@ void FreeCells::connect() {
     if (node.whole) return;
     for_each_neighbour(node.cell, [&](const Cell& cell, std::uint32_t other) {
       if (component_[n] == component_[other] || (other < n && !nodes_[other].whole)) return;
-      if (space_.joined(node.place, place_in(cell, nodes_[other]), step_)) sideways[n].push_back(other);
+      if (space_.joined(node.place, place_in(cell, nodes_[other]), step_, coarse_step()))
+        sideways[n].push_back(other);
     });
   });
   for (std::uint32_t n = 0; n < nodes_.size(); ++n)
@@ -198,7 +198,7 @@ std::optional<FreeCells::Found> FreeCells::find(const Place& place) const {
   std::ranges::stable_sort(
       near, {}, [&](const auto& other) { return (other.first.point - place.point).squaredNorm(); });
   for (const auto& [other, n] : near)
-    if (space_.joined(place, other, step_)) return Found{component_[n], true};
+    if (space_.joined(place, other, step_, coarse_step())) return Found{component_[n], true};
   return Found{component_[near.front().second], false};
 }
 

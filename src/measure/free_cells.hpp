@@ -47,8 +47,11 @@ class FreeCells {
 
   /// Two places are joined by pieces so short, see FreeSpace.
   double step() const { return step_; }
+  /// Or so short, where that would be pieces without number.
+  double coarse_step() const { return edge_ / steps_per_cell; }
 
  private:
+  static constexpr double steps_per_cell = 16;  // in a line of places
   static constexpr std::uint32_t none = ~std::uint32_t{0};
   using Cell = std::array<int, 3>;
   struct Node {

@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::size_t most_planes = 12;
 constexpr int most_sweeps = 200;
+/// Of a line of places: more than it has between two neighbours of ordinary cells.
+constexpr int most_fine_pieces = 160;
 /// What the distance of the nearest facet may differ from the clearance, so that next to none but it are
 /// found: from the middle of a round part thousands are nearly as near.
 constexpr double within = 1 + 1e-9, roundoffs = 16;
@@ -76,11 +78,17 @@ std::optional<Place> FreeSpace::nearest(const Vector<3>& p, double limit) const 
   }
 }
 
-bool FreeSpace::joined(const Place& a, const Place& b, double step) const {
+bool FreeSpace::joined(const Place& a, const Place& b, double step, double coarse) const {
+  int pieces = most_fine_pieces;
+  return joined(a, b, step, coarse, pieces);
+}
+
+bool FreeSpace::joined(const Place& a, const Place& b, double step, double coarse, int& pieces) const {
   const double d = (b.point - a.point).norm();
-  if (a.clearance - r_ + b.clearance - r_ >= d || d <= step) return true;
+  if (a.clearance - r_ + b.clearance - r_ >= d || d <= (pieces > 0 ? step : coarse)) return true;
+  --pieces;
   const std::optional<Place> middle = nearest(0.5 * (a.point + b.point), 0.25 * d);
-  return middle && joined(a, *middle, step) && joined(*middle, b, step);
+  return middle && joined(a, *middle, step, coarse, pieces) && joined(*middle, b, step, coarse, pieces);
 }
 
 }  // namespace bernal

@@ -31,10 +31,12 @@ class FreeSpace {
   /// Whether a line of places leads from one place to the other, near the straight one. Sure where the
   /// balls a.clearance - r and b.clearance - r meet, as clearance is 1-Lipschitz; else the line is halved at
   /// the place nearest to its middle, down to pieces of length `step`, of which a neck may be closer than r
-  /// by step² / 8r where it is sharp.
-  bool joined(const Place& a, const Place& b, double step) const;
+  /// by step² / 8r where it is sharp. After so many pieces that the line must be very long for r, as through
+  /// the cells of a plate, pieces of length `coarse` will do.
+  bool joined(const Place& a, const Place& b, double step, double coarse) const;
 
  private:
+  bool joined(const Place& a, const Place& b, double step, double coarse, int& pieces) const;
   static constexpr double slack = 1e-4;
 
   const Container& container_;

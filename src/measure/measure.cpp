@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
+#include "core/parallel.hpp"
 
 namespace bernal {
 namespace {
@@ -59,11 +60,15 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
   measured.held_from = smallest_holding_gap(measured.by_gap, spheres.size());
   measured.contacts = measured.by_gap.back();
   measured.by_gap.pop_back();
-  measured.radial = radial_distribution(spheres, domain, options.radial);
-  measured.chambers = chambers(spheres, domain, options.chambers);
-  measured.walls = wall_profile(spheres, domain, options.walls);
-  measured.order =
-      bond_order(spheres, domain, measured.walls ? measured.walls->regions : std::vector<Region>{});
+  try {
+    const Interruptible listening(options.monitor);
+    measured.radial = radial_distribution(spheres, domain, options.radial);
+    measured.chambers = chambers(spheres, domain, options.chambers);
+    measured.walls = wall_profile(spheres, domain, options.walls);
+    measured.order =
+        bond_order(spheres, domain, measured.walls ? measured.walls->regions : std::vector<Region>{});
+  } catch (const Cancelled&) {
+  }
   if (asked.sizes && !spheres.empty()) measured.sizes = compare_sizes_of(spheres, domain, asked);
   return measured;
 }

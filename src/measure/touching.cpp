@@ -6,8 +6,11 @@
 #include <memory>
 #include <span>
 
+#include <fmt/format.h>
+
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
+#include "bernal/core/error.hpp"
 #include "bernal/domain/container.hpp"
 #include "core/parallel.hpp"
 #include "measure/localised.hpp"
@@ -80,9 +83,27 @@ void append_pairs(const Spheres<D>& spheres, std::span<const Level<D>> levels, s
   }
 }
 
+/// A sphere that is much larger than its box meets images without number.
+template <int D>
+void require_countable_images(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
+  constexpr double most_images = 1e6;  // of a sphere; one as large as its box meets 3^D
+  const double largest = spheres.empty() ? 0 : std::ranges::max(spheres.r),
+               reach = 2 * (1 + widest_gap) * largest;
+  double images = 1;
+  for (int k = 0; k < D; ++k)
+    if (boundary.repeats(k)) images *= 1 + 2 * reach / boundary.edges[k];
+  if (!(images <= most_images))
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("a sphere of radius {:g} is so much larger than its box that it meets {:.0g} of its own "
+                    "images: check the units of the spheres and of the box",
+                    largest, images));
+}
+
 template <class Found, int D>
 std::vector<Found> pairs_among(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
   constexpr std::size_t chunk = 4096;
+  require_countable_images(spheres, boundary, widest_gap);
   const std::vector<Level<D>> levels = levels_of(spheres, boundary, widest_gap);
   std::vector<Found> pairs;
   for (std::size_t l = 0; l < levels.size(); ++l) {

@@ -34,6 +34,16 @@ void resolve_predicted(Plan& plan) {
   target.packing_fraction = std::max(1e-4, std::floor(1e4 * surely) / 1e4);
 }
 
+/// A container that says what is wrong with it is where the scene names it.
+double expected_in_container(const Plan& plan) {
+  try {
+    return expected_packing_fraction(plan.scene, plan.domain, *plan.radii);
+  } catch (const Error& error) {
+    if (!error.location().file.empty()) throw;
+    throw Error(ErrorCode::bad_scene, error.what(), plan.scene.container.locations.whole);
+  }
+}
+
 void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Domain& container = plan.domain;
@@ -45,8 +55,7 @@ void expect_in_container(Plan& plan) {
 
   const double mean_volume = ball_volume(3, 1) * plan.radii->moment(3);
   const double volume = volume_of(container);
-  double attainable = plan.attainable_packing_fraction =
-      expected_packing_fraction(scene, container, *plan.radii);
+  double attainable = plan.attainable_packing_fraction = expected_in_container(plan);
   resolve_predicted(plan);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   plan.expected_count = attainable * volume / mean_volume;

@@ -7,6 +7,8 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/predict/predict.hpp"
 #include "core/close_packing.hpp"
+#include "domain/places.hpp"
+#include "run/fitting.hpp"
 #include "run/stages.hpp"
 
 namespace bernal {
@@ -95,20 +97,21 @@ double coverable_share(const Container& container, double r) {
   // The additive recurrence of the plastic number's relative in three dimensions (Roberts 2018).
   constexpr double step[] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
   const Bounds<3> bounds = container.bounds();
-  std::size_t inside = 0, covered = 0;
-  std::vector<NearFacet> facets;
-  for (std::size_t n = 1; inside < points; ++n) {
+  const auto even_point = [&](std::size_t n) {
     Vector<3> p;
     for (int k = 0; k < 3; ++k) {
-      const double u = 0.5 + step[k] * static_cast<double>(n);
+      const double u = 0.5 + step[k] * static_cast<double>(n + 1);
       p[k] = bounds.lower[k] + (u - std::floor(u)) * bounds.size()[k];
     }
-    const double clearance = container.clearance_within(p, r);
-    if (!(clearance > 0)) continue;
-    ++inside;
-    if (is_coverable(container, p, clearance, r, facets)) ++covered;
-  }
-  return static_cast<double>(covered) / static_cast<double>(points);
+    return p;
+  };
+  std::size_t covered = 0;
+  std::vector<NearFacet> facets;
+  const std::vector<Vector<3>> inside = points_inside(container, points, 1, even_point);
+  if (inside.empty()) refuse_thin_container();
+  for (const Vector<3>& p : inside)
+    covered += is_coverable(container, p, container.clearance_within(p, r), r, facets);
+  return static_cast<double>(covered) / static_cast<double>(inside.size());
 }
 
 double close_packing_fraction(const SizeDistribution& radii, int dimension) {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/random.hpp"
+#include "domain/places.hpp"
 #include "work/bed.hpp"
 
 namespace bernal {
@@ -58,16 +59,22 @@ void require_fitting(const Scene& scene, const Domain& container, double radius)
       scene.sizes.locations.whole);
 }
 
+void refuse_thin_container() {
+  throw Error(ErrorCode::bad_argument,
+              "the container is so thin, and so oblique to the axes, that random places in it are not to be "
+              "found: turn it so that its length lies along an axis");
+}
+
 double radius_with_hardly_any_room(const Container& container, std::uint64_t seed) {
   constexpr std::size_t points = 10000;
   Random random(seed, stream(Stream::room));
   const Bounds<3> bounds = container.bounds();
   std::vector<double> clearances;
-  while (clearances.size() < points) {
-    const Vector<3> p = uniform_point(random, bounds);
-    if (container.contains(p, 0)) clearances.push_back(container.clearance(p));
-  }
-  const auto hundredth = clearances.begin() + points / 100;
+  for (const Vector<3>& p :
+       points_inside(container, points, seed, [&](std::size_t) { return uniform_point(random, bounds); }))
+    clearances.push_back(container.clearance(p));
+  if (clearances.empty()) refuse_thin_container();
+  const auto hundredth = clearances.begin() + static_cast<std::ptrdiff_t>(clearances.size() / 100);
   std::nth_element(clearances.begin(), hundredth, clearances.end(), std::greater<>());
   return *hundredth;
 }

@@ -17,6 +17,9 @@ void require_long_periods(const Scene& scene, const Domain& container, double ra
 /// Throws Error{bad_scene} at the scene's sizes, with the remedy, if a sphere of that radius cannot fit.
 void require_fitting(const Scene& scene, const Domain& container, double radius);
 
+/// Throws Error{bad_argument}: not a single random place was found in it.
+[[noreturn]] void refuse_thin_container();
+
 /// Where to cut an unbounded tail of sizes: the radius for whose spheres' centres only one hundredth of the
 /// container has room; single larger ones would wait for a place for ever. From 10,000 random points.
 double radius_with_hardly_any_room(const Container& container, std::uint64_t seed);

@@ -13,6 +13,7 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
+#include "core/parallel.hpp"
 #include "run/conclude.hpp"
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
@@ -79,6 +80,19 @@ class Run {
         any_in_bed_(any_in_bed(plan.scene)) {}
 
   void go() {
+    try {
+      attempt();
+    } catch (const Cancelled&) {  // before there was anything to keep
+      packing_.spheres = Spheres<dynamic>(dimension_of(plan_.domain));
+      packing_.outcome = Outcome::cancelled;
+      packing_.reason = "stopped by the user before the first sphere was placed";
+      state_edges();
+    }
+    packing_.seconds = watch_.seconds();
+  }
+
+ private:
+  void attempt() {
     double fraction = any_in_bed_ ? Supply::densest : plan_.expected_packing_fraction;
     for (int attempt = 1;; ++attempt) {
       Work work = start(fraction);
@@ -89,14 +103,13 @@ class Run {
       }
       hand_over(work);
       conclude(packing_, work, end, table_of(scene_.stages.back()).traits.places_expected);
-      packing_.seconds = watch_.seconds();
       return;
     }
   }
 
- private:
   /// The drawn sequence, the frame that follows from it, and no sphere in its place.
   Work start(double fraction) {
+    const Interruptible listening(monitor_);
     Work work{.spheres = Spheres<dynamic>(dimension_of(plan_.domain)),
               .edges = bounds_of<dynamic>(plan_.domain).size(),
               .allowed_overlap = scene_.overlap,
@@ -185,6 +198,8 @@ class Run {
     try {
       const auto& act = work.stands_in_bed() ? entry.act_in_bed : entry.act_in_box;
       return act(entry.table.options(stage), work);
+    } catch (const Cancelled&) {
+      return StageEnd::cancelled;
     } catch (const Error& error) {
       if (!error.location().file.empty()) throw;
       throw Error(error.code(), error.what(), stage.locations.whole);
@@ -221,14 +236,18 @@ class Run {
       packing_.domain = periodic_box(edges, work.walls);
       packing_.volume = volume_of(packing_.domain);
     }
-    if (scene_.is_periodic()) {
-      const Coordinates& edges = std::get<Box>(packing_.domain).size;
-      auto& stated = std::get<PeriodicBox>(packing_.scene.container);
-      stated.size.assign(edges.begin(), edges.end());
-      stated.edge.reset();
-    }
+    state_edges();
     packing_.size_scale = work.size_scale;
     packing_.effects = effects_.all();
+  }
+
+  /// Of a periodic box, in the scene that the packing is of.
+  void state_edges() {
+    if (!scene_.is_periodic()) return;
+    const Coordinates& edges = std::get<Box>(packing_.domain).size;
+    auto& stated = std::get<PeriodicBox>(packing_.scene.container);
+    stated.size.assign(edges.begin(), edges.end());
+    stated.edge.reset();
   }
 
   void tell(const Course& course) {

@@ -8,6 +8,8 @@ namespace {
 
 /// A milestone, and a look at whether the user wants to stop, every so many spheres.
 constexpr std::size_t milestone_every = 8192;
+/// For each place inside a container: in one so thin and oblique that more are beyond it, spheres wait.
+constexpr double most_drawn = 1000;
 
 }  // namespace
 
@@ -17,7 +19,8 @@ StageEnd insert(Work& work, const Insert& options) {
   Supply& supply = *work.supply;
   Random random = work.random(Stream::insert);
   // Trials are counted inside the container; places are drawn a little beyond it, too.
-  const double attempts = options.attempts * std::max(1.0, bed.places().volume() / bed.container().volume());
+  const double attempts =
+      options.attempts * std::clamp(bed.places().volume() / bed.container().volume(), 1.0, most_drawn);
   std::size_t waiting = 0;  // so many at the head of the window found no place
   while (waiting < supply.window().size() && bed.packing_fraction() < options.packing_fraction) {
     if (work.monitor.stop()) return StageEnd::cancelled;
@@ -25,7 +28,7 @@ StageEnd insert(Work& work, const Insert& options) {
     const double r = supply.radius(tag);
     const auto place = find_place(
         attempts, [&] { return bed.places().draw(random); },
-        [&](const Vector<3>& c) { return bed.fits(c, r); });
+        [&](const Vector<3>& c) { return bed.fits(c, r); }, work.monitor);
     if (!place) {
       ++waiting;
       continue;

@@ -7,8 +7,8 @@
 
 #include "bernal/core/random.hpp"
 #include "bernal/domain/container.hpp"
+#include "domain/places.hpp"
 #include "soft/soft_engine.hpp"
-#include "work/places.hpp"
 
 namespace bernal {
 

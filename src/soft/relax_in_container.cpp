@@ -26,6 +26,9 @@ constexpr Insert insertion = {.attempts = 1000, .packing_fraction = 1};
 constexpr int most_hand_overs = 20;
 /// Tries to find a place where a sphere clears the wall.
 constexpr int tries = 100;
+/// And to find one that is inside at all, which of a container's places at least one in a hundred is, and of
+/// those that `Places` cannot narrow down one in a thousand.
+constexpr int most_tries = 100000;
 
 class Relaxation {
  public:
@@ -77,7 +80,7 @@ class Relaxation {
     const Container& container = work_.bed().container();
     Vector<3> best = Vector<3>::Zero();
     double most = 0;
-    for (int k = 0; k < tries || !(most > 0); ++k) {
+    for (int k = 0; k < (most > 0 ? tries : most_tries); ++k) {
       const Vector<3> p = work_.bed().places().draw(random_);
       const double clearance = container.clearance_within(p, r);
       if (clearance > most) {

@@ -149,6 +149,7 @@ void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<
   first_.assign(1, 0);
   near_.clear();
   until_.clear();
+  least_until_.clear();
   for (std::size_t g = 0; g < groups; ++g) {
     for (std::uint32_t l = 0; l < lanes; ++l) {
       if (near_lanes[g] >> l & 1) add_near(l, ids[g * lanes + l], spheres[g * lanes + l]);
@@ -159,7 +160,14 @@ void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<
 
 void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere) {
   const View& view = views_[id];
-  NearSphere near{lane, id, static_cast<std::uint32_t>(until_.size()), 0, place(sphere), 0, 0};
+  NearSphere near{lane,
+                  id,
+                  static_cast<std::uint32_t>(until_.size()),
+                  static_cast<std::uint32_t>(least_until_.size()),
+                  0,
+                  place(sphere),
+                  0,
+                  0};
   const double moved = way(view.at, near.last).norm();
   near.beyond = view.reach - moved;
   for (const Piece& piece : view.pieces) {
@@ -167,6 +175,8 @@ void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere&
       near.beyond = piece.distance - moved;
       break;
     }
+    // Pieces come nearest first.
+    if (near.count % run == 0) least_until_.push_back(static_cast<float>(piece.distance - moved));
     until_.push_back(static_cast<float>(piece.distance - moved));
     ++near.count;
   }
@@ -187,19 +197,28 @@ void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out
     double free = near.beyond - near.way;
     std::array<Contact, most_contacts> contacts;
     std::size_t count = 0;
-    for (std::uint32_t k = 0; k < near.count; ++k) {
-      float& until = until_[near.first + k];
-      if (until - near.way >= r) {
-        free = std::min(free, until - near.way);
+    for (std::uint32_t first = 0; first < near.count; first += run) {
+      float& least = least_until_[near.first_run + first / run];
+      if (least - near.way >= r) {
+        free = std::min(free, least - near.way);
         continue;
       }
-      const Vector<3> away = offset(pieces[k].facet, c);
-      const double d = away.norm();
-      until = static_cast<float>(d + near.way);
-      free = std::min(free, d);
-      if (!(d < r && d > 0)) continue;
-      if (count == most_contacts) count = leave_distinct(contacts.data(), count, r);
-      if (count < most_contacts) contacts[count++] = {away / d, d};
+      const std::uint32_t end = std::min(near.count, first + run);
+      for (std::uint32_t k = first; k < end; ++k) {
+        float& until = until_[near.first + k];
+        if (until - near.way >= r) {
+          free = std::min(free, until - near.way);
+          continue;
+        }
+        const Vector<3> away = offset(pieces[k].facet, c);
+        const double d = away.norm();
+        until = static_cast<float>(d + near.way);
+        free = std::min(free, d);
+        if (!(d < r && d > 0)) continue;
+        if (count == most_contacts) count = leave_distinct(contacts.data(), count, r);
+        if (count < most_contacts) contacts[count++] = {away / d, d};
+      }
+      least = *std::min_element(until_.begin() + near.first + first, until_.begin() + near.first + end);
     }
     out.free[l] = free;
     count = leave_distinct(contacts.data(), count, r);
@@ -228,7 +247,11 @@ void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spher
     const std::vector<Piece>& pieces = views_[near.id].pieces;
     const Vector<3>& c = near.last;
     double share = std::min(1.0, (1 - kept) * std::max(0.0, near.beyond - near.way) / length);
-    for (std::uint32_t k = 0; k < near.count; ++k) {
+    for (std::uint32_t k = 0; k < near.count && share > 0; ++k) {
+      if (k % run == 0 && (1 - kept) * (least_until_[near.first_run + k / run] - near.way) > length) {
+        k += run - 1;
+        continue;
+      }
       if ((1 - kept) * (until_[near.first + k] - near.way) > length) continue;
       const Vector<3> away = offset(pieces[k].facet, c);
       const double d = away.norm();

@@ -61,6 +61,7 @@ class SoftWalls {
   std::uint64_t queries() const { return queries_; }
 
  private:
+  static constexpr std::uint32_t run = 32;  // pieces that share an entry of least_until_
   struct Piece {
     double distance;  // from View::at
     std::variant<Facet, PreparedTriangle> facet;
@@ -75,10 +76,10 @@ class SoftWalls {
   /// A sphere that may meet a wall until lists are built anew: what a sweep touches, in its order.
   struct NearSphere {
     std::uint32_t lane, id;
-    std::uint32_t first, count;  // its pieces, the first `count` of its view, in until_
-    Vector<3> last;              // where it was pushed last
-    double way;                  // gone since the lists were built
-    double beyond;               // no other piece was nearer than this then
+    std::uint32_t first, first_run, count;  // its pieces, the first `count` of its view, in until_
+    Vector<3> last;                         // where it was pushed last
+    double way;                             // gone since the lists were built
+    double beyond;                          // no other piece was nearer than this then
   };
 
   Vector<3> place(const SoftSphere& s) const;
@@ -101,6 +102,7 @@ class SoftWalls {
   std::vector<std::uint32_t> first_;  // of a group in near_
   std::vector<NearSphere> near_;      // by group
   std::vector<float> until_;          // no piece is nearer to the centre than this less NearSphere::way
+  std::vector<float> least_until_;  // of every so many pieces of a sphere: a fine mesh has thousands of them
   mutable std::atomic<std::uint64_t> queries_ = 0;
 };
 

@@ -5,9 +5,9 @@
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/container.hpp"
+#include "domain/places.hpp"
 #include "neighbors/cell_grid.hpp"
 #include "work/effect_log.hpp"
-#include "work/places.hpp"
 
 namespace bernal {
 

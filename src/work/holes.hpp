@@ -8,8 +8,8 @@
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/container.hpp"
+#include "domain/places.hpp"
 #include "neighbors/cell_grid.hpp"
-#include "work/places.hpp"
 
 namespace bernal {
 

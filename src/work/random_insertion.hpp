@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/boundary.hpp"
@@ -11,10 +12,12 @@
 
 namespace bernal {
 
-/// The first of at most `trials` random places that is free, if there is one.
+/// The first of at most `trials` random places that is free, if there is one. Throws Cancelled.
 template <class Draw, class IsFree>
-std::optional<std::invoke_result_t<Draw>> find_place(double trials, Draw&& draw, IsFree&& is_free) {
+std::optional<std::invoke_result_t<Draw>> find_place(double trials, Draw&& draw, IsFree&& is_free,
+                                                     const Monitor& monitor) {
   for (double trial = 0; trial < trials; ++trial) {
+    if (monitor.stop()) throw Cancelled();
     const auto place = draw();
     if (is_free(place)) return place;
   }
@@ -46,11 +49,12 @@ void displace_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::
 /// Random sequential insertion of the spheres that are not `placed`, the largest first and all with the share
 /// `size` of their radii: each at the first of the places draw(r) that overlaps none before it and
 /// clears_walls(place, r). Returns whether all found one within `trials`; those that did stay there. `bounds`
-/// are those of the region, as for CellGrid. Cost: O(1) a trial, some hundred of them where a third is full.
+/// are those of the region, as for CellGrid. Throws Cancelled. Cost: O(1) a trial, some hundred of them where
+/// a third is full.
 template <int D, class Draw, class ClearsWalls>
 bool insert_at_random(Spheres<D>& spheres, const std::vector<bool>& placed, double size,
                       const Bounds<D>& bounds, const Boundary<D>& boundary, double trials, Draw&& draw,
-                      ClearsWalls&& clears_walls) {
+                      ClearsWalls&& clears_walls, const Monitor& monitor) {
   const auto [least, most] = std::ranges::minmax(spheres.r);
   CellGrid<D> grid(bounds, boundary, size * least, size * most, spheres.size());
   std::vector<std::uint32_t> order;
@@ -71,7 +75,7 @@ bool insert_at_random(Spheres<D>& spheres, const std::vector<bool>& placed, doub
       return !taken && clears_walls(c, r);
     };
     const std::optional<Vector<D>> place = find_place(
-        trials, [&] { return draw(r); }, is_free);
+        trials, [&] { return draw(r); }, is_free, monitor);
     if (!place) return false;
     spheres.set_center(i, *place);
     grid.insert(i, *place, r);

@@ -4,6 +4,7 @@
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
+#include "core/parallel.hpp"
 
 namespace bernal {
 namespace {
@@ -12,6 +13,9 @@ namespace {
 constexpr double window_share = 0.002;
 /// Taking out no more than this share makes the result exactly the drawn sequence less its tail.
 constexpr double trim_share = 0.002;
+
+/// Of the tail for each radius that is kept.
+constexpr std::size_t most_cut_off = 1000;
 
 }  // namespace
 
@@ -32,9 +36,14 @@ Supply::Supply(const Source& source, double volume, const Target& target, double
   double filled = 0;
   while (target.count ? radii_.size() < static_cast<std::size_t>(*target.count)
                       : filled < fraction * volume) {
+    throw_if_interrupted();
     const double r = sequence.next();
     if (r > source.cut) {
-      ++cut_off_;
+      if (++cut_off_ > most_cut_off * (radii_.size() + 1000))
+        throw Error(
+            ErrorCode::bad_scene,
+            "next to none of these sizes has room in the container; use smaller ones or check the units",
+            target.where);
       continue;
     }
     radii_.push_back(r);

@@ -26,6 +26,9 @@ struct Monitor {
   bool stop() const { return cancelled && cancelled(); }
 };
 
+/// Thrown by work that has no partial result once its monitor has said stop, and caught by what has one.
+struct Cancelled {};
+
 /// Seconds since it was made.
 class Stopwatch {
  public:

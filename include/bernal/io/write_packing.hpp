@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "bernal/core/monitor.hpp"
 #include "bernal/run/packing.hpp"
 #include "bernal/verify/certificate.hpp"
 
@@ -17,8 +18,9 @@ struct WrittenPacking {
 ///
 /// Everything is written whole under temporary names, spheres.csv is read back and certified against the
 /// packing's container, and only then are the files renamed: a failure throws Error{cannot_write} and leaves
-/// earlier output untouched.
-WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder);
+/// earlier output untouched. Once the monitor says stop, measurements that may be absent are left out.
+WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
+                             const Monitor& monitor = {});
 
 /// Throws Error{cannot_write} now rather than after a long run, if `folder` can be neither used nor made.
 /// Leaves nothing behind.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bernal/core/monitor.hpp"
 #include "bernal/measure/bond_order.hpp"
 #include "bernal/measure/chambers.hpp"
 #include "bernal/measure/contacts.hpp"
@@ -39,6 +40,7 @@ struct MeasureOptions {
   RadialOptions radial;
   ChamberOptions chambers;
   WallOptions walls;
+  Monitor monitor = {};  ///< once it says stop, what may be absent is
 };
 
 /// What the radii are held against: a distribution, or null for nothing, and how it was drawn from.
