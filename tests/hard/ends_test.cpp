@@ -70,7 +70,9 @@ TEST(ExactFit, OfASphereInItsBoundingCube) {
 }
 
 TEST(ExactFit, OfASphereInAMesh) {
-  const std::string cube = in("kind = \"box\"\nsize = [1.0, 1.0, 1.0]", "count = 1\nradius = ");
+  const auto cube = [](const std::string& radius) {
+    return in("kind = \"box\"\nsize = [1.0, 1.0, 1.0]", "count = 1\nradius = " + radius);
+  };
   const double edge = 1, inradius = edge / std::sqrt(24.0);
   // The regular tetrahedron of edge 1 between corners of a cube.
   const double a = edge / std::sqrt(2.0);
@@ -79,10 +81,10 @@ TEST(ExactFit, OfASphereInAMesh) {
   ASSERT_GT(volume_of(Domain(tetrahedron)), 0);
   for (const std::string& protocol : protocols) {
     SCOPED_TRACE(protocol);
-    EXPECT_EQ(
-        certified(plan_of(cube + "0.5" + protocol, test::box_mesh({0, 0, 0}, {1, 1, 1}))).spheres.size(), 1u);
+    EXPECT_EQ(certified(plan_of(cube("0.5") + protocol, test::box_mesh({0, 0, 0}, {1, 1, 1}))).spheres.size(),
+              1u);
     const std::string within = fmt::format("{:.17g}", inradius * (1 - 1e-12));
-    EXPECT_EQ(certified(plan_of(cube + within + protocol, tetrahedron)).spheres.size(), 1u);
+    EXPECT_EQ(certified(plan_of(cube(within) + protocol, tetrahedron)).spheres.size(), 1u);
   }
 }
 
