@@ -1,8 +1,11 @@
+#include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -46,9 +49,23 @@ Scene scene_of_flags(const PackCall& call) {
   return scene;
 }
 
+/// By its name.
+bool is_mesh(const std::filesystem::path& file) {
+  constexpr std::string_view formats[] = {".stl", ".obj",  ".off", ".ply", ".3mf",  ".gltf", ".glb", ".dae",
+                                          ".fbx", ".step", ".stp", ".igs", ".iges", ".brep", ".3ds", ".amf"};
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::ranges::find(formats, extension) != std::end(formats);
+}
+
 Scene scene_of(const PackCall& call) {
   const bool has_sizes = call.diameter || !call.lognormal.empty();
   if (call.scene.extension() != ".toml" && has_sizes) return scene_of_flags(call);
+  if (!has_sizes && is_mesh(call.scene))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("{} is a mesh, not a scene; say what is packed into it, such as --unit mm "
+                            "--diameter 2, or name it as \"file\" in the [container] of a scene",
+                            call.scene.string()));
   if (has_sizes || !call.unit.empty())
     throw Error(ErrorCode::bad_argument,
                 has_sizes ? "a scene says itself what is packed; leave out --diameter and --lognormal"
@@ -57,8 +74,9 @@ Scene scene_of(const PackCall& call) {
 }
 
 void print_result(const Packing& packing, const WrittenPacking& written) {
-  fmt::print(stderr, "packed     {} spheres, packing fraction {:.4f}, in {:.1f} s\n",
-             grouped(packing.spheres.size()), packing.packing_fraction(), packing.seconds);
+  fmt::print(stderr, "packed     {} spheres, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
+             grouped(packing.spheres.size()), packing.packing_fraction(), packing.expected_packing_fraction,
+             packing.seconds);
   fmt::print(stderr, "outcome    {}: {}\n", name_of(packing.outcome), packing.reason);
   fmt::print(stderr, "proof      {}\n", written.certificate.statement);
   for (std::size_t i = 0; i < written.files.size(); ++i)

@@ -95,6 +95,8 @@ FillChoice choose_filling(FillMethod method, const FillTask& task) {
     return {FillMethod::classes, fmt::format("as the largest sphere is {:.3g} times the smallest: small ones "
                                              "find room between the large",
                                              task.size_ratio)};
+  if (task.may_overlap)
+    return {FillMethod::relaxation, "as some overlap may stay, which flight leaves none of"};
   if (phi <= reached)
     return {FillMethod::flight,
             fmt::format("as flight{} reaches {:.3f}, and {:.3f} is asked for", between, reached, phi)};
@@ -196,7 +198,10 @@ const StageEntry& entry_of<Fly>() {
                        "O(N) an iteration"},
                       {"relaxation", "overlapping spheres push each other apart; what is stuck is stirred",
                        "some 1,000 sweeps of O(N)"}},
-      .chosen_effects = of_options(effects_of)};
+      .chosen_effects = of_options(effects_of),
+      .leaves_overlap = of_options(+[](const Fly& options, const FillTask& task) {
+        return !flies(choose_filling(options.method, task).method);
+      })};
   return entry;
 }
 

@@ -94,6 +94,34 @@ void start(Spheres<D>& spheres, Vector<D>& edges, Work& work, double phi_init) {
                             phi_init));
 }
 
+/// Spheres as thick as what is between two walls touch both before they have their size, and jam. What little
+/// they lack they may have room for elsewhere: then they stand in the box that was asked for, touching its
+/// walls exactly.
+template <int D>
+bool stands_in_asked_box(const Spheres<D>& grown, const Vector<D>& edges, Work& work) {
+  constexpr double little = 1e-4;
+  if (work.walls.empty() || !work.target_edges) return false;
+  const Vector<D> asked = *work.target_edges;
+  if (!(edges[0] > asked[0]) || edges[0] > (1 + little) * asked[0]) return false;
+  Spheres<D> spheres = grown;
+  Vector<D> now = edges;
+  resize_box<D>(spheres, now, asked);
+  for (int k = 0; k < D; ++k)
+    for (std::size_t i = 0; i < spheres.size() && work.has_wall(k); ++i) {
+      double& x = spheres.x[static_cast<std::size_t>(k)][i];
+      if (2 * spheres.r[i] > asked[k]) return false;
+      x = std::max(spheres.r[i], std::min(x, asked[k] - spheres.r[i]));
+      if (asked[k] - x < spheres.r[i]) return false;
+    }
+  const Vector<D> apart = edges_around_walls(asked, work.walls);
+  if (!overlapping<D>(spheres, apart, work.allowed_overlap).empty()) return false;
+  work.spheres = spheres;
+  work.edges = asked;
+  work.needed_volume = asked.prod();
+  work.placed = true;
+  return true;
+}
+
 template <int D>
 StageEnd grow_in(Work& work, const Grow& options) {
   Spheres<D> spheres = work.spheres.in<D>();
@@ -109,6 +137,7 @@ StageEnd grow_in(Work& work, const Grow& options) {
                          work.milestone("grow", std::clamp(done, 0.0, 0.99), 0);
                        }).end;
   free_of_overlap<D>(spheres, edges, work);
+  if (end != StageEnd::cancelled && stands_in_asked_box<D>(spheres, edges, work)) return StageEnd::converged;
   return finish_in_periodic_box<D>(std::move(spheres), edges, end, options.polish, work);
 }
 
@@ -248,7 +277,7 @@ const StageEntry& entry_of<Grow>() {
                std::erase_if(effects, [](const PlanItem& e) { return e.name == "reflections"; });
              return effects;
            },
-       .require = [](const Domain& container,
+       .require = [](const void*, const Domain& container,
                      double smallest_radius) { walls_for_growth(container, smallest_radius); }};
   return entry;
 }

@@ -9,6 +9,7 @@
 #include "hard/convex_walls.hpp"
 #include "jam/polish.hpp"
 #include "work/random_insertion.hpp"
+#include "work/snug_places.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
@@ -66,7 +67,10 @@ class Growth {
   StageEnd run() {
     const std::size_t wanted = work_.target_count();
     if (work_.bed().size() >= wanted) return StageEnd::converged;
-    require_fitting();
+    if (!fits_between_walls()) {
+      complete(wanted);
+      return work_.bed().size() >= wanted ? StageEnd::converged : StageEnd::full;
+    }
     Growing growing{work_.drawn(0)};
     std::size_t count = std::min(wanted, work_.count_filling(most_of_attainable * work_.attainable));
     for (bool first = true;;
@@ -83,16 +87,23 @@ class Growth {
     const bool all_there = work_.put_in_bed(growing.spheres);
     before.give_back_if_denser(work_);
     if (cancelled_) return StageEnd::cancelled;
-    if (!all_there) return StageEnd::hit_limit;
-    return growing.spheres.size() >= wanted ? StageEnd::converged : StageEnd::full;
+    if (work_.bed().size() < wanted) complete(wanted);
+    if (work_.bed().size() >= wanted) return StageEnd::converged;
+    return all_there ? StageEnd::full : StageEnd::hit_limit;
   }
 
  private:
-  /// Of analytic containers that is known beforehand.
-  void require_fitting() const {
-    if (!std::holds_alternative<Mesh>(work_.domain)) return;
+  /// With those that the walls leave hardly any room, which are never as large as they have to be in flight.
+  void complete(std::size_t wanted) {
+    SnugPlaces(work_).complete(volume_of(work_.drawn(wanted).spheres) / work_.container->volume());
+  }
+
+  /// Of analytic containers that is known beforehand; the walls of a mesh may be a little inside of it.
+  bool fits_between_walls() const {
+    if (!std::holds_alternative<Mesh>(work_.domain)) return true;
     const LargestSphere largest = largest_sphere_between(arena_.walls, {Vector<3>::Zero(), arena_.edges});
-    if (work_.supply->largest() <= largest.radius) return;
+    if (work_.supply->largest() <= largest.radius) return true;
+    if (work_.supply->largest() <= (1 + 1e-9) * work_.roomiest().radius) return false;
     throw Error(
         ErrorCode::bad_scene,
         fmt::format(

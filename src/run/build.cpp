@@ -8,6 +8,7 @@
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
+#include "sizes/cut_above.hpp"
 
 namespace bernal {
 namespace {
@@ -35,27 +36,34 @@ void resolve_predicted(Plan& plan) {
 }
 
 /// A container that says what is wrong with it is where the scene names it.
-double expected_in_container(const Plan& plan) {
+double expected_in_container(const Plan& plan, const SizeDistribution& radii) {
   try {
-    return expected_packing_fraction(plan.scene, plan.domain, *plan.radii);
+    return expected_packing_fraction(plan.scene, plan.domain, radii);
   } catch (const Error& error) {
     if (!error.location().file.empty()) throw;
     throw Error(ErrorCode::bad_scene, error.what(), plan.scene.container.locations.whole);
   }
 }
 
+/// Null where nothing is above.
+std::unique_ptr<SizeDistribution> cut_above(const SizeDistribution& radii, double cut) {
+  return cut < radii.max() ? std::make_unique<CutAbove>(radii, cut) : nullptr;
+}
+
 void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Domain& container = plan.domain;
   require_fitting(scene, container, plan.radii->min());
-  if (std::isfinite(plan.radii->max())) {
-    require_fitting(scene, container, plan.radii->max());
-    require_long_periods(scene, container, plan.radii->max());
-  }
+  if (std::isfinite(plan.radii->max())) require_fitting(scene, container, plan.radii->max());
+  frame_for(scene, container, *plan.radii);
+  const double cut = tail_cut(scene, container, *plan.radii);
+  const std::unique_ptr<SizeDistribution> without_tail = cut_above(*plan.radii, cut);
+  const SizeDistribution& radii = without_tail ? *without_tail : *plan.radii;
+  require_long_periods(scene, container, radii.max());
 
-  const double mean_volume = ball_volume(3, 1) * plan.radii->moment(3);
+  const double mean_volume = ball_volume(3, 1) * radii.moment(3);
   const double volume = volume_of(container);
-  double attainable = plan.attainable_packing_fraction = expected_in_container(plan);
+  double attainable = plan.attainable_packing_fraction = expected_in_container(plan, radii);
   resolve_predicted(plan);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   plan.expected_count = attainable * volume / mean_volume;
@@ -84,18 +92,34 @@ void require_effect_of_accuracy(const Scene& scene) {
     fail("walls", "no stage of this scene asks a container about its walls");
 }
 
+/// What is allowed to overlap has to have an effect on some stage, too, as it fills this box.
+void require_overlap(const Plan& plan) {
+  const Scene& scene = plan.scene;
+  if (!(scene.overlap > 0)) return;
+  for (const Stage& stage : scene.stages) {
+    const StageEntry& entry = entry_of(stage);
+    const StageTraits& traits = entry.table.traits;
+    if (!traits.leaves_overlap || traits.stands_in_bed(scene)) continue;
+    if (!entry.leaves_overlap || entry.leaves_overlap(entry.table.options(stage), fill_task_of(plan))) return;
+  }
+  throw Error(ErrorCode::bad_scene,
+              "\"overlap\" in [accuracy] would be without effect: spheres that fly keep none; \"fly\" by "
+              "\"relaxation\" or \"classes\" can, and so can \"relax\"",
+              scene.locations.of("overlap"));
+}
+
 /// Throws where a stage has demands on containers that this one does not meet.
 void require_fit_for_stages(const Plan& plan) {
   const double rarest = std::min(0.5, 1 / std::max(1.0, plan.expected_count));
   const double smallest = std::max(plan.radii->min(), plan.radii->quantile(rarest));
   for (const Stage& stage : plan.scene.stages) {
     const StageEntry& entry = entry_of(stage);
-    if (!entry.require) continue;
+    if (!entry.require || !entry.table.traits.stands_in_bed(plan.scene)) continue;
     try {
       const Frame frame = frame_of(plan.domain);
-      entry.require(to_local(plan.domain, frame), smallest / frame.scale);
+      entry.require(entry.table.options(stage), to_local(plan.domain, frame), smallest / frame.scale);
     } catch (const Error& error) {
-      throw Error(error.code(), error.what(), stage.locations.whole);
+      throw Error(error.code(), error.what(), stage.locations.of("direction"));
     }
   }
 }
@@ -111,14 +135,42 @@ Vector<dynamic> proportions_of(const Vector<dynamic>& edges) {
   return (edges / edges.maxCoeff()).unaryExpr(rounded);
 }
 
+/// What the stages are likely to reach: of a box that follows from the packing, in that box, whose walls
+/// lower what makes it so large.
+double attainable_in_box(const Plan& plan, const SizeDistribution& radii) {
+  constexpr int rounds = 5;
+  const Scene& scene = plan.scene;
+  const bool between_walls = has_walls(plan.domain) && scene.dimension() == 3 &&
+                             any_stage(scene, &StageTraits::reaches, Reaches::close_packing);
+  if (!any_in_bed(scene) && !between_walls) return close_packing_fraction(radii, scene.dimension());
+  if (!plan.box_follows) return expected_packing_fraction(scene, plan.domain, radii);
+  Box box = std::get<Box>(plan.domain);
+  double attainable = close_packing_fraction(radii, 3);
+  for (int k = 0; k < rounds; ++k) {
+    const double volume = static_cast<double>(*scene.target.count) * ball_volume(3, 1) * radii.moment(3) /
+                          scene.target.packing_fraction.value_or(attainable);
+    box.size *= std::cbrt(volume / box.size.prod());
+    if (largest_fitting_radius(box) < radii.quantile(0.5)) break;
+    attainable = expected_packing_fraction(scene, box, radii);
+  }
+  return attainable;
+}
+
 void expect_in_periodic_box(Plan& plan) {
   const Scene& scene = plan.scene;
   const int dimension = scene.dimension();
   plan.box_follows = std::get<PeriodicBox>(scene.container).scalable;
-  const double mean_volume = ball_volume(dimension, 1) * plan.radii->moment(dimension);
-  double attainable = plan.attainable_packing_fraction =
-      any_in_bed(scene) ? expected_packing_fraction(scene, plan.domain, *plan.radii)
-                        : close_packing_fraction(*plan.radii, dimension);
+  const bool in_bed = any_in_bed(scene);
+  const double cut = in_bed ? tail_cut(scene, plan.domain, *plan.radii) : plan.radii->max();
+  const std::unique_ptr<SizeDistribution> without_tail = cut_above(*plan.radii, cut);
+  const SizeDistribution& radii = without_tail ? *without_tail : *plan.radii;
+  if (!plan.box_follows && std::isfinite(cut)) {
+    const double allowed = has_walls(plan.domain) ? 0 : scene.overlap;
+    require_fitting(scene, plan.domain, (1 - allowed) * (in_bed ? cut : plan.radii->min()));
+  }
+  if (in_bed) require_long_periods(scene, plan.domain, cut);
+  const double mean_volume = ball_volume(dimension, 1) * radii.moment(dimension);
+  double attainable = plan.attainable_packing_fraction = attainable_in_box(plan, radii);
   resolve_predicted(plan);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   if (plan.box_follows) {
@@ -155,7 +207,8 @@ FillTask fill_task_of(const Plan& plan) {
   FillTask task{.dimension = dimension,
                 .attainable = plan.attainable_packing_fraction,
                 .size_ratio = plan.radii->quantile(1 - rare) / plan.radii->quantile(rare),
-                .has_walls = has_walls(plan.domain)};
+                .has_walls = has_walls(plan.domain),
+                .may_overlap = plan.scene.overlap > 0};
   if (target.packing_fraction)
     task.packing_fraction = *target.packing_fraction;
   else if (target.count)
@@ -176,8 +229,10 @@ Plan build(const Scene& stated) {
     expect_in_periodic_box(plan);
   } else {
     expect_in_container(plan);
-    require_fit_for_stages(plan);
   }
+  require_fit_for_stages(plan);
+  require_overlap(plan);
+  require_memory(plan);
   plan.places_expected = any_in_bed(scene) && any_stage(scene, &StageTraits::places_expected, true);
 
   const auto has = [&](const std::string& name) {

@@ -1,5 +1,7 @@
 #include "run/conclude.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
@@ -12,28 +14,60 @@ struct Conclusion {
   std::string reason;
 };
 
+/// A result that reaches less than this share of what was expected is none that was asked for; so is an
+/// expectation of less than this share of the random close packing of the same sizes.
+constexpr double near_expectation = 0.7, least_expectation = 0.1;
+
 Conclusion limit_reached(const std::string& n) {
   return {Outcome::hit_limit, fmt::format("the last stage reached its limit with {} spheres", n)};
 }
 
+std::string larger(double factor) {
+  return factor < 1.001 ? fmt::format("larger by a share of {:.2g} of its volume than", factor - 1)
+                        : fmt::format("{:.4g} times as large by volume as", factor);
+}
+
+/// Where it is left open how many spheres there are: what the stages place is what was asked for, unless it
+/// is far from what was to be expected.
+Conclusion of_open_target(const Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
+  const std::string n = grouped(packing.spheres.size());
+  const double phi = packing.packing_fraction(), expected = packing.expected_packing_fraction;
+  const auto fraction = [](double f) { return fmt::format("{:.3g}", f); };
+  if (phi < near_expectation * expected)
+    return {Outcome::full, fmt::format("{} spheres are placed, packing fraction {}, where {} was expected; "
+                                       "the stages of the scene find no place for more",
+                                       n, fraction(phi), fraction(expected))};
+  if (ending.attainable < least_expectation * ending.close_packing)
+    return {Outcome::full,
+            fmt::format("{} spheres are placed, packing fraction {}: the container has so little room for "
+                        "these sizes that hardly more was to be expected, where random close packing is {}; "
+                        "use smaller ones or check the units",
+                        n, fraction(phi), fraction(ending.close_packing))};
+  return {Outcome::converged, end == StageEnd::converged && !work.target.fill && ending.places_expected
+                                  ? fmt::format("{} spheres are placed, as many as were expected to fit", n)
+                                  : fmt::format("the stages of the scene place {} spheres and no more", n)};
+}
+
 /// In a box all spheres are wanted, and have places together.
-Conclusion of_box(const Packing& packing, const Work& work, StageEnd end) {
+Conclusion of_box(const Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
   const std::string n = grouped(packing.spheres.size());
   const std::string account = work.account.empty() ? "" : " " + work.account;
-  if (const std::size_t wanted = work.supply->wanted(); packing.spheres.size() < wanted)
+  const bool from_bed = work.container && work.target.is_open();
+  if (const std::size_t wanted = work.supply->wanted(); packing.spheres.size() < wanted && !from_bed)
     return {end == StageEnd::full ? Outcome::full : Outcome::hit_limit,
             fmt::format("{} of {} spheres are placed, packing fraction {:.4f}{}", n, grouped(wanted),
                         packing.packing_fraction(), account)};
   if (work.target_edges && work.edges != *work.target_edges)
-    return {Outcome::full, fmt::format("{} spheres need a box {:.4g} times as large by volume as the one "
-                                       "asked for; this is the box that they need",
-                                       n, work.edges.prod() / work.target_edges->prod())};
+    return {Outcome::full, fmt::format("{} spheres need a box {} the one asked for; this is the box "
+                                       "that they need",
+                                       n, larger(work.edges.prod() / work.target_edges->prod()))};
   if (end == StageEnd::hit_limit) return limit_reached(n);
+  if (from_bed) return of_open_target(packing, work, end, ending);
   return {Outcome::converged, fmt::format("all {} spheres are placed{}", n, account)};
 }
 
 /// In a bed they come one after the other, until the target is reached or no place is left.
-Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, bool meets_expectation) {
+Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
   const Target& target = work.target;
   const std::string n = grouped(packing.spheres.size());
   if (!work.missed.empty())
@@ -41,10 +75,7 @@ Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, bool m
   if (!target.is_open() && work.supply->exhausted())
     return {Outcome::converged, fmt::format("all {} spheres are placed", n)};
   if (end == StageEnd::hit_limit) return limit_reached(n);
-  if (target.is_open())
-    return {Outcome::converged, end == StageEnd::converged && !target.fill && meets_expectation
-                                    ? fmt::format("{} spheres are placed, as many as were expected to fit", n)
-                                    : fmt::format("the stages of the scene place {} spheres and no more", n)};
+  if (target.is_open()) return of_open_target(packing, work, end, ending);
   if (target.count)
     return {Outcome::full,
             fmt::format("{} of {} spheres are placed; the stages of the scene find no place for more", n,
@@ -62,33 +93,50 @@ std::string resized(double size_scale) {
 }
 
 /// What was left out of the drawn sequence.
-std::string left_out(const Supply& supply) {
+std::string left_out(const Packing& packing, const Work& work, double unit) {
+  const Supply& supply = *work.supply;
+  const double shown = (packing.scene.sizes_are_diameters ? 2 : 1) * unit;
+  const auto size = [&](double r) {
+    return fmt::format("{} {:.4g} {}", packing.scene.sizes_are_diameters ? "diameter" : "radius", shown * r,
+                       name_of(packing.scene.unit));
+  };
   std::string text;
   if (supply.cut_off() > 0)
     text += fmt::format(
-        "; {} draws from the tail of the sizes were discarded because less than a hundredth of "
-        "the container has room for such spheres",
-        grouped(supply.cut_off()));
-  if (const std::size_t passed = supply.passed_over(); passed > 0)
-    text += fmt::format("; {} larger ones of the drawn sequence were passed over", grouped(passed));
-  return text;
+        "; {} draws from the tail of the sizes, above {}, were left out because the "
+        "container has no room for their share of the volume",
+        grouped(supply.cut_off()), size(supply.cut()));
+  const std::size_t passed = supply.passed_over();
+  if (passed == 0) return text;
+  if (supply.smallest() == supply.largest())
+    return text + fmt::format("; {} of the drawn sequence found no place", grouped(passed));
+  double least = supply.largest(), most = 0;
+  for (std::size_t k = 0; k < passed; ++k) {
+    const double r = supply.radius(supply.window()[k]);
+    least = std::min(least, r);
+    most = std::max(most, r);
+  }
+  return text + fmt::format("; {} of the drawn sequence found no place and were passed over: {}{}",
+                            grouped(passed), size(most),
+                            passed > 1 ? fmt::format(" down to {:.4g}", shown * least) : "");
 }
 
 }  // namespace
 
-void conclude(Packing& packing, const Work& work, StageEnd end, bool meets_expectation) {
+void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
   const bool in_bed = work.stands_in_bed();
-  const bool cancelled = end == StageEnd::cancelled;
-  Conclusion conclusion = in_bed ? of_bed(packing, work, end, meets_expectation) : of_box(packing, work, end);
-  if (cancelled) {
+  Conclusion conclusion = in_bed ? of_bed(packing, work, end, ending) : of_box(packing, work, end, ending);
+  if (end == StageEnd::cancelled) {
     const bool short_of = !in_bed && packing.spheres.size() < work.supply->wanted();
     conclusion = {Outcome::cancelled, short_of ? "stopped by the user: " + conclusion.reason
                                                : fmt::format("stopped by the user with {} spheres",
                                                              grouped(packing.spheres.size()))};
+  } else if (packing.spheres.empty() && conclusion.outcome == Outcome::converged) {
+    conclusion = {Outcome::full, "no sphere has found a place; use smaller ones or check the units"};
   }
   packing.outcome = conclusion.outcome;
-  packing.reason =
-      conclusion.reason + (in_bed ? resized(work.size_scale) + left_out(*work.supply) : std::string());
+  packing.reason = conclusion.reason +
+                   (in_bed ? resized(work.size_scale) + left_out(packing, work, ending.unit) : std::string());
 }
 
 }  // namespace bernal

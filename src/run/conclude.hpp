@@ -4,9 +4,15 @@
 
 namespace bernal {
 
+struct Ending {
+  bool places_expected;  ///< the last stage places as many as are expected to fit, if nothing is asked
+  double unit;           ///< the packer's, in that of the scene
+  double attainable;     ///< the packing fraction that the stages are likely to reach
+  double close_packing;  ///< that of the same sizes without walls; 0 where no stage packs that far
+};
+
 /// How the last stage's end, what stands where, and what the scene asked for make the outcome of the run and
-/// the sentence behind it. `meets_expectation`: the last stage places as many spheres as are expected to fit
-/// where the scene says nothing. The packing has its spheres already.
-void conclude(Packing& packing, const Work& work, StageEnd end, bool meets_expectation);
+/// the sentence behind it. The packing has its spheres and what was expected of them already.
+void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& ending);
 
 }  // namespace bernal

@@ -1,20 +1,38 @@
 #include "run/fitting.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "bernal/core/random.hpp"
-#include "domain/places.hpp"
+#include "bernal/cad/mesh_container.hpp"
+#include "run/estimate.hpp"
+#include "sizes/cut_above.hpp"
 #include "work/bed.hpp"
+#include "work/room.hpp"
+#include "work/supply.hpp"
 
 namespace bernal {
 namespace {
+
+/// Of the largest sphere that fits, the radii that a tail may be cut at.
+constexpr double cuts[] = {1, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1};
+/// Of the volume: what is less is no matter.
+constexpr double negligible = 1e-3;
+/// Of random close packing, what walls and corners leave of it where a container is some spheres thick: what
+/// is not filled needs no room.
+constexpr double filled = 0.8;
+/// Of the mean thickness V / A of a mesh: spheres up to this fit somewhere, without a look.
+constexpr double surely_fitting = 0.5;
+/// Of a mesh's largest sphere, what rounding may hide.
+constexpr double hidden = 1e-9;
 
 struct LargestRadius {
   double operator()(const Box& b) const { return 0.5 * b.size.minCoeff(); }
@@ -44,9 +62,28 @@ void require_long_periods(const Scene& scene, const Domain& container, double ra
 
 double largest_fitting_radius(const Domain& shape) { return std::visit(LargestRadius{}, shape); }
 
+namespace {
+
+/// The largest radius that is known to fit, and the one that none exceeds.
+struct Largest {
+  double known, bound;
+};
+Largest largest_in(const Domain& shape) {
+  const double bound = largest_fitting_radius(shape);
+  if (!std::holds_alternative<Mesh>(shape)) return {bound, bound};
+  const Frame frame = frame_of(shape);
+  const LargestRoom room = largest_room(*make_local_container(shape, frame, WallArithmetic::plain));
+  return {room.radius * frame.scale, std::min(bound, (1 + hidden) * room.bound * frame.scale)};
+}
+
+}  // namespace
+
 void require_fitting(const Scene& scene, const Domain& container, double radius) {
-  const double largest = largest_fitting_radius(container);
-  if (radius <= largest) return;
+  Largest largest{largest_fitting_radius(container), largest_fitting_radius(container)};
+  if (std::holds_alternative<Mesh>(container) &&
+      radius > surely_fitting * volume_of(container) / area_of(container))
+    largest = largest_in(container);
+  if (radius <= largest.bound) return;
   const double shown = scene.sizes_are_diameters ? 2 : 1;
   const auto [one, many] =
       scene.sizes_are_diameters ? std::pair("diameter", "diameters") : std::pair("radius", "radii");
@@ -54,7 +91,7 @@ void require_fitting(const Scene& scene, const Domain& container, double radius)
       ErrorCode::bad_scene,
       fmt::format("a sphere of {} {:.6g} {} does not fit into the {}, which takes {} up to {:.6g} {}: use "
                   "smaller ones or check the units",
-                  one, shown * radius, name_of(scene.unit), kind_of(container), many, shown * largest,
+                  one, shown * radius, name_of(scene.unit), kind_of(container), many, shown * largest.known,
                   name_of(scene.unit)),
       scene.sizes.locations.whole);
 }
@@ -65,18 +102,79 @@ void refuse_thin_container() {
               "found: turn it so that its length lies along an axis");
 }
 
-double radius_with_hardly_any_room(const Container& container, std::uint64_t seed) {
-  constexpr std::size_t points = 10000;
-  Random random(seed, stream(Stream::room));
-  const Bounds<3> bounds = container.bounds();
-  std::vector<double> clearances;
-  for (const Vector<3>& p :
-       points_inside(container, points, seed, [&](std::size_t) { return uniform_point(random, bounds); }))
-    clearances.push_back(container.clearance(p));
-  if (clearances.empty()) refuse_thin_container();
-  const auto hundredth = clearances.begin() + static_cast<std::ptrdiff_t>(clearances.size() / 100);
-  std::nth_element(clearances.begin(), hundredth, clearances.end(), std::greater<>());
-  return *hundredth;
+double tail_cut(const Scene& scene, const Domain& container, const SizeDistribution& radii) {
+  if (std::isfinite(radii.max())) return radii.max();
+  const double median = radii.quantile(0.5), largest = largest_in(container).known;
+  if (median > largest) require_fitting(scene, container, median);
+  const auto volume_above = [&](double r) { return radii.moment_above(3, r); };
+  const double all = volume_above(0);
+  std::optional<Frame> frame;
+  std::unique_ptr<Container> local;
+  std::vector<double> coverable(std::size(cuts), -1);
+  const auto fit = [&](double cut) {
+    const double volume = all - volume_above(cut);
+    for (std::size_t k = 0; k < std::size(cuts); ++k) {
+      const double r = cuts[k] * largest;
+      const double wanted = r < cut ? (volume_above(r) - volume_above(cut)) / volume : 0;
+      if (wanted < negligible) continue;
+      if (!local) {
+        frame = frame_of(container);
+        local = make_local_container(container, *frame, WallArithmetic::plain);
+      }
+      if (coverable[k] < 0) coverable[k] = coverable_share(*local, r / frame->scale);
+      if (filled * wanted > coverable[k]) return false;
+    }
+    return true;
+  };
+  double cut = largest;
+  for (const double share : cuts) {
+    if (share * largest < median) break;
+    cut = share * largest;
+    if (fit(cut)) break;
+  }
+  return cut;
+}
+
+Frame frame_for(const Scene& scene, const Domain& container, const SizeDistribution& radii) {
+  constexpr double resolutions_a_radius = 1e6, rare = 1e-9;
+  const Frame frame = frame_of(container);
+  const bool ends = radii.min() > 0;
+  const double smallest = ends ? radii.min() : radii.quantile(rare);
+  const double least = resolutions_a_radius * frame.scale;
+  if (least * frame.resolution <= smallest) return frame;
+  const std::string_view unit = name_of(scene.unit);
+  const double shown = scene.sizes_are_diameters ? 2 : 1;
+  const double here = std::numeric_limits<double>::epsilon();  // the resolution beside the origin
+  if (least * here > smallest)
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("the sizes reach down {}: {} {:.2g} {}, {:.0e} of the container, where spheres "
+                            "cannot be told apart; {}",
+                            ends ? "too far" : "without limit", ends ? "to" : "one in 10^9 is below",
+                            shown * smallest, unit, smallest / frame.scale,
+                            ends ? "use larger ones or check the units"
+                                 : "give the distribution a \"min\", or a smaller spread"),
+                scene.sizes.locations.whole);
+  throw Error(
+      ErrorCode::bad_scene,
+      fmt::format("the container is so far from the origin that its coordinates are only good to "
+                  "{:.1g} {}, and the smallest sphere measures {:.2g} {}: move it closer or use larger "
+                  "spheres",
+                  frame.resolution * frame.scale, unit, shown * smallest, unit),
+      scene.container.locations.whole);
+}
+
+void require_memory(const Plan& plan) {
+  const double there =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const bool too_many = !(plan.expected_count < Supply::most_spheres);
+  if (!too_many && plan.expected_memory_bytes <= there) return;
+  throw Error(ErrorCode::bad_scene,
+              fmt::format("about {:.2g} spheres, {:.3g} GB of memory, where {}: check the units, use larger "
+                          "spheres or ask for fewer",
+                          plan.expected_count, plan.expected_memory_bytes / 1e9,
+                          too_many ? "no more than 2^31 have numbers"
+                                   : fmt::format("this machine has {:.3g} GB", there / 1e9)),
+              plan.scene.target.where);
 }
 
 }  // namespace bernal

@@ -1,7 +1,6 @@
 #pragma once
-#include <cstdint>
-
 #include "bernal/domain/container.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/scene/scene.hpp"
 
 namespace bernal {
@@ -14,14 +13,26 @@ double largest_fitting_radius(const Domain& shape);
 /// radius, in a bed, would meet two images of others.
 void require_long_periods(const Scene& scene, const Domain& container, double radius);
 
-/// Throws Error{bad_scene} at the scene's sizes, with the remedy, if a sphere of that radius cannot fit.
+/// Throws Error{bad_scene} at the scene's sizes, with the remedy, if a sphere of that radius cannot fit. Cost
+/// in a mesh that is not much thicker than the sphere: some milliseconds, and what its container costs.
 void require_fitting(const Scene& scene, const Domain& container, double radius);
 
 /// Throws Error{bad_argument}: not a single random place was found in it.
 [[noreturn]] void refuse_thin_container();
 
-/// Where to cut an unbounded tail of sizes: the radius for whose spheres' centres only one hundredth of the
-/// container has room; single larger ones would wait for a place for ever. From 10,000 random points.
-double radius_with_hardly_any_room(const Container& container, std::uint64_t seed);
+/// Where to cut an unbounded tail of sizes in a domain with walls, infinity for one that ends by itself: the
+/// largest radius up to which the container can cover, for every size, the share of the spheres' volume that
+/// is as large or larger; at most the largest sphere that fits. What is larger would wait for a place for
+/// ever. Throws as `require_fitting` if less than half of all sizes are below. Cost: up to ten times that of
+/// `coverable_share`; none where the tail is far below what fits.
+double tail_cut(const Scene& scene, const Domain& container, const SizeDistribution& radii);
+
+/// A container's own frame. Throws Error{bad_scene} at the container where it is so far from the origin, and
+/// at the sizes where they reach down so far, that neighbouring spheres could not be told apart.
+Frame frame_for(const Scene& scene, const Domain& container, const SizeDistribution& radii);
+
+/// Throws Error{bad_scene}, before anything is drawn, for more spheres than have numbers, and for what this
+/// machine has no memory for.
+void require_memory(const Plan& plan);
 
 }  // namespace bernal

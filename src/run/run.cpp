@@ -1,7 +1,6 @@
 #include "bernal/run/run.hpp"
 
 #include <oneapi/tbb/global_control.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +14,10 @@
 #include "bernal/version.hpp"
 #include "core/parallel.hpp"
 #include "run/conclude.hpp"
+#include "run/estimate.hpp"
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
+#include "sizes/cut_above.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
@@ -30,22 +31,6 @@ constexpr double caution = 5e-4;
 /// A first attempt that leaves more than this of the volume free was too small.
 constexpr double too_much_room = 5e-3;
 
-/// A container's own frame. Throws where coordinates are so large that neighbouring spheres could not be told
-/// apart.
-Frame frame_of_container(const Plan& plan) {
-  Frame frame = frame_of(plan.domain);
-  const double smallest = plan.radii->min() > 0 ? plan.radii->min() : plan.radii->quantile(1e-9);
-  if (1e6 * frame.resolution * frame.scale > smallest) {
-    throw Error(
-        ErrorCode::bad_scene,
-        fmt::format("the container is so far from the origin that its coordinates are only good to {:.1g} "
-                    "{}: move it closer or use larger spheres",
-                    frame.resolution * frame.scale, name_of(plan.scene.unit)),
-        plan.scene.container.locations.whole);
-  }
-  return frame;
-}
-
 /// That of a box, which stays where it is: the power of two below the largest radius is its unit.
 Frame frame_of_box(const Vector<dynamic>& edges, double largest_radius) {
   Frame frame;
@@ -55,18 +40,11 @@ Frame frame_of_box(const Vector<dynamic>& edges, double largest_radius) {
   return frame;
 }
 
-/// Refuses, before anything is drawn, more spheres than have numbers, and what this machine has no memory
-/// for.
-void require_memory(const Plan& plan) {
-  if (!(plan.expected_count < Supply::most_spheres)) Supply::refuse_count(plan.scene.target);
-  const double there =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  if (plan.expected_memory_bytes <= there) return;
-  throw Error(ErrorCode::bad_scene,
-              fmt::format("about {:.3g} spheres would take {:.3g} GB of memory, and this machine has {:.3g} "
-                          "GB: use larger spheres or ask for fewer",
-                          plan.expected_count, plan.expected_memory_bytes / 1e9, there / 1e9),
-              plan.scene.target.where);
+/// Of sizes up to the largest sphere that fits: those beyond are not drawn.
+double random_close_packing_of(const Plan& plan) {
+  const SizeDistribution& radii = *plan.radii;
+  if (std::isfinite(radii.max())) return close_packing_fraction(radii, 3);
+  return close_packing_fraction(CutAbove(radii, tail_cut(plan.scene, plan.domain, radii)), 3);
 }
 
 /// One run of a plan's stages.
@@ -102,9 +80,19 @@ class Run {
         continue;
       }
       hand_over(work);
-      conclude(packing_, work, end, table_of(scene_.stages.back()).traits.places_expected);
+      conclude(packing_, work, end, ending());
       return;
     }
+  }
+
+  Ending ending() const {
+    const bool packs = any_stage(scene_, &StageTraits::reaches, Reaches::close_packing) ||
+                       any_stage(scene_, &StageTraits::reaches, Reaches::settled);
+    return {.places_expected = table_of(scene_.stages.back()).traits.places_expected,
+            .unit = frame_.scale,
+            .attainable = plan_.attainable_packing_fraction,
+            .close_packing =
+                packs && any_in_bed_ && scene_.target.is_open() ? random_close_packing_of(plan_) : 0};
   }
 
   /// The drawn sequence, the frame that follows from it, and no sphere in its place.
@@ -123,16 +111,15 @@ class Run {
     double volume = volume_of(plan_.domain);
     if (scene_.is_periodic()) {
       if (any_in_bed_ && !std::isfinite(source.radii.max()))
-        source.cut = radius_with_hardly_any_room(*container_of(plan_.domain, Frame{}), packing_.seed);
+        source.cut = tail_cut(scene_, plan_.domain, source.radii);
       work.supply = std::make_shared<Supply>(source, volume, scene_.target, fraction);
       frame_ = frame_of_box(work.edges, work.supply->largest());
     } else {
-      frame_ = frame_of_container(plan_);
+      frame_ = frame_for(scene_, plan_.domain, *plan_.radii);
       work.domain = to_local(plan_.domain, frame_);
       work.container = container_of(work.domain, frame_);
       volume = std::pow(frame_.scale, 3) * work.container->volume();
-      if (!std::isfinite(source.radii.max()))
-        source.cut = frame_.scale * radius_with_hardly_any_room(*work.container, packing_.seed);
+      if (!std::isfinite(source.radii.max())) source.cut = tail_cut(scene_, plan_.domain, source.radii);
       work.supply = std::make_shared<Supply>(source, volume, scene_.target, fraction);
     }
     if (!plan_.box_follows) {
@@ -141,12 +128,38 @@ class Run {
     }
     if (any_in_bed_) require_long_periods(scene_, plan_.domain, work.supply->largest());
     work.supply->divide_by(frame_.scale);
+    if (any_in_bed_)
+      work.exact_place = [this](const Vector<3>& place, double r) { return exact_place(place, r); };
     if (scene_.is_periodic()) put_into_box(work);
     return work;
   }
 
   std::shared_ptr<Container> container_of(const Domain& local, const Frame& frame) const {
     return make_container(local, scene_.walls, frame.resolution);
+  }
+
+  /// Roundings of a place: as it is and with what is nearly in the middle there, each coordinate a few
+  /// doubles up or down, in the scene's unit, where it is decided exactly.
+  std::optional<Vector<3>> exact_place(const Vector<3>& place, double r) {
+    if (!of_scene_) {
+      const Frame none{.resolution = frame_.resolution * frame_.scale};
+      of_scene_ = make_container(plan_.domain, WallArithmetic::filtered, none.resolution);
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const Vector<3> middle = bounds_of(plan_.domain).center(), at = frame_.to_scene(place);
+    const double near = 1e-9 * frame_.scale + 4 * frame_.resolution * frame_.scale;
+    for (const bool in_the_middle : {false, true}) {
+      for (int n = 0; n < 27; ++n) {
+        Vector<3> p = at;
+        for (int k = 0, step = n; k < 3; ++k, step /= 3) {
+          if (in_the_middle && std::abs(p[k] - middle[k]) < near) p[k] = middle[k];
+          if (step % 3 > 0) p[k] = std::nextafter(p[k], step % 3 == 1 ? infinity : -infinity);
+        }
+        const Vector<3> local = frame_.to_local(p);
+        if (frame_.to_scene(local) == p && of_scene_->contains(p, frame_.scale * r)) return local;
+      }
+    }
+    return {};
   }
 
   /// All spheres of the sequence, in a box of the plan's proportions, with the edges that the scene asks for.
@@ -161,6 +174,7 @@ class Run {
     if (any_in_bed_) {
       work.container = container_of(work.domain, frame_);
       work.target_edges = work.edges;
+      work.fill_task = fill_task_of(plan_);
       if (table_of(scene_.stages.front()).traits.stands_in_bed(scene_)) return;
     }
     work.spheres.resize(work.supply->wanted());
@@ -179,10 +193,13 @@ class Run {
     StageEnd end = StageEnd::converged;
     for (const Stage& stage : scene_.stages) {
       const bool in_bed = table_of(stage).traits.stands_in_bed(scene_);
+      std::optional<Keepsake> bed;  // in a box all may have to start anew
+      if (!in_bed && work.stands_in_bed()) bed.emplace(work);
       in_bed ? work.stand_in_bed() : work.stand_in_box();
       const Keepsake before(work);
       end = run_stage(stage, work);
       if (end == StageEnd::cancelled) before.give_back_if_denser(work);
+      if (end == StageEnd::cancelled && bed) bed->give_back_if_denser(work);
       if (in_bed) work.milestone(stage.name());
       if (end == StageEnd::cancelled) break;
     }
@@ -271,12 +288,12 @@ class Run {
   const Stopwatch watch_;
   EffectLog effects_;
   Frame frame_;
+  std::unique_ptr<Container> of_scene_;  // where a sphere is to be placed exactly
 };
 
 }  // namespace
 
 Packing run(const Plan& plan, const RunOptions& options) {
-  require_memory(plan);
   Packing packing;
   packing.domain = plan.domain;
   packing.volume = volume_of(plan.domain);

@@ -265,13 +265,13 @@ const std::vector<Entry>& container_entries() {
                               key(Type::position, &Sphere::center, "center", "its centre")}}),
       entry<PeriodicBox>(
           {.name = "periodic",
-           .help = "a box that repeats itself in all directions",
+           .help = "a box that repeats itself in all directions, or in all but those with walls",
            .keys = {integer(&PeriodicBox::dimension, "dimension", "of space", {1, max_dimension}),
                     required(key(Type::lengths, &PeriodicBox::size, "size", "its edges")),
                     required(length(&PeriodicBox::edge, "edge", "all its edges")),
                     key(Type::axes, &PeriodicBox::walls, "walls",
                         "axes, counted from 0, along which the box does not repeat itself but ends at walls, "
-                        "with whole spheres between them; fly and grow only"),
+                        "with whole spheres between them"),
                     flag(&PeriodicBox::scalable, "scalable",
                          "the packing decides how large the box is; size only gives its proportions")},
            .choices = {{{"size"}, {"edge"}, {}}},

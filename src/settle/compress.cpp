@@ -174,7 +174,10 @@ const StageEntry& entry_of<Compress>() {
                                       .keys = compression_keys()},
                                      {.in_bed = true}),
       .act_in_bed = act(compress),
-      .bed_effects = {neighbor_lists, compressing("to first touch along the global and local directions")}};
+      .bed_effects = {neighbor_lists, compressing("to first touch along the global and local directions")},
+      .require = of_options(+[](const Compress& o, const Domain& domain, double) {
+        require_support(boundary_of<3>(domain), o.direction);
+      })};
   return entry;
 }
 

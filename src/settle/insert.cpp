@@ -1,6 +1,7 @@
 #include "settle/insert.hpp"
 
 #include "work/random_insertion.hpp"
+#include "work/snug_places.hpp"
 #include "work/stage_entry.hpp"
 
 namespace bernal {
@@ -19,24 +20,27 @@ StageEnd insert(Work& work, const Insert& options) {
   Supply& supply = *work.supply;
   Random random = work.random(Stream::insert);
   // Trials are counted inside the container; places are drawn a little beyond it, too.
-  const double attempts =
-      options.attempts * std::clamp(bed.places().volume() / bed.container().volume(), 1.0, most_drawn);
+  const double attempts = options.attempts * std::clamp(bed.places().volume() / bed.container().volume(), 1.0, most_drawn);
+  SnugPlaces snug(work);
   std::size_t waiting = 0;  // so many at the head of the window found no place
-  while (waiting < supply.window().size() && bed.packing_fraction() < options.packing_fraction) {
-    if (work.monitor.stop()) return StageEnd::cancelled;
-    const std::uint32_t tag = supply.window()[waiting];
-    const double r = supply.radius(tag);
-    const auto place = find_place(
-        attempts, [&] { return bed.places().draw(random); },
-        [&](const Vector<3>& c) { return bed.fits(c, r); }, work.monitor);
-    if (!place) {
-      ++waiting;
-      continue;
+  do {
+    waiting = 0;
+    while (waiting < supply.window().size() && bed.packing_fraction() < options.packing_fraction) {
+      if (work.monitor.stop()) return StageEnd::cancelled;
+      const std::uint32_t tag = supply.window()[waiting];
+      const double r = supply.radius(tag);
+      const auto place = find_place(
+          attempts, [&] { return bed.places().draw(random); },
+          [&](const Vector<3>& c) { return bed.fits(c, r); }, work.monitor);
+      if (!place) {
+        ++waiting;
+        continue;
+      }
+      bed.insert(*place, r, tag);
+      supply.take(waiting);
+      if (bed.size() % milestone_every == 0) work.milestone("insert");
     }
-    bed.insert(*place, r, tag);
-    supply.take(waiting);
-    if (bed.size() % milestone_every == 0) work.milestone("insert");
-  }
+  } while (waiting > 0 && snug.place_waiting(options.packing_fraction) > 0);
   return waiting > 0 && waiting == supply.window().size() ? StageEnd::full : StageEnd::converged;
 }
 

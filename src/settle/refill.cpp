@@ -135,7 +135,10 @@ const StageEntry& entry_of<Refill>() {
       .bed_effects = {{"refilling", "random probes of the free space", "O(1) a probe"},
                       neighbor_lists,
                       compressing("after each refilling"),
-                      {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}}};
+                      {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}},
+      .require = of_options(+[](const Refill& o, const Domain& domain, double) {
+        require_support(boundary_of<3>(domain), o.shake.compress.direction);
+      })};
   return entry;
 }
 

@@ -43,10 +43,13 @@ const StageEntry& entry_of<Shake>() {
                           inside(&Shake::compress, compression_keys()))},
           {.in_bed = true}),
       .act_in_bed = act(shake),
-      .bed_effects = {
-          neighbor_lists,
-          {"shaking", "local directions across the global one", "about 0.5 µs a sphere and sweep"},
-          compressing("after each round")}};
+      .bed_effects = {neighbor_lists,
+                      {"shaking", "local directions across the global one",
+                       "about 0.5 µs a sphere and sweep"},
+                      compressing("after each round")},
+      .require = of_options(+[](const Shake& o, const Domain& domain, double) {
+        require_support(boundary_of<3>(domain), o.compress.direction);
+      })};
   return entry;
 }
 

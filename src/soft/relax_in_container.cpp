@@ -8,6 +8,7 @@
 #include "jam/polish.hpp"
 #include "settle/insert.hpp"
 #include "soft/crowd.hpp"
+#include "work/snug_places.hpp"
 
 namespace bernal {
 namespace {
@@ -24,6 +25,8 @@ constexpr double most_of_attainable = 1.1;
 constexpr double dilute = 0.3;
 constexpr Insert insertion = {.attempts = 1000, .packing_fraction = 1};
 constexpr int most_hand_overs = 20;
+/// Of the radii: a skin up to this is lost in the margin.
+constexpr double thin_skin = 1e-7;
 /// Tries to find a place where a sphere clears the wall.
 constexpr int tries = 100;
 /// And to find one that is inside at all, which of a container's places at least one in a hundred is, and of
@@ -36,6 +39,7 @@ class Relaxation {
       : work_(work),
         options_(options),
         random_(work.random(Stream::relax)),
+        skin_(work.bed().skin() > thin_skin * work.supply->smallest() ? work.bed().skin() : 0),
         crowd_(ContainerGround(work.bed().container(), work.bed().places()), spheres_to_start_from()),
         target_count_(std::max(crowd_.size(), work.target_count())) {}
 
@@ -51,15 +55,16 @@ class Relaxation {
     const bool limited = over_;  // what is added after that is as much as there is time for
     if (free && !over_) push_in();
     // Single precision saw them free of overlap in motion; a few more sweeps bring all of them there.
-    bool all_there = work_.put_in_bed(crowd_.spheres());
+    bool all_there = put_in_bed();
     for (int k = 0; !all_there && free && !cancelled_ && k < most_hand_overs; ++k) {
       cancelled_ = crowd_.settle(work_.monitor, [this] { report(); }) == StageEnd::cancelled;
-      all_there = work_.put_in_bed(crowd_.spheres());
+      all_there = put_in_bed();
     }
     work_.effects["neighbour lists"].calls += crowd_.list_builds();
     work_.effects["walls"].calls += crowd_.wall_queries();
     if (cancelled_) return StageEnd::cancelled;
-    if (crowd_.size() >= target_count_) return StageEnd::converged;
+    if (!all_there || crowd_.size() < target_count_) place_snugly();
+    if (work_.bed().size() >= target_count_) return StageEnd::converged;
     return limited ? StageEnd::hit_limit : StageEnd::full;
   }
 
@@ -72,7 +77,14 @@ class Relaxation {
     auto [spheres, placed] = work_.drawn(std::max<std::size_t>(1, count));
     for (std::size_t i = 0; i < spheres.size(); ++i)
       if (!placed[i]) spheres.set_center(i, place_for(spheres.r[i]));
+    for (double& r : spheres.r) r += skin_;
     return spheres;
+  }
+
+  bool put_in_bed() {
+    Spheres<3> spheres = crowd_.spheres();
+    for (std::uint32_t i = 0; i < spheres.size(); ++i) spheres.r[i] = work_.supply->radius(i);
+    return work_.put_in_bed(spheres);
   }
 
   /// A random place at which a sphere clears the wall, if there is any to be found, else the best.
@@ -116,13 +128,22 @@ class Relaxation {
       const auto more =
           std::min(target_count_ - n, static_cast<std::size_t>(std::ceil(share * static_cast<double>(n))));
       if (more == 0) return;
-      if (!crowd_.add(std::span(work_.supply->radii()).subspan(n, more), random_)) return;
+      const auto next = std::span(work_.supply->radii()).subspan(n, more);
+      std::vector<double> radii(next.begin(), next.end());
+      for (double& r : radii) r += skin_;
+      if (!crowd_.add(radii, random_)) return;
       crowd_.burst();
       if (relax(options_.patience)) continue;
       crowd_.restore(before);
       if (more == 1) return;
       share /= 2;
     }
+  }
+
+  /// Those that the walls leave less room than the margin, which never come free of overlap.
+  void place_snugly() {
+    const double wanted = volume_of(work_.drawn(target_count_).spheres) / work_.container->volume();
+    SnugPlaces(work_).complete(wanted);
   }
 
   void report() {
@@ -138,6 +159,7 @@ class Relaxation {
   const Relax options_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   Random random_;
+  const double skin_;  // that the radii are relaxed with, where it is not thin: far from the origin
   CrowdInContainer crowd_;
   const std::size_t target_count_;
   bool over_ = false;  // there is no more time, or no more patience of the user

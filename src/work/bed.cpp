@@ -67,14 +67,30 @@ double Bed::potential(const Vector<3>& direction) const {
   return weight > 0 ? sum / weight : 0;
 }
 
-bool Bed::fits(const Vector<3>& c, double r) const {
-  const bool overlaps = grid_.any_near(c, r + skin_, [&](Id j) {
+bool Bed::fits_between_spheres(const Vector<3>& c, double r) const {
+  return !grid_.any_near(c, r + skin_, [&](Id j) {
     const double s = r + balls_[j].r + skin_;
     return way(c, balls_[j].center).squaredNorm() < s * s;
   });
-  if (overlaps) return false;
+}
+
+bool Bed::fits(const Vector<3>& c, double r) const {
+  if (!fits_between_spheres(c, r)) return false;
   const EffectTimer wall_timer(walls_);
   return container_.contains(c, r + skin_);
+}
+
+Surroundings Bed::surroundings(double give) const {
+  return [this, give, walls = walls_of(container_)](const Vector<3>& place, double reach,
+                                                    std::vector<Obstacle>& obstacles) {
+    walls(place, std::max(0.0, reach - give), obstacles);
+    for (Obstacle& wall : obstacles) wall.distance += give;
+    grid_.for_each_near(place, reach + skin_, [&](Id j) {
+      const Vector<3> away = -way(place, balls_[j].center);
+      const double center_distance = away.norm(), distance = center_distance - balls_[j].r - skin_;
+      if (distance < reach && center_distance > 0) obstacles.push_back({away / center_distance, distance});
+    });
+  };
 }
 
 double Bed::room_between_spheres(const Vector<3>& c, double enough, double limit) const {

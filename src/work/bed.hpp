@@ -8,6 +8,7 @@
 #include "domain/places.hpp"
 #include "neighbors/cell_grid.hpp"
 #include "work/effect_log.hpp"
+#include "work/room.hpp"
 
 namespace bernal {
 
@@ -55,6 +56,11 @@ class Bed {
 
   /// Whether a sphere may appear at c: no neighbour and no wall nearer than the skin. O(1) besides the wall.
   bool fits(const Vector<3>& c, double r) const;
+  /// The same without the wall.
+  bool fits_between_spheres(const Vector<3>& c, double r) const;
+
+  /// The spheres, each a skin larger than it is, and the walls, farther off by `give`.
+  Surroundings surroundings(double give = 0) const;
 
   /// The radius, at most `limit`, of the largest sphere at c that overlaps no other; any value below `enough`
   /// where it is below that. Walls are not asked.

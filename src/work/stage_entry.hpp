@@ -19,9 +19,11 @@ struct StageEntry {
   /// Those of box_effects that the plan calls for, where that is a choice. Throws Error{bad_argument}
   /// where the options ask for what cannot be done.
   std::function<std::vector<PlanItem>(const void*, const FillTask&)> chosen_effects = {};
-  /// Throws Error{bad_scene} where a container, in the packer's coordinates, is none for it and spheres of
-  /// that radius.
-  std::function<void(const Domain&, double smallest_radius)> require = {};
+  /// In a bed: throws Error{bad_scene} where a container, in the packer's coordinates, is none for it and
+  /// spheres of that radius.
+  std::function<void(const void*, const Domain&, double smallest_radius)> require = {};
+  /// Of one that may leave overlap, whether it does with these options.
+  std::function<bool(const void*, const FillTask&)> leaves_overlap = {};
   /// Of a stage that reaches what its options say: that packing fraction.
   std::function<double(const void*)> reached = {};
 };

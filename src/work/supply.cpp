@@ -20,13 +20,15 @@ constexpr std::size_t most_cut_off = 1000;
 }  // namespace
 
 void Supply::refuse_count(const Target& target) {
-  throw Error(ErrorCode::bad_scene,
-              "there would be more than 2^31 spheres of these sizes; use larger ones or ask for a count",
-              target.where);
+  throw Error(
+      ErrorCode::bad_scene,
+      "there would be more than 2^31 spheres of these sizes: check the units, use larger ones or ask for "
+      "a count",
+      target.where);
 }
 
 Supply::Supply(const Source& source, double volume, const Target& target, double fraction)
-    : dimension_(source.dimension) {
+    : dimension_(source.dimension), cut_(source.cut) {
   const double mean_volume = ball_volume(dimension_, 1) * source.radii.moment(dimension_);
   fraction = target.packing_fraction.value_or(fraction);
   const double expected = target.count ? static_cast<double>(*target.count) : fraction * volume / mean_volume;
@@ -60,6 +62,7 @@ Supply::Supply(const Source& source, double volume, const Target& target, double
 
 void Supply::divide_by(double unit) {
   for (double& r : radii_) r /= unit;
+  cut_ /= unit;
   smallest_ /= unit;
   largest_ /= unit;
 }

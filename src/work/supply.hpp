@@ -67,6 +67,7 @@ class Supply {
   std::size_t count_filling(double volume) const;
   /// How many draws were above the cut.
   std::size_t cut_off() const { return cut_off_; }
+  double cut() const { return cut_; }
   double smallest() const { return smallest_; }
   double largest() const { return largest_; }
 
@@ -79,6 +80,7 @@ class Supply {
   std::uint32_t next_ = 0;  // the first tag that was never in the window
   std::size_t width_ = 1;
   std::size_t cut_off_ = 0;
+  double cut_ = 0;
   double smallest_ = 0;
   double largest_ = 0;
 };

@@ -5,6 +5,10 @@
 namespace bernal {
 namespace {
 
+/// Of what is likely to fit: where it is left open how many spheres there are, and a bed holds less than
+/// this, a stage that works in a box starts anew with all.
+constexpr double nearly_all = 0.7;
+
 /// Which of the drawn sequence the radii are, which come in its order but for some that are left out.
 std::vector<std::uint32_t> tags_of(const std::vector<double>& radii, const Supply& supply) {
   std::vector<std::uint32_t> tags;
@@ -48,11 +52,26 @@ Work::Drawn Work::drawn(std::size_t count) const {
   return drawn;
 }
 
+const Room& Work::roomiest() const {
+  if (!roomiest_) {
+    // Of one place in the middle, where nothing is nearer than what bounds the largest sphere, that is known.
+    const Room middle{container->bounds().center(), container->clearance(container->bounds().center())};
+    roomiest_ = std::holds_alternative<Mesh>(domain) ? static_cast<Room>(largest_room(*container)) : middle;
+  }
+  return *roomiest_;
+}
+
+bool Work::fits_in_bed(const Vector<3>& place, double r) const {
+  if (bed().fits(place, r)) return true;
+  if (!exact_place || !is_snug(r) || !bed().fits_between_spheres(place, r)) return false;
+  return exact_place(place, r) == place;
+}
+
 bool Work::put_in_bed(const Spheres<3>& first) {
   bed().remove_tags_from(0);
   std::vector<bool> fits(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
-    fits[i] = bed().fits(first.center(i), first.r[i]);
+    fits[i] = fits_in_bed(first.center(i), first.r[i]);
     if (fits[i]) bed().insert(first.center(i), first.r[i], static_cast<std::uint32_t>(i));
   }
   supply->set_placed(fits);
@@ -63,7 +82,7 @@ void Work::insert_in_bed(const Spheres<dynamic>& others, bool only_those_that_fi
   const std::vector<std::uint32_t> tags = tags_of(others.r, *supply);
   std::vector<bool> has_place(tags.empty() ? 0 : tags.back() + std::size_t{1}, false);
   for (std::size_t i = 0; i < others.size(); ++i) {
-    if (only_those_that_fit && !bed_->fits(others.center(i), others.r[i])) continue;
+    if (only_those_that_fit && !fits_in_bed(others.center(i), others.r[i])) continue;
     bed_->insert(others.center(i), others.r[i], tags[i]);
     has_place[tags[i]] = true;
   }
@@ -73,7 +92,10 @@ void Work::insert_in_bed(const Spheres<dynamic>& others, bool only_those_that_fi
 void Work::stand_in_bed() {
   if (bed_) return;
   bed_ = std::make_shared<Bed>(*container, supply->smallest(), supply->largest(), supply->wanted(), effects);
-  if (!placed) return;
+  if (!placed) {
+    spheres = Spheres<dynamic>(dimension());
+    return;
+  }
   const Vector<dynamic> asked = bounds_of<dynamic>(domain).size();
   insert_in_bed(spheres, (edges.array() > asked.array()).any());
   edges = asked;
@@ -84,7 +106,9 @@ void Work::stand_in_bed() {
 void Work::stand_in_box() {
   if (!bed_) return;
   spheres = bed_->spheres();
-  placed = target.is_open() ? !spheres.empty() : spheres.size() == supply->wanted();
+  const double enough = nearly_all * attainable * volume_of(domain);
+  placed = target.is_open() ? volume_of_spheres() >= enough && !spheres.empty()
+                            : spheres.size() == supply->wanted();
   if (!placed) {  // what is to come has to find its place among the others: all start anew
     spheres = Spheres<dynamic>(dimension());
     spheres.resize(target.is_open() ? supply->count_filling(attainable * volume_of(domain))
@@ -125,14 +149,22 @@ void Work::crowd_milestone(std::string_view stage, std::size_t count, double vol
 }
 
 Keepsake::Keepsake(const Work& work)
-    : packing_fraction_(packing_fraction_of(work)), edges_(work.edges), needed_volume_(work.needed_volume) {
+    : in_bed_(work.stands_in_bed()),
+      packing_fraction_(packing_fraction_of(work)),
+      edges_(in_bed_ ? bounds_of<dynamic>(work.domain).size() : work.edges),
+      needed_volume_(work.needed_volume) {
   if (packing_fraction_ > 0)
     spheres_ = work.stands_in_bed() ? Spheres<dynamic>(work.bed().spheres()) : work.spheres;
 }
 
 void Keepsake::give_back_if_denser(Work& work) const {
-  if (packing_fraction_of(work) >= packing_fraction_) return;
-  if (work.stands_in_bed()) {
+  // A box that is larger than the one that was asked for is no place for what had one in that.
+  const bool too_large = in_bed_ && !work.stands_in_bed() && work.edges != *work.target_edges;
+  if (!too_large && packing_fraction_of(work) >= packing_fraction_) return;
+  if (in_bed_) {
+    work.placed = false;
+    work.edges = edges_;
+    work.stand_in_bed();
     work.bed().remove_tags_from(0);
     work.insert_in_bed(spheres_);
     return;

@@ -34,6 +34,7 @@ struct FillTask {
   double attainable = 1;        ///< random close packing of these sizes
   double size_ratio = 1;        ///< of the largest radius to the smallest, but for one in 10,000 of each
   bool has_walls = false;
+  bool may_overlap = false;  ///< some overlap is allowed to stay
 };
 
 template <int D>
@@ -102,6 +103,9 @@ struct Work {
   /// The packing fraction that the stages are likely to reach.
   double attainable = 1;
   Domain domain = {};
+  /// A place within some roundings of this one at which a sphere of that radius lies inside the domain of the
+  /// scene, touching allowed: for those that the walls leave no room. Set by the run.
+  std::function<std::optional<Vector<3>>(const Vector<3>& place, double r)> exact_place = {};
   std::shared_ptr<Supply> supply = {};
   std::shared_ptr<Container> container = {};  ///< null where there is no bed
 
@@ -130,6 +134,14 @@ struct Work {
   std::size_t target_count() const;
   /// At least `count` of the sequence, and up to the last that stands in the bed; those have places.
   Drawn drawn(std::size_t count) const;
+  /// The roomiest place of the container, as far as it is known. Looked for once.
+  const Room& roomiest() const;
+  /// Whether the walls leave a sphere of this radius less room than the skin, so that it only fits touching.
+  bool is_snug(double r) const { return r + bed().skin() > roomiest().radius; }
+  /// Whether a sphere may appear at a place: clear of others by the skin; and of walls, or touching them
+  /// exactly if they leave it no other choice.
+  bool fits_in_bed(const Vector<3>& place, double r) const;
+
   /// The first of the sequence in place of all that is in the bed, but for those that do not fit where they
   /// are. Returns whether all do.
   bool put_in_bed(const Spheres<3>& first);
@@ -150,6 +162,7 @@ struct Work {
   void insert_in_bed(const Spheres<dynamic>& others, bool only_those_that_fit = false);
 
   std::shared_ptr<Bed> bed_ = {};
+  mutable std::optional<Room> roomiest_ = {};
 };
 
 /// The spheres as they stand before a stage, so that a stage which is cut short takes nothing away from what
@@ -158,10 +171,11 @@ class Keepsake {
  public:
   explicit Keepsake(const Work& work);
 
-  /// Puts everything back if less of the domain is filled now.
+  /// Puts everything back if less of the domain is filled now. What stood in a bed stands in one again.
   void give_back_if_denser(Work& work) const;
 
  private:
+  bool in_bed_;
   double packing_fraction_;
   Spheres<dynamic> spheres_;
   Vector<dynamic> edges_;

@@ -156,9 +156,8 @@ TEST(DenseRelaxation, OfAFewSpecksInAHugeContainerIsInsertion) {
 }
 
 TEST(DenseRelaxation, OfDustThatFillsAHugeContainerIsRefused) {
-  const Plan plan = plan_in(Box{{0, 0, 0}, {1, 1, 1}}, fill + "1e-5\n");
   try {
-    run(plan);
+    plan_in(Box{{0, 0, 0}, {1, 1, 1}}, fill + "1e-5\n");
     FAIL() << "10^14 spheres";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::bad_scene);

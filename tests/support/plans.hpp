@@ -84,10 +84,11 @@ inline Plan plan_of(const std::string& toml) { return build(parse_scene(toml, "t
 inline Plan plan_of(const std::string& toml, Domain container) {
   Plan plan = plan_of(toml);
   plan.attainable_packing_fraction = expected_packing_fraction(plan.scene, container, *plan.radii);
-  plan.expected_count =
-      plan.attainable_packing_fraction * volume_of(container) / (ball_volume(3, 1) * plan.radii->moment(3));
+  const double spheres_to_fill = volume_of(container) / (ball_volume(3, 1) * plan.radii->moment(3));
+  plan.expected_count = plan.attainable_packing_fraction * spheres_to_fill;
   if (plan.scene.target.count)
     plan.expected_count = std::min(plan.expected_count, static_cast<double>(*plan.scene.target.count));
+  plan.expected_packing_fraction = plan.expected_count / spheres_to_fill;
   plan.expected_memory_bytes = 0;
   plan.domain = std::move(container);
   return plan;

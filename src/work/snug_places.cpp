@@ -1,0 +1,100 @@
+#include "work/snug_places.hpp"
+
+#include <algorithm>
+
+namespace bernal {
+namespace {
+
+constexpr int probes = 200, most_starts = 30;
+/// In skins: what a sphere is to be clear by, a little more than the bed asks for.
+constexpr double clear = 1.01;
+/// In radii: what places that only touch may seem to overlap the wall by, before they are made exact.
+constexpr double touching = 1e-10;
+
+}  // namespace
+
+SnugPlaces::SnugPlaces(Work& work)
+    : work_(work), random_(work.seed, stream(Stream::room, 1)), along_(Vector<3>::Zero()) {
+  int longest;
+  work.container->bounds().size().maxCoeff(&longest);
+  along_[longest] = -1;
+}
+
+bool SnugPlaces::needed(double r) {
+  if (r <= roomy_) return false;
+  if (r >= tight_) return true;
+  const Bed& bed = work_.bed();
+  for (int k = 0; k < probes; ++k) {
+    if (!bed.container().contains(bed.places().draw(random_), r + bed.skin())) continue;
+    roomy_ = r;
+    return false;
+  }
+  tight_ = r;
+  return true;
+}
+
+std::optional<Vector<3>> SnugPlaces::from(const Vector<3>& start, double r) const {
+  const Bed& bed = work_.bed();
+  const Container& container = bed.container();
+  const double clearance = container.clearance(start);
+  if (!(clearance > 0)) return {};
+  const bool snug = work_.is_snug(r + (clear - 1) * bed.skin());
+  const double give = snug ? clear * bed.skin() : 0;
+  const double enough = r + clear * bed.skin();
+  const Surroundings surroundings = bed.surroundings(give);
+  const double step = 2 * r;
+  const Room top = climb(room_at(start, 2 * clearance, surroundings), enough, step, surroundings);
+  if (snug) {
+    if (top.radius < enough - touching * r || !work_.exact_place) return {};
+    // Back a little from where it would touch what is not to be touched.
+    const Room end = slide(top, std::min(top.radius, enough), along_, step, surroundings);
+    const double way = along_.dot(end.place - top.place), back = std::min(way, 2 * give);
+    for (const Vector<3>& from_here : {Vector<3>(end.place - back * along_), top.place}) {
+      const std::optional<Vector<3>> place = work_.exact_place(from_here, r);
+      if (place && bed.fits_between_spheres(*place, r)) return place;
+    }
+    return {};
+  }
+  if (top.radius < enough) return {};
+  const Vector<3> place = slide(top, enough, along_, step, surroundings).place;
+  return bed.fits(place, r) ? std::optional(place) : std::nullopt;
+}
+
+std::optional<Vector<3>> SnugPlaces::find(double r) {
+  if (const auto place = from(work_.roomiest().place, r)) return place;
+  for (int k = 0; k < most_starts; ++k)
+    if (const auto place = from(work_.bed().places().draw(random_), r)) return place;
+  return {};
+}
+
+std::size_t SnugPlaces::place_waiting(double packing_fraction) {
+  Supply& supply = *work_.supply;
+  std::size_t placed = 0, waiting = 0;
+  while (waiting < supply.window().size() && work_.bed().packing_fraction() < packing_fraction) {
+    if (work_.monitor.stop()) break;
+    const std::uint32_t tag = supply.window()[waiting];
+    const double r = supply.radius(tag);
+    const auto place = needed(r) ? find(r) : std::nullopt;
+    if (!place) {
+      ++waiting;
+      continue;
+    }
+    work_.bed().insert(*place, r, tag);
+    supply.take(waiting);
+    ++placed;
+  }
+  return placed;
+}
+
+void SnugPlaces::complete(double packing_fraction) {
+  place_waiting(packing_fraction);
+  const Supply& supply = *work_.supply;
+  if (supply.window().empty() || work_.bed().packing_fraction() >= packing_fraction) return;
+  if (!needed(supply.smallest())) return;
+  const Keepsake before(work_);
+  work_.put_in_bed({});
+  place_waiting(packing_fraction);
+  before.give_back_if_denser(work_);
+}
+
+}  // namespace bernal

@@ -1,0 +1,41 @@
+#pragma once
+#include <limits>
+#include <optional>
+
+#include "work/work.hpp"
+
+namespace bernal {
+
+/// Places in the bed for spheres that the walls leave hardly any room, which random places do not find: in a
+/// slab or a tube as thick as a sphere, in a cube of its own size.
+///
+/// From random places a sphere is moved away from what is nearest until it is clear of everything, and then
+/// along the container to where it touches, so that it leaves the room beside it to others. One that only
+/// fits touching the walls, where no place is clear of them by the skin, gets a place that is exact in the
+/// scene's own coordinates; no stage moves it from there, as every way leads nearer to a wall.
+class SnugPlaces {
+ public:
+  explicit SnugPlaces(Work& work);
+
+  /// Whether, of some hundred random places, none clears the wall for that radius.
+  bool needed(double r);
+  /// Cost: about a millisecond.
+  std::optional<Vector<3>> find(double r);
+
+  /// Gives places to those of the window that need such ones. Returns how many found one,
+  /// until that packing fraction is there.
+  std::size_t place_waiting(double packing_fraction);
+  /// The same; where all sizes need such places and some still wait, all start anew if more find one then.
+  void complete(double packing_fraction);
+
+ private:
+  std::optional<Vector<3>> from(const Vector<3>& start, double r) const;
+
+  Work& work_;
+  Random random_;
+  Vector<3> along_;                                         // the container
+  double roomy_ = 0;                                        // radii up to this have places by chance
+  double tight_ = std::numeric_limits<double>::infinity();  // and from this on they have not
+};
+
+}  // namespace bernal
