@@ -82,10 +82,11 @@ std::vector<Row> rows_of(const MeshReport& report, const std::vector<std::string
                          const std::string& unit) {
   std::vector<Row> rows;
   for (const Defect& defect : report.defects)
-    rows.emplace_back(defect.what, fmt::format("at {}, {:.3g} {} across", text_of(defect.at), defect.across, unit));
+    rows.emplace_back(defect.what,
+                      fmt::format("at {}, {:.3g} {} across", text_of(defect.at), defect.across, unit));
   for (const std::string& repair : report.repairs) rows.emplace_back("repair", repair);
   for (const std::string& problem : report.problems) rows.emplace_back("problem", problem);
-  rows.emplace_back("verdict", report.usable()  ? "can be a container"
+  rows.emplace_back("verdict", report.usable() ? "can be a container"
                                : lines.empty() ? "cannot be a container"
                                                : "cannot be a container as it is");
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -98,7 +99,9 @@ std::vector<Row> rows_of(const MeshReport& report, const std::vector<std::string
 
 void print(const InspectCall& call, const MeshReport& report, const std::optional<Chambers>& chambers,
            const std::vector<std::string>& lines) {
-  const std::string known = call.unit.empty() ? report.unit : call.unit;
+  std::string known = call.unit.empty() ? report.unit : call.unit;
+  for (const std::string_view name : unit_names())
+    if (call.unit.empty() && std::abs(metres_per(unit_named(name)) / report.metres - 1) < 1e-9) known = name;
   const std::string unit = known.empty() ? "file units" : known;
   const auto power = [&](const char* sign) { return unit + sign; };
   std::vector<Row> rows = rows_of_file(call, report);
@@ -238,7 +241,8 @@ Command inspect_command() {
           "A container is closed, does not cross itself, and hangs together in more than edges and corners.\n"
           "\nExamples:\n"
           "  bernal inspect part.stl --unit mm                can this CAD file be a container?\n"
-          "  bernal inspect part.stl --places bad.ply         where does it fail? to look at in ParaView or MeshLab\n"
+          "  bernal inspect part.stl --places bad.ply         where does it fail? to look at in ParaView or "
+          "MeshLab\n"
           "  bernal inspect part.stl --radius 0.5 --json      and into how many chambers does it fall?\n"
           "Exit codes: 0 usable; 1 not usable; 2 bad input.",
           [call] { return inspect(*call); }};

@@ -11,6 +11,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/io/json.hpp"
 #include "bernal/io/read_packing.hpp"
+#include "bernal/io/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
@@ -76,11 +77,12 @@ int verify(const VerifyCall& call) {
   const Spheres<dynamic> spheres = read_csv_of(scene, file);
 
   ProgressBar bar(call.json, true);
-  const Certificate certificate = certify(spheres, domain,
-                                          {.allowed_overlap = scene.overlap,
-                                           .list = listed(call.list),
-                                           .threads = call.threads,
-                                           .monitor = bar.monitor()});
+  Certificate certificate = certify(spheres, domain,
+                                    {.allowed_overlap = scene.overlap,
+                                     .list = listed(call.list),
+                                     .threads = call.threads,
+                                     .monitor = bar.monitor()});
+  certificate.statement += certified_walls(scene);
   bar.clear();
   if (call.json)
     fmt::print("{}", certificate_as_json(certificate));

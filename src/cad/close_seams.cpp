@@ -17,7 +17,6 @@
 namespace bernal::cad {
 namespace {
 
-
 PointCubes in_cubes(const Mesh& mesh, const std::vector<std::uint32_t>& corners, double edge) {
   PointCubes cubes(edge);
   for (const std::uint32_t v : corners) cubes.add(v, mesh.vertices[v]);
@@ -113,7 +112,8 @@ bool split_edges(Mesh& mesh, double tolerance, Seams& seams) {
   double length = 0;
   for (const auto& [t, k] : edges)
     length += (mesh.vertices[mesh.triangles[t][k]] - mesh.vertices[mesh.triangles[t][(k + 1) % 3]]).norm();
-  const PointCubes cubes = in_cubes(mesh, corners, std::max(2 * tolerance, length / static_cast<double>(edges.size())));
+  const PointCubes cubes =
+      in_cubes(mesh, corners, std::max(2 * tolerance, length / static_cast<double>(edges.size())));
   std::uint32_t last = none;
   bool any = false;
   for (const auto& [t, k] : edges) {
@@ -204,7 +204,8 @@ double rounding_of_coordinates(const Mesh& mesh) {
   // Some operations in that precision, such as a turn and a shift, stand between two readings of a corner.
   constexpr double operations = 16;
   const double in_double = std::numeric_limits<double>::epsilon() * largest;
-  const double rounding = single ? std::numeric_limits<float>::epsilon() * largest / 2 : decimal_rounding(mesh, largest);
+  const double rounding =
+      single ? std::numeric_limits<float>::epsilon() * largest / 2 : decimal_rounding(mesh, largest);
   return operations * std::max(rounding, in_double);
 }
 

@@ -44,7 +44,8 @@ Bounds<3> bounds_of_edge(const Mesh& mesh, const EdgeEnds& edge) {
 void keep_widest(std::vector<Defect>& defects) {
   constexpr std::size_t most = 5;
   std::ranges::sort(defects, [](const Defect& a, const Defect& b) {
-    return std::tuple(-a.across, a.at[0], a.at[1], a.at[2]) < std::tuple(-b.across, b.at[0], b.at[1], b.at[2]);
+    return std::tuple(-a.across, a.at[0], a.at[1], a.at[2]) <
+           std::tuple(-b.across, b.at[0], b.at[1], b.at[2]);
   });
   if (defects.size() > most) defects.resize(most);
 }

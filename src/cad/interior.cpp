@@ -31,8 +31,8 @@ class Pieces {
       : mesh_(mesh), topology_(topology_of(mesh)), tree_(mesh), corner_(count(), none), depth_(count(), 0) {
     constexpr std::uint32_t most = 2000;
     if (count() > most)
-      refuse(fmt::format("the surface has {} pieces, too many to ask each what it encloses; choose \"solids\"",
-                         count()));
+      refuse(fmt::format(
+          "the surface has {} pieces, too many to ask each what it encloses; choose \"solids\"", count()));
     for (std::size_t t = mesh.triangles.size(); t-- > 0;) corner_[piece_of(t)] = mesh.triangles[t][0];
     for (std::uint32_t c = 0; c < count(); ++c)
       for (std::uint32_t other = 0; other < count(); ++other) depth_[c] += encloses(other, c);
@@ -127,7 +127,6 @@ struct Surroundings {
   Bounds<3> box;
 };
 
-
 double enclosed_volume(const Mesh& mesh, const Pieces& pieces, std::uint32_t piece) {
   double six = 0;
   const Vector<3> center = bounds_of_corners(mesh).center();
@@ -145,8 +144,8 @@ enum class Which { all, largest };
 constexpr double crevice = 1e-4;
 
 /// What planes close off around a solid, or of that the space around a point.
-std::optional<Mesh> closed_off(const Surroundings& around, const Planes& planes, double tolerance, Which which,
-                               const Vector<3>* point) {
+std::optional<Mesh> closed_off(const Surroundings& around, const Planes& planes, double tolerance,
+                               Which which, const Vector<3>* point) {
   const Mesh mesh = cut_by(around.walls, planes, tolerance);
   if (!is_closed(mesh)) return std::nullopt;
   const Pieces pieces(mesh);
@@ -264,7 +263,8 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
     try {
       // Without planes these are the voids inside.
       if (auto mesh = closed_off(around, choice, tolerance, Which::all, point))
-        return {std::move(*mesh), {planes.empty() ? "the voids of the solid" : "the hollow, " + told(choice)}};
+        return {std::move(*mesh),
+                {planes.empty() ? "the voids of the solid" : "the hollow, " + told(choice)}};
       if (planes.empty())
         if (auto filled = filled_to_the_brim(around, solid, tolerance, point)) return std::move(*filled);
     } catch (const Error& error) {
@@ -274,9 +274,10 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
   for (const Planes& choice : choices_of(planes))
     if (auto mesh = within_bounds(around, solid, choice, tolerance, point)) return std::move(*mesh);
   if (point)
-    refuse(fmt::format("the point {} of \"interior\" lies in no space that is closed; close it by \"cap\", a "
-                       "plane, or move the point",
-                       text_of(*point)));
+    refuse(
+        fmt::format("the point {} of \"interior\" lies in no space that is closed; close it by \"cap\", a "
+                    "plane, or move the point",
+                    text_of(*point)));
   if (failure && !planes.empty()) throw *failure;
   refuse("the solid has no void and no hollow; close the one that is meant by \"cap\", a plane");
 }

@@ -131,7 +131,9 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
     }
   };
   for (const Line& line : candidates(options, as_it_is)) {
-    const auto is_part = [&](const std::string& shorter) { return line.text.find(shorter) != std::string::npos; };
+    const auto is_part = [&](const std::string& shorter) {
+      return line.text.find(shorter) != std::string::npos;
+    };
     if (std::ranges::any_of(lines, is_part)) continue;  // less will do
     if (helps(line)) lines.push_back(line.text);
     if (lines.size() == enough) break;

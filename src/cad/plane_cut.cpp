@@ -18,9 +18,9 @@ namespace {
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 [[noreturn]] void refuse_text(std::string_view text) {
-  throw Error(ErrorCode::bad_argument,
-              fmt::format("\"{:.60}\" is no plane; write \"z = 1.1\", \"x < 0.5\" or \"0.6 x + 0.8 z = 2\"",
-                          text));
+  throw Error(
+      ErrorCode::bad_argument,
+      fmt::format("\"{:.60}\" is no plane; write \"z = 1.1\", \"x < 0.5\" or \"0.6 x + 0.8 z = 2\"", text));
 }
 
 /// Reads a sum of terms "2", "x", "-0.5 y", "3*z"; what stands alone goes to `constant`.
@@ -104,7 +104,7 @@ class Cutter {
     const Edge edge = std::minmax(a, b);
     const auto [entry, is_new] = crossings_.try_emplace(edge, static_cast<std::uint32_t>(side_.size()));
     if (!is_new) return entry->second;
-    const Vector<3>p = result.vertices[edge.first], q = result.vertices[edge.second];
+    const Vector<3> p = result.vertices[edge.first], q = result.vertices[edge.second];
     const double hp = plane_.height(p), hq = plane_.height(q);
     Vector<3> x = p + hp / (hp - hq) * (q - p);
     for (int k = 0; k < 3; ++k)  // in a plane across an axis exactly

@@ -35,14 +35,13 @@ constexpr double deflection_over_radius = 0.02;
 /// From the file's unit to the one that is asked for.
 double factor_of(const MeshFile& options, const FileFacts& facts, std::optional<Unit> wanted) {
   const auto& of_file = facts.unit;
-  const auto is_same = [&](Unit unit) {
-    return std::abs(metres_per(unit) / of_file->metres - 1) < 1e-9;
-  };
+  const auto is_same = [&](Unit unit) { return std::abs(metres_per(unit) / of_file->metres - 1) < 1e-9; };
   if (of_file && options.unit && !options.ignore_unit_of_file && !is_same(*options.unit))
-    throw OptionError("unit", fmt::format("the file says that its lengths are in {}, and the scene that they are "
-                                          "in {}; leave \"unit\" out, or, if the file is wrong, add "
-                                          "ignore_unit_of_file = true",
-                                          of_file->name, name_of(*options.unit)));
+    throw OptionError("unit",
+                      fmt::format("the file says that its lengths are in {}, and the scene that they are "
+                                  "in {}; leave \"unit\" out, or, if the file is wrong, add "
+                                  "ignore_unit_of_file = true",
+                                  of_file->name, name_of(*options.unit)));
   if (!wanted) return 1;
   if (options.unit) return conversion_factor(*options.unit, *wanted);
   if (!of_file) return 1;
@@ -72,10 +71,11 @@ std::vector<bool> chosen_parts(const MeshFile& options, const std::vector<std::s
     std::vector<std::string> known;
     for (const std::string& name : names)
       if (!name.empty() && known.size() < most) known.push_back(fmt::format("\"{}\"", name));
-    throw OptionError("solids", fmt::format("the file has no solid \"{}\"; it has {}{}", wanted,
-                                            cad::counted(names.size(), "solid", "solids"),
-                                            known.empty() ? fmt::format(", by number from 1 to {}", names.size())
-                                                          : fmt::format(": {}", fmt::join(known, ", "))));
+    throw OptionError("solids",
+                      fmt::format("the file has no solid \"{}\"; it has {}{}", wanted,
+                                  cad::counted(names.size(), "solid", "solids"),
+                                  known.empty() ? fmt::format(", by number from 1 to {}", names.size())
+                                                : fmt::format(": {}", fmt::join(known, ", "))));
   }
   return chosen;
 }
@@ -172,7 +172,7 @@ struct Repairs {
 
   void apply(Repair repair) {
     if (std::ranges::find(wanted, repair) == wanted.end() || mesh.triangles.empty()) return;
-    cad::Mended mended = repair == Repair::holes ? cad::close_holes(mesh, infinity)
+    cad::Mended mended = repair == Repair::holes  ? cad::close_holes(mesh, infinity)
                          : repair == Repair::wrap ? cad::wrap(mesh)
                                                   : cad::cut_out_crossings(mesh);
     done.push_back(mended.done);
@@ -182,9 +182,10 @@ struct Repairs {
     const double tolerance = 1e-4 * bounds_of(mesh).diagonal();
     const double made_up = cad::farthest(mended.mesh, mesh, tolerance).at_most;
     const double lost = cad::farthest(mesh, mended.mesh, tolerance).at_most;
-    done.push_back(fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
-                               "{:.3g} from it",
-                               made_up, lost));
+    done.push_back(
+        fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
+                    "{:.3g} from it",
+                    made_up, lost));
     mesh = std::move(mended.mesh);
   }
 
@@ -228,9 +229,10 @@ void take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& pu
       if (cad::diagnose_mesh(container).usable())  // which also turns it outward
         rest = cad::combine(container.mesh, imported.mesh, cad::Combine::take_out);
       if (!rest || rest->triangles.empty())
-        throw OptionError("obstacles", fmt::format("{} meets the wall in a way that cannot be cut out; move it a "
-                                                   "little, or take it out in CAD",
-                                                   file.string()));
+        throw OptionError("obstacles",
+                          fmt::format("{} meets the wall in a way that cannot be cut out; move it a "
+                                      "little, or take it out in CAD",
+                                      file.string()));
       both = std::move(*rest);
     }
     mesh = std::move(both);
@@ -241,9 +243,8 @@ void take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& pu
 ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   const double deflection = options.deflection.value_or(deflection_over_radius * purpose.smallest_radius);
   const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
-  ChosenSoup chosen =
-      cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
-                     assumed ? metres_per(*assumed) : 0);
+  ChosenSoup chosen = cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
+                                     assumed ? metres_per(*assumed) : 0);
   const double factor = factor_of(options, chosen.facts, purpose.unit);
 
   ImportedMesh result;
@@ -310,7 +311,9 @@ ImportedMesh read_mesh(const MeshFile& options, const ImportFor& purpose) {
 ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpose) {
   ImportedMesh result = read_mesh(options, purpose);
   if (result.report.usable()) return result;
-  const std::vector<std::string> lines = lines_that_help(options, purpose, result, Effort::quick);
+  std::vector<std::string> lines = lines_that_help(options, purpose, result, Effort::quick);
+  for (std::string& line : lines)
+    if (const std::size_t end = line.find('\n'); end != std::string::npos) line.replace(end, 1, " with ");
   const std::string help = lines.empty() ? std::string(remedy(result.report))
                                          : fmt::format("in [container], {} helps", fmt::join(lines, ", or "));
   throw Error(ErrorCode::bad_mesh,

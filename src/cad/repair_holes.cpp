@@ -54,7 +54,8 @@ void find_crossings(const Mesh& mesh, const std::vector<HoleLoop>& holes, const 
                     std::vector<Patch>& patches) {
   const auto patch_of = [&](std::uint32_t t) -> Patch* {
     if (patches.empty() || t < patches.front().first) return nullptr;
-    return &*std::partition_point(patches.begin(), patches.end(), [&](const Patch& p) { return p.last <= t; });
+    return &*std::partition_point(patches.begin(), patches.end(),
+                                  [&](const Patch& p) { return p.last <= t; });
   };
   const auto component = [&](std::uint32_t t, const Patch* patch) {
     return patch ? holes[patch->hole].component : topology.component[t];

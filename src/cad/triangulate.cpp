@@ -61,7 +61,8 @@ std::optional<std::map<Delaunay::Face_handle, int>> depths_in(const Delaunay& pl
     for (std::size_t i = 0; i < here.size(); ++i) {
       const auto face = here[i];
       if (!depth.try_emplace(face, level).second) continue;
-      for (int k = 0; k < 3; ++k) (plane.is_constrained({face, k}) ? next : here).push_back(face->neighbor(k));
+      for (int k = 0; k < 3; ++k)
+        (plane.is_constrained({face, k}) ? next : here).push_back(face->neighbor(k));
     }
   }
   for (const auto& [face, level] : depth)
@@ -122,9 +123,9 @@ Triangles triangulate(const std::vector<Vector<3>>& points, const Polygon& polyg
   return triangles.empty() ? fan(polygon) : triangles;
 }
 
-std::optional<Triangles> triangulate_regions(const std::vector<Vector<3>>& points,
-                                             const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
-                                             const Vector<3>& normal) {
+std::optional<Triangles> triangulate_regions(
+    const std::vector<Vector<3>>& points, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
+    const Vector<3>& normal) {
   std::vector<std::uint32_t> corners;
   for (const auto& [a, b] : edges) corners.insert(corners.end(), {a, b});
   std::ranges::sort(corners);

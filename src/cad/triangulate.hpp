@@ -18,7 +18,8 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<Vector<3
                                                       const std::vector<std::uint32_t>& polygon);
 
 /// Triangles that fill the regions of a plane inside an odd number of closed lines, which are given as edges.
-/// They face along `normal`. Nothing if the edges cross or do not form closed lines. Cost: O(n log n) for n edges.
+/// They face along `normal`. Nothing if the edges cross or do not form closed lines. Cost: O(n log n) for n
+/// edges.
 std::optional<std::vector<std::array<std::uint32_t, 3>>> triangulate_regions(
     const std::vector<Vector<3>>& points, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
     const Vector<3>& normal);

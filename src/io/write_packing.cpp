@@ -11,6 +11,7 @@
 #include "io/report.hpp"
 #include "io/staged_folder.hpp"
 #include "io/write_csv.hpp"
+#include "io/write_off.hpp"
 #include "io/write_svg.hpp"
 #include "io/write_vtp.hpp"
 
@@ -63,7 +64,8 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
     write_vtp(file, packing.spheres);
     file.close();
   }
-  const Certificate certificate = certify_written(csv, packing);
+  Certificate certificate = certify_written(csv, packing);
+  certificate.statement += certified_walls(packing.scene);
   const std::unique_ptr<SizeDistribution> asked = asked_sizes(packing.scene);
   const Measurements measured = measure(
       packing.spheres, packing.domain, {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)},
@@ -79,6 +81,8 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   staged.write("report.json", json_of(report));
   staged.write("report.html", html_of(report, picture, scene));
   if (!picture.empty()) staged.write("packing.svg", picture);
+  if (const auto* walls = std::get_if<Mesh>(&packing.domain); walls && walls_are_made(packing.scene))
+    staged.write("container.off", as_off_file(*walls));
   return {staged.publish(), certificate};
 }
 

@@ -15,8 +15,7 @@ constexpr double rare = 1e-2;
 std::string in_words(const MeshReport& report, const MeshFile& mesh, Unit unit) {
   std::string of_file(name_of(mesh.unit.value_or(unit)));
   if (!report.unit.empty() && !mesh.ignore_unit_of_file) of_file = report.unit + ", as the file says";
-  std::string text =
-      fmt::format("{} faces; {}; coordinates are {}", report.faces, report.reader, of_file);
+  std::string text = fmt::format("{} faces; {}; coordinates are {}", report.faces, report.reader, of_file);
   if (report.up != 0 && report.up != 'z' && mesh.up == Up::as_in_file)
     text += fmt::format("; the file says that {0} is up, which up = \"{0}\" turns to z", report.up);
   for (const auto* list : {&report.notes, &report.repairs})

@@ -123,7 +123,8 @@ bool accepts(const Key& key, const Value& value) {
   if (key.type == Type::flag || key.type == Type::integer) return false;
   if (key.type == Type::word) return is_word();
   if (const auto* names = std::get_if<std::vector<std::string>>(&value); names && !key.words.empty())
-    return key.type == Type::names && !names->empty() && std::ranges::all_of(*names, [&](const std::string& name) {
+    return key.type == Type::names && !names->empty() &&
+           std::ranges::all_of(*names, [&](const std::string& name) {
              return std::ranges::find(key.words, name) != key.words.end();
            });
   if (key.type == Type::position && !key.words.empty() && is_word()) return true;

@@ -25,7 +25,8 @@ Key word(Member member, std::string_view name, std::string_view help, std::vecto
 }
 
 Key unless(std::string otherwise, Key key) {
-  key.member.get = [get = key.member.get, otherwise = std::move(otherwise)](const void* options) -> std::optional<Value> {
+  key.member.get = [get = key.member.get,
+                    otherwise = std::move(otherwise)](const void* options) -> std::optional<Value> {
     const std::optional<Value> value = get(options);
     return value && toml_text(*value) == otherwise ? std::nullopt : value;
   };

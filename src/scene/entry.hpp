@@ -65,7 +65,8 @@ std::optional<Value> value_of(const M& m) {
     return static_cast<std::int64_t>(m);
   else if constexpr (std::is_same_v<M, std::filesystem::path>)
     return m.string();
-  else if constexpr (std::is_same_v<M, std::vector<SceneSizes>> || std::is_same_v<M, std::vector<std::string>>)
+  else if constexpr (std::is_same_v<M, std::vector<SceneSizes>> ||
+                     std::is_same_v<M, std::vector<std::string>>)
     return m.empty() ? std::nullopt : std::optional<Value>(m);
   else
     return m.size() == 0 ? std::nullopt : std::optional<Value>(std::vector<double>(m.begin(), m.end()));

@@ -112,8 +112,9 @@ Member interior() {
 }
 
 Key interior_key() {
-  Key made = key(Type::position, interior(), "interior",
-                 "what the surface encloses, the hollow of that (a bucket's inside), or the space around a point");
+  Key made =
+      key(Type::position, interior(), "interior",
+          "what the surface encloses, the hollow of that (a bucket's inside), or the space around a point");
   made.words = words(interior_words);
   return made;
 }
@@ -245,9 +246,10 @@ const std::vector<Entry>& container_entries() {
                     length(&MeshFile::weld, "weld",
                            "corners of open edges up to this far apart are one; if absent, what rounding "
                            "explains"),
-                    length(&MeshFile::deflection, "deflection",
-                           "of STEP, IGES and BREP: how far triangles may lie from the true surface; if absent "
-                           "a fiftieth of the smallest radius"),
+                    length(
+                        &MeshFile::deflection, "deflection",
+                        "of STEP, IGES and BREP: how far triangles may lie from the true surface; if absent "
+                        "a fiftieth of the smallest radius"),
                     names(repair(), "repair",
                           "what may be done to a surface that is no wall: close holes, cut out "
                           "self-intersections, wrap it",

@@ -20,7 +20,8 @@ StageEnd insert(Work& work, const Insert& options) {
   Supply& supply = *work.supply;
   Random random = work.random(Stream::insert);
   // Trials are counted inside the container; places are drawn a little beyond it, too.
-  const double attempts = options.attempts * std::clamp(bed.places().volume() / bed.container().volume(), 1.0, most_drawn);
+  const double attempts =
+      options.attempts * std::clamp(bed.places().volume() / bed.container().volume(), 1.0, most_drawn);
   SnugPlaces snug(work);
   std::size_t waiting = 0;  // so many at the head of the window found no place
   do {

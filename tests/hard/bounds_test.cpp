@@ -159,7 +159,7 @@ TEST(HardBounds, ChambersOfNeedlesAndPlates) {
 class HardBoundsOfSolids : public ::testing::Test {
  protected:
   Mesh read(const Mesh& mesh) {
-    const ImportedMesh imported = read_mesh(folder.write("mesh.off", as_off(mesh)));
+    const ImportedMesh imported = read_mesh({.file = folder.write("mesh.off", as_off(mesh))});
     EXPECT_TRUE(imported.report.usable());
     components = imported.report.components;
     return imported.mesh;
@@ -226,7 +226,7 @@ TEST_F(HardBoundsOfSolids, DiagnosisHearsAnInterrupt) {
   const auto file = folder.write("row.off", as_off(row_of_boxes(3000, {2, 0, 0})));
   const Monitor monitor = stopping_at(100);
   const Interruptible listening(monitor);
-  EXPECT_THROW(read_mesh(file), Cancelled);
+  EXPECT_THROW(read_mesh({.file = file}), Cancelled);
 }
 
 TEST(HardBounds, AnInterruptBeforeTheFirstSphereIsAResult) {

@@ -16,7 +16,9 @@ using namespace test;
 
 class HardMesh : public ::testing::Test {
  protected:
-  ImportedMesh imported(const Mesh& mesh) { return read_mesh({.file = folder.write("mesh.off", as_off(mesh))}); }
+  ImportedMesh imported(const Mesh& mesh) {
+    return read_mesh({.file = folder.write("mesh.off", as_off(mesh))});
+  }
   MeshReport diagnosed(const Mesh& mesh) { return imported(mesh).report; }
 
   /// Usable, with this volume to the rounding of sums over a box of this size, before and after import.
@@ -230,7 +232,8 @@ TEST_F(HardMesh, TinyAndHuge) {
   for (const double size : {1e-9, 1e-4, 1e4, 1e9}) {
     const Mesh mesh = scaled(helix_mesh(), size);
     expect_volume(mesh, volume_of(mesh));
-    const MeshReport report = read_mesh({.file = folder.write("mesh.stl", as_binary_stl(scaled(box, size)))}).report;
+    const MeshReport report =
+        read_mesh({.file = folder.write("mesh.stl", as_binary_stl(scaled(box, size)))}).report;
     EXPECT_TRUE(report.usable());
     EXPECT_NEAR(report.volume / (size * size * size), 1, 1e-6);
   }

@@ -31,12 +31,27 @@ Mesh without_top(const Mesh& mesh, double height) {
 
 /// A cup: a prism of height 2 and half width 2 with a square hollow of half width 1 from z = 0.5 up.
 Mesh cup_mesh() {
-  return Mesh{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}, {-2, -2, 2}, {2, -2, 2}, {2, 2, 2}, {-2, 2, 2},
-               {-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}, {-1, -1, .5}, {1, -1, .5}, {1, 1, .5}, {-1, 1, .5}},
-              {{0, 2, 1}, {0, 3, 2}, {0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6},
-               {3, 0, 4}, {3, 4, 7}, {4, 5, 9}, {4, 9, 8}, {5, 6, 10}, {5, 10, 9}, {6, 7, 11}, {6, 11, 10},
-               {7, 4, 8}, {7, 8, 11}, {8, 9, 13}, {8, 13, 12}, {9, 10, 14}, {9, 14, 13}, {10, 11, 15}, {10, 15, 14},
-               {11, 8, 12}, {11, 12, 15}, {12, 13, 14}, {12, 14, 15}}};
+  return Mesh{
+      {{-2, -2, 0},
+       {2, -2, 0},
+       {2, 2, 0},
+       {-2, 2, 0},
+       {-2, -2, 2},
+       {2, -2, 2},
+       {2, 2, 2},
+       {-2, 2, 2},
+       {-1, -1, 2},
+       {1, -1, 2},
+       {1, 1, 2},
+       {-1, 1, 2},
+       {-1, -1, .5},
+       {1, -1, .5},
+       {1, 1, .5},
+       {-1, 1, .5}},
+      {{0, 2, 1},   {0, 3, 2},    {0, 1, 5},    {0, 5, 4},   {1, 2, 6},    {1, 6, 5},    {2, 3, 7},
+       {2, 7, 6},   {3, 0, 4},    {3, 4, 7},    {4, 5, 9},   {4, 9, 8},    {5, 6, 10},   {5, 10, 9},
+       {6, 7, 11},  {6, 11, 10},  {7, 4, 8},    {7, 8, 11},  {8, 9, 13},   {8, 13, 12},  {9, 10, 14},
+       {9, 14, 13}, {10, 11, 15}, {10, 15, 14}, {11, 8, 12}, {11, 12, 15}, {12, 13, 14}, {12, 14, 15}}};
 }
 
 /// Its triangles, each with corners of its own.
@@ -80,7 +95,8 @@ class Import : public ::testing::Test {
 };
 
 TEST_F(Import, PlanesAreSumsOfCoordinates) {
-  for (const char* text : {"z = 1.1", "z=1.1", " 1.1 = z", "z - 1.1 = 0", "2 z = 2.2", "2*z < 2.2", "-z > -1.1"}) {
+  for (const char* text :
+       {"z = 1.1", "z=1.1", " 1.1 = z", "z - 1.1 = 0", "2 z = 2.2", "2*z < 2.2", "-z > -1.1"}) {
     const cad::CutPlane plane = cad::plane_in(text);
     EXPECT_NEAR(plane.height({5, 6, 1.1}), 0, 1e-15) << text;
     EXPECT_GT(std::abs(plane.height({5, 6, 2.1})), 0.5) << text;
@@ -88,8 +104,8 @@ TEST_F(Import, PlanesAreSumsOfCoordinates) {
   EXPECT_LT(cad::plane_in("x < 0.5").height({0, 0, 0}), 0);
   EXPECT_GT(cad::plane_in("x > 0.5").height({0, 0, 0}), 0);
   EXPECT_NEAR(cad::plane_in("3 x + 4 z = 10").height({0, 0, 0}), -2, 1e-15);  // of unit length
-  for (const char* text : {"", "z", "z =", "= 1", "w = 1", "z = a", "z = 1 = 2", "x y = 1", "0 z = 1", "z < inf",
-                           "z == 1", "1 = 1", "z = 1e999"})
+  for (const char* text : {"", "z", "z =", "= 1", "w = 1", "z = a", "z = 1 = 2", "x y = 1", "0 z = 1",
+                           "z < inf", "z == 1", "1 = 1", "z = 1e999"})
     EXPECT_THROW(cad::plane_in(text), Error) << text;
 }
 
@@ -222,7 +238,8 @@ TEST_F(Import, CornersThatDifferByRoundingAreWelded) {
   const double third = 1.0 / 3;
   const Mesh part = scaled(icosphere_mesh(1, 3), third);
   // Every face with corners of its own, each read to six digits after it was moved.
-  const MeshFile unwelded{.file = folder.write("unwelded.stl", as_text_stl(jittered(torn(part), 3e-7), "p", 6))};
+  const MeshFile unwelded{.file =
+                              folder.write("unwelded.stl", as_text_stl(jittered(torn(part), 3e-7), "p", 6))};
   const ImportedMesh imported = container(unwelded);
   EXPECT_NEAR(imported.report.volume, volume(file(part)), 1e-5);
   EXPECT_EQ(imported.report.faces, part.triangles.size());
@@ -246,9 +263,11 @@ TEST_F(Import, EdgesAreSplitAtTheirNeighboursCorners) {
   // A quarter of the lid is divided, and its neighbours do not know.
   Mesh part = without_top(box_mesh({0, 0, 0}, {1, 1, 1}), 1);
   const auto lid = index(part.vertices.size());
-  for (const auto& [x, y] : {std::pair{0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}, {0.5, 0.}, {0.25, 0.}, {1., 0.3}})
+  for (const auto& [x, y] :
+       {std::pair{0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}, {0.5, 0.}, {0.25, 0.}, {1., 0.3}})
     part.vertices.emplace_back(x, y, 1);
-  for (const auto& [i, j, k] : {std::array{0U, 5U, 3U}, {5U, 4U, 3U}, {4U, 1U, 6U}, {4U, 6U, 2U}, {4U, 2U, 3U}})
+  for (const auto& [i, j, k] :
+       {std::array{0U, 5U, 3U}, {5U, 4U, 3U}, {4U, 1U, 6U}, {4U, 6U, 2U}, {4U, 2U, 3U}})
     part.triangles.push_back({lid + i, lid + j, lid + k});
   const ImportedMesh imported = container(file(part));
   EXPECT_NEAR(imported.report.volume, 1, 1e-14);
@@ -313,7 +332,8 @@ TEST_F(Import, UpTurnsWithoutMirroring) {
 
 TEST_F(Import, LinesAreOfferedThatHelp) {
   const Mesh holed = without(icosphere_mesh(1, 3), [](const Vector<3>& v) { return v[0] > 0.95; });
-  for (const Mesh& mesh : {holed, joined(box, translated(box, {0.5, 0.5, 0.5})), without_top(cup_mesh(), 0)}) {
+  for (const Mesh& mesh :
+       {holed, joined(box, translated(box, {0.5, 0.5, 0.5})), without_top(cup_mesh(), 0)}) {
     const MeshFile options = file(mesh);
     const ImportedMesh as_it_is = read_mesh(options);
     ASSERT_FALSE(as_it_is.report.usable());

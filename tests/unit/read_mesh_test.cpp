@@ -125,7 +125,8 @@ TEST_F(ReadMesh, BinaryStlOfTheWrongSizeIsToldWithItsSizes) {
   const std::string whole = as_binary_stl(box);
   EXPECT_NE(refusal("cut.stl", whole.substr(0, 500)).find("12 triangles, so 684 bytes, but it has 500"),
             std::string::npos);
-  EXPECT_NE(refusal("long.stl", whole + std::string(50, 'x')).find("malformed binary STL"), std::string::npos);
+  EXPECT_NE(refusal("long.stl", whole + std::string(50, 'x')).find("malformed binary STL"),
+            std::string::npos);
   EXPECT_NE(refusal("solid.stl", as_binary_stl(box, "solid").substr(0, 600)).find("truncated binary STL"),
             std::string::npos);
 }
@@ -235,7 +236,8 @@ TEST_F(ReadMesh, NodeTransformsAreAppliedAndMirrorsTurned) {
 }
 
 TEST_F(ReadMesh, AContainerIsScaledAndAProblemIsOneLine) {
-  const ImportedMesh mesh = read_container_mesh({.file = folder.write("box.off", as_off(box)), .unit = Unit::mm}, {Unit::cm});
+  const ImportedMesh mesh =
+      read_container_mesh({.file = folder.write("box.off", as_off(box)), .unit = Unit::mm}, {Unit::cm});
   EXPECT_NEAR(volume_of(mesh.mesh), 6.0 / 1000, 1e-17);
 
   Mesh open = box;
@@ -247,8 +249,7 @@ TEST_F(ReadMesh, AContainerIsScaledAndAProblemIsOneLine) {
   } catch (const Error& error) {
     EXPECT_EQ(
         error.what(),
-        file.string() +
-            ": cannot be a container: 3 open edges (in [container], cap = \"z = 0\" helps)");
+        file.string() + ": cannot be a container: 3 open edges (in [container], cap = \"z = 0\" helps)");
   }
 }
 

@@ -17,15 +17,15 @@ struct Defect {
 /// What a CAD file is, as far as being a container matters. Lengths are in the unit that was asked for, or
 /// else the file's own.
 struct MeshReport {
-  std::string reader;          ///< which reader's coordinates were used and why, one phrase
-  std::string unit;            ///< of the file's coordinates: what it says, or "" where it says nothing
-  double metres = 0;           ///< one unit of the file's; 0 where it says nothing
-  double deflection = 0;       ///< of a true surface, as it was tessellated; 0 where the file holds none
-  char up = 0;                 ///< which axis the file says is up: 'x', 'y', 'z'; 0 where it says nothing
+  std::string reader;     ///< which reader's coordinates were used and why, one phrase
+  std::string unit;       ///< of the file's coordinates: what it says, or "" where it says nothing
+  double metres = 0;      ///< one unit of the file's; 0 where it says nothing
+  double deflection = 0;  ///< of a true surface, as it was tessellated; 0 where the file holds none
+  char up = 0;            ///< which axis the file says is up: 'x', 'y', 'z'; 0 where it says nothing
   std::vector<std::string> solids;  ///< by what names the file tells its parts apart
   std::vector<std::string> notes;   ///< what else the file says, or how it was read, one phrase each
-  std::uint64_t faces = 0;     ///< triangles after triangulation and welding
-  std::uint64_t vertices = 0;  ///< distinct points
+  std::uint64_t faces = 0;          ///< triangles after triangulation and welding
+  std::uint64_t vertices = 0;       ///< distinct points
   bool closed = false;
   std::uint64_t open_edges = 0;
   std::uint64_t non_manifold_edges = 0;  ///< with three or more faces
@@ -39,10 +39,10 @@ struct MeshReport {
   double volume = 0;       ///< enclosed, 0 unless usable
   double area = 0;
   Bounds<3> bounds;
-  std::string orientation;  ///< as read: "outward", "inward", "mixed"; "consistent" where there is no out
+  std::string orientation;      ///< as read: "outward", "inward", "mixed"; "consistent" where there is no out
   std::vector<Defect> defects;  ///< the worst of each kind, a few of them
   std::vector<std::string> repairs;   ///< what is done before use, one phrase each
-  bool is_repaired = false;  ///< the wall is no longer the file's surface: some of it was made up
+  bool is_repaired = false;           ///< the wall is no longer the file's surface: some of it was made up
   std::vector<std::string> problems;  ///< why it cannot be a container, with counts; empty if it can
   bool usable() const { return problems.empty(); }
 };

@@ -39,10 +39,10 @@ struct MeshFile {
   std::optional<Unit> unit = {};     ///< of the file's coordinates; else as the file says; else the scene's
   bool ignore_unit_of_file = false;  ///< `unit` holds though the file says otherwise
   Up up = Up::as_in_file;            ///< this axis becomes z
-  std::vector<std::string> solids = {};  ///< by name, or by number from 1; all of them if empty
+  std::vector<std::string> solids = {};               ///< by name, or by number from 1; all of them if empty
   std::vector<std::filesystem::path> obstacles = {};  ///< closed surfaces that are taken out
-  std::optional<double> weld = {};        ///< corners of open edges up to this far apart are one
-  std::optional<double> deflection = {};  ///< of a tessellated surface from the true one
+  std::optional<double> weld = {};                    ///< corners of open edges up to this far apart are one
+  std::optional<double> deflection = {};              ///< of a tessellated surface from the true one
   std::vector<Repair> repair = {};
   std::vector<std::string> cap = {};      ///< planes, "z = 1.1" or "x < 0.5": what they cut off is outside
   std::optional<double> fill_level = {};  ///< as `cap = "z < …"`

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "bernal/core/monitor.hpp"
@@ -25,5 +26,9 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
 /// Throws Error{cannot_write} now rather than after a long run, if `folder` can be neither used nor made.
 /// Leaves nothing behind.
 void check_writable(const std::filesystem::path& folder);
+
+/// What a certificate's statement adds about the walls, where they are not simply the file's surface: " The
+/// walls are …", or nothing.
+std::string certified_walls(const Scene& scene);
 
 }  // namespace bernal

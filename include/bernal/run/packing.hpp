@@ -50,7 +50,8 @@ struct Packing {
   Domain domain;
   double volume = 0;                     ///< of the domain
   double expected_packing_fraction = 0;  ///< by the plan, before the run
-  /// All sizes are so many times those that were drawn: in a container `polish` lets them grow until they jam.
+  /// All sizes are so many times those that were drawn: in a container `polish` lets them grow until they
+  /// jam.
   double size_scale = 1;
   Scene scene;
   std::uint64_t seed = 1;
