@@ -165,11 +165,13 @@ void drop_doubled(Mesh& mesh, Seams& seams) {
   mesh.triangles.resize(kept);
 }
 
-/// Half of the last of so many decimals as some coordinate needs, in the largest one.
+/// Half of the last of so many decimals as some coordinate needs, in the largest one; round numbers are taken
+/// to have six, as writers give them.
 double decimal_rounding(const Mesh& mesh, double largest) {
   constexpr std::size_t most = 3000;
+  constexpr int fewest = 6;
   const std::size_t step = std::max<std::size_t>(1, mesh.vertices.size() / most);
-  int digits = 1;
+  int digits = fewest;
   for (std::size_t v = 0; v < mesh.vertices.size(); v += step)
     for (int k = 0; k < 3; ++k) {
       const double c = std::abs(mesh.vertices[v][k]);
@@ -202,10 +204,10 @@ double rounding_of_coordinates(const Mesh& mesh) {
   }
   if (largest == 0) return std::numeric_limits<double>::min();
   // Some operations in that precision, such as a turn and a shift, stand between two readings of a corner.
-  constexpr double operations = 16;
+  constexpr double operations = 8;
   const double in_double = std::numeric_limits<double>::epsilon() * largest;
   const double rounding =
-      single ? std::numeric_limits<float>::epsilon() * largest / 2 : decimal_rounding(mesh, largest);
+      single ? std::numeric_limits<float>::epsilon() * largest : decimal_rounding(mesh, largest);
   return operations * std::max(rounding, in_double);
 }
 

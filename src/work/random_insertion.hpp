@@ -16,8 +16,9 @@ namespace bernal {
 template <class Draw, class IsFree>
 std::optional<std::invoke_result_t<Draw>> find_place(double trials, Draw&& draw, IsFree&& is_free,
                                                      const Monitor& monitor) {
-  for (double trial = 0; trial < trials; ++trial) {
-    if (monitor.stop()) throw Cancelled();
+  constexpr std::uint64_t between_looks = 64;
+  for (std::uint64_t trial = 0; static_cast<double>(trial) < trials; ++trial) {
+    if (trial % between_looks == between_looks - 1 && monitor.stop()) throw Cancelled();
     const auto place = draw();
     if (is_free(place)) return place;
   }

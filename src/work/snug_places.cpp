@@ -71,7 +71,7 @@ std::size_t SnugPlaces::place_waiting(double packing_fraction) {
   Supply& supply = *work_.supply;
   std::size_t placed = 0, waiting = 0;
   while (waiting < supply.window().size() && work_.bed().packing_fraction() < packing_fraction) {
-    if (work_.monitor.stop()) break;
+    if (work_.monitor.stop()) throw Cancelled();
     const std::uint32_t tag = supply.window()[waiting];
     const double r = supply.radius(tag);
     const auto place = needed(r) ? find(r) : std::nullopt;
@@ -93,7 +93,12 @@ void SnugPlaces::complete(double packing_fraction) {
   if (!needed(supply.smallest())) return;
   const Keepsake before(work_);
   work_.put_in_bed({});
-  place_waiting(packing_fraction);
+  try {
+    place_waiting(packing_fraction);
+  } catch (const Cancelled&) {
+    before.give_back_if_denser(work_);
+    throw;
+  }
   before.give_back_if_denser(work_);
 }
 

@@ -22,8 +22,8 @@ class SnugPlaces {
   /// Cost: about a millisecond.
   std::optional<Vector<3>> find(double r);
 
-  /// Gives places to those of the window that need such ones. Returns how many found one,
-  /// until that packing fraction is there.
+  /// Gives places to those of the window that need such ones, until that packing fraction is there. Returns
+  /// how many found one. Throws Cancelled.
   std::size_t place_waiting(double packing_fraction);
   /// The same; where all sizes need such places and some still wait, all start anew if more find one then.
   void complete(double packing_fraction);

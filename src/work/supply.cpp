@@ -36,9 +36,11 @@ Supply::Supply(const Source& source, double volume, const Target& target, double
   radii_.reserve(static_cast<std::size_t>(expected * 1.01) + 16);
   RadiusSequence sequence(source.radii, source.seed, source.draw);
   double filled = 0;
+  std::uint64_t drawn = 0;
   while (target.count ? radii_.size() < static_cast<std::size_t>(*target.count)
                       : filled < fraction * volume) {
-    throw_if_interrupted();
+    constexpr std::uint64_t between_looks = 4096;
+    if (++drawn % between_looks == 0) throw_if_interrupted();
     const double r = sequence.next();
     if (r > source.cut) {
       if (++cut_off_ > most_cut_off * (radii_.size() + 1000))

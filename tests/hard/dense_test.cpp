@@ -17,7 +17,7 @@ namespace dense_test {
 using testing::plan_of;
 
 /// Has no part in it: the container is replaced.
-const std::string container = "[container]\nkind = \"box\"\nsize = [1e3, 1e3, 1e3]\n[spheres]\n";
+const std::string container = "[container]\nkind = \"box\"\nsize = [4.0, 4.0, 4.0]\n[spheres]\n";
 const std::string relax = "[[stage]]\ndo = \"relax\"\n";
 
 Plan plan_in(const Domain& shape, const std::string& spheres, const std::string& stages = relax) {

@@ -169,7 +169,7 @@ TEST(HardPacking, OfAHeavyTail) {
         plan_of(std::string("[container]\nkind = \"box\"\nsize = [1.0, 1.0, 1.0]\n[spheres]\ncount = 1000\n"
                             "radius = { distribution = \"lognormal\", median = 0.02, sigma = 1.0 }\n") +
                 protocol));
-    EXPECT_GT(packing.spheres.size(), 300u);
+    EXPECT_GT(packing.spheres.size(), 100u);  // of which a few fill most of the box
   }
 }
 

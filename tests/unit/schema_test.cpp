@@ -39,8 +39,8 @@ std::string sample(const Key& key, int choice) {
       return choice == 0 ? "0.1" : "0.30000000000000004";
     case Type::length:  // keys come in the order min, max and d43, d32
       return key.name == "max" || key.name == "d43" ? "2.5e3" : "0.1";
-    case Type::word:
-      return fmt::format("\"{}\"", key.words[choice % key.words.size()]);
+    case Type::word:  // none that goes without saying
+      return fmt::format("\"{}\"", key.words[(choice + (key.name == "up" ? 1 : 0)) % key.words.size()]);
     case Type::file:
       return choice == 0 ? "\"part.stl\"" : "'''/tmp/a \"strange\" \\ name.stl'''";
     case Type::direction:  // along an axis, as columns need it
@@ -57,6 +57,9 @@ std::string sample(const Key& key, int choice) {
       return "[25.5, 100, 0]";
     case Type::axes:
       return "[0]";
+    case Type::names:
+      if (!key.words.empty()) return fmt::format("[\"{}\"]", key.words[choice % key.words.size()]);
+      return choice == 0 ? "[\"first\", \"second one\"]" : "[\"/tmp/3\"]";
     case Type::parts:
       return choice == 0 ? "[1, { distribution = \"fuller\", max = 2, min = 0.1 }, 3]"
                          : "[1, 2, { distribution = \"mixture\", of = [1, 2], shares = [1, 2] }]";
