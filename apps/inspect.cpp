@@ -94,6 +94,9 @@ std::vector<Row> rows_of(const MeshReport& report, const std::vector<std::string
     for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) text.replace(at, 1, "  and  ");
     rows.emplace_back(i == 0 ? "in [container]" : "or", text);
   }
+  if (!lines.empty()) {
+    rows.emplace_back("", fmt::format("(lengths in {}; those of a scene are in its own unit)", unit));
+  }
   return rows;
 }
 

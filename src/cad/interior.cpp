@@ -138,8 +138,8 @@ double enclosed_volume(const Mesh& mesh, const Pieces& pieces, std::uint32_t pie
   return std::abs(six) / 6;
 }
 
-/// All spaces that the planes close off, or the largest one that is no mere crevice.
-enum class Which { all, largest };
+/// All spaces that the planes close off, those that are no mere crevices, or the largest of these.
+enum class Which { all, wide, largest };
 /// Of the volume of the box around the solid.
 constexpr double crevice = 1e-4;
 
@@ -159,16 +159,18 @@ std::optional<Mesh> closed_off(const Surroundings& around, const Planes& planes,
     if (one == none || !hollow[one]) return std::nullopt;
     hollow.assign(hollow.size(), false);
     hollow[one] = true;
-  } else if (which == Which::largest) {
+  } else if (which != Which::all) {
     std::uint32_t largest = none;
     double volume = crevice * around.box.volume();
-    for (std::uint32_t c = 0; c < pieces.count(); ++c)
-      if (hollow[c])
-        if (const double own = enclosed_volume(mesh, pieces, c); own > volume) {
-          volume = own;
-          largest = c;
-        }
-    hollow.assign(hollow.size(), false);
+    for (std::uint32_t c = 0; c < pieces.count(); ++c) {
+      if (!hollow[c]) continue;
+      const double own = enclosed_volume(mesh, pieces, c);
+      hollow[c] = which == Which::wide && own > volume;
+      if (which == Which::largest && own > volume) {
+        volume = own;
+        largest = c;
+      }
+    }
     if (largest != none) hollow[largest] = true;
   }
   if (std::ranges::find(hollow, true) == hollow.end()) return std::nullopt;
@@ -220,9 +222,10 @@ std::optional<ChosenInterior> filled_to_the_brim(const Surroundings& around, con
     // At the corners' own height where the brim is flat, else just below.
     for (const double level : {heights[i], heights[i] - hardly_lower * (heights[i] - heights[i + 1])}) {
       try {
-        if (auto mesh = closed_off(around, {across(2, level, false)}, tolerance, Which::largest, point))
-          return ChosenInterior{std::move(*mesh),
-                                {fmt::format("the hollow, filled to its brim at z = {:.6g}", level)}};
+        if (auto mesh = closed_off(around, {across(2, level, false)}, tolerance, Which::wide, point))
+          return ChosenInterior{
+              std::move(*mesh),
+              {fmt::format("what is hollow, filled to the highest brim at z = {:.6g}", level)}};
       } catch (const Error&) {  // nothing to close at this level
       }
     }

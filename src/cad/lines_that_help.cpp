@@ -8,6 +8,7 @@
 #include "bernal/cad/read_mesh.hpp"
 #include "cad/close_seams.hpp"
 #include "cad/defects.hpp"
+#include "cad/wrap.hpp"
 
 namespace bernal {
 namespace {
@@ -111,8 +112,12 @@ std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_
   return lines;
 }
 
-/// The last resort.
-const Line wrap_line = {"repair = [\"wrap\"]", [](MeshFile& m) { m.repair = {Repair::wrap}; }};
+/// Whether the surface has an inside that can be wrapped: tried coarsely, in seconds.
+bool can_be_wrapped(const Mesh& mesh, double diagonal) {
+  constexpr double coarse = 0.05, offset_over_alpha = 1.0 / 30;
+  const std::string done = cad::wrap(mesh, coarse * diagonal, offset_over_alpha * coarse * diagonal).done;
+  return done.starts_with("wrapped from inside");
+}
 
 }  // namespace
 
@@ -138,8 +143,9 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
     if (helps(line)) lines.push_back(line.text);
     if (lines.size() == enough) break;
   }
-  if (lines.empty() && effort == Effort::thorough && options.repair.empty() && helps(wrap_line))
-    lines.push_back(wrap_line.text);
+  if (lines.empty() && effort == Effort::thorough && options.repair.empty() &&
+      can_be_wrapped(as_it_is.mesh, as_it_is.report.bounds.diagonal()))
+    lines.emplace_back("repair = [\"wrap\"]");
   return lines;
 }
 

@@ -175,6 +175,7 @@ Mesh cut(const Mesh& mesh, const CutPlane& plane, double tolerance) {
   };
   Cutter cutter(mesh, plane, tolerance);
   if (cutter.result.triangles.empty()) refuse("leaves nothing of the surface");
+  if (cutter.removed == 0 && topology_of(mesh).closed()) return mesh;  // all of it is on that side
   const std::vector<Edge> rim = rim_of(cutter);
   if (rim.empty()) refuse(cutter.removed == 0 ? "meets no surface" : "leaves nothing open to be closed");
 

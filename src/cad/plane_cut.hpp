@@ -25,8 +25,9 @@ struct CutPlane {
 CutPlane plane_in(std::string_view text);
 
 /// The part of a surface on the plane's side, closed in the plane: corners within `tolerance` of the plane
-/// are taken to lie on it. Edges that are open elsewhere stay open. Throws Error{bad_mesh} if nothing is on
-/// that side, if the plane cuts nothing, or if the cut crosses itself. Cost: O(n log n).
+/// are taken to lie on it. Edges that are open elsewhere stay open. A closed surface that is all on
+/// that side stays as it is. Throws Error{bad_mesh} if nothing is on that side, if the plane cuts nothing of
+/// an open surface, or if the cut crosses itself. Cost: O(n log n).
 Mesh cut(const Mesh& mesh, const CutPlane& plane, double tolerance);
 
 }  // namespace bernal::cad

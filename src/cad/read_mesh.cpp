@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "cad/body_union.hpp"
 #include "cad/close_seams.hpp"
 #include "cad/defects.hpp"
 #include "cad/diagnose_mesh.hpp"
@@ -16,11 +15,11 @@
 #include "cad/make_triangles.hpp"
 #include "cad/mesh_distance.hpp"
 #include "cad/mesh_topology.hpp"
+#include "cad/obstacles.hpp"
 #include "cad/read_soup.hpp"
 #include "cad/repair_crossings.hpp"
 #include "cad/repair_holes.hpp"
 #include "cad/self_intersections.hpp"
-#include "cad/triangle_tree.hpp"
 #include "cad/wrap.hpp"
 
 namespace bernal {
@@ -172,6 +171,8 @@ struct Repairs {
 
   void apply(Repair repair) {
     if (std::ranges::find(wanted, repair) == wanted.end() || mesh.triangles.empty()) return;
+    if (repair == Repair::wrap && cad::topology_of(mesh).closed() && cad::count_self_intersections(mesh) == 0)
+      return;  // it is a wall
     cad::Mended mended = repair == Repair::holes  ? cad::close_holes(mesh, infinity)
                          : repair == Repair::wrap ? cad::wrap(mesh)
                                                   : cad::cut_out_crossings(mesh);
@@ -196,47 +197,59 @@ struct Repairs {
   bool any = false;  ///< it is no longer the file's surface
 };
 
-void append(Mesh& mesh, const Mesh& other) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& [a, b, c] : other.triangles)
-    mesh.triangles.push_back({first + a, first + c, first + b});  // turned: its inside is outside
+/// An obstacle's surface; its own unit counts, where it says one, else that of the container's file.
+Mesh read_obstacle(const std::filesystem::path& file, const MeshFile& options, const ImportFor& purpose) {
+  MeshFile obstacle{.file = file,
+                    .unit = options.unit,
+                    .ignore_unit_of_file = options.ignore_unit_of_file,
+                    .up = options.up,
+                    .weld = options.weld,
+                    .deflection = options.deflection};
+  const auto read = [&] {
+    ImportedMesh imported = read_mesh(obstacle, purpose);
+    if (!imported.report.usable())
+      throw OptionError("obstacles", fmt::format("{} cannot be an obstacle: {}", file.string(),
+                                                 fmt::join(imported.report.problems, ", ")));
+    return std::move(imported.mesh);
+  };
+  try {
+    return read();
+  } catch (const OptionError& error) {
+    if (error.option != "unit") throw;
+    obstacle.unit.reset();
+    return read();
+  }
 }
 
-/// Closed surfaces inside of the container are taken out of it.
+[[noreturn]] void refuse_obstacle(const std::filesystem::path& file, std::string_view why) {
+  throw OptionError("obstacles", fmt::format("{} {}", file.string(), why));
+}
+
+/// Closed surfaces are taken out of the container.
 void take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& purpose,
                         std::vector<std::string>& done) {
+  if (options.obstacles.empty()) return;
+  cad::Triangles container{.mesh = mesh};
+  if (!cad::diagnose_mesh(container).usable()) return;  // which the report tells
+  mesh = std::move(container.mesh);                     // turned outward
+  std::vector<std::filesystem::path> seen;
   for (const std::filesystem::path& file : options.obstacles) {
-    MeshFile obstacle{.file = file,
-                      .unit = options.unit,
-                      .ignore_unit_of_file = options.ignore_unit_of_file,
-                      .up = options.up,
-                      .weld = options.weld,
-                      .deflection = options.deflection};
-    const ImportedMesh imported = read_container_mesh(obstacle, purpose);
-    const cad::TriangleTree tree(mesh);
-    const bool touches_inside = std::ranges::any_of(imported.mesh.vertices, [&](const Vector<3>& v) {
-      return tree.crossing(v, 0, std::numeric_limits<double>::infinity()) != cad::Crossing::even;
-    });
-    if (!touches_inside)
-      throw OptionError("obstacles", fmt::format("{} lies outside of the container; check its unit and place",
-                                                 file.string()));
-    Mesh both = mesh;
-    append(both, imported.mesh);
-    if (cad::count_self_intersections(both) > 0) {
-      cad::Triangles container{.mesh = mesh};
-      std::optional<Mesh> rest;
-      if (cad::diagnose_mesh(container).usable())  // which also turns it outward
-        rest = cad::combine(container.mesh, imported.mesh, cad::Combine::take_out);
-      if (!rest || rest->triangles.empty())
-        throw OptionError("obstacles",
-                          fmt::format("{} meets the wall in a way that cannot be cut out; move it a "
-                                      "little, or take it out in CAD",
-                                      file.string()));
-      both = std::move(*rest);
+    if (std::ranges::find(seen, file) != seen.end()) refuse_obstacle(file, "stands there twice");
+    seen.push_back(file);
+    const Mesh obstacle = read_obstacle(file, options, purpose);
+    switch (cad::take_out(mesh, obstacle)) {
+      case cad::TakenOut::outside:
+        refuse_obstacle(
+            file, "lies outside of the container, or in an obstacle before it; check its unit and place");
+      case cad::TakenOut::whole:
+        refuse_obstacle(file, "leaves nothing of the container; check its unit and place");
+      case cad::TakenOut::entangled:
+        refuse_obstacle(
+            file, "meets the wall in a way that cannot be cut out; move it a little, or take it out in CAD");
+      case cad::TakenOut::done:
+        done.push_back(
+            fmt::format("took out {}, {} faces", file.filename().string(), obstacle.triangles.size()));
     }
-    mesh = std::move(both);
-    done.push_back(fmt::format("took out {}, {} faces", file.filename().string(), imported.report.faces));
   }
 }
 

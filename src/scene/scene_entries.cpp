@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view wall_words[] = {"double", "filtered", "exact"};
 constexpr std::string_view draw_words[] = {"random", "quantiles"};
-constexpr std::string_view up_words[] = {"as in the file", "x", "y", "z"};
+constexpr std::string_view up_words[] = {"unchanged", "x", "y", "z"};
 constexpr std::string_view interior_words[] = {"solid", "cavity"};
 constexpr std::string_view repair_words[] = {name_of(Repair::holes), name_of(Repair::self_intersections),
                                              name_of(Repair::wrap)};

@@ -172,6 +172,18 @@ TEST_F(Import, TheHollowOfACup) {
   EXPECT_NE(refusal(cup).find("(0, 0, 5)"), std::string::npos) << refusal(cup);
 }
 
+TEST_F(Import, EveryHollowOfOneBrim) {
+  MeshFile cups = file(joined(cup_mesh(), translated(cup_mesh(), {5, 0, 0})));
+  cups.interior = Interior::cavity;
+  EXPECT_NEAR(volume(cups), 2 * 2 * 2 * 1.5, 1e-12);
+}
+
+TEST_F(Import, ALevelAboveAClosedPartChangesNothing) {
+  MeshFile part = file(box);
+  part.fill_level = 100;
+  EXPECT_NEAR(volume(part), 6, 1e-14);
+}
+
 TEST_F(Import, ACupWithARoundBrim) {
   Mesh cup = cup_mesh();
   const auto brim = index(cup.vertices.size());  // a roof over the four brims, its ridge at z = 2.5
@@ -313,8 +325,18 @@ TEST_F(Import, ObstaclesAreTakenOut) {
   EXPECT_NEAR(volume(part), 26, 1e-13);
   part.obstacles = {file(box_mesh({7, 1, 2}, {1, 1, 5}), "outside.off").file};
   EXPECT_NE(refusal(part).find("lies outside"), std::string::npos) << refusal(part);
+  part.obstacles = {file(box_mesh({1, 1, -1}, {1, 1, 5}), "shaft.off").file};
+  EXPECT_NEAR(volume(part), 24, 1e-12);
+  part.obstacles = {file(box_mesh({-1, -1, 1}, {5, 5, 1}), "baffle.off").file};
+  EXPECT_NEAR(volume(part), 18, 1e-12);
+  part.obstacles = {file(box_mesh({-1, -1, -1}, {5, 5, 5}), "larger.off").file};
+  EXPECT_NE(refusal(part).find("leaves nothing"), std::string::npos) << refusal(part);
+  part.obstacles = {part.file};
+  EXPECT_NE(refusal(part).find("leaves nothing"), std::string::npos) << refusal(part);
+  part.obstacles = {folder / "inside.off", folder / "inside.off"};
+  EXPECT_NE(refusal(part).find("twice"), std::string::npos) << refusal(part);
   part.obstacles = {file(without_top(box, 3), "open.off").file};
-  EXPECT_NE(refusal(part).find("open.off: cannot be a container"), std::string::npos) << refusal(part);
+  EXPECT_NE(refusal(part).find("open.off cannot be an obstacle"), std::string::npos) << refusal(part);
 }
 
 TEST_F(Import, UpTurnsWithoutMirroring) {
@@ -349,7 +371,7 @@ TEST_F(Import, RepairedWallsAreCalledSo) {
   EXPECT_TRUE(report.is_repaired);
   EXPECT_NEAR(report.volume, 12 - 0.5 * 1.5 * 2.5, 1e-12);
   MeshFile sound = file(box);
-  sound.repair = {Repair::holes, Repair::self_intersections};
+  sound.repair = {Repair::holes, Repair::self_intersections, Repair::wrap};
   EXPECT_FALSE(container(sound).report.is_repaired);
 }
 

@@ -43,11 +43,11 @@ ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpo
 
 enum class Effort {
   quick,    ///< what takes about as long as reading the file
-  thorough  ///< also what takes minutes
+  thorough  ///< also a wrap, tried coarsely
 };
 
 /// Lines for [container] that make a container of a file that is none as it is: each was tried. The first
-/// changes least; none if nothing helps.
+/// changes least; none if nothing helps. Lengths in them are in the unit of `purpose`.
 std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFor& purpose,
                                          const ImportedMesh& as_it_is, Effort effort);
 
