@@ -224,7 +224,8 @@ Command inspect_command() {
   const auto call = std::make_shared<InspectCall>();
   return {"inspect",
           "Say what a CAD file is and whether it can be a container",
-          {required({"MESH", &call->mesh, "The file: STL, OBJ, OFF, PLY, 3MF, glTF, …"}),
+          {required({"MESH", &call->mesh,
+                     "The file: STL, OBJ, OFF, PLY, 3MF, glTF, Collada, FBX, STEP, IGES, BREP"}),
            {"--unit", &call->unit, "Unit of the file's lengths: nm, um, mm, cm, m, in, ft; unknown if absent",
             "UNIT"},
            checked({"--radius", &call->radius,
