@@ -148,21 +148,18 @@ void drop_doubled(Mesh& mesh, Seams& seams) {
     std::ranges::sort(sorted);
     faces[sorted].push_back(t);
   }
-  std::vector<bool> gone(mesh.triangles.size(), false);
+  std::vector<bool> kept(mesh.triangles.size(), true);
   for (const auto& [corners, same] : faces) {
     if (same.size() != 2) continue;
     const FaceCorners& t = mesh.triangles[same[0]];
     bool needed = true;
     for (std::size_t k = 0; k < 3; ++k) needed = needed && uses[edge(t, k)] == 3;
     if (!needed) continue;
-    gone[same[1]] = true;
+    kept[same[1]] = false;
     ++seams.doubled;
   }
   if (seams.doubled == 0) return;
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < gone.size(); ++t)
-    if (!gone[t]) mesh.triangles[kept++] = mesh.triangles[t];
-  mesh.triangles.resize(kept);
+  keep_only(mesh, kept);
 }
 
 /// Half of the last of so many decimals as some coordinate needs, in the largest one; round numbers are taken

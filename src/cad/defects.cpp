@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/functional/hash.hpp>
 #include <boost/unordered/unordered_map.hpp>
-#include <numeric>
 
 #include "cad/mesh_topology.hpp"
 #include "cad/self_intersections.hpp"
@@ -13,18 +12,13 @@ namespace {
 
 using EdgeEnds = std::array<std::uint32_t, 2>;
 
-/// Every edge, with the number of faces at it and one of them.
-struct EdgeFaces {
-  std::uint32_t count = 0, face = none;
-};
-boost::unordered_map<EdgeEnds, EdgeFaces> faces_at_edges(const Mesh& mesh) {
-  boost::unordered_map<EdgeEnds, EdgeFaces> edges;
+/// Every edge, with the number of faces at it.
+boost::unordered_map<EdgeEnds, std::uint32_t> faces_at_edges(const Mesh& mesh) {
+  boost::unordered_map<EdgeEnds, std::uint32_t> edges;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [a, b] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
-      EdgeFaces& at = edges[{a, b}];
-      ++at.count;
-      at.face = t;
+      ++edges[{a, b}];
     }
   return edges;
 }
@@ -55,7 +49,7 @@ void keep_widest(std::vector<Defect>& defects) {
 std::vector<OpenRim> open_rims(const Mesh& mesh) {
   std::vector<EdgeEnds> open;
   for (const auto& [edge, faces] : faces_at_edges(mesh))
-    if (faces.count == 1) open.push_back(edge);
+    if (faces == 1) open.push_back(edge);
   std::ranges::sort(open);
 
   boost::unordered_map<std::uint32_t, std::uint32_t> parent;
@@ -71,9 +65,8 @@ std::vector<OpenRim> open_rims(const Mesh& mesh) {
   boost::unordered_map<std::uint32_t, std::size_t> rim_of;
   for (const EdgeEnds& edge : open) {
     const auto [entry, is_new] = rim_of.try_emplace(root(edge[0]), rims.size());
-    if (is_new) rims.push_back({bounds_of_edge(mesh, edge), {}});
+    if (is_new) rims.push_back({bounds_of_edge(mesh, edge)});
     OpenRim& rim = rims[entry->second];
-    rim.edges.push_back(edge);
     for (const std::uint32_t v : edge) stretch(rim.bounds, mesh.vertices[v]);
   }
   std::ranges::stable_sort(
@@ -87,8 +80,7 @@ std::vector<Defect> defects_of(const Mesh& mesh) {
     holes.push_back({"hole", rim.bounds.center(), rim.bounds.diagonal()});
   for (const auto& [edge, faces] : faces_at_edges(mesh)) {
     const Bounds<3> bounds = bounds_of_edge(mesh, edge);
-    if (faces.count > 2)
-      branches.push_back({"edge with more than two faces", bounds.center(), bounds.diagonal()});
+    if (faces > 2) branches.push_back({"edge with more than two faces", bounds.center(), bounds.diagonal()});
   }
   const auto bounds_of_triangle = [&](std::uint32_t t) {
     const auto& [a, b, c] = mesh.triangles[t];
@@ -116,7 +108,7 @@ DefectiveFaces defective_faces(const Mesh& mesh) {
     bool open = false, branching = false;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [a, b] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
-      const std::uint32_t count = edges.at({a, b}).count;
+      const std::uint32_t count = edges.at({a, b});
       open = open || count == 1;
       branching = branching || count > 2;
     }

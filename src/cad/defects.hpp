@@ -9,7 +9,6 @@ namespace bernal::cad {
 /// Open edges that hang together: the rim of a hole, or of an opening.
 struct OpenRim {
   Bounds<3> bounds;
-  std::vector<std::array<std::uint32_t, 2>> edges;
 };
 
 /// All of them, the widest first. Cost: O(T log T).

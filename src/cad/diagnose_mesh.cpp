@@ -14,15 +14,6 @@
 namespace bernal::cad {
 namespace {
 
-Bounds<3> bounds_of_vertices(const Mesh& mesh) {
-  Bounds<3> bounds{mesh.vertices.front(), mesh.vertices.front()};
-  for (const Vector<3>& v : mesh.vertices) {
-    bounds.lower = bounds.lower.cwiseMin(v);
-    bounds.upper = bounds.upper.cwiseMax(v);
-  }
-  return bounds;
-}
-
 /// Of the signed tetrahedron between the triangle and the centre of the bounds, where they cancel least.
 double six_signed_volumes(const Mesh& mesh, const std::array<std::uint32_t, 3>& t, const Vector<3>& center) {
   const Vector<3> a = mesh.vertices[t[0]] - center;
@@ -126,6 +117,15 @@ void orient(Mesh& mesh, const MeshTopology& topology, MeshReport& report) {
 
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+Bounds<3> bounds_of_vertices(const Mesh& mesh) {
+  Bounds<3> bounds{mesh.vertices.front(), mesh.vertices.front()};
+  for (const Vector<3>& v : mesh.vertices) {
+    bounds.lower = bounds.lower.cwiseMin(v);
+    bounds.upper = bounds.upper.cwiseMax(v);
+  }
+  return bounds;
 }
 
 MeshReport diagnose_mesh(Triangles& triangles) {

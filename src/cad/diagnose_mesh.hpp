@@ -14,4 +14,7 @@ namespace bernal::cad {
 /// self-intersections.
 MeshReport diagnose_mesh(Triangles& triangles);
 
+/// Of all vertices, used or not. Precondition: there are any.
+Bounds<3> bounds_of_vertices(const Mesh& mesh);
+
 }  // namespace bernal::cad

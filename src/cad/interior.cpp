@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "bernal/core/error.hpp"
+#include "cad/diagnose_mesh.hpp"
 #include "cad/mesh_topology.hpp"
 #include "cad/triangle_tree.hpp"
 
@@ -87,15 +88,6 @@ Mesh cut_by(Mesh mesh, const Planes& planes, double tolerance) {
   return mesh;
 }
 
-Bounds<3> bounds_of_corners(const Mesh& mesh) {
-  Bounds<3> bounds{mesh.vertices.front(), mesh.vertices.front()};
-  for (const Vector<3>& v : mesh.vertices) {
-    bounds.lower = bounds.lower.cwiseMin(v);
-    bounds.upper = bounds.upper.cwiseMax(v);
-  }
-  return bounds;
-}
-
 CutPlane across(int axis, double level, bool upper_stays) {
   CutPlane plane;
   plane.normal = Vector<3>::Unit(axis);
@@ -106,7 +98,7 @@ CutPlane across(int axis, double level, bool upper_stays) {
 
 /// The space around a solid, in a box that is larger than it: what planes close off from that box is hollow.
 struct Surroundings {
-  explicit Surroundings(const Mesh& solid) : walls(solid), box(bounds_of_corners(solid)) {
+  explicit Surroundings(const Mesh& solid) : walls(solid), box(bounds_of_vertices(solid)) {
     const Vector<3> margin = Vector<3>::Constant(0.1 * box.diagonal());
     box = {box.lower - margin, box.upper + margin};
     const auto first = static_cast<std::uint32_t>(walls.vertices.size());
@@ -127,15 +119,17 @@ struct Surroundings {
   Bounds<3> box;
 };
 
-double enclosed_volume(const Mesh& mesh, const Pieces& pieces, std::uint32_t piece) {
-  double six = 0;
-  const Vector<3> center = bounds_of_corners(mesh).center();
+/// Of what each piece encloses.
+std::vector<double> volumes_of(const Mesh& mesh, const Pieces& pieces) {
+  std::vector<double> volumes(pieces.count(), 0);
+  const Vector<3> center = bounds_of_vertices(mesh).center();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (pieces.piece_of(t) != piece) continue;
     const auto& [a, b, c] = mesh.triangles[t];
-    six += (mesh.vertices[a] - center).dot((mesh.vertices[b] - center).cross(mesh.vertices[c] - center));
+    volumes[pieces.piece_of(t)] +=
+        (mesh.vertices[a] - center).dot((mesh.vertices[b] - center).cross(mesh.vertices[c] - center));
   }
-  return std::abs(six) / 6;
+  for (double& volume : volumes) volume = std::abs(volume) / 6;
+  return volumes;
 }
 
 /// All spaces that the planes close off, those that are no mere crevices, or the largest of these.
@@ -160,11 +154,12 @@ std::optional<Mesh> closed_off(const Surroundings& around, const Planes& planes,
     hollow.assign(hollow.size(), false);
     hollow[one] = true;
   } else if (which != Which::all) {
+    const std::vector<double> volumes = volumes_of(mesh, pieces);
     std::uint32_t largest = none;
     double volume = crevice * around.box.volume();
     for (std::uint32_t c = 0; c < pieces.count(); ++c) {
       if (!hollow[c]) continue;
-      const double own = enclosed_volume(mesh, pieces, c);
+      const double own = volumes[c];
       hollow[c] = which == Which::wide && own > volume;
       if (which == Which::largest && own > volume) {
         volume = own;
@@ -237,7 +232,7 @@ std::optional<ChosenInterior> filled_to_the_brim(const Surroundings& around, con
 /// as will do.
 std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Mesh& solid,
                                             const Planes& planes, double tolerance, const Vector<3>* point) {
-  const Bounds<3> bounds = bounds_of_corners(solid);
+  const Bounds<3> bounds = bounds_of_vertices(solid);
   Planes sides;
   for (int axis = 0; axis < 3; ++axis) {
     sides.push_back(across(axis, bounds.lower[axis], true));

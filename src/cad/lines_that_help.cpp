@@ -40,12 +40,7 @@ std::string rounded(double value, double towards, double within) {
   return fmt::format("{}", value);
 }
 
-Openings openings_of(const Mesh& mesh) {
-  Bounds<3> part{mesh.vertices.front(), mesh.vertices.front()};
-  for (const Vector<3>& v : mesh.vertices) {
-    part.lower = part.lower.cwiseMin(v);
-    part.upper = part.upper.cwiseMax(v);
-  }
+Openings openings_of(const Mesh& mesh, const Bounds<3>& part) {
   const double rounding = cad::rounding_of_coordinates(mesh);
   Openings found;
   auto& planes = found.planes;
@@ -82,7 +77,7 @@ std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_
   std::vector<Line> caps;
   bool caps_first = false;
   if (report.open_edges > 0 && options.cap.empty() && !options.fill_level)
-    if (const auto& [planes, wide] = openings_of(mesh); !planes.empty()) {
+    if (const auto& [planes, wide] = openings_of(mesh, report.bounds); !planes.empty()) {
       caps_first = wide;
       const std::string list = fmt::format("\"{}\"", fmt::join(planes, "\", \""));
       caps.push_back({planes.size() == 1 ? fmt::format("cap = {}", list) : fmt::format("cap = [{}]", list),

@@ -148,6 +148,13 @@ std::uint32_t orient_consistently(Mesh& mesh, const MeshTopology& topology) {
   return total;
 }
 
+void keep_only(Mesh& mesh, const std::vector<bool>& kept) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < kept.size(); ++t)
+    if (kept[t]) mesh.triangles[count++] = mesh.triangles[t];
+  mesh.triangles.resize(count);
+}
+
 void drop_unused_vertices(Mesh& mesh) {
   std::vector<std::uint32_t> number(mesh.vertices.size(), none);
   std::vector<Vector<3>> used;

@@ -42,6 +42,9 @@ MeshTopology topology_of(const Mesh& mesh);
 /// of components, but its corner-wise members no longer hold.
 std::uint32_t orient_consistently(Mesh& mesh, const MeshTopology& topology);
 
+/// Drops the triangles that are not kept.
+void keep_only(Mesh& mesh, const std::vector<bool>& kept);
+
 /// Numbers the vertices anew, in the order in which the triangles first use them, without the unused ones.
 void drop_unused_vertices(Mesh& mesh);
 

@@ -97,10 +97,9 @@ void keep_solids(cad::PolygonSoup& soup, const MeshFile& options) {
 void keep_pieces(Mesh& mesh, const MeshFile& options) {
   const cad::MeshTopology topology = cad::topology_of(mesh);
   const std::vector<bool> chosen = chosen_parts(options, std::vector<std::string>(topology.components));
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (chosen[topology.component[t]]) mesh.triangles[kept++] = mesh.triangles[t];
-  mesh.triangles.resize(kept);
+  std::vector<bool> kept(mesh.triangles.size());
+  for (std::size_t t = 0; t < kept.size(); ++t) kept[t] = chosen[topology.component[t]];
+  cad::keep_only(mesh, kept);
 }
 
 /// Turns the axis that points up to z, without mirroring: as Collada's conventions lead into each other.
@@ -180,7 +179,7 @@ struct Repairs {
     if (mended.mesh.triangles == mesh.triangles && mended.mesh.vertices == mesh.vertices) return;
     any = true;
     if (mended.mesh.triangles.empty()) return;
-    const double tolerance = 1e-4 * bounds_of(mesh).diagonal();
+    const double tolerance = 1e-4 * cad::bounds_of_vertices(mesh).diagonal();
     const double made_up = cad::farthest(mended.mesh, mesh, tolerance).at_most;
     const double lost = cad::farthest(mesh, mended.mesh, tolerance).at_most;
     done.push_back(

@@ -36,14 +36,6 @@ double two_areas(const Mesh& mesh, std::size_t t) {
   return ij.cross(ik).norm();
 }
 
-/// Without the triangles that are not kept.
-void keep_only(Mesh& mesh, const std::vector<bool>& kept) {
-  std::size_t count = 0;
-  for (std::size_t t = 0; t < kept.size(); ++t)
-    if (kept[t]) mesh.triangles[count++] = mesh.triangles[t];
-  mesh.triangles.resize(count);
-}
-
 Pairs within_components(const Pairs& pairs, const MeshTopology& topology) {
   Pairs own;
   std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(own),
