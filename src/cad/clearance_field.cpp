@@ -46,15 +46,19 @@ ClearanceField::ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds
   });
 }
 
-ClearanceBounds ClearanceField::at(const Vector<3>& p) const {
-  int cell[3];
-  for (int k = 0; k < 3; ++k) {
-    if (!(p[k] >= lower_[k] && p[k] <= upper_[k])) return beyond;
+ClearanceField::Cell ClearanceField::cell_of(const Vector<3>& p) const {
+  Cell cell;
+  for (int k = 0; k < 3; ++k)
     cell[k] = std::min(static_cast<int>((p[k] - lower_[k]) * per_edge_), count_[k] - 1);
-  }
+  return cell;
+}
+
+ClearanceBounds ClearanceField::at(const Vector<3>& p) const {
+  for (int k = 0; k < 3; ++k)
+    if (!(p[k] >= lower_[k] && p[k] <= upper_[k])) return beyond;
+  const Cell cell = cell_of(p);
   const double away = (p - center_of(cell[0], cell[1], cell[2])).norm() + (slack + widening) * edge_;
-  const std::size_t row = static_cast<std::size_t>(cell[2]) * count_[1] + cell[1];
-  const double clearance = clearance_[row * count_[0] + cell[0]];
+  const double clearance = clearance_[index(cell)];
   return {clearance - away, clearance + away};
 }
 
@@ -62,19 +66,43 @@ Side ClearanceField::side(const Vector<3>& p) const {
   const ClearanceBounds here = at(p);
   if (here.inside()) return Side::inside;
   if (here.outside()) return Side::outside;
-  for (int step = 1;; ++step) {
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const int sign : {-1, 1}) {
-        Vector<3> end = p;
-        end[axis] += sign * step * edge_;
-        const ClearanceBounds there = at(end);
-        if (!there.inside() && !there.outside()) continue;
-        const Crossing crossing = tree_.crossing(p, axis, end[axis]);
-        if (crossing == Crossing::starts_on_wall) return Side::wall;
-        return there.inside() == (crossing == Crossing::even) ? Side::inside : Side::outside;
-      }
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int sign : {-1, 1}) {
+      Vector<3> end = p;
+      end[axis] += sign * edge_;
+      const ClearanceBounds there = at(end);
+      if (!there.inside() && !there.outside()) continue;
+      const Crossing crossing = tree_.crossing(p, axis, end[axis]);
+      if (crossing == Crossing::starts_on_wall) return Side::wall;
+      return there.inside() == (crossing == Crossing::even) ? Side::inside : Side::outside;
     }
   }
+  return side_by_centre(p);
+}
+
+/// Where the wall is so dense that no cube tells: along three axes, one after the other, to the centre of the
+/// cube, whose side is known. No corner of that way may be on the wall.
+Side ClearanceField::side_by_centre(const Vector<3>& p) const {
+  const Cell cell = cell_of(p);
+  const Vector<3> center = center_of(cell[0], cell[1], cell[2]);
+  const double clearance = clearance_[index(cell)];
+  const bool known = std::abs(clearance) > slack * edge_;  // or else the centre may be on the wall
+  for (int turn = 0; turn < 6 && known; ++turn) {
+    bool inside = clearance > 0;
+    Vector<3> from = p;
+    Crossing crossing = Crossing::even;
+    for (int leg = 0; leg < 3 && crossing != Crossing::starts_on_wall; ++leg) {
+      const int axis = (turn < 3 ? turn + leg : turn + 3 - leg) % 3;
+      crossing = tree_.crossing(from, axis, center[axis]);
+      if (crossing == Crossing::starts_on_wall && leg == 0) return Side::wall;
+      inside ^= crossing == Crossing::odd;
+      from[axis] = center[axis];
+    }
+    if (crossing != Crossing::starts_on_wall) return inside ? Side::inside : Side::outside;
+  }
+  const Crossing crossing = tree_.crossing(p, 0, -infinity);
+  if (crossing == Crossing::starts_on_wall) return Side::wall;
+  return crossing == Crossing::odd ? Side::inside : Side::outside;
 }
 
 }  // namespace bernal::cad

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -33,11 +35,18 @@ class ClearanceField {
 
   ClearanceBounds at(const Vector<3>& p) const;
 
-  /// On which side of the wall p is, exactly: walks from p along the axes to the nearest cube whose side is
-  /// known and counts the crossings of the wall on that way, which is short.
+  /// On which side of the wall p is, exactly: walks from p along the axes to a cube next to it whose side is
+  /// known, or to the centre of its own, and counts the crossings of the wall on that way, which is short.
   Side side(const Vector<3>& p) const;
 
  private:
+  using Cell = std::array<int, 3>;
+  Side side_by_centre(const Vector<3>& p) const;
+  /// Precondition: p is in the bounds.
+  Cell cell_of(const Vector<3>& p) const;
+  std::size_t index(const Cell& c) const {
+    return (static_cast<std::size_t>(c[2]) * count_[1] + c[1]) * count_[0] + c[0];
+  }
   Vector<3> center_of(int x, int y, int z) const {
     return lower_ + edge_ * (Vector<3>(x, y, z) + Vector<3>::Constant(0.5));
   }
@@ -45,7 +54,7 @@ class ClearanceField {
   const TriangleTree& tree_;
   Vector<3> lower_, upper_;
   double edge_ = 0, per_edge_ = 0;
-  int count_[3] = {0, 0, 0};
+  Cell count_ = {0, 0, 0};
   std::vector<double> clearance_;
 };
 

@@ -49,7 +49,16 @@ class MeshContainer final : public Container {
   }
 
   void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
-    if (field_.at(c).lower < reach) tree_.within(c, reach, out);
+    few_facets_near(c, reach, std::numeric_limits<std::size_t>::max(), out);
+  }
+
+  bool few_facets_near(const Vector<3>& c, double reach, std::size_t most,
+                       std::vector<NearFacet>& out) const override {
+    return field_.at(c).lower >= reach || tree_.within(c, reach, out, most);
+  }
+
+  void contacts(const Vector<3>& c, double r, std::vector<WallContact>& out) const override {
+    if (field_.at(c).lower < r) tree_.contacts(c, r, out);
   }
 
   double first_contact(const Vector<3>& c, double r, const Vector<3>& direction,
@@ -84,6 +93,11 @@ std::unique_ptr<Container> make_container(const Domain& shape, WallArithmetic ar
 std::unique_ptr<Container> make_local_container(const Domain& of_scene, const Frame& frame,
                                                 WallArithmetic arithmetic) {
   return make_container(to_local(of_scene, frame), arithmetic, frame.resolution);
+}
+
+std::shared_ptr<const Container> local_container(const Domain& of_scene,
+                                                 const std::shared_ptr<const Container>& made) {
+  return made ? made : make_local_container(of_scene, frame_of(of_scene), WallArithmetic::plain);
 }
 
 }  // namespace bernal

@@ -10,7 +10,10 @@
 #include <utility>
 
 #include "bernal/core/tolerance.hpp"
+#include "cad/bounding_disc.hpp"
 #include "cad/certified_distance.hpp"
+#include "core/parallel.hpp"
+#include "domain/wall_contacts.hpp"
 #include "kernels/closest_point.hpp"
 #include "kernels/first_contact.hpp"
 
@@ -65,6 +68,59 @@ using TreeTraits = CGAL::AABB_traits<Kernel, Leaf>;
 using Tree = CGAL::AABB_tree<TreeTraits>;
 using Node = CGAL::AABB_node<TreeTraits>;
 
+/// Beside the box of each node a disc, where the node is larger than what is looked at one by one and small
+/// enough to be flat.
+class Discs {
+ public:
+  Discs() = default;
+  Discs(const Tree& tree, double extent) {
+    constexpr double in_single_precision = 1e30;
+    if (tree.size() < 2) return;  // it has no nodes
+    root_ = tree.root_node();
+    discs_.resize(tree.size() - 1);
+    if (!(extent < in_single_precision && extent > 1 / in_single_precision)) return;
+    std::vector<std::pair<const Node*, std::size_t>> tops;
+    collect(*root_, tree.size(), tops);
+    parallel_for(tops.size(), [&](std::size_t k) { cover(*tops[k].first, tops[k].second, extent); });
+  }
+
+  const BoundingDisc& operator[](const Node& node) const {
+    return discs_[static_cast<std::size_t>(&node - root_)];
+  }
+
+ private:
+  static constexpr std::size_t most_leaves = 4096;
+
+  /// Calls visit(child, its number of leaves) for those children that are nodes.
+  template <class Visit>
+  static void for_each_child(const Node& node, std::size_t leaves, const Visit& visit) {
+    if (leaves > 3) visit(node.left_child(), leaves / 2);
+    if (leaves > 2) visit(node.right_child(), leaves - (leaves > 3 ? leaves / 2 : 1));
+  }
+  static void collect(const Node& node, std::size_t leaves,
+                      std::vector<std::pair<const Node*, std::size_t>>& tops) {
+    if (leaves <= most_leaves) {
+      tops.emplace_back(&node, leaves);
+      return;
+    }
+    for_each_child(node, leaves, [&](const Node& child, std::size_t n) { collect(child, n, tops); });
+  }
+  /// The leaves of a node stand one after the other.
+  static const Leaf* first_leaf(const Node* node, std::size_t leaves) {
+    for (; leaves > 3; leaves /= 2) node = &node->left_child();
+    return &node->left_data();
+  }
+  void cover(const Node& node, std::size_t leaves, double extent) {
+    if (leaves <= group) return;
+    discs_[static_cast<std::size_t>(&node - root_)] =
+        BoundingDisc(std::span(first_leaf(&node, leaves), leaves), extent);
+    for_each_child(node, leaves, [&](const Node& child, std::size_t n) { cover(child, n, extent); });
+  }
+
+  const Node* root_ = nullptr;
+  std::vector<BoundingDisc> discs_;
+};
+
 /// p minus the point of the box nearest to it.
 Vector<3> offset(const Vector<3>& p, const CGAL::Bbox_3& box) {
   const Vector<3> lower(box.xmin(), box.ymin(), box.zmin());
@@ -89,15 +145,18 @@ double distance(const Vector<3>& p, const WallTriangle& t) {
 class NearestTraversal {
  public:
   using Priority = double;
-  explicit NearestTraversal(double bound, double slack = 0) : slack_(slack) { set_bound(bound); }
+  explicit NearestTraversal(const Discs& discs, double bound, double slack = 0)
+      : discs_(discs), slack_(slack) {
+    set_bound(bound);
+  }
 
   bool go_further() const { return true; }
   bool do_intersect(const Vector<3>& p, const Node& node) const {
-    return squared_distance(p, node.bbox()) < squared_bound_;
+    return do_intersect_with_priority(p, node).first;
   }
   std::pair<bool, Priority> do_intersect_with_priority(const Vector<3>& p, const Node& node) const {
     const double squared = squared_distance(p, node.bbox());
-    return {squared < squared_bound_, -squared};
+    return {squared < squared_bound_ && !discs_[node].is_beyond(p, bound_), -squared};
   }
   template <typename Iterator>
   void traverse_group(const Vector<3>& p, Iterator first, Iterator last) {
@@ -124,6 +183,7 @@ class NearestTraversal {
     squared_bound_ = of_boxes * of_boxes;
   }
 
+  const Discs& discs_;
   double bound_, squared_bound_, slack_;
   Vector<3> towards_ = Vector<3>::Zero();  ///< from the nearest point so far to p
 };
@@ -133,29 +193,35 @@ class NearestTraversal {
 template <typename Clears>
 class ClearsTraversal {
  public:
-  ClearsTraversal(double r, Clears clears_triangle)
-      : squared_reach_(r * r * (1 + 32 * tolerance::roundoff)), clears_triangle_(clears_triangle) {}
+  ClearsTraversal(const Discs& discs, double r, Clears clears_triangle)
+      : discs_(discs),
+        r_(r),
+        squared_reach_(r * r * (1 + 32 * tolerance::roundoff)),
+        clears_triangle_(clears_triangle) {}
 
   bool go_further() const { return clears_; }
   bool do_intersect(const Vector<3>& p, const Node& node) const {
-    return squared_distance(p, node.bbox()) <= squared_reach_;
+    return squared_distance(p, node.bbox()) <= squared_reach_ && !discs_[node].is_beyond(p, r_);
   }
   void intersection(const Vector<3>&, const Leaf& leaf) { clears_ = clears_triangle_(leaf.triangle()); }
   bool clears() const { return clears_; }
 
  private:
-  double squared_reach_;
+  const Discs& discs_;
+  double r_, squared_reach_;
   Clears clears_triangle_;
   bool clears_ = true;
 };
 
+/// Ends where more than `most` are found.
 class WithinTraversal {
  public:
-  WithinTraversal(double reach, std::vector<NearFacet>& out) : reach_(reach), out_(out) {}
+  WithinTraversal(const Discs& discs, double reach, std::size_t most, std::vector<NearFacet>& out)
+      : discs_(discs), reach_(reach), most_(most), before_(out.size()), out_(out) {}
 
-  bool go_further() const { return true; }
+  bool go_further() const { return out_.size() - before_ <= most_; }
   bool do_intersect(const Vector<3>& p, const Node& node) const {
-    return squared_distance(p, node.bbox()) < reach_ * reach_;
+    return squared_distance(p, node.bbox()) < reach_ * reach_ && !discs_[node].is_beyond(p, reach_);
   }
   void intersection(const Vector<3>& p, const Leaf& leaf) {
     const WallTriangle& t = leaf.triangle();
@@ -164,8 +230,57 @@ class WithinTraversal {
   }
 
  private:
+  const Discs& discs_;
   double reach_;
+  std::size_t most_, before_;
   std::vector<NearFacet>& out_;
+};
+
+/// Looks for the contacts of a ball. What a nearer contact that is known already speaks for is not entered,
+/// and so a fine wall costs hardly more than its nearest triangle.
+class ContactTraversal {
+ public:
+  using Priority = double;
+  ContactTraversal(const Discs& discs, double r, DistinctContacts& contacts)
+      : discs_(discs), r_(r), contacts_(contacts) {}
+
+  bool go_further() const { return true; }
+  bool do_intersect(const Vector<3>& c, const Node& node) const {
+    return do_intersect_with_priority(c, node).first;
+  }
+  std::pair<bool, Priority> do_intersect_with_priority(const Vector<3>& c, const Node& node) const {
+    const CGAL::Bbox_3& box = node.bbox();
+    const BoundingDisc& disc = discs_[node];
+    const double squared = squared_distance(c, box);
+    if (squared >= r_ * r_ || disc.is_beyond(c, r_)) return {false, -squared};
+    const Bounds<3> bounds{{box.xmin(), box.ymin(), box.zmin()}, {box.xmax(), box.ymax(), box.zmax()}};
+    const bool is_spoken_for = contacts_.any([&](const WallContact& known) {
+      const double nearer = (1 - in_line) * known.distance;
+      if (squared < nearer * nearer && !disc.is_beyond(c, nearer)) return false;
+      return disc.depth_along(known.normal, c) > known.distance - in_plane * r_ ||
+             speaks_for_all(known, bounds, c, r_);
+    });
+    return {!is_spoken_for, -squared};
+  }
+  template <typename Iterator>
+  void traverse_group(const Vector<3>& c, Iterator first, Iterator last) {
+    for (; first != last; ++first) intersection(c, *first);
+  }
+  void intersection(const Vector<3>& c, const Leaf& leaf) {
+    if (leaf.depth_along_normal(c) >= r_) return;
+    const WallTriangle& t = leaf.triangle();
+    const Vector<3> offset = PreparedTriangle(t.a, t.b, t.c).offset(c);
+    const double d = offset.norm();
+    if (d < r_ && d > 0) contacts_.add({offset / d, d});
+  }
+
+ private:
+  /// Of a distance, by which what lies in one plane may seem nearer.
+  static constexpr double in_line = 1e-9;
+
+  const Discs& discs_;
+  double r_;
+  DistinctContacts& contacts_;
 };
 
 /// A sphere on its way. A box is entered if the sphere, widened by its skin, may reach it before the first
@@ -173,14 +288,16 @@ class WithinTraversal {
 class MoveTraversal {
  public:
   using Priority = double;
-  MoveTraversal(double r, const Vector<3>& direction, double limit, double skin)
-      : r_(r), skin_(skin), reach_(r + skin), limit_(limit), direction_(direction) {}
+  MoveTraversal(const Discs& discs, double r, const Vector<3>& direction, double limit, double skin)
+      : discs_(discs), r_(r), skin_(skin), reach_(r + skin), limit_(limit), direction_(direction) {}
 
   bool go_further() const { return limit_ > 0; }
-  bool do_intersect(const Vector<3>& c, const Node& node) const { return entry(c, node.bbox()) <= limit_; }
+  bool do_intersect(const Vector<3>& c, const Node& node) const {
+    return do_intersect_with_priority(c, node).first;
+  }
   std::pair<bool, Priority> do_intersect_with_priority(const Vector<3>& c, const Node& node) const {
     const double t = entry(c, node.bbox());
-    return {t <= limit_, -t};
+    return {t <= limit_ && !discs_[node].is_beyond(c, reach_ + limit_), -t};
   }
   template <typename Iterator>
   void traverse_group(const Vector<3>& c, Iterator first, Iterator last) {
@@ -211,6 +328,7 @@ class MoveTraversal {
     return (squared - reach_ * std::sqrt(squared)) / approach;
   }
 
+  const Discs& discs_;
   double r_, skin_, reach_, limit_;
   Vector<3> direction_;
   Vector<3> towards_ = Vector<3>::Zero();  ///< from the point of the first contact so far to the centre there
@@ -286,6 +404,7 @@ class CrossingTraversal {
 
 struct TriangleTree::Impl {
   Tree tree;
+  Discs discs;
 };
 
 TriangleTree::TriangleTree(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
@@ -298,26 +417,29 @@ TriangleTree::TriangleTree(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
   impl_->tree.insert(triangles.cbegin(), triangles.cend());
   impl_->tree.do_not_accelerate_distance_queries();
   impl_->tree.build();  // now, because queries are const and concurrent
+  double extent = 0;
+  for (const Vector<3>& v : mesh.vertices) extent = std::max(extent, v.cwiseAbs().maxCoeff());
+  impl_->discs = Discs(impl_->tree, extent);
 }
 
 TriangleTree::~TriangleTree() = default;
 TriangleTree::TriangleTree(TriangleTree&&) noexcept = default;
 
 double TriangleTree::distance(const Vector<3>& p, double bound) const {
-  NearestTraversal traversal(bound);
+  NearestTraversal traversal(impl_->discs, bound);
   impl_->tree.traversal_with_priority_and_group_traversal(p, traversal, group);
   return traversal.bound();
 }
 
 double TriangleTree::rough_distance(const Vector<3>& p, double bound, double slack) const {
-  NearestTraversal traversal(bound, slack);
+  NearestTraversal traversal(impl_->discs, bound, slack);
   impl_->tree.traversal_with_priority_and_group_traversal(p, traversal, group);
   return traversal.bound();
 }
 
 bool TriangleTree::clears(const Vector<3>& c, double r, WallArithmetic arithmetic) const {
   const auto search = [&](auto clears_triangle) {
-    ClearsTraversal traversal(r, clears_triangle);
+    ClearsTraversal traversal(impl_->discs, r, clears_triangle);
     impl_->tree.traversal(c, traversal);
     return traversal.clears();
   };
@@ -332,18 +454,28 @@ bool TriangleTree::clears(const Vector<3>& c, double r, WallArithmetic arithmeti
   return search([&](const WallTriangle& t) { return exactly_clears(c, t, r); });
 }
 
-void TriangleTree::within(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const {
+bool TriangleTree::within(const Vector<3>& c, double reach, std::vector<NearFacet>& out,
+                          std::size_t most) const {
   const auto first = static_cast<std::ptrdiff_t>(out.size());
-  WithinTraversal traversal(reach, out);
+  WithinTraversal traversal(impl_->discs, reach, most, out);
   impl_->tree.traversal(c, traversal);
+  if (!traversal.go_further()) return false;
   std::sort(out.begin() + first, out.end(), [](const NearFacet& m, const NearFacet& n) {
     return std::pair(m.distance, m.facet.id) < std::pair(n.distance, n.facet.id);
   });
+  return true;
+}
+
+void TriangleTree::contacts(const Vector<3>& c, double r, std::vector<WallContact>& out) const {
+  DistinctContacts contacts(r, out);
+  ContactTraversal traversal(impl_->discs, r, contacts);
+  impl_->tree.traversal_with_priority_and_group_traversal(c, traversal, group);
+  contacts.sort();
 }
 
 double TriangleTree::first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit,
                                    double skin) const {
-  MoveTraversal traversal(r, direction, limit, skin);
+  MoveTraversal traversal(impl_->discs, r, direction, limit, skin);
   impl_->tree.traversal_with_priority_and_group_traversal(c, traversal, group);
   return traversal.limit();
 }

@@ -1,6 +1,8 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -15,7 +17,9 @@ enum class Crossing : std::uint8_t { even, odd, starts_on_wall };
 /// queries are const and may run in several threads.
 ///
 /// Every search runs nearest first and shrinks as it finds: a box is entered only if it is nearer than the
-/// best triangle so far, and a moving sphere enters only boxes on the way to its first contact so far.
+/// best triangle so far, and a moving sphere enters only boxes on the way to its first contact so far. Beside
+/// its box a node of some triangles has a disc, which tells more of a smooth wall; what it leaves out would
+/// not have changed a bit of the answer.
 class TriangleTree {
  public:
   explicit TriangleTree(const Mesh& mesh);
@@ -33,8 +37,13 @@ class TriangleTree {
   /// Whether no triangle is nearer to c than r.
   bool clears(const Vector<3>& c, double r, WallArithmetic arithmetic) const;
 
-  /// Appends the triangles nearer than `reach`, nearest first.
-  void within(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const;
+  /// Appends the triangles nearer than `reach`, nearest first; or returns false where these are more than
+  /// `most`, and appends some.
+  bool within(const Vector<3>& c, double reach, std::vector<NearFacet>& out,
+              std::size_t most = std::numeric_limits<std::size_t>::max()) const;
+
+  /// See Container::contacts.
+  void contacts(const Vector<3>& c, double r, std::vector<WallContact>& out) const;
 
   /// See Container::first_contact.
   double first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit,

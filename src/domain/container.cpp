@@ -5,6 +5,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "domain/analytic.hpp"
+#include "domain/wall_contacts.hpp"
 
 namespace bernal {
 namespace {
@@ -47,6 +48,26 @@ void require(bool holds, const char* message) {
 bool is_length(double x) { return std::isfinite(x) && x > 0; }
 
 }  // namespace
+
+bool Container::few_facets_near(const Vector<3>& c, double reach, std::size_t most,
+                                std::vector<NearFacet>& out) const {
+  const std::size_t before = out.size();
+  facets_near(c, reach, out);
+  return out.size() - before <= most;
+}
+
+void Container::contacts(const Vector<3>& c, double r, std::vector<WallContact>& out) const {
+  thread_local std::vector<NearFacet> near;
+  near.clear();
+  facets_near(c, r, near);
+  DistinctContacts contacts(r, out);
+  for (const NearFacet& n : near) {
+    const Vector<3> offset = c - closest_point(n.facet, c);
+    const double d = offset.norm();
+    if (d < r && d > 0) contacts.add({offset / d, d});
+  }
+  contacts.sort();
+}
 
 double Container::first_contact(const Vector<3>& c, double r, const Vector<3>& direction,
                                 double limit) const {

@@ -3,15 +3,15 @@
 #include <algorithm>
 
 #include "core/parallel.hpp"
+#include "domain/wall_contacts.hpp"
 
 namespace bernal {
 namespace {
 
-/// Cosine of 25°: pushes that agree so well come from one smooth patch.
-constexpr double one_patch = 0.9;
 constexpr std::size_t most_contacts = 32;
-/// In radii: points nearer than this to a plane are in it. Distances are good to some 1e-11.
-constexpr double in_plane = 1e-6;
+/// A wall with more facets than these near a sphere is asked at each push: that costs no more than to look at
+/// those of so many that have come near.
+constexpr std::size_t most_pieces = 512;
 /// A centre keeps this share of its distance from a facet when it moves towards it.
 constexpr double kept = 0.1;
 /// A centre nearer to a facet than so many units of the coordinates does not approach it at all.
@@ -44,27 +44,18 @@ void shorten(SoftSphere& to, const SoftSphere& from, double share) {
   }
 }
 
-struct Contact {
-  Vector<3> normal;
-  double distance;
-};
-
-/// Leaves, in ascending order of distance, those contacts that push for themselves; returns how many. Another
-/// one of a smooth patch does not, and neither does one whose nearest point is not in front of the plane in
-/// which a nearer one touches: the rest of a face in many triangles, or the edge at its end.
-std::size_t leave_distinct(Contact* contacts, std::size_t count, double r) {
-  std::sort(contacts, contacts + count,
-            [](const Contact& a, const Contact& b) { return a.distance < b.distance; });
+/// Leaves, in ascending order of distance, those contacts that push for themselves.
+void leave_distinct(std::vector<WallContact>& contacts, double r) {
+  std::sort(contacts.begin(), contacts.end(),
+            [](const WallContact& a, const WallContact& b) { return a.distance < b.distance; });
   std::size_t kept_so_far = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Contact contact = contacts[k];
-    const auto speaks_for_it = [&](const Contact& nearer) {
-      const double cosine = nearer.normal.dot(contact.normal);
-      return cosine > one_patch || cosine * contact.distance > nearer.distance - in_plane * r;
-    };
-    if (std::none_of(contacts, contacts + kept_so_far, speaks_for_it)) contacts[kept_so_far++] = contact;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const WallContact contact = contacts[k];
+    const auto end = contacts.begin() + static_cast<std::ptrdiff_t>(kept_so_far);
+    const auto speaks_for_it = [&](const WallContact& nearer) { return speaks_for(nearer, contact, r); };
+    if (std::none_of(contacts.begin(), end, speaks_for_it)) contacts[kept_so_far++] = contact;
   }
-  return kept_so_far;
+  contacts.resize(kept_so_far);
 }
 
 }  // namespace
@@ -112,16 +103,19 @@ void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<
 bool SoftWalls::look(const Vector<3>& at, double r, double skin, View& view) const {
   const double near = r + skin, moved = way(view.at, at).norm();
   if (view.clearance - moved >= near) return false;
-  if (view.reach - moved >= near) return view.pieces.front().distance - moved < near;
+  if (view.reach - moved >= near)
+    return (view.is_fine ? view.clearance : view.pieces.front().distance) - moved < near;
   ++queries_;
   view.at = at;
   view.pieces.clear();
+  view.is_fine = false;
   view.reach = 0;
   view.clearance = container_.clearance_within(at, near + far_reach * skin);
   if (view.clearance >= near) return false;
   std::vector<NearFacet> facets;
   view.reach = near + skin;
-  container_.facets_near(at, view.reach, facets);
+  view.is_fine = !container_.few_facets_near(at, view.reach, most_pieces, facets);
+  if (view.is_fine) return true;
   view.pieces.reserve(facets.size());
   for (const NearFacet& f : facets) {
     if (f.facet.kind == Facet::Kind::triangle)
@@ -169,7 +163,7 @@ void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere&
                   0,
                   0};
   const double moved = way(view.at, near.last).norm();
-  near.beyond = view.reach - moved;
+  near.beyond = (view.is_fine ? view.clearance : view.reach) - moved;
   for (const Piece& piece : view.pieces) {
     if (piece.distance - moved >= sphere.r + skin_) {
       near.beyond = piece.distance - moved;
@@ -183,56 +177,72 @@ void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere&
   near_.push_back(near);
 }
 
+/// Appends the contacts of a sphere among its pieces; returns a distance that no wall is nearer than.
+double SoftWalls::look_through(const NearSphere& near, double r, std::vector<WallContact>& contacts) {
+  const std::vector<Piece>& pieces = views_[near.id].pieces;
+  double free = near.beyond - near.way;
+  for (std::uint32_t first = 0; first < near.count; first += run) {
+    float& least = least_until_[near.first_run + first / run];
+    if (least - near.way >= r) {
+      free = std::min(free, least - near.way);
+      continue;
+    }
+    const std::uint32_t end = std::min(near.count, first + run);
+    for (std::uint32_t k = first; k < end; ++k) {
+      float& until = until_[near.first + k];
+      if (until - near.way >= r) {
+        free = std::min(free, until - near.way);
+        continue;
+      }
+      const Vector<3> away = offset(pieces[k].facet, near.last);
+      const double d = away.norm();
+      until = static_cast<float>(d + near.way);
+      free = std::min(free, d);
+      if (!(d < r && d > 0)) continue;
+      if (contacts.size() == most_contacts) leave_distinct(contacts, r);
+      if (contacts.size() < most_contacts) contacts.push_back({away / d, d});
+    }
+    least = *std::min_element(until_.begin() + near.first + first, until_.begin() + near.first + end);
+  }
+  leave_distinct(contacts, r);
+  return free;
+}
+
+/// The same of a sphere at a fine wall, where the container knows.
+double SoftWalls::ask(NearSphere& near, double r, std::vector<WallContact>& contacts) const {
+  if (near.beyond - near.way >= r) return near.beyond - near.way;
+  ++queries_;
+  container_.contacts(near.last, r, contacts);
+  const double nearest =
+      contacts.empty() ? container_.clearance_within(near.last, r + skin_) : contacts.front().distance;
+  near.beyond = nearest + near.way;
+  return nearest;
+}
+
 void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out) {
   out = {};
   std::copy(spheres, spheres + lanes, out.before.begin());
+  thread_local std::vector<WallContact> contacts;
   for (std::uint32_t n = first_[group]; n < first_[group + 1]; ++n) {
     NearSphere& near = near_[n];
     const std::uint32_t l = near.lane;
-    const std::vector<Piece>& pieces = views_[near.id].pieces;
     const Vector<3> c = place(spheres[l]);
     const double r = spheres[l].r;
     near.way += way(near.last, c).norm();
     near.last = c;
-    double free = near.beyond - near.way;
-    std::array<Contact, most_contacts> contacts;
-    std::size_t count = 0;
-    for (std::uint32_t first = 0; first < near.count; first += run) {
-      float& least = least_until_[near.first_run + first / run];
-      if (least - near.way >= r) {
-        free = std::min(free, least - near.way);
-        continue;
-      }
-      const std::uint32_t end = std::min(near.count, first + run);
-      for (std::uint32_t k = first; k < end; ++k) {
-        float& until = until_[near.first + k];
-        if (until - near.way >= r) {
-          free = std::min(free, until - near.way);
-          continue;
-        }
-        const Vector<3> away = offset(pieces[k].facet, c);
-        const double d = away.norm();
-        until = static_cast<float>(d + near.way);
-        free = std::min(free, d);
-        if (!(d < r && d > 0)) continue;
-        if (count == most_contacts) count = leave_distinct(contacts.data(), count, r);
-        if (count < most_contacts) contacts[count++] = {away / d, d};
-      }
-      least = *std::min_element(until_.begin() + near.first + first, until_.begin() + near.first + end);
-    }
-    out.free[l] = free;
-    count = leave_distinct(contacts.data(), count, r);
+    contacts.clear();
+    out.free[l] = views_[near.id].is_fine ? ask(near, r, contacts) : look_through(near, r, contacts);
     Vector<3> sum = Vector<3>::Zero();
-    for (std::size_t k = 0; k < count; ++k) {
-      const double depth = r - contacts[k].distance, ratio = depth / r;
-      sum += depth * contacts[k].normal;
+    for (const WallContact& contact : contacts) {
+      const double depth = r - contact.distance, ratio = depth / r;
+      sum += depth * contact.normal;
       out.squares[l] += static_cast<float>(ratio * ratio);
       out.worst[l] = std::max(out.worst[l], static_cast<float>(ratio));
     }
     out.x[l] = static_cast<float>(sum[0]);
     out.y[l] = static_cast<float>(sum[1]);
     out.z[l] = static_cast<float>(sum[2]);
-    out.contacts[l] = static_cast<float>(count);
+    out.contacts[l] = static_cast<float>(contacts.size());
   }
 }
 
@@ -244,8 +254,14 @@ void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spher
     const Vector<3> move = way_between(before, now);
     const double length = move.norm();
     if (length <= (1 - kept) * push.free[near.lane]) continue;
-    const std::vector<Piece>& pieces = views_[near.id].pieces;
     const Vector<3>& c = near.last;
+    if (views_[near.id].is_fine) {
+      ++queries_;
+      const double free = container_.first_contact(c, 0, move / length, length);
+      if (free < length) shorten(now, before, (1 - kept) * free / length);
+      continue;
+    }
+    const std::vector<Piece>& pieces = views_[near.id].pieces;
     double share = std::min(1.0, (1 - kept) * std::max(0.0, near.beyond - near.way) / length);
     for (std::uint32_t k = 0; k < near.count && share > 0; ++k) {
       if (k % run == 0 && (1 - kept) * (least_until_[near.first_run + k / run] - near.way) > length) {

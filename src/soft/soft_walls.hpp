@@ -30,8 +30,9 @@ struct alignas(64) WallPush {
 /// than that.
 ///
 /// Facets are asked for once and kept with the sphere until it has moved by the skin; one is looked at again
-/// only when the sphere has gone far enough since the last time to touch it. Cost of a sweep: about 20 ns a
-/// facet that is looked at.
+/// only when the sphere has gone far enough since the last time to touch it. Where there are too many of them
+/// for that, the container is asked for the contacts instead. Cost of a sweep: about 20 ns a facet that is
+/// looked at, some µs where the container is asked.
 class SoftWalls {
  public:
   /// Spheres have the radii that SoftSphere gives them, times at most `swelling`. A sphere's place on axis k
@@ -71,6 +72,7 @@ class SoftWalls {
     Vector<3> at = Vector<3>::Zero();
     double clearance = 0;       // of `at`, or a lower bound
     double reach = 0;           // all pieces nearer than this to `at` are there
+    bool is_fine = false;       // too many for that: none is
     std::vector<Piece> pieces;  // nearest first
   };
   /// A sphere that may meet a wall until lists are built anew: what a sweep touches, in its order.
@@ -79,7 +81,7 @@ class SoftWalls {
     std::uint32_t first, first_run, count;  // its pieces, the first `count` of its view, in until_
     Vector<3> last;                         // where it was pushed last
     double way;                             // gone since the lists were built
-    double beyond;                          // no other piece was nearer than this then
+    double beyond;                          // no other piece is nearer to it than this less `way`
   };
 
   Vector<3> place(const SoftSphere& s) const;
@@ -91,6 +93,8 @@ class SoftWalls {
     return repeats_ ? container_.boundary().minimum_image(direct) : direct;
   }
   void add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere);
+  double look_through(const NearSphere&, double r, std::vector<WallContact>& contacts);
+  double ask(NearSphere&, double r, std::vector<WallContact>& contacts) const;
   bool look(const Vector<3>& at, double r, double skin, View& view) const;
 
   const Container& container_;

@@ -9,6 +9,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/core/tolerance.hpp"
+#include "domain/wall_contacts.hpp"
 
 namespace bernal {
 namespace containers_test {
@@ -276,6 +277,70 @@ TEST_P(ContainerLaws, FacetsNearAreSortedAndComplete) {
         EXPECT_LE(near[k - 1].distance, near[k].distance);
       }
     }
+  }
+}
+
+TEST_P(ContainerLaws, FewFacetsAreAllFacetsOrNone) {
+  std::vector<NearFacet> all, few;
+  for (int i = 0; i < 200; ++i) {
+    const Vector<3> c = random_place(1e-3);
+    const double reach = random.uniform(0, 1);
+    all.clear(), few.clear();
+    container->facets_near(c, reach, all);
+    const std::size_t most = all.size() - std::min<std::size_t>(all.size(), i % 2);
+    const bool are_few = container->few_facets_near(c, reach, most, few);
+    EXPECT_EQ(are_few, all.size() <= most);
+    if (are_few) {
+      EXPECT_EQ(few.size(), all.size());
+    }
+  }
+}
+
+TEST_P(ContainerLaws, ContactsSpeakForEverythingNearer) {
+  std::vector<NearFacet> facets;
+  std::vector<WallContact> contacts, all;
+  std::size_t corners = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Vector<3> c = random_place(1e-3);
+    const double clearance = container->clearance(c), r = random.uniform(0.9, 2.5) * clearance;
+    facets.clear(), contacts.clear(), all.clear();
+    container->facets_near(c, r, facets);
+    for (const NearFacet& f : facets) {
+      const Vector<3> offset = c - closest_point(f.facet, c);
+      all.push_back({offset.normalized(), offset.norm()});
+    }
+    container->contacts(c, r, contacts);
+    ASSERT_EQ(contacts.empty(), all.empty());
+    if (all.empty()) continue;
+    corners += contacts.size() > 1;
+    EXPECT_NEAR(contacts.front().distance, clearance, 1e-9 * clearance + rounding());
+    const auto is_contact = [&](const WallContact& one) {
+      return std::ranges::any_of(contacts, [&](const WallContact& k) {
+        return (k.distance * k.normal - one.distance * one.normal).norm() <= 8 * rounding();
+      });
+    };
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      EXPECT_TRUE(std::ranges::any_of(all, [&](const WallContact& one) {
+        return (contacts[k].distance * contacts[k].normal - one.distance * one.normal).norm() <=
+               8 * rounding();
+      })) << "no point of the wall";
+      for (std::size_t j = 0; j < k; ++j) {
+        EXPECT_LE(contacts[j].distance, contacts[k].distance);
+        EXPECT_FALSE(speaks_for(contacts[j], contacts[k], r));
+      }
+    }
+    for (const WallContact& one : all)
+      EXPECT_TRUE(is_contact(one) ||
+                  std::ranges::any_of(all,
+                                      [&](const WallContact& nearer) {
+                                        return nearer.distance <= (1 + 1e-9) * one.distance + rounding() &&
+                                               &nearer != &one && speaks_for(nearer, one, r);
+                                      }))
+          << one.distance;
+  }
+  const std::string shape = under_test().name;
+  if (shape.starts_with("Cube") || shape.starts_with("LShape")) {
+    EXPECT_GT(corners, 50u);
   }
 }
 

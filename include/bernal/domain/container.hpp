@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -22,6 +23,13 @@ struct WallPoint {
   Vector<3> point;   ///< on the wall
   Vector<3> inward;  ///< unit normal at `point` towards the centre, or inward where the centre lies on it
   double clearance;  ///< signed distance from the centre, positive inside
+};
+
+/// What a ball meets of the wall: the unit normal from the wall's point to the ball's centre, and how far
+/// that is.
+struct WallContact {
+  Vector<3> normal;
+  double distance;
 };
 
 /// The walls of a domain of three dimensions: a region that is bounded, or bounded but for the axes along
@@ -63,6 +71,14 @@ class Container {
   /// further in: then the answer is 0. A tangent of a round wall leads into it at once, so what slides there
   /// has to aim along a chord.
   virtual double first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const;
+
+  /// `facets_near`, where these are not more than `most`; else false, and what is appended is of no use.
+  virtual bool few_facets_near(const Vector<3>& c, double reach, std::size_t most,
+                               std::vector<NearFacet>& out) const;
+
+  /// Appends what pushes the ball of radius r around c, inside, away from the wall, nearest first: of every
+  /// smooth patch that is nearer than r the nearest point, however finely it is cut into facets.
+  virtual void contacts(const Vector<3>& c, double r, std::vector<WallContact>& out) const;
 
   /// Appends the wall points within `reach` of `c`, one a facet, edge or corner (each once), nearest first.
   void walls_near(const Vector<3>& c, double reach, std::vector<WallPoint>& out) const;
