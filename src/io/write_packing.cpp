@@ -72,6 +72,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
       {.radial = {.work = distances_for_a_report},
        .chambers = {.points = points_for_a_report},
        .walls = {.work = wall_distances_for_a_report},
+       .container = packing.container,
        .monitor = monitor});
   const Report report{packing, certificate, measured, asked.get(), hash_of(packing.spheres)};
   const std::string scene = scene_as_run(packing, folder);

@@ -189,9 +189,9 @@ void sort(Chambers& found) {
 
 /// `packed` may be null: then it is only what spheres of that radius would find.
 Chambers chambers_in(const Domain& shape, const Spheres<dynamic>* packed, double radius, double mean_radius,
-                     const ChamberOptions& options) {
+                     const ChamberOptions& options, const std::shared_ptr<const Container>& made) {
   const Frame frame = frame_of(shape);
-  const auto container = make_local_container(shape, frame, WallArithmetic::plain);
+  const auto container = local_container(shape, made);
   const FreeSpace space(*container, radius / frame.scale);
   const Components components(shape, space, options.cells);
   const Spheres<3> spheres = packed ? localised(*packed, frame) : Spheres<3>{};
@@ -254,15 +254,16 @@ Chambers chambers_in(const Domain& shape, const Spheres<dynamic>* packed, double
 }  // namespace
 
 std::optional<Chambers> chambers(const Spheres<dynamic>& spheres, const Domain& domain,
-                                 const ChamberOptions& options) {
+                                 const ChamberOptions& options,
+                                 const std::shared_ptr<const Container>& made) {
   if (!has_walls(domain) || dimension_of(domain) != 3 || spheres.empty()) return {};
   const std::vector<double>& radii = spheres.r;
   const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
-  return chambers_in(domain, &spheres, *std::ranges::min_element(radii), mean, options);
+  return chambers_in(domain, &spheres, *std::ranges::min_element(radii), mean, options, made);
 }
 
 Chambers chambers_for(const Domain& shape, double radius, const ChamberOptions& options) {
-  return chambers_in(shape, nullptr, radius, radius, options);
+  return chambers_in(shape, nullptr, radius, radius, options, {});
 }
 
 }  // namespace bernal

@@ -84,11 +84,12 @@ Contacts measure_contacts(const Spheres<dynamic>& spheres, const Domain& domain,
 }
 
 std::vector<Contacts> measure_contacts(const Spheres<dynamic>& spheres, const Domain& domain,
-                                       std::span<const double> contact_gaps) {
+                                       std::span<const double> contact_gaps,
+                                       const std::shared_ptr<const Container>& made) {
   if (contact_gaps.empty()) return {};
   const double widest = std::ranges::max(contact_gaps);
   const std::vector<NearPair> pairs = near_pairs(spheres, domain, widest);
-  const std::vector<NearWall> walls = near_walls(spheres, domain, widest);
+  const std::vector<NearWall> walls = near_walls(spheres, domain, widest, made);
   std::vector<Contacts> all;
   for (const double gap : contact_gaps) {
     const auto touches = [gap](const auto& near) { return near.gap < gap; };

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "core/parallel.hpp"
 
@@ -56,15 +57,17 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
   measured.packing_fraction = packing_fraction(spheres, domain);
   std::vector<double> gaps = options.gaps;
   gaps.push_back(options.contact_gap);
-  measured.by_gap = measure_contacts(spheres, domain, gaps);
+  const bool needs_container = has_walls(domain) && dimension_of(domain) == 3 && !spheres.empty();
+  const auto container = needs_container ? local_container(domain, options.container) : nullptr;
+  measured.by_gap = measure_contacts(spheres, domain, gaps, container);
   measured.held_from = smallest_holding_gap(measured.by_gap, spheres.size());
   measured.contacts = measured.by_gap.back();
   measured.by_gap.pop_back();
   try {
     const Interruptible listening(options.monitor);
     measured.radial = radial_distribution(spheres, domain, options.radial);
-    measured.chambers = chambers(spheres, domain, options.chambers);
-    measured.walls = wall_profile(spheres, domain, options.walls);
+    measured.chambers = chambers(spheres, domain, options.chambers, container);
+    measured.walls = wall_profile(spheres, domain, options.walls, container);
     measured.order =
         bond_order(spheres, domain, measured.walls ? measured.walls->regions : std::vector<Region>{});
   } catch (const Cancelled&) {

@@ -168,11 +168,12 @@ std::vector<NearWall> near_faces(const Box& box, const Spheres<dynamic>& spheres
 
 }  // namespace
 
-std::vector<NearWall> near_walls(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap) {
+std::vector<NearWall> near_walls(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
+                                 const std::shared_ptr<const Container>& made) {
   if (spheres.empty() || !has_walls(domain)) return {};
   if (!has_own_frame(domain)) return near_faces(std::get<Box>(domain), spheres, widest_gap);
   const Frame frame = frame_of(domain);
-  const auto container = make_local_container(domain, frame, WallArithmetic::plain);
+  const auto container = local_container(domain, made);
   const Spheres<3> local = localised(spheres, frame);
   std::vector<NearWall> near;
   std::vector<WallPoint> points;

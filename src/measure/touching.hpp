@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
+#include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
 
 namespace bernal {
@@ -31,6 +33,7 @@ std::vector<NearPair> near_pairs(const Spheres<dynamic>&, const Domain&, double 
 /// The same pairs in the same order. Precondition: three dimensions.
 std::vector<NearBond> near_bonds(const Spheres<dynamic>&, const Domain&, double widest_gap);
 /// Nothing where there are no walls.
-std::vector<NearWall> near_walls(const Spheres<dynamic>&, const Domain&, double widest_gap);
+std::vector<NearWall> near_walls(const Spheres<dynamic>&, const Domain&, double widest_gap,
+                                 const std::shared_ptr<const Container>& made);
 
 }  // namespace bernal

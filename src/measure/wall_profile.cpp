@@ -174,10 +174,11 @@ Region region_of(double clearance, double r, const Zones& zones) {
 }  // namespace
 
 std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Domain& domain,
-                                        const WallOptions& options) {
+                                        const WallOptions& options,
+                                        const std::shared_ptr<const Container>& made) {
   if (!has_walls(domain) || dimension_of(domain) != 3 || packed.empty()) return {};
   const Frame frame = frame_of(domain);
-  const auto container = make_local_container(domain, frame, WallArithmetic::plain);
+  const auto container = local_container(domain, made);
   const Spheres<3> spheres = localised(packed, frame);
   const double volume = container->volume();
   const double diameter =

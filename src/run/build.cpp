@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "run/estimate.hpp"
@@ -36,9 +37,10 @@ void resolve_predicted(Plan& plan) {
 }
 
 /// A container that says what is wrong with it is where the scene names it.
-double expected_in_container(const Plan& plan, const SizeDistribution& radii) {
+template <class Ask>
+auto ask_container(const Plan& plan, const Ask& ask) {
   try {
-    return expected_packing_fraction(plan.scene, plan.domain, radii);
+    return ask();
   } catch (const Error& error) {
     if (!error.location().file.empty()) throw;
     throw Error(ErrorCode::bad_scene, error.what(), plan.scene.container.locations.whole);
@@ -53,17 +55,20 @@ std::unique_ptr<SizeDistribution> cut_above(const SizeDistribution& radii, doubl
 void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Domain& container = plan.domain;
-  require_fitting(scene, container, plan.radii->min());
-  if (std::isfinite(plan.radii->max())) require_fitting(scene, container, plan.radii->max());
+  plan.container =
+      ask_container(plan, [&] { return make_local_container(container, frame_of(container), scene.walls); });
+  require_fitting(scene, container, plan.radii->min(), plan.container);
+  if (std::isfinite(plan.radii->max())) require_fitting(scene, container, plan.radii->max(), plan.container);
   frame_for(scene, container, *plan.radii);
-  const double cut = tail_cut(scene, container, *plan.radii);
+  const double cut = tail_cut(scene, container, *plan.radii, plan.container);
   const std::unique_ptr<SizeDistribution> without_tail = cut_above(*plan.radii, cut);
   const SizeDistribution& radii = without_tail ? *without_tail : *plan.radii;
   require_long_periods(scene, container, radii.max());
 
   const double mean_volume = ball_volume(3, 1) * radii.moment(3);
   const double volume = volume_of(container);
-  double attainable = plan.attainable_packing_fraction = expected_in_container(plan, radii);
+  double attainable = plan.attainable_packing_fraction =
+      ask_container(plan, [&] { return expected_packing_fraction(scene, container, radii, plan.container); });
   resolve_predicted(plan);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   plan.expected_count = attainable * volume / mean_volume;

@@ -74,9 +74,10 @@ std::vector<double> radii_by_volume(const SizeDistribution& radii) {
 
 /// Random close packing, less a deficit at the wall, of what spheres of each size can cover. And the larger
 /// ones have no more room than what they can cover, which in thin parts is less than their share.
-double reached_by_relaxation(const Domain& shape, const SizeDistribution& radii) {
+double reached_by_relaxation(const Domain& shape, const SizeDistribution& radii,
+                             const std::shared_ptr<const Container>& made) {
   const Frame frame = frame_of(shape);
-  const auto container = make_local_container(shape, frame, WallArithmetic::plain);
+  const auto container = local_container(shape, made);
   const std::vector<double> by_volume = radii_by_volume(radii);
   const double n = static_cast<double>(by_volume.size());
   double mean = 0, tightest = 2;
@@ -130,14 +131,15 @@ double error_of_expectation(const Scene& scene) {
 /// Compression leaves a share of close packing that falls with x = A d / V, for a wall of area A, a volume V
 /// and the surface-weighted mean diameter d. Fitted to fills with x from 0.18 (Han's cylinder) to 1.6 (a part
 /// only two spheres thick), all of them met within 0.03.
-double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii) {
-  if (reaches(scene, Reaches::close_packing)) return reached_by_relaxation(shape, radii);
+double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii,
+                                 const std::shared_ptr<const Container>& made) {
+  if (reaches(scene, Reaches::close_packing)) return reached_by_relaxation(shape, radii, made);
   if (!reaches(scene, Reaches::settled)) {
     double fraction = 0;
     for (const Stage& stage : scene.stages)
       if (const StageEntry& entry = entry_of(stage); entry.reached)
         fraction = entry.reached(entry.table.options(stage));
-    return std::min(fraction, share_inserted * reached_by_relaxation(shape, radii));
+    return std::min(fraction, share_inserted * reached_by_relaxation(shape, radii, made));
   }
   const double mean_diameter = 2 * radii.moment(3) / radii.moment(2);
   const double wall = area_of(shape) * mean_diameter / volume_of(shape);

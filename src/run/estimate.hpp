@@ -1,4 +1,6 @@
 #pragma once
+#include <memory>
+
 #include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
 #include "bernal/scene/scene.hpp"
@@ -15,7 +17,9 @@ namespace bernal {
 double coverable_share(const Container& container, double r);
 
 /// The packing fraction that the scene's stages are likely to reach in a container when they may fill it.
-double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii);
+/// `made`: see run/fitting.hpp.
+double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii,
+                                 const std::shared_ptr<const Container>& made = {});
 
 /// How far below the one of the two functions here that is for the scene's domain a result may lie: 0.01, the
 /// error of the rod model, in a periodic box; 0.016 and 0.03 in a container, where relaxation and compression

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -68,21 +67,22 @@ namespace {
 struct Largest {
   double known, bound;
 };
-Largest largest_in(const Domain& shape) {
+Largest largest_in(const Domain& shape, const std::shared_ptr<const Container>& made) {
   const double bound = largest_fitting_radius(shape);
   if (!std::holds_alternative<Mesh>(shape)) return {bound, bound};
   const Frame frame = frame_of(shape);
-  const LargestRoom room = largest_room(*make_local_container(shape, frame, WallArithmetic::plain));
+  const LargestRoom room = largest_room(*local_container(shape, made));
   return {room.radius * frame.scale, std::min(bound, (1 + hidden) * room.bound * frame.scale)};
 }
 
 }  // namespace
 
-void require_fitting(const Scene& scene, const Domain& container, double radius) {
+void require_fitting(const Scene& scene, const Domain& container, double radius,
+                     const std::shared_ptr<const Container>& made) {
   Largest largest{largest_fitting_radius(container), largest_fitting_radius(container)};
   if (std::holds_alternative<Mesh>(container) &&
       radius > surely_fitting * volume_of(container) / area_of(container))
-    largest = largest_in(container);
+    largest = largest_in(container, made);
   if (radius <= largest.bound) return;
   const double shown = scene.sizes_are_diameters ? 2 : 1;
   const auto [one, many] =
@@ -102,14 +102,15 @@ void refuse_thin_container() {
               "found: turn it so that its length lies along an axis");
 }
 
-double tail_cut(const Scene& scene, const Domain& container, const SizeDistribution& radii) {
+double tail_cut(const Scene& scene, const Domain& container, const SizeDistribution& radii,
+                const std::shared_ptr<const Container>& made) {
   if (std::isfinite(radii.max())) return radii.max();
-  const double median = radii.quantile(0.5), largest = largest_in(container).known;
-  if (median > largest) require_fitting(scene, container, median);
+  const double median = radii.quantile(0.5), largest = largest_in(container, made).known;
+  if (median > largest) require_fitting(scene, container, median, made);
   const auto volume_above = [&](double r) { return radii.moment_above(3, r); };
   const double all = volume_above(0);
-  std::optional<Frame> frame;
-  std::unique_ptr<Container> local;
+  const Frame frame = frame_of(container);
+  std::shared_ptr<const Container> local = made;
   std::vector<double> coverable(std::size(cuts), -1);
   const auto fit = [&](double cut) {
     const double volume = all - volume_above(cut);
@@ -117,11 +118,8 @@ double tail_cut(const Scene& scene, const Domain& container, const SizeDistribut
       const double r = cuts[k] * largest;
       const double wanted = r < cut ? (volume_above(r) - volume_above(cut)) / volume : 0;
       if (wanted < negligible) continue;
-      if (!local) {
-        frame = frame_of(container);
-        local = make_local_container(container, *frame, WallArithmetic::plain);
-      }
-      if (coverable[k] < 0) coverable[k] = coverable_share(*local, r / frame->scale);
+      if (!local) local = local_container(container, made);
+      if (coverable[k] < 0) coverable[k] = coverable_share(*local, r / frame.scale);
       if (filled * wanted > coverable[k]) return false;
     }
     return true;

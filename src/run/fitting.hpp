@@ -5,6 +5,9 @@
 
 namespace bernal {
 
+// `made` is the plan's container, or null: then it is made where it is needed, which costs nothing but of
+// meshes.
+
 /// No sphere larger than this fits into the shape, or beside its own images: exact for the analytic ones; for
 /// a mesh an upper bound from its bounds and its volume.
 double largest_fitting_radius(const Domain& shape);
@@ -15,7 +18,8 @@ void require_long_periods(const Scene& scene, const Domain& container, double ra
 
 /// Throws Error{bad_scene} at the scene's sizes, with the remedy, if a sphere of that radius cannot fit. Cost
 /// in a mesh that is not much thicker than the sphere: some milliseconds, and what its container costs.
-void require_fitting(const Scene& scene, const Domain& container, double radius);
+void require_fitting(const Scene& scene, const Domain& container, double radius,
+                     const std::shared_ptr<const Container>& made = {});
 
 /// Throws Error{bad_argument}: not a single random place was found in it.
 [[noreturn]] void refuse_thin_container();
@@ -25,7 +29,8 @@ void require_fitting(const Scene& scene, const Domain& container, double radius)
 /// is as large or larger; at most the largest sphere that fits. What is larger would wait for a place for
 /// ever. Throws as `require_fitting` if less than half of all sizes are below. Cost: up to ten times that of
 /// `coverable_share`; none where the tail is far below what fits.
-double tail_cut(const Scene& scene, const Domain& container, const SizeDistribution& radii);
+double tail_cut(const Scene& scene, const Domain& container, const SizeDistribution& radii,
+                const std::shared_ptr<const Container>& made = {});
 
 /// A container's own frame. Throws Error{bad_scene} at the container where it is so far from the origin, and
 /// at the sizes where they reach down so far, that neighbouring spheres could not be told apart.

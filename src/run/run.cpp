@@ -44,7 +44,7 @@ Frame frame_of_box(const Vector<dynamic>& edges, double largest_radius) {
 double random_close_packing_of(const Plan& plan) {
   const SizeDistribution& radii = *plan.radii;
   if (std::isfinite(radii.max())) return close_packing_fraction(radii, 3);
-  return close_packing_fraction(CutAbove(radii, tail_cut(plan.scene, plan.domain, radii)), 3);
+  return close_packing_fraction(CutAbove(radii, tail_cut(plan.scene, plan.domain, radii, plan.container)), 3);
 }
 
 /// One run of a plan's stages.
@@ -117,14 +117,17 @@ class Run {
     } else {
       frame_ = frame_for(scene_, plan_.domain, *plan_.radii);
       work.domain = to_local(plan_.domain, frame_);
-      work.container = container_of(work.domain, frame_);
+      if (!packing_.container)
+        packing_.container = make_container(work.domain, scene_.walls, frame_.resolution);
+      work.container = packing_.container;
       volume = std::pow(frame_.scale, 3) * work.container->volume();
-      if (!std::isfinite(source.radii.max())) source.cut = tail_cut(scene_, plan_.domain, source.radii);
+      if (!std::isfinite(source.radii.max()))
+        source.cut = tail_cut(scene_, plan_.domain, source.radii, packing_.container);
       work.supply = std::make_shared<Supply>(source, volume, scene_.target, fraction);
     }
     if (!plan_.box_follows) {
       const double allowed = has_walls(plan_.domain) ? 0 : scene_.overlap;
-      require_fitting(scene_, plan_.domain, (1 - allowed) * work.supply->largest());
+      require_fitting(scene_, plan_.domain, (1 - allowed) * work.supply->largest(), packing_.container);
     }
     if (any_in_bed_) require_long_periods(scene_, plan_.domain, work.supply->largest());
     work.supply->divide_by(frame_.scale);
@@ -132,10 +135,6 @@ class Run {
       work.exact_place = [this](const Vector<3>& place, double r) { return exact_place(place, r); };
     if (scene_.is_periodic()) put_into_box(work);
     return work;
-  }
-
-  std::shared_ptr<Container> container_of(const Domain& local, const Frame& frame) const {
-    return make_container(local, scene_.walls, frame.resolution);
   }
 
   /// Roundings of a place: as it is and with what is nearly in the middle there, each coordinate a few
@@ -172,7 +171,7 @@ class Run {
       work.walls.flip();
     }
     if (any_in_bed_) {
-      work.container = container_of(work.domain, frame_);
+      work.container = make_container(work.domain, scene_.walls, frame_.resolution);
       work.target_edges = work.edges;
       work.fill_task = fill_task_of(plan_);
       if (table_of(scene_.stages.front()).traits.stands_in_bed(scene_)) return;
@@ -296,6 +295,7 @@ class Run {
 Packing run(const Plan& plan, const RunOptions& options) {
   Packing packing;
   packing.domain = plan.domain;
+  packing.container = plan.container;
   packing.volume = volume_of(plan.domain);
   packing.expected_packing_fraction = plan.expected_packing_fraction;
   packing.scene = plan.scene;

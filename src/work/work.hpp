@@ -107,7 +107,7 @@ struct Work {
   /// scene, touching allowed: for those that the walls leave no room. Set by the run.
   std::function<std::optional<Vector<3>>(const Vector<3>& place, double r)> exact_place = {};
   std::shared_ptr<Supply> supply = {};
-  std::shared_ptr<Container> container = {};  ///< null where there is no bed
+  std::shared_ptr<const Container> container = {};  ///< null where there is no bed
 
   // ---- where stages report
 

@@ -28,6 +28,7 @@ Plan in_cylinder(double packing_fraction, const std::string& sizes) {
 Plan in_prism(int sides, double packing_fraction) {
   Plan plan = in_cylinder(packing_fraction, equal);
   plan.domain = test::prism_mesh(sides, 1, 2);
+  plan.container = nullptr;
   return plan;
 }
 

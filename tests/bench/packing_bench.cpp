@@ -22,6 +22,7 @@ Plan han() { return build(read_scene(BERNAL_DATA "/scenes/cylinder_han.toml")); 
 Plan han_as_mesh() {
   Plan plan = han();
   plan.domain = test::prism_mesh(64, 1, 2);
+  plan.container = nullptr;
   return plan;
 }
 

@@ -10,6 +10,7 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
+#include "bernal/core/random.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "core/parallel.hpp"
@@ -152,7 +153,8 @@ TEST(HardBounds, ChambersOfNeedlesAndPlates) {
   EXPECT_EQ(chambers_for(elongated(1e6, 1), 0.4).chambers.size(), 1u);
   EXPECT_EQ(chambers_for(box_mesh({0, 0, 0}, {1, 1, 1e6}), 0.4).chambers.size(), 1u);
   // In bounds of 10^6 times 10^6 both rods are thinner than the finest cell.
-  EXPECT_LE(chambers_for(joined(elongated(1e6, 1), box_mesh({0, 0, 2}, {1, 1, 1e6})), 0.4).chambers.size(), 2u);
+  EXPECT_LE(chambers_for(joined(elongated(1e6, 1), box_mesh({0, 0, 2}, {1, 1, 1e6})), 0.4).chambers.size(),
+            2u);
   EXPECT_TRUE(chambers_for(elongated(1e6, 1), 0.6).chambers.empty());
 }
 
@@ -215,6 +217,54 @@ TEST(HardBounds, EdgesOfAHundredBillionthOfABillionth) {
 TEST(HardBounds, FewSpheresInAFineSphereAndAFinePrism) {
   EXPECT_GT(packed(icosphere_mesh(1, 6), "diameter = 0.3").spheres.size(), 150u);
   EXPECT_GT(packed(prism_mesh(2000, 1, 2), "diameter = 0.31").spheres.size(), 200u);
+}
+
+TEST(HardBounds, AFineMeshIsMadeReadyOnce) {
+  const std::string sizes = "diameter = 0.3\n";
+  const Plan plan =
+      plan_of("[container]\nkind = \"sphere\"\nradius = 1.0\n[spheres]\n" + sizes, icosphere_mesh(1, 7));
+  ASSERT_TRUE(plan.container);
+  const Packing packing = certified(plan);
+  EXPECT_EQ(packing.container, plan.container);
+  EXPECT_GT(packing.spheres.size(), 150u);
+  MeasureOptions options;
+  options.walls.work = 1e4;
+  options.container = packing.container;
+  const Measurements shared = measure(packing.spheres, packing.domain, {}, options);
+  EXPECT_TRUE(shared.walls && shared.chambers);
+  EXPECT_EQ(shared.chambers->chambers.size(), 1u);
+  EXPECT_GT(shared.contacts.walls, 20u);
+}
+
+/// n³ cubes of edge 1, a quarter of that apart.
+Mesh lattice_of_cubes(int n) {
+  Mesh mesh;
+  for (int i = 0; i < n * n * n; ++i) {
+    const Mesh box = box_mesh(1.25 * Vector<3>(i % n, i / n % n, i / (n * n)), {1, 1, 1});
+    const std::uint32_t first = index(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), box.vertices.begin(), box.vertices.end());
+    for (const auto& [a, b, c] : box.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+  }
+  return mesh;
+}
+
+TEST_F(HardBoundsOfSolids, TenThousandOnALattice) {
+  constexpr int n = 22;
+  const Mesh mesh = read(lattice_of_cubes(n));
+  EXPECT_EQ(components, 10648u);
+  const Packing packing = packed(mesh, "count = 300\ndiameter = 0.8");
+  EXPECT_EQ(packing.spheres.size(), 300u);
+  // Cubes so small that no cell of a coarse field is all inside or all outside of them.
+  const auto container = make_container(mesh, WallArithmetic::plain, 0x1p-50);
+  Random random(1, stream(Stream::test));
+  const auto depth = [](double x) { return std::min(x - 1.25 * std::floor(x / 1.25), 1.0); };
+  for (int k = 0; k < 20000; ++k) {
+    const Vector<3> p = uniform_point<3>(random, container->bounds());
+    bool inside = true;
+    for (const double x : p) inside = inside && depth(x) < 1;
+    EXPECT_EQ(container->contains(p, 0), inside) << p.transpose();
+    EXPECT_EQ(container->clearance(p) > 0, inside) << p.transpose();
+  }
 }
 
 /// Says stop at the n-th question.

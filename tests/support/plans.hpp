@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -67,6 +68,7 @@ inline Domain shifted(Domain shape, const Vector<3>& by) {
 
 inline Plan scaled(Plan plan, double factor) {
   plan.domain = scaled(std::move(plan.domain), factor);
+  plan.container = nullptr;
   plan.radii = std::make_unique<ScaledSizes>(std::move(plan.radii), factor);
   return plan;
 }
@@ -74,6 +76,7 @@ inline Plan scaled(Plan plan, double factor) {
 /// A box of kind "periodic" has no place.
 inline Plan shifted(Plan plan, const Vector<3>& by) {
   if (!plan.scene.is_periodic()) plan.domain = shifted(std::move(plan.domain), by);
+  plan.container = nullptr;
   return plan;
 }
 
@@ -83,7 +86,11 @@ inline Plan plan_of(const std::string& toml) { return build(parse_scene(toml, "t
 /// The same with the container replaced, and what is likely to fit into it.
 inline Plan plan_of(const std::string& toml, Domain container) {
   Plan plan = plan_of(toml);
-  plan.attainable_packing_fraction = expected_packing_fraction(plan.scene, container, *plan.radii);
+  plan.container = plan.scene.is_periodic()
+                       ? nullptr
+                       : make_local_container(container, frame_of(container), plan.scene.walls);
+  plan.attainable_packing_fraction =
+      expected_packing_fraction(plan.scene, container, *plan.radii, plan.container);
   const double spheres_to_fill = volume_of(container) / (ball_volume(3, 1) * plan.radii->moment(3));
   plan.expected_count = plan.attainable_packing_fraction * spheres_to_fill;
   if (plan.scene.target.count)

@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
+#include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
 
 namespace bernal {
@@ -56,7 +58,8 @@ struct ChamberOptions {
 /// 0.99 r. The same bits for any number of threads. Cost: 0.3 to 0.6 s of one core in a mesh of 10,000
 /// triangles, 1 s in one of 100,000, a few µs a sphere; seconds where spheres are nearly as large as a round
 /// part of many triangles, from whose middle they are all equally near. Precondition: options positive.
-std::optional<Chambers> chambers(const Spheres<dynamic>&, const Domain&, const ChamberOptions& = {});
+std::optional<Chambers> chambers(const Spheres<dynamic>&, const Domain&, const ChamberOptions& = {},
+                                 const std::shared_ptr<const Container>& made = {});
 
 /// The same for a radius, without spheres. Precondition: radius > 0.
 Chambers chambers_for(const Domain&, double radius, const ChamberOptions& = {});

@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
+#include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
 
 namespace bernal {
@@ -42,8 +44,10 @@ struct Contacts {
 /// of the domain's dimension.
 Contacts measure_contacts(const Spheres<dynamic>&, const Domain&, double contact_gap = 0.002);
 
-/// The same for every one of the gaps, in their order, at the cost of the largest.
+/// The same for every one of the gaps, in their order, at the cost of the largest. `made`: see
+/// `local_container`.
 std::vector<Contacts> measure_contacts(const Spheres<dynamic>&, const Domain&,
-                                       std::span<const double> contact_gaps);
+                                       std::span<const double> contact_gaps,
+                                       const std::shared_ptr<const Container>& made = {});
 
 }  // namespace bernal

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,8 @@ struct MeasureOptions {
   RadialOptions radial;
   ChamberOptions chambers;
   WallOptions walls;
+  /// Of the domain in its own frame, see `local_container`; made where it is null and needed.
+  std::shared_ptr<const Container> container = {};
   Monitor monitor = {};  ///< once it says stop, what may be absent is
 };
 

@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
+#include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
 
 namespace bernal {
@@ -80,6 +82,7 @@ struct WallOptions {
 /// quarter where they are deeper than two mean diameters; spheres beyond go whole. What sticks out of the
 /// container counts to the first layer. The same bits for any number of threads. Cost of 30,000 spheres: 0.4
 /// s in a cylinder, 2 s in a mesh of 10,000 triangles. Precondition: options positive.
-std::optional<WallProfile> wall_profile(const Spheres<dynamic>&, const Domain&, const WallOptions& = {});
+std::optional<WallProfile> wall_profile(const Spheres<dynamic>&, const Domain&, const WallOptions& = {},
+                                        const std::shared_ptr<const Container>& made = {});
 
 }  // namespace bernal

@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
+#include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
 #include "bernal/scene/scene.hpp"
 
@@ -48,6 +50,8 @@ struct Milestone {
 struct Packing {
   Spheres<dynamic> spheres;  ///< centres in one period, see `wrap`
   Domain domain;
+  /// Of the domain, see `Plan::container`, so that measuring need not make it again; may be null.
+  std::shared_ptr<const Container> container = {};
   double volume = 0;                     ///< of the domain
   double expected_packing_fraction = 0;  ///< by the plan, before the run
   /// All sizes are so many times those that were drawn: in a container `polish` lets them grow until they

@@ -16,8 +16,12 @@ namespace bernal {
 /// A scene that has been checked as a whole, with everything it names made and nothing else.
 struct Plan {
   Scene scene;
-  Domain domain;                            ///< in the scene's unit
-  bool box_follows = false;                 ///< a periodic box whose size is the result: `domain` is a guess
+  Domain domain;             ///< in the scene's unit
+  bool box_follows = false;  ///< a periodic box whose size is the result: `domain` is a guess
+  /// Of a domain that repeats itself nowhere, in its own frame, see `frame_of`: what preparing, running and
+  /// measuring ask about the walls. Null for others, whose walls cost nothing to make; whoever replaces
+  /// `domain` sets it to null, and `run` makes another.
+  std::shared_ptr<const Container> container;
   std::string container_notes;              ///< what the importer did: reader, welding, repairs; may be empty
   std::unique_ptr<SizeDistribution> radii;  ///< in the scene's unit
 
