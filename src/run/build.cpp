@@ -54,7 +54,14 @@ void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Domain& container = plan.domain;
   require_fitting(scene, container, plan.radii->min());
-  if (std::isfinite(plan.radii->max())) require_fitting(scene, container, plan.radii->max());
+  const bool has_limit = std::visit(
+      [](const auto& kind) {
+        return requires { kind.max; };
+      },
+      scene.sizes);
+  if (std::isfinite(plan.radii->max()))
+    require_fitting(scene, container, plan.radii->max(),
+                    has_limit ? "give the sizes a \"max\" of that, use smaller ones" : "use smaller ones");
   frame_for(scene, container, *plan.radii);
   const double cut = tail_cut(scene, container, *plan.radii);
   const std::unique_ptr<SizeDistribution> without_tail = cut_above(*plan.radii, cut);

@@ -78,7 +78,7 @@ Largest largest_in(const Domain& shape) {
 
 }  // namespace
 
-void require_fitting(const Scene& scene, const Domain& container, double radius) {
+void require_fitting(const Scene& scene, const Domain& container, double radius, std::string_view remedy) {
   Largest largest{largest_fitting_radius(container), largest_fitting_radius(container)};
   if (std::holds_alternative<Mesh>(container) &&
       radius > surely_fitting * volume_of(container) / area_of(container))
@@ -89,10 +89,10 @@ void require_fitting(const Scene& scene, const Domain& container, double radius)
       scene.sizes_are_diameters ? std::pair("diameter", "diameters") : std::pair("radius", "radii");
   throw Error(
       ErrorCode::bad_scene,
-      fmt::format("a sphere of {} {:.6g} {} does not fit into the {}, which takes {} up to {:.6g} {}: use "
-                  "smaller ones or check the units",
+      fmt::format("a sphere of {} {:.6g} {} does not fit into the {}, which takes {} up to {:.6g} {}: {} "
+                  "or check the units",
                   one, shown * radius, name_of(scene.unit), kind_of(container), many, shown * largest.known,
-                  name_of(scene.unit)),
+                  name_of(scene.unit), remedy),
       scene.sizes.locations.whole);
 }
 
