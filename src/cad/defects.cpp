@@ -65,9 +65,12 @@ std::vector<OpenRim> open_rims(const Mesh& mesh) {
   boost::unordered_map<std::uint32_t, std::size_t> rim_of;
   for (const EdgeEnds& edge : open) {
     const auto [entry, is_new] = rim_of.try_emplace(root(edge[0]), rims.size());
-    if (is_new) rims.push_back({bounds_of_edge(mesh, edge)});
+    if (is_new) rims.push_back({bounds_of_edge(mesh, edge), {}});
     OpenRim& rim = rims[entry->second];
-    for (const std::uint32_t v : edge) stretch(rim.bounds, mesh.vertices[v]);
+    for (const std::uint32_t v : edge) {
+      stretch(rim.bounds, mesh.vertices[v]);
+      rim.ends.push_back(mesh.vertices[v]);
+    }
   }
   std::ranges::stable_sort(
       rims, [](const OpenRim& a, const OpenRim& b) { return a.bounds.diagonal() > b.bounds.diagonal(); });

@@ -9,6 +9,7 @@ namespace bernal::cad {
 /// Open edges that hang together: the rim of a hole, or of an opening.
 struct OpenRim {
   Bounds<3> bounds;
+  std::vector<Vector<3>> ends;  ///< of its edges, each twice
 };
 
 /// All of them, the widest first. Cost: O(T log T).

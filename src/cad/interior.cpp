@@ -218,9 +218,11 @@ std::optional<ChosenInterior> filled_to_the_brim(const Surroundings& around, con
     for (const double level : {heights[i], heights[i] - hardly_lower * (heights[i] - heights[i + 1])}) {
       try {
         if (auto mesh = closed_off(around, {across(2, level, false)}, tolerance, Which::wide, point))
-          return ChosenInterior{
-              std::move(*mesh),
-              {fmt::format("what is hollow, filled to the highest brim at z = {:.6g}", level)}};
+          return ChosenInterior{std::move(*mesh),
+                                {fmt::format("what is hollow, filled to the highest brim at z = {:.6g}; a "
+                                             "hollow that overflows lower is "
+                                             "meant by \"solids\" or \"cap\"",
+                                             level)}};
       } catch (const Error&) {  // nothing to close at this level
       }
     }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -24,7 +25,7 @@ struct Line {
 constexpr double narrowest_opening = 0.2, deepest_opening = 0.25;
 
 struct Openings {
-  std::vector<std::string> planes;  ///< across an axis, that close all of them
+  std::vector<std::string> planes;  ///< that close all of them
   bool wide = false;                ///< and no hole
 };
 
@@ -40,21 +41,54 @@ std::string rounded(double value, double towards, double within) {
   return fmt::format("{}", value);
 }
 
+/// The direction across which points lie flattest: an axis where one is as good as any.
+Vector<3> flattest(const std::vector<Vector<3>>& points, const Bounds<3>& bounds, double deepest) {
+  int axis = 0;
+  if (bounds.size().minCoeff(&axis) <= deepest) return Vector<3>::Unit(axis);
+  Vector<3> mean = Vector<3>::Zero();
+  for (const Vector<3>& p : points) mean += p / static_cast<double>(points.size());
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (const Vector<3>& p : points) moments += (p - mean) * (p - mean).transpose();
+  Vector<3> across = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors().col(0);
+  int longest = 0;
+  across.cwiseAbs().maxCoeff(&longest);
+  across /= across[longest];
+  constexpr double digits = 1e4;  // as many as one likes to read
+  return (digits * across).array().round().matrix() / digits;
+}
+
+/// "z", "x + 0.5 z"
+std::string sum_of_coordinates(const Vector<3>& multiples) {
+  std::string text;
+  for (int k = 0; k < 3; ++k) {
+    if (multiples[k] == 0) continue;
+    const double size = std::abs(multiples[k]);
+    text += text.empty() ? (multiples[k] < 0 ? "-" : "") : multiples[k] < 0 ? " - " : " + ";
+    text += size == 1 ? std::string(1, "xyz"[k]) : fmt::format("{} {}", size, "xyz"[k]);
+  }
+  return text;
+}
+
 Openings openings_of(const Mesh& mesh, const Bounds<3>& part) {
   const double rounding = cad::rounding_of_coordinates(mesh);
   Openings found;
   auto& planes = found.planes;
   for (const cad::OpenRim& rim : cad::open_rims(mesh)) {
-    const Vector<3> size = rim.bounds.size();
-    const bool wide = size.norm() >= narrowest_opening * part.diagonal();
-    int axis = 0;
-    size.minCoeff(&axis);
-    if (size[axis] > (wide ? deepest_opening * size.maxCoeff() : rounding)) continue;
+    const double width = rim.bounds.size().maxCoeff();
+    const bool wide = rim.bounds.diagonal() >= narrowest_opening * part.diagonal();
+    const double deepest = wide ? deepest_opening * width : rounding;
+    const Vector<3> across = flattest(rim.ends, rim.bounds, deepest);
+    double lowest = across.dot(rim.ends.front()), highest = lowest;
+    for (const Vector<3>& p : rim.ends) {
+      lowest = std::min(lowest, across.dot(p));
+      highest = std::max(highest, across.dot(p));
+    }
+    if (highest - lowest > deepest) continue;
     found.wide = found.wide || wide;
-    const double middle = part.center()[axis];
-    const bool at_top = rim.bounds.center()[axis] > middle;
-    const double level = at_top ? rim.bounds.lower[axis] : rim.bounds.upper[axis];
-    const std::string plane = fmt::format("{} = {}", "xyz"[axis], rounded(level, middle - level, rounding));
+    const double middle = across.dot(part.center());
+    const double level = lowest + highest > 2 * middle ? lowest : highest;
+    const std::string plane =
+        fmt::format("{} = {}", sum_of_coordinates(across), rounded(level, middle - level, rounding));
     if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
   }
   constexpr std::size_t most_planes = 4;

@@ -326,7 +326,7 @@ ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpo
   std::vector<std::string> lines = lines_that_help(options, purpose, result, Effort::quick);
   for (std::string& line : lines)
     if (const std::size_t end = line.find('\n'); end != std::string::npos) line.replace(end, 1, " with ");
-  const std::string help = lines.empty() ? std::string(remedy(result.report))
+  const std::string help = lines.empty() ? fmt::format("{}; bernal inspect tries a wrap", remedy(result.report))
                                          : fmt::format("in [container], {} helps", fmt::join(lines, ", or "));
   throw Error(ErrorCode::bad_mesh,
               fmt::format("cannot be a container: {} ({})", fmt::join(result.report.problems, ", "), help),

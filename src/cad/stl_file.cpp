@@ -29,15 +29,24 @@ class StlGrammar {
 
   void check() {
     for (std::string_view word = next(); !word.empty(); word = next()) {
-      if (word != "solid") fail("\"solid\"", word);
+      if (word != "solid") {
+        // Padding, a signature, a remark; not a solid whose first line is spoilt.
+        if (parts_.empty() || text_.substr(end_).find("facet") != std::string_view::npos)
+          fail("\"solid\"", word);
+        return;
+      }
       const std::size_t begin = at_;
       skip_line();
       parts_.push_back({begin, at_, facets_});
       check_solid();
+      end_ = at_;
     }
+    end_ = text_.size();
   }
 
   std::size_t facets() const { return facets_; }
+  /// Of what belongs to the format.
+  std::size_t end() const { return end_; }
   const std::vector<Part>& parts() const { return parts_; }
 
  private:
@@ -95,7 +104,7 @@ class StlGrammar {
 
   std::string_view text_;
   std::string file_;
-  std::size_t at_ = 0;
+  std::size_t at_ = 0, end_ = 0;
   std::size_t facets_ = 0;
   std::vector<Part> parts_;
   int line_ = 1;
@@ -104,12 +113,11 @@ class StlGrammar {
 char lower_without_tab(unsigned char c) { return c == '\t' ? ' ' : static_cast<char>(std::tolower(c)); }
 
 bool begins_as_text(std::string_view content) {
-  const std::string_view head = content.substr(0, 1024);
-  const std::size_t first = head.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos || head.find('\0') != std::string_view::npos) return false;
-  std::string word(head.substr(first, 5));
-  std::transform(word.begin(), word.end(), word.begin(), lower_without_tab);
-  return word == "solid";
+  std::string head(content.substr(0, 1024));
+  std::transform(head.begin(), head.end(), head.begin(), lower_without_tab);
+  const std::size_t first = head.find_first_not_of(" \r\n"), zero = head.find('\0');
+  if (first == std::string::npos || head.compare(first, 5, "solid") != 0) return false;
+  return zero == std::string::npos || head.find("endsolid") < zero;  // padding, behind a small part
 }
 
 std::string trimmed_name(std::string_view name) {
@@ -123,6 +131,10 @@ StlFile checked_text(const std::string& written, const std::string& file) {
   std::transform(stl.content.begin(), stl.content.end(), stl.content.begin(), lower_without_tab);
   StlGrammar grammar(stl.content, file);
   grammar.check();
+  if (const std::size_t behind = written.size() - grammar.end(); behind > 0) {
+    stl.content.resize(grammar.end());
+    stl.notes.push_back(fmt::format("{} bytes after the last solid are ignored", behind));
+  }
   stl.facets = grammar.facets();
   for (const auto& [begin, end, first] : grammar.parts())
     stl.solids.push_back({trimmed_name(std::string_view(written).substr(begin, end - begin)), first});

@@ -55,11 +55,22 @@ std::unique_ptr<SizeDistribution> cut_above(const SizeDistribution& radii, doubl
 void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Domain& container = plan.domain;
-  plan.container =
-      ask_container(plan, [&] { return make_local_container(container, frame_of(container), scene.walls); });
-  require_fitting(scene, container, plan.radii->min(), plan.container);
-  if (std::isfinite(plan.radii->max())) require_fitting(scene, container, plan.radii->max(), plan.container);
+  const auto make_container = [&] {
+    plan.container =
+        ask_container(plan, [&] { return make_local_container(container, frame_of(container), scene.walls); });
+  };
+  if (std::holds_alternative<Mesh>(container)) make_container();  // what fits into it is asked of it
+  require_fitting(scene, container, plan.container, plan.radii->min());
+  const bool has_limit = std::visit(
+      [](const auto& kind) {
+        return requires { kind.max; };
+      },
+      scene.sizes);
+  if (std::isfinite(plan.radii->max()))
+    require_fitting(scene, container, plan.container, plan.radii->max(),
+                    has_limit ? "give the sizes a \"max\" of that, use smaller ones" : "use smaller ones");
   frame_for(scene, container, *plan.radii);
+  if (!plan.container) make_container();
   const double cut = tail_cut(scene, container, *plan.radii, plan.container);
   const std::unique_ptr<SizeDistribution> without_tail = cut_above(*plan.radii, cut);
   const SizeDistribution& radii = without_tail ? *without_tail : *plan.radii;
@@ -171,7 +182,7 @@ void expect_in_periodic_box(Plan& plan) {
   const SizeDistribution& radii = without_tail ? *without_tail : *plan.radii;
   if (!plan.box_follows && std::isfinite(cut)) {
     const double allowed = has_walls(plan.domain) ? 0 : scene.overlap;
-    require_fitting(scene, plan.domain, (1 - allowed) * (in_bed ? cut : plan.radii->min()));
+    require_fitting(scene, plan.domain, plan.container, (1 - allowed) * (in_bed ? cut : plan.radii->min()));
   }
   if (in_bed) require_long_periods(scene, plan.domain, cut);
   const double mean_volume = ball_volume(dimension, 1) * radii.moment(dimension);

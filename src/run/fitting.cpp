@@ -77,8 +77,8 @@ Largest largest_in(const Domain& shape, const std::shared_ptr<const Container>& 
 
 }  // namespace
 
-void require_fitting(const Scene& scene, const Domain& container, double radius,
-                     const std::shared_ptr<const Container>& made) {
+void require_fitting(const Scene& scene, const Domain& container, const std::shared_ptr<const Container>& made,
+                     double radius, std::string_view remedy) {
   Largest largest{largest_fitting_radius(container), largest_fitting_radius(container)};
   if (std::holds_alternative<Mesh>(container) &&
       radius > surely_fitting * volume_of(container) / area_of(container))
@@ -89,10 +89,10 @@ void require_fitting(const Scene& scene, const Domain& container, double radius,
       scene.sizes_are_diameters ? std::pair("diameter", "diameters") : std::pair("radius", "radii");
   throw Error(
       ErrorCode::bad_scene,
-      fmt::format("a sphere of {} {:.6g} {} does not fit into the {}, which takes {} up to {:.6g} {}: use "
-                  "smaller ones or check the units",
+      fmt::format("a sphere of {} {:.6g} {} does not fit into the {}, which takes {} up to {:.6g} {}: {} "
+                  "or check the units",
                   one, shown * radius, name_of(scene.unit), kind_of(container), many, shown * largest.known,
-                  name_of(scene.unit)),
+                  name_of(scene.unit), remedy),
       scene.sizes.locations.whole);
 }
 
@@ -106,7 +106,7 @@ double tail_cut(const Scene& scene, const Domain& container, const SizeDistribut
                 const std::shared_ptr<const Container>& made) {
   if (std::isfinite(radii.max())) return radii.max();
   const double median = radii.quantile(0.5), largest = largest_in(container, made).known;
-  if (median > largest) require_fitting(scene, container, median, made);
+  if (median > largest) require_fitting(scene, container, made, median);
   const auto volume_above = [&](double r) { return radii.moment_above(3, r); };
   const double all = volume_above(0);
   const Frame frame = frame_of(container);

@@ -1,4 +1,6 @@
 #pragma once
+#include <string_view>
+
 #include "bernal/domain/container.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/scene.hpp"
@@ -16,10 +18,11 @@ double largest_fitting_radius(const Domain& shape);
 /// radius, in a bed, would meet two images of others.
 void require_long_periods(const Scene& scene, const Domain& container, double radius);
 
-/// Throws Error{bad_scene} at the scene's sizes, with the remedy, if a sphere of that radius cannot fit. Cost
-/// in a mesh that is not much thicker than the sphere: some milliseconds, and what its container costs.
-void require_fitting(const Scene& scene, const Domain& container, double radius,
-                     const std::shared_ptr<const Container>& made = {});
+/// Throws Error{bad_scene} at the scene's sizes, with the remedy or to check the units, if a sphere of that
+/// radius cannot fit. Cost in a mesh that is not much thicker than the sphere: some milliseconds, and what
+/// its container costs if it is not made.
+void require_fitting(const Scene& scene, const Domain& container, const std::shared_ptr<const Container>& made,
+                     double radius, std::string_view remedy = "use smaller ones");
 
 /// Throws Error{bad_argument}: not a single random place was found in it.
 [[noreturn]] void refuse_thin_container();

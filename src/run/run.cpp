@@ -127,7 +127,7 @@ class Run {
     }
     if (!plan_.box_follows) {
       const double allowed = has_walls(plan_.domain) ? 0 : scene_.overlap;
-      require_fitting(scene_, plan_.domain, (1 - allowed) * work.supply->largest(), packing_.container);
+      require_fitting(scene_, plan_.domain, packing_.container, (1 - allowed) * work.supply->largest());
     }
     if (any_in_bed_) require_long_periods(scene_, plan_.domain, work.supply->largest());
     work.supply->divide_by(frame_.scale);

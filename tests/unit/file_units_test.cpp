@@ -323,10 +323,29 @@ TEST_F(FileUnits, BytesBehindABinaryStlAreIgnoredAndSaid) {
             std::string::npos);
 }
 
+TEST_F(FileUnits, WhatFollowsTheLastSolidOfATextStlIsIgnoredAndSaid) {
+  const std::string whole = as_text_stl(box_mesh({0, 0, 0}, {1, 2, 3})),
+                    small = as_text_stl({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+  for (const std::string& text : {whole, small}) {
+    for (const std::string& rest :
+         {std::string(37, '\0'), std::string("\x1A"), std::string("signed by hand\n")}) {
+      const cad::StlFile stl = cad::read_stl_file(folder.write("long.stl", text + rest));
+      EXPECT_FALSE(stl.binary);
+      ASSERT_EQ(stl.notes.size(), 1U);
+      EXPECT_NE(stl.notes[0].find("after the last solid are ignored"), std::string::npos);
+    }
+  }
+  EXPECT_NEAR(read_mesh({.file = folder.write("long.stl", whole + std::string(37, '\0'))}).report.volume, 6,
+              1e-12);
+  // A solid whose first word is spoilt is none to be ignored.
+  EXPECT_NE(refusal("two.stl", whole + "s" + small).find("malformed text STL"), std::string::npos);
+}
+
 TEST_F(FileUnits, NativeCadFormatsAreNamedWithTheExportToMake) {
   for (const auto& [name, what] : {std::pair{"a.SLDPRT", "is a SolidWorks part; export STEP or STL"},
                                    {"a.sldasm", "is a SolidWorks assembly; export STEP or STL"},
                                    {"a.prt", "is a part of NX or Creo; export STEP or STL"},
+                                   {"a.prt.12", "is a part of NX or Creo; export STEP or STL"},
                                    {"a.ipt", "is an Inventor part; export STEP or STL"},
                                    {"a.CATPart", "is a CATIA part; export STEP or STL"},
                                    {"a.x_t", "is a Parasolid file; export STEP or STL"},

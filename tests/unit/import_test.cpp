@@ -8,6 +8,7 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "cad/plane_cut.hpp"
+#include "support/broken_meshes.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"
 
@@ -15,63 +16,6 @@ namespace bernal {
 namespace import_test {
 
 using namespace test;
-
-/// Without the triangles that have all corners where `gone` holds.
-template <class Gone>
-Mesh without(Mesh mesh, const Gone& gone) {
-  std::erase_if(mesh.triangles, [&](const auto& t) {
-    return gone(mesh.vertices[t[0]]) && gone(mesh.vertices[t[1]]) && gone(mesh.vertices[t[2]]);
-  });
-  return mesh;
-}
-
-Mesh without_top(const Mesh& mesh, double height) {
-  return without(mesh, [=](const Vector<3>& v) { return v[2] == height; });
-}
-
-/// A cup: a prism of height 2 and half width 2 with a square hollow of half width 1 from z = 0.5 up.
-Mesh cup_mesh() {
-  return Mesh{
-      {{-2, -2, 0},
-       {2, -2, 0},
-       {2, 2, 0},
-       {-2, 2, 0},
-       {-2, -2, 2},
-       {2, -2, 2},
-       {2, 2, 2},
-       {-2, 2, 2},
-       {-1, -1, 2},
-       {1, -1, 2},
-       {1, 1, 2},
-       {-1, 1, 2},
-       {-1, -1, .5},
-       {1, -1, .5},
-       {1, 1, .5},
-       {-1, 1, .5}},
-      {{0, 2, 1},   {0, 3, 2},    {0, 1, 5},    {0, 5, 4},   {1, 2, 6},    {1, 6, 5},    {2, 3, 7},
-       {2, 7, 6},   {3, 0, 4},    {3, 4, 7},    {4, 5, 9},   {4, 9, 8},    {5, 6, 10},   {5, 10, 9},
-       {6, 7, 11},  {6, 11, 10},  {7, 4, 8},    {7, 8, 11},  {8, 9, 13},   {8, 13, 12},  {9, 10, 14},
-       {9, 14, 13}, {10, 11, 15}, {10, 15, 14}, {11, 8, 12}, {11, 12, 15}, {12, 13, 14}, {12, 14, 15}}};
-}
-
-/// Its triangles, each with corners of its own.
-Mesh torn(const Mesh& mesh) {
-  Mesh result;
-  for (const auto& t : mesh.triangles) {
-    const auto first = index(result.vertices.size());
-    for (const std::uint32_t v : t) result.vertices.push_back(mesh.vertices[v]);
-    result.triangles.push_back({first, first + 1, first + 2});
-  }
-  return result;
-}
-
-Mesh jittered(Mesh mesh, double by) {
-  std::mt19937 draws(7);
-  std::uniform_real_distribution<double> between(-by, by);
-  for (Vector<3>& v : mesh.vertices)
-    for (int k = 0; k < 3; ++k) v[k] += between(draws);
-  return mesh;
-}
 
 class Import : public ::testing::Test {
  protected:
@@ -141,6 +85,21 @@ TEST_F(Import, APipeIsClosedAtBothEnds) {
   EXPECT_NE(refusal(open).find("cap = [\"z = 0\", \"z = 3\"]"), std::string::npos) << refusal(open);
   open.cap = {"z = 0.5", "z = 2"};
   EXPECT_NEAR(volume(open), 2 * 1.5, 1e-14);
+}
+
+TEST_F(Import, AnObliqueOpeningIsClosedByTheLineThatIsOffered) {
+  Mesh tilted = without_top(divided(box, 3), 3);
+  const Vector<3> up = Vector<3>(1, -2, 3).normalized(), aside = up.unitOrthogonal(), ahead = up.cross(aside);
+  for (Vector<3>& v : tilted.vertices) v = v[0] * aside + v[1] * ahead + v[2] * up;
+  MeshFile open = file(tilted);
+  const ImportedMesh as_it_is = read_mesh(open);
+  ASSERT_FALSE(as_it_is.report.usable());
+  const std::vector<std::string> lines = lines_that_help(open, {}, as_it_is, Effort::quick);
+  ASSERT_FALSE(lines.empty());
+  ASSERT_TRUE(lines[0].starts_with("cap = \"") && lines[0].ends_with('"')) << lines[0];
+  open.cap = {lines[0].substr(7, lines[0].size() - 8)};
+  EXPECT_NEAR(volume(open), 6, 6e-3) << lines[0];
+  EXPECT_LE(volume(open), 6);
 }
 
 TEST_F(Import, WhatStandsInAnOpenVesselIsCutWithIt) {

@@ -1,0 +1,68 @@
+#pragma once
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "support/meshes.hpp"
+
+// Meshes as they come out of CAD: open, hollow, torn apart and rounded.
+namespace bernal::test {
+
+/// Without the triangles that have all corners where `gone` holds.
+template <class Gone>
+inline Mesh without(Mesh mesh, const Gone& gone) {
+  std::erase_if(mesh.triangles, [&](const auto& t) {
+    return gone(mesh.vertices[t[0]]) && gone(mesh.vertices[t[1]]) && gone(mesh.vertices[t[2]]);
+  });
+  return mesh;
+}
+
+inline Mesh without_top(const Mesh& mesh, double height) {
+  return without(mesh, [=](const Vector<3>& v) { return v[2] == height; });
+}
+
+/// A cup: a prism of height 2 and half width 2 with a square hollow of half width 1 from z = 0.5 up.
+inline Mesh cup_mesh() {
+  return Mesh{
+      {{-2, -2, 0},
+       {2, -2, 0},
+       {2, 2, 0},
+       {-2, 2, 0},
+       {-2, -2, 2},
+       {2, -2, 2},
+       {2, 2, 2},
+       {-2, 2, 2},
+       {-1, -1, 2},
+       {1, -1, 2},
+       {1, 1, 2},
+       {-1, 1, 2},
+       {-1, -1, .5},
+       {1, -1, .5},
+       {1, 1, .5},
+       {-1, 1, .5}},
+      {{0, 2, 1},   {0, 3, 2},    {0, 1, 5},    {0, 5, 4},   {1, 2, 6},    {1, 6, 5},    {2, 3, 7},
+       {2, 7, 6},   {3, 0, 4},    {3, 4, 7},    {4, 5, 9},   {4, 9, 8},    {5, 6, 10},   {5, 10, 9},
+       {6, 7, 11},  {6, 11, 10},  {7, 4, 8},    {7, 8, 11},  {8, 9, 13},   {8, 13, 12},  {9, 10, 14},
+       {9, 14, 13}, {10, 11, 15}, {10, 15, 14}, {11, 8, 12}, {11, 12, 15}, {12, 13, 14}, {12, 14, 15}}};
+}
+
+/// Its triangles, each with corners of its own.
+inline Mesh torn(const Mesh& mesh) {
+  Mesh result;
+  for (const auto& t : mesh.triangles) {
+    const auto first = index(result.vertices.size());
+    for (const std::uint32_t v : t) result.vertices.push_back(mesh.vertices[v]);
+    result.triangles.push_back({first, first + 1, first + 2});
+  }
+  return result;
+}
+
+inline Mesh jittered(Mesh mesh, double by) {
+  std::mt19937 draws(7);
+  std::uniform_real_distribution<double> between(-by, by);
+  for (Vector<3>& v : mesh.vertices)
+    for (int k = 0; k < 3; ++k) v[k] += between(draws);
+  return mesh;
+}
+
+}  // namespace bernal::test
