@@ -53,7 +53,7 @@ struct Jammed {
 /// so it is all radii that grow by one factor until they jam. It is the same problem: seen in units of the
 /// radii, it is the container that shrinks. `symmetries` is `symmetries_of` its domain. Precondition: there
 /// are spheres, with centres inside. Cost: mostly products with the Hessian, 10 ns a contact each, tens to
-/// hundreds a Newton step, and a thousand steps or two: 3 to 14 s for 1,000 spheres.
+/// hundreds a Newton step, and a thousand steps or two: 6 to 14 s for 1,000 spheres.
 Jammed polish_in_container(const Spheres<3>& spheres, const Container& container, int symmetries,
                            double tolerance, const Monitor& monitor,
                            const std::function<void(double done, double largest_overlap)>& report);
