@@ -142,6 +142,10 @@ void write_contacts(Page& page, const Report& report) {
     page.row("contacts tell from", fmt::format("{:g}", *measured.held_from),
              "the least gap of those in the table at which half of the spheres hold each other; contacts are "
              "closed by \"polish\" of relax and grow");
+  else if (!report.packing.spheres.empty())
+    page.row("contacts tell from", "–",
+             "at no gap in the table do half of the spheres hold each other; contacts are closed by "
+             "\"polish\" of relax and grow");
   page.raw("</table></div>\n");
   write_by_gap(page, report.measured);
   page.raw("</div>\n");

@@ -69,7 +69,14 @@ StageEnd finish_in_bed(StageEnd end, double polish, Work& work) {
     work.bed_ = polished;
     if (jammed.end == StageEnd::hit_limit)
       work.missed = fmt::format("the contacts could not be closed to {:g}", polish);
-    return jammed.end == StageEnd::hit_limit ? jammed.end : end;
+    else if (2 * jammed.held < spheres.size())
+      work.missed = fmt::format(
+          "only {} of {} spheres hold each other: some are wedged in, mostly where the container is about as "
+          "narrow as they are large, before sizes have grown so far that the others touch",
+          jammed.held, spheres.size());
+    else
+      return end;
+    return StageEnd::hit_limit;
   }
   work.missed = "the spheres could not be polished";
   return StageEnd::hit_limit;

@@ -139,20 +139,10 @@ void JammingEnergy<D>::find_pairs() {
 
 template <int D>
 void JammingEnergy<D>::find_walls() {
-  const auto found = std::make_shared<NearWalls>();
-  std::vector<WallPiece<D>> pieces;
-  for (std::size_t i = 0; i < size(); ++i) {
-    found->first.push_back(static_cast<std::uint32_t>(found->walls.size()));
-    const Vector<D> p = part<D>(state_.centers, i) / state_.scale;
-    pieces.clear();
-    enclosure_->pieces_near(p, ((1 + width_at_finding_) * radius_[i] + skin * least_radius_) / state_.scale,
-                            pieces);
-    for (WallPiece<D>& piece : pieces) {
-      const double distance = view_of<D>(piece, p).distance;
-      found->walls.push_back({std::move(piece), distance});
-    }
-  }
-  found->first.push_back(static_cast<std::uint32_t>(found->walls.size()));
+  const auto found = std::make_shared<NearWalls<D>>();
+  for (std::size_t i = 0; i < size(); ++i)
+    found->add_near(*enclosure_, part<D>(state_.centers, i) / state_.scale,
+                    ((1 + width_at_finding_) * radius_[i] + skin * least_radius_) / state_.scale);
   near_walls_ = found;
 }
 
@@ -167,31 +157,14 @@ void JammingEnergy<D>::hold(const std::vector<char>& bears) {
   evaluate();
 }
 
-/// Of pieces that touch in one place the first stands for all.
 template <int D>
 void JammingEnergy<D>::hold_walls(const std::vector<char>& bears) {
-  const auto held = std::make_shared<NearWalls>();
-  std::vector<Vector<D>> ways;
+  const auto held = std::make_shared<NearWalls<D>>();
   for (std::size_t i = 0; i < size(); ++i) {
-    const std::size_t first = held->walls.size();
-    held->first.push_back(static_cast<std::uint32_t>(first));
-    ways.clear();
-    for (std::uint32_t n = near_walls_->first[i]; n < near_walls_->first[i + 1] && bears[i]; ++n) {
-      const NearWall& near = near_walls_->walls[n];
-      const WallView<D> view = view_of<D>(near.piece, part<D>(state_.centers, i) / state_.scale);
-      if (!(state_.scale * view.distance < radius_[i])) continue;
-      const Vector<D> way = view.distance * view.normal;
-      const auto same = std::ranges::find_if(
-          ways, [&](const Vector<D>& other) { return (way - other).norm() <= enclosure_->same_place(); });
-      if (same != ways.end()) {
-        held->walls[first + static_cast<std::size_t>(same - ways.begin())].weight += 1;
-      } else {
-        ways.push_back(way);
-        held->walls.push_back(near);
-      }
-    }
+    const auto near = near_walls_->of(i);
+    held->add_touching(near.first(bears[i] ? near.size() : 0), part<D>(state_.centers, i) / state_.scale,
+                       radius_[i] / state_.scale, enclosure_->same_place());
   }
-  held->first.push_back(static_cast<std::uint32_t>(held->walls.size()));
   near_walls_ = held;
 }
 
@@ -202,10 +175,8 @@ void JammingEnergy<D>::let_go(std::size_t contact) {
     pairs_.erase(contact);
     return evaluate();
   }
-  const auto fewer = std::make_shared<NearWalls>(*near_walls_);
-  fewer->walls.erase(fewer->walls.begin() + static_cast<std::ptrdiff_t>(contact - pairs));
-  for (std::uint32_t& first : fewer->first)
-    if (first > contact - pairs) --first;
+  const auto fewer = std::make_shared<NearWalls<D>>(*near_walls_);
+  fewer->erase(contact - pairs);
   near_walls_ = fewer;
   evaluate();
 }
@@ -283,21 +254,19 @@ template <int D>
 void JammingEnergy<D>::meet_walls() {
   const double reach = 1 + width();
   for (std::uint32_t i = 0; i < size(); ++i) {
-    const std::uint32_t begin = near_walls_->first[i], end = near_walls_->first[i + 1];
-    if (begin == end || is_fixed(i)) continue;
+    const auto walls = near_walls_->of(i);
+    if (walls.empty() || is_fixed(i)) continue;
     const std::size_t first = now_.contacts.size();
     const Vector<D> p = part<D>(state_.centers, i) / state_.scale;
     const double moved = (p - part<D>(at_finding_.centers, i) / at_finding_.scale).norm();
-    for (std::uint32_t n = begin; n < end; ++n) {
-      const NearWall& near = near_walls_->walls[n];
+    for (const NearPiece<D>& near : walls)
       if (held_ || state_.scale * (near.distance - moved) < reach * radius_[i]) meet_wall(i, p, near, first);
-    }
   }
 }
 
 /// `first`: the first contact of the sphere with walls.
 template <int D>
-void JammingEnergy<D>::meet_wall(std::uint32_t i, const Vector<D>& p, const NearWall& near,
+void JammingEnergy<D>::meet_wall(std::uint32_t i, const Vector<D>& p, const NearPiece<D>& near,
                                  std::size_t first) {
   const WallView<D> view = view_of<D>(near.piece, p);
   const double s = radius_[i], d = state_.scale * view.distance;

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 
 #include "bernal/core/spheres.hpp"
-#include "jam/enclosure.hpp"
+#include "jam/near_walls.hpp"
 #include "jam/trust_region.hpp"
 #include "neighbors/periodic_pairs.hpp"
 
@@ -124,17 +124,6 @@ class JammingEnergy final : public SmoothFunction {
     Eigen::VectorXd gradient;
     double energy = 0, elastic = 0, largest_overlap = 0;
   };
-  /// A piece of wall near a sphere.
-  struct NearWall {
-    WallPiece<D> piece;
-    double distance;    // when it was found
-    double weight = 1;  // held: how many pieces touch in that place
-  };
-  /// Those of all spheres, one after the other, nearest first.
-  struct NearWalls {
-    std::vector<std::uint32_t> first;
-    std::vector<NearWall> walls;
-  };
   struct Spring {
     double force, stiffness;
   };
@@ -146,7 +135,7 @@ class JammingEnergy final : public SmoothFunction {
   void evaluate();
   void meet(std::uint32_t first, std::uint32_t second, const Vector<D>& away);
   void meet_walls();
-  void meet_wall(std::uint32_t i, const Vector<D>& p, const NearWall& near, std::size_t first);
+  void meet_wall(std::uint32_t i, const Vector<D>& p, const NearPiece<D>& near, std::size_t first);
   Spring press(double s, double overlap, double stiffness);
   bool is_fixed(std::uint32_t i) const { return !fixed_.empty() && fixed_[i]; }
   void still(Eigen::VectorXd& v) const;
@@ -165,7 +154,7 @@ class JammingEnergy final : public SmoothFunction {
 
   PeriodicPairs<D> pairs_;
   std::shared_ptr<const Enclosure<D>> enclosure_;
-  std::shared_ptr<const NearWalls> near_walls_;  // null where there are no walls
+  std::shared_ptr<const NearWalls<D>> near_walls_;  // null where there are no walls
   State at_finding_;
   double width_at_finding_ = 0;
   bool held_ = false;

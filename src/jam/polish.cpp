@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "bernal/core/tolerance.hpp"
 #include "core/every_dimension.hpp"
 #include "jam/jamming_energy.hpp"
@@ -22,7 +24,7 @@ constexpr double fall_of_pressure = 0.1, rise_of_pressure = 1000;
 constexpr double gentlest_start = 1e-4, hardest_start = 0.1;
 /// Where spheres come loose: they have some way to go before they hold each other, and steps are as long as
 /// overlaps are large.
-constexpr double loose_start = 1e-3;
+constexpr double loose_start = 1e-2;
 constexpr int most_steps_when_loose = 2000;
 constexpr int most_climbs = 2;
 constexpr std::size_t solved_closely = 3000;
@@ -32,8 +34,11 @@ constexpr int most_steps_a_level = 500;
 constexpr std::ptrdiff_t most_let_go = 20;
 /// Rattlers keep away from their cages, where these are wide enough, by some of this, a gap ratio.
 constexpr double room = 1e-4;
-/// How far spheres may move, in diameters, while their contacts are held.
+/// How far spheres may move, in diameters, while their contacts are held; and in how many steps: of contacts
+/// that do hold the spheres a few are enough, and with one too few there is no end of sliding.
 constexpr double held_way = 0.01;
+constexpr int most_steps_when_held = 20;
+constexpr double seconds_between_reports = 0.25;
 /// Up to this imbalance the end counts as equilibrium.
 constexpr double balanced = 1e-2;
 /// Room beside a container in the periodic box around it, in largest diameters, along axes that do not repeat
@@ -73,8 +78,10 @@ class Polish {
             unfinished_ && may_climb() ? climb(overlap) : std::max(settled_, overlap * fall_of_pressure);
         continue;
       }
-      if (!sharpen(overlap) || soft_.largest_overlap() <= task_.tolerance || close_contacts(overlap)) break;
-      if (unfinished_ && may_climb()) {
+      if (!sharpen(overlap) || soft_.largest_overlap() <= task_.tolerance) break;
+      const bool slides = unfinished_;
+      if (close_contacts(overlap)) break;
+      if (slides && may_climb()) {
         overlap = climb(overlap);
         continue;
       }
@@ -85,7 +92,14 @@ class Polish {
   }
 
   const JammingEnergy<D>& soft() const { return soft_; }
-  bool too_loose() const { return soft_.scale() < task_.least_scale; }
+  /// How many spheres are no rattlers.
+  std::size_t held() {
+    count_contacts();
+    return soft_.size() - rattlers_;
+  }
+  /// Under a load overlaps make it smaller than it will be: of spheres that two contacts hold by D times the
+  /// overlap of those that 2 D hold.
+  bool too_loose() const { return soft_.scale() < task_.least_scale / (1 + D * overlap_); }
 
  private:
   struct Level {
@@ -93,6 +107,7 @@ class Polish {
     double balance;
     double radius = 0;  // of the trust region: a ratio; 0 for ten overlaps
     double forcing = 0.03;
+    int most_steps = 0;  // 0 for the task's
   };
 
   /// What slides on without an end at a small load has a longer way to go than its steps allow there: it goes
@@ -118,11 +133,18 @@ class Polish {
     if (excess() < 0 || excess() > most_let_go) return false;
     std::ptrdiff_t spare = excess();
     const JammingEnergy<D> before = soft_;
+    const double imbalance = imbalance_;
+    const auto give_up = [&] {
+      soft_ = before;
+      imbalance_ = imbalance;
+      return false;
+    };
     const double fall = 0.5 * task_.tolerance / soft_.largest_overlap();
     soft_.hold(bears_);
     for (;;) {
       const JammingEnergy<D> held = soft_;
-      settle({overlap * fall, 0, 0.1 * balance_, held_way, 1e-4});
+      settle({overlap * fall, 0, 0.1 * balance_, held_way, 1e-4, most_steps_when_held});
+      if (imbalance_ >= balanced) return give_up();
       const auto first = first_to_pull(held.contacts(), soft_.contacts());
       if (first < 0) break;
       soft_ = held;
@@ -134,8 +156,7 @@ class Polish {
     soft_.set_level(overlap * fall, 0);
     count_contacts();
     if (excess() >= 0 && soft_.largest_overlap() <= task_.tolerance && imbalance_ < balanced) return true;
-    soft_ = before;
-    return false;
+    return give_up();
   }
 
   /// Moves rattlers that the others have come to overlap back into their cages.
@@ -174,30 +195,42 @@ class Polish {
            (static_cast<std::ptrdiff_t>(D * (soft_.size() - rattlers_)) - task_.symmetries + 1);
   }
 
-  /// Minimises at one level of pressure. Returns false if cancelled.
+  /// Minimises at one level of pressure. Returns false if cancelled or too loose.
   bool settle(const Level& level) {
-    const double overlap = level.overlap;
+    const double overlap = overlap_ = level.overlap;
     soft_.set_level(overlap, level.smoothing);
     const double noise = resolution() / overlap;
     TrustRegion region(soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap), level.forcing,
                        task_.monitor);
+    const int most_steps = level.most_steps > 0 ? level.most_steps : task_.most_steps;
     for (int step = 0;; ++step) {
-      if (step == task_.most_steps) {
+      if (step == most_steps) {
         unfinished_ = unfinished_ || imbalance_ > loose_balance;
         break;
       }
       imbalance_ = region.gradient_length() / std::sqrt(2 * soft_.elastic_energy());
-      if (imbalance_ < std::max(level.balance, 4 * noise)) break;
+      if (!(imbalance_ >= std::max(level.balance, 4 * noise))) break;  // or there is neither force nor load
       if (task_.monitor.stop()) {
         cancelled_ = true;
         return false;
       }
-      if (too_loose()) return false;
-      region.step(std::max(1e-6, noise) * soft_.elastic_energy());
+      tell();
+      const bool moved = region.step(std::max(1e-6, noise) * soft_.elastic_energy());
+      if (!moved && region.radius() < soft_.length_of(resolution())) break;  // what is left is rounding
     }
-    task_.report(std::min(0.99, std::log(overlap / start_) / std::log(0.1 * task_.tolerance / start_)),
-                 soft_.largest_overlap());
+    if (too_loose()) return false;  // not before: on its way the box may be smaller than it will be
+    done_ = std::clamp(std::log(overlap / start_) / std::log(0.1 * task_.tolerance / start_), done_, 0.99);
+    task_.report(done_, soft_.largest_overlap());
     return true;
+  }
+
+  /// Within a level, now and then.
+  void tell() {
+    if (since_told_.seconds() < seconds_between_reports) return;
+    since_told_ = {};
+    task_.monitor.report({"polish", done_,
+                          fmt::format("{} contacts, forces balanced to {:.0e}, largest overlap {:.1e}",
+                                      soft_.contacts().size(), imbalance_, soft_.largest_overlap())});
   }
 
   /// An overlap ratio that is lost in the rounding of coordinates.
@@ -239,6 +272,9 @@ class Polish {
   double balance_, settled_;
   double start_ = gentlest_start;
   double imbalance_ = 0;
+  double overlap_ = 0;  // of the present level
+  double done_ = 0;
+  Stopwatch since_told_;
   bool unfinished_ = false;  // a level ended far from equilibrium
   int climbs_ = 0;
   bool cancelled_ = false;
@@ -288,7 +324,8 @@ Jammed polish_in_container(const Spheres<3>& spheres, const Container& container
                  .least_scale = 1 / Jammed::most_growth,
                  .monitor = monitor,
                  .report = report});
-  Jammed jammed{act.run(), spheres, 1, act.too_loose()};
+  const StageEnd end = act.run();
+  Jammed jammed{end, spheres, 1, act.too_loose(), act.held()};
   act.soft().write_to_scale(jammed.spheres);
   jammed.growth = (1 - act.soft().largest_overlap()) / act.soft().scale();
   return jammed;

@@ -49,6 +49,7 @@ class TrustRegion {
   bool step(double resolution);
 
   std::uint64_t products() const { return products_; }
+  double radius() const { return radius_; }
 
  private:
   struct Proposal {

@@ -14,8 +14,8 @@ namespace polish_in_container_test {
 Packing polished(const std::string& container, const std::string& stage = "do = \"relax\"\n") {
   RunOptions options;
   options.threads = 1;
-  return run(testing::plan_of("[container]\n" + container + "[spheres]\nradius = 0.5\n[[stage]]\n" + stage +
-                              "polish = 1e-8\n"),
+  return run(testing::plan_of("unit = \"cm\"\n[container]\n" + container +
+                              "[spheres]\nradius = 0.5\n[[stage]]\n" + stage + "polish = 1e-8\n"),
              options);
 }
 
@@ -48,6 +48,21 @@ TEST(PolishInContainer, LeavesAnEndlessColumnIsostatic) {
 
 TEST(PolishInContainer, LeavesASlabIsostatic) {
   expect_isostatic(polished("kind = \"periodic\"\nsize = [6.0, 6.0, 6.0]\nwalls = [2]\n"));
+}
+
+TEST(PolishInContainer, LeavesACadPartIsostatic) {
+  expect_isostatic(
+      polished("kind = \"mesh\"\nfile = \"" BERNAL_DATA "/meshes/lib3mf_helix.stl\"\nunit = \"mm\"\n"));
+}
+
+TEST(PolishInContainer, SaysThatSpheresAreWedgedInOneByOne) {
+  const Packing packing =
+      run(testing::plan_of("[container]\nkind = \"box\"\nsize = [6.0, 6.0, 1.01]\n[spheres]\nradius = "
+                           "0.5\ncount = 15\n[[stage]]\ndo = \"relax\"\npolish = 1e-8\n"));
+  EXPECT_EQ(packing.outcome, Outcome::hit_limit);
+  EXPECT_NE(packing.reason.find("only 0 of 15 spheres hold each other"), std::string::npos) << packing.reason;
+  EXPECT_NEAR(packing.size_scale, 1.01, 1e-6);
+  EXPECT_TRUE(certify(packing.spheres, packing.domain).certified);
 }
 
 TEST(PolishInContainer, SaysThatSpheresAreTooFewToJam) {
