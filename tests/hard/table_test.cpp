@@ -5,7 +5,8 @@
 #include "hard/table/hard_case.hpp"
 
 // Every row of the hard suite ends as it must: packed and certified, by us in exact arithmetic and by a
-// checker that knows nothing but doubles; or refused with the right reason.
+// checker that knows nothing but doubles; or refused with the right reason. Here at one level of arithmetic for
+// walls, another from row to row; at all of them in tests/validation, and where the page is written.
 namespace bernal {
 namespace table_test {
 
@@ -15,8 +16,10 @@ INSTANTIATE_TEST_SUITE_P(, HardCase, ::testing::ValuesIn(hard::all_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST_P(HardCase, EndsAsItMust) {
-  for (const hard::End& end : hard::ends_of(GetParam()))
-    EXPECT_EQ(hard::objection(GetParam(), end), "") << name_of(end.walls);
+  const hard::Case& c = GetParam();
+  const std::vector<WallArithmetic> levels = hard::levels_of(c);
+  const WallArithmetic walls = levels[c.name.size() % levels.size()];
+  EXPECT_EQ(hard::objection(c, hard::end_of(c, walls)), "") << name_of(walls);
 }
 
 TEST(HardTable, NamesEveryCaseOnceAndSaysWhyItIsHard) {

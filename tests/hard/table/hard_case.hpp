@@ -86,9 +86,9 @@ struct End {
   double seconds = 0;           ///< to read, build and run
 };
 
-/// At every level of arithmetic for walls; once in a periodic box and where the case is to be refused.
-std::vector<End> ends_of(const Case&);
-/// At one.
+/// The levels of arithmetic for walls that a case is run at: one in a periodic box and where it is to be
+/// refused.
+std::vector<WallArithmetic> levels_of(const Case&);
 End end_of(const Case&, WallArithmetic);
 
 /// What is wrong with an end; empty if nothing is.

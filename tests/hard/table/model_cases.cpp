@@ -37,7 +37,7 @@ std::vector<Case> model_cases() {
       at_least(400), "", settled);
   add("Elephant", models + "cgal_elephant.off", "free form, with tusks and a tail", "diameter = 0.03",
       at_least(500));
-  add("Flange", models + "flange.stl", "in metres, drawn in millimetres", "diameter = 1.5", at_least(500),
+  add("Flange", models + "flange.stl", "in metres, drawn in millimetres", "diameter = 3.0", at_least(200),
       "unit = \"m\"");
   add("FlangeByItsNumbers", models + "flange.stl", "metres taken for millimetres: far too small",
       "diameter = 1.5", refused(""));
@@ -46,8 +46,8 @@ std::vector<Case> model_cases() {
       "diameter = 4.0", at_least(100));
   add("BucketInside", models + "liggghts_bucket.stl", "the hollow is meant", "diameter = 15.0", at_least(300),
       "interior = \"cavity\"");
-  add("HopperOfPlate", models + "liggghts_hopper_open_flipped.stl", "eight flipped edges; closed, as a plate",
-      "diameter = 2.0", at_least(1), "", "");
+  add("HopperOfPlate", models + "liggghts_hopper_open_flipped.stl",
+      "eight flipped edges; the plate itself is packed", "count = 200\ndiameter = 2.0", exactly(200));
   add("HopperInside", models + "liggghts_hopper_open_flipped.stl", "the hollow is meant, faces are flipped",
       "diameter = 15.0", at_least(300), "interior = \"cavity\"");
   add("LinkRods", models + "linkrods.step", "free-form and analytic faces", "diameter = 0.1", at_least(1000));

@@ -40,7 +40,8 @@ struct Page {
 };
 
 void add(Page& page, const Case& c) {
-  const std::vector<End> ends = ends_of(c);
+  std::vector<End> ends;
+  for (const WallArithmetic walls : levels_of(c)) ends.push_back(end_of(c, walls));
   const End& end = ends[ends.size() / 2];  // filtered
   ++page.cases;
   page.ends += ends.size();
