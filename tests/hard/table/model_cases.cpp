@@ -33,8 +33,8 @@ std::vector<Case> model_cases() {
   add("BonesMended", models + "cgal_bones.off", "with the line that was offered", "diameter = 0.2",
       at_least(300), "{offered}");
   add("Coupling", models + "cgal_couplingdown.off", "genus 9", "diameter = 0.05", at_least(500));
-  add("CouplingSettled", models + "cgal_couplingdown.off", "genus 9, from above", "diameter = 0.05",
-      at_least(400), "", settled);
+  add("CouplingSettled", models + "cgal_couplingdown.off", "genus 9, from above", "diameter = 0.08",
+      at_least(50), "", settled);
   add("Elephant", models + "cgal_elephant.off", "free form, with tusks and a tail", "diameter = 0.03",
       at_least(500));
   add("Flange", models + "flange.stl", "in metres, drawn in millimetres", "diameter = 3.0", at_least(200),
@@ -50,40 +50,40 @@ std::vector<Case> model_cases() {
       "eight flipped edges; the plate itself is packed", "count = 200\ndiameter = 2.0", exactly(200));
   add("HopperInside", models + "liggghts_hopper_open_flipped.stl", "the hollow is meant, faces are flipped",
       "diameter = 15.0", at_least(300), "interior = \"cavity\"");
-  add("LinkRods", models + "linkrods.step", "free-form and analytic faces", "diameter = 0.1", at_least(1000));
+  add("LinkRods", models + "linkrods.step", "free-form and analytic faces", "diameter = 0.2", at_least(200));
   add("HeaderSolid", models + "made_binary_header_solid.stl", "binary, its header begins with \"solid\"",
       "diameter = 0.1", at_least(50));
   add("MixerVessel", models + "mixer_vessel_open.stl", "open at the top, in metres", "diameter = 40.0",
       refused("cap = "), "unit = \"m\"");
-  add("MixerVesselFilled", models + "mixer_vessel_open.stl", "filled to a level", "diameter = 40.0",
-      at_least(1000), "unit = \"m\"\nfill_level = 800.0");
+  add("MixerVesselFilled", models + "mixer_vessel_open.stl", "filled to a level", "diameter = 70.0",
+      at_least(300), "unit = \"m\"\nfill_level = 800.0");
   add("MixerVesselCapped", models + "mixer_vessel_open.stl", "with the line that was offered",
-      "diameter = 40.0", at_least(1000), "unit = \"m\"\n{offered}");
-  add("Hinge", models + "netgen_hinge.stl", "genus 5, thin walls", "diameter = 1.5", at_least(500));
+      "diameter = 70.0", at_least(300), "unit = \"m\"\n{offered}");
+  add("Hinge", models + "netgen_hinge.stl", "genus 5, thin walls", "diameter = 2.5", at_least(100));
   add("Unparseable", models + "openscad_unparseable.stl", "no numbers in line 4", "diameter = 1.0",
       refused(":4:"));
   add("ZeroArea", models + "openscad_zero_area.stl", "a face without area", "diameter = 2.0", at_least(100));
-  add("Screw", models + "screw.step", "a thread", "diameter = 1.0", at_least(2000));
+  add("Screw", models + "screw.step", "a thread", "diameter = 2.0", at_least(200));
   add("Bearing", models + "bearing.iges", "surfaces whose edges do not meet; metres called millimetres",
       "diameter = 2.0", refused("cap = "), "unit = \"m\"\nignore_unit_of_file = true");
   // Closed forms of the three solids, in mm³; the tessellation follows the sphere.
-  add("ThreeSolids", models + "three_solids_inch.step", "three solids at once", "diameter = 8.0",
-      at_least(1000));
+  add("ThreeSolids", models + "three_solids_inch.step", "three solids at once", "diameter = 14.0",
+      at_least(150));
   for (const auto& [solid, volume] : {std::pair{1, 682129.61}, {2, 105355.77}, {3, 161733.84}})
     add(fmt::format("ThreeSolidsNumber{}", solid).c_str(), models + "three_solids_inch.step",
         "one of three, by its number; its volume in closed form", "diameter = 6.0",
         of_volume(at_least(200), volume, 5e-3), fmt::format("solids = \"{}\"", solid));
   add("ThreeSolidsNumber4", models + "three_solids_inch.step", "there is no fourth", "diameter = 4.0",
       refused("solid"), "solids = \"4\"");
-  add("Helix", meshes + "lib3mf_helix.stl", "a spring: thin and winding", "diameter = 4.0", at_least(500));
+  add("Helix", meshes + "lib3mf_helix.stl", "a spring: thin and winding", "diameter = 6.0", at_least(200));
   add("HelixSettled", meshes + "lib3mf_helix.stl", "a spring from above: overhangs all along",
-      "diameter = 4.0", at_least(300), "", settled);
+      "diameter = 7.0", at_least(100), "", settled);
   add("Tardis", meshes + "openscad_bad_tardis.stl", "crosses itself six times", "diameter = 2.0",
       refused("repair = [\"self-intersections\"]"));
   add("TardisMended", meshes + "openscad_bad_tardis.stl", "with the line that was offered", "diameter = 1.5",
       at_least(1000), "{offered}");
-  add("BlockWithFillets", meshes + "block_fillets_bore.step", "all edges rounded, a bore", "diameter = 2.0",
-      at_least(4000));
+  add("BlockWithFillets", meshes + "block_fillets_bore.step", "all edges rounded, a bore", "diameter = 4.0",
+      at_least(400));
   add("AssemblyInInches", meshes + "assembly_inch.step", "three placed parts", "diameter = 6.0",
       at_least(500));
   add("DrumOfThreeFaces", meshes + "drum_inch.igs", "faces that nobody joined", "diameter = 3.0",

@@ -59,13 +59,13 @@ std::vector<Case> size_cases() {
   for (const int ratio : {10, 50}) {
     const std::string spheres = fmt::format(
         "count = {}\ndiameter = {{ distribution = \"classes\", values = [{}, {}], shares = [1, 99] }}",
-        ratio == 10 ? 3000 : 1500, 2.0, 2.0 / ratio);
+        ratio == 10 ? 600 : 400, 2.0, 2.0 / ratio);
     add(fmt::format("TwoSizes1To{}InABox", ratio), "cells are as large as the largest", cube, spheres,
-        exactly(ratio == 10 ? 3000 : 1500));
+        exactly(ratio == 10 ? 600 : 400));
     add(fmt::format("TwoSizes1To{}Settled", ratio), "small ones fall between large ones", cube, spheres,
-        exactly(ratio == 10 ? 3000 : 1500), settled);
+        exactly(ratio == 10 ? 600 : 400), settled);
     add(fmt::format("TwoSizes1To{}InAPeriodicBox", ratio), "images of large ones reach far", endless, spheres,
-        exactly(ratio == 10 ? 3000 : 1500));
+        exactly(ratio == 10 ? 600 : 400));
   }
   for (const char* container : {"box", "periodic"})
     add(fmt::format("SizesOfOneToAHundredIn{}", container[0] == 'b' ? "ABox" : "APeriodicBox"),
@@ -84,7 +84,7 @@ std::vector<Case> size_cases() {
   add("DustOfATrillionth", "near the resolution of coordinates", "kind = \"box\"\nsize = [1.0, 1.0, 1.0]",
       "count = 100\nradius = 1e-12", refused("cannot be told apart"));
   add("TiersOfSieves", "three classes 9 : 3 : 1 by volume", cube,
-      "diameter = { distribution = \"classes\", values = [2.7, 0.9, 0.3], shares = [1, 1, 1], basis = "
+      "diameter = { distribution = \"classes\", values = [4.5, 1.5, 0.5], shares = [1, 1, 1], basis = "
       "\"volume\" }",
       explained(1000));
   return cases;

@@ -101,7 +101,7 @@ std::vector<Case> thin_cases() {
                          "count = 500\ndiameter = 0.5"),
                    exactly(500)});
   add("ObliquePlate", "thinner than its places can be searched",
-      turned(test::box_mesh({0, 0, 0}, {1e4, 1e4, 1}), {1, 2, 3}), "count = 50\ndiameter = 0.9", exactly(50));
+      turned(test::box_mesh({0, 0, 0}, {1e3, 1e3, 1}), {1, 2, 3}), "count = 20\ndiameter = 0.9", exactly(20));
   add("ThinShell", "a gap of 0.1 between two round walls", shell(1, 0.9, 3), "count = 300\ndiameter = 0.08", exactly(300));
   add("ShellOneSphereThick", "the gap is a hundredth wider than a sphere", shell(1, 0.79, 4),
       "diameter = 0.2", at_least(20));
@@ -117,7 +117,7 @@ std::vector<Case> thin_cases() {
       at_least(200));
   add("StarOfNeedles", "tips of half a degree: there is room in the middle", star_mesh(60, 1, 0.2, 0.5),
       "diameter = 0.05", explained(50));
-  add("ClosedHelix", "turns that come near each other", test::helix_mesh(), "diameter = 0.25", at_least(300));
+  add("ClosedHelix", "turns that come near each other", test::helix_mesh(), "diameter = 0.35", at_least(100));
   add("RippledTorus", "concave and convex everywhere", test::torus_mesh(1, 0.4, 60, 24, 0.05),
       "diameter = 0.12", at_least(300));
   add("LShape", "one reflex edge", test::l_shape_mesh(1), "diameter = 0.15", at_least(500));
@@ -126,8 +126,8 @@ std::vector<Case> thin_cases() {
       stages({"insert"}) +
           "[[stage]]\ndo = \"compress\"\ndirection = [-1.0, -1.0, -1.0]\n[[stage]]\ndo = "
           "\"refill\"\ndirection = [-1.0, -1.0, -1.0]\n");
-  add("AThousandSolids", "a thousand chambers, each for eight spheres", grid_of_boxes(10), "diameter = 0.45",
-      at_least(4000));
+  add("TwoHundredSolids", "216 chambers, each for eight spheres", grid_of_boxes(6), "diameter = 0.45",
+      at_least(1000));
   add("FewInAThousandSolids", "three spheres among a thousand chambers", grid_of_boxes(10),
       "count = 3\ndiameter = 0.9", exactly(3));
   add("FineSphere", "167 spheres among 81,920 faces", test::icosphere_mesh(1, 6), "diameter = 0.3",
