@@ -1,10 +1,13 @@
 #include <CGAL/IO/OBJ.h>
 #include <CGAL/IO/OFF.h>
+#include <CGAL/IO/OFF/File_header_OFF.h>
 #include <CGAL/IO/PLY.h>
 #include <CGAL/IO/STL.h>
 #include <CGAL/Simple_cartesian.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <sstream>
 
 #include "cad/file_facts.hpp"
@@ -40,6 +43,42 @@ ReadAttempt attempt(const Read& read) {
     result.soup.polygons.emplace_back(polygon.begin(), polygon.end());
   }
   return result;
+}
+
+/// CGAL casts whatever stands in a face of an OFF text to indices, so that 1e300 may become the first vertex,
+/// and makes room for as many corners as the face claims. So the faces are looked through before; empty if
+/// they are good, or if CGAL will see by itself what is wrong.
+std::string wrong_face_of_off(const std::string& text) {
+  std::istringstream in(text);
+  CGAL::File_header_OFF header;
+  in >> header;
+  if (!in || header.binary()) return {};
+  const std::size_t vertices = header.size_of_vertices(), lines = vertices + header.size_of_facets();
+  std::string line;
+  for (std::size_t k = 0; k < lines && std::getline(in, line);) {  // a vertex or face, or but a comment
+    const char *at = line.data(), *const end = at + std::min(line.find('#'), line.size());
+    const auto skip_blanks = [&] {
+      at = std::find_if(at, end, [](char c) { return c != ' ' && c != '\t' && c != '\r'; });
+    };
+    const auto next_below = [&](std::size_t bound) {
+      skip_blanks();
+      double number = -1;
+      at = std::from_chars(at, end, number).ptr;
+      return number >= 0 && number < static_cast<double>(bound) && number == std::floor(number)
+                 ? static_cast<std::size_t>(number)
+                 : bound;
+    };
+    skip_blanks();
+    if (at == end || k++ < vertices) continue;
+    const std::size_t most = line.size(), corners = next_below(most);  // each takes a character and more
+    if (corners == most) return "malformed or truncated";
+    for (std::size_t i = 0; i < corners; ++i) {
+      skip_blanks();
+      if (at == end) return "malformed or truncated";
+      if (next_below(vertices) == vertices) return "a face names a vertex that does not exist";
+    }
+  }
+  return {};
 }
 
 /// The objects of an OBJ file, or its groups if it has none. `faces` is what was read: where that is not what
@@ -83,6 +122,8 @@ bool cgal_reads(const std::filesystem::path& file) {
 ReadAttempt read_with_cgal(const std::filesystem::path& file) {
   const std::string extension = extension_of(file);
   const std::string text = text_without_mark(file);
+  if (extension == ".off")
+    if (std::string wrong = wrong_face_of_off(text); !wrong.empty()) return {.failure = std::move(wrong)};
   ReadAttempt result = attempt([&](Points& points, Polygons& polygons) {
     std::istringstream in(text);
     if (extension == ".off") return CGAL::IO::read_OFF(in, points, polygons);

@@ -17,6 +17,8 @@ template <class... F>
 struct Overloaded : F... {
   using F::operator()...;
 };
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;  // which Clang 14 does not find by itself
 
 Bounds<3> bounds_of_sphere(const Sphere& s) {
   const Vector<3> half = Vector<3>::Constant(s.radius);

@@ -145,6 +145,14 @@ TEST_F(ReadMesh, FilesThatHoldNoMeshAreRefused) {
 TEST_F(ReadMesh, WrongIndicesAndInfiniteCoordinatesAreRefused) {
   EXPECT_NE(refusal("index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"), "was read");
   EXPECT_NE(refusal("negative.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), "was read");
+  for (const std::string face :
+       {"3 0 1 -1", "3 0 1 1e300", "3 0 1 18446744073709551616", "3 0 1 nan", "3 0 1 1.5"})
+    EXPECT_NE(refusal("far.off", "OFF\n3 1 0\n0 0 0\n1 0 0 # 7\n\n# 1 2\n0 1 0\n" + face + " # 2\n")
+                  .find("a face names a vertex that does not exist"),
+              std::string::npos)
+        << face;
+  EXPECT_EQ(refusal("corners.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n1e15 0 1 2\n"),
+            ": cannot be read: malformed or truncated");
   EXPECT_EQ(refusal("short.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
             ": cannot be read: malformed or truncated");
   EXPECT_NE(
