@@ -56,6 +56,7 @@ void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Domain& container = plan.domain;
   const auto make_container = [&] {
+    if (scene.walls == WallArithmetic::exact) return;  // what is only estimated need not be exact
     plan.container =
         ask_container(plan, [&] { return make_local_container(container, frame_of(container), scene.walls); });
   };

@@ -117,9 +117,8 @@ class Run {
     } else {
       frame_ = frame_for(scene_, plan_.domain, *plan_.radii);
       work.domain = to_local(plan_.domain, frame_);
-      if (!packing_.container)
-        packing_.container = make_container(work.domain, scene_.walls, frame_.resolution);
       work.container = packing_.container;
+      if (!work.container) work.container = make_container(work.domain, scene_.walls, frame_.resolution);
       volume = std::pow(frame_.scale, 3) * work.container->volume();
       if (!std::isfinite(source.radii.max()))
         source.cut = tail_cut(scene_, plan_.domain, source.radii, packing_.container);

@@ -19,7 +19,8 @@ struct Plan {
   Domain domain;             ///< in the scene's unit
   bool box_follows = false;  ///< a periodic box whose size is the result: `domain` is a guess
   /// Of a domain that repeats itself nowhere, in its own frame, see `frame_of`: what preparing, running and
-  /// measuring ask about the walls. Null for others, whose walls cost nothing to make; whoever replaces
+  /// measuring ask about the walls. Null for others, whose walls cost nothing to make, and where walls are to be
+  /// decided in exact arithmetic, which estimates and measurements can do without; whoever replaces
   /// `domain` sets it to null, and `run` makes another.
   std::shared_ptr<const Container> container;
   std::string container_notes;              ///< what the importer did: reader, welding, repairs; may be empty
