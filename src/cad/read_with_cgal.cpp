@@ -123,7 +123,8 @@ ReadAttempt read_with_cgal(const std::filesystem::path& file) {
   const std::string extension = extension_of(file);
   const std::string text = text_without_mark(file);
   if (extension == ".off")
-    if (std::string wrong = wrong_face_of_off(text); !wrong.empty()) return {.failure = std::move(wrong)};
+    if (std::string wrong = wrong_face_of_off(text); !wrong.empty())
+      return {.soup = {}, .failure = std::move(wrong)};
   ReadAttempt result = attempt([&](Points& points, Polygons& polygons) {
     std::istringstream in(text);
     if (extension == ".off") return CGAL::IO::read_OFF(in, points, polygons);
