@@ -55,18 +55,24 @@ std::string written(const toml::node& node) {
   return "a date or time";
 }
 
+/// The number in a node, to the nearest double. -0 is 0.
+double number_in(const toml::node& node) {
+  if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
+  return node.as_floating_point()->get() + 0.0;
+}
+
 /// The node as a value, whole numbers as doubles if that is asked for; nothing for tables and dates.
 std::optional<schema::Value> value_in(const toml::node& node, bool as_double) {
   if (const auto* flag = node.as_boolean()) return flag->get();
   if (const auto* text = node.as_string()) return text->get();
   if (const auto* number = node.as_integer(); number && !as_double) return number->get();
-  if (node.is_number()) return *node.value<double>() + 0.0;  // -0 is 0
+  if (node.is_number()) return number_in(node);
   const toml::array* array = node.as_array();
   if (!array) return std::nullopt;
   std::vector<double> numbers;
   for (const toml::node& item : *array) {
     if (!item.is_number()) return std::nullopt;
-    numbers.push_back(*item.value<double>() + 0.0);
+    numbers.push_back(number_in(item));
   }
   return numbers;
 }
