@@ -292,8 +292,8 @@ std::string known_not_to_be_a_mesh(const std::filesystem::path& file) {
     if (text.starts_with(beginning.bytes) && beginning.what.find("native") == std::string_view::npos)
       return fmt::format("is {}", beginning.what);
   std::string extension = extension_of(file);
-  if (extension.find_first_not_of("0123456789", 1) ==
-      std::string::npos)  // Creo numbers its versions: part.prt.12
+  // Creo numbers its versions: part.prt.12
+  if (extension.find_first_not_of("0123456789", 1) == std::string::npos)
     extension = extension_of(file.stem());
   for (const NativeFormat& format : native_formats)
     if (extension == format.extension) return fmt::format("is {}; export STEP or STL", format.what);

@@ -55,24 +55,28 @@ std::unique_ptr<SizeDistribution> cut_above(const SizeDistribution& radii, doubl
 void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Domain& container = plan.domain;
+  const bool exact = scene.walls == WallArithmetic::exact;  // which what is only estimated need not be
+  std::shared_ptr<const Container> made;
   const auto make_container = [&] {
-    if (scene.walls == WallArithmetic::exact) return;  // what is only estimated need not be exact
-    plan.container =
-        ask_container(plan, [&] { return make_local_container(container, frame_of(container), scene.walls); });
+    made = ask_container(plan, [&] {
+      return make_local_container(container, frame_of(container),
+                                  exact ? WallArithmetic::plain : scene.walls);
+    });
   };
   if (std::holds_alternative<Mesh>(container)) make_container();  // what fits into it is asked of it
-  require_fitting(scene, container, plan.container, plan.radii->min());
+  require_fitting(scene, container, made, plan.radii->min());
   const bool has_limit = std::visit(
       [](const auto& kind) {
         return requires { kind.max; };
       },
       scene.sizes);
   if (std::isfinite(plan.radii->max()))
-    require_fitting(scene, container, plan.container, plan.radii->max(),
+    require_fitting(scene, container, made, plan.radii->max(),
                     has_limit ? "give the sizes a \"max\" of that, use smaller ones" : "use smaller ones");
   frame_for(scene, container, *plan.radii);
-  if (!plan.container) make_container();
-  const double cut = tail_cut(scene, container, *plan.radii, plan.container);
+  if (!made) make_container();
+  if (!exact) plan.container = made;
+  const double cut = tail_cut(scene, container, *plan.radii, made);
   const std::unique_ptr<SizeDistribution> without_tail = cut_above(*plan.radii, cut);
   const SizeDistribution& radii = without_tail ? *without_tail : *plan.radii;
   require_long_periods(scene, container, radii.max());
@@ -80,7 +84,7 @@ void expect_in_container(Plan& plan) {
   const double mean_volume = ball_volume(3, 1) * radii.moment(3);
   const double volume = volume_of(container);
   double attainable = plan.attainable_packing_fraction =
-      ask_container(plan, [&] { return expected_packing_fraction(scene, container, radii, plan.container); });
+      ask_container(plan, [&] { return expected_packing_fraction(scene, container, radii, made); });
   resolve_predicted(plan);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   plan.expected_count = attainable * volume / mean_volume;

@@ -43,26 +43,9 @@ Packing packed(Domain container, const std::string& spheres, const std::string& 
   return certified(plan_of(scene, std::move(container)));
 }
 
-/// The z axis turned to a direction.
-Mesh turned(Mesh mesh, const Vector<3>& direction) {
-  const Vector<3> z = direction.normalized(), x = z.unitOrthogonal(), y = z.cross(x);
-  for (Vector<3>& v : mesh.vertices) v = v[0] * x + v[1] * y + v[2] * z;
-  return mesh;
-}
-
-Mesh cubes_apart(double distance) {
-  return joined(box_mesh({0, 0, 0}, {1, 1, 1}),
-                box_mesh(Vector<3>::Constant(1 + distance / std::numbers::sqrt3), {1, 1, 1}));
-}
-
 Mesh row_of_boxes(int count, const Vector<3>& step) {
   Mesh mesh;
-  for (int i = 0; i < count; ++i) {
-    const Mesh box = box_mesh(i * step, {1, 1, 1});
-    const std::uint32_t first = index(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), box.vertices.begin(), box.vertices.end());
-    for (const auto& [a, b, c] : box.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
-  }
+  for (int i = 0; i < count; ++i) append(mesh, box_mesh(i * step, {1, 1, 1}));
   return mesh;
 }
 

@@ -16,7 +16,7 @@ INSTANTIATE_TEST_SUITE_P(, HardCase, ::testing::ValuesIn(hard::all_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST_P(HardCase, EndsAsItMust) {
-  const hard::Case& c = GetParam();
+  const hard::Case c = hard::with_offered_line(GetParam());
   const std::vector<WallArithmetic> levels = hard::levels_of(c);
   const WallArithmetic walls = levels[c.name.size() % levels.size()];
   EXPECT_EQ(hard::objection(c, hard::end_of(c, walls)), "") << name_of(walls);

@@ -82,19 +82,8 @@ inline std::string as_gltf_numbers(const Mesh& mesh) {
   return bytes;
 }
 
-/// 3MF; `unit`: "millimeter", "inch", …
-inline std::string as_3mf(const Mesh& mesh, std::string_view unit) {
-  std::string xml = fmt::format(
-      R"(<?xml version="1.0" encoding="UTF-8"?><model unit="{}" xml:lang="en-US" )"
-      R"(xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1" type="model"><mesh><vertices>)",
-      unit);
-  for (const Vector<3>& v : mesh.vertices)
-    xml += fmt::format(R"(<vertex x="{}" y="{}" z="{}"/>)", v[0], v[1], v[2]);
-  xml += "</vertices><triangles>";
-  for (const auto& [i, j, k] : mesh.triangles)
-    xml += fmt::format(R"(<triangle v1="{}" v2="{}" v3="{}"/>)", i, j, k);
-  xml += R"(</triangles></mesh></object></resources><build><item objectid="1"/></build></model>)";
-
+/// The bytes of a 3MF archive around its model, in XML.
+inline std::string archived_3mf(std::string_view model) {
   const testing::Folder folder;
   const zipFile zip = zipOpen64((folder / "part.3mf").c_str(), 0);
   const auto add = [&](const char* entry, std::string_view content) {
@@ -109,9 +98,24 @@ inline std::string as_3mf(const Mesh& mesh, std::string_view unit) {
       R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">)"
       R"(<Relationship Target="/3D/3dmodel.model" Id="r" )"
       R"(Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)");
-  add("3D/3dmodel.model", xml);
+  add("3D/3dmodel.model", model);
   zipClose(zip, nullptr);
   return testing::text_of(folder / "part.3mf");
+}
+
+/// 3MF; `unit`: "millimeter", "inch", …
+inline std::string as_3mf(const Mesh& mesh, std::string_view unit) {
+  std::string xml = fmt::format(
+      R"(<?xml version="1.0" encoding="UTF-8"?><model unit="{}" xml:lang="en-US" )"
+      R"(xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1" type="model"><mesh><vertices>)",
+      unit);
+  for (const Vector<3>& v : mesh.vertices)
+    xml += fmt::format(R"(<vertex x="{}" y="{}" z="{}"/>)", v[0], v[1], v[2]);
+  xml += "</vertices><triangles>";
+  for (const auto& [i, j, k] : mesh.triangles)
+    xml += fmt::format(R"(<triangle v1="{}" v2="{}" v3="{}"/>)", i, j, k);
+  xml += R"(</triangles></mesh></object></resources><build><item objectid="1"/></build></model>)";
+  return archived_3mf(xml);
 }
 
 }  // namespace bernal::test

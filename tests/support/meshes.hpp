@@ -206,11 +206,28 @@ inline Mesh inverted(Mesh mesh) {
   return mesh;
 }
 
-inline Mesh joined(Mesh mesh, const Mesh& other) {
+inline void append(Mesh& mesh, const Mesh& other) {
   const std::uint32_t first = index(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
   for (const auto& [i, j, k] : other.triangles) mesh.triangles.push_back({first + i, first + j, first + k});
+}
+
+inline Mesh joined(Mesh mesh, const Mesh& other) {
+  append(mesh, other);
   return mesh;
+}
+
+/// The z axis turned to a direction.
+inline Mesh turned(Mesh mesh, const Vector<3>& direction) {
+  const Vector<3> z = direction.normalized(), x = z.unitOrthogonal(), y = z.cross(x);
+  for (Vector<3>& v : mesh.vertices) v = v[0] * x + v[1] * y + v[2] * z;
+  return mesh;
+}
+
+/// Two cubes of edge 1 whose nearest corners are so far apart, along a diagonal of space.
+inline Mesh cubes_apart(double distance) {
+  return joined(box_mesh({0, 0, 0}, {1, 1, 1}),
+                box_mesh(Vector<3>::Constant(1 + distance / std::numbers::sqrt3), {1, 1, 1}));
 }
 
 inline void write_text(const std::filesystem::path& file, const std::string& text) {

@@ -2,7 +2,6 @@
 // name.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <minizip/zip.h>
 
 #include <string>
 
@@ -11,6 +10,7 @@
 #include "cad/file_facts.hpp"
 #include "cad/polygon_soup.hpp"
 #include "cad/stl_file.hpp"
+#include "support/cad_formats.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"
 
@@ -89,22 +89,7 @@ class FileUnits : public ::testing::Test {
                     R"(xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">)"
                     R"(<resources>{}</resources><build>{}</build></model>)",
                     unit, objects, items);
-    const zipFile zip = zipOpen64((folder / name).c_str(), 0);
-    const auto add = [&](const char* entry, const std::string& content) {
-      zipOpenNewFileInZip64(zip, entry, nullptr, nullptr, 0, nullptr, 0, nullptr, 8, 6, 0);
-      zipWriteInFileInZip(zip, content.data(), static_cast<unsigned>(content.size()));
-      zipCloseFileInZip(zip);
-    };
-    add("[Content_Types].xml",
-        R"(<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">)"
-        R"(<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>)");
-    add("_rels/.rels",
-        R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">)"
-        R"(<Relationship Target="/3D/3dmodel.model" Id="r" )"
-        R"(Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)");
-    add("3D/3dmodel.model", model);
-    zipClose(zip, nullptr);
-    return cad::read_with_assimp(folder / name);
+    return read(name, archived_3mf(model));
   }
 
   static std::string fbx(std::string_view settings, std::string_view place = "") {

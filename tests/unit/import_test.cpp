@@ -88,9 +88,7 @@ TEST_F(Import, APipeIsClosedAtBothEnds) {
 }
 
 TEST_F(Import, AnObliqueOpeningIsClosedByTheLineThatIsOffered) {
-  Mesh tilted = without_top(divided(box, 3), 3);
-  const Vector<3> up = Vector<3>(1, -2, 3).normalized(), aside = up.unitOrthogonal(), ahead = up.cross(aside);
-  for (Vector<3>& v : tilted.vertices) v = v[0] * aside + v[1] * ahead + v[2] * up;
+  const Mesh tilted = turned(without_top(divided(box, 3), 3), {1, -2, 3});
   MeshFile open = file(tilted);
   const ImportedMesh as_it_is = read_mesh(open);
   ASSERT_FALSE(as_it_is.report.usable());

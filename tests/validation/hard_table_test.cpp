@@ -11,8 +11,9 @@ INSTANTIATE_TEST_SUITE_P(, HardCaseAtEveryLevel, ::testing::ValuesIn(hard::all_c
                          [](const auto& tested) { return tested.param.name; });
 
 TEST_P(HardCaseAtEveryLevel, EndsAsItMust) {
-  for (const WallArithmetic walls : hard::levels_of(GetParam()))
-    EXPECT_EQ(hard::objection(GetParam(), hard::end_of(GetParam(), walls)), "") << name_of(walls);
+  const hard::Case c = hard::with_offered_line(GetParam());
+  for (const WallArithmetic walls : hard::levels_of(c))
+    EXPECT_EQ(hard::objection(c, hard::end_of(c, walls)), "") << name_of(walls);
 }
 
 }  // namespace hard_table_test

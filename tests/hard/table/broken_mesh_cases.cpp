@@ -127,9 +127,7 @@ std::vector<Case> broken_mesh_cases() {
       refused(""));
   add("Pillow", "two sides of one triangle", Mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}},
       refused(""));
-  Mesh tilted = open_tank;
-  const Vector<3> up = Vector<3>(1, -2, 3).normalized(), aside = up.unitOrthogonal(), ahead = up.cross(aside);
-  for (Vector<3>& v : tilted.vertices) v = v[0] * aside + v[1] * ahead + v[2] * up;
+  const Mesh tilted = turned(open_tank, {1, -2, 3});
   add("ObliqueOpening", "the open end lies across no axis: with the line that was offered", tilted,
       of_volume(at_least(450), 12, 2e-3), "{offered}");
   add("UnweldedByRounding",

@@ -26,6 +26,12 @@ std::string offered_line(const std::filesystem::path& file) {
   return lines.empty() ? "# nothing is offered" : lines.front();
 }
 
+/// The case as files; the path of its scene.
+std::filesystem::path written(const Case& c, const testing::Folder& folder) {
+  for (const File& file : c.files) folder.write(file.name, file.content());
+  return folder.write("scene.toml", c.scene);
+}
+
 End end_of(const std::filesystem::path& file, WallArithmetic walls) {
   End end;
   end.walls = walls;
@@ -61,18 +67,19 @@ End end_of(const std::filesystem::path& file, WallArithmetic walls) {
 
 }  // namespace
 
+Case with_offered_line(Case c) {
+  const std::size_t at = c.scene.find(offered);
+  if (at == std::string::npos) return c;
+  c.scene.erase(at, offered.size());
+  const testing::Folder folder;
+  c.offered = offered_line(written(c, folder));
+  c.scene.insert(at, c.offered);
+  return c;
+}
+
 End end_of(const Case& c, WallArithmetic walls) {
   const testing::Folder folder;
-  for (const File& file : c.files) folder.write(file.name, file.content());
-  std::string text = c.scene, line;
-  if (const std::size_t at = text.find(offered); at != std::string::npos) {
-    text.erase(at, offered.size());
-    line = offered_line(folder.write("scene.toml", text));
-    text.insert(at, line);
-  }
-  End end = end_of(folder.write("scene.toml", text), walls);
-  end.offered = line;
-  return end;
+  return end_of(written(c, folder), walls);
 }
 
 std::vector<WallArithmetic> levels_of(const Case& c) {

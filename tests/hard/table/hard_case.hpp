@@ -56,6 +56,7 @@ struct Case {
       scene;  ///< in TOML; finds `files` beside it; `{offered}` is the line that `bernal inspect` offers
   Expected expected;
   std::vector<File> files = {};
+  std::string offered = {};  ///< the line that took the place of `{offered}`, see `with_offered_line`
 };
 
 std::vector<Case> all_cases();
@@ -74,7 +75,6 @@ std::vector<Case> model_cases();
 /// How a case ended once.
 struct End {
   WallArithmetic walls = WallArithmetic::filtered;
-  std::string offered;  ///< the line that took the place of `{offered}`
   std::string refusal;  ///< where it was refused
   std::size_t spheres = 0;
   double packing_fraction = 0, volume = 0;
@@ -89,6 +89,9 @@ struct End {
 /// The levels of arithmetic for walls that a case is run at: one in a periodic box and where it is to be
 /// refused.
 std::vector<WallArithmetic> levels_of(const Case&);
+/// The case with `{offered}` replaced, if it has that; costs what `bernal inspect` does.
+Case with_offered_line(Case);
+/// Precondition: `{offered}` is replaced.
 End end_of(const Case&, WallArithmetic);
 
 /// What is wrong with an end; empty if nothing is.

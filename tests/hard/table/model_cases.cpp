@@ -80,8 +80,8 @@ std::vector<Case> model_cases() {
       "diameter = 7.0", at_least(100), "", settled);
   add("Tardis", meshes + "openscad_bad_tardis.stl", "crosses itself six times", "diameter = 2.0",
       refused("repair = [\"self-intersections\"]"));
-  add("TardisMended", meshes + "openscad_bad_tardis.stl", "with the line that was offered", "count = 300\ndiameter = 1.5",
-      exactly(300), "{offered}");
+  add("TardisMended", meshes + "openscad_bad_tardis.stl", "with the line that was offered",
+      "count = 300\ndiameter = 1.5", exactly(300), "{offered}");
   add("BlockWithFillets", meshes + "block_fillets_bore.step", "all edges rounded, a bore", "diameter = 4.0",
       at_least(400));
   add("AssemblyInInches", meshes + "assembly_inch.step", "three placed parts", "diameter = 6.0",

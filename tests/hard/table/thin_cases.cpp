@@ -17,28 +17,11 @@ std::vector<File> made(const Mesh& mesh) {
   return {{"part.off", [mesh] { return test::as_off(mesh); }}};
 }
 
-Mesh turned(Mesh mesh, const Vector<3>& direction) {
-  const Vector<3> z = direction.normalized(), x = z.unitOrthogonal(), y = z.cross(x);
-  for (Vector<3>& v : mesh.vertices) v = v[0] * x + v[1] * y + v[2] * z;
-  return mesh;
-}
-
-Mesh cubes_apart(double distance) {
-  return test::joined(test::box_mesh({0, 0, 0}, {1, 1, 1}),
-                      test::box_mesh(Vector<3>::Constant(1 + distance / std::numbers::sqrt3), {1, 1, 1}));
-}
-
 Mesh grid_of_boxes(int along) {
   Mesh mesh;
   for (int x = 0; x < along; ++x)
     for (int y = 0; y < along; ++y)
-      for (int z = 0; z < along; ++z) {
-        const Mesh box = test::box_mesh(1.5 * Vector<3>(x, y, z), {1, 1, 1});
-        const std::uint32_t first = test::index(mesh.vertices.size());
-        mesh.vertices.insert(mesh.vertices.end(), box.vertices.begin(), box.vertices.end());
-        for (const auto& [a, b, c] : box.triangles)
-          mesh.triangles.push_back({first + a, first + b, first + c});
-      }
+      for (int z = 0; z < along; ++z) test::append(mesh, test::box_mesh(1.5 * Vector<3>(x, y, z), {1, 1, 1}));
   return mesh;
 }
 
@@ -89,11 +72,11 @@ std::vector<Case> thin_cases() {
   const std::string settled = stages({"insert", "compress", "shake", "refill"});
   for (const double apart : {100., 1e4}) {
     add(fmt::format("TwoCubes{}Apart", apart), "next to nothing of the bounds is container",
-        cubes_apart(apart), "diameter = 0.2", at_least(100));
-    add(fmt::format("TwoCubes{}ApartSettled", apart), "the same, filled from above", cubes_apart(apart),
+        test::cubes_apart(apart), "diameter = 0.2", at_least(100));
+    add(fmt::format("TwoCubes{}ApartSettled", apart), "the same, filled from above", test::cubes_apart(apart),
         "diameter = 0.2", at_least(100), settled);
   }
-  const Mesh pipe = turned(test::prism_mesh(8, 1, 1000), {1, 1, 1});
+  const Mesh pipe = test::turned(test::prism_mesh(8, 1, 1000), {1, 1, 1});
   add("DiagonalPipe", "1 : 500, a millionth of its bounds", pipe, "diameter = 1.6", at_least(400));
   add("DiagonalPipeSettled", "the same, compressed along z", pipe, "diameter = 1.6", explained(300), settled);
   cases.push_back({thin, "DiagonalCylinder", "1 : 500, oblique",
@@ -101,8 +84,10 @@ std::vector<Case> thin_cases() {
                          "count = 500\ndiameter = 0.5"),
                    exactly(500)});
   add("ObliquePlate", "thinner than its places can be searched",
-      turned(test::box_mesh({0, 0, 0}, {1e3, 1e3, 1}), {1, 2, 3}), "count = 20\ndiameter = 0.9", exactly(20));
-  add("ThinShell", "a gap of 0.1 between two round walls", shell(1, 0.9, 3), "count = 300\ndiameter = 0.08", exactly(300));
+      test::turned(test::box_mesh({0, 0, 0}, {1e3, 1e3, 1}), {1, 2, 3}), "count = 20\ndiameter = 0.9",
+      exactly(20));
+  add("ThinShell", "a gap of 0.1 between two round walls", shell(1, 0.9, 3), "count = 300\ndiameter = 0.08",
+      exactly(300));
   add("ShellOneSphereThick", "the gap is a hundredth wider than a sphere", shell(1, 0.79, 4),
       "diameter = 0.2", at_least(20));
   add("Hourglass", "a neck a tenth as wide as a sphere", test::square_tube_mesh({{0, 1}, {2, 0.02}, {4, 1}}),

@@ -24,7 +24,7 @@ std::string ratio(const Certificate& certificate, double value, bool decided) {
 
 std::string ending(const Case& c, const End& end) {
   if (!end.refusal.empty()) return "refused: " + end.refusal;
-  std::string text = end.offered.empty() ? "" : fmt::format("`{}`: ", end.offered);
+  std::string text = c.offered.empty() ? "" : fmt::format("`{}`: ", c.offered);
   for (char& letter : text)
     if (letter == '\n') letter = ' ';
   text += fmt::format("{} spheres, {:.3f}", end.spheres, end.packing_fraction);
@@ -39,7 +39,8 @@ struct Page {
   double seconds = 0;
 };
 
-void add(Page& page, const Case& c) {
+void add(Page& page, const Case& row) {
+  const Case c = with_offered_line(row);
   std::vector<End> ends;
   for (const WallArithmetic walls : levels_of(c)) ends.push_back(end_of(c, walls));
   const End& end = ends[ends.size() / 2];  // filtered
