@@ -11,6 +11,8 @@
 
 namespace bernal::cad {
 
+class WallTree;
+
 enum class Crossing : std::uint8_t { even, odd, starts_on_wall };
 
 /// The triangles of a closed mesh in a CGAL AABB tree, and the questions a container asks of them. All
@@ -57,8 +59,7 @@ class TriangleTree {
                     const std::function<bool(std::uint32_t)>& ignored) const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<const WallTree> tree_;
 };
 
 }  // namespace bernal::cad

@@ -60,13 +60,13 @@ void Container::contacts(const Vector<3>& c, double r, std::vector<WallContact>&
   thread_local std::vector<NearFacet> near;
   near.clear();
   facets_near(c, r, near);
-  DistinctContacts contacts(r, out);
+  const std::size_t before = out.size();
   for (const NearFacet& n : near) {
     const Vector<3> offset = c - closest_point(n.facet, c);
     const double d = offset.norm();
-    if (d < r && d > 0) contacts.add({offset / d, d});
+    if (d < r && d > 0) out.push_back({offset / d, d});
   }
-  contacts.sort();
+  leave_distinct(out, r, before);
 }
 
 double Container::first_contact(const Vector<3>& c, double r, const Vector<3>& direction,

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "bernal/domain/container.hpp"
@@ -25,11 +26,18 @@ inline bool speaks_for(const WallContact& nearer, const WallContact& contact, do
   return cosine > one_patch || cosine * contact.distance > nearer.distance - in_plane * r;
 }
 
-/// Whether it does so for every point of the box that is no nearer than itself. c is the ball's centre.
+/// What is deeper than this along the normal of the nearer contact, n·(c - x), it pushes for: if it is nearer
+/// than r, that is within the angle.
+inline double spoken_depth(const WallContact& nearer, double r) {
+  return std::min(nearer.distance - in_plane * r, one_patch * r);
+}
+
+/// Whether it pushes for every point of the box that is no nearer than itself, but nearer than r. c is the
+/// ball's centre.
 inline bool speaks_for_all(const WallContact& nearer, const Bounds<3>& box, const Vector<3>& c, double r) {
   const Vector<3> half = 0.5 * box.size(), w = c - box.center();
   const double along = nearer.normal.dot(w);
-  if (along - nearer.normal.cwiseAbs().dot(half) > nearer.distance - in_plane * r) return true;
+  if (along - nearer.normal.cwiseAbs().dot(half) > spoken_depth(nearer, r)) return true;
   // The box in the ball around it, seen from c under twice the angle whose sine is this.
   const double squared = w.squaredNorm(), squared_ball = half.squaredNorm();
   if (!(along > 0) || squared_ball >= squared) return false;
@@ -37,40 +45,20 @@ inline bool speaks_for_all(const WallContact& nearer, const Bounds<3>& box, cons
   return along * std::sqrt(squared - squared_ball) - across * std::sqrt(squared_ball) > one_patch * squared;
 }
 
-/// The contacts of one ball that push for themselves, as they are found in any order: each that is found
-/// drives out those farther ones that it speaks for.
-class DistinctContacts {
- public:
-  /// Appends to `out`, which outlives this.
-  DistinctContacts(double r, std::vector<WallContact>& out) : r_(r), first_(out.size()), out_(out) {}
+/// Whether one of the contacts, all of them nearer, pushes for it.
+inline bool is_spoken_for(std::span<const WallContact> nearer, const WallContact& contact, double r) {
+  return std::ranges::any_of(nearer, [&](const WallContact& known) { return speaks_for(known, contact, r); });
+}
 
-  void add(const WallContact& contact) {
-    const auto begin = out_.begin() + static_cast<std::ptrdiff_t>(first_);
-    for (auto other = begin; other != out_.end(); ++other)
-      if (other->distance <= contact.distance && speaks_for(*other, contact, r_)) return;
-    out_.erase(std::remove_if(begin, out_.end(),
-                              [&](const WallContact& other) {
-                                return other.distance > contact.distance && speaks_for(contact, other, r_);
-                              }),
-               out_.end());
-    out_.push_back(contact);
-  }
-
-  template <class Holds>
-  bool any(const Holds& holds) const {
-    return std::any_of(out_.begin() + static_cast<std::ptrdiff_t>(first_), out_.end(), holds);
-  }
-
-  /// Nearest first.
-  void sort() {
-    std::sort(out_.begin() + static_cast<std::ptrdiff_t>(first_), out_.end(),
-              [](const WallContact& a, const WallContact& b) { return a.distance < b.distance; });
-  }
-
- private:
-  double r_;
-  std::size_t first_;
-  std::vector<WallContact>& out_;
-};
+/// Leaves of the contacts from number `first` on those that push for themselves, nearest first.
+inline void leave_distinct(std::vector<WallContact>& contacts, double r, std::size_t first = 0) {
+  const auto begin = contacts.begin() + static_cast<std::ptrdiff_t>(first);
+  std::sort(begin, contacts.end(),
+            [](const WallContact& a, const WallContact& b) { return a.distance < b.distance; });
+  auto end = begin;
+  for (auto contact = begin; contact != contacts.end(); ++contact)
+    if (!is_spoken_for({begin, end}, *contact, r)) *end++ = *contact;
+  contacts.erase(end, contacts.end());
+}
 
 }  // namespace bernal

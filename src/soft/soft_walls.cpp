@@ -44,20 +44,6 @@ void shorten(SoftSphere& to, const SoftSphere& from, double share) {
   }
 }
 
-/// Leaves, in ascending order of distance, those contacts that push for themselves.
-void leave_distinct(std::vector<WallContact>& contacts, double r) {
-  std::sort(contacts.begin(), contacts.end(),
-            [](const WallContact& a, const WallContact& b) { return a.distance < b.distance; });
-  std::size_t kept_so_far = 0;
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const WallContact contact = contacts[k];
-    const auto end = contacts.begin() + static_cast<std::ptrdiff_t>(kept_so_far);
-    const auto speaks_for_it = [&](const WallContact& nearer) { return speaks_for(nearer, contact, r); };
-    if (std::none_of(contacts.begin(), end, speaks_for_it)) contacts[kept_so_far++] = contact;
-  }
-  contacts.resize(kept_so_far);
-}
-
 }  // namespace
 
 SoftWalls::SoftWalls(const Container& container, const Vector<3>& corner, const Vector<3>& unit,
