@@ -1,5 +1,9 @@
 // The command: one subcommand a file; this one only turns what they throw into a line and an exit code.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -41,9 +45,18 @@ int complain(std::string what) {
   return exit_code::bad_input;
 }
 
+/// A stream that the caller has closed becomes one that goes nowhere, or the next file that is opened would get
+/// what is meant for the stream.
+void open_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) == -1 && errno == EBADF)
+      [[maybe_unused]] const int lowest_free = open("/dev/null", O_RDWR);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_closed_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is an error to report, not a reason to die
   int status = exit_code::done;
   try {

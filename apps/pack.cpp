@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -74,9 +75,9 @@ Scene scene_of(const PackCall& call) {
 }
 
 void print_result(const Packing& packing, const WrittenPacking& written) {
-  fmt::print(stderr, "packed     {} spheres, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
-             grouped(packing.spheres.size()), packing.packing_fraction(), packing.expected_packing_fraction,
-             packing.seconds);
+  fmt::print(stderr, "packed     {}, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
+             packing.spheres.size() == 1 ? "1 sphere" : grouped(packing.spheres.size()) + " spheres",
+             packing.packing_fraction(), packing.expected_packing_fraction, packing.seconds);
   fmt::print(stderr, "outcome    {}: {}\n", name_of(packing.outcome), packing.reason);
   fmt::print(stderr, "proof      {}\n", written.certificate.statement);
   for (std::size_t i = 0; i < written.files.size(); ++i)
@@ -97,9 +98,12 @@ int pack(const PackCall& call) {
   bar.now("prepare");
   const Packing packing = run(plan, {call.seed, call.threads, monitor});
   bar.now("measure");
-  // What was stopped is written as a whole; a second interrupt kills.
+  // What was stopped is written as a whole, with what can be measured at once; a second interrupt kills.
   const bool stopped = packing.outcome == Outcome::cancelled;
-  const WrittenPacking written = write_packing(packing, folder, stopped ? Monitor{} : monitor);
+  const auto at_once = [end = std::chrono::steady_clock::now() + std::chrono::milliseconds(300)] {
+    return std::chrono::steady_clock::now() > end;
+  };
+  const WrittenPacking written = write_packing(packing, folder, stopped ? Monitor{{}, at_once} : monitor);
   bar.clear();
   if (!stopped && interrupted())
     fmt::print(stderr, "bernal: measuring was stopped; bernal measure {} makes up for it\n", folder.string());

@@ -139,6 +139,7 @@ MeshReport diagnose_mesh(Triangles& triangles) {
   repaired(triangles.triangulated, "triangulated", "polygon", "polygons");
   repaired(triangles.collapsed, "dropped", "face without area", "faces without area");
   repaired(triangles.repeated, "dropped", "repeated face", "repeated faces");
+  repaired(triangles.back_sides, "dropped the back of", "face", "faces");
   report.duplicate_faces = triangles.repeated;
 
   report.faces = mesh.triangles.size();

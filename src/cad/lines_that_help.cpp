@@ -69,11 +69,32 @@ std::string sum_of_coordinates(const Vector<3>& multiples) {
   return text;
 }
 
+/// The plane through a rim, and how far the rim reaches beyond it.
+struct RimPlane {
+  Vector<3> outward;
+  double level, ragged;
+
+  double beyond(const Vector<3>& p) const { return outward.dot(p) - level; }
+};
+
+/// Whether the plane cuts off what is none of its opening's business: another opening, or more of the part
+/// than a brim.
+bool cuts_off_more(const RimPlane& plane, const cad::OpenRim& own, const std::vector<cad::OpenRim>& rims,
+                   const Mesh& mesh, double brim, double rounding) {
+  const auto is_beyond = [&](double by) {
+    return [&plane, by](const Vector<3>& p) { return plane.beyond(p) > by; };
+  };
+  for (const cad::OpenRim& other : rims)
+    if (&other != &own && std::ranges::any_of(other.ends, is_beyond(plane.ragged + rounding))) return true;
+  return std::ranges::any_of(mesh.vertices, is_beyond(brim + rounding));
+}
+
 Openings openings_of(const Mesh& mesh, const Bounds<3>& part) {
   const double rounding = cad::rounding_of_coordinates(mesh);
   Openings found;
   auto& planes = found.planes;
-  for (const cad::OpenRim& rim : cad::open_rims(mesh)) {
+  const std::vector<cad::OpenRim> rims = cad::open_rims(mesh);
+  for (const cad::OpenRim& rim : rims) {
     const double width = rim.bounds.size().maxCoeff();
     const bool wide = rim.bounds.diagonal() >= narrowest_opening * part.diagonal();
     const double deepest = wide ? deepest_opening * width : rounding;
@@ -84,9 +105,13 @@ Openings openings_of(const Mesh& mesh, const Bounds<3>& part) {
       highest = std::max(highest, across.dot(p));
     }
     if (highest - lowest > deepest) continue;
-    found.wide = found.wide || wide;
     const double middle = across.dot(part.center());
-    const double level = lowest + highest > 2 * middle ? lowest : highest;
+    const bool is_above = lowest + highest > 2 * middle;
+    const double level = is_above ? lowest : highest, length = across.norm();
+    const RimPlane plane_of_rim{(is_above ? 1 : -1) * across / length, (is_above ? level : -level) / length,
+                                (highest - lowest) / length};
+    if (cuts_off_more(plane_of_rim, rim, rims, mesh, deepest_opening * width, rounding)) continue;
+    found.wide = found.wide || wide;
     const std::string plane =
         fmt::format("{} = {}", sum_of_coordinates(across), rounded(level, middle - level, rounding));
     if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
@@ -141,6 +166,21 @@ std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_
   return lines;
 }
 
+/// To close what is so wide that it could be an open top, but that no plane closes.
+std::vector<Line> to_close_the_widest(const MeshFile& options, const ImportedMesh& as_it_is) {
+  const bool closes_holes = std::ranges::find(options.repair, Repair::holes) != options.repair.end();
+  if (as_it_is.report.open_edges == 0 || options.largest_hole || !(options.repair.empty() || closes_holes))
+    return {};
+  const double widest = cad::open_rims(as_it_is.mesh).front().bounds.diagonal();
+  const std::string number = fmt::format("{:.2g}", 1.06 * widest);  // two digits may be 5 % less
+  const std::string text = "largest_hole = " + number;
+  return {{closes_holes ? text : fmt::format("repair = [\"holes\"]\n{}", text),
+           [closes_holes, largest = std::stod(number)](MeshFile& m) {
+             if (!closes_holes) m.repair = {Repair::holes};
+             m.largest_hole = largest;
+           }}};
+}
+
 /// Whether the surface has an inside that can be wrapped: tried coarsely, in seconds.
 bool can_be_wrapped(const Mesh& mesh, double diagonal) {
   constexpr double coarse = 0.05, offset_over_alpha = 1.0 / 30;
@@ -164,14 +204,18 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
       return false;
     }
   };
-  for (const Line& line : candidates(options, as_it_is)) {
-    const auto is_part = [&](const std::string& shorter) {
-      return line.text.find(shorter) != std::string::npos;
-    };
-    if (std::ranges::any_of(lines, is_part)) continue;  // less will do
-    if (helps(line)) lines.push_back(line.text);
-    if (lines.size() == enough) break;
-  }
+  const auto try_all = [&](const std::vector<Line>& some) {
+    for (const Line& line : some) {
+      const auto is_part = [&](const std::string& shorter) {
+        return line.text.find(shorter) != std::string::npos;
+      };
+      if (std::ranges::any_of(lines, is_part)) continue;  // less will do
+      if (helps(line)) lines.push_back(line.text);
+      if (lines.size() == enough) break;
+    }
+  };
+  try_all(candidates(options, as_it_is));
+  if (lines.empty()) try_all(to_close_the_widest(options, as_it_is));
   if (lines.empty() && effort == Effort::thorough && options.repair.empty() &&
       can_be_wrapped(as_it_is.mesh, as_it_is.report.bounds.diagonal()))
     lines.emplace_back("repair = [\"wrap\"]");

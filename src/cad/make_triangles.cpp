@@ -40,6 +40,20 @@ std::array<std::uint32_t, 3> smallest_first(std::array<std::uint32_t, 3> t) {
   return t;
 }
 
+/// Where every triangle is there in both orientations, as programs export that draw both sides of a face,
+/// leaves the first of each two. Returns how many went.
+std::uint64_t drop_back_sides(std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  boost::unordered_set<std::array<std::uint32_t, 3>> there;
+  for (const auto& t : triangles) there.insert(smallest_first(t));
+  const auto turned = [](const auto& t) { return smallest_first({t[0], t[2], t[1]}); };
+  if (!std::ranges::all_of(triangles, [&](const auto& t) { return there.count(turned(t)) > 0; })) return 0;
+  return std::erase_if(triangles, [&](const auto& t) {
+    if (there.count(smallest_first(t)) == 0) return true;
+    there.erase(turned(t));
+    return false;
+  });
+}
+
 }  // namespace
 
 Triangles make_triangles(const PolygonSoup& soup) {
@@ -85,6 +99,7 @@ Triangles make_triangles(const PolygonSoup& soup) {
       ++result.repeated;
     }
   }
+  result.back_sides = drop_back_sides(result.mesh.triangles);
   return result;
 }
 

@@ -12,6 +12,7 @@ struct Triangles {
   std::uint64_t welded = 0;        ///< points that equal an earlier one
   std::uint64_t triangulated = 0;  ///< polygons with more than three corners
   std::uint64_t collapsed = 0;     ///< polygons with fewer than three distinct corners, dropped
+  std::uint64_t back_sides = 0;  ///< triangles of a surface that is there in both orientations, dropped
   std::uint64_t repeated = 0;  ///< triangles with the corners and the orientation of an earlier one, dropped
 };
 

@@ -165,14 +165,17 @@ std::string_view remedy(const MeshReport& report) {
 
 /// The repairs that are asked for, and what they did.
 struct Repairs {
-  Repairs(const std::vector<Repair>& wanted_ones, Mesh& surface, std::vector<std::string>& phrases)
-      : wanted(wanted_ones), mesh(surface), done(phrases) {}
+  Repairs(const MeshFile& options, Mesh& surface, std::vector<std::string>& phrases)
+      : wanted(options.repair),
+        largest_hole(options.largest_hole.value_or(std::numeric_limits<double>::infinity())),
+        mesh(surface),
+        done(phrases) {}
 
   void apply(Repair repair) {
     if (std::ranges::find(wanted, repair) == wanted.end() || mesh.triangles.empty()) return;
     if (repair == Repair::wrap && cad::topology_of(mesh).closed() && cad::count_self_intersections(mesh) == 0)
       return;  // it is a wall
-    cad::Mended mended = repair == Repair::holes  ? cad::close_holes(mesh, infinity)
+    cad::Mended mended = repair == Repair::holes  ? cad::close_holes(mesh, largest_hole)
                          : repair == Repair::wrap ? cad::wrap(mesh)
                                                   : cad::cut_out_crossings(mesh);
     done.push_back(mended.done);
@@ -189,8 +192,8 @@ struct Repairs {
     mesh = std::move(mended.mesh);
   }
 
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::vector<Repair>& wanted;
+  double largest_hole;
   Mesh& mesh;
   std::vector<std::string>& done;
   bool any = false;  ///< it is no longer the file's surface
@@ -278,8 +281,10 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   turn_up(mesh, options.up);
   close_seams_of(triangles, options.weld.value_or(rounding), done);
   if (!options.solids.empty() && by_piece) keep_pieces(mesh, options);
+  if (options.largest_hole && std::ranges::find(options.repair, Repair::holes) == options.repair.end())
+    throw OptionError("largest_hole", "needs repair = [\"holes\"] beside it, which closes them");
   const bool cuts = !options.cap.empty() || options.fill_level;
-  Repairs repairs(options.repair, mesh, done);
+  Repairs repairs(options, mesh, done);
   // An opening that a plane is to close is no hole.
   if (!cuts) repairs.apply(Repair::holes);
   repairs.apply(Repair::self_intersections);
@@ -326,11 +331,15 @@ ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpo
   std::vector<std::string> lines = lines_that_help(options, purpose, result, Effort::quick);
   for (std::string& line : lines)
     if (const std::size_t end = line.find('\n'); end != std::string::npos) line.replace(end, 1, " with ");
-  const std::string help = lines.empty() ? fmt::format("{}; bernal inspect tries a wrap", remedy(result.report))
-                                         : fmt::format("in [container], {} helps", fmt::join(lines, ", or "));
-  throw Error(ErrorCode::bad_mesh,
-              fmt::format("cannot be a container: {} ({})", fmt::join(result.report.problems, ", "), help),
-              {options.file.string()});
+  const std::string help = lines.empty()
+                               ? fmt::format("{}; bernal inspect tries a wrap", remedy(result.report))
+                               : fmt::format("in [container], {} helps", fmt::join(lines, ", or "));
+  const std::string tried =
+      options.repair.empty() ? "" : fmt::format("{}; ", fmt::join(result.report.repairs, "; "));
+  throw Error(
+      ErrorCode::bad_mesh,
+      fmt::format("cannot be a container: {} ({}{})", fmt::join(result.report.problems, ", "), tried, help),
+      {options.file.string()});
 }
 
 }  // namespace bernal

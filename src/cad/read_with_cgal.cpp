@@ -8,7 +8,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iostream>
 #include <sstream>
+
+#include <fmt/format.h>
 
 #include "cad/file_facts.hpp"
 #include "cad/polygon_soup.hpp"
@@ -20,12 +23,26 @@ using SoupPoint = CGAL::Simple_cartesian<double>::Point_3;
 using Points = std::vector<SoupPoint>;
 using Polygons = std::vector<std::vector<std::size_t>>;
 
+/// While it lives nothing comes out of std::cerr, where CGAL says what the caller says in one line of its
+/// own.
+class Silence {
+ public:
+  Silence() : out_(std::cerr.rdbuf(nullptr)) {}
+  ~Silence() { std::cerr.rdbuf(out_); }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+ private:
+  std::streambuf* out_;
+};
+
 template <typename Read>
 ReadAttempt attempt(const Read& read) {
   Points points;
   Polygons polygons;
   ReadAttempt result;
   try {
+    const Silence silence;
     if (!read(points, polygons)) result.failure = "malformed or truncated";
   } catch (const std::exception& error) {
     result.failure = error.what();
@@ -81,6 +98,28 @@ std::string wrong_face_of_off(const std::string& text) {
   return {};
 }
 
+/// CGAL reads the coordinates of a PLY file as float or double and the corners of its faces as int or uint;
+/// what else this one has them in, or empty.
+std::string other_numbers_in_ply(const std::string& text) {
+  const auto is_one_of = [](const std::string& type, std::initializer_list<std::string_view> known) {
+    return std::ranges::find(known, type) != known.end();
+  };
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line) && !line.starts_with("end_header");) {
+    std::istringstream words(line);
+    std::string word, type, count, name;
+    if (!(words >> word >> type) || word != "property") continue;
+    const bool list = type == "list";
+    if (list) words >> count >> type;
+    words >> name;
+    if (list && name.starts_with("vertex_ind") && !is_one_of(type, {"int", "uint", "int32", "uint32"}))
+      return fmt::format("its faces give their vertices as {}; write these as int", type);
+    if (is_one_of(name, {"x", "y", "z"}) && !is_one_of(type, {"float", "double", "float32", "float64"}))
+      return fmt::format("its coordinates are {}; write them as double", type);
+  }
+  return {};
+}
+
 /// The objects of an OBJ file, or its groups if it has none. `faces` is what was read: where that is not what
 /// the text holds, nothing is told.
 std::vector<Solid> obj_parts(std::string_view text, std::size_t faces) {
@@ -125,6 +164,9 @@ ReadAttempt read_with_cgal(const std::filesystem::path& file) {
   if (extension == ".off")
     if (std::string wrong = wrong_face_of_off(text); !wrong.empty())
       return {.soup = {}, .failure = std::move(wrong)};
+  if (extension == ".ply")
+    if (std::string other = other_numbers_in_ply(text); !other.empty())
+      return {.soup = {}, .failure = std::move(other)};
   ReadAttempt result = attempt([&](Points& points, Polygons& polygons) {
     std::istringstream in(text);
     if (extension == ".off") return CGAL::IO::read_OFF(in, points, polygons);

@@ -145,6 +145,15 @@ Mesh outward_mesh_of(const Surface& surface) {
   return mesh;
 }
 
+/// Whether a wrapped surface holds next to nothing but the offset from a sheet, on both of its sides.
+bool is_but_a_skin(const Mesh& mesh, double offset) {
+  double area = 0;
+  for (const auto& [i, j, k] : mesh.triangles)
+    area += 0.5 * (mesh.vertices[j] - mesh.vertices[i]).cross(mesh.vertices[k] - mesh.vertices[i]).norm();
+  constexpr double more = 1.5;  // at its rim, and where it bends
+  return volume_of(Domain(mesh)) < more * area * offset;
+}
+
 bool lies_within(const Mesh& mesh, const Bounds<3>& bounds) {
   return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const Vector<3>& v) {
     return (v.array() >= bounds.lower.array()).all() && (v.array() <= bounds.upper.array()).all();
@@ -182,6 +191,12 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
     Mesh outer = outward_mesh_of(wrapped(mesh, alpha, offset, {}, monitor));
     if (outer.triangles.empty())
       return {std::move(mesh), fmt::format("not wrapped ({}): nothing came out", how)};
+    if (is_but_a_skin(outer, offset))
+      return {
+          std::move(mesh),
+          fmt::format("not wrapped ({}): {}, and from outside there is but the skin of a sheet; close its "
+                      "openings by \"cap\" or repair = [\"holes\"] first",
+                      how, why)};
     return {
         std::move(outer),
         fmt::format("wrapped from outside ({}) because {}: the surface lies within the result", how, why)};

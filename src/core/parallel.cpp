@@ -41,7 +41,14 @@ void parallel_ranges(std::size_t n, std::size_t grain,
 }
 
 void parallel_both(const std::function<void()>& one, const std::function<void()>& other) {
-  oneapi::tbb::parallel_invoke(one, other);
+  const auto listening = [monitor = listens_to](const std::function<void()>& body) {
+    return [&body, monitor] {
+      const Listening here(monitor);
+      throw_if_interrupted();
+      body();
+    };
+  };
+  oneapi::tbb::parallel_invoke(listening(one), listening(other));
 }
 
 }  // namespace bernal

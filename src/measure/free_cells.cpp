@@ -57,6 +57,7 @@ Vector<3> FreeCells::center_of(const Cell& c, int size) const {
 void FreeCells::refine(const Cell& cell, int size, std::vector<Node>& out) const {
   for (int k = 0; k < 3; ++k)
     if (cell[k] >= count_[k]) return;
+  throw_if_interrupted();
   const Vector<3> center = center_of(cell, size);
   const double r = space_.radius(), reach = widening * half_diagonal * size * edge_;
   const double clearance = space_.container().clearance_within(center, r + reach);

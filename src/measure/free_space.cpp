@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/parallel.hpp"
+
 namespace bernal {
 namespace {
 
@@ -59,6 +61,7 @@ class HalfSpaces {
 }  // namespace
 
 std::optional<Place> FreeSpace::nearest(const Vector<3>& p, double limit) const {
+  throw_if_interrupted();
   HalfSpaces beyond(p);
   std::vector<NearFacet> facets;
   for (;;) {

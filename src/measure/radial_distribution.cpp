@@ -94,9 +94,8 @@ Histogram count_distances(const Spheres<D>& spheres, const Boundary<D>& boundary
                           double work, std::uint64_t& references) {
   const std::size_t n = spheres.size();
   const Surroundings<D> surroundings(spheres, boundary, empty.reach());
-  const double affordable =
-      std::clamp(work / surroundings.cost(), 1.0 * fewest_references, static_cast<double>(n));
-  const std::size_t looked_from = std::min(n, static_cast<std::size_t>(affordable));
+  const double affordable = std::max(work / surroundings.cost(), 1.0 * fewest_references);
+  const auto looked_from = static_cast<std::size_t>(std::min(affordable, static_cast<double>(n)));
   std::vector<Histogram> parts((looked_from + references_a_part - 1) / references_a_part, empty);
   parallel_for(parts.size(), [&](std::size_t part) {
     for (std::size_t k = part * references_a_part; k < std::min(looked_from, (part + 1) * references_a_part);

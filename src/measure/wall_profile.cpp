@@ -98,6 +98,7 @@ std::vector<Filling> fill(const Container& container, const Spheres<3>& spheres,
     std::vector<std::uint32_t> inside(zones.count());
     for (std::size_t i = part * spheres_a_part; i < std::min(spheres.size(), (part + 1) * spheres_a_part);
          ++i) {
+      throw_if_interrupted();
       const double r = spheres.r[i], v = ball_volume(3, r);
       std::ranges::fill(inside, 0u);
       const bool beyond = clearance[i] - r >= reach;

@@ -238,11 +238,19 @@ FillTask fill_task_of(const Plan& plan) {
   return task;
 }
 
+void require_stage_that_places(const Scene& scene) {
+  if (any_stage(scene, &StageTraits::only_moves, false)) return;
+  throw Error(ErrorCode::bad_scene,
+              "the stages only move spheres, and none places any: begin with \"insert\" or \"relax\"",
+              scene.stages.front().locations.whole);
+}
+
 Plan build(const Scene& stated) {
   Plan plan;
   plan.scene = stated;
   complete(plan.scene);
   const Scene& scene = plan.scene;
+  require_stage_that_places(scene);
   require_effect_of_accuracy(scene);
   plan.domain = domain_of(plan.scene, plan.container_notes);
   plan.radii = radii_of(scene);

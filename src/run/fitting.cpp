@@ -77,8 +77,8 @@ Largest largest_in(const Domain& shape, const std::shared_ptr<const Container>& 
 
 }  // namespace
 
-void require_fitting(const Scene& scene, const Domain& container, const std::shared_ptr<const Container>& made,
-                     double radius, std::string_view remedy) {
+void require_fitting(const Scene& scene, const Domain& container,
+                     const std::shared_ptr<const Container>& made, double radius, std::string_view remedy) {
   Largest largest{largest_fitting_radius(container), largest_fitting_radius(container)};
   if (std::holds_alternative<Mesh>(container) &&
       radius > surely_fitting * volume_of(container) / area_of(container))
@@ -164,6 +164,16 @@ Frame frame_for(const Scene& scene, const Domain& container, const SizeDistribut
 void require_memory(const Plan& plan) {
   const double there =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  // All that are asked for are drawn, though far fewer may find a place.
+  constexpr double times_too_many = 1000, cheap_to_draw = 1e7;
+  const double asked = plan.scene.target.count ? static_cast<double>(*plan.scene.target.count) : 0;
+  if (asked > cheap_to_draw && asked > times_too_many * plan.expected_count)
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("{:.3g} spheres are asked for, and about {:.3g} fit: check the units, or ask for a "
+                    "packing fraction",
+                    asked, plan.expected_count),
+        plan.scene.target.where);
   const bool too_many = !(plan.expected_count < Supply::most_spheres);
   if (!too_many && plan.expected_memory_bytes <= there) return;
   throw Error(ErrorCode::bad_scene,

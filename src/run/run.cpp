@@ -198,6 +198,7 @@ class Run {
       end = run_stage(stage, work);
       if (end == StageEnd::cancelled) before.give_back_if_denser(work);
       if (end == StageEnd::cancelled && bed) bed->give_back_if_denser(work);
+      if (end == StageEnd::cancelled && !work.stands_in_bed() && !work.placed) work.spheres.resize(0);
       if (in_bed) work.milestone(stage.name());
       if (end == StageEnd::cancelled) break;
     }

@@ -25,6 +25,7 @@ struct StageTraits {
   bool places_expected = false;  ///< in a bed it places as many spheres as are expected to fit
   bool leaves_overlap = false;   ///< in a box it may leave as much overlap as [accuracy] allows
   bool fills_given_box = false;  ///< it needs a box of given size and the end that it is filled to
+  bool only_moves = false;       ///< it places no sphere
   bool is_default = false;       ///< it packs a scene that names no stage
   Reaches reaches = Reaches::nothing;
 

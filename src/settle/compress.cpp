@@ -172,7 +172,7 @@ const StageEntry& entry_of<Compress>() {
       .table = stage_table<Compress>({.name = "compress",
                                       .help = "move every sphere along a direction until it touches",
                                       .keys = compression_keys()},
-                                     {.in_bed = true}),
+                                     {.in_bed = true, .only_moves = true}),
       .act_in_bed = act(compress),
       .bed_effects = {neighbor_lists, compressing("to first touch along the global and local directions")},
       .require = of_options(+[](const Compress& o, const Domain& domain, double) {

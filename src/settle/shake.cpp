@@ -41,7 +41,7 @@ const StageEntry& entry_of<Shake>() {
                            number(&Shake::amplitude, "amplitude", "longest way in one sweep, in mean radii",
                                   above(0, 100))},
                           inside(&Shake::compress, compression_keys()))},
-          {.in_bed = true}),
+          {.in_bed = true, .only_moves = true}),
       .act_in_bed = act(shake),
       .bed_effects = {neighbor_lists,
                       {"shaking", "local directions across the global one",

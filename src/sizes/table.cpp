@@ -93,7 +93,8 @@ std::unique_ptr<SizeDistribution> make_table(std::vector<double> radii, std::vec
   breaks.push_back(radii.back());
   const double largest = radii.back();
   const auto density = [=, spline = std::move(spline)](double r) {
-    const auto beyond = std::ranges::upper_bound(spline, r, {}, &Cubic::x);
+    // Between two radii next to each other a sample may be rounded out of them.
+    const auto beyond = std::ranges::upper_bound(spline.begin() + 1, spline.end(), r, {}, &Cubic::x);
     const Cubic& cubic = *std::prev(beyond);
     const double f = std::max(0.0, cubic.at(r - cubic.x));
     return basis == Basis::volume ? f / cube(r / largest) : f;

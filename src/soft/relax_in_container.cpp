@@ -89,6 +89,7 @@ class Relaxation {
 
   /// A random place at which a sphere clears the wall, if there is any to be found, else the best.
   Vector<3> place_for(double r) {
+    if (work_.monitor.stop()) throw Cancelled();
     const Container& container = work_.bed().container();
     Vector<3> best = Vector<3>::Zero();
     double most = 0;

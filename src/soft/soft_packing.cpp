@@ -97,12 +97,14 @@ double SoftPacking::move_all(float omega, bool measure) {
   if (measure) squeeze_.assign(spheres_.size(), 0);
   const SweepTask task{spheres_.data(), lists_.groups(), scale_of(edges_),
                        omega,           walls_.get(),    measure ? squeeze_.data() : nullptr};
+  const bool in_one_thread = count_ < worth_threads;
+  if (walls_ && in_one_thread) walls_->push_ahead(spheres_);
   std::vector<float> largest(spheres_.size() / lanes + 1, 0.0f);
   for (const std::vector<Chain>& chains : lists_.phases()) {
     const auto sweep = [&](std::size_t c) {
       largest[chains[c].first] = kernels_.sweep(task, chains[c].first, chains[c].last);
     };
-    if (count_ < worth_threads || chains.size() == 1) {
+    if (in_one_thread || chains.size() == 1) {
       for (std::size_t c = 0; c < chains.size(); ++c) sweep(c);
     } else {
       tbb::parallel_for(std::size_t{0}, chains.size(), sweep);

@@ -74,13 +74,13 @@ void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<
   for (std::size_t p = 0; p < spheres.size(); ++p) {
     if (!(spheres[p].r > 0) || near[p]) continue;
     const Vector<3> from = place(built_at[p]);
-    const Vector<3> way = way_between(built_at[p], spheres[p]);
-    const double length = way.norm();
+    const Vector<3> move = way_between(built_at[p], spheres[p]);
+    const double length = move.norm();
     if (!(length > 0)) continue;
     const View& view = views_[ids[p]];
     if (length < view.clearance - way(view.at, from).norm()) continue;
     ++queries_;
-    const double free = container_.first_contact(from, 0, way / length, length);
+    const double free = container_.first_contact(from, 0, move / length, length);
     if (free < length) shorten(spheres[p], built_at[p], (1 - kept) * free / length);
   }
 }
@@ -130,6 +130,8 @@ void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<
   near_.clear();
   until_.clear();
   least_until_.clear();
+  has_fine_ = false;
+  ahead_.clear();
   for (std::size_t g = 0; g < groups; ++g) {
     for (std::uint32_t l = 0; l < lanes; ++l) {
       if (near_lanes[g] >> l & 1) add_near(l, ids[g * lanes + l], spheres[g * lanes + l]);
@@ -148,6 +150,7 @@ void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere&
                   place(sphere),
                   0,
                   0};
+  has_fine_ |= view.is_fine;
   const double moved = way(view.at, near.last).norm();
   near.beyond = (view.is_fine ? view.clearance : view.reach) - moved;
   for (const Piece& piece : view.pieces) {
@@ -205,7 +208,22 @@ double SoftWalls::ask(NearSphere& near, double r, std::vector<WallContact>& cont
   return nearest;
 }
 
+void SoftWalls::push_ahead(const std::vector<SoftSphere>& spheres) {
+  if (!has_fine_) return;
+  ahead_.resize(first_.size() - 1);
+  parallel_for(ahead_.size(), [&](std::size_t g) {
+    if (near(g)) work_out(g, spheres.data() + lanes * g, ahead_[g]);
+  });
+}
+
 void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out) {
+  if (ahead_.empty())
+    work_out(group, spheres, out);
+  else
+    out = ahead_[group];
+}
+
+void SoftWalls::work_out(std::size_t group, const SoftSphere* spheres, WallPush& out) {
   out = {};
   std::copy(spheres, spheres + lanes, out.before.begin());
   thread_local std::vector<WallContact> contacts;

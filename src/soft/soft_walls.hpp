@@ -53,6 +53,9 @@ class SoftWalls {
   void forget(std::uint32_t id) { views_[id] = {}; }
 
   bool near(std::size_t group) const { return first_[group] < first_[group + 1]; }
+  /// Where the container has to be asked, works out in all threads what `push` will say during one sweep: for
+  /// sweeps that have only one. Until its push a group of `spheres` stays where it is.
+  void push_ahead(const std::vector<SoftSphere>& spheres);
   /// Precondition: near(group); `spheres` is the group's first.
   void push(std::size_t group, const SoftSphere* spheres, WallPush& out);
   /// Shortens the moves of the group from `push.before` so that no centre passes the wall.
@@ -93,6 +96,7 @@ class SoftWalls {
     return repeats_ ? container_.boundary().minimum_image(direct) : direct;
   }
   void add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere);
+  void work_out(std::size_t group, const SoftSphere* spheres, WallPush& out);
   double look_through(const NearSphere&, double r, std::vector<WallContact>& contacts);
   double ask(NearSphere&, double r, std::vector<WallContact>& contacts) const;
   bool look(const Vector<3>& at, double r, double skin, View& view) const;
@@ -105,6 +109,8 @@ class SoftWalls {
   std::vector<View> views_;           // by id
   std::vector<std::uint32_t> first_;  // of a group in near_
   std::vector<NearSphere> near_;      // by group
+  bool has_fine_ = false;             // some view is
+  std::vector<WallPush> ahead_;       // of every group, or none
   std::vector<float> until_;          // no piece is nearer to the centre than this less NearSphere::way
   std::vector<float> least_until_;  // of every so many pieces of a sphere: a fine mesh has thousands of them
   mutable std::atomic<std::uint64_t> queries_ = 0;

@@ -100,6 +100,61 @@ TEST_F(Import, AnObliqueOpeningIsClosedByTheLineThatIsOffered) {
   EXPECT_LE(volume(open), 6);
 }
 
+TEST_F(Import, APlaneThatWouldCutAnotherOpeningOffIsNotOffered) {
+  // Two chimneys of different heights on one vessel, both open.
+  Mesh vessel;
+  const auto prism = [&](const std::vector<Vector<2>>& profile, const std::vector<std::size_t>& open) {
+    const auto n = static_cast<std::uint32_t>(profile.size());
+    for (const double y : {0., 1.})
+      for (const Vector<2>& p : profile) vessel.vertices.emplace_back(p[0], y, p[1]);
+    for (std::uint32_t k = 0; k < n; ++k) {
+      if (std::ranges::find(open, k) != open.end()) continue;
+      const std::uint32_t next = (k + 1) % n;
+      vessel.triangles.push_back({k, n + next, next});
+      vessel.triangles.push_back({k, n + k, n + next});
+    }
+  };
+  // x, z around a U: bottom, the right leg up to 6, the trough at 2, the left leg up to 8.
+  prism({{0, 0}, {6, 0}, {6, 6}, {4, 6}, {4, 2}, {2, 2}, {2, 8}, {0, 8}}, {2, 6});
+  for (const std::uint32_t side : {0U, 8U})  // three rectangles each, split at the trough
+    for (const auto& [i, j, k] :
+         {std::array<std::uint32_t, 3>{0, 1, 4}, {0, 4, 5}, {1, 2, 3}, {1, 3, 4}, {0, 5, 6}, {0, 6, 7}}) {
+      vessel.triangles.push_back({side + i, side + (side == 0 ? j : k), side + (side == 0 ? k : j)});
+    }
+  MeshFile open = file(vessel);
+  const ImportedMesh as_it_is = read_mesh(open);
+  ASSERT_FALSE(as_it_is.report.usable());
+  const double whole = 6 * 2 + 2 * 4 + 2 * 6;
+  const std::vector<std::string> lines = lines_that_help(open, {}, as_it_is, Effort::quick);
+  ASSERT_FALSE(lines.empty());
+  EXPECT_EQ(lines.front(), "repair = [\"holes\"]");
+  for (const std::string& line : lines) EXPECT_EQ(line.find("z = 6"), std::string::npos) << line;
+  open.repair = {Repair::holes};
+  EXPECT_NEAR(volume(open), whole, 1e-12);
+}
+
+TEST_F(Import, AWideRimThatIsNotFlatIsClosedByTheLineThatIsOffered) {
+  // A cube without two sides that meet: no plane closes it, and its rim is as wide as the part.
+  MeshFile open = file(without(divided(box_mesh({0, 0, 0}, {2, 2, 2}), 2),
+                               [](const Vector<3>& p) { return p[2] == 2 || p[0] == 2; }));
+  EXPECT_NE(refusal(open).find("largest_hole = "), std::string::npos) << refusal(open);
+  open.largest_hole = 4;
+  EXPECT_NE(refusal(open).find("needs repair"), std::string::npos) << refusal(open);
+  open.repair = {Repair::holes};
+  const double closed = volume(open);  // by the shortest way or over the missing edge
+  EXPECT_TRUE(closed > 3.9 && closed < 8) << closed;
+  open.largest_hole = 1;
+  EXPECT_NE(refusal(open).find("wider than 1"), std::string::npos) << refusal(open);
+}
+
+TEST_F(Import, ASurfaceDrawnFromBothSidesIsOne) {
+  Mesh both = box;
+  for (const auto& [i, j, k] : box.triangles) both.triangles.push_back({k, j, i});
+  EXPECT_NEAR(volume(file(both)), 6, 1e-14);
+  both.triangles.pop_back();  // not all of it: something else is meant
+  EXPECT_FALSE(refusal(file(both)).empty());
+}
+
 TEST_F(Import, WhatStandsInAnOpenVesselIsCutWithIt) {
   const Mesh rod = box_mesh({0.25, 0.5, 1}, {0.5, 1, 3});  // ends above the rim
   MeshFile open = file(joined(without_top(box, 3), rod));

@@ -166,6 +166,21 @@ TEST_F(ReadMesh, WrongIndicesAndInfiniteCoordinatesAreRefused) {
   EXPECT_NE(refusal("huge.off", "OFF\n3 1 0\n1e999 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), "was read");
 }
 
+TEST_F(ReadMesh, NumbersInAPlyFileThatAreNotReadAreNamed) {
+  const auto refused = [&](const std::string& coordinate, const std::string& corner) {
+    std::string text = "ply\nformat ascii 1.0\nelement vertex 3\n";
+    for (const char axis : {'x', 'y', 'z'}) text += "property " + coordinate + " " + axis + "\n";
+    text += "element face 2\nproperty list uchar " + corner + " vertex_indices\nend_header\n";
+    return refusal("numbers.ply", text + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n");
+  };
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(refused("double", "ushort"),
+            ": cannot be read: its faces give their vertices as ushort; write these as int");
+  EXPECT_EQ(refused("int", "int"), ": cannot be read: its coordinates are int; write them as double");
+  EXPECT_EQ(refused("float", "uint32").find("cannot be read"), std::string::npos);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
 // "f -3 -2 -1" counts back from the last vertex: legal, and not an error.
 TEST_F(ReadMesh, ObjMayCountBackwards) {
   std::ostringstream obj;

@@ -388,16 +388,22 @@ TEST(Wrap, KeepsObstaclesAndChambersApart) {
 }
 
 TEST(Wrap, SaysWhenItLiesOutside) {
-  const Mesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.1}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
-  const Mended outside = wrap(sheet, 0.1, 0.01);
+  const Mesh plate = box_mesh({0, 0, 0}, {1, 1, 0.08});
+  const Mended outside = wrap(plate, 0.1, 0.01);
   expect_sound(outside);
   EXPECT_TRUE(says(outside, "wrapped from outside")) << outside.done;
-  EXPECT_TRUE(says(outside, "no inside was found")) << outside.done;
-  EXPECT_LT(farthest(sheet, outside.mesh, 1e-3).at_most, 0.1);
+  EXPECT_TRUE(says(outside, "too narrow for alpha")) << outside.done;
+  EXPECT_LT(farthest(plate, outside.mesh, 1e-3).at_most, 0.1);
+}
 
+TEST(Wrap, DoesNotTakeTheSkinOfASheetForAContainer) {
+  const Mesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.1}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
   const Mesh open = without(divided(unit_box, 2), [](const Vector<3>& p) { return p[2] == 1; });
-  const Mended leak = wrap(open, 0.1, 0.01);
-  EXPECT_TRUE(says(leak, "gaps wider than alpha")) << leak.done;
+  for (const auto& [mesh, why] : {std::pair(sheet, "no inside was found"), {open, "gaps wider than alpha"}}) {
+    const Mended none = wrap(mesh, 0.1, 0.01);
+    EXPECT_TRUE(says(none, "not wrapped") && says(none, why) && says(none, "skin of a sheet")) << none.done;
+    EXPECT_TRUE(same(none.mesh, mesh));
+  }
 }
 
 TEST(Wrap, ListensAndRefuses) {

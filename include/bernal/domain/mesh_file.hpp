@@ -44,8 +44,9 @@ struct MeshFile {
   std::optional<double> weld = {};                    ///< corners of open edges up to this far apart are one
   std::optional<double> deflection = {};              ///< of a tessellated surface from the true one
   std::vector<Repair> repair = {};
-  std::vector<std::string> cap = {};      ///< planes, "z = 1.1" or "x < 0.5": what they cut off is outside
-  std::optional<double> fill_level = {};  ///< as `cap = "z < …"`
+  std::optional<double> largest_hole = {};  ///< that is closed; else half of the part's diagonal
+  std::vector<std::string> cap = {};        ///< planes, "z = 1.1" or "x < 0.5": what they cut off is outside
+  std::optional<double> fill_level = {};    ///< as `cap = "z < …"`
   std::variant<Interior, Vector<3>> interior = Interior::solid;  ///< or a point that is inside
 };
 
