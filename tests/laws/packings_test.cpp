@@ -274,6 +274,16 @@ TEST_P(EveryPacking, ThatIsCancelledIsWholeAsFarAsItGoes) {
   }
 }
 
+TEST(Packing, OfGrowthThatIsStoppedWhileItsSpheresLookForPlacesHasNone) {
+  const Plan plan = plan_of(
+      "[container]\nkind = \"periodic\"\nedge = 1.0\n[spheres]\npacking_fraction = 0.5\nradius = 0.02\n"
+      "[[stage]]\ndo = \"grow\"\nphi_init = 0.32\n");
+  const Packing packing = cancelled_after(plan, 0);
+  EXPECT_EQ(packing.outcome, Outcome::cancelled);
+  EXPECT_EQ(packing.spheres.size(), 0u);
+  expect_certified(packing);
+}
+
 std::set<std::string> effects_of(const Packing& packing) {
   std::set<std::string> names;
   for (const Effect& effect : packing.effects) {

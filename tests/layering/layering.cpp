@@ -95,7 +95,9 @@ Place place_of(const fs::path& below_root) {
   const bool is_app = *part == "apps";
   std::advance(part, is_public ? 2 : is_app ? 0 : 1);
   if (is_public && part->extension() == ".hpp") return {"apps", true, true};
-  return {part->string(), is_public, below_root.extension() == ".hpp"};
+  // The tree that the searches through walls are compiled into: cad's alone, see below.
+  const bool is_tree = below_root == fs::path("src/cad/wall_tree.hpp");
+  return {part->string(), is_public, below_root.extension() == ".hpp" && !is_tree};
 }
 
 /// Why the include is forbidden, or "".
@@ -105,6 +107,9 @@ std::string objection(const Include& include, const Place& place, const fs::path
                                  include.path.ends_with(".hxx");
   if (reads_cad_library && (place.room != "cad" || place.is_header))
     return include.path + ": CGAL, assimp and OpenCASCADE belong to src/cad/*.cpp";
+  const bool reads_tree = include.path == "cad/wall_tree.hpp" || include.path == "cad/tree_traversals.hpp";
+  if (reads_tree && place.room != "cad")
+    return include.path + ": brings CGAL along; include cad/triangle_tree.hpp";
 
   const bool of_public = include.path.starts_with("bernal/");
   if (!of_public && !include.quoted) return "";  // the standard library and third parties
