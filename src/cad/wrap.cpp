@@ -26,7 +26,7 @@ constexpr std::size_t most_points = 500'000;
 constexpr int looks_along_edge = 32;
 constexpr std::size_t most_seeds = 64;
 
-enum class Stopped { by_monitor, too_many };
+enum class Stopped { by_monitor, too_many, outside };
 
 /// CGAL's door for a look at the work while it goes on.
 struct Watch {
@@ -113,7 +113,7 @@ std::vector<Seed> points_inside(const Mesh& mesh, const Bounds<3>& bounds, doubl
 
 Point wrap_point(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
 
-/// Wrapped from these points, or from outside if there are none.
+/// Wrapped from these points, or from outside if there are none. Throws Stopped.
 Surface wrapped(const Mesh& mesh, double alpha, double offset, const std::vector<Seed>& seeds,
                 const Monitor& monitor) {
   std::vector<Point> points, from;
@@ -160,6 +160,8 @@ bool lies_within(const Mesh& mesh, const Bounds<3>& bounds) {
   });
 }
 
+constexpr std::string_view close_first = "close its openings by \"cap\" or repair = [\"holes\"] first";
+
 }  // namespace
 
 Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
@@ -182,30 +184,29 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
     std::string why = "no inside was found";
     if (!seeds.empty()) {
       Mesh inner = outward_mesh_of(wrapped(mesh, alpha, offset, seeds, monitor));
-      if (!inner.triangles.empty() && lies_within(inner, bounds))
+      if (!lies_within(inner, bounds)) throw Stopped::outside;
+      if (!inner.triangles.empty())
         return {std::move(inner),
                 fmt::format("wrapped from inside ({}): the result lies within the surface", how)};
-      why = inner.triangles.empty() ? "the inside is too narrow for alpha"
-                                    : "the inside is open to the outside through gaps wider than alpha";
+      why = "the inside is too narrow for alpha";
     }
     Mesh outer = outward_mesh_of(wrapped(mesh, alpha, offset, {}, monitor));
     if (outer.triangles.empty())
       return {std::move(mesh), fmt::format("not wrapped ({}): nothing came out", how)};
     if (is_but_a_skin(outer, offset))
-      return {
-          std::move(mesh),
-          fmt::format("not wrapped ({}): {}, and from outside there is but the skin of a sheet; close its "
-                      "openings by \"cap\" or repair = [\"holes\"] first",
-                      how, why)};
+      return {std::move(mesh),
+              fmt::format("not wrapped ({}): {}, and from outside there is but the skin of a sheet; {}", how,
+                          why, close_first)};
     return {
         std::move(outer),
         fmt::format("wrapped from outside ({}) because {}: the surface lies within the result", how, why)};
   } catch (Stopped reason) {
-    return {std::move(mesh), reason == Stopped::by_monitor
-                                 ? "not wrapped: it was cancelled"
-                                 : fmt::format("not wrapped ({}): the result would have more than a "
-                                               "million faces; take a larger alpha",
-                                               how)};
+    const std::string_view because =
+        reason == Stopped::by_monitor ? "it was cancelled"
+        : reason == Stopped::too_many ? "the result would have more than a million faces; take a larger alpha"
+                                      : "the inside is open to the outside through gaps wider than alpha";
+    return {std::move(mesh), fmt::format("not wrapped ({}): {}{}", how, because,
+                                         reason == Stopped::outside ? fmt::format("; {}", close_first) : "")};
   } catch (const std::exception& error) {
     std::string said = error.what();
     std::replace(said.begin(), said.end(), '\n', ' ');

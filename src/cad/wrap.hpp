@@ -11,9 +11,9 @@ namespace bernal::cad {
 /// its corners are `offset` away from the surface, which it nowhere crosses; gaps narrower than alpha are
 /// closed, and what is narrower than that inside is lost. A point is inside if most of the six ways from it
 /// along the axes cross the surface an odd number of times; orientation does not matter, and holes matter
-/// little. Where there is none, or where the inside cannot be told from the outside because of gaps wider
-/// than alpha, the surface is wrapped from outside and so lies within the result. `done` says which, and
-/// alpha and offset.
+/// little. Where there is none, the surface is wrapped from outside and so lies within the result. What is
+/// open to the outside through gaps wider than alpha is not wrapped, nor is a sheet, of which there would be
+/// but the skin. `done` says which, and alpha and offset.
 ///
 /// alpha or offset 0: the diagonal of the bounds / 100, and alpha / 30. Cost: some 200 µs for each of about
 /// 3 A / alpha² faces that the result has for a surface of area A; it ends with the mesh as it was when these

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -19,6 +20,28 @@ inline Mesh without(Mesh mesh, const Gone& gone) {
 
 inline Mesh without_top(const Mesh& mesh, double height) {
   return without(mesh, [=](const Vector<3>& v) { return v[2] == height; });
+}
+
+/// A vessel of depth 1 and volume 32 whose two legs, up to z = 6 and to z = 8, are both open.
+inline Mesh two_chimneys_mesh() {
+  const std::vector<std::array<double, 2>> profile = {{0, 0}, {6, 0}, {6, 6}, {4, 6},
+                                                      {4, 2}, {2, 2}, {2, 8}, {0, 8}};  // x and z
+  constexpr std::uint32_t n = 8, right_end = 2, left_end = 6;
+  Mesh mesh;
+  for (const double y : {0., 1.})
+    for (const auto& [x, z] : profile) mesh.vertices.emplace_back(x, y, z);
+  for (std::uint32_t k = 0; k < n; ++k) {
+    if (k == right_end || k == left_end) continue;
+    const std::uint32_t next = (k + 1) % n;
+    mesh.triangles.push_back({k, n + next, next});
+    mesh.triangles.push_back({k, n + k, n + next});
+  }
+  for (const auto& [i, j, k] : std::vector<std::array<std::uint32_t, 3>>{
+           {0, 1, 4}, {0, 4, 5}, {1, 2, 3}, {1, 3, 4}, {0, 5, 6}, {0, 6, 7}}) {
+    mesh.triangles.push_back({i, j, k});
+    mesh.triangles.push_back({n + i, n + k, n + j});
+  }
+  return mesh;
 }
 
 /// A cup: a prism of height 2 and half width 2 with a square hollow of half width 1 from z = 0.5 up.

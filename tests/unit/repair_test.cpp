@@ -401,7 +401,8 @@ TEST(Wrap, DoesNotTakeTheSkinOfASheetForAContainer) {
   const Mesh open = without(divided(unit_box, 2), [](const Vector<3>& p) { return p[2] == 1; });
   for (const auto& [mesh, why] : {std::pair(sheet, "no inside was found"), {open, "gaps wider than alpha"}}) {
     const Mended none = wrap(mesh, 0.1, 0.01);
-    EXPECT_TRUE(says(none, "not wrapped") && says(none, why) && says(none, "skin of a sheet")) << none.done;
+    EXPECT_TRUE(says(none, "not wrapped") && says(none, why) && says(none, "close its openings"))
+        << none.done;
     EXPECT_TRUE(same(none.mesh, mesh));
   }
 }

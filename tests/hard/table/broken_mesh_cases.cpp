@@ -39,6 +39,20 @@ std::vector<Case> broken_mesh_cases() {
   add("PipeOpenAtBothEnds", "two ends at once", pipe, refused("cap = ["));
   add("PipeCappedTwice", "with the line that was offered", pipe, of_volume(at_least(500), 12), "{offered}");
 
+  add("TwoChimneys",
+      "a plane for the lower opening would cut the taller chimney off: with the line that was offered",
+      two_chimneys_mesh(), of_volume(at_least(1000), 32, 1e-9), "{offered}");
+  add("WideRimThatIsNotFlat",
+      "no plane closes a cube without two of its sides: with the line that was offered",
+      without(divided(box_mesh({0, 0, 0}, {2, 2, 2}), 2),
+              [](const Vector<3>& v) { return v[0] == 2 || v[2] == 2; }),
+      at_least(200), "{offered}");
+  add("SkinOfASheet", "an open vessel has no inside that could be wrapped", open_tank,
+      refused("gaps wider than alpha"), "repair = [\"wrap\"]");
+  Mesh both_sides = tank;
+  for (const auto& [i, j, k] : tank.triangles) both_sides.triangles.push_back({k, j, i});
+  add("DrawnFromBothSides", "every face in both orientations", both_sides, of_volume(at_least(500), 12));
+
   const Mesh cup = cup_mesh();
   add("CupAsASolid", "the wall of a cup is what is closed", cup, of_volume(at_least(1000), 26));
   add("InsideOfACup", "the hollow is meant, not the wall", cup, of_volume(at_least(250), 6),

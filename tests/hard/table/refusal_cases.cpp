@@ -18,6 +18,10 @@ std::vector<Case> refusal_cases() {
   add("MoreThanTwoToThe31", "micrometres meant, millimetres said", metre, "radius = 0.001", "2^31");
   add("MoreThanMemory", "hundreds of gigabytes", metre, "radius = 0.5", "check the units");
   add("ACountBeyondMemory", "two billion spheres by count", metre, "count = 2000000000\nradius = 0.01", "");
+  add("ABillionInASmallBox", "a thousand of them fit", "kind = \"box\"\nsize = [10.0, 10.0, 10.0]",
+      "count = 1000000000\ndiameter = 1.0", "check the units");
+  add("StagesThatPlaceNothing", "they only move spheres", cube, "radius = 0.1", "none places any",
+      stages({"compress", "shake"}));
   add("MoreThanMemoryInAPeriodicBox", "without walls", "kind = \"periodic\"\nsize = [1000.0, 1000.0, 1000.0]",
       "packing_fraction = 0.6\nradius = 0.3", "");
   add("SizesWithoutLowerLimit", "lognormal, sigma 3: fines without end", cube,

@@ -27,7 +27,8 @@ std::string ending(const Case& c, const End& end) {
   std::string text = c.offered.empty() ? "" : fmt::format("`{}`: ", c.offered);
   for (char& letter : text)
     if (letter == '\n') letter = ' ';
-  text += fmt::format("{} spheres, {:.3f}", end.spheres, end.packing_fraction);
+  text += fmt::format("{} {}, {:.3f}", end.spheres, end.spheres == 1 ? "sphere" : "spheres",
+                      end.packing_fraction);
   if (end.outcome != Outcome::converged) text += fmt::format("; {}: {}", name_of(end.outcome), end.reason);
   const std::string wrong = objection(c, end);
   return wrong.empty() ? text : "**" + wrong + "** " + text;
