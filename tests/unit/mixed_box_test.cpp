@@ -115,7 +115,8 @@ TEST(MixedBox, IsRefusedByWhatDoesNotKnowWalls) {
   EXPECT_EQ(message("do = \"relax\"\npolish = 1e-6\n"), "");
   EXPECT_NE(message("do = \"relax\"\nmethod = \"reference\"\n").find("\"method\""), std::string::npos);
   EXPECT_EQ(message("do = \"relax\"\n"), "");
-  EXPECT_EQ(message("do = \"compress\"\n"), "");
+  EXPECT_EQ(message("do = \"insert\"\n[[stage]]\ndo = \"compress\"\n"), "");
+  EXPECT_NE(message("do = \"compress\"\n").find("none places any"), std::string::npos);
   EXPECT_NE(message("do = \"fly\"\nmethod = \"classes\"\n").find("\"flight\""), std::string::npos);
   EXPECT_EQ(message("do = \"fly\"\n"), "");
 }
