@@ -96,6 +96,13 @@ void expect_in_container(Plan& plan) {
                         std::holds_alternative<Mesh>(container) ? "O(log faces) a query" : "O(1) a query"});
 }
 
+void require_stage_that_places(const Scene& scene) {
+  if (any_stage(scene, &StageTraits::only_moves, false)) return;
+  throw Error(ErrorCode::bad_scene,
+              "the stages only move spheres, and none places any: begin with \"insert\" or \"relax\"",
+              scene.stages.front().locations.whole);
+}
+
 /// What is asked of the accuracy has an effect, or is refused.
 void require_effect_of_accuracy(const Scene& scene) {
   const auto fail = [&](std::string_view key, std::string_view why) {
@@ -238,13 +245,6 @@ FillTask fill_task_of(const Plan& plan) {
   return task;
 }
 
-void require_stage_that_places(const Scene& scene) {
-  if (any_stage(scene, &StageTraits::only_moves, false)) return;
-  throw Error(ErrorCode::bad_scene,
-              "the stages only move spheres, and none places any: begin with \"insert\" or \"relax\"",
-              scene.stages.front().locations.whole);
-}
-
 Plan build(const Scene& stated) {
   Plan plan;
   plan.scene = stated;
@@ -261,6 +261,7 @@ Plan build(const Scene& stated) {
   }
   require_fit_for_stages(plan);
   require_overlap(plan);
+  require_drawable_count(plan);
   require_memory(plan);
   plan.places_expected = any_in_bed(scene) && any_stage(scene, &StageTraits::places_expected, true);
 

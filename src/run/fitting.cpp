@@ -161,10 +161,7 @@ Frame frame_for(const Scene& scene, const Domain& container, const SizeDistribut
       scene.container.locations.whole);
 }
 
-void require_memory(const Plan& plan) {
-  const double there =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  // All that are asked for are drawn, though far fewer may find a place.
+void require_drawable_count(const Plan& plan) {
   constexpr double times_too_many = 1000, cheap_to_draw = 1e7;
   const double asked = plan.scene.target.count ? static_cast<double>(*plan.scene.target.count) : 0;
   if (asked > cheap_to_draw && asked > times_too_many * plan.expected_count)
@@ -174,6 +171,11 @@ void require_memory(const Plan& plan) {
                     "packing fraction",
                     asked, plan.expected_count),
         plan.scene.target.where);
+}
+
+void require_memory(const Plan& plan) {
+  const double there =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   const bool too_many = !(plan.expected_count < Supply::most_spheres);
   if (!too_many && plan.expected_memory_bytes <= there) return;
   throw Error(ErrorCode::bad_scene,

@@ -21,8 +21,9 @@ void require_long_periods(const Scene& scene, const Domain& container, double ra
 /// Throws Error{bad_scene} at the scene's sizes, with the remedy or to check the units, if a sphere of that
 /// radius cannot fit. Cost in a mesh that is not much thicker than the sphere: some milliseconds, and what
 /// its container costs if it is not made.
-void require_fitting(const Scene& scene, const Domain& container, const std::shared_ptr<const Container>& made,
-                     double radius, std::string_view remedy = "use smaller ones");
+void require_fitting(const Scene& scene, const Domain& container,
+                     const std::shared_ptr<const Container>& made, double radius,
+                     std::string_view remedy = "use smaller ones");
 
 /// Throws Error{bad_argument}: not a single random place was found in it.
 [[noreturn]] void refuse_thin_container();
@@ -38,6 +39,9 @@ double tail_cut(const Scene& scene, const Domain& container, const SizeDistribut
 /// A container's own frame. Throws Error{bad_scene} at the container where it is so far from the origin, and
 /// at the sizes where they reach down so far, that neighbouring spheres could not be told apart.
 Frame frame_for(const Scene& scene, const Domain& container, const SizeDistribution& radii);
+
+/// Throws Error{bad_scene} for a count that would be drawn for long though not a thousandth of it fits.
+void require_drawable_count(const Plan& plan);
 
 /// Throws Error{bad_scene}, before anything is drawn, for more spheres than have numbers, and for what this
 /// machine has no memory for.

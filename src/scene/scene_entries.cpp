@@ -256,9 +256,8 @@ const std::vector<Entry>& container_entries() {
                           "self-intersections, wrap it",
                           words(repair_words)),
                     length(&MeshFile::largest_hole, "largest_hole",
-                           "holes up to this width are closed; if absent up to half of the part's: what is "
-                           "wider "
-                           "is an open top"),
+                           "holes up to this width are closed; if absent up to half of the part's: what "
+                           "is wider is an open top"),
                     names(&MeshFile::cap, "cap",
                           "planes that close open ends, \"z = 1.1\" or \"x < 0.5\": what they cut off is "
                           "outside"),
