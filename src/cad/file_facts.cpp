@@ -156,8 +156,9 @@ ThreeMfFacts facts_of_3mf(std::string_view xml) {
   for_each_tag(xml, [&](const Tag& tag) {
     if (tag.depth == 0 && tag.name == "model") set_unit(attribute(tag.attributes, "unit"), result.facts);
     if (tag.name == "object")
-      result.names[attribute(tag.attributes, "id").value_or("")] =
-          attribute(tag.attributes, "name").value_or("");
+      result.objects[attribute(tag.attributes, "id").value_or("")] = {
+          attribute(tag.attributes, "name").value_or(""),
+          !attribute(tag.attributes, "type").value_or("model").ends_with("support")};
     return true;
   });
   return result;

@@ -15,11 +15,14 @@ FileFacts facts_of_collada(std::string_view xml);
 /// The unit of an AMF: millimetre by its specification where it is not said.
 FileFacts facts_of_amf(std::string_view xml);
 
-/// The unit of the model in a 3MF, millimetre where it is not said, and the names of its objects by their
-/// ids.
+/// The unit of the model in a 3MF, millimetre where it is not said, and its objects by their ids.
 struct ThreeMfFacts {
+  struct Object {
+    std::string name;
+    bool is_part = true;  ///< and not what supports it while it is printed
+  };
   FileFacts facts;
-  std::map<std::string, std::string> names;
+  std::map<std::string, Object> objects;
 };
 ThreeMfFacts facts_of_3mf(std::string_view xml);
 

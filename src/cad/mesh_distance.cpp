@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <vector>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
@@ -54,7 +55,8 @@ Vector<3> middle_of(const Place3& c) {
 
 class Measure {
  public:
-  explicit Measure(const Mesh& reference) : tree_(reference) {}
+  /// Distances are off by up to `rounding`.
+  Measure(const Mesh& reference, double rounding) : tree_(reference), rounding_(rounding) {}
 
   /// Bounds a part, and says where it is how far away.
   Deviation look(const Place3& corners) const {
@@ -67,7 +69,7 @@ class Measure {
     found.at_most = found.largest + radius;
 
     std::vector<NearFacet> near;
-    tree_.within(center, found.largest * (1 + 1e-9) + std::numeric_limits<double>::min(), near);
+    tree_.within(center, found.largest * (1 + 1e-9) + rounding_, near);
     for (std::size_t i = 0; i < std::min<std::size_t>(near.size(), 8); ++i) {
       const PreparedTriangle face(near[i].facet.a, near[i].facet.b, near[i].facet.c);
       double most = 0;
@@ -82,11 +84,55 @@ class Measure {
     return found;
   }
 
+  /// A part that lies on a face of the reference and on its neighbours: cut along the edge beyond which it
+  /// reaches farthest. Else nothing.
+  std::vector<Place3> cut_by_face(const Place3& corners) const {
+    std::vector<NearFacet> near;
+    tree_.within(middle_of(corners), rounding_, near);
+    for (const NearFacet& face : near) {
+      const Place3 edges{face.facet.a, face.facet.b, face.facet.c};
+      const Vector<3> normal = (edges[1] - edges[0]).cross(edges[2] - edges[0]).normalized();
+      const auto height = [&](const Vector<3>& p) { return std::abs(normal.dot(p - edges[0])); };
+      if (!std::ranges::all_of(corners, [&](const Vector<3>& p) { return height(p) <= rounding_; })) continue;
+      std::array<double, 3> inside{}, least{};
+      double farthest = -rounding_;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vector<3> inward = normal.cross(edges[(k + 1) % 3] - edges[k]).normalized();
+        for (std::size_t i = 0; i < 3; ++i) inside[i] = inward.dot(corners[i] - edges[k]);
+        const auto [low, high] = std::ranges::minmax(inside);
+        if (low >= farthest || high <= rounding_) continue;
+        farthest = low;
+        least = inside;
+      }
+      if (farthest < -rounding_) return cut(corners, least);
+    }
+    return {};
+  }
+
  private:
+  /// The parts where a linear function, given at the corners, is positive and where it is negative.
+  static std::vector<Place3> cut(const Place3& corners, const std::array<double, 3>& values) {
+    std::vector<Place3> parts;
+    for (const double sign : {1.0, -1.0}) {
+      std::vector<Vector<3>> polygon;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t next = (i + 1) % 3;
+        if (sign * values[i] >= 0) polygon.push_back(corners[i]);
+        if (values[i] * values[next] < 0)
+          polygon.emplace_back(corners[i] +
+                               values[i] / (values[i] - values[next]) * (corners[next] - corners[i]));
+      }
+      for (std::size_t i = 2; i < polygon.size(); ++i)
+        parts.push_back({polygon[0], polygon[i - 1], polygon[i]});
+    }
+    return parts;
+  }
+
   TriangleTree tree_;
+  double rounding_;
 };
 
-std::array<Place3, 2> in_two(const Place3& c) {
+std::vector<Place3> in_two(const Place3& c) {
   std::size_t longest = 0;
   for (std::size_t k = 1; k < 3; ++k)
     if ((c[(k + 1) % 3] - c[k]).squaredNorm() > (c[(longest + 1) % 3] - c[longest]).squaredNorm())
@@ -98,7 +144,7 @@ std::array<Place3, 2> in_two(const Place3& c) {
 
 }  // namespace
 
-Deviation farthest(const Mesh& surface, const Mesh& reference, double tolerance, const Monitor& monitor,
+Deviation farthest(const Mesh& surface, const Mesh& reference, Closeness closeness, const Monitor& monitor,
                    std::uint64_t evaluations) {
   if (surface.triangles.empty() || reference.triangles.empty())
     throw Error(ErrorCode::bad_argument, "the distance between surfaces needs faces on both");
@@ -121,7 +167,7 @@ Deviation farthest(const Mesh& surface, const Mesh& reference, double tolerance,
   Deviation result;
   result.place = surface.vertices[surface.triangles.front()[0]];
   if (parts.empty()) return result;
-  const Measure measure(reference);
+  const Measure measure(reference, rounding);
   const auto take = [&](const Deviation& found) {
     if (found.largest > result.largest) result.largest = found.largest, result.place = found.place;
   };
@@ -138,14 +184,18 @@ Deviation farthest(const Mesh& surface, const Mesh& reference, double tolerance,
   }
 
   std::priority_queue<Piece> queue(std::less<Piece>(), std::move(parts));
-  for (std::uint64_t looks = 0; looks < evaluations && !monitor.stop(); looks += 2) {
+  for (std::uint64_t looks = 0; looks < evaluations && !monitor.stop();) {
     const Piece worst = queue.top();
-    if (worst.farthest <= result.largest + tolerance || worst.farthest == unbounded) break;
+    const double apart = std::max(closeness.absolute, closeness.share * result.largest);
+    if (worst.farthest <= result.largest + apart || worst.farthest == unbounded) break;
     queue.pop();
-    for (const Place3& half : in_two(worst.corners)) {
-      const Deviation bounds = measure.look(half);
+    std::vector<Place3> smaller = measure.cut_by_face(worst.corners);
+    if (smaller.empty()) smaller = in_two(worst.corners);
+    looks += smaller.size();
+    for (const Place3& part : smaller) {
+      const Deviation bounds = measure.look(part);
       take(bounds);
-      queue.push({half, std::min(bounds.at_most, worst.farthest)});
+      queue.push({part, std::min(bounds.at_most, worst.farthest)});
     }
   }
   result.at_most = std::max(result.largest, queue.top().farthest) + rounding;

@@ -13,17 +13,24 @@ struct Deviation {
   Vector<3> place = Vector<3>::Zero();
 };
 
+/// How far apart the bounds of a deviation may stay: by `absolute`, or this share of it if that is more.
+struct Closeness {
+  double absolute;
+  double share = 0;
+};
+
 /// The one-sided distance of `surface` from `reference`, certified. Faces with all corners on a face of the
-/// reference are no distance away. Of the others, the part farthest by its bound is halved until
-/// at_most <= largest + tolerance, or until `evaluations` distances were taken, or the monitor stops; the
-/// bounds hold then too, only farther apart. Bounds of a triangle:
+/// reference are no distance away. Of the others, the part farthest by its bound is halved, or cut along an
+/// edge of the face of the reference that it lies on, until the bounds are as close as asked for, or until
+/// `evaluations` distances were taken, or the monitor stops; the bounds hold then too, only farther apart.
+/// Bounds of a triangle:
 ///
 ///   d(center) + radius of a ball about the center that holds it  (a distance is 1-Lipschitz),
 ///   max over its corners of d to one triangle of the reference   (that distance is convex).
 ///
 /// Precondition: neither is empty. Cost: two searches in a tree an evaluation, and one evaluation a face that
 /// the reference has not got; many where a curved surface is far from the reference everywhere.
-Deviation farthest(const Mesh& surface, const Mesh& reference, double tolerance, const Monitor& monitor = {},
+Deviation farthest(const Mesh& surface, const Mesh& reference, Closeness, const Monitor& monitor = {},
                    std::uint64_t evaluations = 2'000'000);
 
 }  // namespace bernal::cad

@@ -23,6 +23,9 @@ struct PolygonSoup {
   std::vector<Solid> solids = {};  ///< in their order; none where the file tells no parts apart
 };
 
+/// Leaves the solids that are `kept`, one entry each, with their polygons.
+void keep_solids(PolygonSoup&, const std::vector<bool>& kept);
+
 /// How far the true surface lies from the triangles that stand for it, measured at points of each triangle.
 struct SurfaceDeviation {
   double outside = 0;  ///< of the triangles, where they stand inside of the surface

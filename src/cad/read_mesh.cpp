@@ -68,29 +68,25 @@ std::vector<bool> chosen_parts(const MeshFile& options, const std::vector<std::s
     if (found) continue;
     constexpr std::size_t most = 12;
     std::vector<std::string> known;
-    for (const std::string& name : names)
-      if (!name.empty() && known.size() < most) known.push_back(fmt::format("\"{}\"", name));
+    const bool has_names = std::ranges::any_of(names, [](const std::string& name) { return !name.empty(); });
+    for (std::size_t i = 0; has_names && i < std::min(names.size(), most); ++i)
+      known.push_back(names[i].empty() ? fmt::format("{} (without a name)", i + 1)
+                                       : fmt::format("\"{}\"", names[i]));
     throw OptionError("solids",
-                      fmt::format("the file has no solid \"{}\"; it has {}{}", wanted,
+                      fmt::format("the file has no solid \"{}\"; it has {}{}{}", wanted,
                                   cad::counted(names.size(), "solid", "solids"),
                                   known.empty() ? fmt::format(", by number from 1 to {}", names.size())
-                                                : fmt::format(": {}", fmt::join(known, ", "))));
+                                                : fmt::format(": {}", fmt::join(known, ", ")),
+                                  !known.empty() && names.size() > most ? ", ..." : ""));
   }
   return chosen;
 }
 
 /// Leaves those of the file's parts that are asked for, if it tells parts apart.
-void keep_solids(cad::PolygonSoup& soup, const MeshFile& options) {
+void keep_chosen(cad::PolygonSoup& soup, const MeshFile& options) {
   std::vector<std::string> names;
   for (const cad::Solid& solid : soup.solids) names.push_back(solid.name);
-  const std::vector<bool> chosen = chosen_parts(options, names);
-  std::vector<std::vector<std::uint32_t>> kept;
-  for (std::size_t i = 0; i < soup.solids.size(); ++i) {
-    const std::size_t end = i + 1 < soup.solids.size() ? soup.solids[i + 1].first : soup.polygons.size();
-    for (std::size_t k = soup.solids[i].first; chosen[i] && k < end; ++k)
-      kept.push_back(std::move(soup.polygons[k]));
-  }
-  soup.polygons = std::move(kept);
+  cad::keep_solids(soup, chosen_parts(options, names));
 }
 
 /// The same where it does not: the pieces that hang together, in the order of their first faces.
@@ -182,9 +178,9 @@ struct Repairs {
     if (mended.mesh.triangles == mesh.triangles && mended.mesh.vertices == mesh.vertices) return;
     any = true;
     if (mended.mesh.triangles.empty()) return;
-    const double tolerance = 1e-4 * cad::bounds_of_vertices(mesh).diagonal();
-    const double made_up = cad::farthest(mended.mesh, mesh, tolerance).at_most;
-    const double lost = cad::farthest(mesh, mended.mesh, tolerance).at_most;
+    const cad::Closeness closeness{1e-4 * cad::bounds_of_vertices(mesh).diagonal(), 0.02};
+    const double made_up = cad::farthest(mended.mesh, mesh, closeness).at_most;
+    const double lost = cad::farthest(mesh, mended.mesh, closeness).at_most;
     done.push_back(
         fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
                     "{:.3g} from it",
@@ -271,7 +267,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   for (const cad::Solid& solid : parts)
     if (parts.size() > 1 || !(solid.name.empty() || solid.name.starts_with('<')))
       result.report.solids.push_back(solid.name);
-  if (!options.solids.empty() && !by_piece) keep_solids(chosen.soup, options);
+  if (!options.solids.empty() && !by_piece) keep_chosen(chosen.soup, options);
   cad::Triangles triangles = cad::make_triangles(chosen.soup);
   chosen.soup = {};
   Mesh& mesh = triangles.mesh;

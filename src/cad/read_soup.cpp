@@ -11,6 +11,20 @@
 #include "cad/stl_file.hpp"
 
 namespace bernal::cad {
+
+void keep_solids(PolygonSoup& soup, const std::vector<bool>& kept) {
+  std::vector<Solid> solids;
+  std::vector<std::vector<std::uint32_t>> polygons;
+  for (std::size_t i = 0; i < soup.solids.size(); ++i) {
+    if (!kept[i]) continue;
+    const std::size_t end = i + 1 < soup.solids.size() ? soup.solids[i + 1].first : soup.polygons.size();
+    solids.push_back({soup.solids[i].name, polygons.size()});
+    for (std::size_t k = soup.solids[i].first; k < end; ++k) polygons.push_back(std::move(soup.polygons[k]));
+  }
+  soup.solids = std::move(solids);
+  soup.polygons = std::move(polygons);
+}
+
 namespace {
 
 /// How far a corner of one soup is from that of the other at most, polygon by polygon in their order;

@@ -8,6 +8,7 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 
+#include "cad/counted.hpp"
 #include "cad/file_facts.hpp"
 #include "cad/polygon_soup.hpp"
 
@@ -39,10 +40,13 @@ void append_mesh(const aiMesh& mesh, const Eigen::Matrix4d& transform, PolygonSo
   }
 }
 
-/// `above` is the transform of the node itself too.
+/// `above` is the transform of the node itself too. One that flattens what it holds hides it, as exporters
+/// do.
 void append_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& above, PolygonSoup& soup) {
   const std::size_t first = soup.polygons.size();
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) append_mesh(*scene.mMeshes[node.mMeshes[i]], above, soup);
+  const bool hidden = above.topLeftCorner<3, 3>().determinant() == 0;
+  for (unsigned i = 0; i < node.mNumMeshes && !hidden; ++i)
+    append_mesh(*scene.mMeshes[node.mMeshes[i]], above, soup);
   if (soup.polygons.size() > first) soup.solids.push_back({node.mName.C_Str(), first});
   for (unsigned i = 0; i < node.mNumChildren; ++i) {
     const aiNode& child = *node.mChildren[i];
@@ -91,8 +95,19 @@ void add_facts(const std::filesystem::path& file, const aiScene& scene, ReadAtte
   } else if (format.starts_with("3mf")) {
     ThreeMfFacts model = facts_of_3mf(zip_entry(file, ".model"));
     result.facts = std::move(model.facts);
-    for (Solid& solid : result.soup.solids)  // which assimp calls "Object_7" after the id
-      if (solid.name.starts_with("Object_")) solid.name = model.names[solid.name.substr(7)];
+    std::vector<bool> is_part;
+    for (Solid& solid : result.soup.solids) {  // which assimp calls "Object_7" after the id
+      const bool by_id = solid.name.starts_with("Object_");
+      const ThreeMfFacts::Object object =
+          by_id ? model.objects[solid.name.substr(7)] : ThreeMfFacts::Object();
+      if (by_id) solid.name = object.name;
+      is_part.push_back(object.is_part);
+    }
+    const auto left_out = static_cast<std::size_t>(std::ranges::count(is_part, false));
+    if (left_out == 0) return;
+    keep_solids(result.soup, is_part);
+    result.facts.notes.push_back(fmt::format("{} left out, which by the file support the part",
+                                             counted(left_out, "object is", "objects are")));
   }
 }
 

@@ -147,7 +147,9 @@ void require_fit_for_stages(const Plan& plan) {
       const Frame frame = frame_of(plan.domain);
       entry.require(entry.table.options(stage), to_local(plan.domain, frame), smallest / frame.scale);
     } catch (const Error& error) {
-      throw Error(error.code(), error.what(), stage.locations.of("direction"));
+      const Location at = stage.locations.of("direction");  // none of a stage that the scene does not name
+      throw Error(error.code(), error.what(),
+                  at.line == 0 ? plan.scene.container.locations.whole : at);
     }
   }
 }

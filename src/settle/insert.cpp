@@ -23,6 +23,7 @@ StageEnd insert(Work& work, const Insert& options) {
   const double attempts =
       options.attempts * std::clamp(bed.places().volume() / bed.container().volume(), 1.0, most_drawn);
   SnugPlaces snug(work);
+  if (snug.only_some_touch()) snug.place_those_that_touch();
   std::size_t waiting = 0;  // so many at the head of the window found no place
   do {
     waiting = 0;

@@ -23,6 +23,14 @@ double margin_for(double resolution) { return std::max(1e-4, 100 * resolution); 
 
 }  // namespace
 
+void require_resolution(double resolution) {
+  if (margin_for(resolution) <= largest_margin) return;
+  throw Error(ErrorCode::bad_scene,
+              fmt::format("spheres {:.0e} times smaller than the container cannot be relaxed in it; name "
+                          "other stages, such as \"insert\" and \"compress\"",
+                          std::exp2(32) * resolution));
+}
+
 void ContainerGround::place(const Spheres<3>& spheres) {
   if (packing_) {
     list_builds_ += packing_->builds();
@@ -31,12 +39,8 @@ void ContainerGround::place(const Spheres<3>& spheres) {
   packing_ = std::make_unique<SoftPacking>(spheres, *container_, soft_kernels().front());
   if (margin_ == 0) {
     const double resolution = packing_->resolution() / std::ranges::min(spheres.r);
+    require_resolution(resolution);
     margin_ = margin_for(resolution);
-    if (margin_ > largest_margin)
-      throw Error(ErrorCode::bad_scene,
-                  fmt::format("spheres {:.0e} times smaller than the container cannot be relaxed in it; name "
-                              "other stages, such as \"insert\" and \"compress\"",
-                              std::exp2(32) * resolution));
   }
   packing_->swell(1 + margin_);
 }

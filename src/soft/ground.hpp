@@ -12,6 +12,11 @@
 
 namespace bernal {
 
+/// Throws Error{bad_scene} where single precision cannot tell spheres apart in a container: where a unit of
+/// its coordinates, 2^-32 of the longest edge, is more than 1e-4 of the smallest radius: that ratio it is
+/// given.
+void require_resolution(double resolution);
+
 /// What a `Crowd` stands on in a container: its walls push, and holes have to clear them.
 class ContainerGround {
  public:
@@ -25,8 +30,8 @@ class ContainerGround {
   ContainerGround(const Container& container, const Places& places)
       : container_(&container), places_(&places) {}
 
-  /// Puts the spheres, whose centres are inside the container, into the engine. Throws Error{bad_scene} where
-  /// single precision cannot tell them apart: in a container 100,000 times as large as they are.
+  /// Puts the spheres, whose centres are inside the container, into the engine. Throws what
+  /// `require_resolution` does.
   void place(const Spheres<3>& spheres);
   void read_places(Spheres<3>& spheres) const { packing_->write_to(spheres); }
 

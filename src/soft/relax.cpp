@@ -8,6 +8,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "core/close_packing.hpp"
 #include "jam/polish.hpp"
+#include "soft/ground.hpp"
 #include "soft/soft_engine.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/random_insertion.hpp"
@@ -241,7 +242,10 @@ const StageEntry& entry_of<Relax>() {
                        "some 1,000 sweeps of O(N)"}},
       .box_effects = {neighbor_lists,
                       {"relaxation", "overlapping spheres push each other apart while the box grows",
-                       "some 1,000 sweeps of O(N)"}}};
+                       "some 1,000 sweeps of O(N)"}},
+      .require = [](const void*, const Domain& container, double smallest_radius) {
+        require_resolution(0x1p-32 * bounds_of<3>(container).size().maxCoeff() / smallest_radius);
+      }};
   return entry;
 }
 

@@ -177,9 +177,11 @@ bool is_dilute(const Work& work) {
 
 StageEnd relax_in_container(Work& work, const Relax& options) {
   const auto relaxed = [&] {
-    if (is_dilute(work)) {
+    // What fits only touching the walls would be pushed off its place; the others come around it.
+    const bool some_touch = SnugPlaces(work).only_some_touch();
+    if (some_touch || is_dilute(work)) {
       const StageEnd end = insert(work, insertion);
-      if (end != StageEnd::full) return end;
+      if (some_touch || end != StageEnd::full) return end;
     }
     const EffectTimer timer(work.effects["relaxation"]);
     return Relaxation(work, options).run();

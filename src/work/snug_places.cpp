@@ -1,6 +1,8 @@
 #include "work/snug_places.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <vector>
 
 namespace bernal {
 namespace {
@@ -65,6 +67,30 @@ std::optional<Vector<3>> SnugPlaces::find(double r) {
   for (int k = 0; k < most_starts; ++k)
     if (const auto place = from(work_.bed().places().draw(random_), r)) return place;
   return {};
+}
+
+bool SnugPlaces::only_some_touch() {
+  const Supply& supply = *work_.supply;
+  return work_.bed().size() == 0 && !work_.target.is_open() && needed(supply.largest()) &&
+         !needed(supply.smallest()) && work_.is_snug(supply.largest());
+}
+
+void SnugPlaces::place_those_that_touch() {
+  Supply& supply = *work_.supply;
+  std::vector<std::uint32_t> tags;
+  for (std::uint32_t tag = 0; tag < supply.wanted(); ++tag)
+    if (work_.is_snug(supply.radius(tag))) tags.push_back(tag);
+  std::ranges::stable_sort(tags, std::greater<>(), [&](std::uint32_t tag) { return supply.radius(tag); });
+  std::vector<std::uint32_t> placed;
+  for (const std::uint32_t tag : tags) {
+    if (work_.monitor.stop()) throw Cancelled();
+    const auto place = find(supply.radius(tag));
+    if (!place) break;  // nor is there one for the next, which is hardly smaller
+    work_.bed().insert(*place, supply.radius(tag), tag);
+    placed.push_back(tag);
+  }
+  std::ranges::sort(placed);
+  supply.take_first(placed);
 }
 
 std::size_t SnugPlaces::place_waiting(double packing_fraction) {

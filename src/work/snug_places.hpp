@@ -22,6 +22,11 @@ class SnugPlaces {
   /// Cost: about a millisecond.
   std::optional<Vector<3>> find(double r);
 
+  /// Whether of what is asked for some, but not all, fit only touching the walls, and nothing stands yet.
+  bool only_some_touch();
+  /// Gives these their places, the largest first, before others stand there. Throws Cancelled.
+  void place_those_that_touch();
+
   /// Gives places to those of the window that need such ones, until that packing fraction is there. Returns
   /// how many found one. Throws Cancelled.
   std::size_t place_waiting(double packing_fraction);

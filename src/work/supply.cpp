@@ -76,7 +76,12 @@ void Supply::multiply_by(double factor) {
 }
 
 void Supply::open_window() {
-  while (window_.size() < width_ && next_ < radii_.size()) window_.push_back(next_++);
+  for (; window_.size() < width_ && next_ < radii_.size(); ++next_) {
+    if (!taken_first_.empty() && taken_first_.back() == next_)
+      taken_first_.pop_back();
+    else
+      window_.push_back(next_);
+  }
 }
 
 void Supply::take(std::size_t k) {
@@ -84,8 +89,17 @@ void Supply::take(std::size_t k) {
   open_window();
 }
 
+void Supply::take_first(const std::vector<std::uint32_t>& tags) {
+  taken_first_.assign(tags.rbegin(), tags.rend());
+  in_sequence_ = tags.empty();
+  window_.clear();
+  next_ = 0;
+  open_window();
+}
+
 void Supply::set_placed(const std::vector<bool>& placed) {
   window_.clear();
+  taken_first_.clear();
   next_ = static_cast<std::uint32_t>(placed.size());
   for (std::uint32_t tag = 0; tag < next_; ++tag)
     if (!placed[tag]) window_.push_back(tag);
@@ -109,6 +123,7 @@ std::size_t Supply::passed_over() const {
 }
 
 bool Supply::trimming_is_cheap() const {
+  if (!in_sequence_) return false;
   const std::size_t placed = next_ - window_.size();
   const std::size_t beyond = placed - std::min<std::size_t>(placed, first_missing());
   return static_cast<double>(beyond) <= trim_share * static_cast<double>(placed);

@@ -50,6 +50,9 @@ class Supply {
   double radius(std::uint32_t tag) const { return radii_[tag]; }
   /// Takes the k-th of the window.
   void take(std::size_t k);
+  /// Takes spheres of any place in the sequence, in ascending order, before any of the window has been taken:
+  /// those that have to stand before the others do.
+  void take_first(const std::vector<std::uint32_t>& tags);
 
   /// Of the first `placed.size()` tags those that are set have been placed, and no others.
   void set_placed(const std::vector<bool>& placed);
@@ -77,7 +80,9 @@ class Supply {
   int dimension_ = 3;
   std::vector<double> radii_;
   std::vector<std::uint32_t> window_;
-  std::uint32_t next_ = 0;  // the first tag that was never in the window
+  std::vector<std::uint32_t> taken_first_;  // those from next_ on, the last first
+  bool in_sequence_ = true;                 // but for a window's width, spheres were taken in their order
+  std::uint32_t next_ = 0;                  // the first tag that was never in the window
   std::size_t width_ = 1;
   std::size_t cut_off_ = 0;
   double cut_ = 0;

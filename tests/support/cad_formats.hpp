@@ -104,17 +104,26 @@ inline std::string archived_3mf(std::string_view model) {
 }
 
 /// 3MF; `unit`: "millimeter", "inch", …
-inline std::string as_3mf(const Mesh& mesh, std::string_view unit) {
-  std::string xml = fmt::format(
-      R"(<?xml version="1.0" encoding="UTF-8"?><model unit="{}" xml:lang="en-US" )"
-      R"(xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1" type="model"><mesh><vertices>)",
-      unit);
-  for (const Vector<3>& v : mesh.vertices)
-    xml += fmt::format(R"(<vertex x="{}" y="{}" z="{}"/>)", v[0], v[1], v[2]);
-  xml += "</vertices><triangles>";
-  for (const auto& [i, j, k] : mesh.triangles)
-    xml += fmt::format(R"(<triangle v1="{}" v2="{}" v3="{}"/>)", i, j, k);
-  xml += R"(</triangles></mesh></object></resources><build><item objectid="1"/></build></model>)";
+/// `support`, if it has faces, is an object that holds the part while it is printed.
+inline std::string as_3mf(const Mesh& mesh, std::string_view unit, const Mesh& support = {}) {
+  std::string xml =
+      fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?><model unit="{}" xml:lang="en-US" )"
+                  R"(xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>)",
+                  unit);
+  const auto add = [&](int id, std::string_view type, const Mesh& object) {
+    xml += fmt::format(R"(<object id="{}" type="{}"><mesh><vertices>)", id, type);
+    for (const Vector<3>& v : object.vertices)
+      xml += fmt::format(R"(<vertex x="{}" y="{}" z="{}"/>)", v[0], v[1], v[2]);
+    xml += "</vertices><triangles>";
+    for (const auto& [i, j, k] : object.triangles)
+      xml += fmt::format(R"(<triangle v1="{}" v2="{}" v3="{}"/>)", i, j, k);
+    xml += "</triangles></mesh></object>";
+  };
+  const bool supported = !support.triangles.empty();
+  add(1, "model", mesh);
+  if (supported) add(2, "support", support);
+  xml += fmt::format(R"(</resources><build><item objectid="1"/>{}</build></model>)",
+                     supported ? R"(<item objectid="2"/>)" : "");
   return archived_3mf(xml);
 }
 

@@ -172,6 +172,21 @@ TEST(Supply, OffersAnAscendingWindowOfWhatIsMissing) {
   EXPECT_EQ(supply.first_missing(), n);
 }
 
+TEST(Supply, WhatWasTakenFirstNeverComesAgain) {
+  constexpr std::size_t n = 500;
+  Supply supply({.radii = *uniform, .seed = 7}, 1, count_of(n));
+  const std::vector<std::uint32_t> first{0, 3, 4, 250, n - 1};
+  supply.take_first(first);
+  std::vector<std::uint32_t> tags = first;
+  while (!supply.exhausted()) {
+    tags.push_back(supply.window().front());
+    supply.take(0);
+  }
+  std::ranges::sort(tags);
+  EXPECT_EQ(tags.size(), n);
+  EXPECT_EQ(std::ranges::adjacent_find(tags), tags.end());
+}
+
 TEST(Supply, TrimmingIsCheapWhereFewStandBeyondTheFirstMissing) {
   Supply supply({.radii = *uniform, .seed = 7}, 1, count_of(2000));
   for (int k = 0; k < 1000; ++k) supply.take(0);

@@ -162,6 +162,24 @@ void note_units(const std::vector<std::string>& names, FileFacts& facts) {
   }
 }
 
+/// Why a file cannot be parsed as STEP, which begins with the name of the standard and ends with END- of it.
+std::string unparsed_step(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const std::string_view name = "ISO-10303-21;";
+  const std::size_t begin = text.find(name);
+  if (begin == std::string::npos || begin >= 100)
+    return "it does not begin as STEP does, with ISO-10303-21; export it again";
+  if (text.find("END-ISO-10303-21") == std::string::npos)
+    return "it ends before END-ISO-10303-21: it has been cut off; copy or export it again";
+  if (begin > 0)
+    return fmt::format(
+        "OpenCASCADE cannot parse it: {} bytes stand in front of ISO-10303-21, a byte order mark "
+        "perhaps; save it without them",
+        begin);
+  return "OpenCASCADE cannot parse it as STEP; export it again, or as STL";
+}
+
 std::string read_step(const std::filesystem::path& file, Parts& parts) {
   STEPCAFControl_Reader reader;
   reader.SetNameMode(true);
@@ -172,7 +190,7 @@ std::string read_step(const std::filesystem::path& file, Parts& parts) {
   reader.SetGDTMode(false);
   reader.SetMatMode(false);
   reader.SetViewMode(false);
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return "OpenCASCADE cannot parse it as STEP";
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return unparsed_step(file);
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
   std::vector<std::string> names;
@@ -190,7 +208,8 @@ std::string read_iges(const std::filesystem::path& file, Parts& parts) {
   reader.SetColorMode(false);
   reader.SetLayerMode(false);
   reader.SetReadVisible(true);
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return "OpenCASCADE cannot parse it as IGES";
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone)
+    return "OpenCASCADE cannot parse it as IGES; export it again, or as STEP";
   const auto unit = reader.IGESModel()->GlobalSection().UnitName();
   note_units({unit.IsNull() ? "" : unit->ToCString()}, parts.facts);
   auto document = new_document();
@@ -202,7 +221,7 @@ std::string read_iges(const std::filesystem::path& file, Parts& parts) {
 std::string read_brep(const std::filesystem::path& file, Parts& parts) {
   TopoDS_Shape shape;
   if (!BRepTools::Read(shape, file.c_str(), BRep_Builder()) || shape.IsNull())
-    return "OpenCASCADE cannot parse it as BREP";
+    return "OpenCASCADE cannot parse it as BREP; export it again, or as STEP";
   BRepTools::Clean(shape);  // of triangles with another deflection
   split(shape, {}, parts);
   return {};

@@ -3,6 +3,7 @@
 #include "hard/table/hard_case.hpp"
 #include "support/broken_meshes.hpp"
 #include "support/cad_formats.hpp"
+#include "support/folder.hpp"
 
 // One part in every format, with units and axes as files name them; and files that are not what they seem.
 namespace bernal::hard {
@@ -70,6 +71,18 @@ std::vector<Case> format_cases() {
       {{"part.gltf", [m = in(1000)] { return as_gltf(m); }},
        {"part.bin", [m = in(1000)] { return as_gltf_numbers(m); }}},
       whole);
+  add("ThreeMfWithASupport", "what holds the part while it is printed is none of it",
+      file("part.3mf", as_3mf(part, "millimeter", box_mesh({10, 20, -40}, {20, 30, -20}))), whole);
+  add("GltfWithAHiddenInstance", "a node scaled to nothing is not to be seen",
+      {{"part.gltf",
+        [m = in(1000)] {
+          const std::string text = as_gltf(m), one = R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}])";
+          return std::string(text).replace(
+              text.find(one), one.size(),
+              R"("scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0},{"mesh":0,"scale":[1,1,0]}])");
+        }},
+       {"part.bin", [m = in(1000)] { return as_gltf_numbers(m); }}},
+      whole);
   for (const char* up : {"X_UP", "Y_UP", "Z_UP"})
     add(fmt::format("ColladaInMillimetres{}", std::string(up, 1)), "readers turn and scale it",
         file("part.dae", as_collada(part, 1e-3, up)), whole);
@@ -96,6 +109,15 @@ std::vector<Case> format_cases() {
       refused(""));
   add("CutThreeMf", "the archive's directory is missing",
       file("part.3mf", as_3mf(part, "inch").substr(0, 500)), refused(""));
+  const auto step = [](const auto& change) {
+    return std::vector<File>{
+        {"part.step",
+         [change] { return change(testing::text_of(BERNAL_SOURCE "/tests/hard/models/screw.step")); }}};
+  };
+  add("CutStep", "the end is missing",
+      step([](const std::string& text) { return text.substr(0, text.size() * 4 / 5); }), refused("cut off"));
+  add("StepBehindAByteOrderMark", "three bytes before the first word",
+      step([](const std::string& text) { return "\xEF\xBB\xBF" + text; }), refused("in front of"));
   add("NotANumber", "a coordinate is nan",
       file("part.off",
            [&] {

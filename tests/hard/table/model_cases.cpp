@@ -43,13 +43,13 @@ std::vector<Case> model_cases() {
       "diameter = 1.5", refused(""));
   add("T13", models + "gmsh_t13.stl", "genus 2", "diameter = 3.0", at_least(1000));
   add("Bucket", models + "liggghts_bucket.stl", "walls with a thickness: the wall is packed",
-      "diameter = 4.0", at_least(100));
+      "count = 3000\ndiameter = 4.0", exactly(3000));
   add("BucketInside", models + "liggghts_bucket.stl", "the hollow is meant", "diameter = 15.0", at_least(300),
       "interior = \"cavity\"");
   add("HopperOfPlate", models + "liggghts_hopper_open_flipped.stl",
       "eight flipped edges; the plate itself is packed", "count = 200\ndiameter = 2.0", exactly(200));
   add("HopperInside", models + "liggghts_hopper_open_flipped.stl", "the hollow is meant, faces are flipped",
-      "diameter = 15.0", at_least(300), "interior = \"cavity\"");
+      "diameter = 30.0", at_least(300), "interior = \"cavity\"");
   add("LinkRods", models + "linkrods.step", "free-form and analytic faces", "diameter = 0.2", at_least(200));
   add("HeaderSolid", models + "made_binary_header_solid.stl", "binary, its header begins with \"solid\"",
       "diameter = 0.1", at_least(50));

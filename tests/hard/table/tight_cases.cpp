@@ -62,6 +62,26 @@ std::vector<Case> tight_cases() {
       "kind = \"box\"\nsize = [1.0, 3.000001, 1.0]", "count = 3\nradius = 0.5", 3, false);
   add("TenInASquareTubeMesh", "one stands on the other from end to end", part, "count = 10\nradius = 0.5", 10,
       false, mesh(test::box_mesh({0, 0, 0}, {1.000001, 1.000001, 10.00001})));
+  for (const char* protocol : {"default", "relax"}) {
+    const std::string named = protocol == std::string("default") ? "" : stages({protocol});
+    const auto among = [&](const char* name, const char* container, const char* spheres, std::size_t n) {
+      cases.push_back({exact_fits, fmt::format("{}_{}", name, protocol),
+                       "has one place, if no small one stands there first", scene(container, spheres, named),
+                       exactly(n)});
+    };
+    among("OneThatFitsACubeAmongSmallOnes", "kind = \"box\"\nsize = [4.0, 4.0, 4.0]",
+          "count = 30\ndiameter = { distribution = \"classes\", values = [0.4, 4.0], shares = [29, 1], basis "
+          "= \"number\" }\ndraw = \"quantiles\"",
+          30);
+    among("OneThatFitsACylinderAmongSmallOnes", "kind = \"cylinder\"\nradius = 2.0\nheight = 6.0",
+          "count = 30\ndiameter = { distribution = \"classes\", values = [0.4, 4.0], shares = [29, 1], basis "
+          "= \"number\" }\ndraw = \"quantiles\"",
+          30);
+    among("AThousandInTheCornersAroundOne", "kind = \"box\"\nsize = [10.0, 10.0, 10.0]",
+          "count = 1000\ndiameter = { distribution = \"classes\", values = [0.4, 10.0], shares = [999, 1], "
+          "basis = \"number\" }\ndraw = \"quantiles\"",
+          1000);
+  }
   for (const char* thickness : {"1.0", "1.0000005"})
     add(fmt::format("FiftyInASlabOf{}", thickness[3] ? "OneAndAHair" : "One"),
         "one sphere thick, endless to the sides",

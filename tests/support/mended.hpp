@@ -1,0 +1,38 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cad/mended.hpp"
+#include "cad/mesh_topology.hpp"
+#include "cad/self_intersections.hpp"
+#include "support/meshes.hpp"
+
+// What repairs are tried on, and what is asked of what they return.
+namespace bernal::test {
+
+/// The mesh without the triangles for which `gone(middle)` holds.
+template <class Gone>
+Mesh without_faces(Mesh mesh, const Gone& gone) {
+  std::erase_if(mesh.triangles, [&](const auto& t) {
+    return gone(Vector<3>((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3));
+  });
+  return mesh;
+}
+
+inline bool says(const cad::Mended& mended, std::string_view words) {
+  return mended.done.find(words) != std::string::npos && mended.done.find('\n') == std::string::npos;
+}
+
+/// Closed, two-sided as it is oriented, and meeting itself nowhere.
+inline void expect_sound(const cad::Mended& mended) {
+  const cad::MeshTopology topology = cad::topology_of(mended.mesh);
+  EXPECT_TRUE(topology.closed()) << mended.done;
+  EXPECT_EQ(topology.misoriented_edges, 0U) << mended.done;
+  EXPECT_EQ(cad::count_degenerate(mended.mesh), 0U) << mended.done;
+  EXPECT_EQ(cad::count_self_intersections(mended.mesh), 0U) << mended.done;
+}
+
+}  // namespace bernal::test

@@ -1,0 +1,102 @@
+#include "cad/wrap.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "bernal/core/error.hpp"
+#include "cad/mesh_distance.hpp"
+#include "support/mended.hpp"
+
+namespace bernal {
+namespace wrap_test {
+
+using namespace test;
+using namespace cad;
+
+const Mesh unit_box = box_mesh({0, 0, 0}, {1, 1, 1});
+
+double volume(const Mesh& mesh) { return volume_of(Domain(mesh)); }
+
+bool same(const Mesh& a, const Mesh& b) { return a.vertices == b.vertices && a.triangles == b.triangles; }
+
+/// Every triangle with corners of its own, each moved by up to `by` along every axis, every other one turned.
+Mesh shaken_soup(const Mesh& mesh, double by, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-by, by);
+  Mesh soup;
+  for (const auto& t : mesh.triangles) {
+    const std::uint32_t first = index(soup.vertices.size());
+    for (const std::uint32_t i : t)
+      soup.vertices.push_back(mesh.vertices[i] +
+                              Vector<3>(uniform(random), uniform(random), uniform(random)));
+    soup.triangles.push_back({first, first + 1, first + 2});
+    if (first % 2 == 0) std::swap(soup.triangles.back()[1], soup.triangles.back()[2]);
+  }
+  return soup;
+}
+
+TEST(Wrap, LiesWithinABoxOfShakenFaces) {
+  const double shake = 0.002, alpha = 0.06, offset = 0.005;
+  const Mesh soup = shaken_soup(divided(unit_box, 3), shake, 7);
+  const Mended mended = wrap(soup, alpha, offset);
+  expect_sound(mended);
+  EXPECT_TRUE(says(mended, "wrapped from inside (alpha 0.06, offset 0.005)")) << mended.done;
+  for (const Vector<3>& v : mended.mesh.vertices) {
+    EXPECT_GT(v.minCoeff(), 0);
+    EXPECT_LT(v.maxCoeff(), 1);
+  }
+  // It crosses the soup nowhere.
+  const Mesh both = joined(mended.mesh, soup);
+  for (const auto& [s, t] : self_intersecting_pairs(both))
+    EXPECT_EQ(s < mended.mesh.triangles.size(), t < mended.mesh.triangles.size());
+  // All but a layer of the offset and the shaking; and a chord of 2 alpha may cut the edges off.
+  const double layer = offset + 2 * shake, edges = 12 * alpha * alpha;
+  EXPECT_LT(volume(mended.mesh), 1);
+  EXPECT_GT(volume(mended.mesh), std::pow(1 - 2 * layer, 3) - edges);
+  EXPECT_LT(farthest(mended.mesh, unit_box, {1e-3}).at_most, alpha);
+}
+
+TEST(Wrap, KeepsObstaclesAndChambersApart) {
+  const Mesh part = joined(joined(divided(unit_box, 2), box_mesh({0.4, 0.4, 0.4}, {0.2, 0.2, 0.2})),
+                           translated(divided(unit_box, 2), {2, 0, 0}));
+  const double shake = 1e-4, alpha = 0.07, offset = 0.002;
+  const Mended mended = wrap(shaken_soup(part, shake, 3), alpha, offset);
+  expect_sound(mended);
+  EXPECT_EQ(topology_of(mended.mesh).components, 3U) << mended.done;
+  const double exact = 2 - 0.008, area = 12 + 0.24;
+  EXPECT_LT(volume(mended.mesh), exact);
+  EXPECT_GT(volume(mended.mesh), exact - area * (offset + 2 * shake) - 24 * alpha * alpha);
+}
+
+TEST(Wrap, SaysWhenItLiesOutside) {
+  const Mesh plate = box_mesh({0, 0, 0}, {1, 1, 0.08});
+  const Mended outside = wrap(plate, 0.1, 0.01);
+  expect_sound(outside);
+  EXPECT_TRUE(says(outside, "wrapped from outside")) << outside.done;
+  EXPECT_TRUE(says(outside, "too narrow for alpha")) << outside.done;
+  EXPECT_LT(farthest(plate, outside.mesh, {1e-3}).at_most, 0.1);
+}
+
+TEST(Wrap, DoesNotTakeTheSkinOfASheetForAContainer) {
+  const Mesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.1}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  const Mesh open = without_faces(divided(unit_box, 2), [](const Vector<3>& p) { return p[2] == 1; });
+  for (const auto& [mesh, why] : {std::pair(sheet, "no inside was found"), {open, "gaps wider than alpha"}}) {
+    const Mended none = wrap(mesh, 0.1, 0.01);
+    EXPECT_TRUE(says(none, "not wrapped") && says(none, why) && says(none, "close its openings"))
+        << none.done;
+    EXPECT_TRUE(same(none.mesh, mesh));
+  }
+}
+
+TEST(Wrap, ListensAndRefuses) {
+  const Mended cancelled = wrap(unit_box, 0.02, 0.001, {{}, [] { return true; }});
+  EXPECT_TRUE(says(cancelled, "cancelled")) << cancelled.done;
+  EXPECT_TRUE(same(cancelled.mesh, unit_box));
+  EXPECT_THROW(wrap(unit_box, -1, 0), Error);
+  EXPECT_TRUE(says(wrap(Mesh{}, 1, 1), "no faces"));
+}
+
+}  // namespace wrap_test
+}  // namespace bernal
