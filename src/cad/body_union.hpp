@@ -12,4 +12,10 @@ enum class Combine { unite, take_out };
 /// Precondition: each is closed, oriented outwards, without degenerate faces and does not meet itself.
 std::optional<Mesh> combine(const Mesh& one, const Mesh& other, Combine how);
 
+/// All that a surface winds around at least once: where a part crosses itself, its outer walls. The surface
+/// is cut along its crossings; of the patches between them stay those that have nothing outside. Equal
+/// corners of patches are welded. Nothing where it enclosed nothing so, does not close up, or CGAL gives up.
+/// Precondition: closed, oriented so that its volume is positive, without degenerate faces.
+std::optional<Mesh> unite_with_itself(const Mesh&);
+
 }  // namespace bernal::cad

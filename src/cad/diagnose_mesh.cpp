@@ -60,8 +60,9 @@ std::vector<Crossing> nesting(const Mesh& mesh, const MeshTopology& topology) {
 }
 
 /// Turns whole components so that the mesh bounds a volume: the outermost outwards, those in them inwards,
-/// and so on. Precondition: closed, consistently oriented, no self-intersections.
-void orient_components(Mesh& mesh, const MeshTopology& topology, const Vector<3>& center) {
+/// and so on. Returns how many in others looked outwards. Precondition: closed, consistently oriented, no
+/// self-intersections.
+std::uint64_t orient_components(Mesh& mesh, const MeshTopology& topology, const Vector<3>& center) {
   std::vector<double> six_volumes(topology.components, 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     six_volumes[topology.component[t]] += six_signed_volumes(mesh, mesh.triangles[t], center);
@@ -71,6 +72,10 @@ void orient_components(Mesh& mesh, const MeshTopology& topology, const Vector<3>
     if ((six_volumes[own] < 0) != (nested[own] == Crossing::odd))
       std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
   }
+  std::uint64_t made_voids = 0;
+  for (std::size_t c = 0; c < nested.size(); ++c)
+    made_voids += nested[c] == Crossing::odd && six_volumes[c] > 0;
+  return made_voids;
 }
 
 bool same_orientation(std::array<std::uint32_t, 3> s, const std::array<std::uint32_t, 3>& t) {
@@ -99,7 +104,7 @@ void orient(Mesh& mesh, const MeshTopology& topology, MeshReport& report) {
     return;
   }
   const Vector<3> center = report.bounds.center();
-  orient_components(mesh, topology, center);
+  const std::uint64_t made_voids = orient_components(mesh, topology, center);
   for (const auto& t : mesh.triangles) report.volume += six_signed_volumes(mesh, t, center);
   report.volume /= 6;
   if (!(report.volume > 0) || !std::isfinite(report.volume)) {
@@ -110,7 +115,11 @@ void orient(Mesh& mesh, const MeshTopology& topology, MeshReport& report) {
   const std::size_t turned = count_turned(mesh, original);
   report.orientation = turned == 0 ? "outward" : turned == report.faces ? "inward" : "mixed";
   if (turned > 0)
-    report.repairs.push_back(fmt::format("turned {} outward", counted(turned, "face", "faces")));
+    report.repairs.push_back(made_voids == 0
+                                 ? fmt::format("turned {} outward", counted(turned, "face", "faces"))
+                                 : fmt::format("turned {}, and took {} inside others for voids",
+                                               counted(turned, "face", "faces"),
+                                               counted(made_voids, "body", "bodies")));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "bernal/cad/read_mesh.hpp"
 #include "cad/close_seams.hpp"
@@ -36,7 +37,7 @@ std::string rounded(double value, double towards, double within) {
     const std::string text = fmt::format("{:.{}g}", value, digits);
     const double shift = std::stod(text) - value;
     if (std::abs(shift) <= within || (shift * towards > 0 && std::abs(shift) <= 1e-4 * std::abs(towards)))
-      return text;
+      return fmt::format("{}", std::stod(text));  // "10", not "1e+01"
   }
   return fmt::format("{}", value);
 }
@@ -89,36 +90,46 @@ bool cuts_off_more(const RimPlane& plane, const cad::OpenRim& own, const std::ve
   return std::ranges::any_of(mesh.vertices, is_beyond(brim + rounding));
 }
 
+/// A rim as flat as an opening's, or a hole's if it is no wider, and the plane that closes it.
+struct Closing {
+  RimPlane plane;
+  std::string text;  ///< "z = 1.1"
+  bool wide;
+};
+std::optional<Closing> closing_of(const cad::OpenRim& rim, const Bounds<3>& part, double rounding) {
+  const bool wide = rim.bounds.diagonal() >= narrowest_opening * part.diagonal();
+  const double deepest = wide ? deepest_opening * rim.bounds.size().maxCoeff() : rounding;
+  const Vector<3> across = flattest(rim.ends, rim.bounds, deepest);
+  double lowest = across.dot(rim.ends.front()), highest = lowest;
+  for (const Vector<3>& p : rim.ends) {
+    lowest = std::min(lowest, across.dot(p));
+    highest = std::max(highest, across.dot(p));
+  }
+  if (highest - lowest > deepest) return {};
+  const double middle = across.dot(part.center()), length = across.norm();
+  const bool is_above = lowest + highest > 2 * middle;
+  const double level = is_above ? lowest : highest;
+  const RimPlane plane{(is_above ? 1 : -1) * across / length, (is_above ? level : -level) / length,
+                       (highest - lowest) / length};
+  return Closing{plane,
+                 fmt::format("{} = {}", sum_of_coordinates(across), rounded(level, middle - level, rounding)),
+                 wide};
+}
+
 Openings openings_of(const Mesh& mesh, const Bounds<3>& part) {
+  constexpr std::size_t most_planes = 4;
   const double rounding = cad::rounding_of_coordinates(mesh);
   Openings found;
-  auto& planes = found.planes;
   const std::vector<cad::OpenRim> rims = cad::open_rims(mesh);
   for (const cad::OpenRim& rim : rims) {
-    const double width = rim.bounds.size().maxCoeff();
-    const bool wide = rim.bounds.diagonal() >= narrowest_opening * part.diagonal();
-    const double deepest = wide ? deepest_opening * width : rounding;
-    const Vector<3> across = flattest(rim.ends, rim.bounds, deepest);
-    double lowest = across.dot(rim.ends.front()), highest = lowest;
-    for (const Vector<3>& p : rim.ends) {
-      lowest = std::min(lowest, across.dot(p));
-      highest = std::max(highest, across.dot(p));
-    }
-    if (highest - lowest > deepest) continue;
-    const double middle = across.dot(part.center());
-    const bool is_above = lowest + highest > 2 * middle;
-    const double level = is_above ? lowest : highest, length = across.norm();
-    const RimPlane plane_of_rim{(is_above ? 1 : -1) * across / length, (is_above ? level : -level) / length,
-                                (highest - lowest) / length};
-    if (cuts_off_more(plane_of_rim, rim, rims, mesh, deepest_opening * width, rounding)) continue;
-    found.wide = found.wide || wide;
-    const std::string plane =
-        fmt::format("{} = {}", sum_of_coordinates(across), rounded(level, middle - level, rounding));
-    if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
+    const std::optional<Closing> closing = closing_of(rim, part, rounding);
+    const double brim = deepest_opening * rim.bounds.size().maxCoeff();
+    if (!closing || cuts_off_more(closing->plane, rim, rims, mesh, brim, rounding)) continue;
+    found.wide = found.wide || closing->wide;
+    if (std::ranges::find(found.planes, closing->text) == found.planes.end())
+      found.planes.push_back(closing->text);
   }
-  constexpr std::size_t most_planes = 4;
-  if (planes.size() > most_planes) return {};
-  return found;
+  return found.planes.size() > most_planes ? Openings{} : found;
 }
 
 std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_is) {

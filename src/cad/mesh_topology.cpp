@@ -1,7 +1,10 @@
 #include "cad/mesh_topology.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <boost/functional/hash.hpp>
+#include <boost/unordered/unordered_map.hpp>
+
+#include "core/disjoint_sets.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -17,24 +20,6 @@ struct EdgeUse {
     return std::tuple(low, high, triangle, edge) <
            std::tuple(other.low, other.high, other.triangle, other.edge);
   }
-};
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }
-
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  /// The smaller root stays, so that roots come in order of their first member.
-  void join(std::uint32_t i, std::uint32_t j) {
-    const auto [low, high] = std::minmax({root(i), root(j)});
-    parent_[high] = low;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
 };
 
 std::vector<EdgeUse> edge_uses(const Mesh& mesh) {
@@ -56,9 +41,8 @@ MeshTopology topology_of(const Mesh& mesh) {
   const std::size_t count = mesh.triangles.size();
   MeshTopology result;
   result.neighbor.assign(count, {none, none, none});
-  result.component.resize(count);
   result.fan.resize(count);
-  UnionFind pieces(count), corners(3 * count);
+  DisjointSets pieces(count), corners(3 * count);
 
   const std::vector<EdgeUse> uses = edge_uses(mesh);
   for (auto first = uses.begin(); first != uses.end();) {
@@ -74,32 +58,29 @@ MeshTopology topology_of(const Mesh& mesh) {
       result.misoriented_edges += u.upwards == v.upwards;
       result.neighbor[u.triangle][u.edge] = v.triangle;
       result.neighbor[v.triangle][v.edge] = u.triangle;
-      pieces.join(u.triangle, v.triangle);
+      pieces.unite(u.triangle, v.triangle);
       const auto corner = [](const EdgeUse& use, bool at_low) {
         return 3 * use.triangle + (use.edge + (use.upwards == at_low ? 0U : 1U)) % 3;
       };
-      corners.join(corner(u, true), corner(v, true));
-      corners.join(corner(u, false), corner(v, false));
+      corners.unite(corner(u, true), corner(v, true));
+      corners.unite(corner(u, false), corner(v, false));
     }
     first = last;
   }
 
-  std::vector<std::uint32_t> number(3 * count, none);
+  const std::vector<std::uint32_t> fans = corners.numbered();
   std::vector<std::uint32_t> fans_at(mesh.vertices.size(), 0);
   for (std::uint32_t i = 0; i < 3 * count; ++i) {
-    const std::uint32_t root = corners.root(i);
-    if (root == i) {
-      number[i] = static_cast<std::uint32_t>(result.fans++);
+    if (fans[i] == result.fans) {
+      ++result.fans;
       ++fans_at[mesh.triangles[i / 3][i % 3]];
     }
-    result.fan[i / 3][i % 3] = number[root];
+    result.fan[i / 3][i % 3] = fans[i];
   }
   result.non_manifold_vertices =
       static_cast<std::uint64_t>(std::count_if(fans_at.begin(), fans_at.end(), [](auto n) { return n > 1; }));
-  for (std::uint32_t t = 0; t < count; ++t) {
-    const std::uint32_t root = pieces.root(t);
-    result.component[t] = root == t ? result.components++ : result.component[root];
-  }
+  result.component = pieces.numbered();
+  for (const std::uint32_t c : result.component) result.components = std::max(result.components, c + 1);
   return result;
 }
 
@@ -167,6 +148,20 @@ void drop_unused_vertices(Mesh& mesh) {
       v = number[v];
     }
   mesh.vertices = std::move(used);
+}
+
+void weld_equal_points(Mesh& mesh) {
+  boost::unordered_map<std::array<double, 3>, std::uint32_t> index;
+  std::vector<Vector<3>> vertices;
+  for (auto& triangle : mesh.triangles)
+    for (std::uint32_t& i : triangle) {
+      const Vector<3>& p = mesh.vertices[i];
+      const auto [entry, is_new] = index.try_emplace({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0},
+                                                     static_cast<std::uint32_t>(vertices.size()));
+      if (is_new) vertices.push_back(p);
+      i = entry->second;
+    }
+  mesh.vertices = std::move(vertices);
 }
 
 }  // namespace bernal::cad

@@ -48,4 +48,7 @@ void keep_only(Mesh& mesh, const std::vector<bool>& kept);
 /// Numbers the vertices anew, in the order in which the triangles first use them, without the unused ones.
 void drop_unused_vertices(Mesh& mesh);
 
+/// Equal points become one, in the order in which faces use them.
+void weld_equal_points(Mesh& mesh);
+
 }  // namespace bernal::cad

@@ -56,6 +56,17 @@ std::size_t number_in(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size() ? number : 0;
 }
 
+/// The next number of three digits that is at least as large.
+double not_less(double bound) {
+  if (!(bound > 0) || !std::isfinite(bound)) return bound;
+  const int digits = 2 - static_cast<int>(std::floor(std::log10(bound)));
+  const auto text = [&](double number) { return fmt::format("{:.3g}", number); };
+  const double unit = std::pow(10.0, -digits);
+  double rounded = std::stod(text(bound));
+  while (rounded < bound) rounded = std::stod(text(rounded + unit));
+  return rounded;
+}
+
 /// Which of so many named or nameless parts the options choose.
 std::vector<bool> chosen_parts(const MeshFile& options, const std::vector<std::string>& names) {
   std::vector<bool> chosen(names.size(), false);
@@ -184,7 +195,7 @@ struct Repairs {
     done.push_back(
         fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
                     "{:.3g} from it",
-                    made_up, lost));
+                    not_less(made_up), not_less(lost)));
     mesh = std::move(mended.mesh);
   }
 

@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <boost/functional/hash.hpp>
-#include <boost/unordered/unordered_map.hpp>
 #include <map>
 #include <numeric>
 
@@ -232,23 +230,8 @@ void append_body(Mesh& mesh, const Mesh& part) {
   for (const auto& [i, j, k] : part.triangles) mesh.triangles.push_back({first + i, first + j, first + k});
 }
 
-/// Equal points become one, in the order in which faces use them.
-void weld_equal_points(Mesh& mesh) {
-  boost::unordered_map<std::array<double, 3>, std::uint32_t> index;
-  std::vector<Vector<3>> vertices;
-  for (auto& triangle : mesh.triangles)
-    for (std::uint32_t& i : triangle) {
-      const Vector<3>& p = mesh.vertices[i];
-      const auto [entry, is_new] = index.try_emplace({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0},
-                                                     static_cast<std::uint32_t>(vertices.size()));
-      if (is_new) vertices.push_back(p);
-      i = entry->second;
-    }
-  mesh.vertices = std::move(vertices);
-}
-
 struct Told {
-  std::size_t united = 0, made = 0, taken_out = 0, failed = 0, too_large = 0;
+  std::size_t with_itself = 0, united = 0, made = 0, taken_out = 0, failed = 0, too_large = 0;
 };
 
 /// Unites the bodies two by two, so that each face takes part in few unions; those with which it does not
@@ -308,6 +291,42 @@ void combine_bodies(Mesh& mesh, const Monitor& monitor, Told& told) {
   weld_equal_points(mesh);
 }
 
+/// Closed components that cross themselves become the outer walls of what they wind around.
+void unite_with_themselves(Mesh& mesh, const Monitor& monitor, Told& told) {
+  const MeshTopology topology = topology_of(mesh);
+  std::vector<bool> crosses(topology.components, false), is_open(topology.components, false);
+  for (const auto& [s, t] : within_components(self_intersecting_pairs(mesh), topology))
+    crosses[topology.component[s]] = true;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t neighbor : topology.neighbor[t])
+      if (neighbor == none) is_open[topology.component[t]] = true;
+  std::vector<Mesh> united;
+  std::vector<bool> stays(topology.components, true);
+  for (std::uint32_t c = 0; c < topology.components; ++c) {
+    if (!crosses[c] || is_open[c] || monitor.stop()) continue;
+    std::vector<bool> own;
+    for (const std::uint32_t component : topology.component) own.push_back(component == c);
+    Mesh body = mesh;
+    keep_only(body, own);
+    drop_unused_vertices(body);
+    if (body.triangles.size() > most_faces) continue;
+    const bool is_void = six_volumes(body) < 0;
+    if (is_void) turn_body(body);
+    std::optional<Mesh> walls = unite_with_itself(body);
+    if (!walls) continue;
+    if (is_void) turn_body(*walls);
+    united.push_back(std::move(*walls));
+    stays[c] = false;
+  }
+  if (united.empty()) return;
+  std::vector<bool> kept;
+  for (const std::uint32_t component : topology.component) kept.push_back(stays[component]);
+  keep_only(mesh, kept);
+  for (const Mesh& walls : united) append_body(mesh, walls);
+  weld_equal_points(mesh);
+  told.with_itself = united.size();
+}
+
 }  // namespace
 
 Mended cut_out_crossings(Mesh mesh, const Monitor& monitor) {
@@ -318,15 +337,23 @@ Mended cut_out_crossings(Mesh mesh, const Monitor& monitor) {
     return {std::move(mesh), "crossings stay: the surface is one-sided and has no inside"};
 
   Told told;
-  const std::size_t before = pairs.size(), own_before = within_components(pairs, topology).size();
+  const std::size_t before = pairs.size();
+  unite_with_themselves(mesh, monitor, told);
+  const std::size_t own_before = within_components(self_intersecting_pairs(mesh), topology_of(mesh)).size();
   const std::size_t own_after = own_before > 0 ? cut_within_components(mesh, monitor) : 0;
   combine_bodies(mesh, monitor, told);
   cut_within_components(mesh, monitor);  // what rounding the corners of the unions has left
 
   std::vector<std::string> said;
+  if (told.with_itself > 0)
+    said.push_back(
+        fmt::format("of {} itself the outer walls are kept",
+                    counted(told.with_itself, "part that crosses", "parts of which each crosses")));
   if (own_after < own_before)
-    said.push_back(fmt::format("cut out {} where a part crosses itself",
-                               counted(own_before - own_after, "crossing", "crossings")));
+    said.push_back(
+        fmt::format("cut out {} where a part crosses itself, and patched over them: some room may "
+                    "be lost there",
+                    counted(own_before - own_after, "crossing", "crossings")));
   if (told.made > 0)
     said.push_back(fmt::format("united {} that cross{}", counted(told.united, "body", "bodies"),
                                told.made > 1 ? fmt::format(" into {}", told.made) : ""));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "cad/certified_distance.hpp"
@@ -50,11 +51,13 @@ class CrossingTraversal {
     // p' is in the triangle's shadow, which runs counterclockwise if ab > 0.
     const int end_side =
         std::isinf(low_) || std::isinf(high_) ? (upwards_ ? ab : -ab) : CGAL::orientation(a, b, c, end_);
-    odd_ ^= start_side != end_side;
+    if (start_side != end_side) outwards_ += upwards_ ? ab : -ab;
   }
   Crossing crossing() const {
-    return on_wall_ ? Crossing::starts_on_wall : odd_ ? Crossing::odd : Crossing::even;
+    return on_wall_ ? Crossing::starts_on_wall : outwards_ % 2 != 0 ? Crossing::odd : Crossing::even;
   }
+  /// So many triangles more are crossed from their back than from their front.
+  int outwards() const { return outwards_; }
 
  private:
   WallKernel::Point_2 seen(const Vector<3>& p) const { return {p[u_], p[v_]}; }
@@ -73,7 +76,8 @@ class CrossingTraversal {
   int axis_, u_, v_;
   double low_, high_;
   bool upwards_;
-  bool on_wall_ = false, odd_ = false;
+  bool on_wall_ = false;
+  int outwards_ = 0;
 };
 
 }  // namespace
@@ -143,21 +147,28 @@ double TriangleTree::first_contact(const Vector<3>& c, double r, const Vector<3>
 namespace {
 
 template <typename Ignored>
-Crossing crossing_in(const Tree& tree, const Vector<3>& p, int axis, double end, const Ignored& ignored) {
+auto crossed(const Tree& tree, const Vector<3>& p, int axis, double end, const Ignored& ignored) {
   CrossingTraversal traversal(p, axis, end, ignored);
   tree.traversal(p, traversal);
-  return traversal.crossing();
+  return traversal;
 }
 
 }  // namespace
 
 Crossing TriangleTree::crossing(const Vector<3>& p, int axis, double end) const {
-  return crossing_in(tree_->tree(), p, axis, end, [](std::uint32_t) { return false; });
+  return crossed(tree_->tree(), p, axis, end, [](std::uint32_t) { return false; }).crossing();
 }
 
 Crossing TriangleTree::crossing(const Vector<3>& p, int axis, double end,
                                 const std::function<bool(std::uint32_t)>& ignored) const {
-  return crossing_in(tree_->tree(), p, axis, end, ignored);
+  return crossed(tree_->tree(), p, axis, end, ignored).crossing();
+}
+
+std::optional<int> TriangleTree::winding(const Vector<3>& p, int axis,
+                                         const std::function<bool(std::uint32_t)>& ignored) const {
+  const auto way = crossed(tree_->tree(), p, axis, std::numeric_limits<double>::infinity(), ignored);
+  if (way.crossing() == Crossing::starts_on_wall) return {};
+  return way.outwards();
 }
 
 }  // namespace bernal::cad

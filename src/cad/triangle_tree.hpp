@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bernal/domain/container.hpp"
@@ -57,6 +58,12 @@ class TriangleTree {
   Crossing crossing(const Vector<3>& p, int axis, double end) const;
   Crossing crossing(const Vector<3>& p, int axis, double end,
                     const std::function<bool(std::uint32_t)>& ignored) const;
+
+  /// How often the wall winds around p: on the way from p along the axis to infinity, how many triangles more
+  /// are crossed from their back than from their front, exactly. Nothing where p is on a triangle. Looks at
+  /// no triangle for which ignored(its number) holds.
+  std::optional<int> winding(const Vector<3>& p, int axis,
+                             const std::function<bool(std::uint32_t)>& ignored) const;
 
  private:
   std::unique_ptr<const WallTree> tree_;

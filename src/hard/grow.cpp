@@ -277,8 +277,8 @@ const StageEntry& entry_of<Grow>() {
                std::erase_if(effects, [](const PlanItem& e) { return e.name == "reflections"; });
              return effects;
            },
-       .require = [](const void*, const Domain& container,
-                     double smallest_radius) { walls_for_growth(container, smallest_radius); }};
+       .require = [](const void*, const Domain& container, double smallest_radius,
+                     const FillTask&) { walls_for_growth(container, smallest_radius); }};
   return entry;
 }
 

@@ -7,6 +7,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
+#include "core/disjoint_sets.hpp"
 #include "core/parallel.hpp"
 #include "domain/places.hpp"
 #include "measure/convex.hpp"

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <vector>
 
-#include "measure/free_cells.hpp"
+#include "core/disjoint_sets.hpp"
 
 namespace bernal {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "core/disjoint_sets.hpp"
 #include "core/parallel.hpp"
 
 namespace bernal {
@@ -16,29 +16,6 @@ const double half_diagonal = 0.5 * std::sqrt(3.);  // of a cube of edge 1
 constexpr double widening = 1 + 1e-9;              // more than rounding takes
 
 }  // namespace
-
-DisjointSets::DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-std::uint32_t DisjointSets::find(std::uint32_t i) {
-  while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-  return i;
-}
-
-void DisjointSets::unite(std::uint32_t i, std::uint32_t j) {
-  i = find(i);
-  j = find(j);
-  parent_[std::max(i, j)] = std::min(i, j);
-}
-
-std::vector<std::uint32_t> DisjointSets::numbered() {
-  std::vector<std::uint32_t> number(parent_.size());
-  std::uint32_t sets = 0;
-  for (std::uint32_t i = 0; i < number.size(); ++i) {
-    const std::uint32_t least = find(i);
-    number[i] = least == i ? sets++ : number[least];
-  }
-  return number;
-}
 
 FreeCells::FreeCells(const FreeSpace& space, double edge)
     : space_(space), edge_(edge), step_(std::min(edge / steps_per_cell, space.radius() / steps_per_radius)) {

@@ -8,19 +8,6 @@
 
 namespace bernal {
 
-/// Disjoint sets of the numbers from 0 to n - 1; each is known by its least member.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t n);
-  std::uint32_t find(std::uint32_t i);
-  void unite(std::uint32_t i, std::uint32_t j);
-  /// The set of every number, sets counted from 0 in the order of their least members.
-  std::vector<std::uint32_t> numbered();
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 /// The connected components of a free space, by a grid of cubes.
 ///
 /// An octree over the bounds: a cube whose clearance is so large or so small that it has nothing but places

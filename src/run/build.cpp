@@ -145,11 +145,11 @@ void require_fit_for_stages(const Plan& plan) {
     if (!entry.require || !entry.table.traits.stands_in_bed(plan.scene)) continue;
     try {
       const Frame frame = frame_of(plan.domain);
-      entry.require(entry.table.options(stage), to_local(plan.domain, frame), smallest / frame.scale);
+      entry.require(entry.table.options(stage), to_local(plan.domain, frame), smallest / frame.scale,
+                    fill_task_of(plan));
     } catch (const Error& error) {
       const Location at = stage.locations.of("direction");  // none of a stage that the scene does not name
-      throw Error(error.code(), error.what(),
-                  at.line == 0 ? plan.scene.container.locations.whole : at);
+      throw Error(error.code(), error.what(), at.line == 0 ? plan.scene.container.locations.whole : at);
     }
   }
 }
@@ -261,10 +261,10 @@ Plan build(const Scene& stated) {
   } else {
     expect_in_container(plan);
   }
-  require_fit_for_stages(plan);
   require_overlap(plan);
   require_drawable_count(plan);
   require_memory(plan);
+  require_fit_for_stages(plan);
   plan.places_expected = any_in_bed(scene) && any_stage(scene, &StageTraits::places_expected, true);
 
   const auto has = [&](const std::string& name) {

@@ -18,8 +18,26 @@ struct Conclusion {
 /// expectation of less than this share of the random close packing of the same sizes.
 constexpr double near_expectation = 0.7, least_expectation = 0.1;
 
-Conclusion limit_reached(const std::string& n) {
-  return {Outcome::hit_limit, fmt::format("the last stage reached its limit with {} spheres", n)};
+/// "1 sphere", "1,668 spheres".
+std::string counted(std::size_t n) { return fmt::format("{} {}", grouped(n), n == 1 ? "sphere" : "spheres"); }
+std::string_view are(std::size_t n) { return n == 1 ? "is" : "are"; }
+
+std::string all_placed(std::size_t n) {
+  return n == 1 ? "the sphere is placed" : fmt::format("all {} are placed", counted(n));
+}
+/// "25 of 30 spheres are placed"
+std::string some_placed(std::size_t n, std::size_t wanted) {
+  return fmt::format("{} of {} {} placed", grouped(n), counted(wanted), are(n));
+}
+
+Conclusion limit_reached(std::size_t n) {
+  return {Outcome::hit_limit, fmt::format("the last stage reached its limit with {}", counted(n))};
+}
+
+/// Why no more are placed.
+std::string_view why_no_more(StageEnd end) {
+  return end == StageEnd::converged ? "the stages of the scene place no more"
+                                    : "the stages of the scene find no place for more";
 }
 
 std::string larger(double factor) {
@@ -30,60 +48,59 @@ std::string larger(double factor) {
 /// Where it is left open how many spheres there are: what the stages place is what was asked for, unless it
 /// is far from what was to be expected.
 Conclusion of_open_target(const Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
-  const std::string n = grouped(packing.spheres.size());
+  const std::size_t n = packing.spheres.size();
   const double phi = packing.packing_fraction(), expected = packing.expected_packing_fraction;
   const auto fraction = [](double f) { return fmt::format("{:.3g}", f); };
   if (phi < near_expectation * expected)
-    return {Outcome::full, fmt::format("{} spheres are placed, packing fraction {}, where {} was expected; "
-                                       "the stages of the scene find no place for more",
-                                       n, fraction(phi), fraction(expected))};
+    return {Outcome::full,
+            fmt::format("{} {} placed, packing fraction {}, where {} was expected; {}", counted(n), are(n),
+                        fraction(phi), fraction(expected), why_no_more(end))};
   if (ending.attainable < least_expectation * ending.close_packing)
     return {Outcome::full,
-            fmt::format("{} spheres are placed, packing fraction {}: the container has so little room for "
+            fmt::format("{} {} placed, packing fraction {}: the container has so little room for "
                         "these sizes that hardly more was to be expected, where random close packing is {}; "
                         "use smaller ones or check the units",
-                        n, fraction(phi), fraction(ending.close_packing))};
-  return {Outcome::converged, end == StageEnd::converged && !work.target.fill && ending.places_expected
-                                  ? fmt::format("{} spheres are placed, as many as were expected to fit", n)
-                                  : fmt::format("the stages of the scene place {} spheres and no more", n)};
+                        counted(n), are(n), fraction(phi), fraction(ending.close_packing))};
+  return {Outcome::converged,
+          end == StageEnd::converged && !work.target.fill && ending.places_expected
+              ? fmt::format("{} {} placed, as many as were expected to fit", counted(n), are(n))
+              : fmt::format("the stages of the scene place {} and no more", counted(n))};
 }
 
 /// In a box all spheres are wanted, and have places together.
 Conclusion of_box(const Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
-  const std::string n = grouped(packing.spheres.size());
+  const std::size_t n = packing.spheres.size();
   const std::string account = work.account.empty() ? "" : " " + work.account;
   const bool from_bed = work.container && work.target.is_open();
   if (const std::size_t wanted = work.supply->wanted(); packing.spheres.size() < wanted && !from_bed)
     return {end == StageEnd::full ? Outcome::full : Outcome::hit_limit,
-            fmt::format("{} of {} spheres are placed, packing fraction {:.4f}{}", n, grouped(wanted),
-                        packing.packing_fraction(), account)};
+            fmt::format("{}, packing fraction {:.4f}{}", some_placed(n, wanted), packing.packing_fraction(),
+                        account)};
   if (work.target_edges && work.edges != *work.target_edges)
-    return {Outcome::full, fmt::format("{} spheres need a box {} the one asked for; this is the box "
-                                       "that they need",
-                                       n, larger(work.edges.prod() / work.target_edges->prod()))};
+    return {Outcome::full,
+            fmt::format("{} {} a box {} the one asked for; this is the box that {}", counted(n),
+                        n == 1 ? "needs" : "need", larger(work.edges.prod() / work.target_edges->prod()),
+                        n == 1 ? "it needs" : "they need")};
   if (end == StageEnd::hit_limit) return limit_reached(n);
   if (from_bed) return of_open_target(packing, work, end, ending);
-  return {Outcome::converged, fmt::format("all {} spheres are placed{}", n, account)};
+  return {Outcome::converged, all_placed(n) + account};
 }
 
 /// In a bed they come one after the other, until the target is reached or no place is left.
 Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
   const Target& target = work.target;
-  const std::string n = grouped(packing.spheres.size());
+  const std::size_t n = packing.spheres.size();
   if (!work.missed.empty())
-    return {Outcome::hit_limit, fmt::format("{} spheres are placed; {}", n, work.missed)};
-  if (!target.is_open() && work.supply->exhausted())
-    return {Outcome::converged, fmt::format("all {} spheres are placed", n)};
+    return {Outcome::hit_limit, fmt::format("{} {} placed; {}", counted(n), are(n), work.missed)};
+  if (!target.is_open() && work.supply->exhausted()) return {Outcome::converged, all_placed(n)};
   if (end == StageEnd::hit_limit) return limit_reached(n);
   if (target.is_open()) return of_open_target(packing, work, end, ending);
   if (target.count)
     return {Outcome::full,
-            fmt::format("{} of {} spheres are placed; the stages of the scene find no place for more", n,
-                        grouped(static_cast<std::size_t>(*target.count)))};
+            fmt::format("{}; {}", some_placed(n, static_cast<std::size_t>(*target.count)), why_no_more(end))};
   return {Outcome::full,
-          fmt::format("packing fraction {:.4f} of {} is reached with {} spheres; the stages of "
-                      "the scene find no place for more",
-                      packing.packing_fraction(), *target.packing_fraction, n)};
+          fmt::format("packing fraction {:.4f} of {} is reached with {}; {}", packing.packing_fraction(),
+                      *target.packing_fraction, counted(n), why_no_more(end))};
 }
 
 std::string resized(double size_scale) {
@@ -116,9 +133,9 @@ std::string left_out(const Packing& packing, const Work& work, double unit) {
     least = std::min(least, r);
     most = std::max(most, r);
   }
-  return text + fmt::format("; {} of the drawn sequence found no place and were passed over: {}{}",
-                            grouped(passed), size(most),
-                            passed > 1 ? fmt::format(" down to {:.4g}", shown * least) : "");
+  return text + fmt::format("; {} of the drawn sequence found no place and {} passed over: {}{}",
+                            grouped(passed), passed == 1 ? "was" : "were", size(most),
+                            least < most ? fmt::format(" down to {:.4g}", shown * least) : "");
 }
 
 }  // namespace
@@ -128,9 +145,9 @@ void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& en
   Conclusion conclusion = in_bed ? of_bed(packing, work, end, ending) : of_box(packing, work, end, ending);
   if (end == StageEnd::cancelled) {
     const bool short_of = !in_bed && packing.spheres.size() < work.supply->wanted();
-    conclusion = {Outcome::cancelled, short_of ? "stopped by the user: " + conclusion.reason
-                                               : fmt::format("stopped by the user with {} spheres",
-                                                             grouped(packing.spheres.size()))};
+    conclusion = {Outcome::cancelled,
+                  short_of ? "stopped by the user: " + conclusion.reason
+                           : fmt::format("stopped by the user with {}", counted(packing.spheres.size()))};
   } else if (packing.spheres.empty() && conclusion.outcome == Outcome::converged) {
     conclusion = {Outcome::full, "no sphere has found a place; use smaller ones or check the units"};
   }

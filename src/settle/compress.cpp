@@ -175,7 +175,7 @@ const StageEntry& entry_of<Compress>() {
                                      {.in_bed = true, .only_moves = true}),
       .act_in_bed = act(compress),
       .bed_effects = {neighbor_lists, compressing("to first touch along the global and local directions")},
-      .require = of_options(+[](const Compress& o, const Domain& domain, double) {
+      .require = of_options(+[](const Compress& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), o.direction);
       })};
   return entry;

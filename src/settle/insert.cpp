@@ -1,5 +1,10 @@
 #include "settle/insert.hpp"
 
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <vector>
+
 #include "work/random_insertion.hpp"
 #include "work/snug_places.hpp"
 #include "work/stage_entry.hpp"
@@ -44,6 +49,47 @@ StageEnd insert(Work& work, const Insert& options) {
     }
   } while (waiting > 0 && snug.place_waiting(options.packing_fraction) > 0);
   return waiting > 0 && waiting == supply.window().size() ? StageEnd::full : StageEnd::converged;
+}
+
+StageEnd insert_largest_first(Work& work, std::size_t count) {
+  constexpr double many_attempts = 1000, few_attempts = 100;
+  constexpr int many_failures = 200;  // after which every sphere gets few, and no search
+  constexpr int most_in_a_row = 20;   // of one size that find no place, before the rest of it is passed over
+  const EffectTimer timer(work.effects["insertion"]);
+  work.put_in_bed({});
+  Bed& bed = work.bed();
+  const Supply& supply = *work.supply;
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t tag) { return supply.radius(tag); });
+
+  Random random = work.random(Stream::insert);
+  SnugPlaces snug(work);
+  std::vector<bool> placed(count, false);
+  double without_place = 0;
+  int in_a_row = 0, failures = 0;
+  for (const std::uint32_t tag : order) {
+    if (work.monitor.stop()) throw Cancelled();
+    const double r = supply.radius(tag);
+    if (r != without_place) in_a_row = 0;
+    if (in_a_row == most_in_a_row) continue;
+    std::optional<Vector<3>> place;
+    if (!snug.needed(r))
+      place = find_place(
+          failures < many_failures ? many_attempts : few_attempts, [&] { return bed.places().draw(random); },
+          [&](const Vector<3>& c) { return bed.fits(c, r); }, work.monitor);
+    if (!place && failures < many_failures) place = snug.find(r);
+    if (place) {
+      bed.insert(*place, r, tag);
+      placed[tag] = true;
+    } else {
+      without_place = r;
+      ++in_a_row;
+      ++failures;
+    }
+  }
+  work.supply->set_placed(placed, false);
+  return bed.size() == count ? StageEnd::converged : StageEnd::full;
 }
 
 template <>

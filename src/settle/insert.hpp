@@ -10,4 +10,8 @@ namespace bernal {
 /// trial.
 StageEnd insert(Work& work, const Insert& options);
 
+/// The same for the first `count` of the drawn sequence, all anew, but the largest first: for sizes of which
+/// some have hardly any room where small ones stand. What finds no place is passed over.
+StageEnd insert_largest_first(Work& work, std::size_t count);
+
 }  // namespace bernal

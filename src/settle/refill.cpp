@@ -136,7 +136,7 @@ const StageEntry& entry_of<Refill>() {
                       neighbor_lists,
                       compressing("after each refilling"),
                       {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}},
-      .require = of_options(+[](const Refill& o, const Domain& domain, double) {
+      .require = of_options(+[](const Refill& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), o.shake.compress.direction);
       })};
   return entry;

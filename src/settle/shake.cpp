@@ -47,7 +47,7 @@ const StageEntry& entry_of<Shake>() {
                       {"shaking", "local directions across the global one",
                        "about 0.5 µs a sphere and sweep"},
                       compressing("after each round")},
-      .require = of_options(+[](const Shake& o, const Domain& domain, double) {
+      .require = of_options(+[](const Shake& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), o.compress.direction);
       })};
   return entry;

@@ -243,8 +243,10 @@ const StageEntry& entry_of<Relax>() {
       .box_effects = {neighbor_lists,
                       {"relaxation", "overlapping spheres push each other apart while the box grows",
                        "some 1,000 sweeps of O(N)"}},
-      .require = [](const void*, const Domain& container, double smallest_radius) {
-        require_resolution(0x1p-32 * bounds_of<3>(container).size().maxCoeff() / smallest_radius);
+      .require = [](const void*, const Domain& container, double smallest_radius, const FillTask& task) {
+        const bool is_dilute = task.packing_fraction > 0 && task.packing_fraction <= dilute * task.attainable;
+        if (!is_dilute)
+          require_resolution(0x1p-32 * bounds_of<3>(container).size().maxCoeff() / smallest_radius);
       }};
   return entry;
 }

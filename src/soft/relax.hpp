@@ -6,6 +6,9 @@
 
 namespace bernal {
 
+/// Spheres that fill less than this share of what is likely to fit find places free of overlap by themselves.
+inline constexpr double dilute = 0.3;
+
 /// T = alpha (log10 N)², rounded, at least 1 (equation 6).
 int sweeps_a_cycle(double alpha, std::size_t spheres);
 
@@ -53,6 +56,10 @@ StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, co
 /// drawn sequence are taken out as the overlaps suggest: the result is the drawn sequence less its tail.
 /// Where the target is to fill the container, more of the sequence are pushed in until even a few find no
 /// room.
+///
+/// Random insertion helps where spheres cannot be pushed: where they are few (`dilute`), where some fit only
+/// touching the walls, which stand first, where much less than is likely comes free, and for the last few of
+/// a count.
 ///
 /// Spheres that are there already keep their places at first. All are put back into the bed by the same
 /// question as those of any other stage: whether they fit.

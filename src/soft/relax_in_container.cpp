@@ -21,8 +21,10 @@ constexpr double hopeless_patience = 1;
 constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
 /// More than what is likely to fit, in shares of it, is not tried at once.
 constexpr double most_of_attainable = 1.1;
-/// Spheres that fill less than this share of what is likely to fit find places free of overlap by themselves.
-constexpr double dilute = 0.3;
+/// Where relaxation reaches less than this of what is likely to fit, insertion is tried as well.
+constexpr double far_short = 0.8;
+/// So many that are left over at the end of a count may still find places by themselves.
+constexpr std::size_t last_few = 16;
 constexpr Insert insertion = {.attempts = 1000, .packing_fraction = 1};
 constexpr int most_hand_overs = 20;
 /// Of the radii: a skin up to this is lost in the margin.
@@ -173,18 +175,47 @@ bool is_dilute(const Work& work) {
                                        dilute * work.attainable * work.container->volume();
 }
 
+/// Whether much less has found a place than is asked for and likely to fit: a few large spheres, with hardly
+/// any play between the walls, may keep all of them from coming free.
+bool falls_short(const Work& work) {
+  const double wanted = volume_of(work.drawn(work.target_count()).spheres) / work.container->volume();
+  return work.bed().packing_fraction() < far_short * std::min(wanted, work.attainable);
+}
+
+StageEnd insert_if_denser(Work& work, StageEnd end) {
+  const std::size_t count = work.target_count();
+  const Keepsake relaxed(work);
+  const double before = work.bed().packing_fraction();
+  StageEnd inserted = StageEnd::full;
+  try {
+    inserted = insert_largest_first(work, count);
+  } catch (const Cancelled&) {
+    relaxed.give_back_if_denser(work);
+    throw;
+  }
+  relaxed.give_back_if_denser(work);
+  return work.bed().packing_fraction() > before ? inserted : end;
+}
+
 }  // namespace
 
 StageEnd relax_in_container(Work& work, const Relax& options) {
   const auto relaxed = [&] {
     // What fits only touching the walls would be pushed off its place; the others come around it.
-    const bool some_touch = SnugPlaces(work).only_some_touch();
-    if (some_touch || is_dilute(work)) {
+    if (SnugPlaces(work).only_some_touch()) return insert_largest_first(work, work.supply->wanted());
+    if (is_dilute(work)) {
       const StageEnd end = insert(work, insertion);
-      if (some_touch || end != StageEnd::full) return end;
+      if (end != StageEnd::full) return end;
     }
-    const EffectTimer timer(work.effects["relaxation"]);
-    return Relaxation(work, options).run();
+    const StageEnd end = [&] {
+      const EffectTimer timer(work.effects["relaxation"]);
+      return Relaxation(work, options).run();
+    }();
+    if (end != StageEnd::full) return end;
+    if (falls_short(work)) return insert_if_denser(work, end);
+    return work.target.count && work.bed().size() + last_few >= work.supply->wanted()
+               ? insert(work, insertion)  // one that has no place is passed over
+               : end;
   };
   return finish_in_bed(relaxed(), options.polish, work);
 }

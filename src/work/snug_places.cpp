@@ -11,7 +11,7 @@ constexpr int probes = 200, most_starts = 30;
 /// In skins: what a sphere is to be clear by, a little more than the bed asks for.
 constexpr double clear = 1.01;
 /// In radii: what places that only touch may seem to overlap the wall by, before they are made exact.
-constexpr double touching = 1e-10;
+constexpr double seemingly = 1e-10;
 
 }  // namespace
 
@@ -35,19 +35,18 @@ bool SnugPlaces::needed(double r) {
   return true;
 }
 
-std::optional<Vector<3>> SnugPlaces::from(const Vector<3>& start, double r) const {
+std::optional<Vector<3>> SnugPlaces::from(const Vector<3>& start, double r, bool touching) const {
   const Bed& bed = work_.bed();
   const Container& container = bed.container();
   const double clearance = container.clearance(start);
   if (!(clearance > 0)) return {};
-  const bool snug = work_.is_snug(r + (clear - 1) * bed.skin());
-  const double give = snug ? clear * bed.skin() : 0;
+  const double give = touching ? clear * bed.skin() : 0;
   const double enough = r + clear * bed.skin();
   const Surroundings surroundings = bed.surroundings(give);
   const double step = 2 * r;
   const Room top = climb(room_at(start, 2 * clearance, surroundings), enough, step, surroundings);
-  if (snug) {
-    if (top.radius < enough - touching * r || !work_.exact_place) return {};
+  if (touching) {
+    if (top.radius < enough - seemingly * r || !work_.exact_place) return {};
     // Back a little from where it would touch what is not to be touched.
     const Room end = slide(top, std::min(top.radius, enough), along_, step, surroundings);
     const double way = along_.dot(end.place - top.place), back = std::min(way, 2 * give);
@@ -60,6 +59,13 @@ std::optional<Vector<3>> SnugPlaces::from(const Vector<3>& start, double r) cons
   if (top.radius < enough) return {};
   const Vector<3> place = slide(top, enough, along_, step, surroundings).place;
   return bed.fits(place, r) ? std::optional(place) : std::nullopt;
+}
+
+/// A chamber may leave no room though the roomiest does.
+std::optional<Vector<3>> SnugPlaces::from(const Vector<3>& start, double r) const {
+  if (!work_.is_snug(r + (clear - 1) * work_.bed().skin()))
+    if (const auto place = from(start, r, false)) return place;
+  return from(start, r, true);
 }
 
 std::optional<Vector<3>> SnugPlaces::find(double r) {

@@ -34,6 +34,8 @@ class SnugPlaces {
   void complete(double packing_fraction);
 
  private:
+  /// `touching`: only what touches the walls exactly.
+  std::optional<Vector<3>> from(const Vector<3>& start, double r, bool touching) const;
   std::optional<Vector<3>> from(const Vector<3>& start, double r) const;
 
   Work& work_;

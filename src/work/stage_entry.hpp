@@ -21,7 +21,7 @@ struct StageEntry {
   std::function<std::vector<PlanItem>(const void*, const FillTask&)> chosen_effects = {};
   /// In a bed: throws Error{bad_scene} where a container, in the packer's coordinates, is none for it and
   /// spheres of that radius.
-  std::function<void(const void*, const Domain&, double smallest_radius)> require = {};
+  std::function<void(const void*, const Domain&, double smallest_radius, const FillTask&)> require = {};
   /// Of one that may leave overlap, whether it does with these options.
   std::function<bool(const void*, const FillTask&)> leaves_overlap = {};
   /// Of a stage that reaches what its options say: that packing fraction.

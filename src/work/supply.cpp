@@ -97,7 +97,8 @@ void Supply::take_first(const std::vector<std::uint32_t>& tags) {
   open_window();
 }
 
-void Supply::set_placed(const std::vector<bool>& placed) {
+void Supply::set_placed(const std::vector<bool>& placed, bool in_sequence) {
+  in_sequence_ = in_sequence;
   window_.clear();
   taken_first_.clear();
   next_ = static_cast<std::uint32_t>(placed.size());

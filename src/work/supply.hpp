@@ -54,8 +54,9 @@ class Supply {
   /// those that have to stand before the others do.
   void take_first(const std::vector<std::uint32_t>& tags);
 
-  /// Of the first `placed.size()` tags those that are set have been placed, and no others.
-  void set_placed(const std::vector<bool>& placed);
+  /// Of the first `placed.size()` tags those that are set have been placed, and no others. `in_sequence`: by
+  /// stages that keep the order of the sequence, so that its tail may be taken out again.
+  void set_placed(const std::vector<bool>& placed, bool in_sequence = true);
 
   /// All tags below this one have been placed.
   std::uint32_t first_missing() const { return window_.empty() ? next_ : window_.front(); }

@@ -65,6 +65,19 @@ TEST_F(HardMesh, InsideOut) {
   EXPECT_EQ(diagnosed(inverted(box)).repairs.back(), "turned 12 faces outward");
 }
 
+TEST_F(HardMesh, ABodyInAnotherIsTakenForAVoid) {
+  const Mesh small = translated(scaled(box, 0.5), {0.25, 0.25, 0.25});
+  for (const bool drawn_as_body : {false, true}) {
+    const Mesh mesh = joined(box, drawn_as_body ? small : inverted(small));
+    expect_volume(mesh, 0.875);
+    const std::vector<std::string> repairs = diagnosed(mesh).repairs;
+    if (drawn_as_body)
+      EXPECT_EQ(repairs.back(), "turned 12 faces, and took 1 body inside others for voids");
+    else
+      EXPECT_TRUE(repairs.empty());
+  }
+}
+
 TEST_F(HardMesh, RandomFlips) {
   Mesh mesh = icosphere_mesh(1, 2);
   const double volume = volume_of(mesh);

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -16,6 +17,36 @@ inline Mesh without(Mesh mesh, const Gone& gone) {
     return gone(mesh.vertices[t[0]]) && gone(mesh.vertices[t[1]]) && gone(mesh.vertices[t[2]]);
   });
   return mesh;
+}
+
+/// A closed duct, 1 wide and 1 high, that follows the figure of an eight through itself; its second diagonal
+/// lies higher than the first by `step`, so that no faces coincide.
+inline Mesh figure_of_eight_mesh(double step = 0.25) {
+  const std::vector<Vector<3>> path = {{-3, -3, 0}, {3, 3, 0}, {3, -3, step}, {-3, 3, step}};
+  constexpr std::uint32_t n = 4;
+  const auto left = [&](std::size_t k) {  // of the way from corner k
+    const Vector<3> way = path[(k + 1) % n] - path[k];
+    return Vector<3>(Vector<3>(-way[1], way[0], 0).normalized());
+  };
+  Mesh mesh;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vector<3> before = left((k + n - 1) % n), after = left(k);
+    const Vector<3> mitre = (before + after) / (1 + before.dot(after)) / 2, up(0, 0, 0.5);
+    for (const Vector<3>& corner :
+         {Vector<3>(mitre + up), Vector<3>(mitre - up), Vector<3>(-mitre - up), Vector<3>(-mitre + up)})
+      mesh.vertices.push_back(path[k] + corner);
+  }
+  for (std::uint32_t k = 0; k < n; ++k)
+    for (std::uint32_t side = 0; side < 4; ++side) {
+      const std::uint32_t next = (k + 1) % n, other = (side + 1) % 4;
+      mesh.triangles.push_back({4 * k + side, 4 * next + side, 4 * next + other});
+      mesh.triangles.push_back({4 * k + side, 4 * next + other, 4 * k + other});
+    }
+  return mesh;
+}
+/// What it encloses: where the diagonals meet it winds around twice.
+inline double figure_of_eight_volume(double step = 0.25) {
+  return std::abs(volume_of(Domain(figure_of_eight_mesh(step)))) - (1 - step);
 }
 
 inline Mesh without_top(const Mesh& mesh, double height) {

@@ -13,6 +13,7 @@
 #include "cad/mesh_distance.hpp"
 #include "cad/repair_crossings.hpp"
 #include "cad/repair_holes.hpp"
+#include "support/broken_meshes.hpp"
 #include "support/mended.hpp"
 
 namespace bernal {
@@ -217,14 +218,34 @@ TEST(RepairCrossings, UnitesAChainOfManyAndLeavesOthers) {
   EXPECT_GT(volume(mended.mesh), 1 + 8 * sphere * 0.84375 + sphere - 0.2);  // caps of true spheres: 5/32 each
 }
 
+TEST(RepairCrossings, OfAPartThatCrossesItselfAllStaysThatItWindsAround) {
+  const Mesh eight = figure_of_eight_mesh();
+  Mesh inward = eight;
+  for (auto& t : inward.triangles) std::swap(t[1], t[2]);
+  for (const Mesh& mesh : {eight, inward, joined(eight, box_mesh({10, 0, 0}, {1, 1, 1}))}) {
+    const Mended mended = cut_out_crossings(mesh);
+    expect_sound(mended);
+    EXPECT_TRUE(says(mended, "outer walls are kept")) << mended.done;
+    const double rest = mesh.triangles.size() > eight.triangles.size() ? 1 : 0;
+    EXPECT_NEAR(std::abs(volume(mended.mesh)), figure_of_eight_volume() + rest, 1e-9) << mended.done;
+    EXPECT_LT(farthest(mended.mesh, mesh, {1e-6}).at_most, 1e-6);  // it has no walls of its own
+  }
+}
+
 TEST(RepairCrossings, CutsOutWhereAPartCrossesItself) {
   Mesh spiked = icosphere_mesh(1, 3);  // one corner is pushed in through the opposite side
   spiked.vertices[0] *= -1.2;
   ASSERT_GT(count_self_intersections(spiked), 0U);
   const Mended mended = cut_out_crossings(spiked);
   expect_sound(mended);
-  EXPECT_TRUE(says(mended, "where a part crosses itself")) << mended.done;
+  EXPECT_TRUE(says(mended, "crosses itself")) << mended.done;
   EXPECT_NEAR(volume(mended.mesh), volume(icosphere_mesh(1, 3)), 0.2);
+}
+
+TEST(RepairCrossings, SaysWhereRoomMayBeLost) {
+  const Mended mended = cut_out_crossings(divided(figure_of_eight_mesh(0), 3));  // faces coincide
+  expect_sound(mended);
+  EXPECT_TRUE(says(mended, "some room may be lost")) << mended.done;
 }
 
 TEST(RepairCrossings, RepairsAPartOfSomebodyElse) {

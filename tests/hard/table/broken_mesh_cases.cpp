@@ -87,6 +87,10 @@ std::vector<Case> broken_mesh_cases() {
   add("CrossingShells", "two spheres through each other", crossing,
       refused("repair = [\"self-intersections\"]"));
   add("CrossingShellsUnited", "with the line that was offered", crossing, at_least(300), "{offered}");
+  add("FigureOfEight", "a duct through itself", figure_of_eight_mesh(),
+      refused("repair = [\"self-intersections\"]"));
+  add("FigureOfEightUnited", "with the line that was offered: all of it, once", figure_of_eight_mesh(),
+      of_volume(at_least(300), figure_of_eight_volume(), 1e-9), "{offered}");
   add("SpindleTorus", "a surface through itself along a line", torus_mesh(0.5, 1, 48, 24),
       refused("self-intersect"));
   add("SpindleTorusMended", "with the line that was offered", torus_mesh(0.5, 1, 48, 24), at_least(200),

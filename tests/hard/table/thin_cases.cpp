@@ -76,6 +76,8 @@ std::vector<Case> thin_cases() {
     add(fmt::format("TwoCubes{}ApartSettled", apart), "the same, filled from above", test::cubes_apart(apart),
         "diameter = 0.2", at_least(100), settled);
   }
+  add("TwoCubes1e6Apart", "coordinates of single precision cannot tell its spheres apart",
+      test::cubes_apart(1e6), "diameter = 0.2", refused("cannot be relaxed"));
   const Mesh pipe = test::turned(test::prism_mesh(8, 1, 1000), {1, 1, 1});
   add("DiagonalPipe", "1 : 500, a millionth of its bounds", pipe, "diameter = 1.6", at_least(400));
   add("DiagonalPipeSettled", "the same, compressed along z", pipe, "count = 200\ndiameter = 1.6",

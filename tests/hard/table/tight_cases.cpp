@@ -62,26 +62,30 @@ std::vector<Case> tight_cases() {
       "kind = \"box\"\nsize = [1.0, 3.000001, 1.0]", "count = 3\nradius = 0.5", 3, false);
   add("TenInASquareTubeMesh", "one stands on the other from end to end", part, "count = 10\nradius = 0.5", 10,
       false, mesh(test::box_mesh({0, 0, 0}, {1.000001, 1.000001, 10.00001})));
-  for (const char* protocol : {"default", "relax"}) {
-    const std::string named = protocol == std::string("default") ? "" : stages({protocol});
-    const auto among = [&](const char* name, const char* container, const char* spheres, std::size_t n) {
-      cases.push_back({exact_fits, fmt::format("{}_{}", name, protocol),
-                       "has one place, if no small one stands there first", scene(container, spheres, named),
-                       exactly(n)});
-    };
-    among("OneThatFitsACubeAmongSmallOnes", "kind = \"box\"\nsize = [4.0, 4.0, 4.0]",
-          "count = 30\ndiameter = { distribution = \"classes\", values = [0.4, 4.0], shares = [29, 1], basis "
-          "= \"number\" }\ndraw = \"quantiles\"",
-          30);
-    among("OneThatFitsACylinderAmongSmallOnes", "kind = \"cylinder\"\nradius = 2.0\nheight = 6.0",
-          "count = 30\ndiameter = { distribution = \"classes\", values = [0.4, 4.0], shares = [29, 1], basis "
-          "= \"number\" }\ndraw = \"quantiles\"",
-          30);
-    among("AThousandInTheCornersAroundOne", "kind = \"box\"\nsize = [10.0, 10.0, 10.0]",
-          "count = 1000\ndiameter = { distribution = \"classes\", values = [0.4, 10.0], shares = [999, 1], "
-          "basis = \"number\" }\ndraw = \"quantiles\"",
-          1000);
-  }
+  const auto among = [&](const std::string& name, const std::string& container, std::size_t n,
+                         const std::string& diameters, const std::string& shares, Expected expected,
+                         std::vector<File> files = {}) {
+    cases.push_back(
+        {exact_fits, name, "large ones have a place each, if no small one stands there",
+         scene(container,
+               fmt::format("count = {}\ndraw = \"quantiles\"\ndiameter = {{ distribution = \"classes\", "
+                           "values = [{}], shares = [{}], basis = \"number\" }}",
+                           n, diameters, shares)),
+         std::move(expected), std::move(files)});
+  };
+  const std::string cube = "kind = \"box\"\nsize = [4.0, 4.0, 4.0]";
+  among("OneThatFitsACubeAmongSmallOnes", cube, 30, "0.4, 4.0", "29, 1", exactly(30));
+  among("OneThatNearlyFitsACubeAmongSmallOnes", cube, 30, "0.4, 3.999999", "29, 1", exactly(30));
+  among("OneWithAHairOfPlayAmongSmallOnes", cube, 30, "0.4, 3.99999999", "29, 1", exactly(30));
+  among("OneThatFitsACylinderAmongSmallOnes", "kind = \"cylinder\"\nradius = 2.0\nheight = 6.0", 30,
+        "0.4, 4.0", "29, 1", exactly(30));
+  among("AThousandInTheCornersAroundOne", "kind = \"box\"\nsize = [10.0, 10.0, 10.0]", 1000, "0.4, 10.0",
+        "999, 1", exactly(1000));
+  among("TwoOfWhichOneCanStand", cube, 30, "0.4, 3.9", "28, 2", {Expected::Kind::explained, 29, 29});
+  among("OneInEachOfThreeChambers", part, 60, "0.4, 2.0, 3.0, 4.0", "57, 1, 1, 1", exactly(60),
+        mesh(test::joined(
+            test::joined(test::box_mesh({0, 0, 0}, {4, 4, 4}), test::box_mesh({5, 0, 0}, {3, 3, 3})),
+            test::box_mesh({9, 0, 0}, {2, 2, 2}))));
   for (const char* thickness : {"1.0", "1.0000005"})
     add(fmt::format("FiftyInASlabOf{}", thickness[3] ? "OneAndAHair" : "One"),
         "one sphere thick, endless to the sides",
