@@ -27,6 +27,7 @@ std::string all_placed(std::size_t n) {
 }
 /// "25 of 30 spheres are placed"
 std::string some_placed(std::size_t n, std::size_t wanted) {
+  if (n == 0 && wanted == 1) return "the sphere is not placed";
   return fmt::format("{} of {} {} placed", grouped(n), counted(wanted), are(n));
 }
 

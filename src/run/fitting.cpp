@@ -87,12 +87,15 @@ void require_fitting(const Scene& scene, const Domain& container,
   const double shown = scene.sizes_are_diameters ? 2 : 1;
   const auto [one, many] =
       scene.sizes_are_diameters ? std::pair("diameter", "diameters") : std::pair("radius", "radii");
+  const auto text = [&](double r) {  // with as many digits as tell the two apart
+    const bool same = fmt::format("{:.6g}", radius) == fmt::format("{:.6g}", largest.known);
+    return fmt::format("{:.{}g} {}", shown * r, same ? 17 : 6, name_of(scene.unit));
+  };
   throw Error(
       ErrorCode::bad_scene,
-      fmt::format("a sphere of {} {:.6g} {} does not fit into the {}, which takes {} up to {:.6g} {}: {} "
-                  "or check the units",
-                  one, shown * radius, name_of(scene.unit), kind_of(container), many, shown * largest.known,
-                  name_of(scene.unit), remedy),
+      fmt::format(
+          "a sphere of {} {} does not fit into the {}, which takes {} up to {}: {} or check the units", one,
+          text(radius), kind_of(container), many, text(largest.known), remedy),
       scene.sizes.locations.whole);
 }
 

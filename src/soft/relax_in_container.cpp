@@ -23,8 +23,12 @@ constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
 constexpr double most_of_attainable = 1.1;
 /// Where relaxation reaches less than this of what is likely to fit, insertion is tried as well.
 constexpr double far_short = 0.8;
-/// So many that are left over at the end of a count may still find places by themselves.
+/// And with so few spheres always, as it takes no time.
+constexpr std::size_t few = 1000;
+/// So many that are left over in the end, or with this share of the volume, may still find places by
+/// themselves.
 constexpr std::size_t last_few = 16;
+constexpr double last_share = 0.01;
 constexpr Insert insertion = {.attempts = 1000, .packing_fraction = 1};
 constexpr int most_hand_overs = 20;
 /// Of the radii: a skin up to this is lost in the margin.
@@ -182,6 +186,14 @@ bool falls_short(const Work& work) {
   return work.bed().packing_fraction() < far_short * std::min(wanted, work.attainable);
 }
 
+bool hardly_any_left(const Work& work) {
+  if (work.target.fill) return true;
+  if (work.target.is_open()) return false;
+  const double wanted = volume_of(work.drawn(work.supply->wanted()).spheres) / work.container->volume();
+  return work.bed().size() + last_few >= work.supply->wanted() ||
+         work.bed().packing_fraction() >= (1 - last_share) * wanted;
+}
+
 StageEnd insert_if_denser(Work& work, StageEnd end) {
   const std::size_t count = work.target_count();
   const Keepsake relaxed(work);
@@ -207,15 +219,14 @@ StageEnd relax_in_container(Work& work, const Relax& options) {
       const StageEnd end = insert(work, insertion);
       if (end != StageEnd::full) return end;
     }
-    const StageEnd end = [&] {
+    StageEnd end = [&] {
       const EffectTimer timer(work.effects["relaxation"]);
       return Relaxation(work, options).run();
     }();
     if (end != StageEnd::full) return end;
-    if (falls_short(work)) return insert_if_denser(work, end);
-    return work.target.count && work.bed().size() + last_few >= work.supply->wanted()
-               ? insert(work, insertion)  // one that has no place is passed over
-               : end;
+    if (falls_short(work) || work.target_count() <= few) end = insert_if_denser(work, end);
+    // Of the last ones, one that has no place is passed over.
+    return end == StageEnd::full && hardly_any_left(work) ? insert(work, insertion) : end;
   };
   return finish_in_bed(relaxed(), options.polish, work);
 }

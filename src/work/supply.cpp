@@ -76,12 +76,8 @@ void Supply::multiply_by(double factor) {
 }
 
 void Supply::open_window() {
-  for (; window_.size() < width_ && next_ < radii_.size(); ++next_) {
-    if (!taken_first_.empty() && taken_first_.back() == next_)
-      taken_first_.pop_back();
-    else
-      window_.push_back(next_);
-  }
+  for (; window_.size() < width_ && next_ < radii_.size(); ++next_)
+    if (!std::ranges::binary_search(taken_first_, next_)) window_.push_back(next_);
 }
 
 void Supply::take(std::size_t k) {
@@ -90,7 +86,7 @@ void Supply::take(std::size_t k) {
 }
 
 void Supply::take_first(const std::vector<std::uint32_t>& tags) {
-  taken_first_.assign(tags.rbegin(), tags.rend());
+  taken_first_ = tags;
   in_sequence_ = tags.empty();
   window_.clear();
   next_ = 0;
@@ -114,10 +110,12 @@ std::size_t Supply::count_filling(double volume) const {
 }
 
 std::size_t Supply::passed_over() const {
-  // The window is ascending and ends in spheres that nothing later was placed after.
+  // The window is ascending and ends in spheres that nothing later was placed after, but for those taken
+  // first.
   std::size_t untouched = 0;
-  while (untouched < window_.size() &&
-         window_[window_.size() - 1 - untouched] == next_ - 1 - static_cast<std::uint32_t>(untouched)) {
+  for (std::uint32_t tag = next_; tag-- > 0 && untouched < window_.size();) {
+    if (std::ranges::binary_search(taken_first_, tag)) continue;
+    if (window_[window_.size() - 1 - untouched] != tag) break;
     ++untouched;
   }
   return window_.size() - untouched;

@@ -81,7 +81,7 @@ class Supply {
   int dimension_ = 3;
   std::vector<double> radii_;
   std::vector<std::uint32_t> window_;
-  std::vector<std::uint32_t> taken_first_;  // those from next_ on, the last first
+  std::vector<std::uint32_t> taken_first_;  // ascending
   bool in_sequence_ = true;                 // but for a window's width, spheres were taken in their order
   std::uint32_t next_ = 0;                  // the first tag that was never in the window
   std::size_t width_ = 1;

@@ -177,6 +177,8 @@ TEST(Supply, WhatWasTakenFirstNeverComesAgain) {
   Supply supply({.radii = *uniform, .seed = 7}, 1, count_of(n));
   const std::vector<std::uint32_t> first{0, 3, 4, 250, n - 1};
   supply.take_first(first);
+  EXPECT_EQ(supply.passed_over(), 0u);
+  EXPECT_FALSE(supply.trimming_is_cheap());
   std::vector<std::uint32_t> tags = first;
   while (!supply.exhausted()) {
     tags.push_back(supply.window().front());
