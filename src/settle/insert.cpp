@@ -51,9 +51,10 @@ StageEnd insert(Work& work, const Insert& options) {
   return waiting > 0 && waiting == supply.window().size() ? StageEnd::full : StageEnd::converged;
 }
 
-StageEnd insert_largest_first(Work& work, std::size_t count) {
+StageEnd insert_largest_first(Work& work, std::size_t count, double densest_so_far) {
   constexpr double many_attempts = 1000, few_attempts = 100;
-  constexpr int many_failures = 200;  // after which every sphere gets few, and no search
+  constexpr int many_failures = 200;  // after which every sphere gets few
+  constexpr int most_searches = 10;   // in vain
   constexpr int most_in_a_row = 20;   // of one size that find no place, before the rest of it is passed over
   const EffectTimer timer(work.effects["insertion"]);
   work.put_in_bed({});
@@ -62,6 +63,8 @@ StageEnd insert_largest_first(Work& work, std::size_t count) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t tag) { return supply.radius(tag); });
+  double within_reach = volume_of(work.drawn(count).spheres);  // if all that follow find a place
+  const double enough = densest_so_far * bed.container().volume();
 
   Random random = work.random(Stream::insert);
   SnugPlaces snug(work);
@@ -72,18 +75,23 @@ StageEnd insert_largest_first(Work& work, std::size_t count) {
     if (work.monitor.stop()) throw Cancelled();
     const double r = supply.radius(tag);
     if (r != without_place) in_a_row = 0;
-    if (in_a_row == most_in_a_row) continue;
+    if (within_reach < enough) break;
+    if (in_a_row == most_in_a_row) {
+      within_reach -= ball_volume(3, r);
+      continue;
+    }
     std::optional<Vector<3>> place;
     if (!snug.needed(r))
       place = find_place(
           failures < many_failures ? many_attempts : few_attempts, [&] { return bed.places().draw(random); },
           [&](const Vector<3>& c) { return bed.fits(c, r); }, work.monitor);
-    if (!place && failures < many_failures) place = snug.find(r);
+    if (!place && failures < most_searches) place = snug.find(r);
     if (place) {
       bed.insert(*place, r, tag);
       placed[tag] = true;
     } else {
       without_place = r;
+      within_reach -= ball_volume(3, r);
       ++in_a_row;
       ++failures;
     }

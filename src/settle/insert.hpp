@@ -11,7 +11,8 @@ namespace bernal {
 StageEnd insert(Work& work, const Insert& options);
 
 /// The same for the first `count` of the drawn sequence, all anew, but the largest first: for sizes of which
-/// some have hardly any room where small ones stand. What finds no place is passed over.
-StageEnd insert_largest_first(Work& work, std::size_t count);
+/// some have hardly any room where small ones stand. What finds no place is passed over. Ends at once when it
+/// can no longer become as dense as that.
+StageEnd insert_largest_first(Work& work, std::size_t count, double densest_so_far = 0);
 
 }  // namespace bernal

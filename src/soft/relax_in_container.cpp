@@ -23,7 +23,7 @@ constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
 constexpr double most_of_attainable = 1.1;
 /// Where relaxation reaches less than this of what is likely to fit, insertion is tried as well.
 constexpr double far_short = 0.8;
-/// And with so few spheres always, as it takes no time.
+/// And with so few spheres of a count always, as it takes no time.
 constexpr std::size_t few = 1000;
 /// So many that are left over in the end, or with this share of the volume, may still find places by
 /// themselves.
@@ -194,13 +194,19 @@ bool hardly_any_left(const Work& work) {
          work.bed().packing_fraction() >= (1 - last_share) * wanted;
 }
 
+/// From an empty bed. Where the sizes are left open they keep their order, as the largest of them would not
+/// be what was drawn.
 StageEnd insert_if_denser(Work& work, StageEnd end) {
-  const std::size_t count = work.target_count();
   const Keepsake relaxed(work);
   const double before = work.bed().packing_fraction();
   StageEnd inserted = StageEnd::full;
   try {
-    inserted = insert_largest_first(work, count);
+    if (work.target.is_open()) {
+      work.put_in_bed({});
+      inserted = insert(work, insertion);
+    } else {
+      inserted = insert_largest_first(work, work.target_count(), before);
+    }
   } catch (const Cancelled&) {
     relaxed.give_back_if_denser(work);
     throw;
@@ -224,7 +230,8 @@ StageEnd relax_in_container(Work& work, const Relax& options) {
       return Relaxation(work, options).run();
     }();
     if (end != StageEnd::full) return end;
-    if (falls_short(work) || work.target_count() <= few) end = insert_if_denser(work, end);
+    const bool few_wanted = !work.target.is_open() && work.target_count() <= few;
+    if (few_wanted || falls_short(work)) end = insert_if_denser(work, end);
     // Of the last ones, one that has no place is passed over.
     return end == StageEnd::full && hardly_any_left(work) ? insert(work, insertion) : end;
   };

@@ -19,6 +19,8 @@ constexpr double shorter = 0.3, longer = 2;
 /// A straight way that is shorter than this share of a step goes round what is there; and what is that much
 /// across the way does not limit it.
 constexpr double hardly = 0.01, tangent = 1e-9;
+/// A way up whose steps are that short a share of what is missing does not get there.
+constexpr double hopeless = 1e-4;
 /// Of lengths: what is less is rounding.
 constexpr double least_step = 1e-16, rounding = 1e-13;
 
@@ -99,7 +101,10 @@ Room room_at(const Vector<3>& place, double reach, const Surroundings& surroundi
 
 Room climb(Room from, double enough, double step, const Surroundings& surroundings) {
   const double least = least_step * std::max(step, from.radius);
-  for (int k = 0; k < most_steps && from.radius < enough && step > least; ++k) {
+  const auto leads_on = [&] {
+    return step > least && !(std::isfinite(enough) && step < hopeless * (enough - from.radius));
+  };
+  for (int k = 0; k < most_steps && from.radius < enough && leads_on(); ++k) {
     // What is farther cannot become the nearest.
     const double reach = from.radius + 2 * std::sqrt(3.0) * step;
     const std::vector<Obstacle> obstacles = obstacles_near(surroundings, from.place, reach);

@@ -24,15 +24,24 @@ Plan plan_in(const Domain& shape, const std::string& spheres, const std::string&
   return plan_of(container + spheres + stages, shape);
 }
 
+/// The drawn sequence less its tail, of whose last ones a few may have found no place.
+void expect_drawn(const Packing& packing, const Plan& plan) {
+  constexpr std::size_t window = 16;
+  RadiusSequence sequence(*plan.radii, packing.seed, *plan.scene.draw);
+  std::size_t passed_over = 0;
+  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+    while (packing.spheres.r[i] != sequence.next() && passed_over <= window) ++passed_over;
+    ASSERT_LE(passed_over, window) << "by sphere " << i;
+  }
+}
+
 Packing certified(const Plan& plan) {
   RunOptions options;
   options.threads = 1;
   Packing packing = run(plan, options);
   const Certificate certificate = certify(packing.spheres, packing.domain);
   EXPECT_TRUE(certificate.certified) << certificate.statement;
-  RadiusSequence sequence(*plan.radii, packing.seed, *plan.scene.draw);
-  for (std::size_t i = 0; i < packing.spheres.size(); ++i)
-    EXPECT_EQ(packing.spheres.r[i], sequence.next()) << "not the drawn sequence less its tail: " << i;
+  expect_drawn(packing, plan);
   return packing;
 }
 
