@@ -8,6 +8,7 @@
 
 #include "hard/convex_walls.hpp"
 #include "jam/polish.hpp"
+#include "settle/insert.hpp"
 #include "work/random_insertion.hpp"
 #include "work/snug_places.hpp"
 #include "work/work.hpp"
@@ -192,8 +193,13 @@ std::vector<Wall<3>> walls_for_growth(const Domain& shape, double smallest_radiu
 }
 
 StageEnd grow_in_container(Work& work, const Grow& options) {
-  const StageEnd end = Growth(work, options).run();
-  return finish_in_bed(end, options.polish, work);
+  const auto grown = [&] {
+    // What fits only touching the walls is never as large as it has to be in flight.
+    if (SnugPlaces(work).only_some_touch()) return insert_largest_first(work);
+    const StageEnd end = Growth(work, options).run();
+    return work.target.is_open() ? end : insert_what_else_fits(work, end);
+  };
+  return finish_in_bed(grown(), options.polish, work);
 }
 
 }  // namespace bernal

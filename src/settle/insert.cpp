@@ -17,6 +17,54 @@ constexpr std::size_t milestone_every = 8192;
 /// For each place inside a container: in one so thin and oblique that more are beyond it, spheres wait.
 constexpr double most_drawn = 1000;
 
+/// Where a stage reaches less than this of what is likely to fit, insertion is tried as well.
+constexpr double far_short = 0.8;
+/// And with so few spheres of a count always, as it takes no time.
+constexpr std::size_t few = 1000;
+/// So many that are left over in the end, or with this share of the volume, may still find places by
+/// themselves.
+constexpr std::size_t last_few = 16;
+constexpr double last_share = 0.01;
+constexpr Insert what_else_fits = {.attempts = 1000, .packing_fraction = 1};
+
+double share_of_container(const Work& work, std::size_t count) {
+  return volume_of(work.drawn(count).spheres) / work.container->volume();
+}
+
+bool falls_short(const Work& work) {
+  const double wanted = share_of_container(work, work.target_count());
+  return work.bed().packing_fraction() < far_short * std::min(wanted, work.attainable);
+}
+
+bool hardly_any_left(const Work& work) {
+  if (work.target.is_open()) return work.target.fill;
+  const std::size_t wanted = work.supply->wanted();
+  return work.bed().size() + last_few >= wanted ||
+         work.bed().packing_fraction() >= (1 - last_share) * share_of_container(work, wanted);
+}
+
+/// From an empty bed. Where the sizes are left open they keep their order, as the largest of them would not
+/// be what was drawn.
+StageEnd insert_if_denser(Work& work, StageEnd end) {
+  const Keepsake packed(work);
+  const double before = work.bed().packing_fraction();
+  StageEnd inserted = StageEnd::full;
+  try {
+    if (work.target.is_open()) {
+      work.put_in_bed({});
+      inserted = insert(work, what_else_fits);
+    } else {
+      inserted = insert_largest_first(work, before);
+    }
+  } catch (const Cancelled&) {
+    packed.give_back_if_denser(work);
+    throw;
+  }
+  packed.give_back_if_denser(work);
+  if (inserted == StageEnd::cancelled) return inserted;
+  return work.bed().packing_fraction() > before ? inserted : end;
+}
+
 }  // namespace
 
 StageEnd insert(Work& work, const Insert& options) {
@@ -51,7 +99,7 @@ StageEnd insert(Work& work, const Insert& options) {
   return waiting > 0 && waiting == supply.window().size() ? StageEnd::full : StageEnd::converged;
 }
 
-StageEnd insert_largest_first(Work& work, std::size_t count, double densest_so_far) {
+StageEnd insert_largest_first(Work& work, double densest_so_far) {
   constexpr double many_attempts = 1000, few_attempts = 100;
   constexpr int many_failures = 200;  // after which every sphere gets few
   constexpr int most_searches = 10;   // in vain
@@ -60,6 +108,7 @@ StageEnd insert_largest_first(Work& work, std::size_t count, double densest_so_f
   work.put_in_bed({});
   Bed& bed = work.bed();
   const Supply& supply = *work.supply;
+  const std::size_t count = work.target_count();
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t tag) { return supply.radius(tag); });
@@ -98,6 +147,13 @@ StageEnd insert_largest_first(Work& work, std::size_t count, double densest_so_f
   }
   work.supply->set_placed(placed, false);
   return bed.size() == count ? StageEnd::converged : StageEnd::full;
+}
+
+StageEnd insert_what_else_fits(Work& work, StageEnd end) {
+  if (end != StageEnd::full) return end;
+  const bool few_wanted = !work.target.is_open() && work.target_count() <= few;
+  if (few_wanted || falls_short(work)) end = insert_if_denser(work, end);
+  return end == StageEnd::full && hardly_any_left(work) ? insert(work, what_else_fits) : end;
 }
 
 template <>

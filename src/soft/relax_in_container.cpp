@@ -21,14 +21,6 @@ constexpr double hopeless_patience = 1;
 constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
 /// More than what is likely to fit, in shares of it, is not tried at once.
 constexpr double most_of_attainable = 1.1;
-/// Where relaxation reaches less than this of what is likely to fit, insertion is tried as well.
-constexpr double far_short = 0.8;
-/// And with so few spheres of a count always, as it takes no time.
-constexpr std::size_t few = 1000;
-/// So many that are left over in the end, or with this share of the volume, may still find places by
-/// themselves.
-constexpr std::size_t last_few = 16;
-constexpr double last_share = 0.01;
 constexpr Insert insertion = {.attempts = 1000, .packing_fraction = 1};
 constexpr int most_hand_overs = 20;
 /// Of the radii: a skin up to this is lost in the margin.
@@ -179,61 +171,21 @@ bool is_dilute(const Work& work) {
                                        dilute * work.attainable * work.container->volume();
 }
 
-/// Whether much less has found a place than is asked for and likely to fit: a few large spheres, with hardly
-/// any play between the walls, may keep all of them from coming free.
-bool falls_short(const Work& work) {
-  const double wanted = volume_of(work.drawn(work.target_count()).spheres) / work.container->volume();
-  return work.bed().packing_fraction() < far_short * std::min(wanted, work.attainable);
-}
-
-bool hardly_any_left(const Work& work) {
-  if (work.target.fill) return true;
-  if (work.target.is_open()) return false;
-  const double wanted = volume_of(work.drawn(work.supply->wanted()).spheres) / work.container->volume();
-  return work.bed().size() + last_few >= work.supply->wanted() ||
-         work.bed().packing_fraction() >= (1 - last_share) * wanted;
-}
-
-/// From an empty bed. Where the sizes are left open they keep their order, as the largest of them would not
-/// be what was drawn.
-StageEnd insert_if_denser(Work& work, StageEnd end) {
-  const Keepsake relaxed(work);
-  const double before = work.bed().packing_fraction();
-  StageEnd inserted = StageEnd::full;
-  try {
-    if (work.target.is_open()) {
-      work.put_in_bed({});
-      inserted = insert(work, insertion);
-    } else {
-      inserted = insert_largest_first(work, work.target_count(), before);
-    }
-  } catch (const Cancelled&) {
-    relaxed.give_back_if_denser(work);
-    throw;
-  }
-  relaxed.give_back_if_denser(work);
-  return work.bed().packing_fraction() > before ? inserted : end;
-}
-
 }  // namespace
 
 StageEnd relax_in_container(Work& work, const Relax& options) {
   const auto relaxed = [&] {
     // What fits only touching the walls would be pushed off its place; the others come around it.
-    if (SnugPlaces(work).only_some_touch()) return insert_largest_first(work, work.supply->wanted());
+    if (SnugPlaces(work).only_some_touch()) return insert_largest_first(work);
     if (is_dilute(work)) {
       const StageEnd end = insert(work, insertion);
       if (end != StageEnd::full) return end;
     }
-    StageEnd end = [&] {
+    const auto relax = [&] {
       const EffectTimer timer(work.effects["relaxation"]);
       return Relaxation(work, options).run();
-    }();
-    if (end != StageEnd::full) return end;
-    const bool few_wanted = !work.target.is_open() && work.target_count() <= few;
-    if (few_wanted || falls_short(work)) end = insert_if_denser(work, end);
-    // Of the last ones, one that has no place is passed over.
-    return end == StageEnd::full && hardly_any_left(work) ? insert(work, insertion) : end;
+    };
+    return insert_what_else_fits(work, relax());
   };
   return finish_in_bed(relaxed(), options.polish, work);
 }

@@ -65,13 +65,17 @@ std::vector<Case> tight_cases() {
   const auto among = [&](const std::string& name, const std::string& container, std::size_t n,
                          const std::string& diameters, const std::string& shares, Expected expected,
                          std::vector<File> files = {}) {
-    cases.push_back(
-        {exact_fits, name, "large ones have a place each, if no small one stands there",
-         scene(container,
-               fmt::format("count = {}\ndraw = \"quantiles\"\ndiameter = {{ distribution = \"classes\", "
-                           "values = [{}], shares = [{}], basis = \"number\" }}",
-                           n, diameters, shares)),
-         std::move(expected), std::move(files)});
+    const std::string spheres = fmt::format(
+        "count = {}\ndraw = \"quantiles\"\ndiameter = {{ distribution = \"classes\", "
+        "values = [{}], shares = [{}], basis = \"number\" }}",
+        n, diameters, shares);
+    for (const Protocol& protocol : protocols()) {
+      const bool standard = protocol.name == "default";
+      if (!standard && (protocol.name != "grow" || !files.empty())) continue;
+      cases.push_back({exact_fits, standard ? name : name + "_grow",
+                       "large ones have a place each, if no small one stands there",
+                       scene(container, spheres, protocol.stages), expected, files});
+    }
   };
   const std::string cube = "kind = \"box\"\nsize = [4.0, 4.0, 4.0]";
   among("OneThatFitsACubeAmongSmallOnes", cube, 30, "0.4, 4.0", "29, 1", exactly(30));
