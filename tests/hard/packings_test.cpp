@@ -110,7 +110,7 @@ TEST(HardPacking, OfANeedle) {
     SCOPED_TRACE(protocol);
     const Packing packing = certified(plan_of(
         std::string(
-            "[container]\nkind = \"box\"\nsize = [1.0, 1.0, 100.0]\n[spheres]\nfill = true\nradius = 0.2\n") +
+            "[container]\nkind = \"box\"\nsize = [1.0, 1.0, 30.0]\n[spheres]\nfill = true\nradius = 0.2\n") +
         protocol));
     EXPECT_GT(packing.packing_fraction(), 0.35);
   }
