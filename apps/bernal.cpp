@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
 #include "commands.hpp"
 
@@ -37,20 +38,18 @@ constexpr const char* examples = R"(Examples:
 Exit codes: 0 done; 1 not certified, or not usable; 2 bad input; 3 ended without reaching what the scene asks.
 Messages go to standard error, results to files or standard output.)";
 
-/// In one line, whatever the input had in it: control characters would also move a terminal's cursor.
-int complain(std::string what) {
-  std::ranges::replace_if(
-      what, [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
-  fmt::print(stderr, "bernal: {}\n", what);
+/// In one line, whatever the input had in it.
+int complain(std::string_view what) {
+  fmt::print(stderr, "bernal: {}\n", bernal::plain_text(what, 1000));
   return exit_code::bad_input;
 }
 
-/// A stream that the caller has closed becomes one that goes nowhere, or the next file that is opened would get
-/// what is meant for the stream.
+/// A stream that the caller has closed becomes one that goes nowhere, or the next file that is opened would
+/// get what is meant for the stream.
 void open_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (fcntl(stream, F_GETFD) == -1 && errno == EBADF)
-      [[maybe_unused]] const int lowest_free = open("/dev/null", O_RDWR);
+    if (fcntl(stream, F_GETFD) == -1 && errno == EBADF) [[maybe_unused]]
+      const int lowest_free = open("/dev/null", O_RDWR);
 }
 
 }  // namespace

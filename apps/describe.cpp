@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 
 using namespace bernal;
@@ -16,7 +17,7 @@ std::string describe_container(const Plan& plan) {
   std::string text(is_periodic(plan.domain) && has_walls(plan.domain) ? name_of(plan.domain)
                                                                       : std::string(kind_of(plan.domain)));
   if (const auto* mesh = std::get_if<MeshFile>(&plan.scene.container))
-    text += fmt::format(" {}", mesh->file.string());
+    text += fmt::format(" {}", plain_text(mesh->file.string()));
   if (plan.box_follows) text += ", as large as the packing needs";
   return fmt::format("{}{} {:.6g} {}, volume {:.6g} {}^{}", text, plan.box_follows ? ": about" : ",",
                      fmt::join(size, " x "), unit, volume_of(plan.domain), unit, size.size());

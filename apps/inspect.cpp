@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bernal/cad/read_mesh.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/core/unit.hpp"
 #include "bernal/measure/chambers.hpp"
 #include "commands.hpp"
@@ -66,7 +67,7 @@ std::vector<Row> rows_of(const Chambers& found, const std::string& unit) {
 
 /// What the file tells about itself.
 std::vector<Row> rows_of_file(const InspectCall& call, const MeshReport& report) {
-  std::vector<Row> rows = {{"file", call.mesh.string()}, {"coordinates from", report.reader}};
+  std::vector<Row> rows = {{"file", plain_text(call.mesh.string())}, {"coordinates from", report.reader}};
   if (!report.unit.empty()) rows.emplace_back("unit", report.unit + ", as the file says");
   if (report.up != 0) rows.emplace_back("up", fmt::format("{}, as the file says", report.up));
   constexpr std::size_t most = 20;
@@ -166,7 +167,7 @@ nlohmann::ordered_json as_json(const InspectCall& call, const MeshReport& report
   ordered_json defects = ordered_json::array();
   for (const Defect& defect : report.defects)
     defects.push_back({{"what", defect.what}, {"at", defect.at}, {"across", defect.across}});
-  return {{"file", call.mesh.string()},
+  return {{"file", plain_text(call.mesh.string())},
           {"unit", known(call.unit)},
           {"unit_of_file", known(report.unit)},
           {"metres_per_unit", report.metres > 0 ? ordered_json(report.metres) : ordered_json(nullptr)},
@@ -225,7 +226,7 @@ Command inspect_command() {
   return {"inspect",
           "Say what a CAD file is and whether it can be a container",
           {required({"MESH", &call->mesh,
-                     "The file: STL, OBJ, OFF, PLY, 3MF, glTF, Collada, FBX, STEP, IGES, BREP"}),
+                     "The file: STL, OBJ, OFF, PLY, 3MF, AMF, glTF, Collada, FBX, STEP, IGES, BREP"}),
            {"--unit", &call->unit, "Unit of the file's lengths: nm, um, mm, cm, m, in, ft; unknown if absent",
             "UNIT"},
            checked({"--radius", &call->radius,

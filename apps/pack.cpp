@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/cad/read_mesh.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -50,19 +51,10 @@ Scene scene_of_flags(const PackCall& call) {
   return scene;
 }
 
-/// By its name.
-bool is_mesh(const std::filesystem::path& file) {
-  constexpr std::string_view formats[] = {".stl", ".obj",  ".off", ".ply", ".3mf",  ".gltf", ".glb", ".dae",
-                                          ".fbx", ".step", ".stp", ".igs", ".iges", ".brep", ".3ds", ".amf"};
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  return std::ranges::find(formats, extension) != std::end(formats);
-}
-
 Scene scene_of(const PackCall& call) {
   const bool has_sizes = call.diameter || !call.lognormal.empty();
   if (call.scene.extension() != ".toml" && has_sizes) return scene_of_flags(call);
-  if (!has_sizes && is_mesh(call.scene))
+  if (!has_sizes && is_mesh_file_name(call.scene))
     throw Error(ErrorCode::bad_argument,
                 fmt::format("{} is a mesh, not a scene; say what is packed into it, such as --unit mm "
                             "--diameter 2, or name it as \"file\" in the [container] of a scene",

@@ -1,14 +1,12 @@
 #include "cad/file_facts.hpp"
 
 #include <fmt/format.h>
-#include <minizip/unzip.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <optional>
 
 namespace bernal::cad {
@@ -151,41 +149,71 @@ FileFacts facts_of_amf(std::string_view xml) {
   return facts;
 }
 
-ThreeMfFacts facts_of_3mf(std::string_view xml) {
-  ThreeMfFacts result;
-  for_each_tag(xml, [&](const Tag& tag) {
-    if (tag.depth == 0 && tag.name == "model") set_unit(attribute(tag.attributes, "unit"), result.facts);
-    if (tag.name == "object")
-      result.objects[attribute(tag.attributes, "id").value_or("")] = {
-          attribute(tag.attributes, "name").value_or(""),
-          !attribute(tag.attributes, "type").value_or("model").ends_with("support")};
-    return true;
-  });
-  return result;
+namespace {
+
+/// The objects of a 3MF by their ids: faces of their own, and other objects that they hold.
+struct ThreeMfObject {
+  double faces = 0;
+  std::vector<std::string> components = {};
+  enum { unseen, open, counted } state = unseen;
+};
+using ThreeMfObjects = std::map<std::string, ThreeMfObject>;
+
+constexpr int most_levels = 1000;
+constexpr double most_faces = 1e9;
+
+struct Unbuildable {
+  std::string why;
+};
+
+/// Of the object and all that it holds. Throws Unbuildable.
+double faces_of(const std::string& id, ThreeMfObjects& objects, int level = 0) {
+  const auto found = objects.find(id);
+  if (found == objects.end()) throw Unbuildable{"it names an object that it does not hold"};
+  ThreeMfObject& object = found->second;
+  if (object.state == ThreeMfObject::open) throw Unbuildable{"one of its objects is a part of itself"};
+  if (level == most_levels) throw Unbuildable{"its objects are nested more than a thousand deep"};
+  if (object.state == ThreeMfObject::unseen) {
+    object.state = ThreeMfObject::open;
+    for (const std::string& component : object.components)
+      object.faces += faces_of(component, objects, level + 1);
+    object.state = ThreeMfObject::counted;
+  }
+  return object.faces;
 }
 
-std::string zip_entry(const std::filesystem::path& archive, std::string_view ending) {
-  const std::unique_ptr<void, int (*)(unzFile)> zip(unzOpen64(archive.c_str()), unzClose);
-  if (!zip) return {};
-  for (int next = unzGoToFirstFile(zip.get()); next == UNZ_OK; next = unzGoToNextFile(zip.get())) {
-    char name[512];
-    if (unzGetCurrentFileInfo64(zip.get(), nullptr, name, sizeof name, nullptr, 0, nullptr, 0) != UNZ_OK)
-      break;
-    name[sizeof name - 1] = '\0';
-    std::string lower(name);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (!lower.ends_with(ending)) continue;
-    if (unzOpenCurrentFile(zip.get()) != UNZ_OK) return {};
-    std::string content;
-    std::vector<char> piece(1U << 16U);
-    int read = 0;
-    while ((read = unzReadCurrentFile(zip.get(), piece.data(), static_cast<unsigned>(piece.size()))) > 0)
-      content.append(piece.data(), static_cast<std::size_t>(read));
-    unzCloseCurrentFile(zip.get());
-    return content;
+}  // namespace
+
+ThreeMfFacts facts_of_3mf(std::string_view xml) {
+  ThreeMfFacts result;
+  ThreeMfObjects objects;
+  std::string inside;  // the object whose tags these are
+  double faces = 0;
+  std::vector<std::string> items;
+  for_each_tag(xml, [&](const Tag& tag) {
+    const auto named = [&](std::string_view name) { return attribute(tag.attributes, name).value_or(""); };
+    if (tag.depth == 0 && tag.name == "model") set_unit(attribute(tag.attributes, "unit"), result.facts);
+    if (tag.name == "object") {
+      inside = named("id");
+      objects[inside];
+      result.objects[inside] = {named("name"),
+                                !attribute(tag.attributes, "type").value_or("model").ends_with("support")};
+    } else if (tag.name == "triangle") {
+      ++objects[inside].faces;
+    } else if (tag.name == "component" && !attribute(tag.attributes, "p:path")) {
+      objects[inside].components.push_back(named("objectid"));
+    } else if (tag.name == "item" && !attribute(tag.attributes, "p:path")) {
+      items.push_back(named("objectid"));
+    }
+    return true;
+  });
+  try {
+    for (const std::string& item : items) faces += faces_of(item, objects);
+    if (faces > most_faces) throw Unbuildable{"its objects repeat each other up to more than 1e9 faces"};
+  } catch (const Unbuildable& unbuildable) {
+    result.trouble = unbuildable.why;
   }
-  return {};
+  return result;
 }
 
 std::string text_without_mark(const std::filesystem::path& file) {
@@ -193,124 +221,6 @@ std::string text_without_mark(const std::filesystem::path& file) {
   std::string text(std::istreambuf_iterator<char>(in), {});
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   return text;
-}
-
-namespace {
-
-struct NativeFormat {
-  std::string_view extension, what;
-};
-
-// Of those that no reader knows; what they hold are surfaces or a recipe, not triangles.
-constexpr NativeFormat native_formats[] = {
-    {".sldprt", "a SolidWorks part"},
-    {".sldasm", "a SolidWorks assembly"},
-    {".slddrw", "a SolidWorks drawing"},
-    {".prt", "a part of NX or Creo"},
-    {".asm", "an assembly of Creo or Solid Edge"},
-    {".par", "a Solid Edge part"},
-    {".psm", "a Solid Edge sheet metal part"},
-    {".ipt", "an Inventor part"},
-    {".iam", "an Inventor assembly"},
-    {".catpart", "a CATIA part"},
-    {".catproduct", "a CATIA assembly"},
-    {".cgr", "a CATIA representation"},
-    {".x_t", "a Parasolid file"},
-    {".x_b", "a Parasolid file"},
-    {".xmt_txt", "a Parasolid file"},
-    {".sat", "an ACIS file"},
-    {".sab", "an ACIS file"},
-    {".f3d", "a Fusion design"},
-    {".f3z", "a Fusion assembly"},
-    {".3dm", "a Rhino model"},
-    {".dwg", "an AutoCAD drawing"},
-    {".jt", "a JT file"},
-    {".fcstd", "a FreeCAD document"},
-    {".scad", "an OpenSCAD program"},
-    {".skp", "a SketchUp model"},
-    {".blend", "a Blender scene"},
-    {".max", "a 3ds Max scene"},
-    {".c4d", "a Cinema 4D scene"},
-    {".ma", "a Maya scene"},
-    {".mb", "a Maya scene"},
-    {".nb", "a Mathematica notebook"},
-    {".pdf", "a PDF document"},
-};
-
-struct Beginning {
-  std::string_view bytes, what;
-};
-
-// Whatever the name says.
-constexpr Beginning beginnings[] = {
-    {"\x1f\x8b", "compressed by gzip; run gunzip on it first"},
-    {"BZh", "compressed by bzip2; run bunzip2 on it first"},
-    {"\xFD"
-     "7zXZ",
-     "compressed by xz; run unxz on it first"},
-    {"7z\xBC\xAF", "a 7z archive; unpack it and name the file inside"},
-    {"Rar!", "a RAR archive; unpack it and name the file inside"},
-    {"version https://git-lfs.github.com/spec/v1",
-     "a pointer of git-lfs, not the file itself; run git lfs pull"},
-    {"version https://hawser.github.com/spec/v1",
-     "a pointer of git-lfs, not the file itself; run git lfs pull"},
-    {"%PDF", "a PDF document; export STEP or STL"},
-    {"AC10", "an AutoCAD drawing; export STEP or STL"},
-    {"BLENDER", "a Blender scene; export STL"},
-    {"3D Geometry File Format", "a Rhino model; export STEP or STL"},
-    {"**ABCDEFGHIJKLMNOPQRSTUVWXYZ", "a Parasolid file; export STEP or STL"},
-    {"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "a native document of a CAD or office program; export STEP or STL"},
-    {"\x89PNG", "a picture; export STEP or STL"},
-    {"\xFF\xD8\xFF", "a picture; export STEP or STL"},
-};
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
-}  // namespace
-
-std::string known_not_to_be_a_mesh(const std::filesystem::path& file) {
-  std::string head(1024, '\0');
-  std::ifstream in(file, std::ios::binary);
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(in.gcount()));
-
-  // A binary STL may begin with any words; its size tells it.
-  std::error_code unknown;
-  const auto size = std::filesystem::file_size(file, unknown);
-  if (extension_of(file) == ".stl" && head.size() >= 84) {
-    const auto byte = [&](std::size_t k) { return std::uint64_t{static_cast<unsigned char>(head[80 + k])}; };
-    if (size == 84 + 50 * (byte(0) | byte(1) << 8U | byte(2) << 16U | byte(3) << 24U)) return {};
-  }
-
-  std::string_view text = head;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  for (const Beginning& beginning : beginnings)
-    if (text.starts_with(beginning.bytes) && beginning.what.find("native") == std::string_view::npos)
-      return fmt::format("is {}", beginning.what);
-  std::string extension = extension_of(file);
-  // Creo numbers its versions: part.prt.12
-  if (extension.find_first_not_of("0123456789", 1) == std::string::npos)
-    extension = extension_of(file.stem());
-  for (const NativeFormat& format : native_formats)
-    if (extension == format.extension) return fmt::format("is {}; export STEP or STL", format.what);
-  for (const Beginning& beginning : beginnings)
-    if (text.starts_with(beginning.bytes)) return fmt::format("is {}", beginning.what);
-
-  const bool zipped_format =
-      extension == ".3mf" || extension == ".amf" || extension == ".zae" || extension == ".q3s";
-  if (text.starts_with("PK\x03\x04") && !zipped_format)
-    return "is a zip archive; unpack it and name the file inside";
-  const std::string words = lower(trimmed(text).substr(0, 64));
-  if (words.starts_with("<!doctype html") || words.starts_with("<html"))
-    return "is a web page, not a CAD file; download the file itself";
-  if (words.starts_with("iso-10303-21") && extension != ".step" && extension != ".stp" && extension != ".ifc")
-    return "is a STEP file by its content; rename it to .step";
-  return {};
 }
 
 }  // namespace bernal::cad

@@ -23,17 +23,13 @@ struct ThreeMfFacts {
   };
   FileFacts facts;
   std::map<std::string, Object> objects;
+  /// Why its objects make no model: one is a part of itself, they repeat each other beyond measure. Empty if
+  /// they do.
+  std::string trouble = {};
 };
 ThreeMfFacts facts_of_3mf(std::string_view xml);
 
-/// The first entry of a zip archive whose name ends so, whatever the case; empty if there is none.
-std::string zip_entry(const std::filesystem::path& archive, std::string_view ending);
-
 /// The whole file, without the mark of UTF-8 that editors put in front.
 std::string text_without_mark(const std::filesystem::path& file);
-
-/// Why a file is no mesh, and what to do about it, told by its name and its first bytes: native CAD formats,
-/// archives, web pages, pointers of git-lfs. Empty where a reader should try.
-std::string known_not_to_be_a_mesh(const std::filesystem::path& file);
 
 }  // namespace bernal::cad

@@ -6,7 +6,8 @@
 #include <limits>
 
 #include "bernal/core/error.hpp"
-#include "cad/file_facts.hpp"
+#include "bernal/core/text.hpp"
+#include "cad/known_formats.hpp"
 #include "cad/point_cubes.hpp"
 #include "cad/stl_file.hpp"
 
@@ -82,6 +83,16 @@ Agreement agreement(const PolygonSoup& in_float, const PolygonSoup& in_double) {
   return same ? Agreement::in_another_order : Agreement::none;
 }
 
+/// What a file says of itself goes to terminals and pages.
+void make_plain(ChosenSoup& read) {
+  constexpr std::size_t most = 200;
+  for (Solid& solid : read.soup.solids) solid.name = plain_text(solid.name, most);
+  for (auto* length : {&read.facts.unit, &read.facts.written_in})
+    if (*length) (*length)->name = plain_text((*length)->name, most);
+  for (std::string& note : read.facts.notes) note = plain_text(note, most);
+  read.reader = plain_text(read.reader, most);
+}
+
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reason) {
   throw Error(ErrorCode::bad_mesh, reason, {file.string()});
 }
@@ -101,7 +112,6 @@ ChosenSoup chosen(ReadAttempt&& attempt, std::string reader) {
 ChosenSoup choose(const std::filesystem::path& file, ReadAttempt assimp, ReadAttempt cgal) {
   if (!assimp.ok() && !cgal.ok())
     refuse(file, fmt::format("cannot be read: {} (assimp), {} (CGAL)", assimp.failure, cgal.failure));
-  if (!cgal.ok() && cgal_is_strict(file)) refuse(file, fmt::format("cannot be read: {}", cgal.failure));
   if (!cgal.ok())
     return chosen(std::move(assimp), fmt::format("assimp, single precision (CGAL: {})", cgal.failure));
   if (!assimp.ok())
@@ -146,8 +156,12 @@ ChosenSoup read_by_extension(const std::filesystem::path& file, double deflectio
     if (!read.ok()) refuse(file, "cannot be read: " + read.failure);
     return chosen(std::move(read), "OpenCASCADE, tessellated");
   }
+  if (cgal_reads(file)) {
+    ReadAttempt cgal = read_with_cgal(file);
+    if (!cgal.ok() && cgal_is_strict(file)) refuse(file, "cannot be read: " + cgal.failure);
+    return choose(file, read_with_assimp(file), std::move(cgal));
+  }
   ReadAttempt assimp = read_with_assimp(file);
-  if (cgal_reads(file)) return choose(file, std::move(assimp), read_with_cgal(file));
   if (!assimp.ok()) refuse(file, "cannot be read: " + assimp.failure);
   return chosen(std::move(assimp), "assimp, single precision");
 }
@@ -162,6 +176,7 @@ ChosenSoup read_soup(const std::filesystem::path& file, double deflection, doubl
   if (const std::string other = known_not_to_be_a_mesh(file); !other.empty()) refuse(file, other);
   ChosenSoup read = read_by_extension(file, deflection, metres > 0 ? metres : 1);
   if (read.soup.polygons.empty()) refuse(file, "holds no faces; export the surface, not points or curves");
+  make_plain(read);
   return read;
 }
 

@@ -1,19 +1,56 @@
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
 
 #include <fmt/format.h>
 
+#include <assimp/BaseImporter.h>
 #include <Eigen/LU>
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <iterator>
+#include <sstream>
 
+#include "cad/cage.hpp"
 #include "cad/counted.hpp"
 #include "cad/file_facts.hpp"
 #include "cad/polygon_soup.hpp"
+#include "cad/zip_archive.hpp"
 
 namespace bernal::cad {
 namespace {
+
+/// Of one file: more would be a mistake, or an attack.
+constexpr std::size_t most_corners = 3'000'000'000U;
+constexpr int most_levels = 1000;
+
+/// Opens files to read them, if they are regular ones in the folder of the part or below.
+class FilesBeside : public Assimp::DefaultIOSystem {
+ public:
+  explicit FilesBeside(const std::filesystem::path& file)
+      : folder_(std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path())) {}
+
+  bool Exists(const char* name) const override { return allowed(name) && DefaultIOSystem::Exists(name); }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    return mode[0] == 'r' && allowed(name) ? DefaultIOSystem::Open(name, mode) : nullptr;
+  }
+
+ private:
+  bool allowed(const char* name) const {
+    std::error_code unknown;
+    const auto file = std::filesystem::canonical(std::filesystem::absolute(name), unknown);
+    if (unknown || !std::filesystem::is_regular_file(file, unknown)) return false;
+    return std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first == folder_.end();
+  }
+
+  std::filesystem::path folder_;
+};
+
+/// What is wrong with a file as a whole.
+struct Refused {
+  std::string_view why;
+};
 
 Eigen::Matrix4d to_double(const aiMatrix4x4& m) {
   Eigen::Matrix4d result;
@@ -22,8 +59,10 @@ Eigen::Matrix4d to_double(const aiMatrix4x4& m) {
   return result;
 }
 
+/// Throws Refused.
 void append_mesh(const aiMesh& mesh, const Eigen::Matrix4d& transform, PolygonSoup& soup) {
   const auto first = static_cast<std::uint32_t>(soup.points.size());
+  if (soup.points.size() + mesh.mNumVertices > most_corners) throw Refused{"it has more than 3e9 corners"};
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     const aiVector3D& v = mesh.mVertices[i];
     const Eigen::Vector4d moved = transform * Eigen::Vector4d(v.x, v.y, v.z, 1.0);
@@ -35,14 +74,19 @@ void append_mesh(const aiMesh& mesh, const Eigen::Matrix4d& transform, PolygonSo
     if (face.mNumIndices < 3) continue;  // a point or a line is no part of a wall
     std::vector<std::uint32_t>& polygon = soup.polygons.emplace_back();
     polygon.reserve(face.mNumIndices);
-    for (unsigned k = 0; k < face.mNumIndices; ++k) polygon.push_back(first + face.mIndices[k]);
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
+      if (face.mIndices[k] >= mesh.mNumVertices) throw Refused{"a face names a vertex that does not exist"};
+      polygon.push_back(first + face.mIndices[k]);
+    }
     if (mirrored) std::reverse(polygon.begin(), polygon.end());
   }
 }
 
 /// `above` is the transform of the node itself too. One that flattens what it holds hides it, as exporters
 /// do.
-void append_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& above, PolygonSoup& soup) {
+void append_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& above, PolygonSoup& soup,
+                 int level = 0) {
+  if (level == most_levels) throw Refused{"its parts are nested more than a thousand deep"};
   const std::size_t first = soup.polygons.size();
   const bool hidden = above.topLeftCorner<3, 3>().determinant() == 0;
   for (unsigned i = 0; i < node.mNumMeshes && !hidden; ++i)
@@ -50,7 +94,7 @@ void append_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d
   if (soup.polygons.size() > first) soup.solids.push_back({node.mName.C_Str(), first});
   for (unsigned i = 0; i < node.mNumChildren; ++i) {
     const aiNode& child = *node.mChildren[i];
-    append_node(scene, child, above * to_double(child.mTransformation), soup);
+    append_node(scene, child, above * to_double(child.mTransformation), soup, level + 1);
   }
 }
 
@@ -79,21 +123,20 @@ FileFacts facts_of_fbx(const aiScene& scene) {
 }
 
 /// What the file says of its unit and axes, and of the names of its parts where assimp drops them.
-void add_facts(const std::filesystem::path& file, const aiScene& scene, ReadAttempt& result) {
+/// `archived`: what a zipped file holds.
+void add_facts(const std::filesystem::path& file, const std::string& archived, const aiScene& scene,
+               ReadAttempt& result) {
   const std::string format = format_of(scene);
   if (format.starts_with("Collada")) {
-    result.facts =
-        facts_of_collada(extension_of(file) == ".zae" ? zip_entry(file, ".dae") : text_without_mark(file));
+    result.facts = facts_of_collada(text_without_mark(file));
   } else if (format.starts_with("glTF")) {
     result.facts.unit = FileFacts::Length{1, "meter"};
   } else if (format.starts_with("Autodesk FBX")) {
     result.facts = facts_of_fbx(scene);
   } else if (format.starts_with("Additive")) {
-    std::string text = text_without_mark(file);
-    if (text.starts_with("PK")) text = zip_entry(file, ".amf");
-    result.facts = facts_of_amf(text);
+    result.facts = facts_of_amf(archived.empty() ? text_without_mark(file) : archived);
   } else if (format.starts_with("3mf")) {
-    ThreeMfFacts model = facts_of_3mf(zip_entry(file, ".model"));
+    ThreeMfFacts model = facts_of_3mf(archived);
     result.facts = std::move(model.facts);
     std::vector<bool> is_part;
     for (Solid& solid : result.soup.solids) {  // which assimp calls "Object_7" after the id
@@ -134,46 +177,75 @@ ReadAttempt attempt(const Assimp::Importer& importer, const aiScene* scene) {
   // root, which has none of its own.
   const bool turned = format_of(*scene).starts_with("Collada");
   const aiMatrix4x4 root = turned ? aiMatrix4x4() : scene->mRootNode->mTransformation;
-  append_node(*scene, *scene->mRootNode, to_double(root), result.soup);
-  const auto finite = [](const Vector<3>& p) { return p.allFinite(); };
-  const auto valid = [&](const std::vector<std::uint32_t>& polygon) {
-    return *std::max_element(polygon.begin(), polygon.end()) < result.soup.points.size();
-  };
-  if (!std::all_of(result.soup.points.begin(), result.soup.points.end(), finite)) {
-    result.failure = "a coordinate is not finite";
-  } else if (!std::all_of(result.soup.polygons.begin(), result.soup.polygons.end(), valid)) {
-    result.failure = "a face names a vertex that does not exist";
+  try {
+    append_node(*scene, *scene->mRootNode, to_double(root), result.soup);
+  } catch (const Refused& refused) {
+    result.failure = refused.why;
   }
+  const auto finite = [](const Vector<3>& p) { return p.allFinite(); };
+  if (!std::all_of(result.soup.points.begin(), result.soup.points.end(), finite))
+    result.failure = "a coordinate is not finite";
+  return result;
+}
+
+/// Leaves those that know the extension: by its content a file may look like one of a format that nobody
+/// tests.
+void keep_importers_of(const std::string& extension, Assimp::Importer& importer) {
+  std::vector<Assimp::BaseImporter*> others;
+  for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
+    std::istringstream known(importer.GetImporterInfo(i)->mFileExtensions);
+    const std::vector<std::string> extensions(std::istream_iterator<std::string>(known), {});
+    if (std::ranges::find(extensions, extension) == extensions.end())
+      others.push_back(importer.GetImporter(i));
+  }
+  for (Assimp::BaseImporter* other : others) {
+    importer.UnregisterLoader(other);
+    delete other;
+  }
+}
+
+/// No post-processing: assimp's welding has an absolute tolerance, and its triangulation knows only floats.
+ReadAttempt read_here(const std::filesystem::path& file) {
+  const std::string extension = extension_of(file).substr(1);
+  ZipEntry archived;
+  if (const bool zipped_model = extension == "3mf"; zipped_model || (extension == "amf" && is_zip(file))) {
+    archived = zip_entry(file, zipped_model ? ".model" : ".amf");
+    if (archived.trouble.empty() && zipped_model) archived.trouble = facts_of_3mf(archived.content).trouble;
+    if (!archived.trouble.empty()) return {{}, archived.trouble, {}};
+  }
+  Assimp::Importer importer;
+  keep_importers_of(extension, importer);
+  importer.SetIOHandler(new FilesBeside(file));  // which is the importer's from now on
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else they are ids
+  const aiScene* scene = nullptr;
+  if (cgal_reads(file)) {  // text that assimp refuses with the mark of UTF-8 in front
+    const std::string text = text_without_mark(file);
+    scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, extension.c_str());
+  } else {
+    scene = importer.ReadFile(file.string(), 0);
+  }
+  ReadAttempt result = attempt(importer, scene);
+  if (result.ok()) add_facts(file, archived.content, *scene, result);
+  drop_single_nameless(result.soup.solids);
   return result;
 }
 
 }  // namespace
 
-// No post-processing: assimp's welding has an absolute tolerance, and its triangulation knows only floats.
 ReadAttempt read_with_assimp(const std::filesystem::path& file) {
-  Assimp::Importer importer;
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else they are ids
-  const aiScene* scene = nullptr;
-  if (cgal_reads(file)) {  // text that assimp refuses with the mark of UTF-8 in front
-    const std::string text = text_without_mark(file);
-    scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, extension_of(file).c_str() + 1);
-  } else {
-    scene = importer.ReadFile(file.string(), 0);
-  }
-  ReadAttempt result = attempt(importer, scene);
-  if (result.ok()) add_facts(file, *scene, result);
-  drop_single_nameless(result.soup.solids);
-  if (extension_of(file) == ".dxf" && (!result.ok() || result.soup.polygons.empty()))
-    result.failure = "a drawing without faces (DXF); export STEP or STL";
-  return result;
+  return read_in_cage("assimp", cage_limits(std::filesystem::file_size(file)),
+                      [&] { return read_here(file); });
 }
 
 ReadAttempt read_stl_with_assimp(const std::string& content) {
-  Assimp::Importer importer;
-  ReadAttempt result =
-      attempt(importer, importer.ReadFileFromMemory(content.data(), content.size(), 0, "stl"));
-  result.soup.solids.clear();  // whose names are not as written
-  return result;
+  return read_in_cage("assimp", cage_limits(content.size()), [&] {
+    Assimp::Importer importer;
+    keep_importers_of("stl", importer);
+    ReadAttempt result =
+        attempt(importer, importer.ReadFileFromMemory(content.data(), content.size(), 0, "stl"));
+    result.soup.solids.clear();  // whose names are not as written
+    return result;
+  });
 }
 
 }  // namespace bernal::cad

@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "cad/cage.hpp"
 #include "cad/file_facts.hpp"
 #include "cad/polygon_soup.hpp"
 
@@ -62,6 +64,12 @@ ReadAttempt attempt(const Read& read) {
   return result;
 }
 
+/// The same in a child process, for a text of so many bytes.
+template <typename Read>
+ReadAttempt attempt_in_cage(std::size_t size, const Read& read) {
+  return read_in_cage("CGAL", cage_limits(size), [&] { return attempt(read); });
+}
+
 /// CGAL casts whatever stands in a face of an OFF text to indices, so that 1e300 may become the first vertex,
 /// and makes room for as many corners as the face claims. So the faces are looked through before; empty if
 /// they are good, or if CGAL will see by itself what is wrong.
@@ -98,17 +106,24 @@ std::string wrong_face_of_off(const std::string& text) {
   return {};
 }
 
-/// CGAL reads the coordinates of a PLY file as float or double and the corners of its faces as int or uint;
-/// what else this one has them in, or empty.
-std::string other_numbers_in_ply(const std::string& text) {
+/// CGAL reads the coordinates of a PLY file as float or double and the corners of its faces as int or uint,
+/// and loops as often as the header says. What else this one has them in, or that it cannot hold so many; or
+/// empty.
+std::string wrong_header_of_ply(const std::string& text) {
   const auto is_one_of = [](const std::string& type, std::initializer_list<std::string_view> known) {
     return std::ranges::find(known, type) != known.end();
   };
   std::istringstream in(text);
-  for (std::string line; std::getline(in, line) && !line.starts_with("end_header");) {
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("end_header")) return {};
     std::istringstream words(line);
     std::string word, type, count, name;
-    if (!(words >> word >> type) || word != "property") continue;
+    if (!(words >> word >> type)) continue;
+    if (word == "element" && words >> count &&
+        (count.size() > 15 || std::strtoull(count.c_str(), nullptr, 10) > text.size()))
+      return fmt::format("its header promises {} of \"{}\", more than it can hold", count.substr(0, 20),
+                         type.substr(0, 20));
+    if (word != "property") continue;
     const bool list = type == "list";
     if (list) words >> count >> type;
     words >> name;
@@ -117,7 +132,7 @@ std::string other_numbers_in_ply(const std::string& text) {
     if (is_one_of(name, {"x", "y", "z"}) && !is_one_of(type, {"float", "double", "float32", "float64"}))
       return fmt::format("its coordinates are {}; write them as double", type);
   }
-  return {};
+  return "its header has no end";
 }
 
 /// The objects of an OBJ file, or its groups if it has none. `faces` is what was read: where that is not what
@@ -165,9 +180,9 @@ ReadAttempt read_with_cgal(const std::filesystem::path& file) {
     if (std::string wrong = wrong_face_of_off(text); !wrong.empty())
       return {.soup = {}, .failure = std::move(wrong)};
   if (extension == ".ply")
-    if (std::string other = other_numbers_in_ply(text); !other.empty())
-      return {.soup = {}, .failure = std::move(other)};
-  ReadAttempt result = attempt([&](Points& points, Polygons& polygons) {
+    if (std::string wrong = wrong_header_of_ply(text); !wrong.empty())
+      return {.soup = {}, .failure = std::move(wrong)};
+  ReadAttempt result = attempt_in_cage(text.size(), [&](Points& points, Polygons& polygons) {
     std::istringstream in(text);
     if (extension == ".off") return CGAL::IO::read_OFF(in, points, polygons);
     if (extension == ".obj") return CGAL::IO::read_OBJ(in, points, polygons);
@@ -178,7 +193,7 @@ ReadAttempt read_with_cgal(const std::filesystem::path& file) {
 }
 
 ReadAttempt read_stl_with_cgal(const std::string& content) {
-  return attempt([&](Points& points, Polygons& polygons) {
+  return attempt_in_cage(content.size(), [&](Points& points, Polygons& polygons) {
     std::istringstream in(content);
     return CGAL::IO::read_STL(in, points, polygons);
   });

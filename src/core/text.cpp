@@ -29,7 +29,60 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+/// The bytes of the character that a text begins with, 0 if that is none in UTF-8; and its number.
+std::size_t character_at(std::string_view text, char32_t& number) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  const std::size_t size = byte(0) < 0x80                       ? 1
+                           : byte(0) >= 0xc2 && byte(0) <= 0xdf ? 2
+                           : byte(0) >= 0xe0 && byte(0) <= 0xef ? 3
+                           : byte(0) >= 0xf0 && byte(0) <= 0xf4 ? 4
+                                                                : 0;
+  if (size == 0 || size > text.size()) return 0;
+  number = size == 1 ? byte(0) : byte(0) & (0x7fU >> size);
+  for (std::size_t k = 1; k < size; ++k) {
+    if ((byte(k) & 0xc0U) != 0x80) return 0;
+    number = number << 6U | (byte(k) & 0x3fU);
+  }
+  constexpr char32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+  const bool surrogate = number >= 0xd800 && number <= 0xdfff;
+  return number < least[size] || number > 0x10ffff || surrogate ? 0 : size;
+}
+
+/// Moves a terminal's cursor, turns the direction of writing, or ends a line.
+bool is_control(char32_t c) {
+  const auto within = [c](char32_t first, char32_t last) { return c >= first && c <= last; };
+  return c < 0x20 || within(0x7f, 0x9f) || within(0x200e, 0x200f) || within(0x2028, 0x202e) ||
+         within(0x2066, 0x2069) || c == 0x61c || c == 0xfeff;
+}
+
 }  // namespace
+
+std::string plain_text(std::string_view text, std::size_t most) {
+  std::vector<std::string_view> characters;
+  std::size_t bytes = 0;
+  while (!text.empty()) {
+    char32_t number = 0;
+    const std::size_t size = character_at(text, number);
+    characters.push_back(size == 0 ? "?" : is_control(number) ? " " : text.substr(0, size));
+    bytes += characters.back().size();
+    text.remove_prefix(std::max<std::size_t>(1, size));
+  }
+  std::string plain;
+  std::size_t k = 0;
+  if (bytes > most) {  // two thirds from the front, where the name of the file stands, the rest from the end
+    constexpr std::string_view left_out = " … ";
+    const std::size_t room = most - std::min(most, left_out.size());
+    for (; k < characters.size() && plain.size() + characters[k].size() <= 2 * room / 3; ++k)
+      plain += characters[k];
+    std::size_t end = characters.size();
+    for (std::size_t tail = 0; end > k && tail + characters[end - 1].size() <= room - plain.size(); --end)
+      tail += characters[end - 1].size();
+    plain += left_out;
+    k = end;
+  }
+  for (; k < characters.size(); ++k) plain += characters[k];
+  return plain;
+}
 
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
   std::string_view nearest;

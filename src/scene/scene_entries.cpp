@@ -232,7 +232,7 @@ const std::vector<Entry>& container_entries() {
           {.name = "mesh",
            .help = "a closed surface from a CAD file",
            .keys = {required(key(Type::file, &MeshFile::file, "file",
-                                 "STL, OBJ, PLY, OFF, 3MF, glTF, Collada, FBX, STEP, IGES, BREP")),
+                                 "STL, OBJ, PLY, OFF, 3MF, AMF, glTF, Collada, FBX, STEP, IGES, BREP")),
                     word(&MeshFile::unit, "unit",
                          "unit of the file's coordinates; if absent what the file says, else the scene's",
                          words(unit_names())),

@@ -40,5 +40,28 @@ TEST(NearestName, TheNearestWinsAndTheFirstOfEquals) {
   EXPECT_EQ(nearest_name("shakee", three), "shake");
 }
 
+// Escape sequences, control characters of C1, marks of direction, ends of lines, bytes that are no UTF-8.
+TEST(PlainText, HoldsNothingThatMovesATerminal) {
+  EXPECT_EQ(plain_text("Gehäuse Ø 12 µm, 外壳, 🔩"), "Gehäuse Ø 12 µm, 外壳, 🔩");
+  EXPECT_EQ(plain_text("\x1b[2Ja\x07\nb\x7f"), " [2Ja  b ");
+  EXPECT_EQ(plain_text("a\xc2\x9b"
+                       "31m"),
+            "a 31m");
+  EXPECT_EQ(plain_text("gpj.\xe2\x80\xaetrap\xe2\x81\xa6"), "gpj. trap ");
+  EXPECT_EQ(plain_text("\xff\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80\xc3"), "???????????");
+  EXPECT_EQ(plain_text(""), "");
+}
+
+TEST(PlainText, LeavesOutTheMiddleOfWhatIsLong) {
+  const std::string text = std::string(1000, 'a') + std::string(1000, 'z');
+  EXPECT_EQ(plain_text(text, 2000), text);
+  const std::string shortened = plain_text(text, 100);
+  EXPECT_LE(shortened.size(), 100u);
+  EXPECT_GE(shortened.size(), 95u);
+  EXPECT_TRUE(shortened.starts_with(std::string(60, 'a')) && shortened.ends_with(std::string(30, 'z')));
+  for (std::size_t most = 5; most < 40; ++most)
+    EXPECT_LE(plain_text("ääääääääääääääääääääääää", most).size(), most);
+}
+
 }  // namespace text_test
 }  // namespace bernal

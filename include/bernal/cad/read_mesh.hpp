@@ -31,6 +31,10 @@ class OptionError : public Error {
   std::string option;
 };
 
+/// Whether a file of that name is of a format that is read: STL, OBJ, PLY, OFF, 3MF, AMF, glTF, Collada, FBX,
+/// STEP, IGES, BREP, by its extension in upper or lower case.
+bool is_mesh_file_name(const std::filesystem::path& file);
+
 /// Reads a file of any known format, does what the options ask for, and says what came of it. Throws
 /// Error{bad_mesh} when the file is missing, cannot be parsed, holds no faces or coordinates that are not
 /// finite, and OptionError where an option is at odds with it; everything else is told in the report.

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -14,6 +15,12 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
 /// What to tell who wrote that name: `; did you mean "diameter"?` or, where nothing is near,
 /// `; known: "count", "radius"`.
 std::string remedy(std::string_view name, std::span<const std::string_view> candidates);
+
+/// Text that came out of a file, fit for a terminal and a page: valid UTF-8 in one line, without control
+/// characters and marks that turn the direction of writing, which become blanks; a byte that is no UTF-8
+/// becomes
+/// "?". Of more than `most` bytes the middle is left out.
+std::string plain_text(std::string_view text, std::size_t most = 500);
 
 /// 28312 as "28,312".
 std::string grouped(std::uint64_t n);
