@@ -7,6 +7,7 @@
 #include <boost/functional/hash.hpp>
 #include <boost/unordered/unordered_map.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "cad/diagnose_mesh.hpp"
@@ -172,7 +173,8 @@ double decimal_rounding(const Mesh& mesh, double largest) {
   for (std::size_t v = 0; v < mesh.vertices.size(); v += step)
     for (int k = 0; k < 3; ++k) {
       const double c = std::abs(mesh.vertices[v][k]);
-      while (digits < 17 && std::stod(fmt::format("{:.{}e}", c, digits - 1)) != c) ++digits;
+      while (digits < 17 && std::strtod(fmt::format("{:.{}e}", c, digits - 1).c_str(), nullptr) != c)
+        ++digits;
     }
   return 0.5 * std::pow(10.0, std::floor(std::log10(largest)) + 1 - digits);
 }

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <optional>
 
@@ -35,9 +36,9 @@ struct Openings {
 std::string rounded(double value, double towards, double within) {
   for (int digits = 1; digits < 17; ++digits) {
     const std::string text = fmt::format("{:.{}g}", value, digits);
-    const double shift = std::stod(text) - value;
+    const double shift = std::strtod(text.c_str(), nullptr) - value;
     if (std::abs(shift) <= within || (shift * towards > 0 && std::abs(shift) <= 1e-4 * std::abs(towards)))
-      return fmt::format("{}", std::stod(text));  // "10", not "1e+01"
+      return fmt::format("{}", std::strtod(text.c_str(), nullptr));  // "10", not "1e+01"
   }
   return fmt::format("{}", value);
 }
@@ -141,7 +142,8 @@ std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_
     const double tolerance = cad::closing_tolerance(mesh, cad::rounding_of_coordinates(mesh), widest);
     if (tolerance > 0) {
       const std::string text = fmt::format("{:.1g}", 1.5 * tolerance);
-      lines.push_back({fmt::format("weld = {}", text), [w = std::stod(text)](MeshFile& m) { m.weld = w; }});
+      lines.push_back({fmt::format("weld = {}", text),
+                       [w = std::strtod(text.c_str(), nullptr)](MeshFile& m) { m.weld = w; }});
     }
   }
   std::vector<Line> caps;
@@ -186,7 +188,7 @@ std::vector<Line> to_close_the_widest(const MeshFile& options, const ImportedMes
   const std::string number = fmt::format("{:.2g}", 1.06 * widest);  // two digits may be 5 % less
   const std::string text = "largest_hole = " + number;
   return {{closes_holes ? text : fmt::format("repair = [\"holes\"]\n{}", text),
-           [closes_holes, largest = std::stod(number)](MeshFile& m) {
+           [closes_holes, largest = std::strtod(number.c_str(), nullptr)](MeshFile& m) {
              if (!closes_holes) m.repair = {Repair::holes};
              m.largest_hole = largest;
            }}};

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "cad/close_seams.hpp"
@@ -62,8 +63,8 @@ double not_less(double bound) {
   const int digits = 2 - static_cast<int>(std::floor(std::log10(bound)));
   const auto text = [&](double number) { return fmt::format("{:.3g}", number); };
   const double unit = std::pow(10.0, -digits);
-  double rounded = std::stod(text(bound));
-  while (rounded < bound) rounded = std::stod(text(rounded + unit));
+  double rounded = std::strtod(text(bound).c_str(), nullptr);
+  while (rounded < bound) rounded = std::strtod(text(rounded + unit).c_str(), nullptr);
   return rounded;
 }
 

@@ -7,43 +7,18 @@
 #include <string_view>
 
 #include "bernal/core/error.hpp"
-#include "bernal/core/random.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "io/output_file.hpp"
 #include "io/write_csv.hpp"
 #include "support/folder.hpp"
+#include "support/fuzz.hpp"
 
 namespace bernal {
 namespace csv_fuzz_test {
 
-std::size_t below(Random& random, std::size_t n) { return static_cast<std::size_t>(random() % n); }
-
-std::string mutated(std::string text, Random& random) {
-  static constexpr std::array<std::string_view, 16> tokens = {
-      "nan",  "inf", "1e999", "5e-324", "-0", ",,",           "\n",        "\r\n",
-      "\n\n", "#",   "0x1p3", "+1",     " ",  "\xef\xbb\xbf", "x,y,z,r\n", "1,2,3,4\n"};
-  const std::size_t edits = 1 + below(random, 3);
-  for (std::size_t i = 0; i < edits && !text.empty(); ++i) {
-    const std::size_t at = below(random, text.size()), length = 1 + below(random, 30);
-    switch (below(random, 5)) {
-      case 0:
-        text[at] = static_cast<char>(random());
-        break;
-      case 1:
-        text.erase(at, length);
-        break;
-      case 2:
-        text.insert(at, text.substr(below(random, text.size()), length));
-        break;
-      case 3:
-        text.resize(at);
-        break;
-      default:
-        text.insert(at, tokens[below(random, tokens.size())]);
-    }
-  }
-  return text;
-}
+constexpr std::array<std::string_view, 16> tokens = {
+    "nan",  "inf", "1e999", "5e-324", "-0", ",,",           "\n",        "\r\n",
+    "\n\n", "#",   "0x1p3", "+1",     " ",  "\xef\xbb\xbf", "x,y,z,r\n", "1,2,3,4\n"};
 
 /// Whatever the bytes: spheres that can be written and read again, or one line that says where they are
 /// wrong. Writing waits for the disk, so that not every call does it.
@@ -76,11 +51,11 @@ TEST(FuzzCsv, EveryMutationIsAPackingOrAnError) {
       "# unit: mm\nx,y,z,r\n0.1,-2.5,1e-07,0.5\n1e+300,0,-0,5e-324\n3,4,5,6.25\n-7.125,8,9.5,10\n";
   const testing::Folder folder;
   ASSERT_TRUE(is_a_packing(folder, valid, true));
-  constexpr int mutations = 3000;
-  int accepted = 0;
-  for (int i = 0; i < mutations; ++i) {
-    Random random(1, stream(Stream::test, static_cast<std::uint64_t>(i)));
-    accepted += is_a_packing(folder, mutated(valid, random), i % 50 == 0);
+  const std::size_t mutations = testing::fuzz_inputs(3000);
+  std::size_t accepted = 0;
+  for (std::size_t i = 0; i < mutations; ++i) {
+    Random random(1, stream(Stream::test, i));
+    accepted += is_a_packing(folder, testing::mutated(valid, tokens, random), i % 50 == 0);
   }
   // The mutations must reach both sides of the line, or they test nothing.
   EXPECT_GT(accepted, mutations / 50);

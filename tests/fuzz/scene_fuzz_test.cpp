@@ -7,12 +7,13 @@
 #include "bernal/core/random.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "support/folder.hpp"
+#include "support/fuzz.hpp"
 #include "support/scenes.hpp"
 
 namespace bernal {
 namespace scene_fuzz_test {
 
-std::size_t below(Random& random, std::size_t n) { return static_cast<std::size_t>(random() % n); }
+using testing::below;
 
 /// One to four random edits: bytes, pieces of other scenes, numbers at their limits.
 std::string mutated(std::string text, const std::vector<std::string>& scenes, Random& random) {
@@ -75,9 +76,9 @@ TEST(FuzzScene, EveryMutationIsASceneOrAnError) {
   std::vector<std::string> scenes;
   for (const auto& file : testing::example_scenes()) scenes.push_back(testing::text_of(file));
   ASSERT_FALSE(scenes.empty());
-  constexpr int mutations = 10'000;
-  int accepted = 0;
-  for (int i = 0; i < mutations; ++i) {
+  const std::size_t mutations = testing::fuzz_inputs(10'000);
+  std::size_t accepted = 0;
+  for (std::size_t i = 0; i < mutations; ++i) {
     Random random(1, stream(Stream::test, i));
     accepted += is_a_scene(mutated(scenes[i % scenes.size()], scenes, random));
   }

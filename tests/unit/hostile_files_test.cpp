@@ -194,6 +194,13 @@ TEST_F(HostileFile, SideFilesThatArePipesOrElsewhere) {
   refusal("other.gltf", gltf);
 }
 
+// Numbers that a double holds without its first bit.
+TEST_F(HostileFile, CoordinatesBelowTheLeastNormalNumber) {
+  std::string obj = test::as_obj(test::box_mesh({0, 0, 0}, {1, 1, 1}));
+  obj.replace(obj.find("v 0 0 0"), 7, "v 0 1e-320 0");
+  EXPECT_TRUE(read_mesh({.file = folder.write("tiny.obj", obj)}).report.usable());
+}
+
 TEST_F(HostileFile, PipesDevicesAndFolders) {
   ASSERT_EQ(mkfifo((folder / "pipe.stl").c_str(), 0600), 0);
   for (const std::filesystem::path& file :
