@@ -35,7 +35,7 @@ constexpr double slower = 20;
 /// Between looks at whether the user wants to stop.
 constexpr int look_every_ms = 50;
 /// Stands at the end of what is whole.
-constexpr std::uint64_t whole = 0x6265726E616C2121;
+constexpr std::uint64_t end_mark = 0x6265726E616C2121;
 
 class Descriptor {
  public:
@@ -168,7 +168,7 @@ void put(SoupWriter& out, const ReadAttempt& attempt) {
   out.real(facts.deflection.value_or(0));
   out.number(facts.notes.size());
   for (const std::string& note : facts.notes) out.text(note);
-  out.number(whole);
+  out.number(end_mark);
 }
 
 ReadAttempt read_attempt(SoupReader& in) {
@@ -200,7 +200,7 @@ ReadAttempt read_attempt(SoupReader& in) {
   const double deflection = in.real();
   if (has_deflection) facts.deflection = deflection;
   for (std::uint64_t left = in.number(); left > 0; --left) facts.notes.push_back(in.text());
-  if (in.number() != whole) throw SoupReader::Cut();
+  if (in.number() != end_mark) throw SoupReader::Cut();
   return attempt;
 }
 

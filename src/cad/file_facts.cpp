@@ -159,8 +159,8 @@ struct ThreeMfObject {
 };
 using ThreeMfObjects = std::map<std::string, ThreeMfObject>;
 
-constexpr int most_levels = 1000;
-constexpr double most_faces = 1e9;
+constexpr int most_nested_objects = 1000;
+constexpr double most_3mf_faces = 1e9;
 
 struct Unbuildable {
   std::string why;
@@ -172,7 +172,7 @@ double faces_of(const std::string& id, ThreeMfObjects& objects, int level = 0) {
   if (found == objects.end()) throw Unbuildable{"it names an object that it does not hold"};
   ThreeMfObject& object = found->second;
   if (object.state == ThreeMfObject::open) throw Unbuildable{"one of its objects is a part of itself"};
-  if (level == most_levels) throw Unbuildable{"its objects are nested more than a thousand deep"};
+  if (level == most_nested_objects) throw Unbuildable{"its objects are nested more than a thousand deep"};
   if (object.state == ThreeMfObject::unseen) {
     object.state = ThreeMfObject::open;
     for (const std::string& component : object.components)
@@ -209,7 +209,7 @@ ThreeMfFacts facts_of_3mf(std::string_view xml) {
   });
   try {
     for (const std::string& item : items) faces += faces_of(item, objects);
-    if (faces > most_faces) throw Unbuildable{"its objects repeat each other up to more than 1e9 faces"};
+    if (faces > most_3mf_faces) throw Unbuildable{"its objects repeat each other up to more than 1e9 faces"};
   } catch (const Unbuildable& unbuildable) {
     result.trouble = unbuildable.why;
   }

@@ -23,7 +23,7 @@ namespace {
 
 /// Of one file: more would be a mistake, or an attack.
 constexpr std::size_t most_corners = 3'000'000'000U;
-constexpr int most_levels = 1000;
+constexpr int most_nested_nodes = 1000;
 
 /// Opens files to read them, if they are regular ones in the folder of the part or below.
 class FilesBeside : public Assimp::DefaultIOSystem {
@@ -86,7 +86,7 @@ void append_mesh(const aiMesh& mesh, const Eigen::Matrix4d& transform, PolygonSo
 /// do.
 void append_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& above, PolygonSoup& soup,
                  int level = 0) {
-  if (level == most_levels) throw Refused{"its parts are nested more than a thousand deep"};
+  if (level == most_nested_nodes) throw Refused{"its parts are nested more than a thousand deep"};
   const std::size_t first = soup.polygons.size();
   const bool hidden = above.topLeftCorner<3, 3>().determinant() == 0;
   for (unsigned i = 0; i < node.mNumMeshes && !hidden; ++i)

@@ -104,7 +104,7 @@ std::string name_of(const Domain& domain) {
   int walls = 0;
   for (int k = 0; k < box->dimension(); ++k)
     if (box->has_wall(k)) axes += (walls++ > 0 ? ", " : "") + std::to_string(k);
-  return "box periodic but along " + std::string(walls > 1 ? "axes " : "axis ") + axes;
+  return std::string("box periodic but along ").append(walls > 1 ? "axes " : "axis ").append(axes);
 }
 
 int dimension_of(const Domain& domain) {

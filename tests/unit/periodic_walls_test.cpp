@@ -120,9 +120,10 @@ TEST_P(BetweenWalls, ContactsAgreeWithBruteForceOverAllImages) {
     EXPECT_GT(pairs, 20u);
     EXPECT_GT(walls, 5u);
     EXPECT_EQ(contacts[g].isostatic.has_value(), contacts[g].backbone > 0);
-    if (contacts[g].isostatic)
+    if (contacts[g].isostatic) {
       EXPECT_EQ(*contacts[g].isostatic,
                 3 * contacts[g].backbone + 1 - static_cast<std::uint64_t>(symmetries_of(domain())));
+    }
   }
 }
 
