@@ -124,7 +124,8 @@ int main(int count, char** arguments) {
   if (!file) return fmt::print(stderr, "cannot write {}: {}\n", arguments[1], std::strerror(errno)), 2;
   fmt::print(file,
              "# Hard cases\n\n"
-             "Written by `tests/hard/table/write`; asserted, row by row, by `ctest -R hard/`.\n\n"
+             "Written by `tests/hard/table/write`; asserted, row by row, by `ctest -R hard/` and, with the "
+             "rows that take long and at every level of arithmetic, by `ctest --preset slow`.\n\n"
              "{} cases. {} end with what was asked for, {} with less and the reason, {} are refused before "
              "anything is packed; "
              "{} end otherwise than they must. A case with walls is packed at each level of arithmetic for "
