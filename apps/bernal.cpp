@@ -73,6 +73,7 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return complain(error.what());
   }
-  if (std::fflush(stdout) != 0) return complain("standard output cannot be written");
+  // What CLI11 prints it has flushed itself, and told nobody.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return complain("standard output cannot be written");
   return status;
 }

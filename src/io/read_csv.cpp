@@ -39,6 +39,8 @@ class Lines {
  public:
   explicit Lines(const std::filesystem::path& file) : file_(file.string()) {
     if (std::filesystem::is_directory(file)) cannot_read("it is a folder");
+    if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
+      cannot_read("it is a pipe or a device");
     errno = 0;
     stream_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
     stream_.open(file, std::ios::binary);

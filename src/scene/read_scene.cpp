@@ -343,6 +343,7 @@ Scene read_scene(const std::filesystem::path& file) {
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) fail("no such scene file");
   if (std::filesystem::is_directory(status)) fail("this is a folder, not a scene file");
+  if (!std::filesystem::is_regular_file(status)) fail("this is a pipe or a device, not a scene file");
   std::ifstream in(file, std::ios::binary);
   if (!in) fail("the scene file cannot be opened for reading");
   std::string text(largest + 1, '\0');

@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include "check.hpp"
 
 namespace bernal::testing {
@@ -72,6 +74,30 @@ TEST(Usage, WrongOnesAreOneLineAndExitTwo) {
     SCOPED_TRACE(call);
     expect_refused_in_one_line(bernal(words), {"see bernal", "--help"});
     EXPECT_EQ(std::filesystem::remove_all(out), 0u) << "something was written";
+  }
+}
+
+TEST(Usage, AFullDeviceIsNoSuccess) {
+  for (const char* words : {"--version", "--help", "keys", "predict --lognormal 0.3"}) {
+    const Ended full =
+        Process({"sh", "-c", std::string("'" BERNAL_COMMAND "' ") + words + " > /dev/full"}).wait();
+    expect_refused_in_one_line(full, {"standard output cannot be written"});
+  }
+}
+
+// A reader of a pipe that nobody writes to would wait for ever, one of a device would never end.
+TEST(Usage, PipesAndDevicesAreNoInput) {
+  const Folder folder;
+  const std::string pipe = folder / "pipe", scene = folder.write("small.toml", small_scene);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& file : {pipe, std::string("/dev/zero")}) {
+    for (const std::vector<std::string>& words :
+         std::vector<std::vector<std::string>>{{"explain", file},
+                                               {"pack", file, "--quiet"},
+                                               {"inspect", file},
+                                               {"verify", file, "--scene", scene},
+                                               {"measure", file}})
+      expect_refused_in_one_line(bernal(words), {file});
   }
 }
 
