@@ -4,13 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <fstream>
 #include <string_view>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "cad/polygon_soup.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -88,14 +86,11 @@ constexpr Beginning beginnings[] = {
     {"\xFF\xD8\xFF", "a picture; export STEP or STL"},
 };
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
 }  // namespace
+
+std::string extension_of(const std::filesystem::path& file) {
+  return in_lower_case(file.extension().string());
+}
 
 std::string known_not_to_be_a_mesh(const std::filesystem::path& file) {
   std::string head(1024, '\0');
@@ -129,7 +124,7 @@ std::string known_not_to_be_a_mesh(const std::filesystem::path& file) {
   if (text.starts_with("PK\x03\x04") && !zipped_format)
     return "is a zip archive; unpack it and name the file inside";
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-  const std::string words = lower(text.substr(0, 64));
+  const std::string words = in_lower_case(std::string(text.substr(0, 64)));
   if (words.starts_with("<!doctype html") || words.starts_with("<html"))
     return "is a web page, not a CAD file; download the file itself";
   if (words.starts_with("iso-10303-21") && extension != ".step" && extension != ".stp" && extension != ".ifc")

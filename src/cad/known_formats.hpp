@@ -1,8 +1,20 @@
 #pragma once
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <string>
 
 namespace bernal::cad {
+
+/// Of ASCII letters.
+inline std::string in_lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// ".stl" of "Part.STL".
+std::string extension_of(const std::filesystem::path& file);
 
 /// Why a file is no mesh, and what to do about it, told by its name and its first bytes: native CAD formats,
 /// archives, web pages, pointers of git-lfs, formats that nobody has tested. Empty where a reader should try.

@@ -72,9 +72,6 @@ bool opencascade_reads(const std::filesystem::path& file);
 /// belong to no solid are sewn. One call at a time: others wait.
 ReadAttempt read_with_opencascade(const std::filesystem::path& file, double deflection);
 
-/// ".stl" of "Part.STL".
-std::string extension_of(const std::filesystem::path& file);
-
 /// Whether CGAL reads the doubles of this format: OFF, OBJ, PLY (STL goes through `read_stl_with_cgal`).
 bool cgal_reads(const std::filesystem::path& file);
 ReadAttempt read_with_cgal(const std::filesystem::path& file);

@@ -15,6 +15,7 @@
 #include "cad/cage.hpp"
 #include "cad/counted.hpp"
 #include "cad/file_facts.hpp"
+#include "cad/known_formats.hpp"
 #include "cad/polygon_soup.hpp"
 #include "cad/zip_archive.hpp"
 
@@ -122,9 +123,28 @@ FileFacts facts_of_fbx(const aiScene& scene) {
   return facts;
 }
 
+/// What a zipped file holds, if it is one.
+struct Archived {
+  std::string amf;
+  ThreeMfFacts model;
+  std::string trouble;  ///< one phrase; empty if all is there
+};
+
+Archived archived_in(const std::filesystem::path& file, const std::string& extension) {
+  Archived result;
+  if (extension == "3mf") {
+    const ZipEntry model = zip_entry(file, ".model");
+    if (model.trouble.empty()) result.model = facts_of_3mf(model.content);
+    result.trouble = model.trouble.empty() ? result.model.trouble : model.trouble;
+  } else if (extension == "amf" && is_zip(file)) {
+    ZipEntry amf = zip_entry(file, ".amf");
+    result = {std::move(amf.content), {}, std::move(amf.trouble)};
+  }
+  return result;
+}
+
 /// What the file says of its unit and axes, and of the names of its parts where assimp drops them.
-/// `archived`: what a zipped file holds.
-void add_facts(const std::filesystem::path& file, const std::string& archived, const aiScene& scene,
+void add_facts(const std::filesystem::path& file, Archived archived, const aiScene& scene,
                ReadAttempt& result) {
   const std::string format = format_of(scene);
   if (format.starts_with("Collada")) {
@@ -134,9 +154,9 @@ void add_facts(const std::filesystem::path& file, const std::string& archived, c
   } else if (format.starts_with("Autodesk FBX")) {
     result.facts = facts_of_fbx(scene);
   } else if (format.starts_with("Additive")) {
-    result.facts = facts_of_amf(archived.empty() ? text_without_mark(file) : archived);
+    result.facts = facts_of_amf(archived.amf.empty() ? text_without_mark(file) : archived.amf);
   } else if (format.starts_with("3mf")) {
-    ThreeMfFacts model = facts_of_3mf(archived);
+    ThreeMfFacts& model = archived.model;
     result.facts = std::move(model.facts);
     std::vector<bool> is_part;
     for (Solid& solid : result.soup.solids) {  // which assimp calls "Object_7" after the id
@@ -207,12 +227,8 @@ void keep_importers_of(const std::string& extension, Assimp::Importer& importer)
 /// No post-processing: assimp's welding has an absolute tolerance, and its triangulation knows only floats.
 ReadAttempt read_here(const std::filesystem::path& file) {
   const std::string extension = extension_of(file).substr(1);
-  ZipEntry archived;
-  if (const bool zipped_model = extension == "3mf"; zipped_model || (extension == "amf" && is_zip(file))) {
-    archived = zip_entry(file, zipped_model ? ".model" : ".amf");
-    if (archived.trouble.empty() && zipped_model) archived.trouble = facts_of_3mf(archived.content).trouble;
-    if (!archived.trouble.empty()) return {{}, archived.trouble, {}};
-  }
+  Archived archived = archived_in(file, extension);
+  if (!archived.trouble.empty()) return {{}, archived.trouble, {}};
   Assimp::Importer importer;
   keep_importers_of(extension, importer);
   importer.SetIOHandler(new FilesBeside(file));  // which is the importer's from now on
@@ -225,7 +241,7 @@ ReadAttempt read_here(const std::filesystem::path& file) {
     scene = importer.ReadFile(file.string(), 0);
   }
   ReadAttempt result = attempt(importer, scene);
-  if (result.ok()) add_facts(file, archived.content, *scene, result);
+  if (result.ok()) add_facts(file, std::move(archived), *scene, result);
   drop_single_nameless(result.soup.solids);
   return result;
 }

@@ -9,13 +9,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <iostream>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include "cad/cage.hpp"
 #include "cad/file_facts.hpp"
+#include "cad/known_formats.hpp"
 #include "cad/polygon_soup.hpp"
 
 namespace bernal::cad {
@@ -25,26 +25,12 @@ using SoupPoint = CGAL::Simple_cartesian<double>::Point_3;
 using Points = std::vector<SoupPoint>;
 using Polygons = std::vector<std::vector<std::size_t>>;
 
-/// While it lives nothing comes out of std::cerr, where CGAL says what the caller says in one line of its
-/// own.
-class Silence {
- public:
-  Silence() : out_(std::cerr.rdbuf(nullptr)) {}
-  ~Silence() { std::cerr.rdbuf(out_); }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-
- private:
-  std::streambuf* out_;
-};
-
 template <typename Read>
 ReadAttempt attempt(const Read& read) {
   Points points;
   Polygons polygons;
   ReadAttempt result;
   try {
-    const Silence silence;
     if (!read(points, polygons)) result.failure = "malformed or truncated";
   } catch (const std::exception& error) {
     result.failure = error.what();
@@ -160,13 +146,6 @@ std::vector<Solid> obj_parts(std::string_view text, std::size_t faces) {
 }
 
 }  // namespace
-
-std::string extension_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 bool cgal_reads(const std::filesystem::path& file) {
   const std::string extension = extension_of(file);

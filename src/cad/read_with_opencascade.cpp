@@ -2,6 +2,7 @@
 
 #include <initializer_list>
 
+#include "cad/known_formats.hpp"
 #include "cad/opencascade/read_shapes.hpp"
 
 namespace bernal::cad {

@@ -3,10 +3,11 @@
 #include <minizip/unzip.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <memory>
 #include <vector>
+
+#include "cad/known_formats.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -23,12 +24,6 @@ bool is_as_it_says(const unz_file_info64& info) {
   const bool known = info.compression_method == stored || info.compression_method == deflated;
   return known && info.uncompressed_size <= most_unpacked &&
          info.uncompressed_size <= most_of_a_byte * info.compressed_size + some_bytes;
-}
-
-std::string in_lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 /// The entry that the archive stands at.

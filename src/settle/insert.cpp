@@ -25,7 +25,6 @@ constexpr std::size_t few = 1000;
 /// themselves.
 constexpr std::size_t last_few = 16;
 constexpr double last_share = 0.01;
-constexpr Insert what_else_fits = {.attempts = 1000, .packing_fraction = 1};
 
 double share_of_container(const Work& work, std::size_t count) {
   return volume_of(work.drawn(count).spheres) / work.container->volume();
@@ -52,7 +51,7 @@ StageEnd insert_if_denser(Work& work, StageEnd end) {
   try {
     if (work.target.is_open()) {
       work.put_in_bed({});
-      inserted = insert(work, what_else_fits);
+      inserted = insert(work, until_full);
     } else {
       inserted = insert_largest_first(work, before);
     }
@@ -153,7 +152,7 @@ StageEnd insert_what_else_fits(Work& work, StageEnd end) {
   if (end != StageEnd::full) return end;
   const bool few_wanted = !work.target.is_open() && work.target_count() <= few;
   if (few_wanted || falls_short(work)) end = insert_if_denser(work, end);
-  return end == StageEnd::full && hardly_any_left(work) ? insert(work, what_else_fits) : end;
+  return end == StageEnd::full && hardly_any_left(work) ? insert(work, until_full) : end;
 }
 
 template <>

@@ -10,15 +10,19 @@ namespace bernal {
 /// trial.
 StageEnd insert(Work& work, const Insert& options);
 
+/// Until nothing more finds a place.
+inline constexpr Insert until_full = {.attempts = 1000, .packing_fraction = 1};
+
 /// The same for all that are asked for, anew, but the largest first: for sizes of which some have hardly any
 /// room where small ones stand. What finds no place is passed over. Ends at once when it can no longer become
 /// as dense as that.
 StageEnd insert_largest_first(Work& work, double densest_so_far = 0);
 
-/// After a stage that moves all spheres at once and could place no more: a few large ones, with hardly any play
-/// between the walls, may have kept all of them from coming free. Where there is much less than is asked for
-/// and likely to fit, or where few are asked for, insertion in an empty bed is tried as well; and where hardly
-/// any are left, these are inserted, and one that has no place is passed over. Returns how the two ended.
+/// After a stage that moves all spheres at once and could place no more: a few large ones, with hardly any
+/// play between the walls, may have kept all of them from coming free. Where there is much less than is asked
+/// for and likely to fit, or where few are asked for, insertion in an empty bed is tried as well; and where
+/// hardly any are left, these are inserted, and one that has no place is passed over. Returns how the two
+/// ended.
 StageEnd insert_what_else_fits(Work& work, StageEnd end);
 
 }  // namespace bernal

@@ -21,7 +21,6 @@ constexpr double hopeless_patience = 1;
 constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
 /// More than what is likely to fit, in shares of it, is not tried at once.
 constexpr double most_of_attainable = 1.1;
-constexpr Insert insertion = {.attempts = 1000, .packing_fraction = 1};
 constexpr int most_hand_overs = 20;
 /// Of the radii: a skin up to this is lost in the margin.
 constexpr double thin_skin = 1e-7;
@@ -178,7 +177,7 @@ StageEnd relax_in_container(Work& work, const Relax& options) {
     // What fits only touching the walls would be pushed off its place; the others come around it.
     if (SnugPlaces(work).only_some_touch()) return insert_largest_first(work);
     if (is_dilute(work)) {
-      const StageEnd end = insert(work, insertion);
+      const StageEnd end = insert(work, until_full);
       if (end != StageEnd::full) return end;
     }
     const auto relax = [&] {

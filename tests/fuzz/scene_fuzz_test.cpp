@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -13,49 +14,11 @@
 namespace bernal {
 namespace scene_fuzz_test {
 
-using testing::below;
-
-/// One to four random edits: bytes, pieces of other scenes, numbers at their limits.
-std::string mutated(std::string text, const std::vector<std::string>& scenes, Random& random) {
-  static constexpr std::array<std::string_view, 22> tokens = {
-      "nan",        "-inf",   "1e308",   "5e-324",  "-0.0",        "9223372036854775807",
-      "-1",         "[[[[[[", "{ a = {", "\"\"\"",  "''",          "\\u0000",
-      "\0",         "\xff",   "= =",     "[stage]", "[[stage]]\n", "1979-05-27",
-      "0x7fffffff", "\r",     "#",       "."};
-  const std::size_t edits = 1 + below(random, 4);
-  for (std::size_t i = 0; i < edits && !text.empty(); ++i) {
-    const std::size_t at = below(random, text.size());
-    const std::size_t length = 1 + below(random, std::min<std::size_t>(40, text.size() - at));
-    switch (below(random, 7)) {
-      case 0:
-        text[at] = static_cast<char>(random());
-        break;
-      case 1:
-        text.erase(at, length);
-        break;
-      case 2:
-        text.insert(at, text.substr(at, length));
-        break;
-      case 3:
-        text.resize(at);
-        break;
-      case 4:
-        text.insert(at, tokens[below(random, tokens.size())]);
-        break;
-      case 5: {  // a value for another
-        const std::size_t equals = text.find('=', at), end = text.find('\n', equals);
-        if (end != std::string::npos)
-          text.replace(equals + 1, end - equals - 1, tokens[below(random, tokens.size())]);
-        break;
-      }
-      default: {
-        const std::string& other = scenes[below(random, scenes.size())];
-        text.insert(at, other.substr(below(random, other.size()), length));
-      }
-    }
-  }
-  return text;
-}
+constexpr std::array<std::string_view, 22> tokens = {
+    "nan",        "-inf",   "1e308",   "5e-324",  "-0.0",        "9223372036854775807",
+    "-1",         "[[[[[[", "{ a = {", "\"\"\"",  "''",          "\\u0000",
+    "\0",         "\xff",   "= =",     "[stage]", "[[stage]]\n", "1979-05-27",
+    "0x7fffffff", "\r",     "#",       "."};
 
 /// Whatever the text: a scene that can be written and read again, or one line that says what is wrong.
 bool is_a_scene(const std::string& text) {
@@ -80,7 +43,7 @@ TEST(FuzzScene, EveryMutationIsASceneOrAnError) {
   std::size_t accepted = 0;
   for (std::size_t i = 0; i < mutations; ++i) {
     Random random(1, stream(Stream::test, i));
-    accepted += is_a_scene(mutated(scenes[i % scenes.size()], scenes, random));
+    accepted += is_a_scene(testing::mutated(scenes[i % scenes.size()], tokens, random, scenes));
   }
   // Both paths are taken: comments and values may change, structure may not.
   EXPECT_GT(accepted, mutations / 50);

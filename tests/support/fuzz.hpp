@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <iostream>
@@ -21,33 +22,44 @@ inline std::size_t fuzz_inputs(std::size_t few) {
   return inputs;
 }
 
-/// One to three random edits: bytes, pieces left out, repeated or put elsewhere, ends, tokens.
-inline std::string mutated(std::string text, std::span<const std::string_view> tokens, Random& random) {
-  const std::size_t edits = 1 + below(random, 3);
+/// One to four random edits: bytes, pieces left out, repeated or put elsewhere, ends, tokens, numbers and the
+/// values behind equals signs. `others` lend pieces, too.
+inline std::string mutated(std::string text, std::span<const std::string_view> tokens, Random& random,
+                           std::span<const std::string> others = {}) {
+  const auto token = [&] { return tokens[below(random, tokens.size())]; };
+  const auto replace = [&](std::size_t from, std::size_t end) {
+    if (from <= end && end <= text.size()) text.replace(from, end - from, token());
+  };
+  const std::size_t edits = 1 + below(random, 4);
   for (std::size_t i = 0; i < edits && !text.empty(); ++i) {
-    const std::size_t at = below(random, text.size()), length = 1 + below(random, 30);
-    switch (below(random, 6)) {
+    const std::size_t at = below(random, text.size()), length = 1 + below(random, 40);
+    switch (below(random, 7)) {
       case 0:
         text[at] = static_cast<char>(random());
         break;
       case 1:
         text.erase(at, length);
         break;
-      case 2:
-        text.insert(at, text.substr(below(random, text.size()), length));
+      case 2: {
+        const std::string& source = others.empty() ? text : others[below(random, others.size())];
+        text.insert(at, source.substr(below(random, source.size()), length));
         break;
+      }
       case 3:
         text.resize(at);
         break;
-      case 4: {  // a word or a number for another
-        const std::size_t from = text.find_first_of("0123456789", at);
-        if (from == std::string::npos) break;
-        const std::size_t end = std::min(text.find_first_not_of("0123456789.e+-", from), text.size());
-        text.replace(from, end - from, tokens[below(random, tokens.size())]);
+      case 4: {
+        constexpr std::string_view digits = "0123456789";
+        const std::size_t from = text.find_first_of(digits, at);
+        replace(from, std::min(text.find_first_not_of("0123456789.e+-", from), text.size()));
         break;
       }
+      case 5:
+        if (const std::size_t sign = text.find('=', at); sign != std::string::npos)
+          replace(sign + 1, text.find('\n', sign));
+        break;
       default:
-        text.insert(at, tokens[below(random, tokens.size())]);
+        text.insert(at, token());
     }
   }
   return text;

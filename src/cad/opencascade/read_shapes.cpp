@@ -26,6 +26,7 @@
 #include <iostream>
 #include <mutex>
 
+#include "cad/known_formats.hpp"
 #include "cad/opencascade/read_shapes.hpp"
 #include "cad/opencascade/tessellate.hpp"
 
@@ -141,8 +142,7 @@ void note_units(const std::vector<std::string>& names, FileFacts& facts) {
   facts.unit = FileFacts::Length{1e-3, "millimetre"};
   std::vector<std::string> said;
   for (std::string name : names) {
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    name = in_lower_case(std::move(name));
     for (const KnownUnit& known : known_units())
       if (name == known.step || name == known.iges) {
         name = known.length.name;

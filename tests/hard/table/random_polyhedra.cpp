@@ -199,4 +199,15 @@ Case case_of(const Family& family, std::uint64_t seed) {
       {{"part.off", [mesh] { return test::as_off(mesh); }}}};
 }
 
+std::string objections(const Family& family, std::uint64_t first_seed, std::uint64_t seeds) {
+  std::string all;
+  for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
+    const Case c = case_of(family, seed);
+    const auto walls = static_cast<WallArithmetic>(seed / 5 % 3);
+    const std::string one = objection(c, end_of(c, walls));
+    if (!one.empty()) all += fmt::format("{}, {}: {}\n", c.name, name_of(walls), one);
+  }
+  return all;
+}
+
 }  // namespace bernal::hard

@@ -20,4 +20,8 @@ const std::vector<Family>& families_of_polyhedra();
 /// the seed chooses. The case is what a failure is to be looked at with: scene and mesh as files.
 Case case_of(const Family&, std::uint64_t seed);
 
+/// Packs the cases of so many seeds, each at one of the levels of arithmetic, and says what is wrong with how
+/// they end, a line each.
+std::string objections(const Family&, std::uint64_t first_seed, std::uint64_t seeds);
+
 }  // namespace bernal::hard
