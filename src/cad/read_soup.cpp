@@ -13,6 +13,14 @@
 
 namespace bernal::cad {
 
+namespace {
+
+/// Its triangles reach across each other's boxes, so that to look for crossings takes a time that grows as
+/// the square: 10 s for 20,000 corners, a minute for these.
+constexpr std::size_t most_corners_of_face = 50'000;
+
+}  // namespace
+
 void keep_solids(PolygonSoup& soup, const std::vector<bool>& kept) {
   std::vector<Solid> solids;
   std::vector<std::vector<std::uint32_t>> polygons;
@@ -176,6 +184,11 @@ ChosenSoup read_soup(const std::filesystem::path& file, double deflection, doubl
   if (const std::string other = known_not_to_be_a_mesh(file); !other.empty()) refuse(file, other);
   ChosenSoup read = read_by_extension(file, deflection, metres > 0 ? metres : 1);
   if (read.soup.polygons.empty()) refuse(file, "holds no faces; export the surface, not points or curves");
+  const auto& widest =
+      *std::ranges::max_element(read.soup.polygons, {}, [](const auto& p) { return p.size(); });
+  if (widest.size() > most_corners_of_face)
+    refuse(file, fmt::format("a face has {} corners, more than {}; export triangles", widest.size(),
+                             most_corners_of_face));
   make_plain(read);
   return read;
 }

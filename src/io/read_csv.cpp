@@ -13,6 +13,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/unit.hpp"
 #include "bernal/io/read_packing.hpp"
+#include "core/next_line.hpp"
 #include "io/write_csv.hpp"
 
 namespace bernal {
@@ -49,11 +50,11 @@ class Lines {
 
   bool next() {
     errno = 0;
-    if (!std::getline(stream_, line_)) {
-      if (stream_.bad()) cannot_read(std::strerror(errno));
-      return false;
-    }
+    const NextLine next = next_line(stream_, line_);
+    if (stream_.bad()) cannot_read(std::strerror(errno));
+    if (next == NextLine::none) return false;
     ++number_;
+    if (next == NextLine::too_long) fail("this line is too long for a sphere; is it another file?");
     if (stream_.eof()) fail("the file ends in the middle of this line; it was cut off, write it again");
     if (line_.ends_with('\r')) line_.pop_back();
     return true;

@@ -7,6 +7,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
+#include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
 
 namespace bernal {
@@ -51,8 +52,28 @@ double packing_fraction(const Spheres<dynamic>& spheres, const Domain& domain) {
   return volume > 0 ? sum / volume : 0;
 }
 
+namespace {
+
+/// Beyond it products of lengths are no numbers.
+constexpr double longest = 1e100;
+
+void require_measurable(const Spheres<dynamic>& spheres) {
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const double farthest = spheres.center(i).cwiseAbs().maxCoeff(), r = spheres.r[i];
+    if (!(farthest < longest && r > 1 / longest && r < longest))
+      throw Error(
+          ErrorCode::bad_argument,
+          fmt::format("sphere {} of radius {:g}, {:g} from the origin, is beyond what can be measured, {:g} "
+                      "to {:g}: check the units",
+                      i, r, farthest, 1 / longest, longest));
+  }
+}
+
+}  // namespace
+
 Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, const AskedRadii& asked,
                      const MeasureOptions& options) {
+  require_measurable(spheres);
   Measurements measured;
   measured.packing_fraction = packing_fraction(spheres, domain);
   std::vector<double> gaps = options.gaps;

@@ -84,6 +84,7 @@ class PointGrid {
     }
     const double most = std::max(1.0, cells_per_point * static_cast<double>(points.size()));
     double cells = 0;
+    edge = std::max(edge, 1e-12 / most * size.maxCoeff());  // or it takes long, or for ever, to be as large
     for (;; edge *= 1.1) {
       cells = 1;
       for (int k = 0; k < D; ++k) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "core/next_line.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {
@@ -15,7 +16,6 @@ namespace {
 
 /// More points are measurements, not a distribution; and a scene has to hold them.
 constexpr std::size_t most_points = 4096;
-constexpr std::size_t longest_line = 1000;
 constexpr std::string_view blank = " \t\r\v\f";
 
 std::string_view trimmed(std::string_view text) {
@@ -60,11 +60,13 @@ std::array<std::vector<double>, 2> read_columns(const std::filesystem::path& fil
   std::array<std::vector<double>, 2> columns;
   bool headed = false;
   std::string text;
-  for (int number = 1; std::getline(in, text); ++number) {
+  for (int number = 1;; ++number) {
+    const NextLine next = next_line(in, text);
+    if (next == NextLine::none) break;
     const auto fail = [&](const std::string& why) {
       throw Error(ErrorCode::bad_scene, why, {file.string(), number});
     };
-    if (text.size() > longest_line) fail("this line is too long for two numbers; is it another file?");
+    if (next == NextLine::too_long) fail("this line is too long for two numbers; is it another file?");
     std::string_view line = text;
     if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
     line = trimmed(line.substr(0, line.find('#')));

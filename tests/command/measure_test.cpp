@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <chrono>
+
 #include "check.hpp"
 
 namespace bernal::testing {
@@ -109,6 +113,32 @@ TEST_F(Measure, BadInputIsOneLine) {
   expect_refused_in_one_line(bernal({"measure", folder.path().string()}), {"scene.toml"});
   expect_refused_in_one_line(bernal({"measure", (folder / "none").string()}), {"none", "folder"});
   expect_refused_in_one_line(bernal({"measure"}), {"DIR"});
+}
+
+// What stands in the files may be of another box, in other units, or made up: images without number, sums
+// that overflow, places that no double tells apart.
+TEST_F(Measure, TrustsNobody) {
+  const auto start = std::chrono::steady_clock::now();
+  for (const char* edge : {"1.0", "1e-20", "1e30"})
+    for (const char* spheres : {"1.7e308,0,0,0.1\n-1.7e308,0,0,0.1\n", "0,0,0,1e6\n0.5,0.5,0.5,0.1\n",
+                                "0,0,0,1e300\n0.5,0.5,0.5,0.1\n", "0,0,0,1.7e308\n0,0,0,1.7e308\n",
+                                "1e17,0.3,0,0.1\n0,0,0,0.1\n", "0,0,0,5e-324\n0,0,0,5e-324\n"})
+      for (const char* container :
+           {"kind = \"periodic\"\nedge = {}\n", "kind = \"box\"\nsize = [{0}, {0}, {0}]\n",
+            "kind = \"cylinder\"\nradius = {0}\nheight = {0}\n"}) {
+        folder.write("scene.toml", "unit = \"mm\"\n[container]\n" +
+                                       fmt::format(fmt::runtime(container), edge) +
+                                       "[spheres]\ncount = 2\nradius = 0.1\n");
+        folder.write("spheres.csv", std::string("# unit: mm\nx,y,z,r\n") + spheres);
+        const Ended measured = bernal({"measure", folder.path().string(), "--json"});
+        if (measured.status == 2)
+          expect_refused_in_one_line(measured, {});
+        else
+          EXPECT_EQ(measured.status, 0) << container << edge << spheres;
+        const Ended verified = bernal({"verify", folder.path().string()});
+        EXPECT_TRUE(verified.status == 0 || verified.status == 1) << verified.err;
+      }
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(120));
 }
 
 }  // namespace measure_test

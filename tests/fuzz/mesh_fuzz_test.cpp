@@ -110,7 +110,7 @@ TEST(FuzzMesh, EveryMutationIsAMeshOrAnError) {
   for (const Format& format : all)
     EXPECT_TRUE(is_a_mesh(folder.write(format.name, format.content))) << format.name;
 
-  const std::size_t inputs = testing::fuzz_inputs(400);
+  const std::size_t inputs = testing::fuzz_inputs(400, 20);
   std::size_t accepted = 0;
   for (std::size_t k = 0; k < inputs; ++k) {
     Random random(1, stream(Stream::test, k));

@@ -167,7 +167,7 @@ TEST(Csv, SaysWhereAndWhatIsWrong) {
       {head + "1,2,3,nan\n", 3, "r = \"nan\" is not finite"},
       {head + std::string("1,2,3,4\0\n", 9), 3, "r = \"4\\x00\" is not a number"},
       {head + std::string(1000, '7') + "\n", 3, "1 fields, expected 4"},
-      {head + "1,2,3,4\n" + std::string(1'000'000, '7') + "\n", 4, "1 fields, expected 4"},
+      {head + "1,2,3,4\n" + std::string(1'000'000, '7') + "\n", 4, "too long for a sphere"},
       {head + "1,2,3,4\r5\n", 3, "r = \"4\\x0d5\" is not a number"},
   };
   const Folder folder;

@@ -208,5 +208,16 @@ TEST_F(HostileFile, PipesDevicesAndFolders) {
     EXPECT_THROW(read_mesh({.file = file}), Error) << file;
 }
 
+// Triangles of such a face reach across each other, and each pair of them would be looked at.
+TEST_F(HostileFile, AFaceOfMoreCornersThanPartsHaveIsRefused) {
+  constexpr int corners = 60'000;
+  std::string off = fmt::format("OFF\n{} 1 0\n", corners), face = std::to_string(corners);
+  for (int i = 0; i < corners; ++i) {
+    off += fmt::format("{} {} 0\n", i, i % 2);
+    face += fmt::format(" {}", i);
+  }
+  EXPECT_NE(refusal("comb.off", off + face + "\n").find("a face has 60000 corners"), std::string::npos);
+}
+
 }  // namespace hostile_files_test
 }  // namespace bernal
