@@ -1,5 +1,6 @@
 // The command: one subcommand a file; this one only turns what they throw into a line and an exit code.
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,12 +10,14 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <system_error>
 
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
 #include "commands.hpp"
+#include "say.hpp"
 
 namespace {
 
@@ -40,7 +43,7 @@ Messages go to standard error, results to files or standard output.)";
 
 /// In one line, whatever the input had in it.
 int complain(std::string_view what) {
-  fmt::print(stderr, "bernal: {}\n", bernal::plain_text(what, 1000));
+  say(stderr, "bernal: {}\n", bernal::plain_text(what, 1000));
   return exit_code::bad_input;
 }
 
@@ -52,11 +55,18 @@ void open_closed_streams() {
       const int lowest_free = open("/dev/null", O_RDWR);
 }
 
+/// Of standard output, into a pipe, with as much as was wanted: `| head -1`.
+bool reader_has_left() {
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   open_closed_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is an error to report, not a reason to die
+  std::signal(SIGPIPE, SIG_IGN);  // a run is not lost because nobody reads what it says
   int status = exit_code::done;
   try {
     const Command command = {
@@ -68,12 +78,16 @@ int main(int argc, char** argv) {
         {pack_command(), verify_command(), inspect_command(), explain_command(), keys_command(),
          measure_command(), predict_command(), design_command(), map_command(), reproduce_command()}};
     status = run_command_line(argc, argv, command, "bernal " + std::string(bernal::version()));
+  } catch (const std::system_error& error) {
+    if (error.code() == std::errc::broken_pipe && reader_has_left()) return status;
+    return complain(error.what());
   } catch (const std::bad_alloc&) {
     return complain("out of memory");
   } catch (const std::exception& error) {
     return complain(error.what());
   }
   // What CLI11 prints it has flushed itself, and told nobody.
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return complain("standard output cannot be written");
+  if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && !reader_has_left())
+    return complain("standard output cannot be written");
   return status;
 }

@@ -50,6 +50,8 @@ void add_option(CLI::App& app, const Option& option) {
         }
       },
       option.to);
+  if (std::holds_alternative<std::filesystem::path*>(option.to))
+    added.check([](const std::string& word) { return word.empty() ? "is the name of no file" : ""; });
   if (!option.type_name.empty()) added.type_name(option.type_name);
   for (const auto& demand : option.demands) demand(app, added);
 }

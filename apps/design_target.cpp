@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "design.hpp"
 #include "design_families.hpp"
+#include "say.hpp"
 
 using namespace bernal;
 
@@ -107,9 +108,9 @@ int target(const TargetCall& call) {
   else if (answer.match.found)
     print(answer);
   if (answer.match.found) return exit_code::done;
-  fmt::print(stderr, "bernal: no {} pack to {}: they reach from {:.6f} to {:.6f}{}\n", answer.what, call.phi,
-             answer.match.least, answer.match.most,
-             call.phi > answer.match.most && answer.can_be_wider ? "; wider limits reach farther" : "");
+  say(stderr, "bernal: no {} pack to {}: they reach from {:.6f} to {:.6f}{}\n", answer.what, call.phi,
+      answer.match.least, answer.match.most,
+      call.phi > answer.match.most && answer.can_be_wider ? "; wider limits reach farther" : "");
   return exit_code::not_reached;
 }
 

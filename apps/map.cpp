@@ -10,6 +10,7 @@
 #include "bernal/io/write_packing.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "say.hpp"
 
 using namespace bernal;
 
@@ -31,15 +32,14 @@ int map(MapCall& call) {
   const WrittenMap written = write_map(call.options, call.folder);
   bar.clear();
   if (written.files.empty()) {
-    if (!call.quiet) fmt::print(stderr, "bernal: stopped by the user; nothing is written\n");
+    if (!call.quiet) say(stderr, "bernal: stopped by the user; nothing is written\n");
     return exit_code::not_reached;
   }
   if (!call.quiet)
-    fmt::print(stderr,
-               "densest    {:.4f} at R {:.4g}, w {:.4g}\nerror      {:.1g} at most, from having {} rods\n",
-               written.phi, written.ratio, written.share, written.error,
-               grouped(static_cast<std::uint64_t>(call.options.rods)));
-  for (const auto& file : written.files) fmt::print("{}\n", file.string());
+    say(stderr, "densest    {:.4f} at R {:.4g}, w {:.4g}\nerror      {:.1g} at most, from having {} rods\n",
+        written.phi, written.ratio, written.share, written.error,
+        grouped(static_cast<std::uint64_t>(call.options.rods)));
+  for (const auto& file : written.files) say(stdout, "{}\n", file.string());
   return exit_code::done;
 }
 

@@ -18,6 +18,7 @@
 #include "commands.hpp"
 #include "describe.hpp"
 #include "progress_bar.hpp"
+#include "say.hpp"
 
 using namespace bernal;
 
@@ -31,6 +32,7 @@ struct PackCall {
   std::filesystem::path folder;
   std::optional<std::uint64_t> seed;
   int threads = 0;
+  bool with_mesh = false;
   bool quiet = false;
 };
 
@@ -67,13 +69,13 @@ Scene scene_of(const PackCall& call) {
 }
 
 void print_result(const Packing& packing, const WrittenPacking& written) {
-  fmt::print(stderr, "packed     {}, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
-             packing.spheres.size() == 1 ? "1 sphere" : grouped(packing.spheres.size()) + " spheres",
-             packing.packing_fraction(), packing.expected_packing_fraction, packing.seconds);
-  fmt::print(stderr, "outcome    {}: {}\n", name_of(packing.outcome), packing.reason);
-  fmt::print(stderr, "proof      {}\n", written.certificate.statement);
+  say(stderr, "packed     {}, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
+      packing.spheres.size() == 1 ? "1 sphere" : grouped(packing.spheres.size()) + " spheres",
+      packing.packing_fraction(), packing.expected_packing_fraction, packing.seconds);
+  say(stderr, "outcome    {}: {}\n", name_of(packing.outcome), packing.reason);
+  say(stderr, "proof      {}\n", written.certificate.statement);
   for (std::size_t i = 0; i < written.files.size(); ++i)
-    fmt::print(stderr, "{:<9}  {}\n", i == 0 ? "files" : "", written.files[i].string());
+    say(stderr, "{:<9}  {}\n", i == 0 ? "files" : "", written.files[i].string());
 }
 
 int pack(const PackCall& call) {
@@ -82,10 +84,10 @@ int pack(const PackCall& call) {
   const Scene scene = scene_of(call);
   const Plan plan = build(scene);
   const std::filesystem::path folder = call.folder.empty() ? call.scene.stem() : call.folder;
-  check_writable(folder);
+  check_writable(folder, scene, {.with_mesh = call.with_mesh});
   bar.clear();
-  if (!call.quiet && scene.file.empty()) fmt::print("{}", scene_as_toml(scene));
-  if (!call.quiet) fmt::print(stderr, "{}", describe(plan));  // a wrong unit is seen at once
+  if (!call.quiet && scene.file.empty()) say(stdout, "{}", scene_as_toml(scene));
+  if (!call.quiet) say(stderr, "{}", describe(plan));  // a wrong unit is seen at once
   const Monitor monitor = bar.monitor();
   bar.now("prepare");
   const Packing packing = run(plan, {call.seed, call.threads, monitor});
@@ -95,15 +97,16 @@ int pack(const PackCall& call) {
   const auto at_once = [end = std::chrono::steady_clock::now() + std::chrono::milliseconds(300)] {
     return std::chrono::steady_clock::now() > end;
   };
-  const WrittenPacking written = write_packing(packing, folder, stopped ? Monitor{{}, at_once} : monitor);
+  const WrittenPacking written = write_packing(
+      packing, folder, {.with_mesh = call.with_mesh, .monitor = stopped ? Monitor{{}, at_once} : monitor});
   bar.clear();
   if (!stopped && interrupted())
-    fmt::print(stderr, "bernal: measuring was stopped; bernal measure {} makes up for it\n", folder.string());
+    say(stderr, "bernal: measuring was stopped; bernal measure {} makes up for it\n", folder.string());
 
   if (!call.quiet) print_result(packing, written);
   if (!written.certificate.certified) {
-    fmt::print(stderr, "bernal: the result is not certified, which is a bug of bernal: {}\n",
-               written.certificate.statement);
+    say(stderr, "bernal: the result is not certified, which is a bug of bernal: {}\n",
+        written.certificate.statement);
     return exit_code::not_reached;
   }
   return packing.outcome == Outcome::converged ? exit_code::done : exit_code::not_reached;
@@ -124,6 +127,8 @@ Command pack_command() {
            excludes(
                list_of(2, {"--lognormal", &call->lognormal, "Lognormal diameters in a mesh", "MEDIAN,SIGMA"}),
                "--diameter"),
+           {"--with-mesh", &call->with_mesh,
+            "Copy the CAD files beside the spheres too, so that the folder stands for itself"},
            seed_option("Instead of the scene's; one seed gives one packing, bit for bit",
                        [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
            threads_option(call->threads, "the result"),

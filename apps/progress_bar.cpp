@@ -14,6 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "say.hpp"
+
 namespace {
 
 constexpr double silence = 2, between_redraws = 0.1, between_lines = 10;  ///< seconds
@@ -99,11 +101,11 @@ void ProgressBar::draw() {
   if (fraction_ >= 0) line += bar(fraction_) + "  ";
   line += detail_;
   if (!terminal_) {
-    fmt::print(stderr, "{}\n", line);
+    say(stderr, "{}\n", line);
     return;
   }
   line.resize(std::min(line.size(), terminal_width() - 1));
-  fmt::print(stderr, "\r\x1b[K{}", line);
+  say(stderr, "\r\x1b[K{}", line);
   std::fflush(stderr);
   drawn_ = true;
 }
@@ -112,6 +114,6 @@ void ProgressBar::clear() {
   const std::lock_guard lock(mutex_);
   activity_.clear();
   if (!drawn_) return;
-  fmt::print(stderr, "\r\x1b[K");
+  say(stderr, "\r\x1b[K");
   drawn_ = false;
 }

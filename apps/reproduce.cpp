@@ -8,6 +8,7 @@
 #include "bernal/io/write_packing.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "say.hpp"
 
 using namespace bernal;
 
@@ -31,8 +32,8 @@ int reproduce(const ReproduceCall& call) {
   const auto files =
       write_figure(call.name, call.folder, {.pack = call.pack, .seed = call.seed, .monitor = bar.monitor()});
   bar.clear();
-  for (const auto& file : files) fmt::print("{}\n", file.string());
-  if (files.empty() && !call.quiet) fmt::print(stderr, "bernal: stopped by the user; nothing is written\n");
+  for (const auto& file : files) say(stdout, "{}\n", file.string());
+  if (files.empty() && !call.quiet) say(stderr, "bernal: stopped by the user; nothing is written\n");
   return files.empty() ? exit_code::not_reached : exit_code::done;
 }
 

@@ -42,9 +42,14 @@ std::size_t listed(const std::string& text) {
   return most;
 }
 
+bool is_folder(const std::filesystem::path& target) {
+  std::error_code unknown;
+  return std::filesystem::is_directory(target, unknown);
+}
+
 std::filesystem::path scene_file(const VerifyCall& call) {
   if (!call.scene.empty()) return call.scene;
-  if (std::filesystem::is_directory(call.target)) return call.target / "scene.toml";
+  if (is_folder(call.target)) return call.target / "scene.toml";
   throw Error(ErrorCode::bad_argument,
               "one file does not say what it was packed into; give --scene SCENE.toml too",
               {call.target.string()});
@@ -70,10 +75,10 @@ void print(const Certificate& c, const Domain& domain, std::string_view unit) {
 }
 
 int verify(const VerifyCall& call) {
+  if (is_folder(call.target)) finish_writing(call.target);
   const Scene scene = read_scene(scene_file(call));
   const Domain domain = packed_domain_of(scene);
-  const std::filesystem::path file =
-      std::filesystem::is_directory(call.target) ? call.target / "spheres.csv" : call.target;
+  const std::filesystem::path file = is_folder(call.target) ? call.target / "spheres.csv" : call.target;
   const Spheres<dynamic> spheres = read_csv_of(scene, file);
 
   ProgressBar bar(call.json, true);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bernal/core/error.hpp"
+#include "core/parallel.hpp"
 #include "figures/figure_files.hpp"
 #include "figures/published.hpp"
 #include "io/staged_folder.hpp"
@@ -50,7 +51,12 @@ std::vector<std::filesystem::path> write_figure(std::string_view name, const std
   const auto entry = std::ranges::find(entries, name, [](const Entry& e) { return e.figure.name; });
   if (entry == std::end(entries))
     throw Error(ErrorCode::bad_argument, "there is no figure \"" + std::string(name) + "\"");
-  return figures::write_files(entry->make(options), folder);
+  try {
+    const Interruptible listening(options.monitor);
+    return figures::write_files(entry->make(options), folder);
+  } catch (const Cancelled&) {
+    return {};
+  }
 }
 
 std::optional<PredictionCheck> figures::packed_for_a_figure(const Scene& scene, std::string_view figure,

@@ -63,12 +63,17 @@ WrittenMap write_map(const MapOptions& o, const std::filesystem::path& folder) {
   // About half a second's worth on a few cores.
   const std::size_t rows_at_once =
       std::max<std::size_t>(4, 16'000'000 / map.xs.size() / static_cast<std::size_t>(o.rods));
-  for (std::size_t from = 0; from < rows.size(); from += rows_at_once) {
-    if (o.monitor.stop()) return {};
-    o.monitor.report({"map", static_cast<double>(from) / static_cast<double>(rows.size()), "of the ratios"});
-    parallel_for(from, std::min(rows.size(), from + rows_at_once), [&](std::size_t i) {
-      rows[i] = predict_shares({o.sigma_a, o.sigma_b, map.ys[i]}, map.xs, o.rods);
-    });
+  try {
+    const Interruptible listening(o.monitor);
+    for (std::size_t from = 0; from < rows.size(); from += rows_at_once) {
+      o.monitor.report(
+          {"map", static_cast<double>(from) / static_cast<double>(rows.size()), "of the ratios"});
+      parallel_for(from, std::min(rows.size(), from + rows_at_once), [&](std::size_t i) {
+        rows[i] = predict_shares({o.sigma_a, o.sigma_b, map.ys[i]}, map.xs, o.rods);
+      });
+    }
+  } catch (const Cancelled&) {
+    return {};
   }
 
   WrittenMap densest;

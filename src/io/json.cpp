@@ -238,6 +238,8 @@ std::string json_of(const Report& report) {
                {"history", packing.history},
                {"seconds", packing.seconds},
                {"peak_memory_bytes", peak_memory_bytes()}});
+  if (const auto* mesh = std::get_if<MeshFile>(&packing.scene.container))
+    json["container"].update({{"file", mesh->file.filename().string()}, {"sha256", mesh->sha256}});
   return text_of(json);
 }
 

@@ -25,10 +25,12 @@ Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& fi
 }
 
 Packing read_packing(const std::filesystem::path& folder) {
-  if (!std::filesystem::is_directory(folder)) {
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(folder, unknown)) {
     throw Error(ErrorCode::bad_packing, "is no folder; give the one that bernal pack wrote",
                 {folder.string()});
   }
+  finish_writing(folder);
   Packing packing;
   packing.scene = read_scene(folder / "scene.toml");
   packing.domain = packed_domain_of(packing.scene);

@@ -1,10 +1,16 @@
 #include "io/staged_folder.hpp"
 
+#include <fcntl.h>
 #include <stdlib.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <system_error>
+#include <thread>
+#include <utility>
 
 #include "bernal/core/error.hpp"
 #include "io/output_file.hpp"
@@ -14,23 +20,107 @@ namespace fs = std::filesystem;
 namespace bernal {
 namespace {
 
+constexpr const char* staging_prefix = ".bernal-";
+/// What the staging folder is called once all is written, while what the files replace moves to
+/// `earlier_name` below it; and then, while they move into their places.
+constexpr const char* complete_name = ".bernal-complete";
+constexpr const char* placing_name = ".bernal-placing";
+constexpr const char* earlier_name = "earlier";
+
+/// For another process that publishes in the same folder, which takes milliseconds.
+constexpr int most_waits = 100;
+constexpr std::chrono::milliseconds wait(50);
+
 [[noreturn]] void fail(const std::string& what, const std::string& why, const fs::path& path) {
   throw Error(ErrorCode::cannot_write, what + ": " + why, {path.string()});
+}
+
+/// Of an open folder, for this process; -1 where another one holds it or file systems know no locks.
+int locked(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
+  if (descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  if (descriptor >= 0) ::close(descriptor);
+  return -1;
+}
+
+/// What stands in a folder, as far as it can be told.
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  std::error_code problem;
+  for (fs::directory_iterator at(folder, problem), end; !problem && at != end; at.increment(problem))
+    entries.push_back(at->path());
+  return entries;
+}
+
+/// Staging folders whose processes were killed.
+void remove_abandoned(const fs::path& folder) {
+  for (const fs::path& entry : entries_of(folder)) {
+    const std::string name = entry.filename().string();
+    if (!name.starts_with(staging_prefix) || name == complete_name || name == placing_name) continue;
+    const int lock = locked(entry);
+    if (lock < 0) continue;
+    std::error_code ignored;
+    fs::remove_all(entry, ignored);
+    ::close(lock);
+  }
+}
+
+/// Moves files so that they can be moved back.
+class Moves {
+ public:
+  void move(const fs::path& from, const fs::path& to) {
+    std::error_code problem;
+    fs::rename(from, to, problem);
+    if (problem) fail("cannot be replaced", problem.message(), to);
+    done_.emplace_back(from, to);
+  }
+  void take_back() {
+    std::error_code ignored;
+    for (; !done_.empty(); done_.pop_back()) fs::rename(done_.back().second, done_.back().first, ignored);
+  }
+
+ private:
+  std::vector<std::pair<fs::path, fs::path>> done_;
+};
+
+bool stands(const fs::path& file) {
+  std::error_code unknown;
+  return fs::symlink_status(file, unknown).type() != fs::file_type::not_found;
+}
+
+bool is_new(const fs::path& file) { return file.filename() != earlier_name; }
+
+/// From whatever point on: what is complete takes the place of the earlier result.
+void put_in_place(const fs::path& folder, const IsEarlier& is_earlier, Moves& moves) {
+  const fs::path complete = folder / complete_name, placing = folder / placing_name;
+  if (stands(complete)) {
+    for (const fs::path& file : entries_of(complete))
+      if (const fs::path before = folder / file.filename(); is_new(file) && stands(before))
+        moves.move(before, complete / earlier_name / file.filename());
+    for (const fs::path& entry : entries_of(folder))
+      if (is_earlier && is_earlier(entry)) moves.move(entry, complete / earlier_name / entry.filename());
+    moves.move(complete, placing);
+  }
+  for (const fs::path& file : entries_of(placing))
+    if (is_new(file)) moves.move(file, folder / file.filename());
 }
 
 }  // namespace
 
 // Delegating: once the first constructor is through, the destructor tidies up whatever the body throws.
-StagedFolder::StagedFolder(fs::path folder) : StagedFolder(std::move(folder), NothingMadeYet{}) {
+StagedFolder::StagedFolder(fs::path folder, IsEarlier is_earlier)
+    : StagedFolder(std::move(folder), NothingMadeYet{}) {
+  is_earlier_ = std::move(is_earlier);
   make_folders();
-  std::string pattern = (folder_ / ".bernal-XXXXXX").string();
-  if (::mkdtemp(pattern.data()) == nullptr) fail("cannot write here", std::strerror(errno), folder_);
-  staging_ = pattern;
+  finish_publishing(folder_, is_earlier_);
+  remove_abandoned(folder_);
+  stage();
 }
 
 StagedFolder::~StagedFolder() {
   std::error_code ignored;
   if (!staging_.empty()) fs::remove_all(staging_, ignored);
+  if (lock_ >= 0) ::close(lock_);
   if (published_) return;
   for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made, ignored);  // only if empty
 }
@@ -40,6 +130,7 @@ void StagedFolder::make_folders() {
   std::error_code problem;
   for (fs::path path = fs::absolute(folder_).lexically_normal(); !fs::exists(path, problem) && !problem;
        path = path.parent_path()) {
+    if (fs::is_symlink(path)) fail("the folder cannot be reached", "a link that leads nowhere", path);
     missing.push_back(path);
   }
   for (auto path = missing.rbegin(); path != missing.rend(); ++path) {
@@ -49,6 +140,13 @@ void StagedFolder::make_folders() {
   if (problem) fail("the folder cannot be reached", problem.message(), folder_);
   if (!fs::is_directory(folder_, problem))
     fail("is not a folder", "files are to be written into it", folder_);
+}
+
+void StagedFolder::stage() {
+  std::string pattern = (folder_ / (std::string(staging_prefix) + "XXXXXX")).string();
+  if (::mkdtemp(pattern.data()) == nullptr) fail("cannot write here", std::strerror(errno), folder_);
+  staging_ = pattern;
+  lock_ = locked(staging_);
 }
 
 fs::path StagedFolder::add(const std::string& name) {
@@ -65,32 +163,49 @@ void StagedFolder::write(const std::string& name, std::string_view text) {
 std::vector<fs::path> StagedFolder::publish() {
   std::vector<fs::path> files;
   for (const std::string& name : names_) {
-    std::error_code problem, ignored;
-    const fs::path file = folder_ / name;
-    fs::create_hard_link(file, earlier(name), ignored);  // none where there is no earlier file
-    fs::rename(staging_ / name, file, problem);
-    if (problem) {
-      take_back(files);
-      fail("cannot be replaced", problem.message(), file);
-    }
-    files.push_back(file);
+    std::error_code unknown;
+    files.push_back(folder_ / name);
+    if (fs::is_directory(fs::symlink_status(files.back(), unknown)))
+      fail("cannot be replaced", "a folder of that name stands there", files.back());
   }
+  std::error_code problem;
+  fs::create_directory(staging_ / earlier_name, problem);
+  if (problem) fail("cannot write here", problem.message(), staging_);
+  for (int k = 0; k < most_waits; ++k) {  // for another process that publishes, or was killed over it
+    finish_publishing(folder_, is_earlier_);
+    if (!stands(folder_ / complete_name) && !stands(folder_ / placing_name)) break;
+    std::this_thread::sleep_for(wait);
+  }
+  Moves moves;
+  try {
+    moves.move(staging_, folder_ / complete_name);
+    put_in_place(folder_, is_earlier_, moves);
+  } catch (const Error&) {
+    moves.take_back();
+    throw;
+  }
+  staging_ = folder_ / placing_name;
   published_ = true;
   return files;
 }
 
-void StagedFolder::take_back(const std::vector<fs::path>& files) const {
-  for (const fs::path& file : files) {
-    std::error_code ignored;
-    const fs::path before = earlier(file.filename().string());
-    if (fs::exists(before, ignored)) {
-      fs::rename(before, file, ignored);
-    } else {
-      fs::remove(file, ignored);
+void finish_publishing(const fs::path& folder, const IsEarlier& is_earlier) {
+  for (const char* name : {complete_name, placing_name}) {
+    if (!stands(folder / name)) continue;
+    const int lock = locked(folder / name);
+    if (lock < 0) return;  // it is being done
+    Moves moves;
+    std::error_code problem;
+    try {
+      put_in_place(folder, is_earlier, moves);
+      fs::remove_all(folder / placing_name, problem);
+    } catch (const Error&) {
+      moves.take_back();
+      ::close(lock);
+      throw;
     }
+    ::close(lock);
   }
 }
-
-fs::path StagedFolder::earlier(const std::string& name) const { return staging_ / (name + ".earlier"); }
 
 }  // namespace bernal

@@ -1,20 +1,27 @@
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace bernal {
 
-/// Files that appear in a folder all together or not at all.
+/// Which files of a folder belong to an earlier result and go though no new one has their name.
+using IsEarlier = std::function<bool(const std::filesystem::path&)>;
+
+/// Files that appear in a folder all together or not at all, in the place of all files of an earlier result.
 ///
 /// They are written into a staging folder inside the target, where they are on the same file system and
-/// `rename` is atomic; `publish` renames them over earlier ones, and takes that back if one rename fails.
-/// What is left of the staging goes with the object, and so do folders that only it needed. Throws
-/// Error{cannot_write} with the path and the system's words.
+/// `rename` is atomic. `publish` gives it the name of what is complete, moves the files of the earlier result
+/// out of the way and the new ones into their places, and takes that back if one of these fails. Whoever is
+/// killed before has changed nothing; whoever is killed after leaves what `finish_publishing` completes, and
+/// never a new file beside an old one. What is left of the staging goes with the object, and so do folders
+/// that only it needed, and staging folders of processes that were killed. Throws Error{cannot_write} with
+/// the path and the system's words.
 class StagedFolder {
  public:
-  explicit StagedFolder(std::filesystem::path folder);
+  explicit StagedFolder(std::filesystem::path folder, IsEarlier is_earlier = {});
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
@@ -30,14 +37,19 @@ class StagedFolder {
   struct NothingMadeYet {};
   StagedFolder(std::filesystem::path folder, NothingMadeYet) : folder_(std::move(folder)) {}
   void make_folders();
-  void take_back(const std::vector<std::filesystem::path>& files) const;
-  std::filesystem::path earlier(const std::string& name) const;
+  void stage();
 
   std::filesystem::path folder_;
   std::filesystem::path staging_;
+  int lock_ = -1;                            ///< of the staging folder, while this process lives
   std::vector<std::filesystem::path> made_;  ///< folders that did not exist, outermost first
   std::vector<std::string> names_;
+  IsEarlier is_earlier_;
   bool published_ = false;
 };
+
+/// Completes what a process that was killed had begun to publish in the folder; does nothing if there is no
+/// such thing. Throws Error{cannot_write}.
+void finish_publishing(const std::filesystem::path& folder, const IsEarlier& is_earlier = {});
 
 }  // namespace bernal

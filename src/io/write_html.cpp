@@ -45,6 +45,7 @@ std::string expected_text(const Packing& packing) {
 void write_headline(Page& page, const Report& report) {
   const Packing& packing = report.packing;
   const bool certified = report.certificate.certified;
+  const double allowed_overlap = report.certificate.allowed_overlap;
   page.raw("<div class=\"cards\">\n");
   page.card(grouped(packing.spheres.size()), "Spheres",
             fmt::format("{}: {}", name_of(packing.outcome), escaped(packing.reason)));
@@ -53,8 +54,12 @@ void write_headline(Page& page, const Report& report) {
                         kind_of(packing.domain) == "periodic" ? "box" : "container", volume_word(packing),
                         expected_text(packing)));
   page.card(certified ? "yes" : "no", "Certified",
-            certified ? "no overlap, nothing sticks out; proven on the written file"
-                      : "see the certificate below for what is wrong",
+            !certified ? "see the certificate below for what is wrong"
+            : allowed_overlap > 0
+                ? fmt::format("no overlap above {:g} of the sum of radii, which the scene allows; "
+                              "nothing sticks out; proven on the written file",
+                              allowed_overlap)
+                : "no overlap, nothing sticks out; proven on the written file",
             certified ? "yes" : "no");
   page.card(seconds_text(packing.seconds), "Time",
             fmt::format("{} thread{}", packing.threads, packing.threads == 1 ? "" : "s"));
@@ -200,7 +205,7 @@ std::string html_of(const Report& report, std::string_view picture, std::string_
   write_certificate(page, report);
   page.add(
       "<p class=\"dim\">bernal {} · seed {} · hash of the spheres <code>{}</code>: the same scene, seed and "
-      "version give the same hash on every machine.</p>\n</main></body></html>\n",
+      "version give the same hash, whatever the number of threads, where C library and kind of processor are the same.</p>\n</main></body></html>\n",
       escaped(packing.version), packing.seed, report.hash);
   return std::move(page).finish();
 }

@@ -4,7 +4,9 @@
 
 #include <iterator>
 
+#include "bernal/core/text.hpp"
 #include "bernal/io/write_packing.hpp"
+#include "bernal/run/run.hpp"
 
 namespace bernal {
 
@@ -27,6 +29,9 @@ std::string certified_walls(const Scene& scene) {
   const auto* file = std::get_if<MeshFile>(&scene.container);
   if (!file) return {};
   std::string text;
+  for (const std::filesystem::path& changed : changed_files(scene))
+    text += fmt::format(" {} has changed since it was packed into; the walls are those that it holds now.",
+                        plain_text(changed.string()));
   if (!file->repair.empty()) text += " The walls are those of the repaired surface, not of the file's.";
   if (file->deflection)
     text += fmt::format(" The walls are triangles, tessellated to {:g} {} from the CAD surface.",

@@ -9,7 +9,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "io/output_file.hpp"
 #include "io/report.hpp"
-#include "io/staged_folder.hpp"
+#include "io/result_folder.hpp"
 #include "io/write_csv.hpp"
 #include "io/write_off.hpp"
 #include "io/write_svg.hpp"
@@ -21,14 +21,6 @@ namespace {
 /// Enough for curves that are smooth to the eye; `bernal measure` takes more.
 constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5;
 constexpr std::uint32_t points_for_a_report = 4000;
-
-/// The scene as it was run: with the seed that was used, which the caller may have given instead of the
-/// scene.
-std::string scene_as_run(const Packing& packing, const std::filesystem::path& folder) {
-  Scene scene = packing.scene;
-  scene.seed = packing.seed;
-  return scene_as_toml(scene, folder);
-}
 
 /// Certifies what stands in the file, not what stood in memory.
 Certificate certify_written(const std::filesystem::path& csv, const Packing& packing) {
@@ -51,8 +43,8 @@ std::unique_ptr<SizeDistribution> asked_sizes(const Scene& scene) {
 }  // namespace
 
 WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
-                             const Monitor& monitor) {
-  StagedFolder staged(folder);
+                             const WriteOptions& options) {
+  StagedFolder staged(folder, is_of_earlier_result);
   const std::filesystem::path csv = staged.add("spheres.csv");
   {
     OutputFile file(csv);
@@ -73,9 +65,9 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
        .chambers = {.points = points_for_a_report},
        .walls = {.work = wall_distances_for_a_report},
        .container = packing.container,
-       .monitor = monitor});
+       .monitor = options.monitor});
   const Report report{packing, certificate, measured, asked.get(), hash_of(packing.spheres)};
-  const std::string scene = scene_as_run(packing, folder);
+  const std::string scene = scene_as_toml(scene_as_run(packing, staged, folder, options.with_mesh), folder);
   const std::string picture = svg_of(packing.spheres, packing.domain, name_of(packing.scene.unit));
 
   staged.write("scene.toml", scene);
@@ -85,11 +77,6 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   if (const auto* walls = std::get_if<Mesh>(&packing.domain); walls && walls_are_made(packing.scene))
     staged.write("container.off", as_off_file(*walls));
   return {staged.publish(), certificate};
-}
-
-void check_writable(const std::filesystem::path& folder) {
-  StagedFolder staged(folder);
-  staged.write("spheres.csv", "x,y,z,r\n");
 }
 
 }  // namespace bernal

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bernal/core/error.hpp"
+#include "core/parallel.hpp"
 #include "predict/chord_table.hpp"
 #include "predict/rods.hpp"
 
@@ -19,6 +20,7 @@ void predict::require_enough(int rods) {
 }
 
 Prediction predict::predict_from_chords(const ChordTable& chords, double mean_chord, int rods) {
+  throw_if_interrupted();
   const std::vector<double> lengths = chords.rod_lengths(rods);
   Prediction prediction{.phi = predict::covered_fraction(lengths), .rods = rods};
   const double fewer = predict::covered_fraction(chords.rod_lengths(std::max(1, rods / 4)));

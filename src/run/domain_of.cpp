@@ -1,9 +1,14 @@
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/sizes/size_distribution.hpp"
+#include "cad/file_digest.hpp"
 
 namespace bernal {
 namespace {
@@ -24,6 +29,27 @@ std::string in_words(const MeshReport& report, const MeshFile& mesh, Unit unit) 
   return text;
 }
 
+std::vector<std::filesystem::path> files_of(const MeshFile& mesh) {
+  std::vector<std::filesystem::path> files{mesh.file};
+  files.insert(files.end(), mesh.obstacles.begin(), mesh.obstacles.end());
+  return files;
+}
+
+/// Notes the digests, or holds the files to those that stand there.
+void pin_files(MeshFile& mesh) {
+  std::vector<std::string> digests;
+  for (const std::filesystem::path& file : files_of(mesh)) {
+    const std::string digest = sha256_of(file);
+    const std::size_t k = digests.size();
+    if (k < mesh.sha256.size() && mesh.sha256[k] != digest)
+      throw OptionError("sha256", fmt::format("{} is not the file that is meant: its SHA-256 is {}; leave "
+                                              "\"sha256\" out to take it as it is",
+                                              file.string(), digest));
+    digests.push_back(digest);
+  }
+  mesh.sha256 = std::move(digests);
+}
+
 struct MakeDomain {
   Scene& scene;
   std::string& notes;
@@ -36,6 +62,7 @@ struct MakeDomain {
     try {
       const double smallest = radii_of(scene)->quantile(rare);
       ImportedMesh imported = read_container_mesh(mesh, {unit, smallest});
+      pin_files(mesh);
       notes = in_words(imported.report, mesh, unit);
       if (imported.report.deflection > 0) mesh.deflection = imported.report.deflection;
       if (imported.report.unit.empty() && !mesh.unit) mesh.unit = unit;
@@ -75,7 +102,19 @@ Domain packed_domain_of(const Scene& scene) {
         "does not say how large the periodic box is; give its \"size\", as the scene.toml that bernal "
         "pack writes beside the spheres does",
         scene.container.locations.whole);
-  return domain_of(scene);
+  Scene copy = scene;  // the spheres are certified in the walls as they are now
+  if (auto* mesh = std::get_if<MeshFile>(&copy.container)) mesh->sha256.clear();
+  return domain_of(copy);
+}
+
+std::vector<std::filesystem::path> changed_files(const Scene& scene) {
+  const auto* mesh = std::get_if<MeshFile>(&scene.container);
+  std::vector<std::filesystem::path> changed;
+  if (!mesh) return changed;
+  const std::vector<std::filesystem::path> files = files_of(*mesh);
+  for (std::size_t k = 0; k < std::min(files.size(), mesh->sha256.size()); ++k)
+    if (sha256_of(files[k]) != mesh->sha256[k]) changed.push_back(files[k]);
+  return changed;
 }
 
 }  // namespace bernal

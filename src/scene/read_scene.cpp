@@ -155,6 +155,17 @@ class Reader {
     scene.locations.whole = {file_};
   }
 
+  /// Where a file is that the scene names. Behind links to folders ".." is what the system takes it for; a
+  /// scene that is a link itself may mean the folder that the link stands in, or the one that it leads to.
+  std::filesystem::path beside_the_scene(const std::filesystem::path& file) const {
+    std::error_code unknown;
+    const std::filesystem::path here = path_.parent_path() / file, plain = here.lexically_normal();
+    if (std::filesystem::equivalent(here, plain, unknown)) return plain;
+    if (std::filesystem::exists(here, unknown)) return here;
+    const std::filesystem::path there = std::filesystem::canonical(path_, unknown).parent_path() / file;
+    return !unknown && std::filesystem::exists(there, unknown) ? there.lexically_normal() : plain;
+  }
+
   void read_container(const toml::table& root, Scene& scene) const {
     const toml::table& table = table_in(root, "container");
     schema::hold(scene.container,
@@ -165,11 +176,8 @@ class Reader {
     if (!mesh) return;
     if (!root.contains("unit"))
       fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
-    const auto beside_the_scene = [&](std::filesystem::path& file) {
-      if (file.is_relative()) file = (path_.parent_path() / file).lexically_normal();
-    };
-    beside_the_scene(mesh->file);
-    std::ranges::for_each(mesh->obstacles, beside_the_scene);
+    mesh->file = beside_the_scene(mesh->file);
+    for (std::filesystem::path& file : mesh->obstacles) file = beside_the_scene(file);
   }
 
   void read_spheres(const toml::table& table, Scene& scene) const {
@@ -273,7 +281,7 @@ class Reader {
     const Location at_file = locations.of("file");
     const std::array keys = {entry.find(entry.columns.at(0)), entry.find(entry.columns.at(1))};
     try {
-      const auto columns = read_columns(path_.parent_path() / file, keys);
+      const auto columns = read_columns(beside_the_scene(file), keys);
       for (std::size_t k = 0; k < keys.size(); ++k) {
         keys[k]->member.set(options, columns[k]);
         locations.keys[std::string(keys[k]->name)] = at_file;

@@ -152,6 +152,8 @@ Member obstacles() {
 void mesh_rule(const MeshFile& mesh, const Section& section) {
   if (mesh.ignore_unit_of_file && !mesh.unit)
     section.refuse("ignore_unit_of_file", "needs a \"unit\" beside it, that of the file's coordinates");
+  if (mesh.sha256.size() > 1 + mesh.obstacles.size())
+    section.refuse("sha256", "must be one for the file, then at most one for every obstacle");
 }
 
 }  // namespace
@@ -263,7 +265,10 @@ const std::vector<Entry>& container_entries() {
                           "outside"),
                     key(Type::number, &MeshFile::fill_level, "fill_level",
                         "what lies higher than this z is outside"),
-                    unless("\"solid\"", interior_key())},
+                    unless("\"solid\"", interior_key()),
+                    names(&MeshFile::sha256, "sha256",
+                          "of the file, then of every obstacle, as sha256sum prints it: with other bytes "
+                          "they are refused; a result names it")},
            .rule = rule(mesh_rule)}),
       entry<Sphere>({.name = "sphere",
                      .help = "a sphere",

@@ -57,7 +57,8 @@ TEST(MapCommand, MapsTwoPopulations) {
 
 TEST(MapCommand, StopsWithNothingHalfWritten) {
   const Folder folder;
-  const Process map = start_bernal({"map", "0.3", "0.6", "--points", "5000", "-o", folder.path().string()});
+  const Process map = start_bernal(
+      {"map", "0.3", "0.6", "--points", "5000", "--rods", "1000000", "-o", folder.path().string()});
   // The handler stands when the progress bar does, after two seconds and a line.
   while (map.said().find("map") == std::string::npos) usleep(50'000);
   map.signal(SIGINT);

@@ -85,6 +85,38 @@ TEST(Usage, AFullDeviceIsNoSuccess) {
   }
 }
 
+// What a run says is not the run.
+TEST(Usage, NoRunIsLostBecauseNobodyTakesItsWords) {
+  const Folder folder;
+  const std::string scene = folder.write("small.toml", small_scene), out = folder / "out";
+  const std::string pack = "'" BERNAL_COMMAND "' pack '" + scene + "' -o '" + out + "' ";
+  for (const char* nowhere :
+       {"2> /dev/full", "> /dev/full 2>&1", "2>&- >&-", "2>&1 | true", "2>&1 | head -c 1"}) {
+    std::filesystem::remove_all(out);
+    const Ended ended = Process({"sh", "-c", "{ " + pack + nowhere + "; }"}).wait();
+    EXPECT_EQ(ended.err, "") << nowhere;
+    EXPECT_TRUE(std::filesystem::exists(out + "/report.json")) << nowhere;
+  }
+}
+
+TEST(Usage, AReaderThatHasSeenEnoughIsNoFailure) {
+  for (const char* words : {"keys", "--help", "predict --lognormal 0.3", "predict --lognormal 0.3 --json"})
+    for (const char* reader : {"true", "head -c 1"}) {
+      const Ended ended =
+          Process(
+              {"bash", "-c", std::string("set -o pipefail; '" BERNAL_COMMAND "' ") + words + " | " + reader})
+              .wait();
+      EXPECT_EQ(ended.status, 0) << words << " | " << reader;
+      EXPECT_EQ(ended.err, "") << words << " | " << reader;
+    }
+}
+
+TEST(Usage, NoNameIsNoFile) {
+  expect_refused_in_one_line(bernal({"inspect", ""}), {"is the name of no file"});
+  expect_refused_in_one_line(bernal({"pack", "scene.toml", "-o", ""}),
+                             {"--output", "is the name of no file"});
+}
+
 // A reader of a pipe that nobody writes to would wait for ever, one of a device would never end.
 TEST(Usage, PipesAndDevicesAreNoInput) {
   const Folder folder;

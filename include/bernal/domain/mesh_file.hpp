@@ -48,6 +48,9 @@ struct MeshFile {
   std::vector<std::string> cap = {};        ///< planes, "z = 1.1" or "x < 0.5": what they cut off is outside
   std::optional<double> fill_level = {};    ///< as `cap = "z < …"`
   std::variant<Interior, Vector<3>> interior = Interior::solid;  ///< or a point that is inside
+  /// Of the file and then of every obstacle, in hexadecimal, as they were when the scene was run: files whose
+  /// bytes are others are refused.
+  std::vector<std::string> sha256 = {};
 };
 
 }  // namespace bernal

@@ -21,9 +21,13 @@ SpheresFile read_csv(const std::filesystem::path& file);
 /// where their unit or dimension is not the scene's.
 Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file);
 
+/// Completes what a run that was killed had begun to put into the folder; most often there is no such thing.
+/// Throws Error{cannot_write}.
+void finish_writing(const std::filesystem::path& folder);
+
 /// What stands in scene.toml and spheres.csv of a folder that `write_packing` made, or that has files of that
 /// form. How the run went is not among it: effects, history, seconds and version are empty. Throws as
-/// `read_scene`, `packed_domain_of` and `read_csv_of` do.
+/// `finish_writing`, `read_scene`, `packed_domain_of` and `read_csv_of` do.
 Packing read_packing(const std::filesystem::path& folder);
 
 }  // namespace bernal

@@ -14,18 +14,31 @@ struct WrittenPacking {
   Certificate certificate;                   ///< of spheres.csv as it was written and read back
 };
 
+struct WriteOptions {
+  /// Copies the CAD files beside the spheres, under names that end in the beginning of their SHA-256, and
+  /// lets scene.toml name the copies.
+  bool with_mesh = false;
+  Monitor monitor = {};
+};
+
 /// Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html and, in two and three dimensions,
 /// packing.svg into `folder`, which is made if it does not exist.
 ///
 /// Everything is written whole under temporary names, spheres.csv is read back and certified against the
-/// packing's container, and only then are the files renamed: a failure throws Error{cannot_write} and leaves
-/// earlier output untouched. Once the monitor says stop, measurements that may be absent are left out.
+/// packing's container, and only then do they take the place of all files of an earlier result: a failure
+/// throws Error{cannot_write} and leaves earlier output untouched. Once the monitor says stop, measurements
+/// that may be absent are left out.
 WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
-                             const Monitor& monitor = {});
+                             const WriteOptions& options = {});
 
 /// Throws Error{cannot_write} now rather than after a long run, if `folder` can be neither used nor made.
 /// Leaves nothing behind.
 void check_writable(const std::filesystem::path& folder);
+
+/// The same for the result of a scene: also if a scene.toml stands there that a user wrote, or if what would
+/// be copied beside the result is not whole by itself.
+void check_writable(const std::filesystem::path& folder, const Scene& scene,
+                    const WriteOptions& options = {});
 
 /// What a certificate's statement adds about the walls, where they are not simply the file's surface: " The
 /// walls are …", or nothing.

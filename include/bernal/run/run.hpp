@@ -19,8 +19,8 @@ struct Plan {
   Domain domain;             ///< in the scene's unit
   bool box_follows = false;  ///< a periodic box whose size is the result: `domain` is a guess
   /// Of a domain that repeats itself nowhere, in its own frame, see `frame_of`: what preparing, running and
-  /// measuring ask about the walls. Null for others, whose walls cost nothing to make, and where walls are to be
-  /// decided in exact arithmetic, which estimates and measurements can do without; whoever replaces
+  /// measuring ask about the walls. Null for others, whose walls cost nothing to make, and where walls are to
+  /// be decided in exact arithmetic, which estimates and measurements can do without; whoever replaces
   /// `domain` sets it to null, and `run` makes another.
   std::shared_ptr<const Container> container;
   std::string container_notes;              ///< what the importer did: reader, welding, repairs; may be empty
@@ -50,6 +50,9 @@ Domain domain_of(Scene& scene, std::string& notes);
 /// The same for a packing that is there: throws Error{bad_scene} where the scene leaves it to the packing how
 /// large the periodic box becomes and does not say how large it became.
 Domain packed_domain_of(const Scene& scene);
+
+/// Those of the scene's CAD files that are no longer what the scene names by its `sha256`.
+std::vector<std::filesystem::path> changed_files(const Scene& scene);
 
 /// The size distribution of radii that a scene describes, in the scene's unit. Throws as `build`.
 std::unique_ptr<SizeDistribution> radii_of(const Scene& scene);
