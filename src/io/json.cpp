@@ -34,12 +34,17 @@ BERNAL_KEYS(Certificate::Overlap, pair, ratio)
 BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
 BERNAL_KEYS(Chambers::Uncovered, radius, share, error)
 BERNAL_KEYS(DrawnComparison, missing, scale, largest_deviation, above_largest)
-BERNAL_KEYS(Effect, name, calls, seconds)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
 BERNAL_KEYS(SizeComparison::Class, radius, asked_share, count)
 BERNAL_KEYS(SizeComparison::Quantile, share, realised, asked)
 BERNAL_KEYS(WallProfile::Layer, from, to, share, porosity, error)
 #undef BERNAL_KEYS
+
+/// What is only counted took a part of another effect's time.
+static void to_json(Json& json, const Effect& effect) {
+  json = {{"name", effect.name}, {"calls", effect.calls}, {"seconds", effect.seconds}};
+  if (effect.calls > 0 && effect.seconds == 0) json["seconds"] = nullptr;
+}
 
 static void to_json(Json& json, const Contacts& contacts) {
   json = {{"contact_gap", contacts.contact_gap},

@@ -127,8 +127,9 @@ void write_effects(Page& page, const Packing& packing) {
       "contain each other.</p>\n<div class=\"wide\"><table><tr><th>effect</th><th class=\"n\">calls</th>"
       "<th class=\"n\">seconds</th></tr>\n");
   for (const Effect& effect : packing.effects) {
-    page.add("<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{:.3f}</td></tr>\n", escaped(effect.name),
-             grouped(effect.calls), effect.seconds);
+    const bool timed = effect.seconds > 0 || effect.calls == 0;
+    page.add("<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n", escaped(effect.name),
+             grouped(effect.calls), timed ? fmt::format("{:.3f}", effect.seconds) : "counted only");
   }
   page.raw("</table></div>\n");
 }
@@ -205,7 +206,8 @@ std::string html_of(const Report& report, std::string_view picture, std::string_
   write_certificate(page, report);
   page.add(
       "<p class=\"dim\">bernal {} · seed {} · hash of the spheres <code>{}</code>: the same scene, seed and "
-      "version give the same hash, whatever the number of threads, where C library and kind of processor are the same.</p>\n</main></body></html>\n",
+      "version give the same hash, whatever the number of threads, where C library and kind of processor are "
+      "the same.</p>\n</main></body></html>\n",
       escaped(packing.version), packing.seed, report.hash);
   return std::move(page).finish();
 }

@@ -62,8 +62,7 @@ StageEnd finish_in_bed(StageEnd end, double polish, Work& work) {
     const double size = jammed.growth * (1 - std::ldexp(skin, k));
     const std::shared_ptr<Bed> polished = bed_of(jammed.spheres, tags, size, work);
     if (!polished) continue;
-    walls.calls += bed.wall_queries().calls;
-    walls.seconds += bed.wall_queries().seconds;
+    walls += bed.wall_queries();
     work.supply->multiply_by(size);
     work.size_scale *= size;
     work.bed_ = polished;

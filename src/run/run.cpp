@@ -244,9 +244,7 @@ class Run {
     for (double& r : spheres.r) r *= frame_.scale;
     if (work.stands_in_bed()) {
       wrap(spheres, packing_.domain);
-      Effect& walls = effects_["walls"];
-      walls.calls += work.bed().wall_queries().calls;
-      walls.seconds += work.bed().wall_queries().seconds;
+      effects_["walls"] += work.bed().wall_queries();
     } else {
       const Vector<dynamic> edges = work.edges * frame_.scale;
       packing_.domain = periodic_box(edges, work.walls);

@@ -80,7 +80,7 @@ class Crowd {
   double mean_squeeze() const { return mean_squeeze_; }
 
   double sweeps() const { return sweeps_; }
-  std::uint64_t list_builds() const { return ground_.list_builds(); }
+  Effect lists_built() const { return ground_.lists_built(); }
   std::uint64_t wall_queries() const { return ground_.wall_queries(); }
 
  private:

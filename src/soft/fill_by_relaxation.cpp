@@ -123,7 +123,7 @@ class Filling {
   StageEnd run() {
     const StageEnd end = relax(patience);
     if (end != StageEnd::converged && end != StageEnd::cancelled) take_out(end);
-    work_.effects["neighbour lists"].calls += crowd_.list_builds();
+    work_.effects["neighbour lists"] += crowd_.lists_built();
     work_.spheres = without_overlap<D>(crowd_.spheres(), edges_, work_.allowed_overlap);
     return end;
   }

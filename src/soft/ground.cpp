@@ -33,7 +33,7 @@ void require_resolution(double resolution) {
 
 void ContainerGround::place(const Spheres<3>& spheres) {
   if (packing_) {
-    list_builds_ += packing_->builds();
+    lists_built_ += packing_->lists_built();
     wall_queries_ += packing_->wall_queries();
   }
   packing_ = std::make_unique<SoftPacking>(spheres, *container_, soft_kernels().front());
@@ -70,7 +70,7 @@ std::vector<Vector<3>> ContainerGround::holes_for(std::span<const double> radii,
 
 template <int D>
 void BoxGround<D>::place(const Spheres<D>& spheres) {
-  if (engine_) list_builds_ = list_builds();
+  if (engine_) lists_built_ += engine_->lists_built();
   if (margin_ == 0) {
     const double resolution = 0x1p-32 * edges_.maxCoeff() / std::ranges::min(spheres.r);
     margin_ = std::min(margin_for(resolution), largest_margin);

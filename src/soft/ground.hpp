@@ -47,7 +47,7 @@ class ContainerGround {
   std::vector<Vector<3>> holes_for(std::span<const double> radii, const Spheres<3>& spheres,
                                    Random& random) const;
 
-  std::uint64_t list_builds() const { return list_builds_ + packing_->builds(); }
+  Effect lists_built() const { return lists_built_ + packing_->lists_built(); }
   std::uint64_t wall_queries() const { return wall_queries_ + packing_->wall_queries(); }
 
  private:
@@ -55,7 +55,8 @@ class ContainerGround {
   const Places* places_;
   std::unique_ptr<SoftPacking> packing_;
   double margin_ = 0;
-  std::uint64_t list_builds_ = 0, wall_queries_ = 0;
+  Effect lists_built_;
+  std::uint64_t wall_queries_ = 0;
 };
 
 /// What a `Crowd` stands on in a box of 1 to 8 dimensions that repeats itself along all axes or along those
@@ -86,7 +87,7 @@ class BoxGround {
   /// Puts the spheres `ids` into the largest holes, the largest first.
   void move_to_holes(Spheres<D>& spheres, std::vector<std::uint32_t> ids, Random& random);
 
-  std::uint64_t list_builds() const { return list_builds_ + engine_->builds(); }
+  Effect lists_built() const { return lists_built_ + engine_->lists_built(); }
 
  private:
   Vector<D> edges_;
@@ -94,7 +95,7 @@ class BoxGround {
   std::vector<bool> walls_;
   double margin_ = 0;
   std::optional<SoftEngine<D>> engine_;
-  std::uint64_t list_builds_ = 0;
+  Effect lists_built_;
 };
 
 }  // namespace bernal

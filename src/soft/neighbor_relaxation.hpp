@@ -4,6 +4,7 @@
 
 #include "bernal/core/spheres.hpp"
 #include "soft/fixed_point_grid.hpp"
+#include "work/effect_log.hpp"
 
 namespace bernal {
 
@@ -43,7 +44,7 @@ class NeighborRelaxation {
   void write_to(Spheres<D>& spheres, Vector<D>& edges) const;
 
   /// How often lists were built.
-  std::uint64_t builds() const { return builds_; }
+  const Effect& lists_built() const { return lists_built_; }
 
  private:
   using Floats = typename RegistersFor<D>::Floats;
@@ -93,7 +94,7 @@ class NeighborRelaxation {
   bool stale_ = true;
   double wear_ = 0.9;
   int age_ = 0;  // of the lists, in sweeps
-  std::uint64_t builds_ = 0;
+  Effect lists_built_;
 };
 
 }  // namespace bernal

@@ -132,7 +132,7 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
     work.edges *= 1 + growth;
     work.milestone("relax", std::min(0.99, std::log(molr) / std::log(stop)), molr);
   }
-  work.effects["neighbour lists"].calls += packing.builds();
+  work.effects["neighbour lists"] += packing.lists_built();
   packing.write_to(spheres, edges);
   return end;
 }

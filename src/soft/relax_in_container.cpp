@@ -57,7 +57,7 @@ class Relaxation {
       cancelled_ = crowd_.settle(work_.monitor, [this] { report(); }) == StageEnd::cancelled;
       all_there = put_in_bed();
     }
-    work_.effects["neighbour lists"].calls += crowd_.list_builds();
+    work_.effects["neighbour lists"] += crowd_.lists_built();
     work_.effects["walls"].calls += crowd_.wall_queries();
     if (cancelled_) return StageEnd::cancelled;
     if (!all_there || crowd_.size() < target_count_) place_snugly();

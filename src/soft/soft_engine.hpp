@@ -44,8 +44,8 @@ class SoftEngine {
   void write_to(Spheres<D>& spheres, Vector<D>& edges) const {
     std::visit([&](const auto& engine) { engine.write_to(spheres, edges); }, engine_);
   }
-  std::uint64_t builds() const {
-    return std::visit([](const auto& engine) { return engine.builds(); }, engine_);
+  const Effect& lists_built() const {
+    return std::visit([](const auto& engine) -> const Effect& { return engine.lists_built(); }, engine_);
   }
 
  private:

@@ -132,7 +132,7 @@ void SoftPacking::put(const std::vector<Move>& moves) {
   for (const Move& move : moves) {
     const std::size_t p = place_of[move.id];
     set_place(spheres_[p], move.to);
-    if (builds_ > 0) built_at_[p] = spheres_[p];
+    if (lists_built_.calls > 0) built_at_[p] = spheres_[p];
     walls_->forget(move.id);
   }
   stale_ = true;
@@ -186,16 +186,16 @@ void SoftPacking::keep_lists_valid() {
   if (!stale_ && sweeps_ < patience_) return;
   const double limit = wear_ * lists_.skin();
   double moved = 0;
-  if (builds_ > 0) moved = largest_move();
+  if (lists_built_.calls > 0) moved = largest_move();
   // Nothing is known before the first sweep, when the spheres are at their fastest.
   const double speed = stale_ ? limit : std::max((moved - moved_) / std::max(1, sweeps_), 1e-9);
   if (stale_ || moved > limit) {
-    if (walls_ && builds_ > 0) walls_->stop_strays(spheres_, built_at_, ids_);
+    if (walls_ && lists_built_.calls > 0) walls_->stop_strays(spheres_, built_at_, ids_);
+    const EffectTimer timer(lists_built_);
     choose_skin();
     lists_.build(spheres_, ids_, edges_);
     if (walls_) walls_->build(spheres_, ids_, lists_.skin());
     built_at_ = spheres_;
-    ++builds_;
     age_ = 0;
     stale_ = false;
     moved = 0;
@@ -215,7 +215,7 @@ void SoftPacking::write_to(Spheres<D>& spheres, Vector<D>& edges) const {
 template <int D>
 void SoftPacking::write_to(Spheres<D>& spheres) const {
   std::vector<SoftSphere> stopped = spheres_;
-  if (walls_ && builds_ > 0) walls_->stop_strays(stopped, built_at_, ids_);
+  if (walls_ && lists_built_.calls > 0) walls_->stop_strays(stopped, built_at_, ids_);
   for (std::size_t p = 0; p < stopped.size(); ++p) {
     if (!(stopped[p].r > 0)) continue;
     for (std::size_t k = 0; k < D; ++k)

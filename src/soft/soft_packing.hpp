@@ -9,6 +9,7 @@
 #include "bernal/domain/container.hpp"
 #include "soft/soft_lists.hpp"
 #include "soft/soft_walls.hpp"
+#include "work/effect_log.hpp"
 
 namespace bernal {
 
@@ -83,7 +84,7 @@ class SoftPacking {
   double resolution() const { return 0x1p-32 * *std::max_element(edges_.begin(), edges_.end()); }
 
   /// How often lists were built.
-  std::uint64_t builds() const { return builds_; }
+  const Effect& lists_built() const { return lists_built_; }
   /// How often the container was asked about its wall.
   std::uint64_t wall_queries() const { return walls_ ? walls_->queries() : 0; }
 
@@ -112,7 +113,7 @@ class SoftPacking {
   std::vector<float> radii_;          // as given, by id
   bool stale_ = true;                 // the lists
   std::vector<SoftSphere> built_at_;  // where they were when the lists were built
-  std::uint64_t builds_ = 0;
+  Effect lists_built_;
   double moved_ = 0;  // largest move since then, when it was last looked at
   double wear_ = 0.9;
   int age_ = 0;       // of the lists, in sweeps, when it was last looked at

@@ -45,7 +45,7 @@ TEST(ReportJson, HasEveryKeyOfTheFormatWithTheRightType) {
   const Folder folder;
   Packing packing = example();
   packing.seed = 18446744073709551615u >> 1;
-  packing.effects = {{"insertion", 12, 0.25}};
+  packing.effects = {{"insertion", 12, 0.25}, {"collisions", 7, 0}};
   packing.history = {{"insert", 300, 0.1, 5, 0.2}};
   write_packing(packing, folder.path());
   const auto json = nlohmann::json::parse(text_of(folder / "report.json"));
@@ -77,6 +77,7 @@ TEST(ReportJson, HasEveryKeyOfTheFormatWithTheRightType) {
   EXPECT_EQ(json.at("container").at("bounds").at("upper"), (std::vector<double>{10, 10, 10}));
   EXPECT_EQ(json.at("effects").at(0),
             (nlohmann::json{{"name", "insertion"}, {"calls", 12}, {"seconds", 0.25}}));
+  EXPECT_TRUE(json.at("effects").at(1).at("seconds").is_null()) << "only counted";
   EXPECT_EQ(json.at("history").at(0).at("stage"), "insert");
   EXPECT_GT(json.at("peak_memory_bytes"), 1'000'000);
 }
