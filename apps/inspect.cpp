@@ -16,6 +16,7 @@
 #include "bernal/measure/chambers.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "say.hpp"
 
 using namespace bernal;
 
@@ -139,7 +140,7 @@ void print(const InspectCall& call, const MeshReport& report, const std::optiona
 
   std::size_t width = 0;
   for (const Row& row : rows) width = std::max(width, row.first.size());
-  for (const auto& [name, value] : rows) fmt::print("{:<{}}  {}\n", name, width, value);
+  for (const auto& [name, value] : rows) say(stdout, "{:<{}}  {}\n", name, width, value);
 }
 
 nlohmann::ordered_json as_json(const std::optional<Chambers>& found) {
@@ -213,7 +214,7 @@ int inspect(const InspectCall& call) {
   if (call.radius && report.usable()) chambers = chambers_for(imported.mesh, *call.radius);
   bar.clear();
   if (call.json)
-    fmt::print("{}\n", as_json(call, report, chambers, lines).dump(2));
+    say(stdout, "{}\n", as_json(call, report, chambers, lines).dump(2));
   else
     print(call, report, chambers, lines);
   return report.usable() ? exit_code::done : exit_code::no;

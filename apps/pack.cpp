@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "bernal/cad/read_mesh.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -75,7 +76,7 @@ void print_result(const Packing& packing, const WrittenPacking& written) {
   say(stderr, "outcome    {}: {}\n", name_of(packing.outcome), packing.reason);
   say(stderr, "proof      {}\n", written.certificate.statement);
   for (std::size_t i = 0; i < written.files.size(); ++i)
-    say(stderr, "{:<9}  {}\n", i == 0 ? "files" : "", written.files[i].string());
+    say(stderr, "{:<9}  {}\n", i == 0 ? "files" : "", plain_text(written.files[i].string(), 5000));
 }
 
 int pack(const PackCall& call) {

@@ -29,6 +29,7 @@ extern "C" void on_signal(int) {
   signalled = true;
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+  std::signal(SIGHUP, SIG_DFL);
   constexpr std::string_view message = "\nbernal: stopping at the next safe point; once more kills\n";
   if (!no_message) [[maybe_unused]]
     const auto written = write(STDERR_FILENO, message.data(), message.size());
@@ -69,6 +70,7 @@ bernal::Monitor ProgressBar::monitor(double from, double to) {
   no_message = silent_;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
   return {[=, this](bernal::Progress progress) {
             progress.fraction = from + (to - from) * progress.fraction;
             take(progress);

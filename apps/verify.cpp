@@ -17,6 +17,7 @@
 #include "bernal/verify/certificate.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "say.hpp"
 
 using namespace bernal;
 
@@ -50,36 +51,40 @@ bool is_folder(const std::filesystem::path& target) {
 std::filesystem::path scene_file(const VerifyCall& call) {
   if (!call.scene.empty()) return call.scene;
   if (is_folder(call.target)) return call.target / "scene.toml";
+  std::error_code unknown;
+  if (!std::filesystem::exists(call.target, unknown))
+    throw Error(ErrorCode::bad_argument, "no such file or folder", {call.target.string()});
   throw Error(ErrorCode::bad_argument,
               "one file does not say what it was packed into; give --scene SCENE.toml too",
               {call.target.string()});
 }
 
 void print(const Certificate& c, const Domain& domain, std::string_view unit) {
-  fmt::print("certified  {}\n", c.certified ? "yes" : "NO");
-  fmt::print("spheres    {}, in {}\n", grouped(c.spheres), unit);
-  fmt::print("pairs      {} near, {} overlapping", grouped(c.pairs_tested), grouped(c.overlapping_pairs));
-  if (c.allowed_overlap > 0) fmt::print(" by more than {:g}", c.allowed_overlap);
-  if (c.worst_pair) fmt::print("; worst: {}, overlap ratio {:.3g}", worst_pair_text(c), c.max_overlap);
+  say(stdout, "certified  {}\n", c.certified ? "yes" : "NO");
+  say(stdout, "spheres    {}, in {}\n", grouped(c.spheres), unit);
+  say(stdout, "pairs      {} near, {} overlapping", grouped(c.pairs_tested), grouped(c.overlapping_pairs));
+  if (c.allowed_overlap > 0) say(stdout, " by more than {:g}", c.allowed_overlap);
+  if (c.worst_pair) say(stdout, "; worst: {}, overlap ratio {:.3g}", worst_pair_text(c), c.max_overlap);
   if (has_walls(domain))
-    fmt::print("\nwalls      {} near, {} spheres protruding", grouped(c.walls_tested),
-               grouped(c.protruding_spheres));
-  if (c.worst_wall) fmt::print("; worst: sphere {}, gap {:.3g} of its radius", *c.worst_wall, c.min_wall_gap);
-  fmt::print("\ndecided    {} in double with a proven bound, {} in exact arithmetic, in {:.3f} s\n",
-             grouped(c.decided_double), grouped(c.decided_exact), c.seconds);
+    say(stdout, "\nwalls      {} near, {} spheres protruding", grouped(c.walls_tested),
+        grouped(c.protruding_spheres));
+  if (c.worst_wall)
+    say(stdout, "; worst: sphere {}, gap {:.3g} of its radius", *c.worst_wall, c.min_wall_gap);
+  say(stdout, "\ndecided    {} in double with a proven bound, {} in exact arithmetic, in {:.3f} s\n",
+      grouped(c.decided_double), grouped(c.decided_exact), c.seconds);
   for (const auto& [pair, ratio] : c.overlaps)
-    fmt::print("overlap    {}, ratio {:.3g}\n", pair_text(pair), ratio);
+    say(stdout, "overlap    {}, ratio {:.3g}\n", pair_text(pair), ratio);
   for (const auto& [sphere, gap] : c.protrusions)
-    fmt::print("protrudes  {}, gap {:.3g} of its radius\n", sphere, gap);
-  fmt::print("{}\n", c.statement);
+    say(stdout, "protrudes  {}, gap {:.3g} of its radius\n", sphere, gap);
+  say(stdout, "{}\n", c.statement);
 }
 
 int verify(const VerifyCall& call) {
   if (is_folder(call.target)) finish_writing(call.target);
   const Scene scene = read_scene(scene_file(call));
-  const Domain domain = packed_domain_of(scene);
   const std::filesystem::path file = is_folder(call.target) ? call.target / "spheres.csv" : call.target;
-  const Spheres<dynamic> spheres = read_csv_of(scene, file);
+  const Spheres<dynamic> spheres = read_csv_of(scene, file);  // before another result replaces both
+  const Domain domain = packed_domain_of(scene);
 
   ProgressBar bar(call.json, true);
   Certificate certificate = certify(spheres, domain,
@@ -90,7 +95,7 @@ int verify(const VerifyCall& call) {
   certificate.statement += certified_walls(scene);
   bar.clear();
   if (call.json)
-    fmt::print("{}", certificate_as_json(certificate));
+    say(stdout, "{}", certificate_as_json(certificate));
   else
     print(certificate, domain, name_of(scene.unit));
   return certificate.certified ? exit_code::done : exit_code::no;

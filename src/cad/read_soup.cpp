@@ -18,6 +18,8 @@ namespace {
 /// Its triangles reach across each other's boxes, so that to look for crossings takes a time that grows as
 /// the square: 10 s for 20,000 corners, a minute for these.
 constexpr std::size_t most_corners_of_face = 50'000;
+/// Products of more are no numbers, which exact arithmetic does not forgive.
+constexpr double most_coordinate = 1e50;
 
 }  // namespace
 
@@ -184,6 +186,9 @@ ChosenSoup read_soup(const std::filesystem::path& file, double deflection, doubl
   if (const std::string other = known_not_to_be_a_mesh(file); !other.empty()) refuse(file, other);
   ChosenSoup read = read_by_extension(file, deflection, metres > 0 ? metres : 1);
   if (read.soup.polygons.empty()) refuse(file, "holds no faces; export the surface, not points or curves");
+  if (const double farthest = largest_coordinate(read.soup); !(farthest <= most_coordinate))
+    refuse(file,
+           fmt::format("has a coordinate of {:g}, beyond {:g}; export it again", farthest, most_coordinate));
   const auto& widest =
       *std::ranges::max_element(read.soup.polygons, {}, [](const auto& p) { return p.size(); });
   if (widest.size() > most_corners_of_face)

@@ -212,6 +212,18 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
   return text_of(json);
 }
 
+std::map<std::string, std::string> manifest_in(const std::string& report) {
+  const Json json = Json::parse(report, nullptr, false);
+  std::map<std::string, std::string> files;
+  if (!json.is_object() || !json.contains("certificate") || !json.contains("hash")) return files;
+  if (!json.contains("files"))  // as bernal 0.1 wrote it at first
+    return {{"spheres.csv", ""}, {"spheres.vtp", ""}, {"scene.toml", ""},   {"report.json", ""},
+            {"report.html", ""}, {"packing.svg", ""}, {"container.off", ""}};
+  for (const auto& [name, sha256] : json.at("files").items())
+    files[name] = sha256.is_string() ? sha256.get<std::string>() : "";
+  return files;
+}
+
 std::string json_of(const Report& report) {
   const Packing& packing = report.packing;
   const Certificate& certificate = report.certificate;
@@ -243,6 +255,8 @@ std::string json_of(const Report& report) {
                {"history", packing.history},
                {"seconds", packing.seconds},
                {"peak_memory_bytes", peak_memory_bytes()}});
+  for (const auto& [name, sha256] : report.files)
+    json["files"][name] = sha256.empty() ? Json() : Json(sha256);
   if (const auto* mesh = std::get_if<MeshFile>(&packing.scene.container))
     json["container"].update({{"file", mesh->file.filename().string()}, {"sha256", mesh->sha256}});
   return text_of(json);

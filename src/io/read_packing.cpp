@@ -33,8 +33,9 @@ Packing read_packing(const std::filesystem::path& folder) {
   finish_writing(folder);
   Packing packing;
   packing.scene = read_scene(folder / "scene.toml");
+  packing.spheres =
+      read_csv_of(packing.scene, folder / "spheres.csv");  // before another result replaces both
   packing.domain = packed_domain_of(packing.scene);
-  packing.spheres = read_csv_of(packing.scene, folder / "spheres.csv");
   packing.volume = volume_of(packing.domain);
   packing.seed = packing.scene.seed;
   return packing;

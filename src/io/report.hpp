@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -15,7 +16,11 @@ struct Report {
   const Measurements& measured;
   const SizeDistribution* asked;  ///< of radii; null where it cannot be made again
   std::string hash;
+  std::map<std::string, std::string> files = {};  ///< of the result, see `Manifest`
 };
+
+/// What report.json says of the files of its result; empty where the text is none of bernal's.
+std::map<std::string, std::string> manifest_in(const std::string& report);
 
 /// report.json: the keys of the file format, in a fixed order, lengths in the scene's unit. Numbers that are
 /// not finite become null. Which keys there are does not depend on the packing, except that there is either

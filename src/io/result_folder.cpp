@@ -3,16 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <string_view>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "cad/file_digest.hpp"
+#include "io/report.hpp"
 
 namespace fs = std::filesystem;
 
@@ -28,18 +31,14 @@ fs::path name_of_copy(const fs::path& file, const std::string& sha256) {
                      file.extension().string());
 }
 
-/// Whether the name ends in the digest of the content, as that of a copy does.
-bool is_copy(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  if (stem.size() < digits_in_name + 2 || stem[stem.size() - digits_in_name - 1] != '-') return false;
-  const std::string digits = stem.substr(stem.size() - digits_in_name);
-  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
-  if (!std::ranges::all_of(digits, is_digit)) return false;
-  try {
-    return sha256_of(file).starts_with(digits);
-  } catch (const Error&) {
-    return false;
-  }
+bool is_regular(const fs::path& file) {
+  std::error_code unknown;
+  return fs::is_regular_file(fs::symlink_status(file, unknown));
+}
+
+bool stands_in(const fs::path& file, const fs::path& folder) {
+  std::error_code unknown;
+  return fs::equivalent(fs::weakly_canonical(fs::absolute(file), unknown).parent_path(), folder, unknown);
 }
 
 std::string text_of(const fs::path& file) {
@@ -50,6 +49,7 @@ std::string text_of(const fs::path& file) {
 /// Whether nothing is lost where bernal writes that scene again: whoever wrote it by hand left out defaults,
 /// or put in comments.
 bool is_as_written(const fs::path& scene) {
+  if (!is_regular(scene)) return false;
   try {
     return scene_as_toml(read_scene(scene), scene.parent_path()) == text_of(scene);
   } catch (const Error&) {
@@ -57,43 +57,69 @@ bool is_as_written(const fs::path& scene) {
   }
 }
 
-}  // namespace
-
-bool is_of_earlier_result(const fs::path& file) {
-  std::error_code unknown;
-  if (!fs::is_regular_file(fs::symlink_status(file, unknown))) return false;
-  const fs::path name = file.filename();
-  return name == "packing.svg" || name == "container.off" || is_copy(file);
+bool is_utf8(const fs::path& name) {
+  const std::string text = name.string(), plain = plain_text(text, 2 * text.size() + 100);
+  return std::ranges::count(text, '?') == std::ranges::count(plain, '?');
 }
 
-Scene scene_as_run(const Packing& packing, StagedFolder& staged, const fs::path& folder, bool with_mesh) {
+std::vector<fs::path*> files_named_in(Scene& scene) {
+  auto* mesh = std::get_if<MeshFile>(&scene.container);
+  if (!mesh) return {};
+  std::vector<fs::path*> files{&mesh->file};
+  for (fs::path& obstacle : mesh->obstacles) files.push_back(&obstacle);
+  return files;
+}
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& why) {
+  throw Error(ErrorCode::cannot_write, why, {file.string()});
+}
+
+}  // namespace
+
+Manifest manifest_of(const fs::path& folder) {
+  const fs::path report = folder / "report.json";
+  return is_regular(report) ? manifest_in(text_of(report)) : Manifest();
+}
+
+std::vector<std::string> files_of_earlier_result(const fs::path& folder) {
+  std::vector<std::string> files;
+  for (const auto& [name, sha256] : manifest_of(folder)) {
+    const fs::path file = folder / fs::path(name).filename();
+    if (is_regular(file) && (sha256.empty() || sha256_of(file) == sha256)) files.push_back(name);
+  }
+  return files;
+}
+
+Scene scene_as_run(const Packing& packing, StagedFolder& staged, const fs::path& folder, bool with_mesh,
+                   Manifest& manifest) {
   Scene scene = packing.scene;
   scene.seed = packing.seed;
-  auto* mesh = std::get_if<MeshFile>(&scene.container);
-  if (!with_mesh || !mesh) return scene;
-  std::vector<std::string> copied;
-  const auto copy = [&](fs::path& file, const std::string& packed_into) {
-    std::error_code problem;
-    if (fs::equivalent(fs::absolute(file).parent_path(), folder, problem) && !is_copy(file)) return;
-    const std::string name = name_of_copy(file, packed_into).string();
-    if (std::ranges::find(copied, name) == copied.end()) {
+  const Manifest earlier = manifest_of(folder);
+  std::size_t k = 0;
+  for (fs::path* named : files_named_in(scene)) {
+    fs::path& file = *named;
+    const std::string sha256 = std::get<MeshFile>(scene.container).sha256.at(k++);
+    if (stands_in(file, folder)) {
+      const auto copy = earlier.find(file.filename().string());
+      if (copy != earlier.end() && copy->second == sha256) manifest.insert(*copy);
+      continue;
+    }
+    if (!with_mesh) continue;
+    const std::string name = name_of_copy(file, sha256).string();
+    if (!manifest.contains(name)) {
       const fs::path there = staged.add(name);
+      std::error_code problem;
       fs::copy_file(file, there, problem);
-      if (problem)
-        throw Error(ErrorCode::cannot_write, "cannot be copied: " + problem.message(), {file.string()});
-      if (sha256_of(there) != packed_into)
-        throw Error(ErrorCode::cannot_write, "has changed while it was packed into", {file.string()});
-      copied.push_back(name);
+      if (problem) refuse(file, "cannot be copied: " + problem.message());
+      if (sha256_of(there) != sha256) refuse(file, "has changed while it was packed into");
+      manifest[name] = sha256;
     }
     file = fs::absolute(folder) / name;
-  };
-  const std::vector<std::string> digests = mesh->sha256;
-  copy(mesh->file, digests.at(0));
-  for (std::size_t k = 0; k < mesh->obstacles.size(); ++k) copy(mesh->obstacles[k], digests.at(k + 1));
+  }
   return scene;
 }
 
-void finish_writing(const fs::path& folder) { finish_publishing(folder, is_of_earlier_result); }
+void finish_writing(const fs::path& folder) { finish_publishing(folder); }
 
 void check_writable(const fs::path& folder) {
   StagedFolder staged(folder);
@@ -101,23 +127,34 @@ void check_writable(const fs::path& folder) {
 }
 
 void check_writable(const fs::path& folder, const Scene& scene, const WriteOptions& options) {
-  const auto refuse = [](const fs::path& file, const std::string& why) {
-    throw Error(ErrorCode::cannot_write, why, {file.string()});
-  };
-  std::error_code unknown;
-  const fs::path there = folder / "scene.toml";
-  const bool is_itself = !scene.file.empty() && fs::equivalent(there, scene.file, unknown);
-  const bool is_of_result = fs::exists(folder / "report.json", unknown) && !is_itself;
-  if (fs::exists(there, unknown) && !is_of_result && !is_as_written(there))
-    refuse(there,
-           "is your own scene, and the scene as run would take its place; give another folder with -o");
-  const auto* mesh = std::get_if<MeshFile>(&scene.container);
-  if (options.with_mesh && !mesh)
+  Scene packed = scene;
+  const std::vector<fs::path*> files = files_named_in(packed);
+  if (options.with_mesh && files.empty())
     throw Error(ErrorCode::bad_argument, "--with-mesh copies a CAD file, and this container is none");
-  if (options.with_mesh && (mesh->file.extension() == ".gltf" || mesh->file.extension() == ".GLTF"))
-    refuse(mesh->file,
-           "may name other files, which are not copied with it; export GLB, which holds all of them");
+  for (const fs::path* file : files) {
+    if (!is_utf8(*file)) refuse(*file, "has a name that is not UTF-8, which scene.toml has to be; rename it");
+    std::string extension = file->extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (options.with_mesh && extension == ".gltf")
+      refuse(*file,
+             "may name other files, which are not copied with it; export GLB, which holds all of them");
+    constexpr std::size_t longest_name = 255 - 1 - digits_in_name;
+    if (options.with_mesh && file->filename().string().size() > longest_name)
+      refuse(*file, "has too long a name for a copy, which ends in its digest; rename it");
+  }
   check_writable(folder);
+  const std::vector<std::string> earlier = files_of_earlier_result(folder);
+  for (const std::string name : {"scene.toml", "spheres.csv", "spheres.vtp", "report.json", "report.html",
+                                 "packing.svg", "container.off"}) {
+    const fs::path there = folder / name;
+    std::error_code unknown;
+    if (!stands(there) || std::ranges::find(earlier, name) != earlier.end()) continue;
+    if (fs::is_directory(there, unknown)) refuse(there, "is a folder, and a file is to be written there");
+    if (name == "scene.toml" && is_as_written(there)) continue;
+    refuse(there,
+           "is no result of bernal's, or was changed since, and the result would take its place; give "
+           "another folder with -o, or remove it");
+  }
 }
 
 }  // namespace bernal

@@ -1,18 +1,29 @@
 #pragma once
 #include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "bernal/run/packing.hpp"
 #include "io/staged_folder.hpp"
 
 namespace bernal {
 
-/// Files that results have, but not all of them: pictures, walls, copies of CAD files.
-bool is_of_earlier_result(const std::filesystem::path& file);
+/// The files of a result by their names; the digests of those that a user may put others into the place of:
+/// scene.toml, copies of CAD files. What report.json says of them is what makes a file one of bernal's.
+using Manifest = std::map<std::string, std::string>;
+
+/// Of the result that stands in the folder; empty where none does.
+Manifest manifest_of(const std::filesystem::path& folder);
+
+/// Those of an earlier result that nobody has written into since.
+std::vector<std::string> files_of_earlier_result(const std::filesystem::path& folder);
 
 /// The scene with the seed that was used, which the caller may have given instead of the scene. `with_mesh`:
 /// the CAD files are copied into the folder and named there; throws Error{cannot_write} where one is no
-/// longer what was packed into. What stands in the folder anyway stays as it is.
+/// longer what was packed into. What stands in the folder anyway stays as it is. Adds to the manifest what is
+/// copied, and what an earlier result copied and the scene names.
 Scene scene_as_run(const Packing& packing, StagedFolder& staged, const std::filesystem::path& folder,
-                   bool with_mesh);
+                   bool with_mesh, Manifest& manifest);
 
 }  // namespace bernal

@@ -8,9 +8,13 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <fstream>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
 #include "io/output_file.hpp"
@@ -18,17 +22,25 @@
 namespace fs = std::filesystem;
 
 namespace bernal {
+
+bool stands(const fs::path& file) {
+  std::error_code unknown;
+  return fs::symlink_status(file, unknown).type() != fs::file_type::not_found;
+}
+
 namespace {
 
-constexpr const char* staging_prefix = ".bernal-";
+constexpr std::string_view staging_prefix = ".bernal-staging-";
 /// What the staging folder is called once all is written, while what the files replace moves to
 /// `earlier_name` below it; and then, while they move into their places.
 constexpr const char* complete_name = ".bernal-complete";
 constexpr const char* placing_name = ".bernal-placing";
 constexpr const char* earlier_name = "earlier";
+/// In it, which files it replaces, a line each; nothing that lacks it is touched.
+constexpr const char* replaced_name = ".replaced";
 
 /// For another process that publishes in the same folder, which takes milliseconds.
-constexpr int most_waits = 100;
+constexpr int most_waits = 600;
 constexpr std::chrono::milliseconds wait(50);
 
 [[noreturn]] void fail(const std::string& what, const std::string& why, const fs::path& path) {
@@ -56,7 +68,7 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
 void remove_abandoned(const fs::path& folder) {
   for (const fs::path& entry : entries_of(folder)) {
     const std::string name = entry.filename().string();
-    if (!name.starts_with(staging_prefix) || name == complete_name || name == placing_name) continue;
+    if (!name.starts_with(staging_prefix)) continue;
     const int lock = locked(entry);
     if (lock < 0) continue;
     std::error_code ignored;
@@ -83,36 +95,52 @@ class Moves {
   std::vector<std::pair<fs::path, fs::path>> done_;
 };
 
-bool stands(const fs::path& file) {
-  std::error_code unknown;
-  return fs::symlink_status(file, unknown).type() != fs::file_type::not_found;
+bool is_new(const fs::path& file) {
+  return file.filename() != earlier_name && file.filename() != replaced_name;
 }
 
-bool is_new(const fs::path& file) { return file.filename() != earlier_name; }
+std::vector<std::string> lines_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+/// Whoever wrote a file there keeps it.
+void make_way(const fs::path& file, Moves& moves) {
+  fs::path kept;
+  for (int k = 1; kept.empty() || stands(kept); ++k)
+    kept = fs::path(file).concat(k == 1 ? ".kept" : ".kept-" + std::to_string(k));
+  moves.move(file, kept);
+}
 
 /// From whatever point on: what is complete takes the place of the earlier result.
-void put_in_place(const fs::path& folder, const IsEarlier& is_earlier, Moves& moves) {
+void put_in_place(const fs::path& folder, Moves& moves) {
   const fs::path complete = folder / complete_name, placing = folder / placing_name;
-  if (stands(complete)) {
-    for (const fs::path& file : entries_of(complete))
-      if (const fs::path before = folder / file.filename(); is_new(file) && stands(before))
-        moves.move(before, complete / earlier_name / file.filename());
-    for (const fs::path& entry : entries_of(folder))
-      if (is_earlier && is_earlier(entry)) moves.move(entry, complete / earlier_name / entry.filename());
+  if (stands(complete / replaced_name)) {
+    for (const std::string& name : lines_of(complete / replaced_name)) {
+      const fs::path before = folder / fs::path(name).filename();
+      std::error_code unknown;
+      if (stands(before) && !fs::is_directory(fs::symlink_status(before, unknown)))
+        moves.move(before, complete / earlier_name / before.filename());
+    }
     moves.move(complete, placing);
   }
-  for (const fs::path& file : entries_of(placing))
-    if (is_new(file)) moves.move(file, folder / file.filename());
+  if (!stands(placing / replaced_name)) return;
+  for (const fs::path& file : entries_of(placing)) {
+    if (!is_new(file)) continue;
+    const fs::path place = folder / file.filename();
+    if (stands(place)) make_way(place, moves);
+    moves.move(file, place);
+  }
 }
 
 }  // namespace
 
 // Delegating: once the first constructor is through, the destructor tidies up whatever the body throws.
-StagedFolder::StagedFolder(fs::path folder, IsEarlier is_earlier)
-    : StagedFolder(std::move(folder), NothingMadeYet{}) {
-  is_earlier_ = std::move(is_earlier);
+StagedFolder::StagedFolder(fs::path folder) : StagedFolder(std::move(folder), NothingMadeYet{}) {
   make_folders();
-  finish_publishing(folder_, is_earlier_);
+  finish_publishing(folder_);
   remove_abandoned(folder_);
   stage();
 }
@@ -160,7 +188,7 @@ void StagedFolder::write(const std::string& name, std::string_view text) {
   file.close();
 }
 
-std::vector<fs::path> StagedFolder::publish() {
+std::vector<fs::path> StagedFolder::publish(const std::vector<std::string>& replaced) {
   std::vector<fs::path> files;
   for (const std::string& name : names_) {
     std::error_code unknown;
@@ -171,15 +199,24 @@ std::vector<fs::path> StagedFolder::publish() {
   std::error_code problem;
   fs::create_directory(staging_ / earlier_name, problem);
   if (problem) fail("cannot write here", problem.message(), staging_);
+  OutputFile list(staging_ / replaced_name);
+  for (const std::string& name : replaced) list.append(name + "\n");
+  list.close();
+  const auto is_busy = [&] { return stands(folder_ / complete_name) || stands(folder_ / placing_name); };
   for (int k = 0; k < most_waits; ++k) {  // for another process that publishes, or was killed over it
-    finish_publishing(folder_, is_earlier_);
-    if (!stands(folder_ / complete_name) && !stands(folder_ / placing_name)) break;
+    finish_publishing(folder_);
+    if (!is_busy()) break;
     std::this_thread::sleep_for(wait);
   }
+  if (is_busy())
+    fail("cannot be written to",
+         fmt::format("another run puts its files there; if none does, remove {} and {}", complete_name,
+                     placing_name),
+         folder_);
   Moves moves;
   try {
     moves.move(staging_, folder_ / complete_name);
-    put_in_place(folder_, is_earlier_, moves);
+    put_in_place(folder_, moves);
   } catch (const Error&) {
     moves.take_back();
     throw;
@@ -189,20 +226,21 @@ std::vector<fs::path> StagedFolder::publish() {
   return files;
 }
 
-void finish_publishing(const fs::path& folder, const IsEarlier& is_earlier) {
+void finish_publishing(const fs::path& folder) {
   for (const char* name : {complete_name, placing_name}) {
-    if (!stands(folder / name)) continue;
+    if (!stands(folder / name / replaced_name)) continue;  // it is none of ours
     const int lock = locked(folder / name);
     if (lock < 0) return;  // it is being done
     Moves moves;
-    std::error_code problem;
+    std::error_code ignored;
     try {
-      put_in_place(folder, is_earlier, moves);
-      fs::remove_all(folder / placing_name, problem);
-    } catch (const Error&) {
+      put_in_place(folder, moves);
+      fs::remove_all(folder / placing_name, ignored);
+    } catch (const Error& error) {
       moves.take_back();
       ::close(lock);
-      throw;
+      fail("holds a result that a run was killed over, and that cannot be put into its place",
+           fmt::format("{}; make the folder writable and try again", error.what()), folder);
     }
     ::close(lock);
   }

@@ -1,27 +1,26 @@
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace bernal {
 
-/// Which files of a folder belong to an earlier result and go though no new one has their name.
-using IsEarlier = std::function<bool(const std::filesystem::path&)>;
+/// Whether anything has that name, a link that leads nowhere included.
+bool stands(const std::filesystem::path& file);
 
-/// Files that appear in a folder all together or not at all, in the place of all files of an earlier result.
+/// Files that appear in a folder all together or not at all, in the place of those of an earlier result.
 ///
 /// They are written into a staging folder inside the target, where they are on the same file system and
 /// `rename` is atomic. `publish` gives it the name of what is complete, moves the files of the earlier result
 /// out of the way and the new ones into their places, and takes that back if one of these fails. Whoever is
 /// killed before has changed nothing; whoever is killed after leaves what `finish_publishing` completes, and
-/// never a new file beside an old one. What is left of the staging goes with the object, and so do folders
-/// that only it needed, and staging folders of processes that were killed. Throws Error{cannot_write} with
-/// the path and the system's words.
+/// never a new file beside an old one. A file of somebody else that stands in a place is kept under another
+/// name. What is left of the staging goes with the object, and so do folders that only it needed, and staging
+/// folders of processes that were killed. Throws Error{cannot_write} with the path and the system's words.
 class StagedFolder {
  public:
-  explicit StagedFolder(std::filesystem::path folder, IsEarlier is_earlier = {});
+  explicit StagedFolder(std::filesystem::path folder);
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
@@ -30,8 +29,14 @@ class StagedFolder {
   std::filesystem::path add(const std::string& name);
   /// Writes all of that file.
   void write(const std::string& name, std::string_view text);
-  /// Gives every added file its final name; returns those, in the order of `add`.
-  std::vector<std::filesystem::path> publish();
+  std::filesystem::path written(const std::string& name) const { return staging_ / name; }
+  const std::vector<std::string>& names() const { return names_; }
+
+  /// Gives every added file its final name; returns those, in the order of `add`. The files `replaced`, of an
+  /// earlier result, go, whether new ones have their names or not.
+  std::vector<std::filesystem::path> publish(const std::vector<std::string>& replaced);
+  /// The same where whatever has the name of a new file is an earlier one.
+  std::vector<std::filesystem::path> publish() { return publish(names_); }
 
  private:
   struct NothingMadeYet {};
@@ -44,12 +49,11 @@ class StagedFolder {
   int lock_ = -1;                            ///< of the staging folder, while this process lives
   std::vector<std::filesystem::path> made_;  ///< folders that did not exist, outermost first
   std::vector<std::string> names_;
-  IsEarlier is_earlier_;
   bool published_ = false;
 };
 
 /// Completes what a process that was killed had begun to publish in the folder; does nothing if there is no
 /// such thing. Throws Error{cannot_write}.
-void finish_publishing(const std::filesystem::path& folder, const IsEarlier& is_earlier = {});
+void finish_publishing(const std::filesystem::path& folder);
 
 }  // namespace bernal

@@ -1,12 +1,16 @@
 #include "bernal/io/write_packing.hpp"
 
+#include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "bernal/core/error.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "cad/file_digest.hpp"
 #include "io/output_file.hpp"
 #include "io/report.hpp"
 #include "io/result_folder.hpp"
@@ -44,7 +48,7 @@ std::unique_ptr<SizeDistribution> asked_sizes(const Scene& scene) {
 
 WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
                              const WriteOptions& options) {
-  StagedFolder staged(folder, is_of_earlier_result);
+  StagedFolder staged(folder);
   const std::filesystem::path csv = staged.add("spheres.csv");
   {
     OutputFile file(csv);
@@ -66,17 +70,27 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
        .walls = {.work = wall_distances_for_a_report},
        .container = packing.container,
        .monitor = options.monitor});
-  const Report report{packing, certificate, measured, asked.get(), hash_of(packing.spheres)};
-  const std::string scene = scene_as_toml(scene_as_run(packing, staged, folder, options.with_mesh), folder);
+  Manifest manifest;
+  const std::string scene =
+      scene_as_toml(scene_as_run(packing, staged, folder, options.with_mesh, manifest), folder);
   const std::string picture = svg_of(packing.spheres, packing.domain, name_of(packing.scene.unit));
-
   staged.write("scene.toml", scene);
-  staged.write("report.json", json_of(report));
-  staged.write("report.html", html_of(report, picture, scene));
+  manifest["scene.toml"] = sha256_of(staged.written("scene.toml"));
   if (!picture.empty()) staged.write("packing.svg", picture);
   if (const auto* walls = std::get_if<Mesh>(&packing.domain); walls && walls_are_made(packing.scene))
     staged.write("container.off", as_off_file(*walls));
-  return {staged.publish(), certificate};
+  for (const std::string& name : staged.names()) manifest.try_emplace(name);
+  for (const char* name : {"report.json", "report.html"}) manifest[name];
+  const Report report{packing, certificate, measured, asked.get(), hash_of(packing.spheres), manifest};
+  staged.write("report.json", json_of(report));
+  staged.write("report.html", html_of(report, picture, scene));
+
+  // What the scene names stays where it is.
+  std::vector<std::string> replaced = files_of_earlier_result(folder);
+  std::erase_if(replaced, [&](const std::string& name) {
+    return manifest.contains(name) && std::ranges::find(staged.names(), name) == staged.names().end();
+  });
+  return {staged.publish(replaced), certificate};
 }
 
 }  // namespace bernal

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -9,6 +11,7 @@
 #include "bernal/run/run.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 #include "cad/file_digest.hpp"
+#include "cad/known_formats.hpp"
 
 namespace bernal {
 namespace {
@@ -35,13 +38,24 @@ std::vector<std::filesystem::path> files_of(const MeshFile& mesh) {
   return files;
 }
 
+/// What a change of a file changes.
+using Stamp = std::pair<std::uintmax_t, std::filesystem::file_time_type>;
+std::vector<Stamp> stamps_of(const MeshFile& mesh) {
+  std::vector<Stamp> stamps;
+  std::error_code unknown;
+  for (const std::filesystem::path& file : files_of(mesh))
+    stamps.emplace_back(std::filesystem::file_size(file, unknown),
+                        std::filesystem::last_write_time(file, unknown));
+  return stamps;
+}
+
 /// Notes the digests, or holds the files to those that stand there.
 void pin_files(MeshFile& mesh) {
   std::vector<std::string> digests;
   for (const std::filesystem::path& file : files_of(mesh)) {
     const std::string digest = sha256_of(file);
     const std::size_t k = digests.size();
-    if (k < mesh.sha256.size() && mesh.sha256[k] != digest)
+    if (k < mesh.sha256.size() && cad::in_lower_case(mesh.sha256[k]) != digest)
       throw OptionError("sha256", fmt::format("{} is not the file that is meant: its SHA-256 is {}; leave "
                                               "\"sha256\" out to take it as it is",
                                               file.string(), digest));
@@ -61,8 +75,11 @@ struct MakeDomain {
     const Unit unit = scene.unit;
     try {
       const double smallest = radii_of(scene)->quantile(rare);
+      const std::vector<Stamp> before = stamps_of(mesh);
       ImportedMesh imported = read_container_mesh(mesh, {unit, smallest});
       pin_files(mesh);
+      if (stamps_of(mesh) != before)
+        throw Error(ErrorCode::bad_mesh, "has changed while it was read", {mesh.file.string()});
       notes = in_words(imported.report, mesh, unit);
       if (imported.report.deflection > 0) mesh.deflection = imported.report.deflection;
       if (imported.report.unit.empty() && !mesh.unit) mesh.unit = unit;
@@ -113,7 +130,7 @@ std::vector<std::filesystem::path> changed_files(const Scene& scene) {
   if (!mesh) return changed;
   const std::vector<std::filesystem::path> files = files_of(*mesh);
   for (std::size_t k = 0; k < std::min(files.size(), mesh->sha256.size()); ++k)
-    if (sha256_of(files[k]) != mesh->sha256[k]) changed.push_back(files[k]);
+    if (sha256_of(files[k]) != cad::in_lower_case(mesh->sha256[k])) changed.push_back(files[k]);
   return changed;
 }
 

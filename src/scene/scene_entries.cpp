@@ -154,6 +154,9 @@ void mesh_rule(const MeshFile& mesh, const Section& section) {
     section.refuse("ignore_unit_of_file", "needs a \"unit\" beside it, that of the file's coordinates");
   if (mesh.sha256.size() > 1 + mesh.obstacles.size())
     section.refuse("sha256", "must be one for the file, then at most one for every obstacle");
+  for (const std::string& digest : mesh.sha256)
+    if (digest.size() != 64 || digest.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
+      section.refuse("sha256", "must have 64 hexadecimal digits each, as sha256sum prints them");
 }
 
 }  // namespace

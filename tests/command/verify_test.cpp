@@ -180,5 +180,17 @@ TEST_F(Verify, ASphereMayTouchItsOwnImageAndNoMore) {
       << ended.out;
 }
 
+// The answer does not depend on how much of it is read.
+TEST_F(Verify, AReaderThatLeavesChangesNoAnswer) {
+  std::string csv = "# unit: mm\nx,y,z,r\n";
+  for (int i = 0; i < 400; ++i) csv += fmt::format("2,2,{},0.5\n", 2 + 1e-3 * i);
+  folder.write("spheres.csv", csv);
+  for (const char* reader : {"true", "head -1"}) {
+    const std::string call =
+        "set -o pipefail; '" BERNAL_COMMAND "' verify '" + folder.path().string() + "' --list | ";
+    EXPECT_EQ(Process({"bash", "-c", call + reader}).wait().status, 1) << reader;
+  }
+}
+
 }  // namespace verify_test
 }  // namespace bernal::testing

@@ -219,5 +219,17 @@ TEST_F(HostileFile, AFaceOfMoreCornersThanPartsHaveIsRefused) {
   EXPECT_NE(refusal("comb.off", off + face + "\n").find("a face has 60000 corners"), std::string::npos);
 }
 
+// A fuzzer found it: the normal of a face overflows, and GMP ends the process (SIGFPE).
+TEST_F(HostileFile, ACoordinateWhoseProductsOverflowIsRefused) {
+  for (const char* far : {"1e308", "-1e200", "1e51"})
+    EXPECT_NE(
+        refusal("far.obj", fmt::format("v 0 0 0\nv {} 0 0\nv 1 2 0\nv 0 2 0\nv 0 0 3\nf 1 2 3\nf 1 4 3 2 5\n"
+                                       "f 1 2 5\n",
+                                       far))
+            .find("has a coordinate of"),
+        std::string::npos)
+        << far;
+}
+
 }  // namespace hostile_files_test
 }  // namespace bernal

@@ -110,6 +110,46 @@ TEST(ResultFolder, WithTheMeshItStandsForItself) {
   EXPECT_TRUE(names_in(folder / "moved").contains("mine-12345678.obj"));
 }
 
+// The scene of a result that is packed again in its place names the copy that stands there.
+TEST(ResultFolder, PackedAgainInItsPlaceItKeepsItsMesh) {
+  const Folder folder;
+  const fs::path mesh = folder.write("box.obj", test::as_obj(box));
+  write_packing(packed_into(mesh), folder / "out", {.with_mesh = true});
+  const std::set<std::string> names = names_in(folder / "out");
+  for (const bool with_mesh : {false, true, false}) {
+    const Scene scene = read_scene(folder / "out/scene.toml");
+    check_writable(folder / "out", scene);
+    write_packing(run(build(scene)), folder / "out", {.with_mesh = with_mesh});
+    EXPECT_EQ(names_in(folder / "out"), names);
+    EXPECT_TRUE(certificate_of(folder / "out").certified);
+  }
+  write_packing(packed_into(mesh), folder / "out");
+  EXPECT_EQ(names_in(folder / "out").size(), names.size() - 1) << "a result without a copy";
+}
+
+TEST(ResultFolder, WhatNoResultLeftThereIsNotReplaced) {
+  for (const char* name : {"packing.svg", "container.off", "spheres.csv", "report.json", "scene.toml"}) {
+    const Folder folder;
+    folder.write(name, "mine");
+    error_of([&] { check_writable(folder.path(), testing::example().scene); });
+    EXPECT_EQ(text_of(folder / name), "mine");
+  }
+  // The container itself, called as bernal calls its own.
+  const Folder folder;
+  const fs::path mesh = folder.write("container.off", test::as_off(box));
+  Scene scene;
+  scene.unit = Unit::mm;
+  scene.container = MeshFile{.file = mesh};
+  error_of([&] { check_writable(folder.path(), scene); });
+  write_packing(packed_into(mesh), folder / "out");
+  EXPECT_EQ(text_of(mesh), test::as_off(box));
+  // A file whose name ends in its own digest, as those of copies do.
+  const std::string digest = std::get<MeshFile>(read_scene(folder / "out/scene.toml").container).sha256[0];
+  const fs::path copy = folder.write("out/mine-" + digest.substr(0, 8) + ".off", test::as_off(box));
+  write_packing(packed_into(mesh), folder / "out");
+  EXPECT_TRUE(fs::exists(copy));
+}
+
 TEST(ResultFolder, AMeshThatLiesThereAlreadyIsNotCopiedOrTouched) {
   const Folder folder;
   const fs::path mesh = folder.write("box.obj", test::as_obj(box));
@@ -139,7 +179,7 @@ TEST(ResultFolder, AUsersOwnSceneIsNotReplaced) {
   for (const Scene& packed : {scene, testing::example().scene}) {
     const Error error = error_of([&] { check_writable(folder.path(), packed); });
     EXPECT_EQ(error.code(), ErrorCode::cannot_write);
-    EXPECT_NE(std::string(error.what()).find("your own scene"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("is no result of bernal's"), std::string::npos) << error.what();
   }
   // A result's may be packed again in its place, until somebody writes into it.
   write_packing(run(build(scene)), folder / "out");

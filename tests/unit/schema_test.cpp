@@ -58,6 +58,7 @@ std::string sample(const Key& key, int choice) {
     case Type::axes:
       return "[0]";
     case Type::names:
+      if (key.name == "sha256") return fmt::format("[\"{}\"]", std::string(64, choice == 0 ? '0' : 'F'));
       if (!key.words.empty()) return fmt::format("[\"{}\"]", key.words[choice % key.words.size()]);
       return choice == 0 ? "[\"first\", \"second one\"]" : "[\"/tmp/3\"]";
     case Type::parts:

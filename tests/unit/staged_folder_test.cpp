@@ -8,6 +8,7 @@
 #include <csignal>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "support/written_files.hpp"
 
@@ -32,13 +33,16 @@ std::size_t entries_in(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-/// What only one of the two results has.
-bool is_optional(const fs::path& file) { return file.filename() == "picture" || file.filename() == "d"; }
+std::vector<std::string> names_of(const Files& files) {
+  std::vector<std::string> names;
+  for (const auto& [name, text] : files) names.push_back(name);
+  return names;
+}
 
-void publish(const fs::path& folder, const Files& files) {
-  StagedFolder staged(folder, is_optional);
+void publish(const fs::path& folder, const Files& files, const Files& replaced) {
+  StagedFolder staged(folder);
   for (const auto& [name, text] : files) staged.write(name, text);
-  staged.publish();
+  staged.publish(names_of(replaced));
 }
 
 const Files earlier = {{"a", "1"}, {"b", "1"}, {"c", "1"}, {"picture", "1"}};
@@ -46,9 +50,9 @@ const Files later = {{"a", "2"}, {"b", "2"}, {"c", "2"}, {"d", "2"}};
 
 TEST(StagedFolder, WhatOnlyTheEarlierResultHasGoes) {
   const Folder folder;
-  publish(folder.path(), earlier);
+  publish(folder.path(), earlier, {});
   folder.write("mine", "0");
-  publish(folder.path(), later);
+  publish(folder.path(), later, earlier);
   Files expected = later;
   expected["mine"] = "0";
   EXPECT_EQ(files_in(folder.path()), expected);
@@ -59,22 +63,22 @@ TEST(StagedFolder, WhatOnlyTheEarlierResultHasGoes) {
 // the new one; and the next who looks finds one of them whole.
 TEST(StagedFolder, KilledAtAnyMomentItHoldsOneResult) {
   std::size_t unfinished = 0;
-  for (int trial = 0; trial < 150; ++trial) {
+  for (int trial = 0; trial < 60; ++trial) {
     const Folder folder;
-    publish(folder.path(), earlier);
+    publish(folder.path(), earlier, {});
     int ready[2];
     ASSERT_EQ(pipe(ready), 0);
     const pid_t child = fork();
     if (child == 0) {
-      StagedFolder staged(folder.path(), is_optional);
+      StagedFolder staged(folder.path());
       for (const auto& [name, text] : later) staged.write(name, text);
       static_cast<void>(!write(ready[1], "x", 1));
-      staged.publish();
+      staged.publish(names_of(earlier));
       pause();
     }
     char byte = 0;
     ASSERT_EQ(read(ready[0], &byte, 1), 1);
-    const auto at = std::chrono::steady_clock::now() + std::chrono::microseconds(2 * trial);
+    const auto at = std::chrono::steady_clock::now() + std::chrono::microseconds(5 * trial);
     while (std::chrono::steady_clock::now() < at) continue;
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
@@ -87,11 +91,11 @@ TEST(StagedFolder, KilledAtAnyMomentItHoldsOneResult) {
     EXPECT_FALSE(any[0] && any[1]) << "trial " << trial;
     unfinished += left != earlier && left != later;
 
-    finish_publishing(folder.path(), is_optional);
+    finish_publishing(folder.path());
     const Files now = files_in(folder.path());
     EXPECT_TRUE(now == earlier || now == later) << "trial " << trial;
     EXPECT_TRUE(any[1] ? now == later : true);
-    publish(folder.path(), earlier);
+    publish(folder.path(), earlier, now);
     EXPECT_EQ(files_in(folder.path()), earlier);
     EXPECT_EQ(entries_in(folder.path()), earlier.size()) << "what was staged is left";
   }
@@ -105,10 +109,12 @@ TEST(StagedFolder, WhatIsCompleteIsFinishedFromAnyStep) {
     const fs::path complete = folder / ".bernal-complete";
     fs::create_directories(complete / "earlier");
     for (const auto& [name, text] : later) std::ofstream(complete / name) << text;
+    for (const auto& [name, text] : earlier)
+      std::ofstream(complete / ".replaced", std::ios::app) << name << '\n';
     int k = 0;
     for (const auto& [name, text] : earlier)
       std::ofstream((k++ < moved_out ? complete / "earlier" : folder.path()) / name) << text;
-    finish_publishing(folder.path(), is_optional);
+    finish_publishing(folder.path());
     EXPECT_EQ(files_in(folder.path()), later) << moved_out;
     EXPECT_EQ(entries_in(folder.path()), later.size());
   }
@@ -116,20 +122,47 @@ TEST(StagedFolder, WhatIsCompleteIsFinishedFromAnyStep) {
     const Folder folder;
     const fs::path placing = folder / ".bernal-placing";
     fs::create_directories(placing / "earlier");
+    std::ofstream(placing / ".replaced") << "a\n";
     for (const auto& [name, text] : earlier) std::ofstream(placing / "earlier" / name) << text;
     int k = 0;
     for (const auto& [name, text] : later)
       std::ofstream((k++ < moved_in ? folder.path() : placing) / name) << text;
-    finish_publishing(folder.path(), is_optional);
+    finish_publishing(folder.path());
     EXPECT_EQ(files_in(folder.path()), later) << moved_in;
     EXPECT_EQ(entries_in(folder.path()), later.size());
   }
 }
 
+// What is no result's stays: files of the same name, folders that look like those of bernal.
+TEST(StagedFolder, NothingOfAUsersIsLost) {
+  const Folder folder;
+  publish(folder.path(), earlier, {});
+  for (const char* own : {".bernal-backup", ".bernal-complete", ".bernal-placing"}) {
+    fs::create_directories(folder / own);
+    folder.write(std::string(own) + "/mine", "0");
+  }
+  finish_publishing(folder.path());
+  EXPECT_TRUE(fs::exists(folder / ".bernal-placing/mine"));
+  for (const char* own : {".bernal-complete", ".bernal-placing"}) fs::remove_all(folder / own);
+  folder.write("d", "mine");
+  publish(folder.path(), later, earlier);
+  EXPECT_EQ(text_of(folder / "d"), "2");
+  EXPECT_EQ(text_of(folder / "d.kept"), "mine");
+  EXPECT_TRUE(fs::exists(folder / ".bernal-backup/mine"));
+  // And after a kill: what has been written there since.
+  fs::create_directories(folder / ".bernal-placing/earlier");
+  folder.write(".bernal-placing/.replaced", "a\n");
+  folder.write(".bernal-placing/a", "3");
+  folder.write("a", "mine");
+  finish_publishing(folder.path());
+  EXPECT_EQ(text_of(folder / "a"), "3");
+  EXPECT_EQ(text_of(folder / "a.kept"), "mine");
+}
+
 TEST(StagedFolder, ThoseOfKilledProcessesGoAndThoseOfOthersStay) {
   const Folder folder;
-  fs::create_directories(folder / ".bernal-killed");
-  folder.write(".bernal-killed/a", "0");
+  fs::create_directories(folder / ".bernal-staging-killed");
+  folder.write(".bernal-staging-killed/a", "0");
   {
     const StagedFolder other(folder.path());
     EXPECT_EQ(entries_in(folder.path()), 1u);
