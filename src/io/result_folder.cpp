@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -15,6 +14,7 @@
 #include "bernal/io/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "cad/file_digest.hpp"
+#include "cad/known_formats.hpp"
 #include "io/report.hpp"
 
 namespace fs = std::filesystem;
@@ -133,9 +133,7 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
     throw Error(ErrorCode::bad_argument, "--with-mesh copies a CAD file, and this container is none");
   for (const fs::path* file : files) {
     if (!is_utf8(*file)) refuse(*file, "has a name that is not UTF-8, which scene.toml has to be; rename it");
-    std::string extension = file->extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (options.with_mesh && extension == ".gltf")
+    if (options.with_mesh && cad::extension_of(*file) == ".gltf")
       refuse(*file,
              "may name other files, which are not copied with it; export GLB, which holds all of them");
     constexpr std::size_t longest_name = 255 - 1 - digits_in_name;

@@ -16,6 +16,7 @@ namespace {
 
 /// More points are measurements, not a distribution; and a scene has to hold them.
 constexpr std::size_t most_points = 4096;
+constexpr std::size_t longest_pair = 1000;
 constexpr std::string_view blank = " \t\r\v\f";
 
 std::string_view trimmed(std::string_view text) {
@@ -66,7 +67,8 @@ std::array<std::vector<double>, 2> read_columns(const std::filesystem::path& fil
     const auto fail = [&](const std::string& why) {
       throw Error(ErrorCode::bad_scene, why, {file.string(), number});
     };
-    if (next == NextLine::too_long) fail("this line is too long for two numbers; is it another file?");
+    if (next == NextLine::too_long || text.size() > longest_pair)
+      fail("this line is too long for two numbers; is it another file?");
     std::string_view line = text;
     if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
     line = trimmed(line.substr(0, line.find('#')));

@@ -35,8 +35,9 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
 /// Leaves nothing behind.
 void check_writable(const std::filesystem::path& folder);
 
-/// The same for the result of a scene: also if a scene.toml stands there that a user wrote, or if what would
-/// be copied beside the result is not whole by itself.
+/// The same for the result of a scene: also if a file has the name of one of the result's that no earlier
+/// result left there, or that a user changed since, if a CAD file has a name that scene.toml cannot hold, or
+/// if what would be copied beside the result is not whole by itself.
 void check_writable(const std::filesystem::path& folder, const Scene& scene,
                     const WriteOptions& options = {});
 
