@@ -39,7 +39,7 @@ int map(MapCall& call) {
     say(stderr, "densest    {:.4f} at R {:.4g}, w {:.4g}\nerror      {:.1g} at most, from having {} rods\n",
         written.phi, written.ratio, written.share, written.error,
         grouped(static_cast<std::uint64_t>(call.options.rods)));
-  for (const auto& file : written.files) say(stdout, "{}\n", file.string());
+  for (const auto& file : written.files) say(stdout, "{}\n", plain_text(file.string(), 5000));
   return exit_code::done;
 }
 

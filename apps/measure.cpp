@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
+#include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/io/json.hpp"
 #include "bernal/io/read_packing.hpp"
@@ -243,6 +244,14 @@ void print(const Packing& packing, const Measurements& measured) {
   if (measured.sizes) print_sizes(packing, *measured.sizes);
 }
 
+Measurements measured_of(const Packing& packing, const MeasureCall& call) try {
+  const std::unique_ptr<SizeDistribution> asked = radii_of(packing.scene);
+  return measure(packing.spheres, packing.domain,
+                 {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)}, call.options);
+} catch (const Error& error) {
+  throw Error(error.code(), error.what(), {(call.folder / "spheres.csv").string()});
+}
+
 int measure_folder(const MeasureCall& call) {
   std::optional<tbb::global_control> limit;
   if (call.threads > 0)
@@ -250,10 +259,7 @@ int measure_folder(const MeasureCall& call) {
   ProgressBar bar(call.json);
   bar.now("measure");
   const Packing packing = read_packing(call.folder);
-  const std::unique_ptr<SizeDistribution> asked = radii_of(packing.scene);
-  const Measurements measured =
-      measure(packing.spheres, packing.domain,
-              {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)}, call.options);
+  const Measurements measured = measured_of(packing, call);
   bar.clear();
   if (call.json)
     fmt::print("{}", measurements_as_json(packing, measured));

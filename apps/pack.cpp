@@ -102,7 +102,8 @@ int pack(const PackCall& call) {
       packing, folder, {.with_mesh = call.with_mesh, .monitor = stopped ? Monitor{{}, at_once} : monitor});
   bar.clear();
   if (!stopped && interrupted())
-    say(stderr, "bernal: measuring was stopped; bernal measure {} makes up for it\n", folder.string());
+    say(stderr, "bernal: measuring was stopped; bernal measure {} makes up for it\n",
+        plain_text(folder.string(), 5000));
 
   if (!call.quiet) print_result(packing, written);
   if (!written.certificate.certified) {

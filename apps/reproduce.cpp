@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/core/text.hpp"
 #include "bernal/figures/figures.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "commands.hpp"
@@ -32,7 +33,7 @@ int reproduce(const ReproduceCall& call) {
   const auto files =
       write_figure(call.name, call.folder, {.pack = call.pack, .seed = call.seed, .monitor = bar.monitor()});
   bar.clear();
-  for (const auto& file : files) say(stdout, "{}\n", file.string());
+  for (const auto& file : files) say(stdout, "{}\n", plain_text(file.string(), 5000));
   if (files.empty() && !call.quiet) say(stderr, "bernal: stopped by the user; nothing is written\n");
   return files.empty() ? exit_code::not_reached : exit_code::done;
 }

@@ -8,9 +8,9 @@ set(bernal_predict_stands_on core)
 set(bernal_predict_packages "NLopt 2.7")
 set(bernal_verify_stands_on core)
 set(bernal_cad_stands_on core)
-set(bernal_cad_packages "CGAL 5.5" "assimp 5.2")
+set(bernal_cad_packages "CGAL 5.5" "assimp 5.2" "nlohmann_json 3.11")
 set(bernal_bernal_stands_on core predict verify cad)
-set(bernal_bernal_packages "tomlplusplus 3.3" "nlohmann_json 3.11")
+set(bernal_bernal_packages "tomlplusplus 3.3")
 set(bernal_figures_stands_on bernal)
 
 # The components given and all that they stand on, in the order above.

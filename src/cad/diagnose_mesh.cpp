@@ -178,7 +178,9 @@ MeshReport diagnose_mesh(Triangles& triangles) {
   refuse(report.non_manifold_edges, "edge with more than two faces", "edges with more than two faces");
   refuse(report.degenerate_faces, "degenerate face (its corners lie on a line)",
          "degenerate faces (their corners lie on a line)");
-  refuse(report.self_intersections, "self-intersecting face pair", "self-intersecting face pairs");
+  const bool past_counting = report.self_intersections >= most_self_intersections(mesh);
+  refuse(report.self_intersections, "self-intersecting face pair",
+         past_counting ? "self-intersecting face pairs or more" : "self-intersecting face pairs");
   if (report.problems.empty()) orient(mesh, topology, report);
   if (report.orientation.empty()) report.orientation = report.misoriented_edges == 0 ? "consistent" : "mixed";
   if (report.usable()) {

@@ -5,18 +5,61 @@
 
 #include <sha2.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <span>
 
 #include "bernal/core/error.hpp"
+#include "cad/known_formats.hpp"
 
 namespace bernal {
+namespace {
 
-std::string sha256_of(const std::filesystem::path& file) {
-  char digits[SHA256_DIGEST_STRING_LENGTH];
-  if (SHA256File(file.c_str(), digits) == nullptr)
-    throw Error(ErrorCode::bad_mesh, std::string("cannot be read: ") + std::strerror(errno), {file.string()});
-  return digits;
+namespace fs = std::filesystem;
+
+std::string sha256_of_all(std::span<const fs::path> files) {
+  SHA2_CTX hash;
+  SHA256Init(&hash);
+  std::vector<char> block(1 << 16);
+  for (const fs::path& file : files) {
+    errno = 0;
+    std::ifstream in(file, std::ios::binary);
+    while (in.read(block.data(), std::ssize(block)) || in.gcount() > 0)
+      SHA256Update(&hash, reinterpret_cast<const std::uint8_t*>(block.data()),
+                   static_cast<std::size_t>(in.gcount()));
+    if (!in.eof())
+      throw Error(ErrorCode::bad_mesh, std::string("cannot be read: ") + std::strerror(errno),
+                  {file.string()});
+  }
+  std::array<char, SHA256_DIGEST_STRING_LENGTH> digits;
+  SHA256End(&hash, digits.data());
+  return digits.data();
 }
+
+}  // namespace
+
+std::string sha256_of(const fs::path& file) { return sha256_of_all(std::array{file}); }
+
+std::vector<fs::path> files_of_part(const fs::path& file) {
+  std::vector<fs::path> files{file};
+  if (cad::extension_of(file) != ".gltf") return files;
+  std::ifstream in(file, std::ios::binary);
+  const auto document = nlohmann::json::parse(in, nullptr, false);
+  if (!document.is_object() || !document.contains("buffers")) return files;
+  for (const auto& buffer : document["buffers"]) {
+    if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
+    const auto uri = buffer["uri"].get<std::string>();
+    std::error_code unknown;
+    if (uri.starts_with("data:") || !fs::is_regular_file(file.parent_path() / uri, unknown)) continue;
+    files.push_back(file.parent_path() / uri);
+  }
+  return files;
+}
+
+std::string sha256_of_part(const fs::path& file) { return sha256_of_all(files_of_part(file)); }
 
 }  // namespace bernal

@@ -1,11 +1,18 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace bernal {
 
 /// The SHA-256 of a file's bytes, 64 hexadecimal digits: what `sha256sum` prints. Throws Error{bad_mesh}
 /// where the file cannot be read. Cost: reading it, and about 3 ns a byte.
 std::string sha256_of(const std::filesystem::path& file);
+
+/// The files that hold a part: the one given, then the buffers beside it that a glTF names, in its order.
+std::vector<std::filesystem::path> files_of_part(const std::filesystem::path& file);
+
+/// Of the bytes of these one after another: what `cat part.gltf part.bin | sha256sum` prints.
+std::string sha256_of_part(const std::filesystem::path& file);
 
 }  // namespace bernal

@@ -27,7 +27,7 @@ bool encloses_a_corner_of(const Mesh& mesh, const Mesh& other) {
 
 TakenOut take_out(Mesh& container, const Mesh& obstacle) {
   Mesh both = with_turned(container, obstacle);
-  if (count_self_intersections(both) == 0) {
+  if (!intersects_itself(both)) {
     if (encloses_a_corner_of(container, obstacle)) {
       container = std::move(both);
       return TakenOut::done;

@@ -69,7 +69,7 @@ bool opencascade_reads(const std::filesystem::path& file);
 /// The surfaces of STEP, IGES and BREP as triangles that are at most `deflection` away from them; a
 /// thousandth of the part's diagonal if that is not positive. STEP and IGES are converted to millimetres,
 /// `deflection` is in these (a BREP has no unit). Solids stand where the assembly puts them; surfaces that
-/// belong to no solid are sewn. One call at a time: others wait.
+/// belong to no solid are sewn. In a child process.
 ReadAttempt read_with_opencascade(const std::filesystem::path& file, double deflection);
 
 /// Whether CGAL reads the doubles of this format: OFF, OBJ, PLY (STL goes through `read_stl_with_cgal`).

@@ -181,7 +181,7 @@ struct Repairs {
 
   void apply(Repair repair) {
     if (std::ranges::find(wanted, repair) == wanted.end() || mesh.triangles.empty()) return;
-    if (repair == Repair::wrap && cad::topology_of(mesh).closed() && cad::count_self_intersections(mesh) == 0)
+    if (repair == Repair::wrap && cad::topology_of(mesh).closed() && !cad::intersects_itself(mesh))
       return;  // it is a wall
     cad::Mended mended = repair == Repair::holes  ? cad::close_holes(mesh, largest_hole)
                          : repair == Repair::wrap ? cad::wrap(mesh)

@@ -10,6 +10,7 @@
 #include "cad/known_formats.hpp"
 #include "cad/point_cubes.hpp"
 #include "cad/stl_file.hpp"
+#include "core/file_kind.hpp"
 
 namespace bernal::cad {
 
@@ -107,6 +108,11 @@ void make_plain(ChosenSoup& read) {
   throw Error(ErrorCode::bad_mesh, reason, {file.string()});
 }
 
+[[noreturn]] void refuse_unread(const std::filesystem::path& file, const std::string& why) {
+  const bool has_remedy = why.find("export") != why.npos || why.find("; write ") != why.npos;
+  refuse(file, fmt::format("cannot be read: {}{}", why, has_remedy ? "" : "; export it again, or as STL"));
+}
+
 /// OFF and PLY say in front how much they hold, and CGAL holds them to it; assimp bends indices that are out
 /// of range until they fit.
 bool cgal_is_strict(const std::filesystem::path& file) {
@@ -121,7 +127,7 @@ ChosenSoup chosen(ReadAttempt&& attempt, std::string reader) {
 /// Two readers saw the file: assimp is right about what there is, CGAL keeps the doubles.
 ChosenSoup choose(const std::filesystem::path& file, ReadAttempt assimp, ReadAttempt cgal) {
   if (!assimp.ok() && !cgal.ok())
-    refuse(file, fmt::format("cannot be read: {} (assimp), {} (CGAL)", assimp.failure, cgal.failure));
+    refuse_unread(file, fmt::format("{} (assimp), {} (CGAL)", assimp.failure, cgal.failure));
   if (!cgal.ok())
     return chosen(std::move(assimp), fmt::format("assimp, single precision (CGAL: {})", cgal.failure));
   if (!assimp.ok())
@@ -157,31 +163,33 @@ ChosenSoup read_by_extension(const std::filesystem::path& file, double deflectio
       tell_parts(stl, cgal);
       return choose(file, std::move(assimp), std::move(cgal));
     }
-    if (!assimp.ok()) refuse(file, "cannot be read: " + assimp.failure);
+    if (!assimp.ok()) refuse_unread(file, assimp.failure);
     return chosen(std::move(assimp), "assimp (binary STL holds single precision)");
   }
   if (opencascade_reads(file)) {
     const bool has_unit = !extension_of(file).starts_with(".br");
     ReadAttempt read = read_with_opencascade(file, deflection / (has_unit ? millimetre : metres));
-    if (!read.ok()) refuse(file, "cannot be read: " + read.failure);
+    if (!read.ok()) refuse_unread(file, read.failure);
     return chosen(std::move(read), "OpenCASCADE, tessellated");
   }
   if (cgal_reads(file)) {
     ReadAttempt cgal = read_with_cgal(file);
-    if (!cgal.ok() && cgal_is_strict(file)) refuse(file, "cannot be read: " + cgal.failure);
+    if (!cgal.ok() && cgal_is_strict(file)) refuse_unread(file, cgal.failure);
     return choose(file, read_with_assimp(file), std::move(cgal));
   }
   ReadAttempt assimp = read_with_assimp(file);
-  if (!assimp.ok()) refuse(file, "cannot be read: " + assimp.failure);
+  if (!assimp.ok()) refuse_unread(file, assimp.failure);
   return chosen(std::move(assimp), "assimp, single precision");
 }
 
 }  // namespace
 
 ChosenSoup read_soup(const std::filesystem::path& file, double deflection, double metres) {
+  const FileKind kind = kind_of_file(file);
+  if (kind == FileKind::missing) refuse(file, "no such file");
+  if (kind == FileKind::folder) refuse(file, "is a folder, not a file");
+  if (kind == FileKind::other) refuse(file, "is a pipe or a device, not a regular file");
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) refuse(file, "no such file");
-  if (!std::filesystem::is_regular_file(file, error)) refuse(file, "not a regular file");
   if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
   if (const std::string other = known_not_to_be_a_mesh(file); !other.empty()) refuse(file, other);
   ChosenSoup read = read_by_extension(file, deflection, metres > 0 ? metres : 1);

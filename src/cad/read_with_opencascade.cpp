@@ -2,6 +2,7 @@
 
 #include <initializer_list>
 
+#include "cad/cage.hpp"
 #include "cad/known_formats.hpp"
 #include "cad/opencascade/read_shapes.hpp"
 
@@ -9,19 +10,25 @@ namespace bernal::cad {
 namespace {
 
 /// The module beside this library, where it was built or is installed; nullptr where there is none, or no
-/// OpenCASCADE on this machine. It is loaded by whom asks for it: OpenCASCADE is seventy libraries, a quarter
-/// of a second.
+/// OpenCASCADE on this machine. It is loaded by whom asks for it, here a child process: OpenCASCADE is
+/// seventy libraries, a quarter of a second.
 decltype(&bernal_read_shapes) shape_reader() {
-  static const auto reader = []() -> decltype(&bernal_read_shapes) {
-    std::error_code unknown;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown);
-    for (const char* module : std::initializer_list<const char*>{BERNAL_OPENCASCADE_MODULES})
-      if (void* loaded = dlopen((program.parent_path() / module).c_str(), RTLD_LAZY | RTLD_LOCAL))
-        if (void* symbol = dlsym(loaded, "bernal_read_shapes"))
-          return reinterpret_cast<decltype(&bernal_read_shapes)>(symbol);
-    return nullptr;
-  }();
-  return reader;
+  std::error_code unknown;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  for (const char* module : std::initializer_list<const char*>{BERNAL_OPENCASCADE_MODULES})
+    if (void* loaded = dlopen((program.parent_path() / module).c_str(), RTLD_LAZY | RTLD_LOCAL))
+      if (void* symbol = dlsym(loaded, "bernal_read_shapes"))
+        return reinterpret_cast<decltype(&bernal_read_shapes)>(symbol);
+  return nullptr;
+}
+
+/// Surfaces take more than triangles, and a deflection that somebody chose for small spheres may take the
+/// mesher minutes; of its own choice it needs a second or two for the largest of our files, of 1.8 MB.
+CageLimits limits_for_shapes(std::uint64_t file_size, bool deflection_chosen) {
+  CageLimits limits = cage_limits(file_size);
+  limits.memory = 10 * limits.memory;
+  limits.seconds = (deflection_chosen ? 60 : 2) * limits.seconds;
+  return limits;
 }
 
 std::optional<ShapeFormat> shape_format(const std::filesystem::path& file) {
@@ -37,16 +44,19 @@ std::optional<ShapeFormat> shape_format(const std::filesystem::path& file) {
 bool opencascade_reads(const std::filesystem::path& file) { return shape_format(file).has_value(); }
 
 ReadAttempt read_with_opencascade(const std::filesystem::path& file, double deflection) {
-  ReadAttempt result;
-  if (const auto reader = shape_reader()) {
-    reader(file, shape_format(file).value(), deflection, result);
-  } else {
-    result.failure =
-        "this bernal runs without OpenCASCADE, which reads STEP, IGES and BREP; install it and build again, "
-        "or "
-        "export STL";
-  }
-  return result;
+  return read_in_cage("OpenCASCADE", limits_for_shapes(std::filesystem::file_size(file), deflection > 0),
+                      [&] {
+                        ReadAttempt result;
+                        if (const auto reader = shape_reader()) {
+                          reader(file, shape_format(file).value(), deflection, result);
+                        } else {
+                          result.failure =
+                              "this bernal runs without OpenCASCADE, which reads STEP, IGES and BREP; "
+                              "install it and build again, "
+                              "or export STL";
+                        }
+                        return result;
+                      });
 }
 
 }  // namespace bernal::cad

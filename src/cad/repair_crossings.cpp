@@ -332,6 +332,11 @@ void unite_with_themselves(Mesh& mesh, const Monitor& monitor, Told& told) {
 Mended cut_out_crossings(Mesh mesh, const Monitor& monitor) {
   const Pairs pairs = self_intersecting_pairs(mesh);
   if (pairs.empty()) return {std::move(mesh), "nothing crosses"};
+  if (pairs.size() >= most_self_intersections(mesh)) {
+    std::string why =
+        fmt::format("{} pairs of faces cross, or more, which are too many to be cut out", pairs.size());
+    return {std::move(mesh), std::move(why)};
+  }
   const MeshTopology topology = topology_of(mesh);
   if (orient_consistently(mesh, topology) == none)
     return {std::move(mesh), "crossings stay: the surface is one-sided and has no inside"};

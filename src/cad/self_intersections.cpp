@@ -74,39 +74,52 @@ std::uint64_t count_degenerate(const Mesh& mesh) {
 
 namespace {
 
-/// Calls found(s, t) for each of the pairs, with their triangles.
+/// Calls found(s, t) for each of the pairs, with their triangles, until it says that they are enough.
 template <class Found>
 void for_each_intersecting_pair(const Mesh& mesh, const Found& found) {
   using Box = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const Corners*>;
+  struct Enough {};
   const TrianglePairs pairs(mesh);
   std::vector<Box> boxes;
   boxes.reserve(mesh.triangles.size());
   for (const Corners& t : mesh.triangles)
     if (!pairs.degenerate(t)) boxes.emplace_back(pairs.triangle(t).bbox(), &t);
 
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& s, const Box& t) {
-    throw_if_interrupted();
-    if (pairs.intersect(*s.handle(), *t.handle())) found(s.handle(), t.handle());
-  });
+  try {
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& s, const Box& t) {
+      throw_if_interrupted();
+      if (pairs.intersect(*s.handle(), *t.handle()) && !found(s.handle(), t.handle())) throw Enough();
+    });
+  } catch (const Enough&) {
+  }
 }
 
 }  // namespace
 
-std::uint64_t count_self_intersections(const Mesh& mesh) {
-  std::uint64_t count = 0;
-  for_each_intersecting_pair(mesh, [&](const Corners*, const Corners*) { ++count; });
-  return count;
+std::uint64_t most_self_intersections(const Mesh& mesh) { return 50'000 + 2 * mesh.triangles.size(); }
+
+bool intersects_itself(const Mesh& mesh) {
+  bool found = false;
+  for_each_intersecting_pair(mesh, [&](const Corners*, const Corners*) {
+    found = true;
+    return false;
+  });
+  return found;
 }
 
 std::vector<std::array<std::uint32_t, 2>> self_intersecting_pairs(const Mesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> pairs;
+  const std::uint64_t most = most_self_intersections(mesh);
   const auto number = [&](const Corners* t) { return static_cast<std::uint32_t>(t - mesh.triangles.data()); };
   for_each_intersecting_pair(mesh, [&](const Corners* s, const Corners* t) {
     const auto [low, high] = std::minmax({number(s), number(t)});
     pairs.push_back({low, high});
+    return pairs.size() < most;
   });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
+
+std::uint64_t count_self_intersections(const Mesh& mesh) { return self_intersecting_pairs(mesh).size(); }
 
 }  // namespace bernal::cad

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace bernal {
 namespace {
 
@@ -82,6 +84,21 @@ std::string plain_text(std::string_view text, std::size_t most) {
   }
   for (; k < characters.size(); ++k) plain += characters[k];
   return plain;
+}
+
+std::string with_escaped_controls(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    char32_t number = 0;
+    const std::size_t size = character_at(text, number);
+    const std::string_view character = text.substr(0, std::max<std::size_t>(1, size));
+    if (size > 0 && is_control(number))
+      result += fmt::format("\\u{:04X}", static_cast<std::uint32_t>(number));
+    else
+      result += character;
+    text.remove_prefix(character.size());
+  }
+  return result;
 }
 
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates) {

@@ -6,6 +6,8 @@
 #include "figures/contours.hpp"
 #include "figures/drawing.hpp"
 #include "figures/figure_files.hpp"
+#include "io/output_file.hpp"
+#include "io/staged_folder.hpp"
 
 namespace bernal {
 namespace {
@@ -23,23 +25,24 @@ void require_valid(const MapOptions& o) {
     refuse("a map has from 2 to 20,000 points along each axis");
 }
 
-/// Every so many-th point, and the last.
-std::vector<std::size_t> drawn(std::size_t points) {
-  const std::size_t every = (points + most_points_drawn - 1) / most_points_drawn;
-  std::vector<std::size_t> chosen;
-  for (std::size_t k = 0; k + 1 < points; k += every) chosen.push_back(k);
-  chosen.push_back(points - 1);
+/// Every so many-th point of an axis, and the last.
+struct Drawn {
+  explicit Drawn(std::size_t points)
+      : last(points - 1), every((points + most_points_drawn - 1) / most_points_drawn) {}
+  bool operator()(std::size_t k) const { return k == last || k % every == 0; }
+
+  std::size_t last, every;
+};
+
+std::vector<double> drawn_of(const std::vector<double>& points) {
+  std::vector<double> chosen;
+  const Drawn is_drawn(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (is_drawn(k)) chosen.push_back(points[k]);
   return chosen;
 }
 
-std::string drawing_of(const MapOptions& o, const Field& map, const WrittenMap& densest) {
-  const auto columns = drawn(map.xs.size()), rows = drawn(map.ys.size());
-  Field coarse;
-  for (const std::size_t j : columns) coarse.xs.push_back(map.xs[j]);
-  for (const std::size_t i : rows) {
-    coarse.ys.push_back(map.ys[i]);
-    for (const std::size_t j : columns) coarse.values.push_back(map.at(i, j));
-  }
+std::string drawing_of(const MapOptions& o, const Field& coarse, const WrittenMap& densest) {
   const auto [least, most] = std::ranges::minmax(coarse.values);
   Plot plot({88, 100, 648, 660}, {0, 1, "share w of b in the volume"},
             {o.least_ratio, o.most_ratio, "R: mean diameter d43 of b over that of a", Scale::logarithmic});
@@ -56,42 +59,50 @@ std::string drawing_of(const MapOptions& o, const Field& map, const WrittenMap& 
 
 }  // namespace
 
-WrittenMap write_map(const MapOptions& o, const std::filesystem::path& folder) {
+WrittenMap write_map(const MapOptions& o, const std::filesystem::path& folder) try {
   require_valid(o);
-  Field map{spread(0, 1, o.points - 1), spread(o.least_ratio, o.most_ratio, o.points - 1, true), {}};
-  std::vector<std::vector<Prediction>> rows(map.ys.size());
-  // About half a second's worth on a few cores.
-  const std::size_t rows_at_once =
-      std::max<std::size_t>(4, 16'000'000 / map.xs.size() / static_cast<std::size_t>(o.rods));
-  try {
-    const Interruptible listening(o.monitor);
-    for (std::size_t from = 0; from < rows.size(); from += rows_at_once) {
-      o.monitor.report(
-          {"map", static_cast<double>(from) / static_cast<double>(rows.size()), "of the ratios"});
-      parallel_for(from, std::min(rows.size(), from + rows_at_once), [&](std::size_t i) {
-        rows[i] = predict_shares({o.sigma_a, o.sigma_b, map.ys[i]}, map.xs, o.rods);
-      });
-    }
-  } catch (const Cancelled&) {
-    return {};
-  }
-
+  const std::vector<double> shares = spread(0, 1, o.points - 1),
+                            ratios = spread(o.least_ratio, o.most_ratio, o.points - 1, true);
+  const Drawn is_drawn(shares.size());
+  Field coarse{drawn_of(shares), drawn_of(ratios), {}};
   WrittenMap densest;
-  std::string csv = "ratio,share,phi\n";
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t j = 0; j < map.xs.size(); ++j) {
-      const Prediction& p = rows[i][j];
-      map.values.push_back(p.phi);
-      csv += fmt::format("{:.6g},{:.6g},{:.6f}\n", map.ys[i], map.xs[j], p.phi);
+  StagedFolder staged(folder);
+  OutputFile csv(staged.add("map.csv"));
+  csv.append("ratio,share,phi\n");
+  const auto tell = [&](std::size_t i, const std::vector<Prediction>& row) {
+    std::string lines;
+    for (std::size_t j = 0; j < shares.size(); ++j) {
+      const Prediction& p = row[j];
+      lines += fmt::format("{:.6g},{:.6g},{:.6f}\n", ratios[i], shares[j], p.phi);
+      if (is_drawn(i) && is_drawn(j)) coarse.values.push_back(p.phi);
       densest.error = std::max(densest.error, p.error);
       if (p.phi <= densest.phi) continue;
       densest.phi = p.phi;
-      densest.ratio = map.ys[i];
-      densest.share = map.xs[j];
+      densest.ratio = ratios[i];
+      densest.share = shares[j];
     }
+    csv.append(lines);
+  };
+
+  // About half a second's worth on a few cores.
+  const std::size_t rows_at_once =
+      std::max<std::size_t>(4, 16'000'000 / shares.size() / static_cast<std::size_t>(o.rods));
+  const Interruptible listening(o.monitor);
+  for (std::size_t from = 0; from < ratios.size(); from += rows_at_once) {
+    o.monitor.report(
+        {"map", static_cast<double>(from) / static_cast<double>(ratios.size()), "of the ratios"});
+    std::vector<std::vector<Prediction>> rows(std::min(rows_at_once, ratios.size() - from));
+    parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
+      rows[i] = predict_shares({o.sigma_a, o.sigma_b, ratios[from + i]}, shares, o.rods);
+    });
+    for (std::size_t i = 0; i < rows.size(); ++i) tell(from + i, rows[i]);
   }
-  densest.files = write_files({{"map.csv", csv}, {"map.svg", drawing_of(o, map, densest)}}, folder);
+  csv.close();
+  staged.write("map.svg", drawing_of(o, coarse, densest));
+  densest.files = staged.publish();
   return densest;
+} catch (const Cancelled&) {
+  return {};
 }
 
 }  // namespace bernal

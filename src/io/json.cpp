@@ -4,9 +4,11 @@
 #include <sys/resource.h>
 
 #include <optional>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
+#include "bernal/core/text.hpp"
 #include "bernal/domain/domain.hpp"
 #include "io/report.hpp"
 
@@ -186,7 +188,10 @@ std::uint64_t peak_memory_bytes() {
 
 /// Names may hold any bytes; a report that is not valid UTF-8 would be worse than a replaced character.
 std::string text_of(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::istringstream lines(json.dump(2, ' ', false, Json::error_handler_t::replace));
+  std::string text;
+  for (std::string line; std::getline(lines, line);) text += with_escaped_controls(line) + '\n';
+  return text;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/unit.hpp"
 #include "bernal/io/read_packing.hpp"
+#include "core/file_kind.hpp"
 #include "core/next_line.hpp"
 #include "io/write_csv.hpp"
 
@@ -39,9 +40,9 @@ std::string quoted(std::string_view text) {
 class Lines {
  public:
   explicit Lines(const std::filesystem::path& file) : file_(file.string()) {
-    if (std::filesystem::is_directory(file)) cannot_read("it is a folder");
-    if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
-      cannot_read("it is a pipe or a device");
+    const FileKind kind = kind_of_file(file);
+    if (kind == FileKind::folder) cannot_read("it is a folder");
+    if (kind == FileKind::other) cannot_read("it is a pipe or a device");
     errno = 0;
     stream_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
     stream_.open(file, std::ios::binary);

@@ -178,7 +178,7 @@ std::string html_of(const Report& report, std::string_view picture, std::string_
   std::string title =
       fmt::format("{} spheres in a {}", grouped(packing.spheres.size()), name_of(packing.domain));
   if (const auto* mesh = std::get_if<MeshFile>(&packing.scene.container))
-    title += ", " + mesh->file.filename().string();
+    title += ", " + plain_text(mesh->file.filename().string());
   Page page;
   page.add(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"

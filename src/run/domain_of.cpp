@@ -43,9 +43,10 @@ using Stamp = std::pair<std::uintmax_t, std::filesystem::file_time_type>;
 std::vector<Stamp> stamps_of(const MeshFile& mesh) {
   std::vector<Stamp> stamps;
   std::error_code unknown;
-  for (const std::filesystem::path& file : files_of(mesh))
-    stamps.emplace_back(std::filesystem::file_size(file, unknown),
-                        std::filesystem::last_write_time(file, unknown));
+  for (const std::filesystem::path& part : files_of(mesh))
+    for (const std::filesystem::path& file : files_of_part(part))
+      stamps.emplace_back(std::filesystem::file_size(file, unknown),
+                          std::filesystem::last_write_time(file, unknown));
   return stamps;
 }
 
@@ -53,7 +54,7 @@ std::vector<Stamp> stamps_of(const MeshFile& mesh) {
 void pin_files(MeshFile& mesh) {
   std::vector<std::string> digests;
   for (const std::filesystem::path& file : files_of(mesh)) {
-    const std::string digest = sha256_of(file);
+    const std::string digest = sha256_of_part(file);
     const std::size_t k = digests.size();
     if (k < mesh.sha256.size() && cad::in_lower_case(mesh.sha256[k]) != digest)
       throw OptionError("sha256", fmt::format("{} is not the file that is meant: its SHA-256 is {}; leave "
@@ -130,7 +131,7 @@ std::vector<std::filesystem::path> changed_files(const Scene& scene) {
   if (!mesh) return changed;
   const std::vector<std::filesystem::path> files = files_of(*mesh);
   for (std::size_t k = 0; k < std::min(files.size(), mesh->sha256.size()); ++k)
-    if (sha256_of(files[k]) != cad::in_lower_case(mesh->sha256[k])) changed.push_back(files[k]);
+    if (sha256_of_part(files[k]) != cad::in_lower_case(mesh->sha256[k])) changed.push_back(files[k]);
   return changed;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "core/file_kind.hpp"
 #include "core/next_line.hpp"
 #include "scene/toml_text.hpp"
 
@@ -52,9 +53,13 @@ bool begins_with_a_number(std::string_view line) { return bool(take_number(line)
 
 std::array<std::vector<double>, 2> read_columns(const std::filesystem::path& file,
                                                 const std::array<const schema::Key*, 2>& keys) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    throw Error(ErrorCode::bad_scene, fmt::format("there is no file {}", toml_string(file.string())));
+  if (const FileKind kind = kind_of_file(file); kind != FileKind::regular) {
+    const std::string name = toml_string(file.string());
+    throw Error(ErrorCode::bad_scene, kind == FileKind::missing ? fmt::format("there is no file {}", name)
+                                      : kind == FileKind::folder
+                                          ? fmt::format("{} is a folder", name)
+                                          : fmt::format("{} is a pipe or a device", name));
+  }
   std::ifstream in(file, std::ios::binary);
   if (!in) throw Error(ErrorCode::bad_scene, fmt::format("{} cannot be read", toml_string(file.string())));
 

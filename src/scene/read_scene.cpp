@@ -10,6 +10,7 @@
 #include <toml++/toml.h>
 
 #include "bernal/core/text.hpp"
+#include "core/file_kind.hpp"
 #include "scene/read_columns.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
@@ -347,11 +348,10 @@ Scene parse_scene(std::string_view toml, const std::filesystem::path& name) {
 Scene read_scene(const std::filesystem::path& file) {
   constexpr std::streamsize largest = 1 << 20;
   const auto fail = [&](const std::string& why) { throw Error(ErrorCode::bad_scene, why, {file.string()}); };
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) fail("no such scene file");
-  if (std::filesystem::is_directory(status)) fail("this is a folder, not a scene file");
-  if (!std::filesystem::is_regular_file(status)) fail("this is a pipe or a device, not a scene file");
+  const FileKind kind = kind_of_file(file);
+  if (kind == FileKind::missing) fail("no such scene file");
+  if (kind == FileKind::folder) fail("this is a folder, not a scene file");
+  if (kind == FileKind::other) fail("this is a pipe or a device, not a scene file");
   std::ifstream in(file, std::ios::binary);
   if (!in) fail("the scene file cannot be opened for reading");
   std::string text(largest + 1, '\0');

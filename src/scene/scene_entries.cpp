@@ -271,7 +271,8 @@ const std::vector<Entry>& container_entries() {
                     unless("\"solid\"", interior_key()),
                     names(&MeshFile::sha256, "sha256",
                           "of the file, then of every obstacle, as sha256sum prints it: with other bytes "
-                          "they are refused; a result names it")},
+                          "they are refused; a result names it; a glTF counts together with its buffers, "
+                          "cat part.gltf part.bin | sha256sum")},
            .rule = rule(mesh_rule)}),
       entry<Sphere>({.name = "sphere",
                      .help = "a sphere",

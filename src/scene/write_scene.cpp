@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
@@ -11,16 +12,12 @@
 namespace bernal {
 
 std::string toml_string(std::string_view text) {
-  std::string out = "\"";
+  std::string quoted;
   for (const char c : text) {
-    if (c == '"' || c == '\\')
-      out += {'\\', c};
-    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-      out += fmt::format("\\u{:04X}", static_cast<unsigned char>(c));
-    else
-      out += c;
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
   }
-  return out += '"';
+  return '"' + with_escaped_controls(quoted) + '"';
 }
 
 /// An inline table.

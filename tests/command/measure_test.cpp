@@ -132,7 +132,7 @@ TEST_F(Measure, TrustsNobody) {
         folder.write("spheres.csv", std::string("# unit: mm\nx,y,z,r\n") + spheres);
         const Ended measured = bernal({"measure", folder.path().string(), "--json"});
         if (measured.status == 2)
-          expect_refused_in_one_line(measured, {});
+          expect_refused_in_one_line(measured, {folder.path().string()});
         else
           EXPECT_EQ(measured.status, 0) << container << edge << spheres;
         const Ended verified = bernal({"verify", folder.path().string()});

@@ -51,6 +51,19 @@ TEST(Pack, WritesEveryFileOfTheContract) {
     EXPECT_NE(packed.err.find(word), std::string::npos) << word << "\nis not in:\n" << packed.err;
 }
 
+// A name may hold what moves a terminal's cursor or turns the direction of writing.
+TEST(Pack, TheNameOfAMeshReachesNoTerminalAndNoPageRaw) {
+  const Folder folder;
+  const std::string mesh = folder / "a\x1b[31m\xe2\x80\xaelts\xc2\x9b.stl";
+  std::filesystem::copy(BERNAL_DATA "/meshes/hopper.stl", mesh);
+  const Ended packed = bernal({"pack", mesh, "--unit", "m", "--diameter", "0.5", "-o", folder / "out"});
+  EXPECT_EQ(packed.status, 0) << packed.err;
+  for (const std::string& text : {packed.out, packed.err, text_of(folder / "out/report.html"),
+                                  text_of(folder / "out/scene.toml"), text_of(folder / "out/report.json")})
+    for (const char* raw : {"\x1b[31m", "\xe2\x80\xae", "\xc2\x9b"}) EXPECT_EQ(text.find(raw), text.npos);
+  EXPECT_EQ(bernal({"verify", folder / "out"}).status, 0);  // which finds the mesh by its name
+}
+
 /// The command called from within a folder.
 Ended bernal_in(const Folder& folder, const std::string& words) {
   return Process({"sh", "-c", "cd '" + folder.path().string() + "' && '" BERNAL_COMMAND "' " + words}).wait();

@@ -117,6 +117,12 @@ TEST(Usage, NoNameIsNoFile) {
                              {"--output", "is the name of no file"});
 }
 
+std::string sizes_from(const std::string& table) {
+  return "[container]\nkind = \"box\"\nsize = [9, 9, 9]\n[spheres]\ncount = 3\n"
+         "diameter = { distribution = \"table\", file = \"" +
+         table + "\" }\n";
+}
+
 // A reader of a pipe that nobody writes to would wait for ever, one of a device would never end.
 TEST(Usage, PipesAndDevicesAreNoInput) {
   const Folder folder;
@@ -130,7 +136,13 @@ TEST(Usage, PipesAndDevicesAreNoInput) {
                                                {"verify", file, "--scene", scene},
                                                {"measure", file}})
       expect_refused_in_one_line(bernal(words), {file});
+    folder.write("sizes.toml", sizes_from(file));
+    expect_refused_in_one_line(bernal({"explain", folder / "sizes.toml"}), {file, "is a pipe or a device"});
   }
+  folder.write("sizes.toml", sizes_from("."));
+  expect_refused_in_one_line(bernal({"explain", folder / "sizes.toml"}), {"is a folder"});
+  folder.write("sizes.toml", sizes_from("none.csv"));
+  expect_refused_in_one_line(bernal({"explain", folder / "sizes.toml"}), {"there is no file"});
 }
 
 }  // namespace usage_test

@@ -11,6 +11,7 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
+#include "cad/polygon_soup.hpp"
 #include "support/cad_formats.hpp"
 #include "support/folder.hpp"
 #include "support/fuzz.hpp"
@@ -61,16 +62,22 @@ std::vector<Format> formats() {
       " Geometry: 1, \"Geometry::part\", \"Mesh\" {\n  Vertices: *12 {\n   a: 0,0,0,1,0,0,0,1,0,0,0,1\n  }\n"
       "  PolygonVertexIndex: *12 {\n   a: 0,2,-2,0,1,-4,0,3,-3,1,2,-4\n  }\n }\n"
       " Model: 2, \"Model::part\", \"Mesh\" {\n }\n}\nConnections:  {\n C: \"OO\",1,2\n C: \"OO\",2,0\n}\n";
-  return {{"a.stl", test::as_text_stl(box)},
-          {"b.stl", test::as_binary_stl(box)},
-          {"c.obj", test::as_obj(box)},
-          {"d.ply", test::as_text_ply(box)},
-          {"e.off", test::as_off(box)},
-          {"f.3mf", test::as_3mf(box, "inch")},
-          {"g.gltf", test::as_gltf(box)},
-          {"h.dae", test::as_collada(box, 0.001, "Z_UP")},
-          {"i.amf", amf},
-          {"j.fbx", fbx}};
+  std::vector<Format> all = {{"a.stl", test::as_text_stl(box)},
+                             {"b.stl", test::as_binary_stl(box)},
+                             {"c.obj", test::as_obj(box)},
+                             {"d.ply", test::as_text_ply(box)},
+                             {"e.off", test::as_off(box)},
+                             {"f.3mf", test::as_3mf(box, "inch")},
+                             {"g.gltf", test::as_gltf(box)},
+                             {"h.dae", test::as_collada(box, 0.001, "Z_UP")},
+                             {"i.amf", amf},
+                             {"j.fbx", fbx}};
+  const std::filesystem::path meshes = std::filesystem::path(BERNAL_DATA) / "meshes";
+  if (cad::read_with_opencascade(meshes / "frustum.brep", 0).ok())
+    all.insert(all.end(), {{"k.brep", testing::text_of(meshes / "frustum.brep")},
+                           {"l.step", testing::text_of(meshes / "assembly_inch.step")},
+                           {"m.igs", testing::text_of(meshes / "drum_inch.igs")}});
+  return all;
 }
 
 /// The text between two tags of the model, changed before it is packed: else the checksum would refuse all.

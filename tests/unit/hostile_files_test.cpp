@@ -1,6 +1,7 @@
 // Files that crash, stop or mislead assimp 5.2.5, or take all memory there: each ends in one line with the
 // file's name, or as the part that it is.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -9,6 +10,7 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
+#include "bernal/core/random.hpp"
 #include "support/cad_formats.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"
@@ -70,7 +72,8 @@ class HostileFile : public ::testing::Test {
   testing::Folder folder;
 };
 
-constexpr const char* damaged = "cannot be read: a zip archive that is cut short or damaged";
+constexpr const char* damaged =
+    "cannot be read: a zip archive that is cut short or damaged; export it again, or as STL";
 
 TEST_F(HostileFile, FormatsThatNobodyTested) {
   for (const char* name :
@@ -101,25 +104,26 @@ TEST_F(HostileFile, LyingCountsOfOffAndPly) {
 
 TEST_F(HostileFile, ThreeMfThatIsAPartOfItself) {
   EXPECT_EQ(refusal_of_3mf(object_3mf(1, components({1})), item_1),
-            "cannot be read: one of its objects is a part of itself");
+            "cannot be read: one of its objects is a part of itself; export it again, or as STL");
   EXPECT_EQ(refusal_of_3mf(object_3mf(1, components({2})) + object_3mf(2, components({1})), item_1),
-            "cannot be read: one of its objects is a part of itself");
+            "cannot be read: one of its objects is a part of itself; export it again, or as STL");
   EXPECT_EQ(refusal_of_3mf(object_3mf(1, components({2})), item_1),
-            "cannot be read: it names an object that it does not hold");
+            "cannot be read: it names an object that it does not hold; export it again, or as STL");
 }
 
 TEST_F(HostileFile, ThreeMfThatDoublesItsComponents) {
   std::string objects = object_3mf(100, mesh_3mf(3));
   for (int id = 99; id >= 1; --id) objects += object_3mf(id, components({id + 1, id + 1}));
-  EXPECT_EQ(refusal_of_3mf(objects, item_1),
-            "cannot be read: its objects repeat each other up to more than 1e9 faces");
+  EXPECT_EQ(
+      refusal_of_3mf(objects, item_1),
+      "cannot be read: its objects repeat each other up to more than 1e9 faces; export it again, or as STL");
 }
 
 TEST_F(HostileFile, ThreeMfOfAThousandLevels) {
   std::string objects = object_3mf(2000, mesh_3mf(3));
   for (int id = 1999; id >= 1; --id) objects += object_3mf(id, components({id + 1}));
   EXPECT_EQ(refusal_of_3mf(objects, item_1),
-            "cannot be read: its objects are nested more than a thousand deep");
+            "cannot be read: its objects are nested more than a thousand deep; export it again, or as STL");
 }
 
 TEST_F(HostileFile, ThreeMfWithAnIndexBelowZeroInItsSecondObject) {
@@ -141,7 +145,8 @@ TEST_F(HostileFile, ArchivesThatAreDamagedOrLie) {
   std::string lying = good;  // in the directory: its size unpacked
   const std::size_t entry = good.rfind("PK\x01\x02");
   for (const std::size_t k : {24U, 25U, 26U, 27U}) lying[entry + k] = '\x7f';
-  EXPECT_EQ(refusal("lying.3mf", lying), "cannot be read: an archive whose directory cannot be true");
+  EXPECT_EQ(refusal("lying.3mf", lying),
+            "cannot be read: an archive whose directory cannot be true; export it again, or as STL");
 }
 
 TEST_F(HostileFile, ThreeMfWithoutAModel) {
@@ -152,7 +157,7 @@ TEST_F(HostileFile, ThreeMfWithoutAModel) {
   zipCloseFileInZip(zip);
   zipClose(zip, nullptr);
   EXPECT_EQ(refusal("part.3mf", testing::text_of(other / "part.3mf")),
-            "cannot be read: an archive without an entry that ends in .model");
+            "cannot be read: an archive without an entry that ends in .model; export it again, or as STL");
 }
 
 TEST_F(HostileFile, GltfOfFiftyThousandLevels) {
@@ -217,6 +222,23 @@ TEST_F(HostileFile, AFaceOfMoreCornersThanPartsHaveIsRefused) {
     face += fmt::format(" {}", i);
   }
   EXPECT_NE(refusal("comb.off", off + face + "\n").find("a face has 60000 corners"), std::string::npos);
+}
+
+// Each pair of its triangles crosses: nobody wants to know all of them.
+TEST_F(HostileFile, AFaceThatCrossesItselfEverywhereIsToldAsSuch) {
+  constexpr int corners = 2000;
+  Random random(1, stream(Stream::test));
+  std::string off = fmt::format("OFF\n{} 1 0\n", corners), face = std::to_string(corners);
+  for (int i = 0; i < corners; ++i) {
+    const double x = random.uniform(), y = random.uniform();
+    off += fmt::format("{} {} {}\n", x, y, 0.3 * x - 0.7 * y);
+    face += fmt::format(" {}", i);
+  }
+  const MeshReport report = read_mesh({.file = folder.write("star.off", off + face + "\n")}).report;
+  EXPECT_FALSE(report.usable());
+  EXPECT_GE(report.self_intersections, 50'000u);
+  EXPECT_LE(report.self_intersections, 50'000u + 2 * report.faces);
+  EXPECT_NE(fmt::format("{}", fmt::join(report.problems, "; ")).find("pairs or more"), std::string::npos);
 }
 
 // A fuzzer found it: the normal of a face overflows, and GMP ends the process (SIGFPE).

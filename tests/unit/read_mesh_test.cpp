@@ -152,9 +152,9 @@ TEST_F(ReadMesh, WrongIndicesAndInfiniteCoordinatesAreRefused) {
               std::string::npos)
         << face;
   EXPECT_EQ(refusal("corners.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n1e15 0 1 2\n"),
-            ": cannot be read: malformed or truncated");
+            ": cannot be read: malformed or truncated; export it again, or as STL");
   EXPECT_EQ(refusal("short.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
-            ": cannot be read: malformed or truncated");
+            ": cannot be read: malformed or truncated; export it again, or as STL");
   EXPECT_NE(
       refusal("short.ply",
               "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty "

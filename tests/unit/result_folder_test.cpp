@@ -8,6 +8,7 @@
 #include "bernal/io/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "cad/file_digest.hpp"
 #include "support/cad_formats.hpp"
 #include "support/meshes.hpp"
 #include "support/written_files.hpp"
@@ -79,6 +80,22 @@ TEST(ResultFolder, NamesTheDigestOfTheMeshAndSaysWhenItHasChanged) {
   // Whoever packs that scene again means the file as it was.
   const Error refused = error_of([&] { build(scene); });
   EXPECT_NE(std::string(refused.what()).find("is not the file that is meant"), std::string::npos);
+}
+
+TEST(ResultFolder, TheDigestOfAGltfIsThatOfItAndOfItsBuffers) {
+  const Folder folder;
+  const fs::path mesh = folder.write("part.gltf", test::as_gltf(box));
+  const fs::path numbers = folder.write("part.bin", test::as_gltf_numbers(box));
+  const fs::path both = folder.write("both", text_of(mesh) + text_of(numbers));
+  EXPECT_EQ(files_of_part(mesh), (std::vector<fs::path>{mesh, numbers}));
+  EXPECT_EQ(sha256_of_part(mesh), sha256_of(both));
+  EXPECT_EQ(sha256_of_part(numbers), sha256_of(numbers));
+
+  write_packing(packed_into(mesh), folder / "out");
+  EXPECT_TRUE(changed_files(read_scene(folder / "out/scene.toml")).empty());
+  const Mesh larger = test::box_mesh({0, 0, 0}, {3, 3, 3});
+  folder.write("part.bin", test::as_gltf_numbers(larger));
+  EXPECT_EQ(changed_files(read_scene(folder / "out/scene.toml")).size(), 1u);
 }
 
 TEST(ResultFolder, TheMeshIsFoundThroughLinks) {

@@ -52,6 +52,15 @@ TEST(PlainText, HoldsNothingThatMovesATerminal) {
   EXPECT_EQ(plain_text(""), "");
 }
 
+TEST(EscapedControls, StandAsNumbersAndAllElseAsItIs) {
+  EXPECT_EQ(with_escaped_controls("Gehäuse Ø 12 µm, 外壳, 🔩"), "Gehäuse Ø 12 µm, 外壳, 🔩");
+  EXPECT_EQ(with_escaped_controls("\x1b[2Ja\nb\x7f"), "\\u001B[2Ja\\u000Ab\\u007F");
+  EXPECT_EQ(with_escaped_controls("a\xc2\x9b"
+                                  "31m gpj.\xe2\x80\xaetrap"),
+            "a\\u009B31m gpj.\\u202Etrap");
+  EXPECT_EQ(with_escaped_controls("\xff\x9b"), "\xff\x9b");
+}
+
 TEST(PlainText, LeavesOutTheMiddleOfWhatIsLong) {
   const std::string text = std::string(1000, 'a') + std::string(1000, 'z');
   EXPECT_EQ(plain_text(text, 2000), text);

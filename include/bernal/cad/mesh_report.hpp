@@ -33,7 +33,7 @@ struct MeshReport {
   std::uint64_t misoriented_edges = 0;  ///< traversed twice in the same direction by their two faces
   std::uint64_t degenerate_faces = 0;
   std::uint64_t duplicate_faces = 0;
-  std::uint64_t self_intersections = 0;  ///< pairs of faces
+  std::uint64_t self_intersections = 0;  ///< pairs of faces, counted up to 50,000 and two for every face
   std::uint64_t components = 0;
   std::int64_t genus = 0;  ///< sum over components, where closed
   double volume = 0;       ///< enclosed, 0 unless usable

@@ -22,6 +22,9 @@ std::string remedy(std::string_view name, std::span<const std::string_view> cand
 /// "?". Of more than `most` bytes the middle is left out.
 std::string plain_text(std::string_view text, std::size_t most = 500);
 
+/// The text with those characters and marks written as TOML and JSON do: \u202E.
+std::string with_escaped_controls(std::string_view text);
+
 /// 28312 as "28,312".
 std::string grouped(std::uint64_t n);
 

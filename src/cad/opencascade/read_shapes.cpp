@@ -9,8 +9,6 @@
 #include <Bnd_Box.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_IGESModel.hxx>
-#include <Message.hxx>
-#include <Message_Messenger.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <ShapeFix_Shape.hxx>
 #include <Standard_Failure.hxx>
@@ -23,8 +21,6 @@
 #include <XCAFDoc_ShapeTool.hxx>
 #include <algorithm>
 #include <fstream>
-#include <iostream>
-#include <mutex>
 
 #include "cad/known_formats.hpp"
 #include "cad/opencascade/read_shapes.hpp"
@@ -47,31 +43,6 @@ struct Parts {
   std::vector<NamedShape> solids;
   std::vector<TopoDS_Shape> faces;
   FileFacts facts;
-};
-
-/// OpenCASCADE reports to its messenger and here and there to std::cout. Its readers also share state, so one
-/// reads at a time.
-class Quiet {
- public:
-  Quiet() : lock_(mutex()), printers_(Message::DefaultMessenger()->Printers()) {
-    Message::DefaultMessenger()->ChangePrinters().Clear();
-    standard_output_ = std::cout.rdbuf(nullptr);
-  }
-  ~Quiet() {
-    std::cout.rdbuf(standard_output_);
-    Message::DefaultMessenger()->ChangePrinters() = printers_;
-  }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex one;
-    return one;
-  }
-  std::lock_guard<std::mutex> lock_;
-  Message_SequenceOfPrinters printers_;
-  std::streambuf* standard_output_ = nullptr;
 };
 
 std::string name_of(const TDF_Label& label) {
@@ -353,7 +324,6 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
 
 void bernal_read_shapes(const std::filesystem::path& file, bernal::cad::ShapeFormat format, double deflection,
                         bernal::cad::ReadAttempt& result) {
-  const bernal::cad::Quiet quiet;
   try {
     result = bernal::cad::read(file, format, deflection);
   } catch (const Standard_Failure& failure) {
