@@ -1,4 +1,3 @@
-
 #include "cad/file_digest.hpp"
 
 #include <sys/types.h>
@@ -15,6 +14,7 @@
 
 #include "bernal/core/error.hpp"
 #include "cad/known_formats.hpp"
+#include "core/file_kind.hpp"
 
 namespace bernal {
 namespace {
@@ -46,15 +46,18 @@ std::string sha256_of(const fs::path& file) { return sha256_of_all(std::array{fi
 
 std::vector<fs::path> files_of_part(const fs::path& file) {
   std::vector<fs::path> files{file};
-  if (cad::extension_of(file) != ".gltf") return files;
+  if (cad::extension_of(file) != ".gltf" || kind_of_file(file) != FileKind::regular) return files;
   std::ifstream in(file, std::ios::binary);
-  const auto document = nlohmann::json::parse(in, nullptr, false);
+  using Event = nlohmann::json::parse_event_t;
+  const auto is_kept = [](int depth, Event event, const nlohmann::json& parsed) {
+    return event != Event::key || depth != 1 || parsed == "buffers";  // the rest may be large
+  };
+  const auto document = nlohmann::json::parse(in, is_kept, false);
   if (!document.is_object() || !document.contains("buffers")) return files;
   for (const auto& buffer : document["buffers"]) {
     if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
     const auto uri = buffer["uri"].get<std::string>();
-    std::error_code unknown;
-    if (uri.starts_with("data:") || !fs::is_regular_file(file.parent_path() / uri, unknown)) continue;
+    if (uri.starts_with("data:") || kind_of_file(file.parent_path() / uri) != FileKind::regular) continue;
     files.push_back(file.parent_path() / uri);
   }
   return files;

@@ -40,14 +40,21 @@ std::vector<std::filesystem::path> files_of(const MeshFile& mesh) {
 
 /// What a change of a file changes.
 using Stamp = std::pair<std::uintmax_t, std::filesystem::file_time_type>;
-std::vector<Stamp> stamps_of(const MeshFile& mesh) {
+std::vector<Stamp> stamps_of(const std::vector<std::filesystem::path>& files) {
   std::vector<Stamp> stamps;
   std::error_code unknown;
-  for (const std::filesystem::path& part : files_of(mesh))
-    for (const std::filesystem::path& file : files_of_part(part))
-      stamps.emplace_back(std::filesystem::file_size(file, unknown),
-                          std::filesystem::last_write_time(file, unknown));
+  for (const std::filesystem::path& file : files)
+    stamps.emplace_back(std::filesystem::file_size(file, unknown),
+                        std::filesystem::last_write_time(file, unknown));
   return stamps;
+}
+
+/// Those beside the parts included.
+std::vector<std::filesystem::path> all_files_of(const MeshFile& mesh) {
+  std::vector<std::filesystem::path> all;
+  for (const std::filesystem::path& part : files_of(mesh))
+    for (std::filesystem::path& file : files_of_part(part)) all.push_back(std::move(file));
+  return all;
 }
 
 /// Notes the digests, or holds the files to those that stand there.
@@ -76,10 +83,11 @@ struct MakeDomain {
     const Unit unit = scene.unit;
     try {
       const double smallest = radii_of(scene)->quantile(rare);
-      const std::vector<Stamp> before = stamps_of(mesh);
+      const std::vector<std::filesystem::path> files = all_files_of(mesh);
+      const std::vector<Stamp> before = stamps_of(files);
       ImportedMesh imported = read_container_mesh(mesh, {unit, smallest});
       pin_files(mesh);
-      if (stamps_of(mesh) != before)
+      if (stamps_of(files) != before)
         throw Error(ErrorCode::bad_mesh, "has changed while it was read", {mesh.file.string()});
       notes = in_words(imported.report, mesh, unit);
       if (imported.report.deflection > 0) mesh.deflection = imported.report.deflection;

@@ -139,6 +139,14 @@ TEST(Usage, PipesAndDevicesAreNoInput) {
     folder.write("sizes.toml", sizes_from(file));
     expect_refused_in_one_line(bernal({"explain", folder / "sizes.toml"}), {file, "is a pipe or a device"});
   }
+  // A glTF names other files, so that it is looked into before a reader has refused it.
+  std::filesystem::create_symlink(pipe, folder / "pipe.gltf");
+  std::filesystem::create_symlink("/dev/zero", folder / "zero.gltf");
+  for (const char* name : {"pipe.gltf", "zero.gltf"}) {
+    folder.write("part.toml", std::string("unit = \"mm\"\n[container]\nkind = \"mesh\"\nfile = \"") + name +
+                                  "\"\n[spheres]\ncount = 3\nradius = 1\n");
+    expect_refused_in_one_line(bernal({"explain", folder / "part.toml"}), {name, "is a pipe or a device"});
+  }
   folder.write("sizes.toml", sizes_from("."));
   expect_refused_in_one_line(bernal({"explain", folder / "sizes.toml"}), {"is a folder"});
   folder.write("sizes.toml", sizes_from("none.csv"));
