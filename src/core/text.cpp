@@ -50,6 +50,21 @@ std::size_t character_at(std::string_view text, char32_t& number) {
   return number < least[size] || number > 0x10ffff || surrogate ? 0 : size;
 }
 
+/// The first character of a text, which is taken off: `valid` if it is one of UTF-8, else a single byte.
+struct Character {
+  std::string_view bytes;
+  char32_t number = 0;
+  bool valid = false;
+};
+Character take_character(std::string_view& text) {
+  Character taken;
+  const std::size_t size = character_at(text, taken.number);
+  taken.valid = size > 0;
+  taken.bytes = text.substr(0, taken.valid ? size : 1);
+  text.remove_prefix(taken.bytes.size());
+  return taken;
+}
+
 /// Moves a terminal's cursor, turns the direction of writing, or ends a line.
 bool is_control(char32_t c) {
   const auto within = [c](char32_t first, char32_t last) { return c >= first && c <= last; };
@@ -63,11 +78,9 @@ std::string plain_text(std::string_view text, std::size_t most) {
   std::vector<std::string_view> characters;
   std::size_t bytes = 0;
   while (!text.empty()) {
-    char32_t number = 0;
-    const std::size_t size = character_at(text, number);
-    characters.push_back(size == 0 ? "?" : is_control(number) ? " " : text.substr(0, size));
+    const Character next = take_character(text);
+    characters.push_back(!next.valid ? "?" : is_control(next.number) ? " " : next.bytes);
     bytes += characters.back().size();
-    text.remove_prefix(std::max<std::size_t>(1, size));
   }
   std::string plain;
   std::size_t k = 0;
@@ -89,14 +102,11 @@ std::string plain_text(std::string_view text, std::size_t most) {
 std::string with_escaped_controls(std::string_view text) {
   std::string result;
   while (!text.empty()) {
-    char32_t number = 0;
-    const std::size_t size = character_at(text, number);
-    const std::string_view character = text.substr(0, std::max<std::size_t>(1, size));
-    if (size > 0 && is_control(number))
-      result += fmt::format("\\u{:04X}", static_cast<std::uint32_t>(number));
+    const Character next = take_character(text);
+    if (next.valid && is_control(next.number))
+      result += fmt::format("\\u{:04X}", static_cast<std::uint32_t>(next.number));
     else
-      result += character;
-    text.remove_prefix(character.size());
+      result += next.bytes;
   }
   return result;
 }
