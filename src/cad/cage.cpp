@@ -17,11 +17,9 @@
 #include <cstring>
 #include <fstream>
 #include <new>
-#include <optional>
 #include <utility>
 
 #include "bernal/core/error.hpp"
-#include "cad/attempt_file.hpp"
 #include "core/parallel.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -36,6 +34,8 @@ constexpr double gibi = 1024.0 * 1024 * 1024;
 constexpr double slower = 20;
 /// Between looks at whether the user wants to stop.
 constexpr int look_every_ms = 50;
+/// Stands at the end of what is whole.
+constexpr std::uint64_t end_mark = 0x6265726E616C2121;
 
 class Descriptor {
  public:
@@ -69,14 +69,9 @@ void set_limit(int resource, double most) {
   setrlimit(static_cast<__rlimit_resource>(resource), &bound);
 }
 
-std::string memory_taken(std::string_view reader, const CageLimits& limits) {
-  return fmt::format("{} wants more than {:.3g} GiB of memory for it", reader,
-                     static_cast<double>(limits.memory) / gibi);
-}
-
 /// What the child does.
-[[noreturn]] void read_as_child(std::string_view reader, const CageLimits& limits, int result,
-                                std::uint64_t addresses, const std::function<ReadAttempt()>& read) {
+[[noreturn]] void work_as_child(const CageLimits& limits, int result, std::uint64_t addresses,
+                                const std::function<void(PlainWriter&)>& work) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGXFSZ, SIGTERM, SIGPIPE})
     ::signal(signal, SIG_DFL);
@@ -91,34 +86,27 @@ std::string memory_taken(std::string_view reader, const CageLimits& limits) {
 #else
   static_cast<void>(addresses);
 #endif
+  stay_in_this_thread();
   int code = 0;
   try {
-    ReadAttempt attempt;
-    try {
-      attempt = read();
-      if (attempt.failure.find("bad_alloc") != std::string::npos)
-        attempt = {{}, memory_taken(reader, limits), {}};
-    } catch (const std::bad_alloc&) {
-      attempt = {{}, memory_taken(reader, limits), {}};
-    } catch (const std::exception& error) {
-      attempt = {{}, error.what(), {}};
-    }
-    write_attempt(attempt, result);
+    PlainWriter out(result);
+    work(out);
+    out.number(end_mark);
   } catch (...) {
     code = 1;
   }
   _exit(code);
 }
 
-std::string what_befell(std::string_view reader, const CageLimits& limits, int status) {
+std::string what_befell(std::string_view who, const CageLimits& limits, int status) {
   const auto too_long = [&] {
-    return fmt::format("{} takes longer than {:.0f} s over it", reader, limits.seconds);
+    return fmt::format("{} takes longer than {:.0f} s over it", who, limits.seconds);
   };
-  if (!WIFSIGNALED(status)) return memory_taken(reader, limits);
+  if (!WIFSIGNALED(status)) return memory_taken(who, limits);
   if (WTERMSIG(status) == SIGXCPU) return too_long();
-  if (WTERMSIG(status) == SIGXFSZ) return memory_taken(reader, limits);
-  if (WTERMSIG(status) == SIGKILL) return fmt::format("{} was killed over it", reader);
-  return fmt::format("{} crashes on it ({})", reader, strsignal(WTERMSIG(status)));
+  if (WTERMSIG(status) == SIGXFSZ) return memory_taken(who, limits);
+  if (WTERMSIG(status) == SIGKILL) return fmt::format("{} was killed over it", who);
+  return fmt::format("{} crashes on it ({})", who, strsignal(WTERMSIG(status)));
 }
 
 int status_at_end_of(pid_t child) {
@@ -129,16 +117,16 @@ int status_at_end_of(pid_t child) {
 
 }  // namespace
 
-CageLimits cage_limits(std::uint64_t file_size) {
-  const auto size = static_cast<double>(file_size);
-  return {static_cast<std::uint64_t>(gibi + 100 * size), 5 + size / 1e6};
+std::string memory_taken(std::string_view who, const CageLimits& limits) {
+  return fmt::format("{} wants more than {:.3g} GiB of memory for it", who,
+                     static_cast<double>(limits.memory) / gibi);
 }
 
-ReadAttempt read_in_cage(std::string_view reader, const CageLimits& limits,
-                         const std::function<ReadAttempt()>& read) {
+std::string run_in_cage(std::string_view who, const CageLimits& limits,
+                        const std::function<void(PlainWriter&)>& work,
+                        const std::function<void(PlainReader&)>& take) {
   const auto refuse = [&](std::string_view what) {
-    throw Error(ErrorCode::bad_mesh,
-                fmt::format("no process for {}: {} ({})", reader, what, strerror(errno)));
+    throw Error(ErrorCode::bad_mesh, fmt::format("no process for {}: {} ({})", who, what, strerror(errno)));
   };
   Descriptor result(memfd_create("bernal", MFD_CLOEXEC));
   int ends[2];
@@ -148,7 +136,7 @@ ReadAttempt read_in_cage(std::string_view reader, const CageLimits& limits,
   const std::uint64_t addresses = addresses_in_use();
   const pid_t child = fork();
   if (child < 0) refuse("fork failed");
-  if (child == 0) read_as_child(reader, limits, result.number(), addresses, read);
+  if (child == 0) work_as_child(limits, result.number(), addresses, work);
   there.close();
 
   // The pipe closes when the child ends.
@@ -170,10 +158,14 @@ ReadAttempt read_in_cage(std::string_view reader, const CageLimits& limits,
   }
   if (late) kill(child, SIGKILL);
   const int status = status_at_end_of(child);
-  if (late)
-    return {{}, fmt::format("{} takes longer than {:.0f} s over it", reader, slower * limits.seconds), {}};
-  std::optional<ReadAttempt> attempt = read_attempt(result.number());
-  return attempt ? std::move(*attempt) : ReadAttempt{{}, what_befell(reader, limits, status), {}};
+  if (late) return fmt::format("{} takes longer than {:.0f} s over it", who, slower * limits.seconds);
+  try {
+    PlainReader in(result.number());
+    take(in);
+    if (in.number() == end_mark) return {};
+  } catch (const PlainReader::Cut&) {
+  }
+  return what_befell(who, limits, status);
 }
 
 }  // namespace bernal::cad

@@ -1,27 +1,29 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <string_view>
 
-#include "cad/polygon_soup.hpp"
+#include "cad/plain_file.hpp"
 
 namespace bernal::cad {
 
-/// What a reader may take.
+/// What a child process may take.
 struct CageLimits {
   std::uint64_t memory;  ///< bytes, beside what this process has already
   double seconds;        ///< of processor time
 };
 
-/// For a file of so many bytes: 1 GiB and a hundred times its size; 5 s and one more for every megabyte.
-CageLimits cage_limits(std::uint64_t file_size);
+/// Lets `work` run in a child process, so that what crashes, loops or takes all memory costs no more than a
+/// line, and `take` read what it wrote. Returns what befell the child, "assimp crashes on it (Aborted)" for
+/// instance, or nothing. In the child standard streams are closed, and one thread runs. Throws Cancelled
+/// where an Interruptible says so, and whatever keeps the child from starting as Error{bad_mesh}. Cost beside
+/// `work`: a few milliseconds, and a copy of what is handed over.
+std::string run_in_cage(std::string_view who, const CageLimits& limits,
+                        const std::function<void(PlainWriter&)>& work,
+                        const std::function<void(PlainReader&)>& take);
 
-/// Lets `read` run in a child process, so that a reader that crashes, loops or takes all memory on a file
-/// costs no more than a line: `failure` then says which reader it was and what befell it. In the child
-/// standard streams are closed, and one thread runs. Throws Cancelled where an Interruptible says so, and
-/// whatever keeps the child from starting as Error{bad_mesh}. Cost beside `read`: a few milliseconds, and a
-/// copy of the soup.
-ReadAttempt read_in_cage(std::string_view reader, const CageLimits& limits,
-                         const std::function<ReadAttempt()>& read);
+/// "assimp wants more than 1 GiB of memory for it"
+std::string memory_taken(std::string_view who, const CageLimits& limits);
 
 }  // namespace bernal::cad

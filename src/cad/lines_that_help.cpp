@@ -9,8 +9,10 @@
 #include <optional>
 
 #include "bernal/cad/read_mesh.hpp"
+#include "cad/caged_repair.hpp"
 #include "cad/close_seams.hpp"
 #include "cad/defects.hpp"
+#include "cad/self_intersections.hpp"
 #include "cad/wrap.hpp"
 
 namespace bernal {
@@ -194,11 +196,16 @@ std::vector<Line> to_close_the_widest(const MeshFile& options, const ImportedMes
            }}};
 }
 
-/// Whether the surface has an inside that can be wrapped: tried coarsely, in seconds.
+/// Of processor time, that a repair may take to be offered.
+constexpr double seconds_to_try = 10;
+
+/// Whether the surface has an inside that can be wrapped: tried coarsely.
 bool can_be_wrapped(const Mesh& mesh, double diagonal) {
   constexpr double coarse = 0.05, offset_over_alpha = 1.0 / 30;
-  const std::string done = cad::wrap(mesh, coarse * diagonal, offset_over_alpha * coarse * diagonal).done;
-  return done.starts_with("wrapped from inside");
+  const cad::Mended tried = cad::mend_in_cage(mesh, seconds_to_try, [&] {
+    return cad::wrap(mesh, coarse * diagonal, offset_over_alpha * coarse * diagonal);
+  });
+  return tried.done.starts_with("wrapped from inside");
 }
 
 }  // namespace
@@ -208,11 +215,14 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
   constexpr std::size_t most_faces = 500000, enough = 2;
   std::vector<std::string> lines;
   if (as_it_is.mesh.triangles.empty() || as_it_is.mesh.triangles.size() > most_faces) return lines;
+  if (as_it_is.report.self_intersections >= cad::most_self_intersections(as_it_is.mesh)) return lines;
+  ImportFor to_try = purpose;
+  to_try.repair_seconds = std::min(to_try.repair_seconds, seconds_to_try);
   const auto helps = [&](const Line& line) {
     MeshFile tried = options;
     line.say(tried);
     try {
-      return read_mesh(tried, purpose).report.usable();
+      return read_mesh(tried, to_try).report.usable();
     } catch (const Error&) {
       return false;
     }

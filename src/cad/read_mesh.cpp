@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "cad/caged_repair.hpp"
 #include "cad/close_seams.hpp"
 #include "cad/defects.hpp"
 #include "cad/diagnose_mesh.hpp"
@@ -173,8 +174,9 @@ std::string_view remedy(const MeshReport& report) {
 
 /// The repairs that are asked for, and what they did.
 struct Repairs {
-  Repairs(const MeshFile& options, Mesh& surface, std::vector<std::string>& phrases)
+  Repairs(const MeshFile& options, double most_seconds, Mesh& surface, std::vector<std::string>& phrases)
       : wanted(options.repair),
+        seconds(most_seconds),
         largest_hole(options.largest_hole.value_or(std::numeric_limits<double>::infinity())),
         mesh(surface),
         done(phrases) {}
@@ -183,9 +185,11 @@ struct Repairs {
     if (std::ranges::find(wanted, repair) == wanted.end() || mesh.triangles.empty()) return;
     if (repair == Repair::wrap && cad::topology_of(mesh).closed() && !cad::intersects_itself(mesh))
       return;  // it is a wall
-    cad::Mended mended = repair == Repair::holes  ? cad::close_holes(mesh, largest_hole)
-                         : repair == Repair::wrap ? cad::wrap(mesh)
-                                                  : cad::cut_out_crossings(mesh);
+    cad::Mended mended = cad::mend_in_cage(mesh, seconds, [&] {
+      return repair == Repair::holes  ? cad::close_holes(mesh, largest_hole)
+             : repair == Repair::wrap ? cad::wrap(mesh)
+                                      : cad::cut_out_crossings(mesh);
+    });
     done.push_back(mended.done);
     if (mended.mesh.triangles == mesh.triangles && mended.mesh.vertices == mesh.vertices) return;
     any = true;
@@ -201,7 +205,7 @@ struct Repairs {
   }
 
   const std::vector<Repair>& wanted;
-  double largest_hole;
+  double seconds, largest_hole;
   Mesh& mesh;
   std::vector<std::string>& done;
   bool any = false;  ///< it is no longer the file's surface
@@ -292,7 +296,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   if (options.largest_hole && std::ranges::find(options.repair, Repair::holes) == options.repair.end())
     throw OptionError("largest_hole", "needs repair = [\"holes\"] beside it, which closes them");
   const bool cuts = !options.cap.empty() || options.fill_level;
-  Repairs repairs(options, mesh, done);
+  Repairs repairs(options, purpose.repair_seconds, mesh, done);
   // An opening that a plane is to close is no hole.
   if (!cuts) repairs.apply(Repair::holes);
   repairs.apply(Repair::self_intersections);

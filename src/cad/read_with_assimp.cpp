@@ -12,7 +12,7 @@
 #include <iterator>
 #include <sstream>
 
-#include "cad/cage.hpp"
+#include "cad/caged_reader.hpp"
 #include "cad/counted.hpp"
 #include "cad/file_facts.hpp"
 #include "cad/known_formats.hpp"

@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-#include "cad/cage.hpp"
+#include "cad/caged_reader.hpp"
 #include "cad/file_facts.hpp"
 #include "cad/known_formats.hpp"
 #include "cad/polygon_soup.hpp"

@@ -2,7 +2,7 @@
 
 #include <initializer_list>
 
-#include "cad/cage.hpp"
+#include "cad/caged_reader.hpp"
 #include "cad/known_formats.hpp"
 #include "cad/opencascade/read_shapes.hpp"
 

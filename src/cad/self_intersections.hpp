@@ -13,8 +13,8 @@ std::uint64_t count_degenerate(const Mesh& mesh);
 
 /// Pairs of triangles that meet in more than the vertices and edges that they share by index, in order, and
 /// no more than `most_self_intersections`: a mesh of as many is past counting, and past cutting. Predicates
-/// are exact, degenerate triangles are left out. Cost: O(T log² T) and the pairs whose boxes overlap; 20 µs
-/// for each that meets in a plane.
+/// are exact, degenerate triangles are left out. Cost: O(T log² T) and the pairs whose boxes overlap; 0.06 µs
+/// for each that a plane is proven to part in double precision, 20 µs for each that meets in a plane.
 std::vector<std::array<std::uint32_t, 2>> self_intersecting_pairs(const Mesh& mesh);
 std::uint64_t count_self_intersections(const Mesh& mesh);
 std::uint64_t most_self_intersections(const Mesh& mesh);

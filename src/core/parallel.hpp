@@ -26,6 +26,10 @@ class Interruptible {
 /// monitor says stop. Cost: some ns.
 void throw_if_interrupted();
 
+/// From now on the loops of this process run in the thread that begins them: for a child process, which has
+/// no other one.
+void stay_in_this_thread();
+
 /// Calls body(first, last) for ranges that make up [0, n), of at most `grain` where that is possible. Returns
 /// when all have returned; what one throws passes through.
 void parallel_ranges(std::size_t n, std::size_t grain,

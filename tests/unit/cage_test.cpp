@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bernal/core/monitor.hpp"
-#include "cad/cage.hpp"
+#include "cad/caged_reader.hpp"
 #include "core/parallel.hpp"
 
 namespace bernal {

@@ -241,6 +241,33 @@ TEST_F(HostileFile, AFaceThatCrossesItselfEverywhereIsToldAsSuch) {
   EXPECT_NE(fmt::format("{}", fmt::join(report.problems, "; ")).find("pairs or more"), std::string::npos);
 }
 
+// Fewer pairs cross than are past counting, but thousands in one plane, where exact numbers grow.
+TEST_F(HostileFile, ARepairThatTakesTooLongIsGivenUp) {
+  constexpr int corners = 100;
+  Random random(2, stream(Stream::test));
+  std::string off = fmt::format("OFF\n{} {} 0\n", 2 * corners, corners + 2);
+  for (int i = 0; i < corners; ++i) {
+    const double x = random.uniform(), y = random.uniform();
+    for (const int z : {0, 1}) off += fmt::format("{} {} {}\n", x, y, 0.3 * x - 0.7 * y + z);
+  }
+  for (const int z : {1, 0}) {
+    off += std::to_string(corners);
+    for (int i = 0; i < corners; ++i) off += fmt::format(" {}", 2 * (z == 1 ? i : corners - 1 - i) + z);
+    off += "\n";
+  }
+  for (int i = 0; i < corners; ++i) {
+    const int next = (i + 1) % corners;
+    off += fmt::format("4 {} {} {} {}\n", 2 * i, 2 * next, 2 * next + 1, 2 * i + 1);
+  }
+  const MeshFile part{.file = folder.write("prism.off", off), .repair = {Repair::self_intersections}};
+  const ImportedMesh given_up = read_mesh(part, {.repair_seconds = 1});
+  EXPECT_FALSE(given_up.report.usable());
+  EXPECT_FALSE(given_up.report.is_repaired);
+  EXPECT_NE(fmt::format("{}", fmt::join(given_up.report.repairs, "; "))
+                .find("not repaired: CGAL takes longer than 1 s over it"),
+            std::string::npos);
+}
+
 // A fuzzer found it: the normal of a face overflows, and GMP ends the process (SIGFPE).
 TEST_F(HostileFile, ACoordinateWhoseProductsOverflowIsRefused) {
   for (const char* far : {"1e308", "-1e200", "1e51"})

@@ -21,6 +21,8 @@ struct ImportFor {
   std::optional<Unit> unit = {};  ///< of the coordinates that are made; the file's own if absent
   /// Of the spheres, in that unit: true surfaces are tessellated to within a fiftieth of it. 0: unknown.
   double smallest_radius = 0;
+  /// Of processor time, for each of the repairs that the options ask for: one that takes longer is given up.
+  double repair_seconds = 600;
 };
 
 /// What the options say is at odds with the file; `option` is the member's name, "unit" or "solids".

@@ -1,0 +1,13 @@
+#pragma once
+#include <functional>
+
+#include "cad/mended.hpp"
+
+namespace bernal::cad {
+
+/// Lets `mend` repair the mesh in a child process, within so many seconds of processor time and 4 GiB of
+/// memory and 20 kB a face: CGAL's exact numbers grow without a bound where many faces cross in a plane, and
+/// it looks at no monitor. What it could not mend within these comes back as it was, and is told.
+Mended mend_in_cage(const Mesh& mesh, double seconds, const std::function<Mended()>& mend);
+
+}  // namespace bernal::cad
