@@ -244,12 +244,14 @@ void print(const Packing& packing, const Measurements& measured) {
   if (measured.sizes) print_sizes(packing, *measured.sizes);
 }
 
-Measurements measured_of(const Packing& packing, const MeasureCall& call) try {
+Measurements measured_of(const Packing& packing, const MeasureCall& call) {
   const std::unique_ptr<SizeDistribution> asked = radii_of(packing.scene);
-  return measure(packing.spheres, packing.domain,
-                 {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)}, call.options);
-} catch (const Error& error) {
-  throw Error(error.code(), error.what(), {(call.folder / "spheres.csv").string()});
+  try {
+    return measure(packing.spheres, packing.domain,
+                   {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)}, call.options);
+  } catch (const Error& error) {
+    throw Error(error.code(), error.what(), {(call.folder / "spheres.csv").string()});
+  }
 }
 
 int measure_folder(const MeasureCall& call) {

@@ -74,6 +74,12 @@ bool is_control(char32_t c) {
 
 }  // namespace
 
+bool is_utf8(std::string_view text) {
+  while (!text.empty())
+    if (!take_character(text).valid) return false;
+  return true;
+}
+
 std::string plain_text(std::string_view text, std::size_t most) {
   std::vector<std::string_view> characters;
   std::size_t bytes = 0;

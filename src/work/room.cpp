@@ -33,6 +33,24 @@ std::vector<Obstacle> obstacles_near(const Surroundings& surroundings, const Vec
   return obstacles;
 }
 
+/// Of the facets nearer than `reach` all, or at least the nearest of those that are looked at: around a place
+/// in a fine mesh a step reaches many thousands.
+std::vector<NearFacet> nearest_facets(const Container& container, const Vector<3>& place, double reach) {
+  constexpr int most_tries = 12;
+  std::vector<NearFacet> facets;
+  double few = 0, many = reach;
+  for (int k = 0; k < most_tries; ++k) {
+    const double tried = k == 0 ? reach : 0.5 * (few + many);
+    facets.clear();
+    const bool all_of_them = container.few_facets_near(place, tried, 4 * most_obstacles, facets);
+    if (all_of_them && (tried == reach || facets.size() >= most_obstacles)) return facets;
+    (all_of_them ? few : many) = tried;
+  }
+  facets.clear();  // hundreds are as near as each other
+  container.facets_near(place, reach, facets);
+  return facets;
+}
+
 /// The step, in units of its greatest length, that leaves the most room beyond what there is.
 Vector<3> uphill(const std::vector<Obstacle>& obstacles, double room, double step) {
   std::vector<HalfSpace<4>> spaces;
@@ -78,9 +96,7 @@ Surroundings walls_of(const Container& container) {
       obstacles.push_back({Vector<3>::Zero(), clearance});
       return;
     }
-    std::vector<NearFacet> facets;
-    container.facets_near(place, reach, facets);
-    for (const NearFacet& near : facets) {
+    for (const NearFacet& near : nearest_facets(container, place, reach)) {
       if (near.facet.kind == Facet::Kind::cylinder || near.facet.kind == Facet::Kind::sphere) {
         append_tangents(near.facet, place, obstacles);
         continue;
@@ -99,6 +115,17 @@ Room room_at(const Vector<3>& place, double reach, const Surroundings& surroundi
   return {place, reach};
 }
 
+namespace {
+
+/// The same, sooner where the room is about as large as expected: what is farther away is not asked for.
+Room room_at(const Vector<3>& place, double reach, const Surroundings& surroundings, double expected) {
+  for (double near = 2 * expected; near > 0 && near < reach; near *= 4)
+    if (const Room room = room_at(place, near, surroundings); room.radius < near) return room;
+  return room_at(place, reach, surroundings);
+}
+
+}  // namespace
+
 Room climb(Room from, double enough, double step, const Surroundings& surroundings) {
   const double least = least_step * std::max(step, from.radius);
   const auto leads_on = [&] {
@@ -110,8 +137,8 @@ Room climb(Room from, double enough, double step, const Surroundings& surroundin
     const std::vector<Obstacle> obstacles = obstacles_near(surroundings, from.place, reach);
     const bool beyond = std::ranges::any_of(obstacles, [](const Obstacle& o) { return o.away.isZero(0); });
     if (obstacles.empty() || beyond) return from;
-    const Room to =
-        room_at(from.place + step * uphill(obstacles, from.radius, step), reach + 2 * step, surroundings);
+    const Room to = room_at(from.place + step * uphill(obstacles, from.radius, step), reach + 2 * step,
+                            surroundings, from.radius);
     if (to.radius > from.radius) {
       from = to;
       step *= longer;
@@ -135,7 +162,7 @@ Room slide(Room from, double room, const Vector<3>& direction, double step,
     const Vector<3> way = straight > hardly * step
                               ? Vector<3>(straight * direction)
                               : Vector<3>(step * along(direction, obstacles, room, step));
-    const Room to = room_at(from.place + way, reach, surroundings);
+    const Room to = room_at(from.place + way, reach, surroundings, room);
     if (way.dot(direction) > least && to.radius >= room)
       from = to;
     else

@@ -8,6 +8,8 @@ namespace bernal {
 namespace {
 
 constexpr int probes = 200, most_starts = 30;
+/// So many spheres take about a tenth of a second.
+constexpr std::size_t milestone_every = 64;
 /// In skins: what a sphere is to be clear by, a little more than the bed asks for.
 constexpr double clear = 1.01;
 /// In radii: what places that only touch may seem to overlap the wall by, before they are made exact.
@@ -113,7 +115,7 @@ std::size_t SnugPlaces::place_waiting(double packing_fraction) {
     }
     work_.bed().insert(*place, r, tag);
     supply.take(waiting);
-    ++placed;
+    if (++placed % milestone_every == 0) work_.milestone("insert");
   }
   return placed;
 }

@@ -52,6 +52,13 @@ TEST(PlainText, HoldsNothingThatMovesATerminal) {
   EXPECT_EQ(plain_text(""), "");
 }
 
+TEST(IsUtf8, TellsWhatPlainTextWouldReplace) {
+  for (const char* good : {"", "part?.stl", "Gehäuse Ø 12 µm, 外壳, 🔩", "\x1b[2J"})
+    EXPECT_TRUE(is_utf8(good)) << good;
+  for (const char* bad : {"\xff", "a\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "?\xc3"})
+    EXPECT_FALSE(is_utf8(bad));
+}
+
 TEST(EscapedControls, StandAsNumbersAndAllElseAsItIs) {
   EXPECT_EQ(with_escaped_controls("Gehäuse Ø 12 µm, 外壳, 🔩"), "Gehäuse Ø 12 µm, 外壳, 🔩");
   EXPECT_EQ(with_escaped_controls("\x1b[2Ja\nb\x7f"), "\\u001B[2Ja\\u000Ab\\u007F");

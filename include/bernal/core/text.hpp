@@ -16,10 +16,11 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
 /// `; known: "count", "radius"`.
 std::string remedy(std::string_view name, std::span<const std::string_view> candidates);
 
+bool is_utf8(std::string_view text);
+
 /// Text that came out of a file, fit for a terminal and a page: valid UTF-8 in one line, without control
 /// characters and marks that turn the direction of writing, which become blanks; a byte that is no UTF-8
-/// becomes
-/// "?". Of more than `most` bytes the middle is left out.
+/// becomes "?". Of more than `most` bytes the middle is left out.
 std::string plain_text(std::string_view text, std::size_t most = 500);
 
 /// The text with those characters and marks written as TOML and JSON do: \u202E.
