@@ -24,6 +24,9 @@
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define BERNAL_SHADOW_MEMORY 1  // terabytes of addresses, which no limit leaves room for
+#define BERNAL_TIMES_AS_SLOW 20
+#else
+#define BERNAL_TIMES_AS_SLOW 1
 #endif
 
 namespace bernal::cad {
@@ -79,7 +82,7 @@ void set_limit(int resource, double most) {
   const int nothing = open("/dev/null", O_RDWR);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nothing, standard);
   set_limit(RLIMIT_CORE, 0);
-  set_limit(RLIMIT_CPU, std::ceil(limits.seconds));
+  set_limit(RLIMIT_CPU, std::ceil(BERNAL_TIMES_AS_SLOW * limits.seconds));
   set_limit(RLIMIT_FSIZE, static_cast<double>(limits.memory));
 #ifndef BERNAL_SHADOW_MEMORY
   set_limit(RLIMIT_AS, static_cast<double>(addresses + limits.memory));

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "bernal/cad/read_mesh.hpp"
+#include "bernal/core/monitor.hpp"
 #include "cad/caged_repair.hpp"
 #include "cad/close_seams.hpp"
 #include "cad/defects.hpp"
@@ -36,6 +37,7 @@ struct Openings {
 /// The number with the fewest digits that is `value` to within the rounding, or lies a little on the way from
 /// it towards the middle of the part, where there is wall to cut.
 std::string rounded(double value, double towards, double within) {
+  if (std::abs(value) <= within) return "0";
   for (int digits = 1; digits < 17; ++digits) {
     const std::string text = fmt::format("{:.{}g}", value, digits);
     const double shift = std::strtod(text.c_str(), nullptr) - value;
@@ -196,8 +198,8 @@ std::vector<Line> to_close_the_widest(const MeshFile& options, const ImportedMes
            }}};
 }
 
-/// Of processor time, that a repair may take to be offered.
-constexpr double seconds_to_try = 10;
+/// Of processor time, that a repair may take to be offered; and of time, after which no more lines are tried.
+constexpr double seconds_to_try = 4, seconds_for_all = 8;
 
 /// Whether the surface has an inside that can be wrapped: tried coarsely.
 bool can_be_wrapped(const Mesh& mesh, double diagonal) {
@@ -216,6 +218,7 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
   std::vector<std::string> lines;
   if (as_it_is.mesh.triangles.empty() || as_it_is.mesh.triangles.size() > most_faces) return lines;
   if (as_it_is.report.self_intersections >= cad::most_self_intersections(as_it_is.mesh)) return lines;
+  const Stopwatch watch;
   ImportFor to_try = purpose;
   to_try.repair_seconds = std::min(to_try.repair_seconds, seconds_to_try);
   const auto helps = [&](const Line& line) {
@@ -233,6 +236,7 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
         return line.text.find(shorter) != std::string::npos;
       };
       if (std::ranges::any_of(lines, is_part)) continue;  // less will do
+      if (watch.seconds() > seconds_for_all) break;
       if (helps(line)) lines.push_back(line.text);
       if (lines.size() == enough) break;
     }

@@ -186,7 +186,7 @@ Deviation farthest(const Mesh& surface, const Mesh& reference, Closeness closene
   std::priority_queue<Piece> queue(std::less<Piece>(), std::move(parts));
   for (std::uint64_t looks = 0; looks < evaluations && !monitor.stop();) {
     const Piece worst = queue.top();
-    const double apart = std::max(closeness.absolute, closeness.share * result.largest);
+    const double apart = std::max({closeness.absolute, closeness.share * result.largest, rounding});
     if (worst.farthest <= result.largest + apart || worst.farthest == unbounded) break;
     queue.pop();
     std::vector<Place3> smaller = measure.cut_by_face(worst.corners);

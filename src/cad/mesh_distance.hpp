@@ -13,7 +13,8 @@ struct Deviation {
   Vector<3> place = Vector<3>::Zero();
 };
 
-/// How far apart the bounds of a deviation may stay: by `absolute`, or this share of it if that is more.
+/// How far apart the bounds of a deviation may stay: by `absolute`, or this share of it if that is more, or
+/// what the rounding of the coordinates takes.
 struct Closeness {
   double absolute;
   double share = 0;

@@ -14,6 +14,7 @@
 
 #include "cad/caged_reader.hpp"
 #include "cad/counted.hpp"
+#include "cad/file_digest.hpp"
 #include "cad/file_facts.hpp"
 #include "cad/known_formats.hpp"
 #include "cad/polygon_soup.hpp"
@@ -26,11 +27,16 @@ namespace {
 constexpr std::size_t most_corners = 3'000'000'000U;
 constexpr int most_nested_nodes = 1000;
 
-/// Opens files to read them, if they are regular ones in the folder of the part or below.
+/// Opens files to read them, if they are regular ones in the folder of the part or below; of a glTF only
+/// those that its digest covers.
 class FilesBeside : public Assimp::DefaultIOSystem {
  public:
   explicit FilesBeside(const std::filesystem::path& file)
-      : folder_(std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path())) {}
+      : folder_(std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path())) {
+    if (const std::string extension = extension_of(file); extension == ".gltf" || extension == ".glb")
+      for (const std::filesystem::path& part : files_of_part(file))
+        only_.push_back(std::filesystem::weakly_canonical(std::filesystem::absolute(part)));
+  }
 
   bool Exists(const char* name) const override { return allowed(name) && DefaultIOSystem::Exists(name); }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
@@ -42,10 +48,12 @@ class FilesBeside : public Assimp::DefaultIOSystem {
     std::error_code unknown;
     const auto file = std::filesystem::canonical(std::filesystem::absolute(name), unknown);
     if (unknown || !std::filesystem::is_regular_file(file, unknown)) return false;
+    if (!only_.empty() && std::ranges::find(only_, file) == only_.end()) return false;
     return std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first == folder_.end();
   }
 
   std::filesystem::path folder_;
+  std::vector<std::filesystem::path> only_;  ///< no matter, where it is empty
 };
 
 /// What is wrong with a file as a whole.

@@ -1,7 +1,12 @@
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
 
 #include "bernal/core/error.hpp"
 #include "bernal/predict/mixtures.hpp"
+#include "core/file_kind.hpp"
 #include "core/parallel.hpp"
 #include "figures/contours.hpp"
 #include "figures/drawing.hpp"
@@ -57,10 +62,26 @@ std::string drawing_of(const MapOptions& o, const Field& coarse, const WrittenMa
                       std::move(plot).finish());
 }
 
+constexpr std::string_view head_of_map = "ratio,share,phi\n";
+
+/// An earlier map is replaced, and nothing else.
+void require_own(const std::filesystem::path& folder) {
+  const std::filesystem::path csv = folder / "map.csv", svg = folder / "map.svg";
+  std::error_code unknown;
+  if (!std::filesystem::exists(csv, unknown) && !std::filesystem::exists(svg, unknown)) return;
+  std::string head(head_of_map.size(), ' ');
+  if (kind_of_file(csv) == FileKind::regular)
+    std::ifstream(csv, std::ios::binary).read(head.data(), std::ssize(head));
+  if (head != head_of_map)
+    throw Error(ErrorCode::cannot_write,
+                "holds a map.csv or map.svg that is none of a map; take another folder", {folder.string()});
+}
+
 }  // namespace
 
 WrittenMap write_map(const MapOptions& o, const std::filesystem::path& folder) try {
   require_valid(o);
+  require_own(folder);
   const std::vector<double> shares = spread(0, 1, o.points - 1),
                             ratios = spread(o.least_ratio, o.most_ratio, o.points - 1, true);
   const Drawn is_drawn(shares.size());
@@ -68,7 +89,7 @@ WrittenMap write_map(const MapOptions& o, const std::filesystem::path& folder) t
   WrittenMap densest;
   StagedFolder staged(folder);
   OutputFile csv(staged.add("map.csv"));
-  csv.append("ratio,share,phi\n");
+  csv.append(head_of_map);
   const auto tell = [&](std::size_t i, const std::vector<Prediction>& row) {
     std::string lines;
     for (std::size_t j = 0; j < shares.size(); ++j) {

@@ -127,7 +127,8 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
   if (options.with_mesh && files.empty())
     throw Error(ErrorCode::bad_argument, "--with-mesh copies a CAD file, and this container is none");
   for (const fs::path* file : files) {
-    if (!is_utf8(file->string())) refuse(*file, "has a name that is not UTF-8, which scene.toml has to be; rename it");
+    if (!is_utf8(file->string()))
+      refuse(*file, "has a name that is not UTF-8, which scene.toml has to be; rename it");
     if (options.with_mesh && cad::extension_of(*file) == ".gltf")
       refuse(*file,
              "may name other files, which are not copied with it; export GLB, which holds all of them");

@@ -25,6 +25,9 @@ constexpr double least_stiffness = 1;
 /// Between walls: how far a sphere moves at most at a time, in its radii. Its centre is farther from the
 /// wall.
 constexpr double longest_move = 0.5;
+/// How much the box shrinks at most at a time; and, between walls, in all: spheres that are loose in one that
+/// is as small are nowhere near jamming, and the next step would have it vanish.
+constexpr double most_shrinkage = 0.5, smallest_scale = 0.5;
 
 /// Spheres in the order of cells that hold about one each, so that what touches lies close in memory.
 template <int D>
@@ -359,7 +362,8 @@ double JammingEnergy<D>::move(const Eigen::VectorXd& motion) {
   state_.centers = (1 + e) * (state_.centers + motion.head(unknowns() - 1));
   state_.edges *= 1 + e;
   state_.scale *= 1 + e;
-  if (enclosure_ && moves_too_far(motion)) return std::numeric_limits<double>::infinity();
+  if (!(e > -most_shrinkage) || (enclosure_ && (state_.scale < smallest_scale || moves_too_far(motion))))
+    return std::numeric_limits<double>::infinity();
   if (!pairs_are_complete()) find_pairs();
   evaluate();
   return now_.energy - before_.energy + load_ * std::log1p(e);

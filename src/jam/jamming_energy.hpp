@@ -99,8 +99,8 @@ class JammingEnergy final : public SmoothFunction {
   void factor_preconditioner() override;
   void precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const override;
 
-  /// Moves all and dilates the box. Returns the change of H; infinite between walls where a sphere moves so
-  /// far that it might get through one.
+  /// Moves all and dilates the box. Returns the change of H; infinite where that shrinks to less than half,
+  /// and between walls where a sphere moves so far that it might get through one.
   double move(const Eigen::VectorXd& motion) override;
   /// Takes the last move back. Precondition: there was one since the last set_level, and it has not been
   /// taken back.

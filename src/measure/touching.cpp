@@ -100,10 +100,30 @@ void require_countable_images(const Spheres<D>& spheres, const Boundary<D>& boun
                     largest, images));
 }
 
+/// Of spheres that do not overlap much, each has fewer such pairs with those of its size and larger ones than
+/// a sphere of its size can have neighbours, several times over.
+template <int D>
+std::size_t most_pairs(std::size_t spheres, double widest_gap) {
+  constexpr double few = 1e6, neighbours = 100;
+  const double dimensions = std::exp2(std::max(0, D - 3));
+  return static_cast<std::size_t>(few + neighbours * dimensions * std::pow(1 + widest_gap, D) *
+                                            static_cast<double>(spheres));
+}
+
+void require_few(std::size_t pairs, std::size_t most) {
+  if (pairs > most)
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("more than {} pairs of spheres touch or overlap, which is no packing: bernal verify "
+                    "lists them",
+                    most));
+}
+
 template <class Found, int D>
 std::vector<Found> pairs_among(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
   constexpr std::size_t chunk = 4096;
   require_countable_images(spheres, boundary, widest_gap);
+  const std::size_t most = most_pairs<D>(spheres.size(), widest_gap);
   const std::vector<Level<D>> levels = levels_of(spheres, boundary, widest_gap);
   std::vector<Found> pairs;
   for (std::size_t l = 0; l < levels.size(); ++l) {
@@ -114,9 +134,13 @@ std::vector<Found> pairs_among(const Spheres<D>& spheres, const Boundary<D>& bou
       for (std::size_t place = part * chunk; place < std::min(n, (part + 1) * chunk); ++place) {
         append_pairs<D>(spheres, std::span(levels).first(l + 1), grid.ids()[place], grid.point(place),
                         widest_gap, found[part]);
+        require_few(found[part].size(), most);
       }
     });
-    for (const std::vector<Found>& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
+    for (const std::vector<Found>& part : found) {
+      pairs.insert(pairs.end(), part.begin(), part.end());
+      require_few(pairs.size(), most);
+    }
   }
   return pairs;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
 #include <optional>
 
@@ -126,6 +127,7 @@ class Reader {
     if (std::ranges::all_of(text, is_blank))
       throw Error(ErrorCode::bad_scene, "the scene is empty; it needs at least [container] and [spheres]",
                   {file_});
+    require_shallow(text);
     try {
       return toml::parse(text, file_);
     } catch (const toml::parse_error& error) {
@@ -133,6 +135,31 @@ class Reader {
       std::ranges::replace_if(
           what, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
       fail(error.source(), "this is not TOML: {}", what);
+    }
+  }
+
+  /// Of "a.b.c" the parser makes tables in tables, and comes back from them by recursion.
+  void require_shallow(std::string_view text) const {
+    constexpr int most_parts = 32;
+    int parts = 1, line = 1;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+      const char c = text[k];
+      if (c == '.' && ++parts > most_parts)
+        throw Error(ErrorCode::bad_scene,
+                    fmt::format("a key has more than {} parts; no key of a scene has", most_parts),
+                    {file_, line});
+      if (c == '"' || c == '\'') {  // is one part
+        while (++k < text.size() && text[k] != c && text[k] != '\n')
+          if (text[k] == '\\' && c == '"') ++k;
+        if (k < text.size() && text[k] == '\n') --k;
+        continue;
+      }
+      if (c == '#')
+        while (k + 1 < text.size() && text[k + 1] != '\n') ++k;
+      const bool in_key = c == '.' || c == '_' || c == '-' || c == ' ' || c == '\t' ||
+                          std::isalnum(static_cast<unsigned char>(c)) != 0;
+      if (!in_key) parts = 1;
+      line += c == '\n';
     }
   }
 

@@ -240,7 +240,8 @@ bool NeighborRelaxation<D>::moved_too_far() const {
 template <int D>
 void NeighborRelaxation<D>::keep_lists_valid() {
   if (!stale_ && !moved_too_far()) return;
-  if (lists_built_.calls > 0 && !stale_) {  // where lists last long, shorter ones that do not last so long cost less
+  if (lists_built_.calls > 0 &&
+      !stale_) {  // where lists last long, shorter ones that do not last so long cost less
     if (age_ > long_life) skin_ = std::max(thinnest * thickest_skin_, skin_ / 1.4);
     if (age_ < short_life) skin_ = std::min(thickest_skin_, skin_ * 1.4);
   }

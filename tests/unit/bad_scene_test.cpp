@@ -212,6 +212,32 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
   }
 }
 
+// A parser that comes back from forty thousand tables in tables runs out of stack.
+TEST(BadScene, KeysOfManyPartsAreRefused) {
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      parse_scene(text, "scene.toml");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  std::string deep = "x", quoted = "\"x\"";
+  for (int part = 1; part < 40'000; ++part) {
+    deep += ".x";
+    quoted += " . 'x'";
+  }
+  for (const std::string& text :
+       {deep + " = 1\n", "[" + deep + "]\n", "a = { " + deep + " = 1 }\n", quoted + " = 1\n"})
+    EXPECT_NE(refusal("seed = 1\n" + text).find("scene.toml:2: a key has more than 32 parts"),
+              std::string::npos)
+        << text.substr(0, 20);
+  std::string numbers = "seed = 1 # 1.2.3. and " + std::string(100, '.') + "\na = [0.5", dots(100, '.');
+  for (int k = 0; k < 100; ++k) numbers += ", 0.5";
+  const std::string said = refusal(numbers + "]\nb = \"" + dots + "\"\n");
+  EXPECT_EQ(said.find("parts"), std::string::npos) << said;
+}
+
 TEST(BadScene, FileIsNamed) {
   const testing::Folder folder;
   const auto refusal = [](const std::filesystem::path& file) -> std::string {

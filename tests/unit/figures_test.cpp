@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <sstream>
@@ -185,6 +187,17 @@ TEST(Map, HasEveryPointAndKnowsTheDensest) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "none"));
   options.points = 1;
   EXPECT_THROW(write_map(options, folder.path()), Error);
+}
+
+TEST(Map, ReplacesNothingButAMap) {
+  const Folder folder;
+  const MapOptions options{.points = 2, .rods = 100};
+  EXPECT_EQ(write_map(options, folder.path()).files.size(), 2u);
+  EXPECT_EQ(write_map(options, folder.path()).files.size(), 2u);
+  std::ofstream(folder.path() / "map.csv") << "mine\n";
+  EXPECT_THROW(write_map(options, folder.path()), Error);
+  std::ifstream left(folder.path() / "map.csv");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(left), {}), "mine\n");
 }
 
 TEST(PredictionCheck, PacksTheSizesThatWerePredicted) {

@@ -199,6 +199,25 @@ TEST_F(HostileFile, SideFilesThatArePipesOrElsewhere) {
   refusal("other.gltf", gltf);
 }
 
+// assimp looks for a buffer beside the part where its folder is missing, and takes the first of two keys that
+// are the same: it would read what the digest does not cover.
+TEST_F(HostileFile, BuffersOfAGltfThatItsDigestDoesNotCover) {
+  const Mesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  const std::string gltf = test::as_gltf(box);
+  folder.write("part.bin", test::as_gltf_numbers(box));
+  EXPECT_TRUE(read_mesh({.file = folder.write("good.gltf", gltf)}).report.usable());
+  const auto with_uri = [&](std::string_view uri) {
+    std::string other = gltf;
+    return other.replace(other.find("part.bin"), 8, uri);
+  };
+  for (const std::string_view uri : {"textures/part.bin", "x\\\\part.bin", "http://x/part.bin"})
+    refusal("elsewhere.gltf", with_uri(uri));
+  const std::size_t key = gltf.find("\"uri\"");
+  folder.write("other.bin", test::as_gltf_numbers(box));
+  refusal("twice.gltf", gltf.substr(0, key) + R"("uri":"other.bin",)" + gltf.substr(key));
+  refusal("latin.gltf", gltf.substr(0, 1) + "\"x\":\"\xe9\"," + gltf.substr(1));
+}
+
 // Numbers that a double holds without its first bit.
 TEST_F(HostileFile, CoordinatesBelowTheLeastNormalNumber) {
   std::string obj = test::as_obj(test::box_mesh({0, 0, 0}, {1, 1, 1}));

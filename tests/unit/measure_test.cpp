@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "bernal/core/error.hpp"
 #include "support/measured.hpp"
 #include "support/packings.hpp"
 
@@ -41,6 +42,12 @@ TEST(Contacts, AnEmptyPackingHasNone) {
   EXPECT_EQ(contacts.walls, 0u);
   EXPECT_EQ(contacts.rattlers, 0u);
   EXPECT_EQ(contacts.coordination, 0);
+}
+
+TEST(Contacts, OfThousandsInOnePlaceAreRefused) {
+  Spheres<3> spheres;
+  for (int i = 0; i < 20'000; ++i) spheres.push_back({0, 0, 0}, 1);
+  EXPECT_THROW(measure_contacts(packing_of(spheres, far_walls)), Error);
 }
 
 TEST(Contacts, TwoSpheresTouchBelowTheGapAndNotAboveIt) {

@@ -42,6 +42,18 @@ TEST(MeshDistance, IsZeroBetweenTheSameAndKnowsTheSides) {
   EXPECT_NEAR((lid.place - Vector<3>(0.5, 0.5, 1)).norm(), 0, 0.02);
 }
 
+/// What is asked for is less than coordinates so large can tell.
+TEST(MeshDistance, FarAwayIsKnownToTheRoundingInFewLooks) {
+  Mesh box = unit_box, moved = unit_box;
+  const double far = 0x1p52;
+  for (Vector<3>& v : box.vertices) v = 100 * v + Vector<3>::Constant(far);
+  for (Vector<3>& v : moved.vertices) v = 100 * v + Vector<3>(far + 3, far, far);
+  const Deviation found = farthest(box, divided(moved, 1), {1e-2}, {}, 20'000);
+  EXPECT_GE(found.at_most, 3);
+  EXPECT_LE(found.largest, 3 + 64);
+  EXPECT_LE(found.at_most - found.largest, 4 * 64);
+}
+
 /// The same surface in other triangles: bounds meet after so few looks that no halving brings them there.
 TEST(MeshDistance, OfAFaceCutDifferentlyIsNoneAtOnce) {
   Mesh turned = unit_box;  // in a mirror: the other diagonal of most sides

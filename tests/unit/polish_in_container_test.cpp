@@ -75,6 +75,21 @@ TEST(PolishInContainer, SaysThatSpheresAreTooFewToJam) {
   EXPECT_EQ(packing.spheres.size(), 150u);
 }
 
+// Spheres that nothing holds: the box shrank without resistance until nothing was left of it.
+TEST(PolishInContainer, OfSpheresThatNothingHoldsSaysSo) {
+  for (const char* container : {"kind = \"box\"\nsize = [1, 1, 1]\n", "kind = \"sphere\"\nradius = 0.5\n",
+                                "kind = \"cylinder\"\nradius = 0.5\nheight = 1\n"})
+    for (const char* spheres :
+         {"count = 1\ndiameter = 1e-9", "count = 1\ndiameter = 0.3", "count = 2\ndiameter = 0.3",
+          "count = 5\ndiameter = 0.1", "count = 200\ndiameter = 0.1"}) {
+      const Packing packing = run(testing::plan_of(std::string("[container]\n") + container + "[spheres]\n" +
+                                                   spheres + "\n[[stage]]\ndo = \"relax\"\npolish = 1e-8\n"));
+      EXPECT_EQ(packing.outcome, Outcome::hit_limit) << container << spheres;
+      EXPECT_NE(packing.reason.find("not polished"), std::string::npos) << packing.reason;
+      EXPECT_TRUE(certify(packing.spheres, packing.domain).certified) << container << spheres;
+    }
+}
+
 TEST(PolishInContainer, LeavesTheSpheresAsTheyWereWhenCancelled) {
   bool polishing = false;
   RunOptions options;
