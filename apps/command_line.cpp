@@ -116,7 +116,7 @@ Option within(Option option, double least, double most) {
 Option one_of(Option option, const std::vector<std::string>& words) {
   return demanding(std::move(option), CLI::IsMember(words));
 }
-Option checked(Option option, std::function<std::string(const std::string& word)> complaint) {
+Option checked(Option option, const std::function<std::string(const std::string& word)>& complaint) {
   return demanding(std::move(option), [=](CLI::App&, CLI::Option& it) { it.check(complaint); });
 }
 Option list_of(int count, Option option) {
@@ -147,7 +147,7 @@ Option rods_option(int& rods, int least, int most) {
                 most);
 }
 
-Option seed_option(const std::string& what, std::function<void(std::uint64_t)> take) {
+Option seed_option(const std::string& what, const std::function<void(std::uint64_t)>& take) {
   const auto complaint = [](const std::string& text) {
     if (parse_seed(text)) return std::string();
     return fmt::format("must be a whole number from 0 to {}, not {}", largest_seed, text);

@@ -34,7 +34,7 @@ Option within(Option, int least, int most);
 Option within(Option, double least, double most);
 Option one_of(Option, const std::vector<std::string>& words);
 /// `complaint` is empty where the word is fine.
-Option checked(Option, std::function<std::string(const std::string& word)> complaint);
+Option checked(Option, const std::function<std::string(const std::string& word)>& complaint);
 /// So many values, between commas.
 Option list_of(int count, Option);
 /// May be given again, one value each time.
@@ -63,6 +63,6 @@ Option quiet_option(bool& quiet, const std::string& what = "Print nothing but th
 /// Of which there are `rods` if it is absent.
 Option rods_option(int& rods, int least, int most);
 /// A whole number that a scene can hold.
-Option seed_option(const std::string& what, std::function<void(std::uint64_t)> take);
+Option seed_option(const std::string& what, const std::function<void(std::uint64_t)>& take);
 /// With 0 for as many as the machine has; `what` is the same for any number: "the answer".
 Option threads_option(int& threads, const std::string& what);

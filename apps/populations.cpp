@@ -159,7 +159,7 @@ Mixture sizes_of(const std::vector<Population>& populations) {
   if (!(all > 0)) throw Error(ErrorCode::bad_argument, "all populations have volume zero");
 
   std::map<double, double> classes;  // the volume of each radius
-  Mixture mixture{.basis = Basis::volume};
+  Mixture mixture{.of = {}, .basis = Basis::volume};
   for (const Population& p : populations) {
     const double radius = p.d43 / largest, share = p.volume / all;
     if (!(share > 0)) continue;

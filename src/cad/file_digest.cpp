@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -42,6 +43,19 @@ std::string sha256_of_all(std::span<const fs::path> files) {
 
 }  // namespace
 
+std::string percent_decoded(std::string_view text) {
+  std::string decoded;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    unsigned byte = 0;
+    const bool is_code =
+        text[k] == '%' && k + 2 < text.size() &&
+        std::from_chars(text.data() + k + 1, text.data() + k + 3, byte, 16).ptr == text.data() + k + 3;
+    decoded += is_code ? static_cast<char>(byte) : text[k];
+    if (is_code) k += 2;
+  }
+  return decoded;
+}
+
 std::string sha256_of(const fs::path& file) { return sha256_of_all(std::array{file}); }
 
 std::vector<fs::path> files_of_part(const fs::path& file) {
@@ -57,8 +71,12 @@ std::vector<fs::path> files_of_part(const fs::path& file) {
   for (const auto& buffer : document["buffers"]) {
     if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
     const auto uri = buffer["uri"].get<std::string>();
-    if (uri.starts_with("data:") || kind_of_file(file.parent_path() / uri) != FileKind::regular) continue;
-    files.push_back(file.parent_path() / uri);
+    if (uri.starts_with("data:")) continue;
+    for (const std::string& name : {uri, percent_decoded(uri)}) {
+      if (kind_of_file(file.parent_path() / name) != FileKind::regular) continue;
+      files.push_back(file.parent_path() / name);
+      break;
+    }
   }
   return files;
 }

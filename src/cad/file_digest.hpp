@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace bernal {
@@ -9,7 +10,11 @@ namespace bernal {
 /// where the file cannot be read. Cost: reading it, and about 3 ns a byte.
 std::string sha256_of(const std::filesystem::path& file);
 
-/// The files that hold a part: the one given, then the buffers beside it that a glTF names, in its order.
+/// "a%20b.bin" as "a b.bin".
+std::string percent_decoded(std::string_view text);
+
+/// The files that hold a part: the one given, then the buffers beside it that a glTF names, in its order, as
+/// they are written or percent-encoded.
 std::vector<std::filesystem::path> files_of_part(const std::filesystem::path& file);
 
 /// Of the bytes of these one after another: what `cat part.gltf part.bin | sha256sum` prints.

@@ -245,7 +245,8 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
   if (lines.empty()) try_all(to_close_the_widest(options, as_it_is));
   if (lines.empty() && effort == Effort::thorough && options.repair.empty() &&
       can_be_wrapped(as_it_is.mesh, as_it_is.report.bounds.diagonal()))
-    lines.emplace_back("repair = [\"wrap\"]");
+    lines.emplace_back(
+        "repair = [\"wrap\"]  # tried coarsely: gaps wider than its alpha have to be closed first");
   return lines;
 }
 

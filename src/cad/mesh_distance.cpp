@@ -183,7 +183,7 @@ Deviation farthest(const Mesh& surface, const Mesh& reference, Closeness closene
     parts[i].farthest = found[i].at_most;
   }
 
-  std::priority_queue<Piece> queue(std::less<Piece>(), std::move(parts));
+  std::priority_queue<Piece, std::vector<Piece>, std::less<>> queue(std::less<>(), std::move(parts));
   for (std::uint64_t looks = 0; looks < evaluations && !monitor.stop();) {
     const Piece worst = queue.top();
     const double apart = std::max({closeness.absolute, closeness.share * result.largest, rounding});

@@ -109,8 +109,8 @@ void make_plain(ChosenSoup& read) {
 }
 
 [[noreturn]] void refuse_unread(const std::filesystem::path& file, const std::string& why) {
-  const bool has_remedy =
-      why.find("export") != why.npos || why.find("; write ") != why.npos || why.find("; save ") != why.npos;
+  const bool has_remedy = why.find("export") != why.npos || why.find("; write ") != why.npos ||
+                          why.find("; save ") != why.npos || why.find("; choose ") != why.npos;
   refuse(file, fmt::format("cannot be read: {}{}", why, has_remedy ? "" : "; export it again, or as STL"));
 }
 

@@ -32,19 +32,29 @@ constexpr int most_nested_nodes = 1000;
 class FilesBeside : public Assimp::DefaultIOSystem {
  public:
   explicit FilesBeside(const std::filesystem::path& file)
-      : folder_(std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path())) {
+      : beside_(file.parent_path().string()),
+        folder_(std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path())) {
     if (const std::string extension = extension_of(file); extension == ".gltf" || extension == ".glb")
       for (const std::filesystem::path& part : files_of_part(file))
         only_.push_back(std::filesystem::weakly_canonical(std::filesystem::absolute(part)));
   }
 
-  bool Exists(const char* name) const override { return allowed(name) && DefaultIOSystem::Exists(name); }
+  bool Exists(const char* name) const override { return allowed(name) || allowed(decoded(name)); }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
-    return mode[0] == 'r' && allowed(name) ? DefaultIOSystem::Open(name, mode) : nullptr;
+    if (mode[0] != 'r') return nullptr;
+    if (allowed(name)) return DefaultIOSystem::Open(name, mode);
+    const std::string file = decoded(name);
+    return allowed(file) ? DefaultIOSystem::Open(file.c_str(), mode) : nullptr;
   }
 
  private:
-  bool allowed(const char* name) const {
+  /// The name, below the folder of the part, as an URI has it.
+  std::string decoded(std::string_view name) const {
+    if (!name.starts_with(beside_)) return std::string(name);
+    return beside_ + percent_decoded(name.substr(beside_.size()));
+  }
+
+  bool allowed(const std::filesystem::path& name) const {
     std::error_code unknown;
     const auto file = std::filesystem::canonical(std::filesystem::absolute(name), unknown);
     if (unknown || !std::filesystem::is_regular_file(file, unknown)) return false;
@@ -52,6 +62,7 @@ class FilesBeside : public Assimp::DefaultIOSystem {
     return std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first == folder_.end();
   }
 
+  std::string beside_;
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> only_;  ///< no matter, where it is empty
 };

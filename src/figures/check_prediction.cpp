@@ -35,7 +35,7 @@ SceneSizes population(double mean, double sigma) {
 
 std::int64_t spheres_for(const SizeDistribution& radii) {
   for (const std::int64_t count : {10'000, 20'000, 50'000, 100'000}) {
-    const double n = static_cast<double>(count);
+    const auto n = static_cast<double>(count);
     const double largest = radii.quantile(1 - 0.5 / n);
     if (std::pow(largest, 3) <= largest_share_of_one * n * radii.moment(3)) return count;
   }

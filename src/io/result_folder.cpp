@@ -129,9 +129,8 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
   for (const fs::path* file : files) {
     if (!is_utf8(file->string()))
       refuse(*file, "has a name that is not UTF-8, which scene.toml has to be; rename it");
-    if (options.with_mesh && cad::extension_of(*file) == ".gltf")
-      refuse(*file,
-             "may name other files, which are not copied with it; export GLB, which holds all of them");
+    if (options.with_mesh && files_of_part(*file).size() > 1)
+      refuse(*file, "names other files, which are not copied with it; export GLB, which holds all of them");
     constexpr std::size_t longest_name = 255 - 1 - digits_in_name;
     if (options.with_mesh && file->filename().string().size() > longest_name)
       refuse(*file, "has too long a name for a copy, which ends in its digest; rename it");

@@ -58,7 +58,7 @@ DepthBuffer::DepthBuffer(double width, double height, double pitch)
       farthest_in_tile_(static_cast<std::size_t>(tile_columns_ * ((rows_ + tile - 1) / tile)), far_away) {}
 
 DepthBuffer::Range DepthBuffer::range(double from, double to, std::int64_t count) const {
-  const double last = static_cast<double>(count - 1);
+  const auto last = static_cast<double>(count - 1);
   return {static_cast<std::int64_t>(std::ceil(std::clamp(from / pitch_, 0.0, last + 1))),
           static_cast<std::int64_t>(std::floor(std::clamp(to / pitch_, -1.0, last)))};
 }

@@ -21,7 +21,7 @@ std::string csv_header(int dimension) { return fmt::format("{}", fmt::join(csv_c
 
 void write_csv(OutputFile& file, const Spheres<dynamic>& spheres, std::string_view unit) {
   file.append("# unit: " + std::string(unit) + "\n" + csv_header(spheres.dimension()) + "\n");
-  std::array<char, (max_dimension + 1) * 32> line;  // the longest shortest double has 24 characters
+  std::array<char, (max_dimension + 1) * 32U> line;  // the longest shortest double has 24 characters
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     char* end = line.data();
     const auto add = [&](double value) {

@@ -251,9 +251,10 @@ std::string disc_svg(const Spheres<dynamic>& spheres, const Box& box, std::strin
     const double r = spheres.r[i];
     const auto colour = static_cast<std::size_t>(sizes.colour_class(r));
     for (int image = 0; image < 9; ++image) {
-      if ((box.has_wall(0) && image % 3 != 1) || (box.has_wall(1) && image / 3 != 1)) continue;
-      const Vector<2> c(spheres.x[0][i] - box.corner[0] + (image % 3 - 1) * box.size[0],
-                        spheres.x[1][i] - box.corner[1] + (image / 3 - 1) * box.size[1]);
+      const int right = image % 3 - 1, above = image / 3 - 1;
+      if ((box.has_wall(0) && right != 0) || (box.has_wall(1) && above != 0)) continue;
+      const Vector<2> c(spheres.x[0][i] - box.corner[0] + right * box.size[0],
+                        spheres.x[1][i] - box.corner[1] + above * box.size[1]);
       if ((c.array() + r <= 0).any() || (c.array() - r >= window.array()).any()) continue;
       const Disc disc{corner + scale * Vector<2>(c[0], window[1] - c[1]), scale * r};
       inside[colour].push_back(disc);

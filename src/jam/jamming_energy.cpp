@@ -236,7 +236,7 @@ void JammingEnergy<D>::meet(std::uint32_t first, std::uint32_t second, const Vec
 
 /// A spring of that stiffness where nothing is smoothed. Adds it to the energies.
 template <int D>
-JammingEnergy<D>::Spring JammingEnergy<D>::press(double s, double overlap, double k) {
+typename JammingEnergy<D>::Spring JammingEnergy<D>::press(double s, double overlap, double k) {
   const double t = smoothing_ * s;
   double x = overlap, stiffness = k;
   if (t > 0) {

@@ -45,7 +45,7 @@ class Surroundings {
       : boundary_(boundary),
         reach_(reach),
         grid_(spheres, all(spheres.size()), boundary, cell_edge(spheres.size())) {
-    double in_cells = static_cast<double>(spheres.size());
+    auto in_cells = static_cast<double>(spheres.size());
     for (int k = 0; k < D; ++k) in_cells *= (2 * reach + 2 * cell_edge(spheres.size())) / boundary.edges[k];
     by_cells_ = in_cells < static_cast<double>(spheres.size());
     cost_ = std::min(in_cells, static_cast<double>(spheres.size()));

@@ -19,9 +19,9 @@ constexpr std::size_t most_pieces = 1 << 17;
 
 /// Value and derivative of Σ terms[k] s^k.
 struct Polynomial {
-  double value, slope;
+  double value, slope = 0;
 
-  Polynomial(const std::array<double, 6>& c, double s) : value(c[5]), slope(0) {
+  Polynomial(const std::array<double, 6>& c, double s) : value(c[5]) {
     for (int k = 4; k >= 0; --k) {
       slope = slope * s + value;
       value = value * s + c[static_cast<std::size_t>(k)];

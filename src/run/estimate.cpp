@@ -79,7 +79,7 @@ double reached_by_relaxation(const Domain& shape, const SizeDistribution& radii,
   const Frame frame = frame_of(shape);
   const auto container = local_container(shape, made);
   const std::vector<double> by_volume = radii_by_volume(radii);
-  const double n = static_cast<double>(by_volume.size());
+  const auto n = static_cast<double>(by_volume.size());
   double mean = 0, tightest = 2;
   for (std::size_t k = 0; k < by_volume.size(); ++k) {
     const double share = coverable_share(*container, by_volume[k] / frame.scale);

@@ -9,7 +9,8 @@
 
 namespace bernal::schema {
 
-Key word(Member member, std::string_view name, std::string_view help, std::vector<std::string_view> words) {
+Key word(const Member& member, std::string_view name, std::string_view help,
+         std::vector<std::string_view> words) {
   Key made = key(Type::word, {}, name, help);
   made.member.get = [get = member.get, words](const void* options) -> std::optional<Value> {
     const std::optional<Value> index = get(options);

@@ -156,7 +156,7 @@ inline Key names(Member member, Text name, Text help, std::vector<std::string_vi
   return made;
 }
 /// Of an enumeration, whose words stand in the order of its enumerators.
-Key word(Member member, Text name, Text help, std::vector<std::string_view> words);
+Key word(const Member& member, Text name, Text help, std::vector<std::string_view> words);
 /// A key that is said only where it is not `otherwise`.
 Key unless(std::string otherwise, Key key);
 inline Key required(Key key) {

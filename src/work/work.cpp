@@ -56,7 +56,11 @@ const Room& Work::roomiest() const {
   if (!roomiest_) {
     // Of one place in the middle, where nothing is nearer than what bounds the largest sphere, that is known.
     const Room middle{container->bounds().center(), container->clearance(container->bounds().center())};
-    roomiest_ = std::holds_alternative<Mesh>(domain) ? static_cast<Room>(largest_room(*container)) : middle;
+    roomiest_ = middle;
+    if (std::holds_alternative<Mesh>(domain)) {
+      const LargestRoom known = largest_room(*container);
+      roomiest_ = Room{known.place, known.radius};
+    }
   }
   return *roomiest_;
 }

@@ -212,6 +212,10 @@ TEST_F(HostileFile, BuffersOfAGltfThatItsDigestDoesNotCover) {
   };
   for (const std::string_view uri : {"textures/part.bin", "x\\\\part.bin", "http://x/part.bin"})
     refusal("elsewhere.gltf", with_uri(uri));
+  std::filesystem::create_directory(folder / "sub dir");
+  folder.write("sub dir/b%c.bin", test::as_gltf_numbers(box));
+  EXPECT_TRUE(
+      read_mesh({.file = folder.write("encoded.gltf", with_uri("sub%20dir/b%25c.bin"))}).report.usable());
   const std::size_t key = gltf.find("\"uri\"");
   folder.write("other.bin", test::as_gltf_numbers(box));
   refusal("twice.gltf", gltf.substr(0, key) + R"("uri":"other.bin",)" + gltf.substr(key));

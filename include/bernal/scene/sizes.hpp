@@ -76,7 +76,7 @@ struct Fuller {
 struct SceneSizes;
 
 struct Mixture {
-  std::vector<SceneSizes> of = {};
+  std::vector<SceneSizes> of;  // without = {}, for which Clang 14 would need the whole type
   std::vector<double> shares = {};
   Basis basis = Basis::number;
 };

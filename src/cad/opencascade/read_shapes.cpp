@@ -305,7 +305,7 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
   if (deflection < smallest_deflection * diagonal) {
     result.failure = fmt::format(
         "a deflection of {:.3g} is less than a hundred-thousandth of the part, which is {:.3g} across; "
-        "choose at least {:.1g}",
+        "choose at least {:.1g} (deflection in [container]; a fiftieth of the smallest radius if absent)",
         deflection, diagonal, smallest_deflection * diagonal);
     return result;
   }

@@ -203,7 +203,7 @@ Attempt tessellate(const TopoDS_Shape& shape, double deflection) {
   parameters.Deflection = deflection;
   parameters.Angle = angular_deflection;
   parameters.Relative = false;
-  BRepMesh_IncrementalMesh(shape, parameters);
+  const BRepMesh_IncrementalMesh done(shape, parameters);
 
   Attempt result;
   auto& [soup, made] = result;
