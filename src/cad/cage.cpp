@@ -24,7 +24,7 @@
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define BERNAL_SHADOW_MEMORY 1  // terabytes of addresses, which no limit leaves room for
-#define BERNAL_TIMES_AS_SLOW 20
+#define BERNAL_TIMES_AS_SLOW 4
 #else
 #define BERNAL_TIMES_AS_SLOW 1
 #endif
