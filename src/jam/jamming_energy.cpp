@@ -22,11 +22,9 @@ constexpr double widest = 0.1;
 /// Of a sphere's block of the preconditioner: what is added in all directions, in stiffnesses of a contact
 /// with a sphere of its size.
 constexpr double least_stiffness = 1;
-/// Between walls: how far a sphere moves at most at a time, in its radii. Its centre is farther from the
-/// wall.
+/// Between walls: how far a sphere moves at most at a time, in its radii. Its centre is farther from them.
 constexpr double longest_move = 0.5;
-/// How much the box shrinks at most at a time; and, between walls, in all: spheres that are loose in one that
-/// is as small are nowhere near jamming, and the next step would have it vanish.
+/// How much the box shrinks at most at a time; and, between walls, in all: nothing would be left of it else.
 constexpr double most_shrinkage = 0.5, smallest_scale = 0.5;
 
 /// Spheres in the order of cells that hold about one each, so that what touches lies close in memory.

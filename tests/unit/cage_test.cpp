@@ -8,12 +8,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bernal/core/monitor.hpp"
 #include "cad/caged_reader.hpp"
+#include "cad/caged_repair.hpp"
 #include "core/parallel.hpp"
 
 namespace bernal {
@@ -65,6 +67,24 @@ TEST(Cage, SaysWhatBefellTheReader) {
   EXPECT_EQ(failure_of([] { std::raise(SIGSEGV); }), "the reader crashes on it (Segmentation fault)");
   EXPECT_EQ(failure_of([] { std::raise(SIGKILL); }), "the reader was killed over it");
   EXPECT_NE(failure_of([] { _exit(0); }), "");
+}
+
+TEST(Cage, SaysWhatBefellARepair) {
+  const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  const auto said_of = [&](const std::function<void()>& act) {
+    const cad::Mended mended = cad::mend_in_cage(mesh, 1, [&] {
+      act();
+      return cad::Mended{{}, "mended"};
+    });
+    EXPECT_EQ(mended.mesh.triangles.size(), mended.done == "mended" ? 0u : 1u);
+    return mended.done;
+  };
+  EXPECT_EQ(said_of([] {}), "mended");
+  EXPECT_EQ(said_of([] { throw std::runtime_error("precondition violation!\nLine: 7"); }),
+            "not repaired: precondition violation! Line: 7");
+  EXPECT_EQ(said_of([] { throw std::bad_alloc(); }),
+            "not repaired: CGAL wants more than 4 GiB of memory for it");
+  EXPECT_EQ(said_of([] { std::abort(); }), "not repaired: CGAL crashes on it (Aborted)");
 }
 
 TEST(Cage, EndsAReaderThatLoops) {
