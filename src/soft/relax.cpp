@@ -109,7 +109,7 @@ void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& 
 template <int D>
 StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
   SoftEngine<D> packing(spheres, edges, 1, work.walls);
-  const int sweeps = sweeps_a_cycle(options.alpha, std::min(spheres.size(), enough));
+  const int sweeps = sweeps_a_cycle(options, std::min(spheres.size(), enough));
   const double stop =
       std::max({share_of_stop * options.stop, std::min(work.allowed_overlap, options.stop), least_overlap});
   StageEnd end = StageEnd::converged;
@@ -173,9 +173,10 @@ StageEnd relax_in(Work& work, const Relax& options) {
 
 }  // namespace
 
-int sweeps_a_cycle(double alpha, std::size_t spheres) {
+int sweeps_a_cycle(const Relax& options, std::size_t spheres) {
+  if (options.period) return *options.period;
   const double decades = std::log10(static_cast<double>(spheres));
-  return std::max(1, static_cast<int>(std::lround(alpha * decades * decades)));
+  return std::max(1, static_cast<int>(std::lround(options.alpha * decades * decades)));
 }
 
 StageEnd relax(Work& work, const Relax& options) {
@@ -200,6 +201,10 @@ const StageEntry& entry_of<Relax>() {
                        {number(&Relax::alpha, "alpha",
                                "sweeps between two growths of the box, in units of (log10 N)^2",
                                above(0, 1e6)),
+                        integer(&Relax::period, "period",
+                                "sweeps between two growths of the box, however many spheres, in place of "
+                                "alpha",
+                                {1, 1e6}),
                         number(&Relax::beta, "beta",
                                "the box grows by the largest overlap ratio divided by this", {0.01, 1e6}),
                         number(&Relax::phi0, "phi0",
@@ -229,6 +234,7 @@ const StageEntry& entry_of<Relax>() {
                        "hold the spheres; in a container all sizes grow for that by one factor, which the "
                        "report states; 0: do not",
                        {0, 0.5})}),
+           .choices = {{{"alpha"}, {"period"}}},
            .complete = completion(complete_relax)},
           traits),
       .act_in_bed = act(relax_in_container),

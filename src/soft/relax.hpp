@@ -9,8 +9,9 @@ namespace bernal {
 /// Spheres that fill less than this share of what is likely to fit find places free of overlap by themselves.
 inline constexpr double dilute = 0.3;
 
-/// T = alpha (log10 N)², rounded, at least 1 (equation 6).
-int sweeps_a_cycle(double alpha, std::size_t spheres);
+/// Sweeps between two growths of the box: `options.period`, or T = alpha (log10 N)², rounded, at least 1
+/// (equation 6; figure 5 holds the two against each other).
+int sweeps_a_cycle(const Relax& options, std::size_t spheres);
 
 /// Relaxation in a periodic box (Zhao, Li & Liu 2007): spheres start at random places in a box so small that
 /// they overlap. Where spheres overlap, each is moved to the mean of the places at which it would just touch

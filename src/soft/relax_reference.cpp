@@ -121,7 +121,7 @@ class Loop {
 template <int D>
 StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
   Loop<D> loop(spheres, edges, options.settle, work.random(Stream::relax));
-  const int sweeps = sweeps_a_cycle(options.alpha, spheres.size());
+  const int sweeps = sweeps_a_cycle(options, spheres.size());
   double reported = 0;
   for (;;) {
     double molr = 0;

@@ -85,15 +85,16 @@ std::vector<Key> keys_of(const Entry& entry, std::size_t n) {
   return keys;
 }
 
-/// The same for a stage wherever it works, with the keys that act there.
+/// Calls `visit` for a stage wherever it works, with the keys that act there and go with the n-th set of its
+/// choices.
 template <class Visit>
-void visit_stage(const StageTable& stage, Visit visit) {
+void visit_stage(const StageTable& stage, std::size_t n, Visit visit) {
   const Scene container = parse_scene(with_spheres("radius = 1"), "s.toml");
   Scene box = container;
   box.container = PeriodicBox{};
   for (const Scene& where : {container, box}) {
     if (!stage.traits.works_in(where)) continue;
-    std::vector<Key> keys = stage.keys.keys;
+    std::vector<Key> keys = keys_of(stage.keys, n);
     std::erase_if(keys, [&](const Key& key) { return !key.acts_here(stage.traits.stands_in_bed(where)); });
     visit(stage.keys, keys, [&](const std::vector<std::string>& lines) {
       const std::string body = fmt::format("do = \"{}\"\n{}", stage.name(), fmt::join(lines, "\n"));
@@ -123,7 +124,7 @@ void for_every_entry(Visit visit) {
         return with_spheres(
             fmt::format("diameter = {{ distribution = \"{}\", {} }}", e.name, joined(lines, ", ")));
       });
-    for (const StageTable* stage : stage_tables()) visit_stage(*stage, visit);
+    for (const StageTable* stage : stage_tables()) visit_stage(*stage, n, visit);
     visit(schema::scene_entry(), keys_of(schema::scene_entry(), n),
           [&](const std::vector<std::string>& lines) {
             return joined(lines, "\n") + "\n" + with_spheres("radius = 1");

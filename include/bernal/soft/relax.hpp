@@ -13,6 +13,8 @@ enum class RelaxMethod {
 struct Relax {
   // in periodic boxes
   double alpha = 17;  ///< sweeps between two growths of the box, in units of (log10 N)²
+  /// Sweeps between two growths of the box, whatever N is, in place of those that alpha gives.
+  std::optional<int> period = {};
   double beta = 30;   ///< the box grows by the largest overlap ratio divided by this
   /// Packing fraction at the start; without it 0.86, or what suits the dimension.
   std::optional<double> phi0 = {};
