@@ -7,41 +7,21 @@ namespace bernal {
 template <int D>
 CellGrid<D>::CellGrid(const Bounds<D>& bounds, const Boundary<D>& boundary, double r_min, double r_max,
                       std::size_t expected)
-    : lower_(bounds.lower), size_(bounds.size()), r_max_(r_max) {
-  for (int k = 0; k < D; ++k) {
-    repeats_[k] = boundary.repeats(k);
-    if (!repeats_[k]) continue;
-    lower_[k] = boundary.origin[k];
-    size_[k] = boundary.edges[k];
-  }
-  const double max_cells = std::max(64.0, cells_per_sphere * static_cast<double>(expected));
-  std::size_t offset = 0;
-  for (double largest = r_max;; largest /= 2) {
-    levels_.push_back(make_level(largest, max_cells, offset));
-    if (largest / 2 < r_min || levels_.size() == max_levels) break;
-  }
-  heads_.assign(offset, none);
-}
-
-template <int D>
-void CellGrid<D>::rescale(const Vector<D>& edges) {
-  size_ = edges;
-  for (Level& level : levels_) {
-    for (int k = 0; k < D; ++k) level.inverse_edge[k] = level.cells[k] / edges[k];
-  }
-}
+    : layout_(bounds, boundary, r_min, r_max, expected),
+      spheres_on_(layout_.levels().size(), 0),
+      heads_(layout_.cell_count(), none) {}
 
 template <int D>
 void CellGrid<D>::insert(Id id, const Vector<D>& center, double r) {
   if (id >= links_.size()) links_.resize(id + std::size_t{1});
-  Level& level = levels_[level_of(r)];
-  ++level.spheres;
-  link(id, cell_of(level, center), static_cast<std::uint8_t>(&level - levels_.data()));
+  const std::size_t level = layout_.level_of(r);
+  ++spheres_on_[level];
+  link(id, layout_.cell_of(layout_.levels()[level], center), static_cast<std::uint8_t>(level));
 }
 
 template <int D>
 void CellGrid<D>::remove(Id id) {
-  --levels_[links_[id].level].spheres;
+  --spheres_on_[links_[id].level];
   unlink(id);
 }
 
@@ -49,43 +29,7 @@ template <int D>
 void CellGrid<D>::clear() {
   std::fill(heads_.begin(), heads_.end(), none);
   links_.clear();
-  for (Level& level : levels_) level.spheres = 0;
-}
-
-template <int D>
-typename CellGrid<D>::Level CellGrid<D>::make_level(double largest_radius, double max_cells,
-                                                    std::size_t& offset) const {
-  double edge = 2 * largest_radius;
-  // The border cell of an open axis holds what is left of it; a period has whole cells only.
-  const auto cells_along = [&](int k) {
-    const double whole = std::floor(size_[k] / edge);
-    return repeats_[k] ? std::max(1.0, whole) : whole + 1;
-  };
-  const auto all_cells = [&] {
-    double cells = 1;
-    for (int k = 0; k < D; ++k) cells *= cells_along(k);
-    return cells;
-  };
-  while (all_cells() > max_cells) edge *= 1.25;
-
-  Level level;
-  level.largest_radius = largest_radius;
-  level.offset = offset;
-  std::size_t cells = 1;
-  for (int k = 0; k < D; ++k) {
-    level.cells[k] = static_cast<int>(cells_along(k));
-    level.inverse_edge[k] = repeats_[k] ? level.cells[k] / size_[k] : 1 / edge;
-    cells *= static_cast<std::size_t>(level.cells[k]);
-  }
-  offset += cells;
-  return level;
-}
-
-template <int D>
-std::size_t CellGrid<D>::level_of(double r) const {
-  std::size_t l = 0;
-  for (double largest = r_max_ / 2; r <= largest && l + 1 < levels_.size(); largest /= 2) ++l;
-  return l;
+  std::fill(spheres_on_.begin(), spheres_on_.end(), 0);
 }
 
 template <int D>

@@ -1,7 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <type_traits>
@@ -10,21 +8,16 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
 #include "bernal/domain/boundary.hpp"
+#include "neighbors/cell_layout.hpp"
 
 namespace bernal {
 
 /// A background grid with doubly linked lists, hierarchical in the radius, of a region that is open or
-/// repeats itself along each axis.
-///
-/// Level l holds the spheres with radii in (R_l / 2, R_l], R_l = r_max / 2^l, in cells of edge 2 R_l, so that
-/// a query looks at a bounded number of cells of each level however widely the radii differ. Levels without
-/// spheres cost nothing. A level never has more than about `cells_per_sphere` cells for each expected sphere:
-/// where the domain is large and sparse its cells grow instead. Along a periodic axis the cells divide the
-/// period evenly, and are the longer for it.
+/// repeats itself along each axis. Which cells there are stands at `CellLayout`; levels without spheres cost
+/// nothing.
 ///
 /// The grid stores ids, not coordinates. Invariant: sphere id is in exactly one list, that of the cell
-/// that holds its centre on the level of its radius. Along an open axis centres beyond the bounds count to
-/// the border cell; along a periodic one every image of a centre is in the same cell.
+/// that holds its centre on the level of its radius; who came last stands first.
 ///
 /// Cost: insert, remove, move O(1); a query O(levels + spheres met). Memory: 16 bytes a sphere, 4 a cell.
 /// Source: Zhao, Li & Liu 2007, figure 7 (one level).
@@ -47,7 +40,7 @@ class CellGrid {
   /// A box [0, edge) that is periodic on every axis and all centres have been multiplied by the same factor
   /// on each axis; the box has these edges now. Spheres stay in their cells. Radii have not changed: what a
   /// query finds is what is near in the new box. Cost: O(levels).
-  void rescale(const Vector<D>& edges);
+  void rescale(const Vector<D>& edges) { layout_.rescale(edges); }
 
   /// Precondition: `id` is not in the grid, r in [r_min, r_max].
   void insert(Id id, const Vector<D>& center, double r);
@@ -57,11 +50,12 @@ class CellGrid {
 
   /// Tells the grid where sphere `id` is now. Precondition: it is in the grid.
   void move(Id id, const Vector<D>& center) {
-    Link& l = links_[id];
-    const std::uint32_t cell = cell_of(levels_[l.level], center);
+    const Link& l = links_[id];
+    const std::uint32_t cell = layout_.cell_of(layout_.levels()[l.level], center);
     if (cell == l.cell) return;
+    const std::uint8_t level = l.level;
     unlink(id);
-    link(id, cell, l.level);
+    link(id, cell, level);
   }
 
   void clear();
@@ -88,27 +82,11 @@ class CellGrid {
     });
   }
 
-  std::size_t level_count() const { return levels_.size(); }
+  const CellLayout<D>& layout() const { return layout_; }
+  std::size_t level_count() const { return layout_.levels().size(); }
   std::size_t cell_count() const { return heads_.size(); }
 
  private:
-  static constexpr double cells_per_sphere = 4;
-  static constexpr std::size_t max_levels = 40;
-  /// Of an edge: how far a centre may have drifted from its cell by the rounding of some hundred thousand
-  /// rescalings.
-  static constexpr double drift = 1e-10;
-
-  struct Level {
-    double largest_radius = 0;
-    Vector<D> inverse_edge = Vector<D>::Zero();
-    std::array<int, D> cells{};
-    std::size_t offset = 0;   // of its first cell in heads_
-    std::size_t spheres = 0;  // how many it holds
-  };
-  /// `count` cells of one axis from `first` on, going round where it repeats itself.
-  struct Range {
-    int first, count;
-  };
   struct Link {
     Id next = none;
     Id previous = none;
@@ -118,30 +96,17 @@ class CellGrid {
 
   template <class Visit>
   bool walk(const Vector<D>& c, double reach, Visit&& visit) const {
-    for (const Level& level : levels_) {
-      if (level.spheres == 0) continue;
-      const double half = reach + level.largest_radius;
-      std::array<Range, D> range;
-      std::array<int, D> at, step{};
-      for (int k = 0; k < D; ++k) {
-        range[k] = repeats_[k] ? cells_around(level, k, c[k], half) : cells_between(level, k, c[k], half);
-        at[k] = range[k].first;
-      }
-      for (;;) {
-        for (Id id = heads_[index(level, at)]; id != none; id = links_[id].next) {
-          if (visit(id)) return true;
-        }
-        int k = 0;
-        for (; k < D; ++k) {
-          if (++step[k] < range[k].count) {
-            if (++at[k] == level.cells[k]) at[k] = 0;
-            break;
-          }
-          step[k] = 0;
-          at[k] = range[k].first;
-        }
-        if (k == D) break;
-      }
+    for (std::size_t l = 0; l < spheres_on_.size(); ++l) {
+      if (spheres_on_[l] == 0) continue;
+      const auto& level = layout_.levels()[l];
+      const auto block = layout_.block_around(level, c, reach + level.largest_radius);
+      if (CellLayout<D>::any_run(level, block, [&](std::size_t first, std::size_t end) {
+            for (std::size_t cell = first; cell < end; ++cell)
+              for (Id id = heads_[cell]; id != none; id = links_[id].next)
+                if (visit(id)) return true;
+            return false;
+          }))
+        return true;
     }
     return false;
   }
@@ -150,41 +115,6 @@ class CellGrid {
   /// sphere.
   bool search(const Vector<D>& c, double reach, bool (*visitor)(void* it, Id id), void* it) const;
 
-  /// Appends its cells behind `offset`, and moves that.
-  Level make_level(double largest_radius, double max_cells, std::size_t& offset) const;
-
-  std::size_t level_of(double r) const;
-  int coordinate(const Level& level, int k, double x) const {
-    double cell = (x - lower_[k]) * level.inverse_edge[k];
-    const double cells = level.cells[k];
-    if (repeats_[k]) cell = std::floor(cell) - cells * std::floor(std::floor(cell) / cells);
-    if (!(cell > 0)) return 0;
-    return cell < cells ? static_cast<int>(cell) : level.cells[k] - 1;
-  }
-  Range cells_between(const Level& level, int k, double x, double half) const {
-    const int first = coordinate(level, k, x - half);
-    return {first, coordinate(level, k, x + half) - first + 1};
-  }
-  Range cells_around(const Level& level, int k, double x, double half) const {
-    half += drift * size_[k];
-    x -= lower_[k];
-    const double first = std::floor((x - half) * level.inverse_edge[k]);
-    const double count = std::floor((x + half) * level.inverse_edge[k]) - first + 1;
-    if (!(count < level.cells[k])) return {0, level.cells[k]};
-    const double cells = level.cells[k];
-    return {static_cast<int>(first - cells * std::floor(first / cells)), static_cast<int>(count)};
-  }
-  std::size_t index(const Level& level, const std::array<int, D>& at) const {
-    std::size_t i = 0;
-    for (int k = D - 1; k >= 0; --k)
-      i = i * static_cast<std::size_t>(level.cells[k]) + static_cast<std::size_t>(at[k]);
-    return level.offset + i;
-  }
-  std::uint32_t cell_of(const Level& level, const Vector<D>& c) const {
-    std::array<int, D> at;
-    for (int k = 0; k < D; ++k) at[k] = coordinate(level, k, c[k]);
-    return static_cast<std::uint32_t>(index(level, at));
-  }
   void link(Id id, std::uint32_t cell, std::uint8_t level) {
     Link& l = links_[id];
     l = {heads_[cell], none, cell, level};
@@ -197,10 +127,8 @@ class CellGrid {
     if (l.next != none) links_[l.next].previous = l.previous;
   }
 
-  Vector<D> lower_, size_;
-  std::array<bool, D> repeats_;
-  double r_max_;
-  std::vector<Level> levels_;
+  CellLayout<D> layout_;
+  std::vector<std::size_t> spheres_on_;  // of each level
   std::vector<Id> heads_;
   std::vector<Link> links_;
 };

@@ -29,10 +29,11 @@ int sweeps_a_cycle(const Relax& options, std::size_t spheres);
 StageEnd relax(Work& work, const Relax& options);
 
 /// The published loop as it stands, in double: the oracle of the fast path. Spheres are moved in place, in
-/// the order of their numbers, and found by the background grid and its doubly linked lists; where the box
-/// has less than two diameters across, a sphere overlaps several images of another, and all of them push.
-/// Readings of what the paper leaves open: lg is log10; T is rounded and at least 1; centres are scaled with
-/// the box; molr is the largest overlap that the last sweep met.
+/// the order of their numbers, and found by the background grid and its doubly linked lists, or with
+/// `RelaxMethod::reference_sorted` in arrays sorted by the same cells, which gives the same packing to the
+/// bit (see PublishedLoop). Where the box has less than two diameters across, a sphere overlaps several
+/// images of another, and all of them push. Readings of what the paper leaves open: lg is log10; T is rounded
+/// and at least 1; centres are scaled with the box; molr is the largest overlap that the last sweep met.
 ///
 /// `options.settle` adds the paper's rule that a sphere which touches nothing moves to touch its nearest
 /// neighbour. It is off by default: it changes neither the packing fraction nor the coordination number
@@ -42,7 +43,7 @@ StageEnd relax(Work& work, const Relax& options);
 ///
 /// Preconditions: centres in [0, edges), every edge at least twice the largest radius. On return centres and
 /// edges are those of the end; overlaps are below `options.stop` where it converged, to the motion of one
-/// sweep. Cost: about 0.4 µs a sphere and sweep in three dimensions. Source: Zhao, Li & Liu 2007, section 2
+/// sweep. Cost: about 0.25 µs a sphere and sweep in three dimensions. Source: Zhao, Li & Liu 2007, section 2
 /// and figure 7.
 template <int D>
 StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options);

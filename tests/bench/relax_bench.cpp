@@ -6,9 +6,13 @@
 #include <string>
 #include <utility>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "soft/published_loop.hpp"
 #include "soft/soft_packing.hpp"
+#include "soft/sorted_cells.hpp"
+#include "work/random_insertion.hpp"
 
 // What relaxation costs: a sweep and a list of the fast path, by instruction set, sizes and threads, on
 // spheres that are nearly at rest at random close packing.
@@ -67,7 +71,11 @@ void sweep(benchmark::State& state, const std::string& sizes) {
 void kernels_and_sizes(benchmark::internal::Benchmark* b) {
   b->ArgNames({"spheres", "kernel", "threads"})->UseRealTime();
   for (const std::int64_t kernel : {0, 1, 2}) b->Args({10000, kernel, 1});
-  b->Args({100000, 0, 1})->Args({100000, 0, 2})->Args({1000000, 0, 1})->Args({1000000, 0, 2});
+  b->Args({1000, 0, 1})
+      ->Args({100000, 0, 1})
+      ->Args({100000, 0, 2})
+      ->Args({1000000, 0, 1})
+      ->Args({1000000, 0, 2});
 }
 BENCHMARK_CAPTURE(sweep, equal, equal)->Apply(kernels_and_sizes);
 BENCHMARK_CAPTURE(sweep, two_sizes, two_sizes)
@@ -77,11 +85,56 @@ BENCHMARK_CAPTURE(sweep, lognormal, lognormal)
     ->ArgNames({"spheres", "kernel", "threads"})
     ->Args({10000, 0, 1});
 
-/// From scratch: sorting the spheres and finding their neighbours. `levels` 1: a single background grid.
+/// The published loop on linked lists and on sorted arrays: the same sweeps, to the bit. Crowded: the first
+/// twenty from random places at 0.86, when spheres change their cells all the time; else nearly at rest.
+template <template <int> class Cells>
+void published_sweep(benchmark::State& state, const std::string& sizes) {
+  const bool crowded = state.range(1) == 1;
+  Crowd start = crowd(sizes, state.range(0));
+  const Vector<3> edges = start.edges;
+  if (crowded) {
+    double volume = 0;
+    for (const double r : start.spheres.r) volume += ball_volume(3, r);
+    start.edges *= std::cbrt(volume / 0.86 / edges.prod());
+    Random random(1, 1);
+    place_at_random<3>(start.spheres, start.edges, random);
+  } else {
+    start.edges /= 0.99;
+    resize_box<3>(start.spheres, start.edges, edges);
+  }
+  PublishedLoop<3, Cells> loop(start.spheres, start.edges, false, Random(1, 2));
+  if (!crowded) loop.sweep();
+  const std::uint64_t tested = loop.pairs_tested();
+  for (auto _ : state) loop.sweep();
+  per_sphere(state, start.spheres.size());
+  state.counters["pair_tests"] = static_cast<double>(loop.pairs_tested() - tested) /
+                                 static_cast<double>(start.spheres.size()) /
+                                 static_cast<double>(state.iterations());
+}
+void sizes_of_published(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"spheres", "crowded"})->Iterations(20)->Unit(benchmark::kMillisecond);
+  for (const std::int64_t crowded : {1, 0})
+    for (const std::int64_t spheres : {1000, 10000, 100000, 1000000}) b->Args({spheres, crowded});
+}
+void one_size_of_published(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"spheres", "crowded"})->Iterations(20)->Unit(benchmark::kMillisecond)->Args({10000, 0});
+}
+void linked_sweep(benchmark::State& state, const std::string& sizes) {
+  published_sweep<LinkedCells>(state, sizes);
+}
+BENCHMARK_CAPTURE(linked_sweep, equal, equal)->Apply(sizes_of_published);
+BENCHMARK_CAPTURE(linked_sweep, lognormal, lognormal)->Apply(one_size_of_published);
+void sorted_sweep(benchmark::State& state, const std::string& sizes) {
+  published_sweep<SortedCells>(state, sizes);
+}
+BENCHMARK_CAPTURE(sorted_sweep, equal, equal)->Apply(sizes_of_published);
+BENCHMARK_CAPTURE(sorted_sweep, lognormal, lognormal)->Apply(one_size_of_published);
+
+/// From scratch: sorting the spheres and finding their neighbours.
 void build_lists(benchmark::State& state, const std::string& sizes) {
   const Crowd start = crowd(sizes, state.range(0));
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
-                                            static_cast<std::size_t>(state.range(2)));
+                                            static_cast<std::size_t>(state.range(1)));
   std::vector<SoftSphere> spheres;
   std::vector<std::uint32_t> ids;
   std::array<double, 3> edges;
@@ -98,28 +151,21 @@ void build_lists(benchmark::State& state, const std::string& sizes) {
     ids.push_back(static_cast<std::uint32_t>(i));
   }
   const std::vector<float> radii(start.spheres.r.begin(), start.spheres.r.end());
-  SoftLists lists(radii, static_cast<float>(0.4 * mean), soft_kernels().front(),
-                  static_cast<std::size_t>(state.range(1)));
+  SoftLists lists(radii, static_cast<float>(0.4 * mean), soft_kernels().front());
   for (auto _ : state) lists.build(spheres, ids, edges);
   per_sphere(state, start.spheres.size());
 }
-void one_level_and_many(benchmark::internal::Benchmark* b) {
-  b->ArgNames({"spheres", "levels", "threads"})->Unit(benchmark::kMillisecond);
+void spheres_and_threads(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"spheres", "threads"})->Unit(benchmark::kMillisecond);
 }
 BENCHMARK_CAPTURE(build_lists, equal, equal)
-    ->Apply(one_level_and_many)
+    ->Apply(spheres_and_threads)
     ->UseRealTime()
-    ->Args({10000, 24, 1})
-    ->Args({100000, 24, 1})
-    ->Args({100000, 24, 2});
-BENCHMARK_CAPTURE(build_lists, lognormal, lognormal)
-    ->Apply(one_level_and_many)
-    ->Args({10000, 24, 1})
-    ->Args({10000, 1, 1});
-BENCHMARK_CAPTURE(build_lists, one_to_twenty, one_to_twenty)
-    ->Apply(one_level_and_many)
-    ->Args({100000, 24, 1})
-    ->Args({100000, 1, 1});
+    ->Args({10000, 1})
+    ->Args({100000, 1})
+    ->Args({100000, 2});
+BENCHMARK_CAPTURE(build_lists, lognormal, lognormal)->Apply(spheres_and_threads)->Args({10000, 1});
+BENCHMARK_CAPTURE(build_lists, one_to_twenty, one_to_twenty)->Apply(spheres_and_threads)->Args({100000, 1});
 
 /// Whole runs, without writing: the schedule from quick to thorough, and the published loop for comparison.
 void relax(benchmark::State& state, const std::string& sizes, const char* method) {

@@ -37,7 +37,12 @@ class HardRelaxation : public ::testing::TestWithParam<const char*> {
         "\"{}\"\n{}\n",
         box, spheres, GetParam(), stage);
   }
-  static bool reference() { return GetParam() == std::string("reference"); }
+  static RelaxMethod method() {
+    const std::string name = GetParam();
+    return name == "fast"        ? RelaxMethod::fast
+           : name == "reference" ? RelaxMethod::reference
+                                 : RelaxMethod::reference_sorted;
+  }
 
   static Packing relaxed(const std::string& toml, Monitor monitor = {}) {
     RunOptions options;
@@ -68,17 +73,18 @@ class HardRelaxation : public ::testing::TestWithParam<const char*> {
               .monitor = monitor,
               .effects = effects};
     for (int i = 0; i < count; ++i) work.spheres.push_back(place(i), 1.0);
-    EXPECT_EQ(relax(work, {.method = reference() ? RelaxMethod::reference : RelaxMethod::fast}),
-              StageEnd::converged);
+    EXPECT_EQ(relax(work, {.method = method()}), StageEnd::converged);
     expect_free_of_overlap(work.spheres, work.edges);
     return work;
   }
 };
 
 const auto name_of_method = [](const auto& info) {
-  return std::string(info.param) == "fast" ? "Fast" : "Reference";
+  const std::string name = info.param;
+  return name == "fast" ? "Fast" : name == "reference" ? "Reference" : "ReferenceSorted";
 };
-INSTANTIATE_TEST_SUITE_P(Methods, HardRelaxation, ::testing::Values("reference", "fast"), name_of_method);
+INSTANTIATE_TEST_SUITE_P(Methods, HardRelaxation, ::testing::Values("reference", "reference-sorted", "fast"),
+                         name_of_method);
 
 TEST_P(HardRelaxation, OfOneSphereTouchesItsOwnImages) {
   for (const int dimension : {1, 2, 3, 4, 6, 8}) {

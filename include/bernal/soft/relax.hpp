@@ -4,8 +4,9 @@
 namespace bernal {
 
 enum class RelaxMethod {
-  fast,       ///< on neighbour lists, with over-relaxed steps
-  reference,  ///< the published loop as it stands, a hundred times slower
+  fast,              ///< on neighbour lists, with over-relaxed steps
+  reference,         ///< the published loop as it stands, a hundred times slower
+  reference_sorted,  ///< the same to the bit, on sorted arrays in place of linked lists
 };
 
 /// Spheres start with overlaps and push each other apart (Zhao, Li & Liu 2007). In a periodic box the box

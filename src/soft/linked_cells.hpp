@@ -1,0 +1,102 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "neighbors/cell_grid.hpp"
+#include "neighbors/counting_sort.hpp"
+#include "work/free_of_overlap.hpp"
+
+namespace bernal {
+
+/// What is read together lies together.
+template <int D>
+struct PlacedSphere {
+  Vector<D> center;
+  double r;
+};
+
+/// The spheres of a periodic box [0, edges) in slots: all that `LinkedCells` and `SortedCells` share. A
+/// sphere has a number, which it keeps, and a slot, where it is kept.
+template <int D>
+class Slots {
+ public:
+  using Slot = std::uint32_t;
+
+  Slots(const Boundary<D>& box, const Spheres<D>& spheres) : box_(box) {
+    spheres_.reserve(spheres.size());
+    for (std::size_t i = 0; i < spheres.size(); ++i) spheres_.push_back({spheres.center(i), spheres.r[i]});
+  }
+
+  std::size_t size() const { return spheres_.size(); }
+  const PlacedSphere<D>& operator[](Slot slot) const { return spheres_[slot]; }
+  Slot slot_of(std::uint32_t number) const { return slot_of_[number]; }
+  const Boundary<D>& box() const { return box_; }
+
+  void write_to(Spheres<D>& spheres) const {
+    for (std::size_t i = 0; i < spheres_.size(); ++i) spheres.set_center(i, spheres_[slot_of_[i]].center);
+  }
+
+ protected:
+  void carry_along(const Vector<D>& edges) {
+    const Vector<D> factor = edges.cwiseQuotient(box_.edges);
+    for (PlacedSphere<D>& sphere : spheres_)
+      for (int k = 0; k < D; ++k) sphere.center[k] = carried_along(sphere.center[k], factor[k], edges[k]);
+    box_.edges = edges;
+  }
+
+  Boundary<D> box_;
+  std::vector<PlacedSphere<D>> spheres_;  // by slot
+  std::vector<Slot> slot_of_;             // by number
+};
+
+/// The spheres of a periodic box as Zhao, Li & Liu keep them: in doubly linked lists, one a cell of the
+/// background grid (`CellGrid`), which a sphere leaves for another whenever it crosses into that cell. Slots
+/// are given once, in the order of the cells, so that what is near in space begins near in memory.
+template <int D>
+class LinkedCells : public Slots<D> {
+ public:
+  using typename Slots<D>::Slot;
+
+  /// Precondition: centres are in the box; 0 < r_min <= all radii <= r_max.
+  LinkedCells(const Boundary<D>& box, const Spheres<D>& spheres, double r_min, double r_max)
+      : Slots<D>(box, spheres), grid_(box, r_min, r_max, spheres.size()) {
+    const CellLayout<D>& layout = grid_.layout();
+    this->slot_of_.clear();
+    for (const PlacedSphere<D>& s : this->spheres_)
+      this->slot_of_.push_back(layout.cell_of(layout.levels()[layout.level_of(s.r)], s.center));
+    std::vector<std::uint32_t> start;
+    counting_sort(this->slot_of_, layout.cell_count(), start);
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const Slot slot = this->slot_of_[i];
+      this->spheres_[slot] = {spheres.center(i), spheres.r[i]};
+      grid_.insert(slot, spheres.center(i), spheres.r[i]);
+    }
+  }
+
+  void begin_sweep() {}
+
+  /// Calls visit(slot) at least for every sphere whose surface, or that of an image, is nearer than `reach`
+  /// to c.
+  template <class Visit>
+  void for_each_near(const Vector<D>& c, double reach, Visit&& visit) const {
+    grid_.for_each_near(c, reach, visit);
+  }
+  /// Brings what such a search has visited into the order of the lists, in which it is here already.
+  void arrange(std::span<Slot>, const Vector<D>&, double) const {}
+
+  /// Moves a sphere; its centre is wrapped into the box.
+  void move(Slot slot, const Vector<D>& to) {
+    Vector<D>& center = this->spheres_[slot].center;
+    center = this->box_.wrap(to);
+    grid_.move(slot, center);
+  }
+  void grow(const Vector<D>& edges) {
+    this->carry_along(edges);
+    grid_.rescale(edges);
+  }
+
+ private:
+  CellGrid<D> grid_;
+};
+
+}  // namespace bernal
