@@ -37,6 +37,7 @@ constexpr const char* examples = R"(Examples:
   bernal design maximise --diameters 1,3,9           how much of each size packs densest
   bernal map 0.3 0.6 -o out                          how densely all their mixtures do
   bernal reproduce fig6 -o out                       a figure of the paper behind that
+  bernal bench                                       what its own work costs here
 
 Exit codes: 0 done; 1 not certified, or not usable; 2 bad input; 3 ended without reaching what the scene asks.
 Messages go to standard error, results to files or standard output.)";
@@ -69,14 +70,14 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a run is not lost because nobody reads what it says
   int status = exit_code::done;
   try {
-    const Command command = {
-        "bernal",
-        description,
-        {},
-        examples,
-        {},
-        {pack_command(), verify_command(), inspect_command(), explain_command(), keys_command(),
-         measure_command(), predict_command(), design_command(), map_command(), reproduce_command()}};
+    const Command command = {"bernal",
+                             description,
+                             {},
+                             examples,
+                             {},
+                             {pack_command(), verify_command(), inspect_command(), explain_command(),
+                              keys_command(), measure_command(), predict_command(), design_command(),
+                              map_command(), reproduce_command(), bench_command()}};
     status = run_command_line(argc, argv, command, "bernal " + std::string(bernal::version()));
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::broken_pipe && reader_has_left()) return status;

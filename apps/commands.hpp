@@ -12,6 +12,7 @@ Command predict_command();
 Command design_command();
 Command map_command();
 Command reproduce_command();
+Command bench_command();
 
 /// Exit codes, the same for every subcommand.
 namespace exit_code {

@@ -1,0 +1,16 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "bernal/cost/bench.hpp"
+
+namespace bernal::cost {
+
+using BenchFiles = std::vector<BenchFile>;  ///< the Markdown first; empty where the monitor stopped it
+
+/// The table of the scenes of those names, in the order of the list.
+BenchFiles bench_scenes(std::span<const std::string_view> names, const BenchOptions&);
+/// What they are called.
+std::span<const Bench> scenes_to_bench();
+
+}  // namespace bernal::cost
