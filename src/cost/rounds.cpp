@@ -80,6 +80,7 @@ Rounds interleaved(const std::vector<Setting>& settings, TrialRecord& record, co
                                                     .threads = threads,
                                                     .limit = std::min(options.limit, budget.left()),
                                                     .meant = setting.meant.get(),
+                                                    .with_core = setting.with_core,
                                                     .monitor = budget.monitor(setting.name)});
       if (trial.outcome == Outcome::cancelled && !trial.cut_off) {
         rounds.cancelled = true;

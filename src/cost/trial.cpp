@@ -130,6 +130,9 @@ Trial run_trial(const Scene& scene, const TrialOptions& options) {
   if (packing.outcome == Outcome::cancelled || packing.spheres.empty()) return trial;
   certify_trial(trial, packing, options);
   count_contacts(trial, packing);
+  if (options.with_core)
+    if (const auto profile = wall_profile(packing.spheres, packing.domain, {}, packing.container))
+      trial.core_packing_fraction = profile->core_packing_fraction;
   return trial;
 }
 

@@ -25,6 +25,9 @@ struct Trial {
   /// Strict: of the spheres shrunk by the largest overlap that is left, so that none overlaps:
   /// phi (1 - max_overlap)^D, of what is certified.
   double packing_fraction = 0;
+  /// Of what lies a few spheres from the walls and deeper, where there are walls and it was asked for. The
+  /// file of a record does not hold it.
+  std::optional<double> core_packing_fraction;
   bool certified = false;    ///< as the scene asks for it, with the overlap that it allows
   double max_overlap = 0;    ///< that the certificate finds; 0 where no pair overlaps
   double early_overlap = 0;  ///< the largest before the finish: the last that a stage reports of itself
@@ -58,6 +61,7 @@ struct TrialOptions {
   /// The domain that is meant, where the scene's only stands for it: packing fraction and walls are judged by
   /// this one. Null: the scene's own.
   const Domain* meant = nullptr;
+  bool with_core = false;  ///< measures the packing fraction of the core: some 10 µs a sphere
   Monitor monitor = {};
 };
 
