@@ -174,10 +174,11 @@ const StageEntry& entry_of<Fly>() {
                            "flight, patent: way between two batches in mean diameters; if absent 0.25, for "
                            "the patent's procedure 0.01",
                            above(0, 1e6)),
-                    number(
-                        &Fly::patience, "patience",
-                        "flight, patent: full when so many places in a row, for each sphere, were not free",
-                        above(0, 1e9)),
+                    buys_accuracy({10, 100, 1000, 10000},
+                                  number(&Fly::patience, "patience",
+                                         "flight, patent: full when so many places in a row, for each "
+                                         "sphere, were not free",
+                                         above(0, 1e9))),
                     integer(&Fly::sweeps, "sweeps",
                             "classes, relaxation: of all spheres, after which it stops", {1, 1e9})},
            .complete = completion(complete_fly)},

@@ -216,35 +216,44 @@ const StageEntry& entry_of<Grow>() {
             .help = "hard spheres fly, collide and grow, in convex containers to their radii, in periodic "
                     "boxes of 2 to 6 dimensions until they jam",
             .keys =
-                {number(
-                     &Grow::delta, "delta",
-                     "as published: growth of the radii, relative to those at the start, in the time that a "
-                     "sphere of thermal speed takes across the box, or for the cube root of the "
-                     "container's volume; if absent see rate",
-                     above(0, 100)),
+                {buys_accuracy(
+                     {10, 1, 0.1, 0.01},
+                     number(&Grow::delta, "delta",
+                            "as published: growth of the radii, relative to those at the start, in the time "
+                            "that a "
+                            "sphere of thermal speed takes across the box, or for the cube root of the "
+                            "container's volume; if absent see rate",
+                            above(0, 100))),
                  number(&Grow::phi_init, "phi_init",
                         "packing fraction of the random insertion at the start, in a container half of it "
                         "where spheres find no places; if absent 0.2, in other than three dimensions half of "
                         "what insertion reaches",
                         above(0, 0.5)),
-                 number(&Grow::rate, "rate",
-                        "growth of the mean diameter by volume over the thermal speed where the packing "
-                        "forms; slower is denser; ten times that while the spheres are a fluid",
-                        {1e-6, 1}),
-                 number(&Grow::pressure, "pressure",
-                        "compressibility factor P V / N k T at which the spheres count as jammed",
-                        {10, 1e13}),
+                 buys_accuracy(
+                     {0.3, 0.1, 0.03, 0.01, 0.003, 0.001},
+                     number(&Grow::rate, "rate",
+                            "growth of the mean diameter by volume over the thermal speed where the packing "
+                            "forms; slower is denser; ten times that while the spheres are a fluid",
+                            {1e-6, 1})),
+                 buys_accuracy(
+                     {1e2, 1e3, 1e4, 1e6, 1e9},
+                     number(&Grow::pressure, "pressure",
+                            "compressibility factor P V / N k T at which the spheres count as jammed",
+                            {10, 1e13})),
                  word(&Grow::masses, "masses",
                       "equal, as published; volume: as of one material, which packs denser where sizes "
                       "differ "
                       "several times, if the rate is low",
                       {"equal", "volume"}),
-                 number(
-                     &Grow::polish, "polish",
-                     "close the gaps and overlaps of all contacts to this ratio, and no more contacts than "
-                     "hold the spheres; in a container all sizes grow for that by one factor, which the "
-                     "report states; 0: do not",
-                     {0, 0.5})},
+                 buys_accuracy(
+                     {0, 1e-6, 1e-10},
+                     number(
+                         &Grow::polish, "polish",
+                         "close the gaps and overlaps of all contacts to this ratio, and no more contacts "
+                         "than "
+                         "hold the spheres; in a container all sizes grow for that by one factor, which the "
+                         "report states; 0: do not",
+                         {0, 0.5}))},
             .complete = completion(complete_grow)},
            {.in_bed = true,
             .in_box = true,

@@ -34,6 +34,16 @@ Key unless(std::string otherwise, Key key) {
   return key;
 }
 
+Key buys_accuracy(std::initializer_list<double> ladder, Key key) {
+  for (const double value : ladder)
+    key.ladder.push_back(key.type == Type::integer ? Value(static_cast<std::int64_t>(value)) : Value(value));
+  return key;
+}
+Key buys_accuracy(Key word) {
+  for (const std::string_view value : word.words) word.ladder.emplace_back(std::string(value));
+  return word;
+}
+
 std::vector<Key> acting(Acts acts, std::vector<Key> keys) {
   for (Key& key : keys) key.acts = acts;
   return keys;

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -126,6 +127,9 @@ struct Key {
   bool required = false;     ///< in a file, unless the entry's choices leave it out
   bool is_diameter = false;  ///< a size that is a diameter by its name
   Acts acts = Acts::everywhere;
+  /// Of a key that buys accuracy with time: values from the cheapest to the dearest. Of a length: in units of
+  /// the one that the scene has.
+  std::vector<Value> ladder = {};
 
   std::optional<Value> of(const void* options) const {
     return member.get ? member.get(options) : std::nullopt;
@@ -163,6 +167,10 @@ inline Key required(Key key) {
   key.required = true;
   return key;
 }
+
+/// More accuracy for more time, from value to value; of a word from word to word.
+Key buys_accuracy(std::initializer_list<double> ladder, Key key);
+Key buys_accuracy(Key word);
 
 /// Lists of keys: where they act, of a part of the struct, together.
 std::vector<Key> acting(Acts, std::vector<Key>);

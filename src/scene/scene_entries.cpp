@@ -200,12 +200,14 @@ const Entry& accuracy_entry() {
   static const Entry made = entry<Scene>(
       {.name = "accuracy",
        .help = "how walls are decided and what the result may keep",
-       .keys = {word(&Scene::walls, "walls",
-                     "double, filtered (certified bounds, exact where they cannot decide) or exact",
-                     words(wall_words)),
-                number(&Scene::overlap, "overlap",
-                       "largest overlap ratio (ri + rj - d) / (ri + rj) that is allowed; 0: none",
-                       {0, 1, false, true})}});
+       .keys = {
+           buys_accuracy(word(&Scene::walls, "walls",
+                              "double, filtered (certified bounds, exact where they cannot decide) or exact",
+                              words(wall_words))),
+           buys_accuracy({1e-3, 1e-4, 1e-6, 0},
+                         number(&Scene::overlap, "overlap",
+                                "largest overlap ratio (ri + rj - d) / (ri + rj) that is allowed; 0: none",
+                                {0, 1, false, true}))}});
   return made;
 }
 
@@ -252,10 +254,10 @@ const std::vector<Entry>& container_entries() {
                     length(&MeshFile::weld, "weld",
                            "corners of open edges up to this far apart are one; if absent, what rounding "
                            "explains"),
-                    length(
-                        &MeshFile::deflection, "deflection",
-                        "of STEP, IGES and BREP: how far triangles may lie from the true surface; if absent "
-                        "a fiftieth of the smallest radius"),
+                    buys_accuracy({10, 3, 1, 0.3, 0.1}, length(&MeshFile::deflection, "deflection",
+                                                               "of STEP, IGES and BREP: how far triangles "
+                                                               "may lie from the true surface; if absent "
+                                                               "a fiftieth of the smallest radius")),
                     names(repair(), "repair",
                           "what may be done to a surface that is no wall: close holes, cut out "
                           "self-intersections, wrap it",

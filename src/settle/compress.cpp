@@ -155,8 +155,10 @@ std::vector<schema::Key> compression_keys() {
               "where the spheres are pushed; its length is of no matter"),
           number(&Compress::tilt, "tilt",
                  "how far a sphere's own direction leaves the common one; 0: not at all", {0, 100}),
-          number(&Compress::tolerance, "tolerance",
-                 "relative fall of the potential energy in an iteration that counts as none", between(0, 1)),
+          buys_accuracy({0.3, 0.1, 1e-2, 1e-3, 1e-4},
+                        number(&Compress::tolerance, "tolerance",
+                               "relative fall of the potential energy in an iteration that counts as none",
+                               between(0, 1))),
           integer(&Compress::max_iterations, "max_iterations", "after which it stops unconverged", {1, 1e9}),
           number(&Compress::buffer, "buffer", "room in a sphere's bounding box on each side, in mean radii",
                  {0.01, 10})};

@@ -162,8 +162,10 @@ const StageEntry& entry_of<Insert>() {
       .table = stage_table<Insert>(
           {.name = "insert",
            .help = "place spheres at random where they overlap nothing",
-           .keys = {integer(&Insert::attempts, "attempts",
-                            "random places tried for one sphere before it has to wait", {1, 1e9}),
+           .keys = {buys_accuracy(
+                        {1, 10, 100, 1000, 10000},
+                        integer(&Insert::attempts, "attempts",
+                                "random places tried for one sphere before it has to wait", {1, 1e9})),
                     number(&Insert::packing_fraction, "packing_fraction", "where random insertion stops",
                            between(0, 1))}},
           {.in_bed = true, .reaches = Reaches::insertion}),

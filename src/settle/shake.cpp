@@ -37,10 +37,11 @@ const StageEntry& entry_of<Shake>() {
       .table = stage_table<Shake>(
           {.name = "shake",
            .help = "move spheres across the direction, so that arches break, and compress again",
-           .keys = joined({integer(&Shake::rounds, "rounds", "how often", {1, 1e9}),
-                           number(&Shake::amplitude, "amplitude", "longest way in one sweep, in mean radii",
-                                  above(0, 100))},
-                          inside(&Shake::compress, compression_keys()))},
+           .keys = joined(
+               {buys_accuracy({1, 2, 5, 10, 20}, integer(&Shake::rounds, "rounds", "how often", {1, 1e9})),
+                number(&Shake::amplitude, "amplitude", "longest way in one sweep, in mean radii",
+                       above(0, 100))},
+               inside(&Shake::compress, compression_keys()))},
           {.in_bed = true, .only_moves = true}),
       .act_in_bed = act(shake),
       .bed_effects = {neighbor_lists,

@@ -210,22 +210,27 @@ const StageEntry& entry_of<Relax>() {
                joined(
                    acting(
                        Acts::in_box,
-                       {number(&Relax::alpha, "alpha",
-                               "sweeps between two growths of the box, in units of (log10 N)^2",
-                               above(0, 1e6)),
+                       {buys_accuracy({1, 2, 5, 17, 60, 200},
+                                      number(&Relax::alpha, "alpha",
+                                             "sweeps between two growths of the box, in units of (log10 N)^2",
+                                             above(0, 1e6))),
                         integer(&Relax::period, "period",
                                 "sweeps between two growths of the box, however many spheres, in place of "
                                 "alpha",
                                 {1, 1e6}),
-                        number(&Relax::beta, "beta",
-                               "the box grows by the largest overlap ratio divided by this", {0.01, 1e6}),
+                        buys_accuracy({3, 10, 30, 100},
+                                      number(&Relax::beta, "beta",
+                                             "the box grows by the largest overlap ratio divided by this",
+                                             {0.01, 1e6})),
                         number(&Relax::phi0, "phi0",
                                "packing fraction of the overlapping spheres at the start; if absent 0.86, in "
                                "other than three dimensions 1.34 of random close packing",
                                above(0, 10)),
-                        number(&Relax::stop, "stop",
-                               "largest overlap ratio that counts as none; the box then grows by it",
-                               {1e-12, 0.5}),
+                        buys_accuracy(
+                            {1e-2, 1e-3, 2e-4, 1e-5, 1e-6},
+                            number(&Relax::stop, "stop",
+                                   "largest overlap ratio that counts as none; the box then grows by it",
+                                   {1e-12, 0.5})),
                         word(&Relax::method, "method",
                              "fast; reference: the published loop as it stands, on linked lists, a hundred "
                              "times slower; reference-sorted: the same to the bit, on sorted arrays",
@@ -234,19 +239,24 @@ const StageEntry& entry_of<Relax>() {
                              "reference: what touches nothing moves to touch its nearest neighbour")}),
                    acting(
                        Acts::in_bed,
-                       {integer(&Relax::patience, "patience",
-                                "how often what is stuck is stirred before some spheres are taken out",
-                                {0, 1e6}),
+                       {buys_accuracy(
+                            {0, 1, 3, 12, 40, 120},
+                            integer(&Relax::patience, "patience",
+                                    "how often what is stuck is stirred before some spheres are taken out",
+                                    {0, 1e6})),
                         integer(&Relax::sweeps, "sweeps", "of all spheres, after which it stops", {1, 1e9}),
                         number(
                             &Relax::seconds, "seconds",
                             "after which it stops, and then one seed need not give one packing; 0: any time",
                             {0, 1e9})})),
-               {number(&Relax::polish, "polish",
+               {buys_accuracy(
+                   {0, 1e-6, 1e-10},
+                   number(
+                       &Relax::polish, "polish",
                        "close the gaps and overlaps of all contacts to this ratio, and no more contacts than "
                        "hold the spheres; in a container all sizes grow for that by one factor, which the "
                        "report states; 0: do not",
-                       {0, 0.5})}),
+                       {0, 0.5}))}),
            .choices = {{{"alpha"}, {"period"}}},
            .complete = completion(complete_relax)},
           traits),
