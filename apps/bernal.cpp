@@ -32,6 +32,7 @@ constexpr const char* examples = R"(Examples:
   bernal measure out                                 contacts, rattlers, g(r), sizes against those asked for
   bernal inspect part.stl --unit mm                  can this CAD file be a container?
   bernal explain data/scenes/hopper.toml             what would run, and what it would cost
+  bernal cost data/scenes/relax_equal.toml -o out    what accuracy costs in time there, and what to take
   bernal keys relax                                  what a scene may say of a stage
   bernal predict --lognormal 0.5                     how densely spheres of these sizes pack
   bernal design maximise --diameters 1,3,9           how much of each size packs densest
@@ -76,8 +77,8 @@ int main(int argc, char** argv) {
                              examples,
                              {},
                              {pack_command(), verify_command(), inspect_command(), explain_command(),
-                              keys_command(), measure_command(), predict_command(), design_command(),
-                              map_command(), reproduce_command(), bench_command()}};
+                              keys_command(), cost_command(), measure_command(), predict_command(),
+                              design_command(), map_command(), reproduce_command(), bench_command()}};
     status = run_command_line(argc, argv, command, "bernal " + std::string(bernal::version()));
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::broken_pipe && reader_has_left()) return status;

@@ -6,6 +6,7 @@ Command pack_command();
 Command verify_command();
 Command inspect_command();
 Command explain_command();
+Command cost_command();
 Command keys_command();
 Command measure_command();
 Command predict_command();

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "bernal/core/text.hpp"
+#include "bernal/core/error.hpp"
 
 namespace bernal::cost {
 namespace {
@@ -58,44 +58,53 @@ class Budget {
 Rounds interleaved(const std::vector<Setting>& settings, TrialRecord& record, const RoundOptions& options) {
   const int threads = threads_of(options.threads);
   Rounds rounds;
-  std::vector<std::vector<const Trial*>> known;
   std::size_t missing = 0;
+  // What was cut off with one seed is not run with another one, unless it may take longer now.
+  const auto too_slow = [&](const Setting& setting) {
+    return std::ranges::any_of(options.seeds, [&](std::uint64_t seed) {
+      const Trial* trial = record.find(setting, seed, threads);
+      return trial && trial->cut_off && std::min(options.limit, options.budget) < 1.5 * trial->seconds;
+    });
+  };
   const auto measured = [&](const Setting& setting, std::uint64_t seed) {
     const Trial* trial = record.find(setting, seed, threads);
-    const bool may_take_longer =
-        trial && trial->cut_off && std::min(options.limit, options.budget) > 1.5 * trial->seconds;
-    return trial && !may_take_longer;
+    return (trial && !trial->cut_off) || too_slow(setting);
   };
   for (const Setting& setting : settings)
     for (const std::uint64_t seed : options.seeds) missing += !measured(setting, seed);
   Budget budget(options, missing);
+  for (const Setting& setting : settings) rounds.series.push_back({&setting});
   for (std::size_t round = 0; round < options.seeds.size(); ++round) {
     for (const std::size_t k : order_of_round(settings.size(), round)) {
       const Setting& setting = settings[k];
-      if (measured(setting, options.seeds[round])) continue;
+      std::string& refused = rounds.series[k].refused;
+      if (!refused.empty() || measured(setting, options.seeds[round])) continue;
       rounds.cancelled = rounds.cancelled || options.monitor.stop();
       rounds.out_of_time = rounds.out_of_time || !(budget.left() > 0);
       if (rounds.cancelled || rounds.out_of_time) break;
-      const Trial trial = run_trial(setting.scene, {.seed = options.seeds[round],
-                                                    .threads = threads,
-                                                    .limit = std::min(options.limit, budget.left()),
-                                                    .meant = setting.meant.get(),
-                                                    .with_core = setting.with_core,
-                                                    .monitor = budget.monitor(setting.name)});
-      if (trial.outcome == Outcome::cancelled && !trial.cut_off) {
-        rounds.cancelled = true;
-        break;
+      try {
+        const Trial trial = run_trial(setting.scene, {.seed = options.seeds[round],
+                                                      .threads = threads,
+                                                      .limit = std::min(options.limit, budget.left()),
+                                                      .meant = setting.meant.get(),
+                                                      .with_core = setting.with_core,
+                                                      .monitor = budget.monitor(setting.name)});
+        rounds.cancelled = trial.outcome == Outcome::cancelled && !trial.cut_off;
+        // That it is slower than what happened to be left of the time says nothing.
+        rounds.out_of_time = trial.cut_off && !(budget.left() > 0) && trial.seconds < 0.9 * options.limit;
+        if (rounds.cancelled || rounds.out_of_time) break;
+        record.add(setting, trial);
+        ++rounds.made;
+      } catch (const Error& error) {
+        if (!options.pass_over_refused || error.code() == ErrorCode::cannot_write) throw;
+        refused = error.what();
       }
-      record.add(setting, trial);
-      budget.told_of(++rounds.made);
+      budget.told_of(rounds.made);
     }
   }
-  for (const Setting& setting : settings) {
-    rounds.series.push_back({&setting, {}});
+  for (Series& series : rounds.series)
     for (const std::uint64_t seed : options.seeds)
-      if (const Trial* trial = record.find(setting, seed, threads))
-        rounds.series.back().trials.push_back(*trial);
-  }
+      if (const Trial* trial = record.find(*series.setting, seed, threads)) series.trials.push_back(*trial);
   return rounds;
 }
 

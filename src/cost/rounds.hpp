@@ -45,9 +45,11 @@ class TrialRecord {
 struct RoundOptions {
   std::vector<std::uint64_t> seeds = {1, 2};
   int threads = 0;
-  /// Seconds on the wall for all that has still to be measured; what runs when they are over is cut off.
+  /// Seconds on the wall for all that has still to be measured; what runs when they are over ends and is
+  /// forgotten.
   double budget = std::numeric_limits<double>::infinity();
   double limit = std::numeric_limits<double>::infinity();  ///< of one trial
+  bool pass_over_refused = false;  ///< a scene that cannot be run is told of in its series, not thrown
   /// Hears how far all of them have come: the fraction is that of trials, or of the budget if that is more.
   Monitor monitor = {};
 };
@@ -55,7 +57,8 @@ struct RoundOptions {
 /// The trials of a setting, in the order of the seeds; those that were not made are missing.
 struct Series {
   const Setting* setting = nullptr;
-  std::vector<Trial> trials;
+  std::vector<Trial> trials = {};
+  std::string refused = {};  ///< why it cannot be run
 };
 struct Rounds {
   std::vector<Series> series;  ///< in the order of the settings
@@ -66,8 +69,8 @@ struct Rounds {
 /// Runs every setting once with the first seed, then with the second, and so on. Within a round the order is
 /// shuffled, and every second round goes through the order of the one before backwards, so that a machine
 /// that becomes slower or faster meanwhile does not favour one setting. What the record holds is not run
-/// again. Precondition: the settings outlive the result. Throws as `build`, for the first scene that cannot
-/// be; what was measured before is in the record.
+/// again. Precondition: the settings outlive the result. Throws as `build` for the first scene that cannot
+/// be, unless these are passed over; what was measured before is in the record.
 Rounds interleaved(const std::vector<Setting>& settings, TrialRecord& record, const RoundOptions& options);
 
 /// The middle one, or the mean of the two in the middle, and half of what lies between the least and the

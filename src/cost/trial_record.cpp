@@ -115,11 +115,11 @@ class Cells {
 std::string line_of(const std::string& key, const std::string& name, const Trial& t) {
   const auto flag = [](bool value) { return value ? "yes" : "no"; };
   return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", key,
-                     in_quotes(name), t.seed, t.threads, name_of(t.outcome), in_quotes(t.reason), flag(t.cut_off),
-                     t.spheres, t.packing_fraction, flag(t.certified), t.max_overlap, t.early_overlap,
-                     t.protrusion, text_of(t.wall_gap), text_of(t.held_from), text_of(t.contact_ratio),
-                     t.rattlers, t.coordination, t.hash, t.seconds, t.cpu_seconds, t.prepare_seconds,
-                     text_of(t.peak_bytes), in_quotes(text_of(t.effects)));
+                     in_quotes(name), t.seed, t.threads, name_of(t.outcome), in_quotes(t.reason),
+                     flag(t.cut_off), t.spheres, t.packing_fraction, flag(t.certified), t.max_overlap,
+                     t.early_overlap, t.protrusion, text_of(t.wall_gap), text_of(t.held_from),
+                     text_of(t.contact_ratio), t.rattlers, t.coordination, t.hash, t.seconds, t.cpu_seconds,
+                     t.prepare_seconds, text_of(t.peak_bytes), in_quotes(text_of(t.effects)));
 }
 
 Trial trial_of(Cells& cells) {

@@ -1,0 +1,165 @@
+#include "bernal/cost/cost.hpp"
+
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bernal/core/text.hpp"
+#include "bernal/io/write_packing.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "commands.hpp"
+#include "progress_bar.hpp"
+#include "say.hpp"
+
+using namespace bernal;
+
+namespace {
+
+struct CostCall {
+  std::filesystem::path scene;
+  std::filesystem::path folder;
+  std::string time = "10m";
+  int seeds = 2;
+  int threads = 0;
+  bool fresh = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+constexpr double longest_time = 30 * 86400.0;
+
+/// Of "90", "90s", "10m", "2h"; none where it is not such a time, above 0 and at most 30 days.
+std::optional<double> seconds_of(std::string_view text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
+  const double seconds = factor * number;
+  if (error != std::errc{} || !(seconds > 0) || seconds > longest_time) return {};
+  return seconds;
+}
+
+template <class Number>
+nlohmann::ordered_json or_null(const std::optional<Number>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
+
+nlohmann::ordered_json json_of_row(const CostRow& row) {
+  return {{"setting", row.setting},
+          {"phi", row.phi},
+          {"phi_scatter", row.phi_scatter},
+          {"seconds", row.seconds},
+          {"wall_seconds", row.wall_seconds},
+          {"largest_overlap", row.early_overlap},
+          {"overlap_left", row.max_overlap},
+          {"held_from", or_null(row.held_from)},
+          {"contacts_over_isostatic", or_null(row.contact_ratio)},
+          {"wall_error", row.wall_error},
+          {"memory_bytes", or_null(row.memory_bytes)},
+          {"runs", row.runs},
+          {"slower", row.slower},
+          {"outcome", name_of(row.outcome)},
+          {"certified", row.certified},
+          {"pareto", row.pareto},
+          {"pareto_contacts", row.pareto_contacts}};
+}
+
+void print_json(const CostReport& report) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const CostRow& row : report.rows) rows.push_back(json_of_row(row));
+  nlohmann::ordered_json files = nlohmann::ordered_json::array();
+  for (const auto& file : report.files) files.push_back(plain_text(file.string(), 5000));
+  const nlohmann::ordered_json json = {{"recommendation", report.recommendation},
+                                       {"recommended", report.recommended},
+                                       {"scene_as_it_is", report.own},
+                                       {"settings", std::move(rows)},
+                                       {"verdicts", report.verdicts},
+                                       {"phi_step", report.phi_step},
+                                       {"runs_made", report.runs_made},
+                                       {"runs_kept", report.runs_kept},
+                                       {"complete", report.complete},
+                                       {"stopped", report.cancelled},
+                                       {"toml", report.toml},
+                                       {"files", std::move(files)}};
+  say(stdout, "{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void print_words(const CostReport& report, bool quiet) {
+  if (!quiet) {
+    std::size_t on_front = 0;
+    for (const CostRow& row : report.rows) on_front += row.pareto;
+    say(stderr, "measured   {} settings, {} on the front; {} runs, {} of them known before\n",
+        report.rows.size(), on_front, report.runs_made + report.runs_kept, report.runs_kept);
+    say(stderr, "           {}\n",
+        report.cancelled  ? "stopped; the same call goes on from here"
+        : report.complete ? "nothing was left to try"
+                          : "the time is over; the same call goes on from here");
+    for (const std::string& verdict : report.verdicts) say(stderr, "{}\n", verdict);
+    say(stderr, "advice     {}\n", report.recommendation);
+  }
+  for (const auto& file : report.files) say(stdout, "{}\n", plain_text(file.string(), 5000));
+}
+
+int cost(const CostCall& call) {
+  ProgressBar bar(call.quiet);
+  bar.now("read");
+  const Scene scene = read_scene(call.scene);
+  check_writable(call.folder);
+  const CostReport report = measure_cost(scene, call.folder,
+                                         {.seconds = *seconds_of(call.time),
+                                          .seeds = call.seeds,
+                                          .threads = call.threads,
+                                          .fresh = call.fresh,
+                                          .monitor = bar.monitor()});
+  bar.clear();
+  if (report.rows.empty()) {
+    say(stderr, "bernal: stopped before the scene as it is was measured; what is known stands in {}\n",
+        plain_text((call.folder / "trials.csv").string(), 5000));
+    return exit_code::not_reached;
+  }
+  call.json ? print_json(report) : print_words(report, call.quiet);
+  return report.cancelled ? exit_code::not_reached : exit_code::done;
+}
+
+}  // namespace
+
+Command cost_command() {
+  const auto call = std::make_shared<CostCall>();
+  const auto complaint = [](const std::string& text) {
+    return seconds_of(text)
+               ? std::string()
+               : fmt::format("must be a time above 0 and up to 30 days, such as 90s, 10m or 2h, not {}",
+                             text);
+  };
+  return {
+      "cost",
+      "Run a scene at several accuracies: what each costs in time, what it buys, what to take",
+      {required({"SCENE", &call->scene, "The scene, a TOML file"}),
+       required({"-o,--output", &call->folder, "Folder for the results; made if it does not exist", "DIR"}),
+       checked({"--time", &call->time, "For all of it on the wall; 10m if absent", "TIME"}, complaint),
+       within(
+           {"--seeds", &call->seeds, "Runs of every setting, each with a seed of its own; 2 if absent", "N"},
+           1, 100),
+       threads_option(call->threads, "every packing"),
+       {"--fresh", &call->fresh, "Forget what an earlier call measured in this folder"},
+       json_option(call->json),
+       quiet_option(call->quiet)},
+      "Examples:\n"
+      "  bernal cost data/scenes/relax_equal.toml -o out              ten minutes\n"
+      "  bernal cost data/scenes/hopper.toml -o out --time 1h         an hour\n"
+      "  bernal pack out/recommended.toml                             what is advised\n\n"
+      "Runs the scene as it is, then with other values of the keys that buy accuracy in its stages\n"
+      "(alpha, stop, patience, polish, rate, …), in [accuracy] and in its container, one at a time and\n"
+      "combined, every setting with several seeds, in an order that a machine that slows down hurts all\n"
+      "alike. Seconds are those of the processor, all threads together.\n"
+      "Writes cost.csv, cost.md, cost.html, cost.svg and recommended.toml, and keeps every run in\n"
+      "trials.csv: the same call again goes on where the last one ended. On a machine with nothing else to\n"
+      "do the times are better.\n"
+      "Exit codes: 0 done, also when the time is over; 2 bad input, or not one run ends in the time;\n"
+      "3 stopped by Ctrl-C: what was measured is written.",
+      [call] { return cost(*call); }};
+}

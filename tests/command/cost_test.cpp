@@ -1,0 +1,95 @@
+#include <csignal>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "check.hpp"
+
+namespace bernal::testing {
+namespace cost_command_test {
+
+using nlohmann::json;
+
+constexpr const char* tiny_box = R"([container]
+kind = "periodic"
+[spheres]
+count = 60
+radius = 1
+)";
+
+TEST(CostCommand, WritesItsFilesAndItsAdviceRuns) {
+  const Folder folder;
+  const std::string scene = folder.write("tiny.toml", tiny_box).string(), out = (folder / "out").string();
+  const Ended ended = bernal({"cost", scene, "-o", out, "--time", "3s", "--seeds", "1"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  std::string files;
+  for (const char* name : {"cost.csv", "cost.md", "cost.svg", "cost.html", "recommended.toml"})
+    files += out + "/" + name + "\n";
+  EXPECT_EQ(ended.out, files);
+  EXPECT_NE(ended.err.find("advice"), std::string::npos) << ended.err;
+  const std::string csv = text_of(out + "/cost.csv");
+  EXPECT_TRUE(csv.starts_with("setting,phi,phi_scatter,seconds,seconds_scatter,largest_overlap,pareto,"))
+      << csv;
+  EXPECT_NE(csv.find("\"as it is\","), std::string::npos);
+  EXPECT_TRUE(text_of(out + "/cost.html").ends_with("</body></html>\n"));
+
+  // What is advised is what was measured.
+  const Ended packed = bernal({"pack", out + "/recommended.toml", "-o", (folder / "packed").string()});
+  EXPECT_EQ(packed.status, 0) << packed.err;
+  const Ended again = bernal({"cost", scene, "-o", out, "--time", "1s", "--seeds", "1", "--json"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  const json report = json::parse(again.out);
+  EXPECT_GT(report["runs_kept"], 0);
+  EXPECT_TRUE(text_of(out + "/cost.md").find(report_of(folder / "packed")["hash"]) != std::string::npos ||
+              report["runs_made"] > 0)
+      << "with nothing new measured the advice stays";
+  EXPECT_FALSE(report["settings"].empty());
+}
+
+TEST(CostCommand, RefusesAbsurdInputInOneLine) {
+  const Folder folder;
+  const std::string scene = folder.write("tiny.toml", tiny_box).string(), out = (folder / "out").string();
+  for (const char* time : {"0", "-3m", "10 minutes", "nan", "inf", "1e9h", "", "m"})
+    expect_refused_in_one_line(bernal({"cost", scene, "-o", out, "--time", time}), {"--time"});
+  expect_refused_in_one_line(bernal({"cost", scene, "-o", out, "--seeds", "0"}), {"--seeds"});
+  expect_refused_in_one_line(bernal({"cost", scene}), {"output"});
+  expect_refused_in_one_line(bernal({"cost", (folder / "none.toml").string(), "-o", out}), {"none.toml"});
+  expect_refused_in_one_line(bernal({"cost", scene, "-o", "/proc/none"}), {"/proc/none"});
+  const std::string wide =
+      folder.write("wide.toml", "container = { kind = \"sphere\", radius = 1 }\n[spheres]\nradius = 3\n")
+          .string();
+  expect_refused_in_one_line(bernal({"cost", wide, "-o", out}), {"wide.toml"});
+  const std::string large =
+      folder.write("large.toml", std::string(tiny_box) + "[[stage]]\ndo = \"relax\"\nalpha = 1000\n")
+          .string();
+  std::string text = text_of(large);
+  text.replace(text.find("60"), 2, "60000");
+  folder.write("large.toml", text);
+  expect_refused_in_one_line(bernal({"cost", large, "-o", out, "--time", "0.2"}), {"--time"});
+  EXPECT_FALSE(std::filesystem::exists(folder / "out" / "cost.md"));
+  std::ofstream(folder / "out" / "trials.csv") << "x,y,z,r\n";
+  expect_refused_in_one_line(bernal({"cost", scene, "-o", out}), {"trials.csv"});
+  EXPECT_EQ(bernal({"cost", scene, "-o", out, "--time", "1s", "--seeds", "1", "--fresh"}).status, 0);
+}
+
+TEST(CostCommand, AnInterruptKeepsWhatIsMeasured) {
+  const Folder folder;
+  std::string text = tiny_box;
+  text.replace(text.find("60"), 2, "600");
+  const std::string scene = folder.write("scene.toml", text).string(), out = (folder / "out").string();
+  const Process cost = start_bernal({"cost", scene, "-o", out, "--time", "10m"});
+  const auto lines = [&] {
+    std::ifstream in(folder / "out" / "trials.csv");
+    return std::count(std::istreambuf_iterator<char>(in), {}, '\n');
+  };
+  for (int k = 0; k < 600 && lines() < 6; ++k) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  cost.signal(SIGINT);
+  const Ended ended = cost.wait();
+  EXPECT_EQ(ended.status, 3) << ended.err;
+  EXPECT_NE(ended.err.find("goes on from here"), std::string::npos) << ended.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "out" / "cost.md"));
+  EXPECT_GE(lines(), 6);
+}
+
+}  // namespace cost_command_test
+}  // namespace bernal::testing
