@@ -8,6 +8,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "cad/clearance_field.hpp"
 #include "cad/triangle_tree.hpp"
+#include "domain/free_path.hpp"
 
 namespace bernal {
 namespace {
@@ -15,8 +16,7 @@ namespace {
 class MeshContainer final : public Container {
  public:
   MeshContainer(const Mesh& mesh, WallArithmetic arithmetic, double resolution)
-      : Container(resolution),
-        arithmetic_(arithmetic),
+      : Container(arithmetic, resolution),
         bounds_(bounds_of(mesh)),
         volume_(volume_of(mesh)),
         tree_(mesh),
@@ -42,10 +42,10 @@ class MeshContainer final : public Container {
   bool contains(const Vector<3>& c, double r) const override {
     // Exact arithmetic throughout means that no shortcut is taken either.
     const cad::ClearanceBounds known =
-        arithmetic_ == WallArithmetic::exact ? cad::ClearanceBounds{} : field_.at(c);
+        arithmetic() == WallArithmetic::exact ? cad::ClearanceBounds{} : field_.at(c);
     if (known.lower >= r && known.inside()) return true;
     if (known.outside() || known.upper < r) return false;
-    return tree_.clears(c, r, arithmetic_) && field_.side(c) != cad::Side::outside;
+    return tree_.clears(c, r, arithmetic()) && field_.side(c) != cad::Side::outside;
   }
 
   void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
@@ -68,8 +68,20 @@ class MeshContainer final : public Container {
     return tree_.first_contact(c, r, direction, limit, skin);
   }
 
+  double free_path(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const override {
+    const double speed = direction.stableNorm();
+    const Motion motion{c, r, direction, limit};
+    const double bound = free_path_bound(c, r);
+    if (arithmetic() != WallArithmetic::exact && field_.at(c).lower >= r + bound + limit * speed)
+      return limit;
+    if (arithmetic() != WallArithmetic::plain) return tree_.free_path(motion, bound, arithmetic());
+    if (!(speed > 0)) return contains(c, r) ? limit : 0;
+    const double way = limit * speed;
+    const double path = tree_.first_contact(c, r, direction / speed, way, plain_skin * bound);
+    return path == way ? limit : std::min(limit, path / speed);
+  }
+
  private:
-  WallArithmetic arithmetic_;
   Bounds<3> bounds_;
   double volume_;
   cad::TriangleTree tree_;

@@ -10,6 +10,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "bernal/domain/container.hpp"
 #include "cad/wall_tree.hpp"
+#include "domain/free_path.hpp"
 #include "domain/wall_contacts.hpp"
 #include "kernels/closest_point.hpp"
 #include "kernels/first_contact.hpp"
@@ -174,6 +175,18 @@ class WithinTraversal {
   std::vector<NearFacet>& out_;
 };
 
+/// How far a point at c can move along the direction, at least, before it comes within `reach` of the box;
+/// infinity if it never does. The plane through the box's nearest point, across the offset, has the box
+/// behind it: so far the plane allows.
+inline double entry(const Vector<3>& c, const Vector<3>& direction, double reach, const CGAL::Bbox_3& box) {
+  const Vector<3> from_box = offset(c, box);
+  const double squared = from_box.squaredNorm();
+  if (squared <= reach * reach) return 0;
+  const double approach = -from_box.dot(direction);
+  if (approach <= 0) return std::numeric_limits<double>::infinity();
+  return (squared - reach * std::sqrt(squared)) / approach;
+}
+
 /// A sphere on its way. A box is entered if the sphere, widened by its skin, may reach it before the first
 /// contact so far. Rounding of that test is far below the half skin by which a triangle may be ignored.
 class MoveTraversal {
@@ -187,7 +200,7 @@ class MoveTraversal {
     return do_intersect_with_priority(c, node).first;
   }
   std::pair<bool, Priority> do_intersect_with_priority(const Vector<3>& c, const Node& node) const {
-    const double t = entry(c, node.bbox());
+    const double t = entry(c, direction_, reach_, node.bbox());
     return {t <= limit_ && !tree_.oriented(node).is_beyond(c, reach_ + limit_), -t};
   }
   template <typename Iterator>
@@ -207,22 +220,49 @@ class MoveTraversal {
   double limit() const { return limit_; }
 
  private:
-  /// How far the centre can move, at least, before it comes within reach of the box; infinity if it never
-  /// does. The plane through the box's nearest point, across the offset, has the box behind it: so far the
-  /// plane allows.
-  double entry(const Vector<3>& c, const CGAL::Bbox_3& box) const {
-    const Vector<3> from_box = offset(c, box);
-    const double squared = from_box.squaredNorm();
-    if (squared <= reach_ * reach_) return 0;
-    const double approach = -from_box.dot(direction_);
-    if (approach <= 0) return std::numeric_limits<double>::infinity();
-    return (squared - reach_ * std::sqrt(squared)) / approach;
-  }
-
   const WallTree& tree_;
   double r_, skin_, reach_, limit_;
   Vector<3> direction_;
   Vector<3> towards_ = Vector<3>::Zero();  ///< from the point of the first contact so far to the centre there
+};
+
+/// The same without a skin: a box is entered unless the sphere, widened by what rounds a distance, surely
+/// does not reach it, and every triangle in it is decided as the arithmetic promises.
+class PathTraversal {
+ public:
+  using Priority = double;
+  PathTraversal(const WallTree& tree, const Motion& motion, double bound, WallArithmetic arithmetic)
+      : tree_(tree),
+        motion_(motion),
+        unit_(motion.direction.stableNormalized()),
+        speed_(motion.direction.stableNorm()),
+        reach_(motion.r + bound),
+        arithmetic_(arithmetic) {}
+
+  bool go_further() const { return motion_.limit > 0; }
+  bool do_intersect(const Vector<3>& c, const Node& node) const {
+    return do_intersect_with_priority(c, node).first;
+  }
+  std::pair<bool, Priority> do_intersect_with_priority(const Vector<3>& c, const Node& node) const {
+    const double t = entry(c, unit_, reach_, node.bbox()), way = motion_.limit * speed_ + reach_ - motion_.r;
+    return {t <= way && !tree_.oriented(node).is_beyond(c, reach_ + way), -t};
+  }
+  template <typename Iterator>
+  void traverse_group(const Vector<3>& c, Iterator first, Iterator last) {
+    for (; first != last; ++first) intersection(c, *first);
+  }
+  void intersection(const Vector<3>&, const Leaf& leaf) {
+    const WallTriangle& t = leaf.triangle();
+    motion_.limit = bernal::free_path(Corners{t.a, t.b, t.c}, motion_, arithmetic_);
+  }
+  double limit() const { return motion_.limit; }
+
+ private:
+  const WallTree& tree_;
+  Motion motion_;
+  Vector<3> unit_;
+  double speed_, reach_;
+  WallArithmetic arithmetic_;
 };
 
 }  // namespace bernal::cad

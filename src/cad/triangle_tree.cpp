@@ -144,6 +144,12 @@ double TriangleTree::first_contact(const Vector<3>& c, double r, const Vector<3>
   return traversal.limit();
 }
 
+double TriangleTree::free_path(const Motion& motion, double bound, WallArithmetic arithmetic) const {
+  PathTraversal traversal(*tree_, motion, bound, arithmetic);
+  tree_->search_nearest_first(motion.c, traversal);
+  return traversal.limit();
+}
+
 namespace {
 
 template <typename Ignored>

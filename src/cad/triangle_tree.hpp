@@ -9,6 +9,7 @@
 
 #include "bernal/domain/container.hpp"
 #include "cad/wall_triangle.hpp"
+#include "domain/motion.hpp"
 
 namespace bernal::cad {
 
@@ -51,6 +52,9 @@ class TriangleTree {
   /// See Container::first_contact.
   double first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit,
                        double skin) const;
+
+  /// See Container::free_path, filtered or exact; `bound` is its `free_path_bound`.
+  double free_path(const Motion& motion, double bound, WallArithmetic arithmetic) const;
 
   /// Whether p is on the wall and, if not, whether the way from p along the axis to the coordinate `end`
   /// crosses the wall an odd number of times, exactly. Its end must not be on the wall; infinity is a good

@@ -3,6 +3,7 @@
 
 #include "domain/analytic.hpp"
 #include "domain/exact_analytic.hpp"
+#include "domain/free_path.hpp"
 #include "domain/nearest_first.hpp"
 
 namespace bernal {
@@ -11,19 +12,19 @@ namespace {
 class BoxContainer final : public Container {
  public:
   BoxContainer(const Box& shape, WallArithmetic arithmetic, double resolution)
-      : Container(resolution, boundary_of<3>(shape)),
+      : Container(arithmetic, resolution, boundary_of<3>(shape)),
         shape_(shape),
         bounds_(bounds_of(shape)),
-        arithmetic_(arithmetic) {
+        walls_(walls_of(shape)) {
     for (int side = 0; side < 6; ++side) {
       const int axis = side / 2;
       if (shape.repeats(axis)) {
-        walls_.lower[axis] = -std::numeric_limits<double>::infinity();
-        walls_.upper[axis] = std::numeric_limits<double>::infinity();
+        ends_.lower[axis] = -std::numeric_limits<double>::infinity();
+        ends_.upper[axis] = std::numeric_limits<double>::infinity();
         continue;
       }
-      walls_.lower[axis] = bounds_.lower[axis];
-      walls_.upper[axis] = bounds_.upper[axis];
+      ends_.lower[axis] = bounds_.lower[axis];
+      ends_.upper[axis] = bounds_.upper[axis];
       const bool upper = side % 2 == 1;
       Facet& f = facets_.emplace_back();
       f.kind = Facet::Kind::plane;
@@ -38,7 +39,7 @@ class BoxContainer final : public Container {
   double volume() const override { return volume_of(shape_); }
 
   double clearance(const Vector<3>& p) const override {
-    const Vector<3> depth = (p - walls_.lower).cwiseMin(walls_.upper - p);
+    const Vector<3> depth = (p - ends_.lower).cwiseMin(ends_.upper - p);
     const double least = depth.minCoeff();
     return least >= 0 ? least : -depth.cwiseMin(0).norm();
   }
@@ -46,7 +47,13 @@ class BoxContainer final : public Container {
   bool contains(const Vector<3>& c, double r) const override {
     // Inside, the clearance is one difference of doubles. Rounding never carries it across another double, so
     // it is wrong about r only where it equals r.
-    return decide_contains(arithmetic_, clearance(c), r, 0.0, [&] { return contains_exactly(shape_, c, r); });
+    return decide_contains(arithmetic(), clearance(c), r, 0.0,
+                           [&] { return contains_exactly(walls_, c, r); });
+  }
+
+  double free_path(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const override {
+    if (arithmetic() == WallArithmetic::plain) return Container::free_path(c, r, direction, limit);
+    return bernal::free_path(walls_, {c, r, direction, limit}, arithmetic());
   }
 
   void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
@@ -56,8 +63,8 @@ class BoxContainer final : public Container {
  private:
   Box shape_;
   Bounds<3> bounds_;
-  Bounds<3> walls_;  // infinite along an axis that has none
-  WallArithmetic arithmetic_;
+  Bounds<3> ends_;  // infinite along an axis that has none
+  std::vector<Wall> walls_;
   std::vector<Facet> facets_;
 };
 

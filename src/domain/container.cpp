@@ -5,6 +5,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "domain/analytic.hpp"
+#include "domain/free_path.hpp"
 #include "domain/wall_contacts.hpp"
 
 namespace bernal {
@@ -80,6 +81,29 @@ double Container::first_contact(const Vector<3>& c, double r, const Vector<3>& d
     limit = bernal::first_contact(n.facet, c, r, direction, limit, skin);
   }
   return limit;
+}
+
+double Container::free_path(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const {
+  const double speed = direction.stableNorm() * (1 + 8 * tolerance::roundoff);
+  if (!(speed > 0)) return contains(c, r) ? limit : 0;
+  const double reach = r + free_path_bound(c, r);
+  thread_local std::vector<NearFacet> near;
+  near.clear();
+  facets_near(c, reach + limit * speed, near);
+  Motion motion{c, r, direction, limit};
+  for (const NearFacet& n : near) {
+    if (n.distance - reach >= motion.limit * speed) break;
+    motion.limit = bernal::free_path(n.facet, motion, arithmetic_);
+  }
+  return motion.limit;
+}
+
+double Container::free_path_bound(const Vector<3>& c, double r) const {
+  const Bounds<3> box = bounds();
+  const double distance = std::max(box.size().norm(), (c - box.center()).norm());
+  const double coordinate =
+      std::max({box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff(), c.cwiseAbs().maxCoeff()});
+  return rounding_bound(coordinate + 2 * distance + r);
 }
 
 void Container::walls_near(const Vector<3>& c, double reach, std::vector<WallPoint>& out) const {

@@ -4,6 +4,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "domain/analytic.hpp"
 #include "domain/exact_analytic.hpp"
+#include "domain/free_path.hpp"
 #include "domain/nearest_first.hpp"
 
 namespace bernal {
@@ -12,10 +13,10 @@ namespace {
 class CylinderContainer final : public Container {
  public:
   CylinderContainer(const Cylinder& shape, WallArithmetic arithmetic, double resolution)
-      : Container(resolution, boundary_of<3>(shape)),
+      : Container(arithmetic, resolution, boundary_of<3>(shape)),
         shape_(shape),
         axis_(shape.axis.stableNormalized()),
-        arithmetic_(arithmetic) {
+        walls_(walls_of(shape)) {
     facets_.resize(shape.periodic ? 1 : 3);
     Facet& lateral = facets_[0];
     lateral.kind = Facet::Kind::cylinder;
@@ -51,8 +52,13 @@ class CylinderContainer final : public Container {
     // 10u·n, the distance from the axis line by 24u·n; u·(radius + height + r) covers the subtractions.
     const double n = (c - shape_.base).lpNorm<1>();
     const double error = 32 * tolerance::roundoff * (n + shape_.radius + shape_.height + r);
-    return decide_contains(arithmetic_, clearance(c), r, error,
-                           [&] { return contains_exactly(shape_, c, r); });
+    return decide_contains(arithmetic(), clearance(c), r, error,
+                           [&] { return contains_exactly(walls_, c, r); });
+  }
+
+  double free_path(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const override {
+    if (arithmetic() == WallArithmetic::plain) return Container::free_path(c, r, direction, limit);
+    return bernal::free_path(walls_, {c, r, direction, limit}, arithmetic());
   }
 
   void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
@@ -62,7 +68,7 @@ class CylinderContainer final : public Container {
  private:
   Cylinder shape_;
   Vector<3> axis_;
-  WallArithmetic arithmetic_;
+  std::vector<Wall> walls_;
   std::vector<Facet> facets_;
 };
 

@@ -1,20 +1,22 @@
 #pragma once
+#include <vector>
+
 #include "bernal/domain/domain.hpp"
+#include "domain/motion.hpp"
 
 namespace bernal {
 
-// Whether the closed ball of radius r >= 0 about c lies in the shape, decided in rational arithmetic on the
-// doubles as they are: no rounding, no square root. Cost: some microseconds.
+/// The walls of an analytic shape, by the doubles that it is given by; none of an axis that repeats itself.
+std::vector<Wall> walls_of(const Box&);
+std::vector<Wall> walls_of(const Cylinder&);
+std::vector<Wall> walls_of(const Sphere&);
 
-/// lower_k <= c_k - r and c_k + r <= upper_k on every axis that has walls.
-bool contains_exactly(const Box&, const Vector<3>& c, double r);
-
-/// With w = c - base and s = w·axis, the axis of any length: s >= r·|axis|, s <= (height - r)·|axis| and
-/// |w|²·|axis|² - s² <= (radius - r)²·|axis|², the first two compared by sign and
-/// square, and left out for a cylinder that repeats itself.
-bool contains_exactly(const Cylinder&, const Vector<3>& c, double r);
-
-/// |c - center|² <= (radius - r)² and r <= radius.
-bool contains_exactly(const Sphere&, const Vector<3>& c, double r);
+/// Whether the closed ball of radius r >= 0 about c lies between the walls, decided on the doubles as they
+/// are: no rounding, no square root (domain/exact_way.hpp). Cost: some microseconds.
+bool contains_exactly(const std::vector<Wall>& walls, const Vector<3>& c, double r);
+template <class Shape>
+bool contains_exactly(const Shape& shape, const Vector<3>& c, double r) {
+  return contains_exactly(walls_of(shape), c, r);
+}
 
 }  // namespace bernal

@@ -3,6 +3,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "domain/analytic.hpp"
 #include "domain/exact_analytic.hpp"
+#include "domain/free_path.hpp"
 #include "domain/nearest_first.hpp"
 
 namespace bernal {
@@ -11,7 +12,7 @@ namespace {
 class SphereContainer final : public Container {
  public:
   SphereContainer(const Sphere& shape, WallArithmetic arithmetic, double resolution)
-      : Container(resolution), shape_(shape), arithmetic_(arithmetic) {
+      : Container(arithmetic, resolution), shape_(shape), walls_(walls_of(shape)) {
     wall_[0].kind = Facet::Kind::sphere;
     wall_[0].a = shape.center;
     wall_[0].radius = shape.radius;
@@ -27,8 +28,13 @@ class SphereContainer final : public Container {
     // |c - center| has a relative error of at most 5u; two subtractions follow.
     const double from_center = (c - shape_.center).norm();
     const double error = 8 * tolerance::roundoff * (from_center + shape_.radius + r);
-    return decide_contains(arithmetic_, shape_.radius - from_center, r, error,
-                           [&] { return contains_exactly(shape_, c, r); });
+    return decide_contains(arithmetic(), shape_.radius - from_center, r, error,
+                           [&] { return contains_exactly(walls_, c, r); });
+  }
+
+  double free_path(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const override {
+    if (arithmetic() == WallArithmetic::plain) return Container::free_path(c, r, direction, limit);
+    return bernal::free_path(walls_, {c, r, direction, limit}, arithmetic());
   }
 
   void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
@@ -37,7 +43,7 @@ class SphereContainer final : public Container {
 
  private:
   Sphere shape_;
-  WallArithmetic arithmetic_;
+  std::vector<Wall> walls_;
   std::array<Facet, 1> wall_;
 };
 

@@ -10,6 +10,7 @@
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
 #include "sizes/cut_above.hpp"
+#include "work/bed.hpp"
 
 namespace bernal {
 namespace {
@@ -273,6 +274,9 @@ Plan build(const Scene& stated) {
   for (const Stage& stage : scene.stages)
     for (const PlanItem& item : effects_of(stage, plan))
       if (!has(item.name)) plan.items.push_back(item);
+  if (scene.walls == WallArithmetic::exact)
+    plan.items.push_back({std::string(exact_walls_effect), "of every place and every move limit at a wall",
+                          "2 to 100 µs a decision"});
   for (const StageEntry* stage : stage_entries())
     for (const PlanItem& item :
          stage->table.traits.stands_in_bed(scene) ? stage->bed_effects : stage->box_effects)

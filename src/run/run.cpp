@@ -141,7 +141,9 @@ class Run {
   std::optional<Vector<3>> exact_place(const Vector<3>& place, double r) {
     if (!of_scene_) {
       const Frame none{.resolution = frame_.resolution * frame_.scale};
-      of_scene_ = make_container(plan_.domain, WallArithmetic::filtered, none.resolution);
+      const bool plain = scene_.walls == WallArithmetic::plain;  // of which a place that touches has no use
+      of_scene_ =
+          make_container(plan_.domain, plain ? WallArithmetic::filtered : scene_.walls, none.resolution);
     }
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const Vector<3> middle = bounds_of(plan_.domain).center(), at = frame_.to_scene(place);

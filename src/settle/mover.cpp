@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "domain/free_path.hpp"
 #include "kernels/first_contact.hpp"
 
 namespace bernal {
@@ -172,7 +173,7 @@ void Mover::limit_by_walls(const Vector<3>& u, FreePath& path) const {
   for (const NearFacet& near : facets) {
     // Facets stand in the order of their distance from the box's centre: the rest is out of reach.
     if (near.distance - already_moved - path.length > ball().r + 2 * bed_.skin()) break;
-    const double length = first_contact(near.facet, ball().center, ball().r, u, path.length, bed_.skin());
+    const double length = first_contact_with(near.facet, u, path.length);
     if (length < path.length) {
       path.length = length;
       blocker = &near;
@@ -182,6 +183,16 @@ void Mover::limit_by_walls(const Vector<3>& u, FreePath& path) const {
   const Vector<3> end = ball().center + path.length * u;
   path.end = FreePath::End::wall;
   path.normal = (end - closest_point(blocker->facet, end)).normalized();
+}
+
+/// A few doubles before the wall in the one case, to the last bit in the other; the skin, half of which is
+/// never used up, takes the rounding of the place where the sphere then stands.
+double Mover::first_contact_with(const Facet& facet, const Vector<3>& u, double limit) const {
+  if (Effect* exact = bed_.exact_walls()) {
+    const EffectTimer timer(*exact);
+    return first_contact_exactly(facet, {ball().center, ball().r, u, limit}, bed_.skin());
+  }
+  return first_contact(facet, ball().center, ball().r, u, limit, bed_.skin());
 }
 
 std::span<const NearFacet> Mover::walls() const {

@@ -53,6 +53,7 @@ class Mover {
   void limit_by_box(const Vector<3>& u, FreePath& path) const;
   void limit_by_neighbors(const Vector<3>& u, FreePath& path);
   void limit_by_walls(const Vector<3>& u, FreePath& path) const;
+  double first_contact_with(const Facet& facet, const Vector<3>& u, double limit) const;
   std::span<const NearFacet> walls() const;
   double moved() const { return (ball().center - bed_.box_centers_[i_]).norm(); }
 

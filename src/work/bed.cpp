@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
@@ -77,6 +78,8 @@ bool Bed::fits_between_spheres(const Vector<3>& c, double r) const {
 bool Bed::fits(const Vector<3>& c, double r) const {
   if (!fits_between_spheres(c, r)) return false;
   const EffectTimer wall_timer(walls_);
+  std::optional<EffectTimer> exact_timer;
+  if (Effect* exact = exact_walls()) exact_timer.emplace(*exact);
   return container_.contains(c, r + skin_);
 }
 

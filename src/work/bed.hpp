@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
@@ -12,11 +13,16 @@
 
 namespace bernal {
 
+/// The effect of `walls = "exact"`: decisions about walls that doubles would nearly always have made.
+inline constexpr std::string_view exact_walls_effect = "exact walls";
+
 /// The bed: spheres in their container while they are being packed, in the packer's frame.
 ///
 /// Every stage obeys walls and neighbours through the same two calls: `fits` for a sphere that appears,
 /// `Mover::free_path` for one that moves. Both keep every gap at or above skin/2 (core/tolerance.hpp), so
-/// that nothing ever overlaps.
+/// that nothing ever overlaps. Both decide about walls as the container's WallArithmetic says: `fits` by
+/// `Container::contains`, `Mover` by the rule of kernels/first_contact.hpp, in doubles, to which the skin
+/// makes it a bound, or exactly.
 ///
 /// Between two calls of `enclose` each sphere may move within its own bounding box, a cube around its place
 /// at the time of the call; neighbours and near walls are those that the boxes allow (Han, Feng & Owen 2005,
@@ -108,6 +114,10 @@ class Bed {
  private:
   friend class Mover;
   void reorder(const std::vector<Id>& order);
+  /// Of decisions about walls, where these are made exactly; else null.
+  Effect* exact_walls() const {
+    return container_.arithmetic() == WallArithmetic::exact ? &effects_[exact_walls_effect] : nullptr;
+  }
   void wrap();
   /// The way from a to the nearest image of b.
   Vector<3> way(const Vector<3>& a, const Vector<3>& b) const {

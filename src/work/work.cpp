@@ -82,12 +82,14 @@ bool Work::put_in_bed(const Spheres<3>& first) {
   return bed().size() == first.size();
 }
 
-void Work::insert_in_bed(const Spheres<dynamic>& others, bool only_those_that_fit) {
+void Work::insert_in_bed(const Spheres<dynamic>& others,
+                         const std::function<bool(const Vector<3>&, double)>& may_stand) {
   const std::vector<std::uint32_t> tags = tags_of(others.r, *supply);
   std::vector<bool> has_place(tags.empty() ? 0 : tags.back() + std::size_t{1}, false);
   for (std::size_t i = 0; i < others.size(); ++i) {
-    if (only_those_that_fit && !fits_in_bed(others.center(i), others.r[i])) continue;
-    bed_->insert(others.center(i), others.r[i], tags[i]);
+    const Vector<3> place = others.center(i);
+    if (may_stand && !may_stand(place, others.r[i])) continue;
+    bed_->insert(place, others.r[i], tags[i]);
     has_place[tags[i]] = true;
   }
   supply->set_placed(has_place);
@@ -101,7 +103,11 @@ void Work::stand_in_bed() {
     return;
   }
   const Vector<dynamic> asked = bounds_of<dynamic>(domain).size();
-  insert_in_bed(spheres, (edges.array() > asked.array()).any());
+  // In a box whose edges are not larger they overlap nothing; its walls were kept clear by a bound.
+  const bool too_large = (edges.array() > asked.array()).any();
+  insert_in_bed(spheres, [&](const Vector<3>& place, double r) {
+    return too_large ? fits_in_bed(place, r) : container->contains(place, r);
+  });
   edges = asked;
   placed = false;
   spheres = Spheres<dynamic>(dimension());

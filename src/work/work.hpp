@@ -158,8 +158,10 @@ struct Work {
   void crowd_milestone(std::string_view stage, std::size_t count, double volume, double max_overlap,
                        double done) const;
 
-  /// Of the sequence, in its order, without those that have no place.
-  void insert_in_bed(const Spheres<dynamic>& others, bool only_those_that_fit = false);
+  /// Of the sequence, in its order, without those that have no place; and without those that may not stand
+  /// where they are, if that is asked.
+  void insert_in_bed(const Spheres<dynamic>& others,
+                     const std::function<bool(const Vector<3>&, double)>& may_stand = {});
 
   std::shared_ptr<Bed> bed_ = {};
   mutable std::optional<Room> roomiest_ = {};

@@ -72,6 +72,21 @@ class Container {
   /// has to aim along a chord.
   virtual double first_contact(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const;
 
+  /// The same without a skin, decided as the container's WallArithmetic promises: how far a ball of radius
+  /// r > 0 at c, inside, may move along `direction`, of whatever length, until it touches: the largest t in
+  /// [0, limit] such that the ball about c + s·direction lies inside for all s in [0, t]. Taking doubles for
+  /// the real numbers that they are, `exact` is the largest such double; `filtered` is not above that and a
+  /// few roundoffs below it at most; `plain` reaches beyond the wall by less than 2 `free_path_bound`, and
+  /// stops no farther before it. 0 for a ball that reaches beyond the wall at the start. `limit` may be
+  /// infinite. See domain/free_path.hpp.
+  ///
+  /// A ball that rests on a wall and is to slide along it gets nowhere by this, since every rounding of a
+  /// tangent leads into the wall or off it: what moves in steps asks for `first_contact`.
+  virtual double free_path(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const;
+
+  /// See `free_path`: 64 roundoffs of the lengths and coordinates that occur.
+  double free_path_bound(const Vector<3>& c, double r) const;
+
   /// `facets_near`, where these are not more than `most`; else false, and what is appended is of no use.
   virtual bool few_facets_near(const Vector<3>& c, double reach, std::size_t most,
                                std::vector<NearFacet>& out) const;
@@ -89,11 +104,15 @@ class Container {
   /// Largest rounding error of a coordinate: `Frame::resolution` of the frame the container lives in.
   double resolution() const { return resolution_; }
 
+  /// How `contains` and `free_path` are decided.
+  WallArithmetic arithmetic() const { return arithmetic_; }
+
  protected:
-  explicit Container(double resolution, const Boundary<3>& boundary = {})
-      : resolution_(resolution), boundary_(boundary) {}
+  Container(WallArithmetic arithmetic, double resolution, const Boundary<3>& boundary = {})
+      : arithmetic_(arithmetic), resolution_(resolution), boundary_(boundary) {}
 
  private:
+  WallArithmetic arithmetic_;
   double resolution_;
   Boundary<3> boundary_;
 };
