@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "bernal/core/tolerance.hpp"
+#include "domain/exact_way.hpp"
 #include "kernels/closest_point.hpp"
 
 namespace bernal::cad {
@@ -71,6 +72,7 @@ DistanceBounds bound_distance(const Vector<3>& p, const WallTriangle& t) {
 
 bool exactly_clears(const Vector<3>& p, const WallTriangle& t, double r) {
   using Kernel = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+  ++exact_decisions;
   const auto exact = [](const Vector<3>& v) { return Kernel::Point_3(v[0], v[1], v[2]); };
   const Kernel::FT radius(r);
   return CGAL::squared_distance(exact(p), Kernel::Triangle_3(exact(t.a), exact(t.b), exact(t.c))) >=

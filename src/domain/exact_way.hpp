@@ -30,7 +30,8 @@ bool way_clears_exactly(const Corners& triangle, const Motion& motion, double r,
 /// The place c + t·direction.
 ExactVector place_after(const Motion& motion, double t);
 
-/// How many of the two decisions above this thread has made.
+/// How many decisions about a wall this thread has made without rounding: those above, and exactly_clears in
+/// cad/certified_distance.hpp.
 inline thread_local std::uint64_t exact_decisions = 0;
 
 }  // namespace bernal

@@ -313,6 +313,23 @@ double free_path(const Facet& f, const Motion& motion, WallArithmetic arithmetic
   return free_path(wall_of(f), motion, arithmetic);
 }
 
+long double gap_after(const Facet& f, const Motion& m, long double t) {
+  if (f.kind != Facet::Kind::triangle) return gap_after(wall_of(f), m, t);
+  const WideWay way({f.a, f.b, f.c}, m);
+  return nearest_of_triangle(ways_from(way.from_start, way.direction, t)).offset.norm() - way.r;
+}
+
+long double gap_after(const Wall& wall, const Motion& m, long double t) { return WideGap(wall, m).at(t); }
+
+double clear_radius(const Container& container, const Vector<3>& c, double reach) {
+  const double guess = container.clearance_within(c, reach);
+  if (container.arithmetic() == WallArithmetic::plain) return std::max(0.0, guess);
+  const auto clears = [&](double r) { return container.contains(c, r); };
+  if (!clears(0)) return 0;
+  if (clears(reach)) return reach;
+  return last_clear(guess, reach, clears);
+}
+
 double first_contact_exactly(const Facet& f, const Motion& m, double skin) {
   const double stop = m.r + skin, ignore = m.r + 0.5 * skin;
   if (f.kind == Facet::Kind::triangle) {

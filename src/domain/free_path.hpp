@@ -53,6 +53,17 @@ inline double rounding_skin(double lengths) { return plain_skin * rounding_bound
 /// S of a facet.
 double lengths_of(const Facet& facet, const Motion& motion);
 
+/// How far the surface of the ball is from the facet after t·direction, negative where it reaches beyond it
+/// or, of a triangle, where that is nearer to its centre than its radius. In the 64 bits of long double:
+/// wrong by less than 32 of their roundoffs of the lengths that occur, a 64th of a roundoff of double.
+long double gap_after(const Facet& facet, const Motion& motion, long double t);
+long double gap_after(const Wall& wall, const Motion& motion, long double t);
+
+/// The bounded distance at the container's level: the largest double r <= reach such that the ball of radius
+/// r about c lies inside as `contains` decides it; 0 if not even r = 0 does. Where that is exact or filtered,
+/// it is the clearance rounded down to the last bit. In plain arithmetic `Container::clearance_within`.
+double clear_radius(const Container& container, const Vector<3>& c, double reach);
+
 /// The rule of kernels/first_contact.hpp, decided exactly: for a ball with its skin, which may always leave
 /// what it rests on. In the terms of that page: `limit` where the gap never falls below skin / 2 on the whole
 /// way; else the last double before it falls below `skin`; 0 where it is below that at once and does not grow
