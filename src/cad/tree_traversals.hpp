@@ -244,7 +244,8 @@ class PathTraversal {
     return do_intersect_with_priority(c, node).first;
   }
   std::pair<bool, Priority> do_intersect_with_priority(const Vector<3>& c, const Node& node) const {
-    const double t = entry(c, unit_, reach_, node.bbox()), way = motion_.limit * speed_ + reach_ - motion_.r;
+    const double way = motion_.limit * speed_ + reach_ - motion_.r;
+    const double t = advance(c, way, node.bbox());
     return {t <= way && !tree_.oriented(node).is_beyond(c, reach_ + way), -t};
   }
   template <typename Iterator>
@@ -258,6 +259,19 @@ class PathTraversal {
   double limit() const { return motion_.limit; }
 
  private:
+  /// From where one plane allows no further the next one is taken: a ball that rests on a wide flat wall and
+  /// slides along it comes near to much of it, and reaches little. Stops where the ball may reach the box.
+  double advance(const Vector<3>& c, double way, const CGAL::Bbox_3& box) const {
+    constexpr int most_planes = 8;
+    double t = 0;
+    for (int k = 0; k < most_planes && t <= way; ++k) {
+      const double further = entry(c + t * unit_, unit_, reach_, box);
+      if (further == 0) break;
+      t += further;
+    }
+    return t;
+  }
+
   const WallTree& tree_;
   Motion motion_;
   Vector<3> unit_;

@@ -154,7 +154,9 @@ std::string page_of(const std::vector<PricedRow>& rows) {
           static_cast<char>(std::toupper(decision[0])), decision.substr(1));
     }
     const auto nanoseconds = [&](std::size_t level) {
-      return row.level[level] ? fmt::format("{:.3g}", row.level[level]->nanoseconds) : "–";
+      if (!row.level[level]) return std::string("–");
+      const double ns = row.level[level]->nanoseconds;
+      return ns < 100 ? fmt::format("{:.3g}", ns) : grouped(static_cast<std::uint64_t>(std::llround(ns)));
     };
     const Priced& filtered = *row.level[1];
     page +=
@@ -169,22 +171,25 @@ std::string page_of(const std::vector<PricedRow>& rows) {
 }
 
 constexpr std::string_view line_of_level[] = {"line four", "line two", "line one"};
+constexpr std::string_view ink_of_level[] = {"#b3561d", "#2f8ba3", "#1d2733"};
 
-/// One small plot a decision: nanoseconds over the containers.
-std::string panel(const std::vector<const PricedRow*>& rows, const PlotArea& area) {
+/// One small plot a decision: nanoseconds over the containers, up to 10 to an even `power`.
+std::string panel(const std::vector<const PricedRow*>& rows, const PlotArea& area, int power) {
   const double last = std::max<double>(1, static_cast<double>(rows.size()) - 1);
-  Plot plot(area, {-0.3, last + 0.3}, {1, 1e8, {}, Scale::logarithmic});
+  Plot plot(area, {-0.3, last + 0.3}, {1, std::pow(10, power), {}, Scale::logarithmic});
   figures::add_text(plot, area.left, area.top - 10, "start", rows.front()->decision);
-  for (int power = 0; power <= 8; power += 2) {
-    constexpr std::string_view words[] = {"1 ns", "100 ns", "10 µs", "1 ms", "0.1 s"};
-    const double y = plot.y(std::pow(10, power));
+  for (int k = 0; k <= power; k += 2) {
+    constexpr std::string_view words[] = {"1 ns", "100 ns", "10 µs", "1 ms", "0.1 s", "10 s"};
+    const double y = plot.y(std::pow(10, k));
     plot.add("<path class=\"grid\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", area.left, y, area.right);
     plot.add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", area.left - 6, y + 4,
-             words[static_cast<std::size_t>(power / 2)]);
+             words[static_cast<std::size_t>(k / 2)]);
   }
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const std::string& name = rows[k]->container;
-    const std::string shown = name.starts_with("mesh 1e") ? "10^" + name.substr(7) : name;
+    const std::string shown = name.empty()                  ? "spheres"
+                              : name.starts_with("mesh 1e") ? "10^" + name.substr(7)
+                                                            : name;
     plot.add(
         "<text x=\"{0:.1f}\" y=\"{1:.1f}\" text-anchor=\"end\" transform=\"rotate(-40 {0:.1f} "
         "{1:.1f})\">{2}</text>",
@@ -196,8 +201,8 @@ std::string panel(const std::vector<const PricedRow*>& rows, const PlotArea& are
       if (!rows[k]->level[level]) continue;
       xs.push_back(static_cast<double>(k));
       ys.push_back(std::max(1.0, rows[k]->level[level]->nanoseconds));
-      plot.add("<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" style=\"fill:currentColor\"/>",
-               line_of_level[level], plot.x(xs.back()), plot.y(ys.back()));
+      plot.add("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>", plot.x(xs.back()),
+               plot.y(ys.back()), ink_of_level[level]);
     }
     if (xs.size() > 1) plot.line(xs, ys, line_of_level[level]);
   }
@@ -206,13 +211,17 @@ std::string panel(const std::vector<const PricedRow*>& rows, const PlotArea& are
 }
 
 std::string picture_of(const std::vector<PricedRow>& rows) {
-  constexpr double width = 1060, left = 78, across = 340, down = 330, panel_width = 250, panel_height = 210,
+  constexpr double width = 1060, left = 78, across = 340, down = 310, panel_width = 250, panel_height = 210,
                    top = 104;
   std::vector<std::vector<const PricedRow*>> decisions;
+  double slowest = 100;
   for (const PricedRow& row : rows) {
+    for (const auto& level : row.level)
+      if (level) slowest = std::max(slowest, level->nanoseconds);
     if (decisions.empty() || decisions.back().front()->decision != row.decision) decisions.emplace_back();
     decisions.back().push_back(&row);
   }
+  const int power = 2 * static_cast<int>(std::ceil(std::log10(slowest) / 2));
   std::string body;
   Plot legend({0, 0, 1, 1}, {}, {});
   for (std::size_t level = 0; level < level_count; ++level)
@@ -222,7 +231,7 @@ std::string picture_of(const std::vector<PricedRow>& rows) {
   body += std::move(legend).finish();
   for (std::size_t k = 0; k < decisions.size(); ++k) {
     const double x = left + across * static_cast<double>(k % 3), y = top + down * static_cast<double>(k / 3);
-    body += panel(decisions[k], {x, y, x + panel_width, y + panel_height});
+    body += panel(decisions[k], {x, y, x + panel_width, y + panel_height}, power);
   }
   const double height = top + down * std::ceil(static_cast<double>(decisions.size()) / 3);
   return figures::svg_document(width, height, "Processor time a decision", body);
