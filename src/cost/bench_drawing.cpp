@@ -9,11 +9,12 @@
 namespace bernal::cost {
 namespace {
 
-constexpr double letter = 6.1, height = 13;  // of the words, in the units of the picture
+constexpr double letter = 6.9, height = 15;  // of the words, in the units of the picture
+constexpr double below_middle = 4;           // the line that letters stand on
 constexpr double beside = 8;                 // from a point to its words
 constexpr double step = 4;                   // along a line, to see what words would cover
 
-/// Upright or not, words that were placed and lines that were drawn cost whoever covers them.
+/// What it costs to cover, or to stand elsewhere.
 constexpr double cost_of_words = 1000, cost_beyond = 1000, cost_of_line = 1, cost_of_other_end = 3;
 
 double overlap(const Place& a, const Place& b) {
@@ -73,10 +74,14 @@ const std::string_view bench_style = R"css(<style>
 </style>
 )css";
 
-void add_names(Plot& plot, const std::vector<NamedLine>& lines) {
+Place place_of_text(double x, double baseline, std::string_view text) {
+  return {x, baseline - below_middle - 0.5 * height, x + letter * static_cast<double>(text.size()),
+          baseline - below_middle + 0.5 * height};
+}
+
+void add_names(Plot& plot, const std::vector<NamedLine>& lines, std::vector<Place> taken) {
   std::vector<std::vector<std::pair<double, double>>> drawn;
   for (const NamedLine& line : lines) drawn.push_back(along(line));
-  std::vector<Place> words;
   const PlotArea& area = plot.area();
   for (const NamedLine& line : lines) {
     const double width = letter * static_cast<double>(line.text.size());
@@ -87,7 +92,7 @@ void add_names(Plot& plot, const std::vector<NamedLine>& lines) {
       double rank = cost_of_other_end * static_cast<double>(from_end);
       for (const Place& place : around(line.xs[k], line.ys[k], width)) {
         double cost = rank += 0.1;
-        for (const Place& word : words) cost += cost_of_words * (overlap(place, word) > 0);
+        for (const Place& word : taken) cost += cost_of_words * (overlap(place, word) > 0);
         const bool inside = place.left >= area.left && place.right <= area.right && place.top >= area.top &&
                             place.bottom <= area.bottom;
         cost += cost_beyond * !inside;
@@ -99,9 +104,9 @@ void add_names(Plot& plot, const std::vector<NamedLine>& lines) {
         }
       }
     }
-    words.push_back(best);
+    taken.push_back(best);
     plot.add("<text class=\"name c{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", line.colour, best.left,
-             best.bottom - 2.5, escaped(line.text));
+             best.bottom - 0.5 * height + below_middle, escaped(line.text));
   }
 }
 

@@ -22,8 +22,11 @@ struct NamedLine {
   std::vector<double> xs, ys;
 };
 
-/// Writes the words of every line beside one of its points, where they cover least: no other words, few
-/// lines, and nothing beyond the area of the plot.
-void add_names(Plot& plot, const std::vector<NamedLine>& lines);
+/// What a text that starts there covers.
+Place place_of_text(double x, double baseline, std::string_view text);
+
+/// Writes the words of every line beside one of its points, where they cover least: no other words, none of
+/// what is `taken`, few lines, and nothing beyond the area of the plot.
+void add_names(Plot& plot, const std::vector<NamedLine>& lines, std::vector<Place> taken);
 
 }  // namespace bernal::cost

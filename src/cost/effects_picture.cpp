@@ -10,7 +10,7 @@ namespace bernal::cost {
 namespace {
 
 constexpr double picture_width = 720, row_height = 26, top = 74, names_end = 200;
-constexpr double least_ratio = 0.02, most_ratio = 50;  // that are drawn; beyond, at the edge
+constexpr double least_ratio = 0.04, most_ratio = 25, most_gain = 0.1;  // that are drawn; beyond, at the edge
 
 /// A bar from the axis to a value, its scatter, and the number beside it.
 void bar(Plot& plot, double y, double origin, double from, double value, double to, int colour,
@@ -30,11 +30,12 @@ std::string draw(const EffectsPicture& picture) {
   double widest = 0.01;
   for (const EffectsPicture::Row& row : picture.rows)
     widest = std::max(widest, std::abs(row.gain) + row.gain_scatter);
-  widest *= 1.45;  // the numbers stand beside the bars
+  widest = std::min(widest, most_gain);
+  const double axis_end = 1.55 * widest;  // the numbers stand beside the bars
   const double bottom = top + row_height * static_cast<double>(picture.rows.size());
-  Plot left({names_end + 10, top, 445, bottom}, {-widest, widest, "", Scale::linear},
+  Plot left({names_end + 10, top, 445, bottom}, {-axis_end, axis_end, "", Scale::linear},
             {0, 1, "", Scale::linear});
-  Plot right({465, top, 710, bottom}, {least_ratio, most_ratio, "", Scale::logarithmic},
+  Plot right({465, top, 710, bottom}, {least_ratio / 8, most_ratio * 8, "", Scale::logarithmic},
              {0, 1, "", Scale::linear});
   const auto heading = [](Plot& plot, double origin, std::string_view text) {
     const PlotArea& area = plot.area();
@@ -48,14 +49,18 @@ std::string draw(const EffectsPicture& picture) {
     const EffectsPicture::Row& row = picture.rows[k];
     const double y = top + row_height * (static_cast<double>(k) + 0.5);
     figures::add_text(left, names_end, y + 4, "end", row.name);
-    bar(left, y, 0, row.gain - row.gain_scatter, row.gain, row.gain + row.gain_scatter, row.gain < 0 ? 2 : 0,
-        fmt::format("{:+.4f}", row.gain));
+    const auto within = [&](double gain) { return std::clamp(gain, -widest, widest); };
+    bar(left, y, 0, within(row.gain - row.gain_scatter), within(row.gain),
+        within(row.gain + row.gain_scatter), row.gain < 0 ? 2 : 0, fmt::format("{:+.4f}", row.gain));
     const auto drawn = [](double ratio) { return std::clamp(ratio, least_ratio, most_ratio); };
     bar(right, y, 1, drawn(row.ratio - row.ratio_scatter), drawn(row.ratio),
-        drawn(row.ratio + row.ratio_scatter), row.ratio > 1 ? 2 : 0, fmt::format("× {:.3g}", row.ratio));
+        drawn(row.ratio + row.ratio_scatter), row.ratio > 1 ? 2 : 0,
+        fmt::format("× {:.{}f}", row.ratio, row.ratio < 10 ? 2 : 0));
   }
+  figures::add_text(left, 16, bottom + 26, "start",
+                    fmt::format("The bars end at {:g} and at {:g} times.", most_gain, most_ratio));
   return figures::svg_document(
-      picture_width, bottom + 24, "What each effect buys and costs",
+      picture_width, bottom + 40, "What each effect buys and costs",
       std::string(bench_style) + std::move(left).finish() + "\n" + std::move(right).finish());
 }
 

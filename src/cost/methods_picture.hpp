@@ -12,6 +12,7 @@ struct MethodsPicture {
   };
   struct Line {
     std::string name;
+    int colour;  ///< of bench_style
     bool between_lids;
     std::vector<Point> points;  ///< in the order of the knob
   };

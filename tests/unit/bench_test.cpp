@@ -97,45 +97,26 @@ TEST(Bench, WritesNothingOnceItIsStopped) {
   }
 }
 
-/// What `methods` does with the quickest of its sizes.
-const std::vector<BenchFile>& small_methods() {
-  static const std::vector<BenchFile> files = [] {
-    const cost::SizeClass equal[] = {cost::equal_sizes()};
-    return cost::methods_of(equal, {.spheres = 100});
-  }();
-  return files;
-}
-
-TEST(BenchMethods, EveryMethodHasItsPointsOfTwoSeeds) {
-  const auto lines = lines_of(file_of(small_methods(), "methods.csv").text);
-  std::map<std::string, std::set<std::string>> values, seeds;
-  for (const auto& line : lines) {
-    const std::string method = line.at("walls") + " " + line.at("method");
-    values[method].insert(line.at("value"));
-    seeds[method].insert(line.at("seed"));
-    EXPECT_NE(line.at("outcome"), "cut_off") << method;
-    // Any packing of equal spheres is looser than the densest, and these are no dilute ones.
-    EXPECT_GT(number(line.at("packing_fraction")), 0.2) << method;
-    EXPECT_LT(number(line.at("packing_fraction")), M_PI / std::sqrt(18)) << method;
-    EXPECT_EQ(line.at("walls") == "lids", !line.at("core_packing_fraction").empty()) << method;
-  }
-  ASSERT_EQ(values.size(), 11u) << "with the filling by classes, which is for wide sizes, they are twelve";
-  for (const auto& [method, of] : values) {
-    EXPECT_GE(of.size(), 3u) << method;
-    EXPECT_EQ(seeds[method], (std::set<std::string>{"1", "2"})) << method;
-    EXPECT_NE(file_of(small_methods(), "methods_equal.svg").text.find(method.substr(method.find(' ') + 1)),
-              std::string::npos)
-        << method;
-  }
-}
-
 // More sweeps, slower growth, more refilling: what costs more time is there because it packs denser.
-TEST(BenchMethods, TheLadderOfAMethodLeadsUp) {
-  std::map<std::string, std::map<double, double>> phi;  // by the knob, of both seeds
-  for (const auto& line : lines_of(file_of(small_methods(), "methods.csv").text))
-    phi[line.at("walls") + " " + line.at("method")][number(line.at("value"))] +=
-        0.5 * number(line.at("packing_fraction"));
+TEST(BenchMethods, EveryMethodHasAnUpwardLadderOfTwoSeeds) {
+  const cost::SizeClass equal[] = {cost::equal_sizes()};
+  const std::vector<BenchFile> files = cost::methods_of(equal, {.spheres = 100});
+  std::map<std::string, std::map<double, double>> phi;  // by the value of the knob, of both seeds
+  std::map<std::string, std::set<std::string>> seeds;
+  for (const auto& line : lines_of(file_of(files, "methods.csv").text)) {
+    const std::string method = line.at("walls") + " " + line.at("method");
+    seeds[method].insert(line.at("seed"));
+    ASSERT_NE(line.at("outcome"), "cut_off") << method;
+    const double reached = number(line.at("packing_fraction"));
+    EXPECT_LT(reached, M_PI / std::sqrt(18)) << method << ": equal spheres are never denser";
+    EXPECT_EQ(line.at("walls") == "lids", !line.at("core_packing_fraction").empty()) << method;
+    phi[method][number(line.at("value"))] += 0.5 * reached;
+    EXPECT_NE(file_of(files, "methods_equal.svg").text.find(line.at("method")), std::string::npos);
+  }
+  EXPECT_EQ(phi.size(), 11u) << "with the filling by classes, which is for wide sizes, they are twelve";
   for (auto& [method, values] : phi) {
+    EXPECT_GE(values.size(), 3u) << method;
+    EXPECT_EQ(seeds[method], (std::set<std::string>{"1", "2"})) << method;
     const double first = values.begin()->second, last = values.rbegin()->second;
     const bool grows = method.find("growth") != std::string::npos;  // where a smaller rate is the slower
     EXPECT_GT(grows ? first : last, grows ? last : first) << method;
@@ -158,18 +139,23 @@ std::vector<cost::Place> places_of_names(const std::string& svg) {
 }
 
 TEST(BenchMethods, NamesInThePictureDoNotCoverEachOther) {
-  for (const BenchFile& file : small_methods()) {
-    if (!file.name.ends_with(".svg")) continue;
-    const std::vector<cost::Place> places = places_of_names(file.text);
-    EXPECT_EQ(places.size(), 11u);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      EXPECT_GT(places[i].left, 0);
-      EXPECT_LT(places[i].right, 720);
-      for (std::size_t j = 0; j < i; ++j)
-        EXPECT_FALSE(places[i].left < places[j].right && places[j].left < places[i].right &&
-                     places[i].top < places[j].bottom && places[j].top < places[i].bottom)
-            << i << " and " << j;
-    }
+  cost::MethodsPicture picture{"lines that end at the same place", 0.65, {}};
+  for (int k = 0; k < 7; ++k) {
+    const double low = 0.5 + 0.001 * k;
+    picture.lines.push_back({"a method called " + std::to_string(k),
+                             k,
+                             k % 2 == 1,
+                             {{0.01, low, 0}, {0.1, low + 0.1, 0}, {1, low + 0.12, 0.001}}});
+  }
+  const std::vector<cost::Place> places = places_of_names(cost::draw(picture));
+  ASSERT_EQ(places.size(), 7u);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    EXPECT_GT(places[i].left, 0);
+    EXPECT_LT(places[i].right, 720);
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_FALSE(places[i].left < places[j].right && places[j].left < places[i].right &&
+                   places[i].top < places[j].bottom && places[j].top < places[i].bottom)
+          << i << " and " << j;
   }
 }
 
