@@ -20,6 +20,7 @@ namespace {
 
 constexpr int seeds_of_an_effect = 3;
 constexpr std::int64_t usual_count = 1500;
+constexpr std::int64_t least_wide_count = 300;  // for growth the box has to be some large spheres wide
 /// What jams between floor and lid, in shares of what is predicted without them.
 constexpr double share_between_lids = 0.94, share_that_jams = 0.98;
 
@@ -71,7 +72,7 @@ std::vector<EffectPair> all_effects(const BenchOptions& options) {
   const Scene periodic = room_for(equal, count, Sides::none, 0);
   const Scene lids = room_for(equal, count, Sides::lids, share_between_lids * predicted);
   const Scene box = room_for(equal, count, Sides::all, share_between_lids * predicted);
-  const Scene wide_periodic = room_for(wide, count, Sides::none, 0);
+  const Scene wide_periodic = room_for(wide, std::max(count, least_wide_count), Sides::none, 0);
   const auto overfull = [&](Scene scene, std::vector<Stage> stages) {  // it jams before that
     scene.target.packing_fraction = share_that_jams * predicted;
     return staged(std::move(scene), std::move(stages));
@@ -117,6 +118,8 @@ struct Compared {
 
 Compared compared(const Series& with, const Series& without) {
   std::vector<double> phi_with, phi_without, gain, ratio, seconds_with, seconds_without;
+  if (with.trials.empty() || with.trials.size() != without.trials.size())
+    throw Error(ErrorCode::bad_argument, with.setting->name + ": it or its counterpart could not be packed");
   for (std::size_t k = 0; k < with.trials.size(); ++k) {
     const Trial &a = with.trials[k], &b = without.trials[k];
     for (const Trial* trial : {&a, &b})
