@@ -72,8 +72,9 @@ Command bench_command() {
 Times are of the processor, one thread. What is packed is certified.
 
 Examples:
-  bernal bench                   all scenes, in a minute
+  bernal bench                   all scenes, in half a minute
   bernal bench relax certify     two of them
+  bernal bench methods -o out    every method on the same spheres, with pictures
 Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.)",
       [call] { return bench(*call); }};
 }

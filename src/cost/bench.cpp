@@ -26,7 +26,7 @@ const std::vector<BenchTable>& tables() {
       {{"methods", "every method on the same spheres: packing fraction over seconds", "5 minutes"},
        cost::methods},
       {{"effects", "every effect off and on: what it buys in packing fraction and costs in time",
-        "4 minutes"},
+        "2 minutes"},
        cost::effects},
       {{"arithmetic", "decisions about walls in double, filtered and exact", "2 minutes"},
        cost::bench_arithmetic}};
