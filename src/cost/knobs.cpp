@@ -20,7 +20,7 @@ namespace bernal::cost {
 namespace {
 
 /// Packing fractions that are asked for where the scene asks for none, over what is attainable.
-constexpr std::array target_shares = {0.6, 0.75, 0.85, 0.92, 0.96, 0.98, 1.01, 1.02};
+constexpr std::array target_shares = {0.75, 0.85, 0.92, 0.96, 0.98, 1.01, 1.02};
 constexpr std::array face_counts = {12, 30, 100, 300, 1000};
 
 std::optional<double> number_of(const schema::Value& value) {
@@ -85,8 +85,9 @@ std::optional<Knob> target_knob(const Subject& subject) {
     knob.order.push_back(knob.steps.size());
     knob.steps.push_back(std::move(step));
   };
-  const Step as_it_is{.text = own.fill ? "fill" : "open", .turn = [](Setting&) {}};
   const bool expects = subject.places_expected && !own.fill;
+  Step as_it_is{.text = own.fill ? "fill" : "open", .turn = [](Setting&) {}};
+  if (expects) as_it_is.number = subject.attainable_packing_fraction;
   for (const double share : target_shares) {
     if (expects && share > 1 && knob.own == 0) {
       knob.own = knob.steps.size();
@@ -170,7 +171,7 @@ std::optional<std::size_t> Knob::insert_between(std::size_t cheaper, std::size_t
   const auto [least, most] = std::minmax(*a, *b);
   // Closer steps would measure the scatter of the seeds.
   constexpr double closest = 1.2;
-  const bool has_room = name == "packing_fraction" ? most - least > 0.002 : most > closest * closest * least;
+  const bool has_room = name == "packing_fraction" ? most - least > 0.004 : most > closest * closest * least;
   if (!has_room || number <= least || number >= most) return {};
   steps.push_back(step_at(std::stod(fmt::format("{:.6g}", number))));
   order.insert(order.begin() + static_cast<std::ptrdiff_t>(place_of(dearer)), steps.size() - 1);

@@ -263,7 +263,8 @@ std::vector<Point> Search::promising() const {
                            double log_seconds) -> void {
     if (depth > 1 && !tried_.contains(point)) {
       const double gain = phi - worth_for(known, log_seconds);
-      if (gain > tell) candidates.emplace_back(std::isfinite(gain) ? gain : 1.0, point);
+      // Between what gains most and what is known soonest.
+      if (gain > tell) candidates.emplace_back(std::min(gain, 1.0) * std::exp(-0.5 * log_seconds), point);
     }
     if (depth == most_combined) return;
     for (std::size_t i = next; i < by_weight.size(); ++i)
@@ -275,7 +276,6 @@ std::vector<Point> Search::promising() const {
   };
   combine(combine, 0, 0, own(), base.phi, logarithm(base.seconds));
   std::ranges::sort(candidates, std::greater<>{});
-  // Of a batch none is tried that another one beats by what is foreseen: they stand in each other's light.
   std::vector<Point> best;
   for (auto& [gain, point] : candidates) {
     if (best.size() == batch) break;

@@ -212,6 +212,15 @@ void recommend(const Search& search, CostReport& report) {
         row.seconds < report.rows[report.recommended].seconds)
       report.recommended = k;
   }
+  // Of those that take the same time the one that changes least.
+  const double quickest = report.rows[report.recommended].seconds;
+  for (std::size_t k = 0; k < report.rows.size(); ++k) {
+    const CostRow& row = report.rows[k];
+    if (counts(row) && is_as_accurate(row, own) && row.phi >= report.rows[densest].phi - tolerance &&
+        row.seconds <= (1 + same_seconds) * quickest &&
+        row.changed.size() < report.rows[report.recommended].changed.size())
+      report.recommended = k;
+  }
   const CostRow &chosen = report.rows[report.recommended], &best = report.rows[densest];
   report.recommendation = report.recommended == report.own
                               ? fmt::format("Leave the scene as it is: {}", reaches(chosen))
@@ -235,6 +244,10 @@ std::optional<std::string> sentence_for_less(const CostReport& report, double sh
   for (const CostRow& row : report.rows)
     if (row.pareto && row.seconds <= share * chosen.seconds && (!best || row.phi > best->phi)) best = &row;
   if (!best) return {};
+  for (const CostRow& row : report.rows)  // as dense and as quick, and nearer to the scene
+    if (!row.slower && row.certified && row.phi >= best->phi - report.phi_step &&
+        row.seconds <= (1 + 2 * same_seconds) * best->seconds && row.changed.size() < best->changed.size())
+      best = &row;
   return fmt::format("With {} of that time: {}, {}.", share == 0.1 ? "a tenth" : "half", best->setting,
                      reaches(*best));
 }
