@@ -150,8 +150,10 @@ class KnobAlone {
       return fmt::format("{} buys nothing, sphere for sphere, for {}", step, price);
     if (gain > phi_step)
       return fmt::format("{} buys {:.4f} for {}{}", step, gain, price, contacts(own, other));
-    return fmt::format("{} buys no packing fraction ({:+.4f}, within what seeds differ by, {:.2g}) for {}{}",
-                       step, gain, phi_step, price, contacts(own, other));
+    const std::string why =
+        gain < -phi_step ? "" : fmt::format(", within what seeds differ by, {:.2g}", phi_step);
+    return fmt::format("{} buys no packing fraction ({:+.4f}{}) for {}{}", step, gain, why, price,
+                       contacts(own, other));
   }
   static std::string saved(const Seen& own, const Seen& other) {
     return fmt::format("{} in place of {} would do: {:+.4f} for {}{}", other.text, own.text,
@@ -159,9 +161,11 @@ class KnobAlone {
                        contacts(own, other));
   }
   static std::string lost(const Seen& own, const Seen& other) {
-    return fmt::format("{} in place of {} costs {:+.4f} for {}{}", other.text, own.text,
-                       other.row->phi - own.row->phi, times(ratio_of(*other.row, *own.row)),
-                       contacts(own, other));
+    const double change = other.row->phi - own.row->phi;
+    return fmt::format("{} in place of {} {} for {}{}", other.text, own.text,
+                       std::abs(change) < good_enough / 2 ? fmt::format("saves nothing ({:+.4f})", change)
+                                                          : fmt::format("changes {:+.4f}", change),
+                       times(ratio_of(*other.row, *own.row)), contacts(own, other));
   }
 
   const Knob& knob_;
