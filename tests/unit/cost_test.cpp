@@ -144,8 +144,8 @@ CostReport measured(const Scene& scene, const testing::Folder& folder, double se
 
 TEST(Cost, FindsAFrontAndARecommendationThatGivesWhatItSays) {
   const testing::Folder folder;
-  const Scene scene = equal_spheres(PeriodicBox{}, 60, Relax{});
-  const CostReport report = measured(scene, folder, 120);
+  const Scene scene = equal_spheres(PeriodicBox{}, 30, Relax{});
+  const CostReport report = measured(scene, folder, 120, 1);
   const CostRow& chosen = report.rows[report.recommended];
   std::size_t on_front = 0;
   double densest = 0;
