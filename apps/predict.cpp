@@ -27,6 +27,7 @@ struct PredictCall {
   std::filesystem::path scene;
   std::string format;  ///< of standard input
   int rods = 16000;
+  std::optional<double> gap_factor;
   bool fit = false;
   std::optional<double> solids;
   double intrinsic = 2.5;
@@ -108,7 +109,8 @@ PredictAnswer answer_to(PredictCall& call) {
   if (call.fit)
     answer.prediction = {fitted_packing_fraction(width_of(scene)), 0, 3e-4};
   else
-    answer.prediction = predict_packing_fraction(*radii_of(scene), call.rods);
+    answer.prediction =
+        predict_packing_fraction(*radii_of(scene), call.rods, call.gap_factor.value_or(rod_gap_factor));
   answer.seconds = watch.seconds();
   if (call.solids) answer.viscosity = relative_viscosity(*call.solids, answer.prediction.phi, call.intrinsic);
   if (call.check) answer.packed = check(scene, call);
@@ -127,7 +129,9 @@ void print(const PredictionCheck& packed, double predicted) {
 
 void print(const PredictCall& call, const PredictAnswer& answer) {
   const Prediction& p = answer.prediction;
-  fmt::print("packing fraction  {:.6f}, random close packing without walls\n", p.phi);
+  fmt::print("packing fraction  {:.6f}, {} without walls\n", p.phi,
+             call.gap_factor ? fmt::format("by rods that are apart by {:g} of the shorter,", *call.gap_factor)
+                             : "random close packing");
   if (call.fit)
     fmt::print("error             {:.1g}, of the fit to the rod model\n", p.error);
   else
@@ -151,6 +155,7 @@ nlohmann::ordered_json as_json(const PredictCall& call, const PredictAnswer& ans
                                  {"error", answer.prediction.error},
                                  {"method", call.fit ? "fit" : "rods"},
                                  {"seconds", answer.seconds}};
+  if (call.gap_factor) json["gap_factor"] = *call.gap_factor;
   if (answer.viscosity) {
     json["solids"] = *call.solids;
     json["relative_viscosity"] = *answer.viscosity;
@@ -190,6 +195,7 @@ Examples:
   bernal predict --lognormal 20,17,3 --classes 100:7 --json
   bernal predict --stdin d < sieves.txt
   bernal predict --lognormal 0.5 --solids 0.6        viscosity of a suspension (Krieger and Dougherty)
+  bernal predict --lognormal 0.3 --gap-factor 0.918  if equal spheres packed to 0.60: 0.63
   bernal predict --lognormal 0.3 --check             and is it true? some seconds
 
 The rod model (Farr and Groot 2009, Farr 2013) knows the sizes alone: smooth spheres, no walls, no
@@ -212,7 +218,13 @@ Command predict_command() {
        one_of({"--stdin", &call->format, "Populations from standard input, in this format", "FORMAT"},
               {"l", "d", "w"}),
        rods_option(call->rods, 2, 10'000'000),
-       {"--fit", &call->fit, "Farr's formula for one lognormal population, sigma up to 3"},
+       within({"--gap-factor", &call->gap_factor,
+               "Gaps between rods, in shares of the shorter one; 0.7654 if absent, which gives equal spheres "
+               "0.6435; 0.918 gives them 0.60",
+               "F"},
+              0.0, 100.0),
+       excludes({"--fit", &call->fit, "Farr's formula for one lognormal population, sigma up to 3"},
+                "--gap-factor"),
        {"--solids", &call->solids, "Also the viscosity of a suspension with this volume fraction of spheres",
         "PHI"},
        needs({"--intrinsic", &call->intrinsic, "Intrinsic viscosity; 2.5, that of spheres, if absent", "ETA"},

@@ -62,6 +62,7 @@ class ChordTable {
 void require_enough(int rods);
 
 /// The prediction for a table that was made for at least `rods`; `mean_chord` is 2 <r³> / 3 <r²>.
-Prediction predict_from_chords(const ChordTable&, double mean_chord, int rods);
+Prediction predict_from_chords(const ChordTable&, double mean_chord, int rods,
+                               double gap_factor = rod_gap_factor);
 
 }  // namespace bernal::predict

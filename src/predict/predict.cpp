@@ -19,11 +19,12 @@ void predict::require_enough(int rods) {
     throw Error(ErrorCode::bad_argument, "a prediction needs at least 2 rods, not " + std::to_string(rods));
 }
 
-Prediction predict::predict_from_chords(const ChordTable& chords, double mean_chord, int rods) {
+Prediction predict::predict_from_chords(const ChordTable& chords, double mean_chord, int rods,
+                                        double gap_factor) {
   throw_if_interrupted();
   const std::vector<double> lengths = chords.rod_lengths(rods);
-  Prediction prediction{.phi = predict::covered_fraction(lengths), .rods = rods};
-  const double fewer = predict::covered_fraction(chords.rod_lengths(std::max(1, rods / 4)));
+  Prediction prediction{.phi = predict::covered_fraction(lengths, gap_factor), .rods = rods};
+  const double fewer = predict::covered_fraction(chords.rod_lengths(std::max(1, rods / 4)), gap_factor);
   // What the rods fall short of the mean chord is volume of spheres so large, and so few, that no rod stands
   // for them.
   const double mean = std::accumulate(lengths.begin(), lengths.end(), 0.0) / rods;
@@ -32,10 +33,13 @@ Prediction predict::predict_from_chords(const ChordTable& chords, double mean_ch
   return prediction;
 }
 
-Prediction predict_packing_fraction(const SizeDistribution& sizes, int rods) {
+Prediction predict_packing_fraction(const SizeDistribution& sizes, int rods, double gap_factor) {
   predict::require_enough(rods);
+  if (!(gap_factor >= 0 && std::isfinite(gap_factor)))
+    throw Error(ErrorCode::bad_argument,
+                "gaps between rods are 0 or more of the shorter rod, not " + std::to_string(gap_factor));
   return predict::predict_from_chords(predict::ChordTable(sizes, rods),
-                                      sizes.moment(3) / (1.5 * sizes.moment(2)), rods);
+                                      sizes.moment(3) / (1.5 * sizes.moment(2)), rods, gap_factor);
 }
 
 double fitted_packing_fraction(double sigma) {

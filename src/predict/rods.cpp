@@ -5,8 +5,7 @@
 
 namespace bernal::predict {
 
-double covered_fraction(std::span<const double> lengths) {
-  constexpr double f = 0.7654;  // gives equal spheres their random close packing fraction
+double covered_fraction(std::span<const double> lengths, double f) {
   // A rod leaves a gap f L, never larger than those left before, so these wait in a queue that needs no
   // sorting. Only what remains of a gap that held a rod without growing goes to a heap.
   std::vector<double> queue(2 * lengths.size());

@@ -47,6 +47,17 @@ TEST(PredictCommand, SaysWhatThePaperPrints) {
   EXPECT_GT(answer["seconds"], 0);
 }
 
+TEST(PredictCommand, GapsBetweenRodsMayBeOthers) {
+  EXPECT_EQ(phi_of({"--lognormal", "0.5", "--gap-factor", "0.7654"}), phi_of({"--lognormal", "0.5"}));
+  const json loose = predicted({"--lognormal", "0", "--gap-factor", "0.918"});
+  EXPECT_NEAR(loose["phi"], 0.60, 1e-4);
+  EXPECT_EQ(loose["gap_factor"], 0.918);
+  EXPECT_EQ(phi_of({"--classes", "1:1,5:1", "--gap-factor", "0"}), 1);
+  expect_refused_in_one_line(bernal({"predict", "--lognormal", "0", "--gap-factor", "-1"}), {"--gap-factor"});
+  expect_refused_in_one_line(bernal({"predict", "--lognormal", "0", "--gap-factor", "1", "--fit"}),
+                             {"--fit"});
+}
+
 TEST(PredictCommand, EveryDoorLeadsToTheSameSizes) {
   // Equal volumes, d43 as 1 : 2, widths 0.3 and 0: 0.702 in Farr's table 2.
   const std::string d32 = std::to_string(std::exp(-0.09));

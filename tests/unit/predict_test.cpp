@@ -72,6 +72,33 @@ TEST(Predict, ScaleDoesNotMatterAndErrorShrinks) {
   EXPECT_THROW(predict_packing_fraction(*lognormal(0.7), 1), Error);
 }
 
+TEST(Predict, GapsBetweenRodsDecide) {
+  const auto phi = [](const SizeDistribution& sizes, double f) {
+    return predict_packing_fraction(sizes, 2000, f).phi;
+  };
+  for (const double sigma : {0.05, 0.3, 1.0}) {
+    const auto sizes = lognormal(sigma);
+    EXPECT_EQ(phi(*sizes, 0.7654), predict_packing_fraction(*sizes, 2000).phi);
+    EXPECT_EQ(phi(*sizes, 0), 1);
+    double last = 1;
+    for (double f = 0.05; f < 3; f += 0.05) {
+      const double here = phi(*sizes, f);
+      EXPECT_LT(here, last) << sigma << ' ' << f;
+      // A rod adds at most two gaps of f times its length.
+      EXPECT_GT(here, 1 / (1 + 2 * f));
+      last = here;
+    }
+  }
+  for (const double f : {-0.1, std::nan(""), infinity}) EXPECT_THROW(phi(*make_constant(1), f), Error);
+}
+
+// Nothing shorter comes to fill their gaps.
+TEST(Predict, EqualRodsHaveEqualGaps) {
+  const std::vector<double> lengths(100, 2.5);
+  for (const double f : {0.0, 0.1, 0.7654, 1.0, 7.0})
+    EXPECT_NEAR(predict::covered_fraction(lengths, f), 1 / (1 + f), 1e-14);
+}
+
 TEST(Predict, NearlyEqualSpheresAreNearlyEqualSpheres) {
   const double equal = predict_packing_fraction(*make_constant(1), 1000).phi;
   EXPECT_NEAR(predict_packing_fraction(*lognormal(1e-9), 1000).phi, equal, 1e-8);

@@ -37,8 +37,7 @@ Sizes sizes_of(const std::vector<Population>& populations) {
 }
 
 /// As the paper says it: all gaps in order, the largest is taken, two are put back.
-double covered_fraction_by_insertion(const std::vector<double>& lengths) {
-  const double f = 0.7654;
+double covered_fraction_by_insertion(const std::vector<double>& lengths, double f = 0.7654) {
   std::vector<double> gaps = {f * lengths.front()};
   for (std::size_t i = 1; i < lengths.size(); ++i) {
     const double gap = gaps.back(), length = lengths[i];
@@ -68,6 +67,9 @@ TEST(RodModel, PlacementEqualsSortedInsertion) {
     const auto sizes = sizes_of(random_mixture(engine));
     const auto lengths = predict::ChordTable(*sizes, rods).rod_lengths(rods);
     ASSERT_NEAR(predict::covered_fraction(lengths), covered_fraction_by_insertion(lengths), 1e-12) << k;
+    const double f = std::uniform_real_distribution<double>(0, 2)(engine);
+    ASSERT_NEAR(predict::covered_fraction(lengths, f), covered_fraction_by_insertion(lengths, f), 1e-12)
+        << k << ' ' << f;
   }
 }
 
