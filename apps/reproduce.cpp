@@ -20,18 +20,25 @@ struct ReproduceCall {
   std::filesystem::path folder;
   std::uint64_t seed = 1;
   bool pack = false;
+  int spheres = 0;
   bool quiet = false;
 };
 
 int reproduce(const ReproduceCall& call) {
-  for (const Figure& figure : all_figures())
-    if (figure.name == call.name && call.pack && !figure.packs)
+  for (const Figure& figure : all_figures()) {
+    if (figure.name != call.name) continue;
+    if (call.pack && !figure.packs)
       throw Error(ErrorCode::bad_argument,
-                  fmt::format("{} has no packings to show; leave out --pack", call.name));
+                  fmt::format("{} has no more packings to show; leave out --pack", call.name));
+    if (call.spheres != 0 && !figure.sized)
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("{} packs the same number at any time; leave out --spheres", call.name));
+  }
   check_writable(call.folder);
   ProgressBar bar(call.quiet);
   const auto files =
-      write_figure(call.name, call.folder, {.pack = call.pack, .seed = call.seed, .monitor = bar.monitor()});
+      write_figure(call.name, call.folder,
+                   {.pack = call.pack, .spheres = call.spheres, .seed = call.seed, .monitor = bar.monitor()});
   bar.clear();
   for (const auto& file : files) say(stdout, "{}\n", plain_text(file.string(), 5000));
   if (files.empty() && !call.quiet) say(stderr, "bernal: stopped by the user; nothing is written\n");
@@ -43,24 +50,40 @@ int reproduce(const ReproduceCall& call) {
 Command reproduce_command() {
   const auto call = std::make_shared<ReproduceCall>();
   std::vector<std::string> names;
-  std::string footer = "Figures and tables:\n";
+  std::string footer = "What NAME may be, and the time it takes on two cores:\n";
   for (const Figure& figure : all_figures()) {
     names.emplace_back(figure.name);
-    footer += fmt::format("  {:<8}{}{}\n", figure.name, figure.what, figure.packs ? " *" : "");
+    footer += fmt::format("  {:<10}{}: {}{}{}\n", figure.name, figure.what, figure.time,
+                          figure.packs ? " *" : "", figure.sized ? " °" : "");
   }
-  return {"reproduce",
-          "Compute a figure or table of Farr (2013) again",
-          {one_of(required({"NAME", &call->name, "Which of those below"}), names),
-           required({"-o,--output", &call->folder,
-                     "Folder for NAME.svg and NAME.csv; made if it does not exist", "DIR"}),
-           {"--pack", &call->pack, "Also pack some of the sizes in three dimensions: minutes"},
-           seed_option("Of the packings; 1 if absent",
-                       [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
-           quiet_option(call->quiet)},
-          footer + R"(  * with --pack also packings of its own
+  return {
+      "reproduce",
+      "Compute a published figure, table or paper again: Zhao 2007, Han 2005, Farr 2013",
+      {one_of(required({"NAME", &call->name, "Which of those below"}), names),
+       required({"-o,--output", &call->folder,
+                 "Folder for NAME.svg and NAME.csv, of a paper also NAME.md; made if it does not exist",
+                 "DIR"}),
+       {"--pack", &call->pack, "Also pack more of the sizes in three dimensions: minutes"},
+       within({"--spheres", &call->spheres,
+               "Packings of at most so many spheres: quick, and rougher than what is published", "N"},
+              100, 10'000'000),
+       seed_option("Of the packings; 1 if absent",
+                   [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
+       quiet_option(call->quiet)},
+      footer +
+          R"(  * with --pack more packings; in zhao2007 the published loop with 10,000 spheres of all sizes
+  ° with --spheres smaller packings: zhao2007 --spheres 1000 takes a minute, --spheres 100 four seconds
 
-R. S. Farr: Random close packing fractions of lognormal distributions of hard spheres. Powder
-Technology 245, 28 (2013). KTS packings are printed there; all else is computed.
+A paper's page, NAME.md, puts printed and own values side by side and says where they differ and why, as
+far as that is known; it names the CSV and SVG files beside it. All appear together, or none.
+
+Sources
+  Zhao Liang, Li Shuixiang, Liu Yuewu: Numerical simulation of sphere packing with arbitrary diameter
+  distribution. Chinese Journal of Computational Physics (2007, in Chinese).
+  K. Han, Y. T. Feng, D. R. J. Owen: Sphere packing with a geometric based compression algorithm. Powder
+  Technology 155, 33 (2005).
+  R. S. Farr: Random close packing fractions of lognormal distributions of hard spheres. Powder
+  Technology 245, 28 (2013).
 Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.)",
-          [call] { return reproduce(*call); }};
+      [call] { return reproduce(*call); }};
 }

@@ -15,7 +15,10 @@ text { font:13px "Helvetica Neue",Helvetica,Arial,sans-serif; fill:#5d6b7a; }
 .heavy { stroke-width:2.8; } .thin { stroke-width:1.1; }
 .dashed { stroke-dasharray:7 4; } .dotdash { stroke-dasharray:9 3 2 3; }
 .one { stroke:#1d2733; } .two { stroke:#2f8ba3; } .three { stroke:#3a3f8f; } .four { stroke:#b3561d; }
-.marker { stroke:#1d2733; stroke-width:1.3; } .triangle { fill:#ffffff; } .disc { fill:#b3561d; }
+circle.line { stroke:#ffffff; stroke-width:1; } circle.one { fill:#1d2733; } circle.two { fill:#2f8ba3; }
+circle.three { fill:#3a3f8f; } circle.four { fill:#b3561d; }
+.bar { fill:#8fcdb8; stroke:#ffffff; stroke-width:.6; }
+.marker { stroke:#1d2733; stroke-width:1.3; } .triangle { fill:#ffffff; } .disc { fill:#b3561d; } .ring { fill:#ffffff; }
 .contour { fill:none; stroke:#1d2733; stroke-width:.5; stroke-linecap:round; }
 .bold { stroke-width:1.8; }
 .halo { fill:#1d2733; stroke:#ffffff; stroke-width:4; paint-order:stroke; stroke-linejoin:round; }
@@ -25,7 +28,8 @@ void draw_marker(Plot& plot, Marker marker, double x, double y) {
   if (marker == Marker::triangle)
     plot.add("<path class=\"marker triangle\" d=\"M{:.1f} {:.1f}l5.2 9h-10.4z\"/>", x, y - 6);
   else
-    plot.add("<circle class=\"marker disc\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4.2\"/>", x, y);
+    plot.add("<circle class=\"marker {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4.2\"/>",
+             marker == Marker::disc ? "disc" : "ring", x, y);
 }
 
 }  // namespace
@@ -55,6 +59,22 @@ void legend_marker(Plot& plot, Marker marker, double x, double y, std::string_vi
 void add_error_bar(Plot& plot, double x, double y, double error) {
   plot.add("<path class=\"marker\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", plot.x(x), plot.y(y - error),
            plot.y(y + error));
+}
+
+void add_curve(Plot& plot, std::span<const double> xs, std::span<const double> ys, std::string_view classes) {
+  plot.line(xs, ys, classes);
+  for (std::size_t k = 0; k < xs.size(); ++k)
+    plot.add("<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"/>", classes, plot.x(xs[k]),
+             plot.y(ys[k]));
+}
+
+std::string nested_svg(std::string svg, double x, double y, double width, double height) {
+  constexpr std::string_view tag = "<svg";
+  const std::size_t at = svg.find(tag);
+  if (at == svg.npos) return {};
+  return svg.insert(
+      at + tag.size(),
+      fmt::format(" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"", x, y, width, height));
 }
 
 void add_text(Plot& plot, double x, double y, std::string_view anchor, std::string_view text) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,11 +14,17 @@ std::string svg_document(double width, double height, std::string_view title, st
 /// A row of a legend: a stroke or a marker, and what it stands for.
 void legend_line(Plot&, double x, double y, std::string_view classes, std::string_view text);
 
-enum class Marker { triangle, disc };
+enum class Marker { triangle, disc, ring };
 void add_marker(Plot&, Marker, double x, double y);
 void legend_marker(Plot&, Marker, double x, double y, std::string_view text);
 /// A vertical bar of ± error.
 void add_error_bar(Plot&, double x, double y, double error);
+
+/// A line through points, and a dot at each, of one of the four inks: "line two dashed".
+void add_curve(Plot&, std::span<const double> xs, std::span<const double> ys, std::string_view classes);
+
+/// A whole SVG file, such as the picture of a packing, as a part of another one.
+std::string nested_svg(std::string svg, double x, double y, double width, double height);
 
 /// Text in the axes' ink.
 void add_text(Plot&, double x, double y, std::string_view anchor, std::string_view text);

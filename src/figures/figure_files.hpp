@@ -17,9 +17,13 @@ std::vector<std::filesystem::path> write_files(const Files&, const std::filesyst
 // One file a figure.
 Files figure_1(const FigureOptions&);
 Files figure_2(const FigureOptions&);
+Files figure_3(const FigureOptions&);
 Files figure_5(const FigureOptions&);
 Files figure_6(const FigureOptions&);
 Files table_1(const FigureOptions&);
 Files table_2(const FigureOptions&);
+Files farr_2013(const FigureOptions&);
+Files han_2005(const FigureOptions&);
+Files zhao_2007(const FigureOptions&);
 
 }  // namespace bernal::figures

@@ -12,20 +12,41 @@
 namespace bernal {
 namespace {
 
+constexpr int least_spheres_of_a_figure = 100;
+
 struct Entry {
   Figure figure;
   figures::Files (*make)(const FigureOptions&);
 };
 
 constexpr Entry entries[] = {
-    {{"fig1", "lognormal spheres, sigma 0 to 3, and the error of Farr's fit", false}, figures::figure_1},
-    {{"fig2", "lognormal spheres: the rod model against packings", true}, figures::figure_2},
-    {{"fig5", "mixtures of two lognormal populations: 9 panels, ratios 1, 2, 4 and 8", false},
+    {{"fig1", "Farr: lognormal spheres, sigma 0 to 3, and the error of his fit", "1 s", false, false},
+     figures::figure_1},
+    {{"fig2", "Farr: lognormal spheres, the rod model against packings", "1 s, with --pack 1 min", true,
+      false},
+     figures::figure_2},
+    {{"fig3", "Farr: pictures of the packings of table 2, by growth", "15 s", false, false},
+     figures::figure_3},
+    {{"fig4", "Farr: the data of table 2, drawn; the files of table2", "1 s, with --pack 20 s", true, false},
+     figures::table_2},
+    {{"fig5", "Farr: mixtures of two lognormal populations, 9 panels, ratios 1, 2, 4 and 8", "1 s", false,
+      false},
      figures::figure_5},
-    {{"fig6", "the densest mixtures of three sizes, over both ratios of sizes", true}, figures::figure_6},
-    {{"table1", "packing fractions and milliseconds of the rod model", false}, figures::table_1},
-    {{"table2", "mixtures of two lognormal populations: the rod model against packings (and figure 4)", true},
-     figures::table_2}};
+    {{"fig6", "Farr: the densest mixtures of three sizes, over both ratios of sizes", "1 min", true, false},
+     figures::figure_6},
+    {{"table1", "Farr: packing fractions and milliseconds of the rod model", "1 s", false, false},
+     figures::table_1},
+    {{"table2", "Farr: mixtures of two lognormal populations, the rod model against packings",
+      "1 s, with --pack 20 s", true, false},
+     figures::table_2},
+    {{"farr2013", "all of these, and a page of printed and own values", "90 s", true, false},
+     figures::farr_2013},
+    {{"zhao2007", "Zhao, Li & Liu: figures 1, 2, 5, 8 to 12, table 2, and a page",
+      "7 min, with --pack 15 min", true, true},
+     figures::zhao_2007},
+    {{"han2005", "Han, Feng & Owen: the cylinder, local directions, shaking, time, and a page", "3 min",
+      false, true},
+     figures::han_2005}};
 
 }  // namespace
 
@@ -51,6 +72,9 @@ std::vector<std::filesystem::path> write_figure(std::string_view name, const std
   const auto entry = std::ranges::find(entries, name, [](const Entry& e) { return e.figure.name; });
   if (entry == std::end(entries))
     throw Error(ErrorCode::bad_argument, "there is no figure \"" + std::string(name) + "\"");
+  if (options.spheres != 0 && options.spheres < least_spheres_of_a_figure)
+    throw Error(ErrorCode::bad_argument,
+                "a figure needs packings of at least 100 spheres, not " + std::to_string(options.spheres));
   try {
     const Interruptible listening(options.monitor);
     return figures::write_files(entry->make(options), folder);

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "bernal/figures/check_prediction.hpp"
@@ -16,7 +17,11 @@ struct PublishedMixture {
   double kts, kts_error, rods;
 
   bool is_one_population() const { return mix.share == 0; }
+  bool is_equal() const { return is_one_population() && mix.sigma_a == 0; }
 };
+
+/// "equal", "σ 0.3", "σ 0.3 | 0": the widths of its populations.
+std::string described(const PublishedMixture&);
 
 inline constexpr PublishedMixture published_mixtures[] = {
     {1024, {0, 0, 1, 0}, 0.6426, 0.0005, 0.643},     {2048, {0.3, 0, 1, 0}, 0.6671, 0.0006, 0.671},

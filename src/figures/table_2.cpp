@@ -6,14 +6,11 @@
 #include "figures/published.hpp"
 
 namespace bernal::figures {
-namespace {
-
-std::string described(const TwoPopulations& p, bool one) {
-  if (one) return p.sigma_a > 0 ? fmt::format("σ {}", p.sigma_a) : "equal";
-  return fmt::format("σ {} | {}", p.sigma_a, p.sigma_b);
+std::string described(const PublishedMixture& row) {
+  if (row.is_equal()) return "equal";
+  if (row.is_one_population()) return fmt::format("σ {}", row.mix.sigma_a);
+  return fmt::format("σ {} | {}", row.mix.sigma_a, row.mix.sigma_b);
 }
-
-}  // namespace
 
 /// Farr's table 2 and, of the same data, figure 4.
 Files table_2(const FigureOptions& options) {
@@ -47,7 +44,7 @@ Files table_2(const FigureOptions& options) {
     plot.add(
         "<text class=\"label\" x=\"{0:.1f}\" y=\"462\" text-anchor=\"middle\">{1}</text><text x=\"{0:.1f}\" "
         "y=\"480\" text-anchor=\"middle\">{2}</text>",
-        plot.x(row), described(p.mix, p.is_one_population()), p.is_one_population() ? "" : "1 : 2");
+        plot.x(row), described(p), p.is_one_population() ? "" : "1 : 2");
     if (options.pack) {
       const std::optional<PredictionCheck> packed =
           packed_for_a_figure(p.mix, "table 2", row / rows, options);

@@ -37,10 +37,36 @@ TEST(ReproduceCommand, WritesAFigureAndSaysWhere) {
 TEST(ReproduceCommand, RefusesAbsurdInputInOneLine) {
   const Folder folder;
   const std::string out = folder.path().string();
-  expect_refused_in_one_line(bernal({"reproduce", "fig3", "-o", out}), {"fig3"});
+  expect_refused_in_one_line(bernal({"reproduce", "fig7", "-o", out}), {"fig7"});
   expect_refused_in_one_line(bernal({"reproduce", "fig1"}), {"output"});
   expect_refused_in_one_line(bernal({"reproduce", "fig1", "--pack", "-o", out}), {"--pack"});
+  expect_refused_in_one_line(bernal({"reproduce", "fig1", "--spheres", "500", "-o", out}), {"--spheres"});
+  expect_refused_in_one_line(bernal({"reproduce", "zhao2007", "--spheres", "99", "-o", out}), {"--spheres"});
   expect_refused_in_one_line(bernal({"reproduce", "fig1", "-o", "/proc/none"}), {"/proc/none"});
+}
+
+TEST(ReproduceCommand, KnowsAllThatIsPublished) {
+  const Ended help = bernal({"reproduce", "--help"});
+  EXPECT_EQ(help.status, 0);
+  for (const char* name : {"fig1", "fig2", "fig3", "fig4", "fig5", "fig6", "table1", "table2", "farr2013",
+                           "zhao2007", "han2005", "Sources"})
+    EXPECT_NE(help.out.find(std::string("\n") + (std::string(name) == "Sources" ? "" : "  ") + name),
+              std::string::npos)
+        << name;
+  const Folder folder;
+  const std::string out = folder.path().string();
+  EXPECT_EQ(bernal({"reproduce", "fig4", "-o", out}).out, out + "/table2.svg\n" + out + "/table2.csv\n");
+}
+
+TEST(ReproduceCommand, StopsWithNothingWritten) {
+  const Folder folder;
+  const Process all = start_bernal({"reproduce", "zhao2007", "-o", (folder.path() / "out").string()});
+  while (all.said().find("zhao2007") == std::string::npos) usleep(50'000);
+  all.signal(SIGINT);
+  const Ended ended = all.wait();
+  EXPECT_EQ(ended.status, 3);
+  EXPECT_NE(ended.err.find("nothing is written"), std::string::npos) << ended.err;
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(MapCommand, MapsTwoPopulations) {

@@ -9,24 +9,34 @@
 
 namespace bernal {
 
-/// A figure or table of Farr, Powder Technology 245, 28 (2013), which can be computed again.
+/// A figure, a table or all of a published paper, which can be computed again: Farr, Powder Technology 245,
+/// 28 (2013); Zhao, Li & Liu, Chinese Journal of Computational Physics (2007); Han, Feng & Owen, Powder
+/// Technology 155, 33 (2005).
 struct Figure {
-  std::string_view name;  ///< "fig1", …, "table2"
+  std::string_view name;  ///< "fig1", …, "table2", "zhao2007"
   std::string_view what;  ///< one line
-  bool packs;             ///< has packings of its own to show
+  std::string_view time;  ///< that it takes on two cores: "20 s"
+  bool packs;             ///< has more packings to show with FigureOptions::pack
+  bool sized;             ///< heeds FigureOptions::spheres
 };
 std::span<const Figure> all_figures();
 
 struct FigureOptions {
-  /// Also packs some of the sizes with `relax` in three dimensions, where `Figure::packs`: minutes.
+  /// Also packs some of the sizes in three dimensions, where `Figure::packs`; in zhao2007 all of them with
+  /// the published loop and 10,000 spheres.
   bool pack = false;
+  /// Where `Figure::sized`, packings have at most so many spheres, at least 100: quick, and rough. 0: as many
+  /// as are published or take the time that `Figure` states.
+  int spheres = 0;
   std::uint64_t seed = 1;
   Monitor monitor = {};
 };
 
-/// Computes a figure and writes NAME.svg and NAME.csv (table1: the CSV alone) into `folder`, both or none.
-/// Returns the files; none where the monitor stopped it. Nothing in them depends on the number of threads but
-/// the milliseconds of table 1. Throws Error{bad_argument} for another name, Error{cannot_write}.
+/// Computes a figure and writes NAME.svg and NAME.csv (table1: the CSV alone; fig4: those of table2), or for
+/// a paper NAME.md, a page that puts printed and own values side by side, and the CSV and SVG files that it
+/// names, into `folder`, all or none. Returns the files; none where the monitor stopped it. Nothing in them
+/// depends on the number of threads but times. Throws Error{bad_argument} for another name or number of
+/// spheres, Error{cannot_write}.
 std::vector<std::filesystem::path> write_figure(std::string_view name, const std::filesystem::path& folder,
                                                 const FigureOptions& options = {});
 
