@@ -67,6 +67,7 @@ StageEnd insert_if_denser(Work& work, StageEnd end) {
 }  // namespace
 
 StageEnd insert(Work& work, const Insert& options) {
+  if (options.layout == Layout::lattice) return insert_on_lattice(work, options);
   const EffectTimer timer(work.effects["insertion"]);
   Bed& bed = work.bed();
   Supply& supply = *work.supply;
@@ -158,20 +159,26 @@ StageEnd insert_what_else_fits(Work& work, StageEnd end) {
 template <>
 const StageEntry& entry_of<Insert>() {
   using namespace schema;
-  static const StageEntry entry = {
-      .table = stage_table<Insert>(
-          {.name = "insert",
-           .help = "place spheres at random where they overlap nothing",
-           .keys = {buys_accuracy(
-                        {1, 10, 100, 1000, 10000},
-                        integer(&Insert::attempts, "attempts",
-                                "random places tried for one sphere before it has to wait", {1, 1e9})),
-                    number(&Insert::packing_fraction, "packing_fraction", "where random insertion stops",
-                           between(0, 1))}},
-          {.in_bed = true, .reaches = Reaches::insertion}),
-      .act_in_bed = act(insert),
-      .bed_effects = {{"insertion", "random places, one sphere after the other", "O(1) a trial"}},
-      .reached = of_options(+[](const Insert& options) { return options.packing_fraction; })};
+  static const StageEntry entry =
+      {.table = stage_table<Insert>(
+           {.name = "insert",
+            .help = "place spheres where they overlap nothing, at random or on a lattice",
+            .keys =
+                {word(&Insert::layout, "layout",
+                      "random places, or a lattice: face-centred, as wide as holds what is to be placed, its "
+                      "sites taken in random order",
+                      {"random", "lattice"}),
+                 buys_accuracy(
+                     {1, 10, 100, 1000, 10000},
+                     integer(&Insert::attempts, "attempts",
+                             "random: places tried for one sphere before it has to wait", {1, 1e9})),
+                 number(&Insert::packing_fraction, "packing_fraction", "where insertion stops",
+                        between(0, 1))}},
+           {.in_bed = true, .reaches = Reaches::insertion}),
+       .act_in_bed = act(insert),
+       .bed_effects = {{"insertion", "one sphere after the other, where it overlaps nothing",
+                        "O(1) a trial"}},
+       .reached = of_options(+[](const Insert& options) { return options.packing_fraction; })};
   return entry;
 }
 

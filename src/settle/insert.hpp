@@ -10,6 +10,17 @@ namespace bernal {
 /// trial.
 StageEnd insert(Work& work, const Insert& options);
 
+/// The same at the sites of a face-centred lattice, each sphere at the next that has room for it: the sites
+/// in random order, so that sizes which come in some order make no pattern. The lattice is the widest whose
+/// sites, in the container and clear of what stands there, hold what is to be placed, and no denser than
+/// spheres as large as the largest of these touch; of sizes that differ, those that are still to come are
+/// then tried at the sites of lattices of half and of a quarter of that, between the others. Its cell is
+/// orthogonal, and stretched so that it divides the periods of the container.
+///
+/// Face-centred, because no lattice holds more: 0.74 of equal spheres, where a simple cubic one ends at 0.52.
+/// Cost: about twenty looks at as many sites as spheres, O(1) each.
+StageEnd insert_on_lattice(Work& work, const Insert& options);
+
 /// Until nothing more finds a place.
 inline constexpr Insert until_full = {.attempts = 1000, .packing_fraction = 1};
 

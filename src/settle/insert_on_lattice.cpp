@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "settle/insert.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr std::size_t a_milestone_every = 8192;
+/// Of the spacing at which as many sites as are needed fill the container evenly: where the search for the
+/// widest lattice begins, and by what it comes closer.
+constexpr double widest_tried = 2, closer = 0.8;
+/// Then it is found by bisection; so near to as many sites as are needed it is wide enough.
+constexpr int most_bisections = 12;
+constexpr double enough_sites = 1.01;
+/// Of a lattice that holds too few: how often it is halved for what is still to come.
+constexpr int most_halvings = 2;
+/// Spheres of the window that are tried at one site.
+constexpr std::size_t most_tried = 32;
+
+/// The points first + (i, j, k) step with i + j + k even, for i, j, k from 0 to below `count`.
+struct Lattice {
+  Vector<3> first, step;
+  std::array<int, 3> count;
+
+  /// With sites `spacing` apart, or more across periods, which it divides; for spheres of that radius between
+  /// open bounds, in whose middle it lies. No sites where they do not fit.
+  Lattice(const Container& container, double r, double spacing, double skin) {
+    const Bounds<3> bounds = container.bounds();
+    const double least_step = spacing / std::numbers::sqrt2;
+    for (int k = 0; k < 3; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      if (container.boundary().repeats(k)) {
+        const double period = container.boundary().edges[k];
+        count[at] = 2 * std::max(1, static_cast<int>(period / (2 * least_step)));
+        step[k] = period / count[at];
+        first[k] = container.boundary().origin[k];
+        continue;
+      }
+      const double room = bounds.size()[k] - 2 * (r + 2 * skin);
+      const int steps = room >= 0 ? static_cast<int>(room / least_step) : -1;
+      count[at] = steps + 1;
+      step[k] = least_step;
+      first[k] = bounds.center()[k] - 0.5 * steps * least_step;
+    }
+  }
+
+  void halve(const Boundary<3>& boundary) {
+    step /= 2;
+    for (int k = 0; k < 3; ++k) {
+      int& n = count[static_cast<std::size_t>(k)];
+      n = boundary.repeats(k) ? 2 * n : std::max(0, 2 * n - 1);
+    }
+  }
+
+  /// Those with room for a sphere of that radius. Throws Cancelled.
+  std::vector<Vector<3>> sites(const Bed& bed, double r, const Monitor& monitor) const {
+    std::vector<Vector<3>> free;
+    for (int i = 0; i < count[0]; ++i) {
+      if (monitor.stop()) throw Cancelled();
+      for (int j = 0; j < count[1]; ++j)
+        for (int k = (i + j) % 2; k < count[2]; k += 2) {
+          const Vector<3> site = first + step.cwiseProduct(Vector<3>(i, j, k));
+          if (bed.fits(site, r)) free.push_back(site);
+        }
+    }
+    return free;
+  }
+};
+
+struct Sites {
+  Lattice lattice;
+  std::vector<Vector<3>> free;
+};
+
+/// The widest that has so many free sites, or the one whose spheres touch. Wide ones are tried first: where
+/// few spheres are wanted in much room, the others have sites without number.
+Sites widest_lattice(const Work& work, std::size_t needed) {
+  const Bed& bed = work.bed();
+  const double r = work.supply->largest(), touching = 2 * (r + bed.skin());
+  const auto sites_at = [&](double spacing) {
+    const Lattice lattice(bed.container(), r, spacing, bed.skin());
+    return Sites{lattice, lattice.sites(bed, r, work.monitor)};
+  };
+  const double even = std::cbrt(std::numbers::sqrt2 * bed.container().volume() / static_cast<double>(needed));
+  double wide = std::max(touching, widest_tried * even), close = wide;
+  Sites widest = sites_at(wide);
+  while (widest.free.size() < needed && close > touching) {
+    wide = close;
+    close = std::max(touching, closer * close);
+    widest = sites_at(close);
+  }
+  for (int k = 0; k < most_bisections && close < wide; ++k) {
+    if (static_cast<double>(widest.free.size()) <= enough_sites * static_cast<double>(needed)) break;
+    const double middle = 0.5 * (close + wide);
+    Sites tried = sites_at(middle);
+    const bool holds = tried.free.size() >= needed;
+    (holds ? close : wide) = middle;
+    if (holds) widest = std::move(tried);
+  }
+  return widest;
+}
+
+}  // namespace
+
+StageEnd insert_on_lattice(Work& work, const Insert& options) {
+  const EffectTimer timer(work.effects["insertion"]);
+  Bed& bed = work.bed();
+  Supply& supply = *work.supply;
+  Random random = work.random(Stream::insert);
+  const auto is_done = [&] {
+    return supply.exhausted() || bed.packing_fraction() >= options.packing_fraction;
+  };
+  const std::size_t enough = std::min(work.count_filling(options.packing_fraction), supply.wanted());
+  if (is_done() || enough <= bed.size()) return StageEnd::converged;
+
+  auto [lattice, sites] = widest_lattice(work, enough - bed.size());
+  for (int halvings = 0;; ++halvings) {
+    for (std::size_t left = sites.size(); left > 0 && !is_done(); --left) {
+      if (work.monitor.stop()) return StageEnd::cancelled;
+      std::swap(sites[random() % left], sites[left - 1]);
+      const Vector<3>& site = sites[left - 1];
+      for (std::size_t k = 0; k < std::min(most_tried, supply.window().size()); ++k) {
+        const std::uint32_t tag = supply.window()[k];
+        if (!bed.fits(site, supply.radius(tag))) continue;
+        bed.insert(site, supply.radius(tag), tag);
+        supply.take(k);
+        if (bed.size() % a_milestone_every == 0) work.milestone("insert");
+        break;
+      }
+    }
+    if (is_done()) return StageEnd::converged;
+    if (halvings == most_halvings || supply.smallest() == supply.largest()) return StageEnd::full;
+    lattice.halve(bed.container().boundary());
+    sites = lattice.sites(bed, supply.smallest(), work.monitor);
+  }
+}
+
+}  // namespace bernal
