@@ -28,10 +28,15 @@ std::string describe_container(const Plan& plan) {
 std::string describe(const Plan& plan) {
   std::string text = fmt::format("container  {}\n", describe_container(plan));
   if (!plan.container_notes.empty()) text += fmt::format("           {}\n", plan.container_notes);
+  if (const std::size_t n = plan.start.spheres.size(); n > 0)
+    text += fmt::format("start      {} of {}; \"{}\" begins from {}\n",
+                        n == 1 ? "1 sphere" : grouped(n) + " spheres", plain_text(plan.start.file),
+                        plan.scene.stages.front().name(), n == 1 ? "it" : "them");
   return text + fmt::format("spheres    {}; {}\n", describe_target(plan), describe_sizes(plan.scene));
 }
 
 std::string describe_sizes(const Scene& scene) {
+  if (!scene.draws()) return "the sizes are those of the start";
   return fmt::format("{} in {}: {}{}", scene.sizes_are_diameters ? "diameter" : "radius", name_of(scene.unit),
                      sizes_in_words(scene.sizes),
                      scene.draw == Draw::quantiles ? "; drawn by quantiles" : "");

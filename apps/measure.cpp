@@ -245,10 +245,9 @@ void print(const Packing& packing, const Measurements& measured) {
 }
 
 Measurements measured_of(const Packing& packing, const MeasureCall& call) {
-  const std::unique_ptr<SizeDistribution> asked = radii_of(packing.scene);
+  const SceneRadii radii = asked_radii_of(packing.scene, packing.spheres.size());
   try {
-    return measure(packing.spheres, packing.domain,
-                   {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)}, call.options);
+    return measure(packing.spheres, packing.domain, radii.asked, call.options);
   } catch (const Error& error) {
     throw Error(error.code(), error.what(), {(call.folder / "spheres.csv").string()});
   }

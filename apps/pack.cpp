@@ -130,7 +130,8 @@ Command pack_command() {
                list_of(2, {"--lognormal", &call->lognormal, "Lognormal diameters in a mesh", "MEDIAN,SIGMA"}),
                "--diameter"),
            {"--with-mesh", &call->with_mesh,
-            "Copy the CAD files beside the spheres too, so that the folder stands for itself"},
+            "Copy the CAD files, and what the scene starts from, beside the spheres too, so that the folder "
+            "stands for itself"},
            seed_option("Instead of the scene's; one seed gives one packing, bit for bit",
                        [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
            threads_option(call->threads, "the result"),

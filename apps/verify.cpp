@@ -82,8 +82,9 @@ void print(const Certificate& c, const Domain& domain, std::string_view unit) {
 int verify(const VerifyCall& call) {
   if (is_folder(call.target)) finish_writing(call.target);
   const Scene scene = read_scene(scene_file(call));
-  const std::filesystem::path file = is_folder(call.target) ? call.target / "spheres.csv" : call.target;
-  const Spheres<dynamic> spheres = read_csv_of(scene, file);  // before another result replaces both
+  const Spheres<dynamic> spheres = is_folder(call.target)  // before another result replaces both
+                                       ? read_csv_of(scene, call.target / "spheres.csv")
+                                       : read_columns_of(scene, call.target);
   const Domain domain = packed_domain_of(scene);
 
   ProgressBar bar(call.json, true);
@@ -108,7 +109,8 @@ Command verify_command() {
   return {
       "verify",
       "Certify files from scratch: no overlap, nothing outside",
-      {required({"DIR", &call->target, "What bernal pack wrote, or one CSV file with x,y,z,r lines",
+      {required({"DIR", &call->target,
+                 "What bernal pack wrote, or one CSV file whose header names x, y, z and r or d",
                  "DIR|FILE.csv"}),
        {"--scene", &call->scene, "The scene that names the container, if not DIR/scene.toml", "SCENE.toml"},
        {"--list{all}", &call->list,

@@ -35,8 +35,8 @@ void complete_grow(Grow& grow, Scene& scene, const schema::Section&) {
 
 /// Random sequential insertion between the walls. Returns whether all have found places.
 template <int D>
-bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls,
-                      Random random, const Monitor& monitor) {
+bool insert_at_random(Spheres<D>& spheres, const std::vector<bool>& placed, const Vector<D>& edges,
+                      const std::vector<bool>& walls, Random random, const Monitor& monitor) {
   const Boundary<D> boundary{edges_around_walls(edges, walls)};
   const auto between_walls = [&](double r) {
     Bounds<D> bounds{Vector<D>::Zero(), edges};
@@ -45,8 +45,8 @@ bool insert_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::ve
     return uniform_point(random, bounds);
   };
   return bernal::insert_at_random<D>(
-      spheres, std::vector<bool>(spheres.size(), false), 1, {Vector<D>::Zero(), boundary.edges}, boundary,
-      most_trials, between_walls, [](const Vector<D>&, double) { return true; }, monitor);
+      spheres, placed, 1, {Vector<D>::Zero(), boundary.edges}, boundary, most_trials, between_walls,
+      [](const Vector<D>&, double) { return true; }, monitor);
 }
 
 /// Those of the box, in its coordinates.
@@ -74,20 +74,30 @@ void require_room(const Spheres<D>& spheres, const Vector<D>& box, const std::ve
 
 template <int D>
 void start(Spheres<D>& spheres, Vector<D>& edges, Work& work, double phi_init) {
-  if (work.placed) {
-    if (work.allowed_overlap > 0) {  // other stages may leave some
-      const Vector<D> free = edges_free_of_overlap<D>(spheres, edges, 0, work.walls);
+  if (work.begun > 0 || work.placed) {
+    if (work.allowed_overlap > 0 || work.may_overlap) {  // which other stages leave, and a start may have
+      Spheres<D> there = spheres;
+      if (!work.placed) there.resize(work.begun);
+      const Vector<D> free = edges_free_of_overlap<D>(there, edges, 0, work.walls);
+      if (!free.allFinite())
+        throw Error(ErrorCode::bad_scene,
+                    "two spheres of the start have the same place: begin with \"relax\", which parts them");
       if (free[0] > edges[0]) resize_box<D>(spheres, edges, free);
     }
-    require_room<D>(spheres, edges, work.walls);
-    return;
+    if (work.placed) return require_room<D>(spheres, edges, work.walls);
   }
   const EffectTimer timer(work.effects["insertion"]);
   double volume = work.volume_of_spheres() / phi_init;
   if (work.target_edges) volume = std::max(volume, work.target_edges->prod());
-  edges *= std::pow(volume / edges.prod(), 1.0 / D);
+  const double wider = std::pow(volume / edges.prod(), 1.0 / D);
+  if (work.begun == 0)
+    edges *= wider;
+  else if (wider > 1)
+    resize_box<D>(spheres, edges, edges * wider);
   require_room<D>(spheres, edges, work.walls);
-  if (!insert_at_random<D>(spheres, edges, work.walls, work.random(Stream::grow), work.monitor))
+  std::vector<bool> placed(spheres.size(), false);
+  std::fill_n(placed.begin(), work.begun, true);
+  if (!insert_at_random<D>(spheres, placed, edges, work.walls, work.random(Stream::grow), work.monitor))
     throw Error(ErrorCode::bad_scene,
                 fmt::format("grow cannot start at phi_init = {}: random insertion found no place for one of "
                             "the spheres; take a smaller one",
@@ -262,6 +272,8 @@ const StageEntry& entry_of<Grow>() {
             .most_dimensions = 6,
             .keeps_sizes = true,
             .places_expected = true,
+            .frees_box = true,
+            .joins_start = true,
             .reaches = Reaches::close_packing}),
        .act_in_bed = act(grow_in_container),
        .act_in_box = act(grow),

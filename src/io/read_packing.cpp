@@ -5,11 +5,14 @@
 #include "bernal/core/error.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "scene/read_spheres.hpp"
 
 namespace bernal {
 
-Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file) {
-  SpheresFile read = read_csv(file);
+namespace {
+
+/// Throws where spheres and scene do not go together.
+Spheres<dynamic> of_the_scene(const Scene& scene, const std::filesystem::path& file, SpheresFile read) {
   if (!read.unit.empty() && read.unit != name_of(scene.unit))
     throw Error(ErrorCode::bad_packing,
                 fmt::format("the spheres are in {}, but the scene is in {}; both must have one unit",
@@ -22,6 +25,17 @@ Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& fi
                             read.spheres.dimension(), scene.dimension()),
                 {file.string()});
   return std::move(read).spheres;
+}
+
+}  // namespace
+
+Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file) {
+  return of_the_scene(scene, file, read_csv(file));
+}
+
+Spheres<dynamic> read_columns_of(const Scene& scene, const std::filesystem::path& file) {
+  NamedColumns read = read_spheres(file);
+  return of_the_scene(scene, file, {std::move(read.spheres), std::move(read.unit)});
 }
 
 Packing read_packing(const std::filesystem::path& folder) {

@@ -57,11 +57,22 @@ bool is_as_written(const fs::path& scene) {
   }
 }
 
-std::vector<fs::path*> files_named_in(Scene& scene) {
-  auto* mesh = std::get_if<MeshFile>(&scene.container);
-  if (!mesh) return {};
-  std::vector<fs::path*> files{&mesh->file};
-  for (fs::path& obstacle : mesh->obstacles) files.push_back(&obstacle);
+/// A file that a scene names, and its digest, once the scene has been run.
+struct NamedFile {
+  fs::path& file;
+  std::string sha256;
+};
+std::vector<NamedFile> files_named_in(Scene& scene) {
+  std::vector<NamedFile> files;
+  if (auto* mesh = std::get_if<MeshFile>(&scene.container)) {
+    const auto digest = [&](std::size_t k) {
+      return k < mesh->sha256.size() ? mesh->sha256[k] : std::string();
+    };
+    files.push_back({mesh->file, digest(0)});
+    for (fs::path& obstacle : mesh->obstacles) files.push_back({obstacle, digest(files.size())});
+  }
+  if (Start& start = scene.start; start.file)
+    files.push_back({*start.file, start.sha256.empty() ? std::string() : start.sha256.front()});
   return files;
 }
 
@@ -90,10 +101,7 @@ Scene scene_as_run(const Packing& packing, StagedFolder& staged, const fs::path&
   Scene scene = packing.scene;
   scene.seed = packing.seed;
   const Manifest earlier = manifest_of(folder);
-  std::size_t k = 0;
-  for (fs::path* named : files_named_in(scene)) {
-    fs::path& file = *named;
-    const std::string sha256 = std::get<MeshFile>(scene.container).sha256.at(k++);
+  for (auto& [file, sha256] : files_named_in(scene)) {
     if (stands_in(file, folder)) {
       const auto copy = earlier.find(file.filename().string());
       if (copy != earlier.end() && copy->second == sha256) manifest.insert(*copy);
@@ -123,17 +131,24 @@ void check_writable(const fs::path& folder) {
 
 void check_writable(const fs::path& folder, const Scene& scene, const WriteOptions& options) {
   Scene packed = scene;
-  const std::vector<fs::path*> files = files_named_in(packed);
+  const std::vector<NamedFile> files = files_named_in(packed);
   if (options.with_mesh && files.empty())
     throw Error(ErrorCode::bad_argument, "--with-mesh copies a CAD file, and this container is none");
-  for (const fs::path* file : files) {
-    if (!is_utf8(file->string()))
-      refuse(*file, "has a name that is not UTF-8, which scene.toml has to be; rename it");
-    if (options.with_mesh && files_of_part(*file).size() > 1)
-      refuse(*file, "names other files, which are not copied with it; export GLB, which holds all of them");
+  for (const auto& [file, sha256] : files) {
+    if (!is_utf8(file.string()))
+      refuse(file, "has a name that is not UTF-8, which scene.toml has to be; rename it");
+    if (options.with_mesh && files_of_part(file).size() > 1)
+      refuse(file, "names other files, which are not copied with it; export GLB, which holds all of them");
     constexpr std::size_t longest_name = 255 - 1 - digits_in_name;
-    if (options.with_mesh && file->filename().string().size() > longest_name)
-      refuse(*file, "has too long a name for a copy, which ends in its digest; rename it");
+    if (options.with_mesh && file.filename().string().size() > longest_name)
+      refuse(file, "has too long a name for a copy, which ends in its digest; rename it");
+  }
+  if (const auto& start = packed.start.file) {
+    const fs::path spheres = fs::is_directory(*start) ? *start / "spheres.csv" : *start;
+    if (spheres.filename() == "spheres.csv" && stands_in(spheres, folder))
+      refuse(spheres,
+             "is what the scene starts from, and the result would take its place; give another folder "
+             "with -o");
   }
   check_writable(folder);
   const std::vector<std::string> earlier = files_of_earlier_result(folder);

@@ -20,9 +20,9 @@ Manifest manifest_of(const std::filesystem::path& folder);
 std::vector<std::string> files_of_earlier_result(const std::filesystem::path& folder);
 
 /// The scene with the seed that was used, which the caller may have given instead of the scene. `with_mesh`:
-/// the CAD files are copied into the folder and named there; throws Error{cannot_write} where one is no
-/// longer what was packed into. What stands in the folder anyway stays as it is. Adds to the manifest what is
-/// copied, and what an earlier result copied and the scene names.
+/// the files that it names are copied into the folder and named there; throws Error{cannot_write} where one
+/// is no longer what was packed into. What stands in the folder anyway stays as it is. Adds to the manifest
+/// what is copied, and what an earlier result copied and the scene names.
 Scene scene_as_run(const Packing& packing, StagedFolder& staged, const std::filesystem::path& folder,
                    bool with_mesh, Manifest& manifest);
 

@@ -35,15 +35,6 @@ Certificate certify_written(const std::filesystem::path& csv, const Packing& pac
   return certify(written.spheres, packing.domain, {.allowed_overlap = packing.scene.overlap});
 }
 
-/// A result is not lost because what it is compared with has gone, the file of a table for instance.
-std::unique_ptr<SizeDistribution> asked_sizes(const Scene& scene) {
-  try {
-    return radii_of(scene);
-  } catch (const Error&) {
-    return nullptr;
-  }
-}
-
 }  // namespace
 
 WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
@@ -62,14 +53,14 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   }
   Certificate certificate = certify_written(csv, packing);
   certificate.statement += certified_walls(packing.scene);
-  const std::unique_ptr<SizeDistribution> asked = asked_sizes(packing.scene);
-  const Measurements measured = measure(
-      packing.spheres, packing.domain, {asked.get(), packing.seed, packing.scene.draw.value_or(Draw::random)},
-      {.radial = {.work = distances_for_a_report},
-       .chambers = {.points = points_for_a_report},
-       .walls = {.work = wall_distances_for_a_report},
-       .container = packing.container,
-       .monitor = options.monitor});
+  SceneRadii radii = asked_radii_of(packing.scene, packing.spheres.size());
+  radii.asked.seed = packing.seed;
+  const Measurements measured = measure(packing.spheres, packing.domain, radii.asked,
+                                        {.radial = {.work = distances_for_a_report},
+                                         .chambers = {.points = points_for_a_report},
+                                         .walls = {.work = wall_distances_for_a_report},
+                                         .container = packing.container,
+                                         .monitor = options.monitor});
   Manifest manifest;
   const std::string scene =
       scene_as_toml(scene_as_run(packing, staged, folder, options.with_mesh, manifest), folder);
@@ -81,7 +72,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
     staged.write("container.off", as_off_file(*walls));
   for (const std::string& name : staged.names()) manifest.try_emplace(name);
   for (const char* name : {"report.json", "report.html"}) manifest[name];
-  const Report report{packing, certificate, measured, asked.get(), hash_of(packing.spheres), manifest};
+  const Report report{packing, certificate, measured, radii.all.get(), hash_of(packing.spheres), manifest};
   staged.write("report.json", json_of(report));
   staged.write("report.html", html_of(report, picture, scene));
 

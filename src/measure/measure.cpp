@@ -16,7 +16,7 @@ namespace {
 SizeComparison compare_sizes_of(const Spheres<dynamic>& spheres, const Domain& domain,
                                 const AskedRadii& asked) {
   const bool cut_tail = has_walls(domain) && !std::isfinite(asked.sizes->max());
-  const auto drawn = compare_with_drawn(spheres.r, {*asked.sizes, asked.seed, asked.draw}, cut_tail);
+  const auto drawn = compare_with_drawn(spheres.r, asked.sequence(), cut_tail);
   std::vector<double> radii = spheres.r;
   if (drawn && drawn->scale != 1)
     for (double& r : radii) r /= drawn->scale;

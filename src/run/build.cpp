@@ -5,10 +5,12 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
+#include "run/start.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/bed.hpp"
 
@@ -20,6 +22,22 @@ namespace {
 constexpr double bytes_a_sphere = 600;
 /// The same for relaxation in a periodic box.
 constexpr double bytes_a_relaxed_sphere = 400;
+
+/// Of so many spheres as are asked for: those of the start, and others that are drawn from these.
+double volume_of_count(const Plan& plan, const SizeDistribution& radii) {
+  const int dimension = plan.scene.dimension();
+  const Spheres<dynamic>& there = plan.start.spheres;
+  const auto drawn = static_cast<double>(*plan.scene.target.count - static_cast<std::int64_t>(there.size()));
+  double volume = drawn * ball_volume(dimension, 1) * radii.moment(dimension);
+  for (const double r : there.r) volume += ball_volume(dimension, r);
+  return volume;
+}
+
+double mean_volume_of(const Plan& plan, const SizeDistribution& radii) {
+  if (!plan.start.spheres.empty() && plan.scene.target.count)
+    return volume_of_count(plan, radii) / static_cast<double>(*plan.scene.target.count);
+  return ball_volume(plan.scene.dimension(), 1) * radii.moment(plan.scene.dimension());
+}
 
 /// Puts a number where the scene says "predicted": what its stages are likely to reach less the error of that
 /// expectation, so that it is reached, and rounded down to what a reader can take in.
@@ -82,7 +100,7 @@ void expect_in_container(Plan& plan) {
   const SizeDistribution& radii = without_tail ? *without_tail : *plan.radii;
   require_long_periods(scene, container, radii.max());
 
-  const double mean_volume = ball_volume(3, 1) * radii.moment(3);
+  const double mean_volume = mean_volume_of(plan, radii);
   const double volume = volume_of(container);
   double attainable = plan.attainable_packing_fraction =
       ask_container(plan, [&] { return expected_packing_fraction(scene, container, radii, made); });
@@ -98,7 +116,7 @@ void expect_in_container(Plan& plan) {
 }
 
 void require_stage_that_places(const Scene& scene) {
-  if (any_stage(scene, &StageTraits::only_moves, false)) return;
+  if (scene.start.file || any_stage(scene, &StageTraits::only_moves, false)) return;
   throw Error(ErrorCode::bad_scene,
               "the stages only move spheres, and none places any: begin with \"insert\" or \"relax\"",
               scene.stages.front().locations.whole);
@@ -178,8 +196,7 @@ double attainable_in_box(const Plan& plan, const SizeDistribution& radii) {
   Box box = std::get<Box>(plan.domain);
   double attainable = close_packing_fraction(radii, 3);
   for (int k = 0; k < rounds; ++k) {
-    const double volume = static_cast<double>(*scene.target.count) * ball_volume(3, 1) * radii.moment(3) /
-                          scene.target.packing_fraction.value_or(attainable);
+    const double volume = volume_of_count(plan, radii) / scene.target.packing_fraction.value_or(attainable);
     box.size *= std::cbrt(volume / box.size.prod());
     if (largest_fitting_radius(box) < radii.quantile(0.5)) break;
     attainable = expected_packing_fraction(scene, box, radii);
@@ -200,7 +217,7 @@ void expect_in_periodic_box(Plan& plan) {
     require_fitting(scene, plan.domain, plan.container, (1 - allowed) * (in_bed ? cut : plan.radii->min()));
   }
   if (in_bed) require_long_periods(scene, plan.domain, cut);
-  const double mean_volume = ball_volume(dimension, 1) * radii.moment(dimension);
+  const double mean_volume = mean_volume_of(plan, radii);
   double attainable = plan.attainable_packing_fraction = attainable_in_box(plan, radii);
   resolve_predicted(plan);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
@@ -215,6 +232,22 @@ void expect_in_periodic_box(Plan& plan) {
   }
   plan.expected_packing_fraction = plan.expected_count * mean_volume / volume_of(plan.domain);
   plan.expected_memory_bytes = plan.expected_count * bytes_a_relaxed_sphere;
+}
+
+/// What is there from the start is what can be expected at least.
+void expect_start(Plan& plan) {
+  const Spheres<dynamic>& spheres = plan.start.spheres;
+  if (spheres.empty()) return;
+  double volume = 0;
+  for (const double r : spheres.r) volume += ball_volume(spheres.dimension(), r);
+  const auto n = static_cast<double>(spheres.size());
+  if (!plan.box_follows)
+    plan.expected_packing_fraction =
+        std::max(plan.expected_packing_fraction, volume / volume_of(plan.domain));
+  plan.expected_memory_bytes *= std::max(1.0, n / std::max(1.0, plan.expected_count));
+  plan.expected_count = std::max(plan.expected_count, n);
+  plan.items.push_back(
+      {"start", fmt::format("{} spheres that have places", grouped(spheres.size())), "O(N)"});
 }
 
 /// Those of its effects that the plan calls for.
@@ -243,8 +276,7 @@ FillTask fill_task_of(const Plan& plan) {
   if (target.packing_fraction)
     task.packing_fraction = *target.packing_fraction;
   else if (target.count)
-    task.packing_fraction = static_cast<double>(*target.count) * ball_volume(dimension, 1) *
-                            plan.radii->moment(dimension) / volume_of(plan.domain);
+    task.packing_fraction = volume_of_count(plan, *plan.radii) / volume_of(plan.domain);
   return task;
 }
 
@@ -255,13 +287,15 @@ Plan build(const Scene& stated) {
   const Scene& scene = plan.scene;
   require_stage_that_places(scene);
   require_effect_of_accuracy(scene);
+  plan.start = read_start(plan.scene);
   plan.domain = domain_of(plan.scene, plan.container_notes);
-  plan.radii = radii_of(scene);
+  plan.radii = scene.draws() ? radii_of(scene) : radii_there(plan.start.spheres.r);
   if (scene.is_periodic()) {
     expect_in_periodic_box(plan);
   } else {
     expect_in_container(plan);
   }
+  expect_start(plan);
   require_overlap(plan);
   require_drawable_count(plan);
   require_memory(plan);

@@ -82,7 +82,8 @@ struct MakeDomain {
   Domain operator()(MeshFile& mesh) const {
     const Unit unit = scene.unit;
     try {
-      const double smallest = radii_of(scene)->quantile(rare);
+      const double smallest = scene.draws() || scene.start.file ? radii_of(scene)->quantile(rare)
+                                                                : 0;  // what is certified is there
       const std::vector<std::filesystem::path> files = all_files_of(mesh);
       const std::vector<Stamp> before = stamps_of(files);
       ImportedMesh imported = read_container_mesh(mesh, {unit, smallest});
@@ -130,6 +131,7 @@ Domain packed_domain_of(const Scene& scene) {
         scene.container.locations.whole);
   Scene copy = scene;  // the spheres are certified in the walls as they are now
   if (auto* mesh = std::get_if<MeshFile>(&copy.container)) mesh->sha256.clear();
+  copy.start = {};  // which may have gone
   return domain_of(copy);
 }
 

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "bernal/run/run.hpp"
+#include "run/start.hpp"
 
 namespace bernal {
 namespace {
@@ -71,6 +72,10 @@ struct MakeRadii {
 }  // namespace
 
 Radii radii_of(const Scene& scene) {
+  if (!scene.draws() && scene.start.file) {
+    Scene copy = scene;
+    return radii_there(read_start(copy).spheres.r);
+  }
   try {
     return std::visit(MakeRadii{scene.sizes_are_diameters ? 0.5 : 1.0}, scene.sizes);
   } catch (const Error& error) {  // what only the numbers together show

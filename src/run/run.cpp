@@ -17,6 +17,7 @@
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
+#include "run/start.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/work.hpp"
 
@@ -108,6 +109,7 @@ class Run {
               .effects = effects_,
               .on_course = [this](const Course& course) { tell(course); }};
     Supply::Source source{*plan_.radii, work.dimension(), packing_.seed, *scene_.draw};
+    source.first = plan_.start.spheres.r;
     double volume = volume_of(plan_.domain);
     if (scene_.is_periodic()) {
       if (any_in_bed_ && !std::isfinite(source.radii.max()))
@@ -133,6 +135,7 @@ class Run {
     if (any_in_bed_)
       work.exact_place = [this](const Vector<3>& place, double r) { return exact_place(place, r); };
     if (scene_.is_periodic()) put_into_box(work);
+    take_start(plan_, frame_, work);
     return work;
   }
 
@@ -198,9 +201,12 @@ class Run {
       in_bed ? work.stand_in_bed() : work.stand_in_box();
       const Keepsake before(work);
       end = run_stage(stage, work);
-      if (end == StageEnd::cancelled) before.give_back_if_denser(work);
+      if (end == StageEnd::cancelled && !work.may_overlap) before.give_back_if_denser(work);
       if (end == StageEnd::cancelled && bed) bed->give_back_if_denser(work);
       if (end == StageEnd::cancelled && !work.stands_in_bed() && !work.placed) work.spheres.resize(0);
+      work.begun = 0;
+      work.may_overlap = false;
+      work.crowded_start = {};
       if (in_bed) work.milestone(stage.name());
       if (end == StageEnd::cancelled) break;
     }

@@ -57,17 +57,23 @@ void check_sizes(const SceneSizes& sizes, const std::string& name, const Scene& 
       check_sizes(mixture->of[i], fmt::format("part {} of {}", i + 1, name), scene);
 }
 
+bool is_start_alone(const Scene& scene) { return scene.start.file && !scene.draws(); }
+
 /// What the target and a periodic box demand of each other.
 void check_target(const Scene& scene) {
   const Target& target = scene.target;
   const auto fail = [&](const char* message) { throw Error(ErrorCode::bad_scene, message, target.where); };
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
-  const bool scalable = box && box->scalable;
+  const bool scalable = box && box->scalable, all_are_there = is_start_alone(scene);
+  if (all_are_there && (target.fill || (target.has_packing_fraction() && !scalable)))
+    fail(
+        "there are no sizes to draw more spheres from than the start has: give \"diameter\" or \"radius\" in "
+        "[spheres] too, or ask for no more");
   if (target.count && target.has_packing_fraction() && !scalable)
     fail(
         "\"count\" and \"packing_fraction\" in [spheres] exclude each other; give one of them (both go "
         "together only in a periodic box without size)");
-  if (scalable && !target.count)
+  if (scalable && !target.count && !all_are_there)
     fail("a periodic box without size needs a \"count\" in [spheres]; or give it \"size\" or \"edge\"");
 }
 
@@ -120,9 +126,9 @@ void require_end(const Scene& scene) {
   const Target& target = scene.target;
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   for (const Stage& stage : scene.stages)
-    if (const StageTable& table = table_of(stage); table.traits.fills_given_box &&
-                                                   !target.has_packing_fraction() &&
-                                                   (!target.count || (box && box->scalable)))
+    if (const StageTable& table = table_of(stage);
+        table.traits.fills_given_box && !target.has_packing_fraction() &&
+        ((!target.count && !is_start_alone(scene)) || (box && box->scalable)))
       throw Error(ErrorCode::bad_scene,
                   fmt::format("\"{}\" fills a box of given size to a given end: give \"packing_fraction\" in "
                               "[spheres], or \"count\" and the size of the box",
@@ -168,8 +174,9 @@ void complete(Scene& scene) {
   check(container, schema::options_of(std::as_const(scene.container)), section);
   if (container.complete) container.complete(schema::options_of(scene.container), scene, section);
   check_target(scene);
-  check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",
-              scene);
+  if (!is_start_alone(scene))
+    check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",
+                scene);
   complete_stages(scene);
 }
 

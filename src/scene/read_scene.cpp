@@ -210,8 +210,9 @@ class Reader {
 
   void read_spheres(const toml::table& table, Scene& scene) const {
     read_own(table, schema::spheres_entry(), "[spheres]", scene);
-    if (!table.contains("radius") && !table.contains("diameter"))
+    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start"))
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
+    if (scene.start.file) scene.start.file = beside_the_scene(*scene.start.file);
     scene.target.where = at(table.source());
     for (const char* key : {"count", "packing_fraction", "fill"})
       if (table.contains(key)) scene.target.where = scene.locations.of(key);

@@ -28,6 +28,10 @@ namespace {
 
 std::vector<std::string_view> words(std::span<const std::string_view> of) { return {of.begin(), of.end()}; }
 
+bool is_sha256(const std::string& digest) {
+  return digest.size() == 64 && digest.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
+}
+
 /// A number, or "predicted".
 Member packing_fraction() {
   Member member;
@@ -58,7 +62,7 @@ Member sizes(bool diameters) {
   Member member;
   member.get = [diameters](const void* scene) -> std::optional<Value> {
     const auto& of = *static_cast<const Scene*>(scene);
-    if (of.sizes_are_diameters != diameters) return std::nullopt;
+    if (of.sizes_are_diameters != diameters || !of.draws()) return std::nullopt;
     return std::vector<SceneSizes>{of.sizes};
   };
   member.set = [diameters](void* scene, const Value& value) {
@@ -67,6 +71,33 @@ Member sizes(bool diameters) {
     of.sizes = std::get<std::vector<SceneSizes>>(value).front();
   };
   return member;
+}
+
+/// The same of what the scene says of its start.
+template <class M>
+Member of_start(M Start::*member) {
+  return Member(member).inside(&Scene::start);
+}
+
+void spheres_rule(const Scene& scene, const Section& section) {
+  // The one that is read last is all that the scene still holds.
+  if (const auto& keys = section.locations.keys; keys.contains("radius") && keys.contains("diameter"))
+    section.fail("diameter", "\"radius\" and \"diameter\" in [spheres] exclude each other; give one of them");
+  const auto& [file, unit, box, sha256] = scene.start;
+  const auto* periodic = std::get_if<PeriodicBox>(&scene.container);
+  if (!file && (unit || !box.empty() || !sha256.empty()))
+    section.fail(unit           ? "start_unit"
+                 : !box.empty() ? "start_box"
+                                : "start_sha256",
+                 "what is said of a start needs the \"start\" itself, the file of its spheres");
+  if (!box.empty() && !periodic) section.refuse("start_box", "is for periodic boxes; leave it out");
+  if (!box.empty() && static_cast<int>(box.size()) != periodic->dimension)
+    section.refuse("start_box", fmt::format("must have a length for each of {} dimensions, but it has {}",
+                                            periodic->dimension, box.size()));
+  if (sha256.size() > 1) section.refuse("start_sha256", "must be one");
+  for (const std::string& digest : sha256)
+    if (!is_sha256(digest))
+      section.refuse("start_sha256", "must have 64 hexadecimal digits, as sha256sum prints them");
 }
 
 void box_rule(const Box& box, const Section& section) {
@@ -155,7 +186,7 @@ void mesh_rule(const MeshFile& mesh, const Section& section) {
   if (mesh.sha256.size() > 1 + mesh.obstacles.size())
     section.refuse("sha256", "must be one for the file, then at most one for every obstacle");
   for (const std::string& digest : mesh.sha256)
-    if (digest.size() != 64 || digest.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
+    if (!is_sha256(digest))
       section.refuse("sha256", "must have 64 hexadecimal digits each, as sha256sum prints them");
 }
 
@@ -187,9 +218,23 @@ const Entry& spheres_entry() {
                       word(&Scene::draw, "draw",
                            "sizes at random, or quantiles: evenly over the distribution; if absent quantiles "
                            "where relax or grow packs a container, else random",
-                           words(draw_words))},
+                           words(draw_words)),
+                      key(Type::file, of_start(&Start::file), "start",
+                          "spheres to begin from: a CSV file whose header names x, y, z and r or d, or a "
+                          "folder with a result; those that are drawn come after them, and where no sizes "
+                          "are given these are all there are"),
+                      word(of_start(&Start::unit), "start_unit",
+                           "of the start, where its file has no line \"# unit: mm\"; if absent the scene's",
+                           words(unit_names())),
+                      key(Type::lengths, of_start(&Start::box), "start_box",
+                          "in periodic boxes: edges of the one that the start lies in; if absent those of "
+                          "the folder's box, else the size of the container"),
+                      names(of_start(&Start::sha256), "start_sha256",
+                            "of the start's file, as sha256sum prints it: other bytes are refused; a result "
+                            "names it")},
              .choices = {{{"count"}, {"packing_fraction"}, {"fill"}, {"count", "packing_fraction"}, {}},
-                         {{"radius"}, {"diameter"}}}};
+                         {{"radius"}, {"diameter"}}},
+             .rule = rule(spheres_rule)};
     of.keys[1].words = {"predicted"};
     return entry<Scene>(std::move(of));
   }();

@@ -109,9 +109,12 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
   if (scene.seed > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
     throw Error(ErrorCode::bad_argument,
                 fmt::format("TOML cannot hold the seed {}: it is above 2^63 - 1", scene.seed));
+  Scene named = scene;
+  if (auto& start = named.start.file; start && !folder.empty())
+    start = std::filesystem::proximate(*start, folder);
   std::string out =
       fmt::format("{}\n{}\n[spheres]\n{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
-                  container_as_toml(scene.container, folder), lines(schema::spheres_entry(), &scene),
+                  container_as_toml(scene.container, folder), lines(schema::spheres_entry(), &named),
                   lines(schema::accuracy_entry(), &scene));
   if (!scene.stages.empty()) out.append("\n").append(stages_as_toml(scene));
   return out;

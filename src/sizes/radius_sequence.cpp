@@ -3,6 +3,11 @@
 namespace bernal {
 
 double RadiusSequence::next() {
+  if (!first_.empty()) {
+    const double r = first_.front();
+    first_ = first_.subspan(1);
+    return r;
+  }
   if (!even_) return sizes_.sample(random_);
   constexpr std::uint64_t golden = 0x9E3779B97F4A7C15;  // 2^64 / φ, odd: no two of 2^64 numbers are alike
   const double u = static_cast<double>(next_ >> 11) * 0x1p-53;

@@ -48,10 +48,15 @@ constexpr StageTraits traits = {.in_bed = true,
                                 .keeps_sizes = true,
                                 .places_expected = true,
                                 .leaves_overlap = true,
+                                .frees_bed = true,
+                                .frees_box = true,
+                                .joins_start = true,
                                 .is_default = true,
                                 .reaches = Reaches::close_packing};
 
+/// What comes first from a start begins at the packing fraction that it has there.
 void complete_relax(Relax& relax, Scene& scene, const schema::Section&) {
+  if (scene.start.file && scene.stages.front().as<Relax>() == &relax) return;
   if (!relax.phi0 && !traits.stands_in_bed(scene)) relax.phi0 = dense_start[scene.dimension() - 1];
 }
 
@@ -60,14 +65,26 @@ bool is_loose(const Work& work) {
                                                              work.target_edges->prod();
 }
 
-/// Those of phi0, or about those that are asked for; never so small that a sphere overlaps its own image.
-Vector<dynamic> edges_to_start_from(const Work& work, double phi0) {
+/// Whether spheres are as dense where they begin as relaxation makes them, or in the box that is asked for:
+/// then they are relaxed from there, and not from a denser state, which would make another packing of them.
+bool begins_in_its_box(const Work& work, const Relax& options) {
+  if (work.begun == 0 || !work.placed || options.phi0) return false;
+  return work.target_edges ||
+         work.volume_of_spheres() >= loose * random_close_packing[work.dimension() - 1] * work.edges.prod();
+}
+
+/// Those they begin in, or of phi0, or about those that are asked for; never so small that a sphere overlaps
+/// its own image.
+Vector<dynamic> edges_to_start_from(const Work& work, const Relax& options) {
+  const double phi0 = options.phi0.value_or(dense_start[work.dimension() - 1]);
   const int dimension = work.dimension();
   const auto with_volume = [&](double volume) -> Vector<dynamic> {
     return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
   };
   Vector<dynamic> edges = with_volume(work.volume_of_spheres() / phi0);
-  if (work.target_edges) {
+  if (begins_in_its_box(work, options)) {
+    edges = work.edges;
+  } else if (work.target_edges) {
     const double asked = work.target_edges->prod();
     if (is_loose(work) || edges.prod() > asked) edges = with_volume((1 - room_to_grow) * asked);
   }
@@ -80,13 +97,22 @@ Vector<dynamic> edges_to_start_from(const Work& work, double phi0) {
 template <int D>
 void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& work) {
   Random random = work.random(Stream::relax);
-  if (work.placed) {
+  const std::size_t there = work.placed ? spheres.size() : work.begun;
+  if (there == 0) {
+    edges = start;
+  } else {
     resize_box<D>(spheres, edges, start);
     displace_at_random<D>(spheres, edges, work.walls, first_jitter * std::ranges::max(spheres.r), random);
-  } else {
-    edges = start;
-    place_at_random<D>(spheres, edges, random);
   }
+  place_at_random<D>(spheres, edges, random, there);
+}
+
+/// Whether growing the box by the overlap that counts as none is all that there is to do.
+template <int D>
+bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const Work& work,
+                     const Relax& options) {
+  const Vector<D> free = edges_free_of_overlap<D>(spheres, edges, 0, work.walls);
+  return free[0] <= edges[0] / (1 - options.stop);
 }
 
 /// The published relaxation on sorted arrays, with neighbour lists and over-relaxed steps: some hundred times
@@ -164,7 +190,12 @@ StageEnd relax_in(Work& work, const Relax& options) {
     throw Error(ErrorCode::bad_scene, "the reference method of relax knows no walls; leave \"method\" out");
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
-  const Vector<D> start = edges_to_start_from(work, options.phi0.value_or(dense_start[D - 1]));
+  if (begins_in_its_box(work, options) && hardly_overlaps<D>(spheres, edges, work, options)) {
+    free_of_overlap<D>(spheres, edges, work);
+    return finish_in_periodic_box<D>(std::move(spheres), edges, StageEnd::converged,
+                                     is_loose(work) ? 0 : options.polish, work);
+  }
+  const Vector<D> start = edges_to_start_from(work, options);
   place<D>(spheres, edges, start, work);
 
   const int most_starts = is_loose(work) ? most_starts_in_a_loose_box : 1;
@@ -224,7 +255,8 @@ const StageEntry& entry_of<Relax>() {
                                              {0.01, 1e6})),
                         number(&Relax::phi0, "phi0",
                                "packing fraction of the overlapping spheres at the start; if absent 0.86, in "
-                               "other than three dimensions 1.34 of random close packing",
+                               "other than three dimensions 1.34 of random close packing; of spheres that "
+                               "come dense from a file what they have there",
                                above(0, 10)),
                         buys_accuracy(
                             {1e-2, 1e-3, 2e-4, 1e-5, 1e-6},

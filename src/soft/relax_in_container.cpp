@@ -66,14 +66,17 @@ class Relaxation {
   }
 
  private:
-  /// The first of the drawn sequence, those in the bed where they are and the others at random: as many as
-  /// are asked for, or a few more than are likely to fit.
+  /// The first of the drawn sequence, those in the bed or of the start where they are and the others at
+  /// random: as many as are asked for, or a few more than are likely to fit.
   Spheres<3> spheres_to_start_from() {
     const double most = work_.target.fill ? 1 : most_of_attainable;
     const std::size_t count = std::min(work_.target_count(), work_.count_filling(most * work_.attainable));
     auto [spheres, placed] = work_.drawn(std::max<std::size_t>(1, count));
-    for (std::size_t i = 0; i < spheres.size(); ++i)
-      if (!placed[i]) spheres.set_center(i, place_for(spheres.r[i]));
+    const Spheres<3>& begun = work_.crowded_start;
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      if (placed[i]) continue;
+      spheres.set_center(i, i < begun.size() ? begun.center(i) : place_for(spheres.r[i]));
+    }
     for (double& r : spheres.r) r += skin_;
     return spheres;
   }
@@ -176,7 +179,9 @@ StageEnd relax_in_container(Work& work, const Relax& options) {
   const auto relaxed = [&] {
     // What fits only touching the walls would be pushed off its place; the others come around it.
     if (SnugPlaces(work).only_some_touch()) return insert_largest_first(work);
-    if (is_dilute(work)) {
+    const bool all_stand = work.begun > 0 && !work.target.is_open() && work.supply->exhausted();
+    if (all_stand) return StageEnd::converged;
+    if (is_dilute(work) && work.crowded_start.empty()) {
       const StageEnd end = insert(work, until_full);
       if (end != StageEnd::full) return end;
     }

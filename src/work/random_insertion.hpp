@@ -25,11 +25,11 @@ std::optional<std::invoke_result_t<Draw>> find_place(double trials, Draw&& draw,
   return std::nullopt;
 }
 
-/// Gives every sphere a place anywhere in a box.
+/// Gives every sphere, or all from one on, a place anywhere in a box.
 template <int D>
-void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random& random) {
+void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random& random, std::size_t first = 0) {
   const Bounds<D> box{Vector<D>::Zero(), edges};
-  for (std::size_t i = 0; i < spheres.size(); ++i) spheres.set_center(i, uniform_point(random, box));
+  for (std::size_t i = first; i < spheres.size(); ++i) spheres.set_center(i, uniform_point(random, box));
 }
 
 /// Moves every sphere by `length` in a direction of its own; `walls` of the box stop its centre.

@@ -33,9 +33,11 @@ Supply::Supply(const Source& source, double volume, const Target& target, double
   fraction = target.packing_fraction.value_or(fraction);
   const double expected = target.count ? static_cast<double>(*target.count) : fraction * volume / mean_volume;
   if (!(expected < most_spheres)) refuse_count(target);
-  radii_.reserve(static_cast<std::size_t>(expected * 1.01) + 16);
   RadiusSequence sequence(source.radii, source.seed, source.draw);
+  radii_.reserve(static_cast<std::size_t>(expected * 1.01) + 16);
+  radii_.assign(source.first.begin(), source.first.end());
   double filled = 0;
+  for (const double r : radii_) filled += ball_volume(dimension_, r);
   std::uint64_t drawn = 0;
   while (target.count ? radii_.size() < static_cast<std::size_t>(*target.count)
                       : filled < fraction * volume) {

@@ -31,6 +31,7 @@ class Supply {
     Draw draw = Draw::random;
     /// Larger radii are drawn again, and counted.
     double cut = std::numeric_limits<double>::infinity();
+    std::vector<double> first = {};  ///< radii of the start, which come before those drawn, whatever the cut
   };
 
   /// Draws as many radii as the target asks for, or as fill `fraction` of the volume where it leaves that

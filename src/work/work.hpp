@@ -92,6 +92,12 @@ struct Work {
   std::string missed = {};
   /// All sizes are that many times those that were drawn: a stage closed contacts by letting them grow.
   double size_scale = 1;
+  /// In a box, of the first stage: so many of the first spheres come from the start with places in a box of
+  /// these edges, and some of them may overlap. Once all have places they are `placed`, too.
+  std::size_t begun = 0;
+  bool may_overlap = false;
+  /// The same in a bed: the start as it is, where not all of it fits.
+  Spheres<3> crowded_start = {};
   /// Volume of the box that the spheres needed, before it grew to the one that was asked for.
   double needed_volume = 0;
 

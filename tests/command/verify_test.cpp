@@ -71,6 +71,15 @@ TEST_F(Verify, OneFileNeedsAScene) {
   expect_refused_in_one_line(bernal({"verify", file}), {"other.csv", "--scene"});
 }
 
+TEST_F(Verify, OneFileMayBeOfAnotherProgram) {
+  const std::string file = folder.write("theirs.csv", "id;Diameter;z;y;x\n7;2;1;1;1\n8;2;1;1;3\n").string();
+  EXPECT_EQ(bernal({"verify", file, "--scene", scene}).status, 0);
+  folder.write("theirs.csv", "id;diameter;z;y;x\n7;2;1;1;1\n8;2;1;1;2.9\n");
+  EXPECT_EQ(bernal({"verify", file, "--scene", scene}).status, 1);
+  folder.write("theirs.csv", "id;z;y;x\n7;1;1;1\n");
+  expect_refused_in_one_line(bernal({"verify", file, "--scene", scene}), {"theirs.csv:1", "diameter"});
+}
+
 TEST_F(Verify, BadFilesAreNotAVerdict) {
   expect_refused_in_one_line(with("# unit: m\nx,y,z,r\n1,1,1,1\n"), {"spheres.csv", "in m,", "in mm"});
   expect_refused_in_one_line(with(""), {"spheres.csv"});

@@ -10,6 +10,7 @@
 #include "bernal/io/read_packing.hpp"
 #include "io/output_file.hpp"
 #include "io/write_csv.hpp"
+#include "scene/read_spheres.hpp"
 #include "support/folder.hpp"
 #include "support/fuzz.hpp"
 
@@ -58,6 +59,40 @@ TEST(FuzzCsv, EveryMutationIsAPackingOrAnError) {
     accepted += is_a_packing(folder, testing::mutated(valid, tokens, random), i % 50 == 0);
   }
   // The mutations must reach both sides of the line, or they test nothing.
+  EXPECT_GT(accepted, mutations / 50);
+  EXPECT_LT(accepted, mutations / 2);
+}
+
+/// The same of what another program wrote.
+bool are_spheres(const testing::Folder& folder, const std::string& text) {
+  std::filesystem::remove(folder / "fuzz.csv");
+  const auto file = folder.write("fuzz.csv", text);
+  try {
+    const NamedColumns read = read_spheres(file);
+    for (std::size_t i = 0; i < read.spheres.size(); ++i) {
+      EXPECT_TRUE(read.spheres.center(i).allFinite());
+      EXPECT_TRUE(std::isfinite(read.spheres.r[i]) && read.spheres.r[i] > 0);
+    }
+    return true;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_packing);
+    EXPECT_TRUE(std::string_view(error.what()).starts_with(file.string())) << error.what();
+    EXPECT_EQ(std::strpbrk(error.what(), "\n\r"), nullptr) << error.what();
+    return false;
+  }
+}
+
+TEST(FuzzCsv, OfAnotherProgramIsSpheresOrAnError) {
+  const std::string valid =
+      "# made elsewhere\nid; X; diameter; y; z\n1; 0.1; 0.5; -2.5; 1e-07\n2; 3; 4; 5; 6.25\n";
+  const testing::Folder folder;
+  ASSERT_TRUE(are_spheres(folder, valid));
+  const std::size_t mutations = testing::fuzz_inputs(3000);
+  std::size_t accepted = 0;
+  for (std::size_t i = 0; i < mutations; ++i) {
+    Random random(2, stream(Stream::test, i));
+    accepted += are_spheres(folder, testing::mutated(valid, tokens, random));
+  }
   EXPECT_GT(accepted, mutations / 50);
   EXPECT_LT(accepted, mutations / 2);
 }

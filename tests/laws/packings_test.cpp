@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -46,12 +47,9 @@ const std::string unequal_edges =
     "[spheres]\ncount = 100\nradius = 0.3\n" +
     relax;
 
-std::vector<SceneUnderTest> scenes_under_test() {
+/// Those that are made here.
+std::vector<SceneUnderTest> own_scenes() {
   std::vector<SceneUnderTest> scenes;
-  for (const auto& file : testing::example_scenes()) {
-    scenes.push_back({in_camel_case(file.stem().string()),
-                      [file] { return build(testing::small(read_scene(file), 500)); }});
-  }
   const auto add = [&](std::string name, const std::string& toml) {
     scenes.push_back({std::move(name), [toml] { return plan_of(toml); }});
   };
@@ -131,6 +129,16 @@ std::vector<SceneUnderTest> scenes_under_test() {
                       return plan_of("unit = \"m\"\n" + box + "[spheres]\nfill = true\nradius = 0.1\n",
                                      test::translated(test::l_shape_mesh(), {0, 0, -7}));
                     }});
+  return scenes;
+}
+
+std::vector<SceneUnderTest> scenes_under_test() {
+  std::vector<SceneUnderTest> scenes;
+  for (const auto& file : testing::example_scenes()) {
+    scenes.push_back({in_camel_case(file.stem().string()),
+                      [file] { return build(testing::small(read_scene(file), 500)); }});
+  }
+  std::ranges::move(own_scenes(), std::back_inserter(scenes));
   return scenes;
 }
 
@@ -223,7 +231,7 @@ TEST_P(EveryPacking, HasTheRadiiThatWereDrawn) {
   const Packing packing = run_with(plan);
   const double largest = std::ranges::max(packing.spheres.r);
   const bool cut = std::isinf(plan.radii->max());  // then draws beyond the container's room are not asked for
-  RadiusSequence sequence(*plan.radii, packing.seed, *plan.scene.draw);
+  RadiusSequence sequence(*plan.radii, packing.seed, *plan.scene.draw, plan.start.spheres.r);
   std::size_t passed_over = 0;
   for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
     double drawn = sequence.next();
@@ -233,6 +241,26 @@ TEST_P(EveryPacking, HasTheRadiiThatWereDrawn) {
   }
   const bool periodic = plan.scene.is_periodic();
   EXPECT_LE(passed_over, periodic ? 0 : std::max<std::size_t>(16, packing.spheres.size() / 50));
+}
+
+class EveryPackingOfTheTests : public ::testing::TestWithParam<SceneUnderTest> {};
+
+INSTANTIATE_TEST_SUITE_P(, EveryPackingOfTheTests, ::testing::ValuesIn(own_scenes()),
+                         [](const auto& tested) { return tested.param.name; });
+
+/// What a packing is, it stays or becomes denser, where the same stages begin from it. No gap between walls
+/// or spheres that they leave is too narrow for them.
+TEST_P(EveryPackingOfTheTests, IsAStartForTheSameStages) {
+  Plan plan = GetParam().plan();
+  const Packing packing = run_with(plan);
+  plan.start = {.spheres = packing.spheres};
+  if (plan.scene.is_periodic()) plan.start.edges = bounds_of<dynamic>(packing.domain).size();
+  const Packing from_it = run_with(plan);
+  expect_certified(from_it);
+  EXPECT_EQ(from_it.outcome, Outcome::converged) << from_it.reason;
+  EXPECT_GT(from_it.packing_fraction(), 0.97 * packing.packing_fraction());
+  ASSERT_FALSE(from_it.spheres.empty());
+  EXPECT_EQ(from_it.spheres.r.front(), packing.spheres.r.front());
 }
 
 /// Stops the run when it asks for the k-th time.

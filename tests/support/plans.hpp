@@ -70,12 +70,20 @@ inline Plan scaled(Plan plan, double factor) {
   plan.domain = scaled(std::move(plan.domain), factor);
   plan.container = nullptr;
   plan.radii = std::make_unique<ScaledSizes>(std::move(plan.radii), factor);
+  for (auto& column : plan.start.spheres.x)
+    for (double& x : column) x *= factor;
+  for (double& r : plan.start.spheres.r) r *= factor;
+  plan.start.edges *= factor;
   return plan;
 }
 
 /// A box of kind "periodic" has no place.
 inline Plan shifted(Plan plan, const Vector<3>& by) {
-  if (!plan.scene.is_periodic()) plan.domain = shifted(std::move(plan.domain), by);
+  if (!plan.scene.is_periodic()) {
+    plan.domain = shifted(std::move(plan.domain), by);
+    for (std::size_t i = 0; i < plan.start.spheres.size(); ++i)
+      plan.start.spheres.set_center(i, plan.start.spheres.center(i) + by);
+  }
   plan.container = nullptr;
   return plan;
 }

@@ -58,7 +58,8 @@ std::string sample(const Key& key, int choice) {
     case Type::axes:
       return "[0]";
     case Type::names:
-      if (key.name == "sha256") return fmt::format("[\"{}\"]", std::string(64, choice == 0 ? '0' : 'F'));
+      if (key.name.ends_with("sha256"))
+        return fmt::format("[\"{}\"]", std::string(64, choice == 0 ? '0' : 'F'));
       if (!key.words.empty()) return fmt::format("[\"{}\"]", key.words[choice % key.words.size()]);
       return choice == 0 ? "[\"first\", \"second one\"]" : "[\"/tmp/3\"]";
     case Type::parts:
@@ -129,8 +130,14 @@ void for_every_entry(Visit visit) {
           [&](const std::vector<std::string>& lines) {
             return joined(lines, "\n") + "\n" + with_spheres("radius = 1");
           });
-    visit(schema::spheres_entry(), keys_of(schema::spheres_entry(), n),
-          [&](const std::vector<std::string>& lines) { return with_spheres(joined(lines, "\n")); });
+    for (const bool periodic : {false, true}) {
+      std::vector<Key> keys = keys_of(schema::spheres_entry(), n);
+      if (!periodic) std::erase_if(keys, [](const Key& key) { return key.name == "start_box"; });
+      visit(schema::spheres_entry(), keys, [&](const std::vector<std::string>& lines) {
+        return periodic ? "[container]\nkind = \"periodic\"\nedge = 9\n[spheres]\n" + joined(lines, "\n")
+                        : with_spheres(joined(lines, "\n"));
+      });
+    }
     visit(schema::accuracy_entry(), keys_of(schema::accuracy_entry(), n),
           [&](const std::vector<std::string>& lines) {
             return with_spheres("radius = 1\n[accuracy]\n" + joined(lines, "\n"));

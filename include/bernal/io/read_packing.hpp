@@ -21,6 +21,10 @@ SpheresFile read_csv(const std::filesystem::path& file);
 /// where their unit or dimension is not the scene's.
 Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file);
 
+/// The same of a file of another program, whose header names its columns in any order: what a scene may start
+/// from. Throws Error{bad_packing} for a header that does not, as the others for the rest.
+Spheres<dynamic> read_columns_of(const Scene& scene, const std::filesystem::path& file);
+
 /// Completes what a run that was killed had begun to put into the folder; most often there is no such thing.
 /// Throws Error{cannot_write}.
 void finish_writing(const std::filesystem::path& folder);

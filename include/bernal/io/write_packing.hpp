@@ -15,8 +15,8 @@ struct WrittenPacking {
 };
 
 struct WriteOptions {
-  /// Copies the CAD files beside the spheres, under names that end in the beginning of their SHA-256, and
-  /// lets scene.toml name the copies.
+  /// Copies the CAD files, and the file of the start, beside the spheres, under names that end in the
+  /// beginning of their SHA-256, and lets scene.toml name the copies.
   bool with_mesh = false;
   Monitor monitor = {};
 };

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,11 +47,16 @@ struct MeasureOptions {
   Monitor monitor = {};  ///< once it says stop, what may be absent is
 };
 
-/// What the radii are held against: a distribution, or null for nothing, and how it was drawn from.
+/// What the radii are held against: a distribution, or null for nothing, and how it was drawn from. Where
+/// spheres of a start came before those drawn, `sizes` are those of all, and what was `drawn` is another.
 struct AskedRadii {
   const SizeDistribution* sizes = nullptr;
   std::uint64_t seed = 1;
   Draw draw = Draw::random;
+  const SizeDistribution* drawn = nullptr;  ///< null: `sizes`
+  std::span<const double> first = {};       ///< radii of the start
+
+  RadiusSequence sequence() const { return {drawn ? *drawn : *sizes, seed, draw, first}; }
 };
 
 /// Precondition: spheres of the domain's dimension. Cost: that of the parts.

@@ -7,11 +7,20 @@
 #include <vector>
 
 #include "bernal/core/monitor.hpp"
+#include "bernal/measure/measure.hpp"
 #include "bernal/run/packing.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
+
+/// The spheres of a scene's start, in its unit.
+struct StartSpheres {
+  Spheres<dynamic> spheres = Spheres<dynamic>();
+  Vector<dynamic> edges = {};  ///< of the periodic box that they lie in; none in a container
+  std::string file = {};       ///< where they come from, and the line of the first
+  int first_line = 0;
+};
 
 /// A scene that has been checked as a whole, with everything it names made and nothing else.
 struct Plan {
@@ -24,7 +33,8 @@ struct Plan {
   /// `domain` sets it to null, and `run` makes another.
   std::shared_ptr<const Container> container;
   std::string container_notes;              ///< what the importer did: reader, welding, repairs; may be empty
-  std::unique_ptr<SizeDistribution> radii;  ///< in the scene's unit
+  StartSpheres start;                       ///< none where the scene names no start
+  std::unique_ptr<SizeDistribution> radii;  ///< that are drawn, in the scene's unit; else those of the start
 
   /// What the stages are likely to reach, and what the result is likely to be: less, where less is asked for.
   double attainable_packing_fraction = 0, expected_packing_fraction = 0;
@@ -54,8 +64,18 @@ Domain packed_domain_of(const Scene& scene);
 /// Those of the scene's CAD files that are no longer what the scene names by its `sha256`.
 std::vector<std::filesystem::path> changed_files(const Scene& scene);
 
-/// The size distribution of radii that a scene describes, in the scene's unit. Throws as `build`.
+/// The size distribution of radii that a scene describes, in the scene's unit: what is drawn from, or that of
+/// its start where nothing is drawn. Throws as `build`.
 std::unique_ptr<SizeDistribution> radii_of(const Scene& scene);
+
+/// What the sizes of so many spheres of a scene are held against; nothing where its start has gone, for
+/// a result is not lost with that.
+struct SceneRadii {
+  std::unique_ptr<SizeDistribution> all, drawn;
+  std::vector<double> first;
+  AskedRadii asked;  ///< of these
+};
+SceneRadii asked_radii_of(const Scene& scene, std::size_t count);
 
 struct RunOptions {
   std::optional<std::uint64_t> seed;  ///< the scene's own if absent

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -73,6 +74,18 @@ struct Target {
   bool is_open() const { return !count && !has_packing_fraction(); }
 };
 
+/// Spheres that have places before the first stage acts, and come first in the sequence. Their sizes are
+/// those of the file.
+struct Start {
+  /// A CSV file whose header names its columns, or a folder that holds a result; none: an empty domain.
+  std::optional<std::filesystem::path> file = {};
+  std::optional<Unit> unit = {};  ///< of the file, where it does not say it; without it the scene's
+  /// Edges of the periodic box that they lie in; without them those of the folder's box, else the scene's.
+  std::vector<double> box = {};
+  /// Of the file, at most one, in hexadecimal, as it was when the scene was run: other bytes are refused.
+  std::vector<std::string> sha256 = {};
+};
+
 /// A packing problem as the user states it: plain data. Lengths are in `unit`. What is left out `build` fills
 /// in, and it refuses with an Error{bad_scene} what no scene file could say.
 struct Scene {
@@ -80,17 +93,23 @@ struct Scene {
   Unit unit = Unit::m;
   std::uint64_t seed = 1;
   SceneContainer container;  ///< the unit cube, if nothing else is said
-  SceneSizes sizes;
+  SceneSizes sizes;          ///< left at a Constant of 0 where those of the start are all there are
   bool sizes_are_diameters = false;
   std::optional<Draw> draw =
       {};  ///< without it quantiles where a stage keeps them in a container, else random
   Target target;
+  Start start = {};
   WallArithmetic walls = WallArithmetic::filtered;
   double overlap = 0;              ///< largest overlap ratio that the result may keep
   std::vector<Stage> stages = {};  ///< in order; none: the one that suits any container
   bool stages_are_default = false;
   Locations locations;  ///< of what stands in no container, sizes or stage
 
+  /// Whether there are sizes to draw from.
+  bool draws() const {
+    const auto* constant = std::get_if<Constant>(&sizes);
+    return !constant || constant->value != 0;
+  }
   bool is_periodic() const { return std::holds_alternative<PeriodicBox>(container); }
   int dimension() const {
     const auto* box = std::get_if<PeriodicBox>(&container);

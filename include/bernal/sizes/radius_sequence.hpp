@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 
 #include "bernal/core/random.hpp"
 #include "bernal/sizes/size_distribution.hpp"
@@ -18,11 +19,12 @@ enum class Draw {
 /// first N of them are as even as N points can be, for every N. So the share of spheres up to any radius, and
 /// the mean of r³ where r is bounded, are those of the distribution up to O(log N / N); random draws leave
 /// O(1/√N). Their order is not random: neighbours in the sequence differ. The distribution must outlive the
-/// sequence.
+/// sequence, and so must radii that come `first`, before any is drawn.
 class RadiusSequence {
  public:
-  RadiusSequence(const SizeDistribution& sizes, std::uint64_t seed, Draw draw)
-      : sizes_(sizes), random_(seed, stream(Stream::radii)), even_(draw == Draw::quantiles) {
+  RadiusSequence(const SizeDistribution& sizes, std::uint64_t seed, Draw draw,
+                 std::span<const double> first = {})
+      : sizes_(sizes), first_(first), random_(seed, stream(Stream::radii)), even_(draw == Draw::quantiles) {
     if (even_) next_ = random_();
   }
 
@@ -30,6 +32,7 @@ class RadiusSequence {
 
  private:
   const SizeDistribution& sizes_;
+  std::span<const double> first_;
   Random random_;
   bool even_;
   std::uint64_t next_ = 0;  ///< u_k in units of 2^-64

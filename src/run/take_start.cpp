@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bernal/core/dimension.hpp"
+#include "bernal/core/tolerance.hpp"
+#include "bernal/domain/boundary.hpp"
+#include "neighbors/cell_grid.hpp"
+#include "run/stages.hpp"
+#include "run/start.hpp"
+#include "work/free_of_overlap.hpp"
+
+namespace bernal {
+namespace {
+
+/// Of the skin, the gap that a sphere in the bed needs: half, which stages leave and rely on, less the
+/// rounding of centres on their way to the packer's frame, which is a thousandth.
+constexpr double least_gap = 0.49;
+
+/// The pair of a start that overlaps most, by the ratio of overlap to the sum of radii.
+struct WorstPair {
+  std::size_t i = 0, j = 0;
+  double ratio = -1;
+
+  void look_at(std::size_t a, std::size_t b, double distance, double sum) {
+    const double here = 1 - distance / sum;
+    if (here <= ratio) return;
+    i = std::min(a, b);
+    j = std::max(a, b);
+    ratio = here;
+  }
+};
+
+[[noreturn]] void refuse(const StartSpheres& start, std::size_t i, const std::string& why) {
+  throw Error(ErrorCode::bad_packing, why, {start.file, start.first_line + static_cast<int>(i)});
+}
+
+[[noreturn]] void refuse_overlap(const StartSpheres& start, const WorstPair& worst, std::string_view stage) {
+  const std::string how =
+      worst.ratio > 0
+          ? fmt::format("overlaps that of line {} by a ratio of {:.3g}",
+                        start.first_line + static_cast<int>(worst.i), worst.ratio)
+          : fmt::format("touches that of line {} to rounding", start.first_line + static_cast<int>(worst.i));
+  refuse(start, worst.j,
+         fmt::format("this sphere {}, and no pair may for \"{}\": begin with \"relax\", which pushes them "
+                     "apart",
+                     how, stage));
+}
+
+template <int D>
+void take_start_in_box(const Plan& plan, double scale, Work& work) {
+  const StartSpheres& start = plan.start;
+  const std::size_t n = start.spheres.size();
+  work.edges = start.edges / scale;
+  for (int k = 0; k < D; ++k) {
+    const double edge = work.edges[k];
+    for (std::size_t i = 0; i < n; ++i) {
+      double x = start.spheres.x[static_cast<std::size_t>(k)][i] / scale;
+      if (work.has_wall(k)) {
+        if (!(x > 0 && x < edge))
+          refuse(start, i, fmt::format("this sphere does not lie between the walls along axis {}", k));
+      } else {
+        Boundary<1> axis{Vector<1>::Constant(edge)};
+        x = axis.wrap(Vector<1>::Constant(x))[0];
+      }
+      work.spheres.x[static_cast<std::size_t>(k)][i] = x;
+    }
+  }
+  work.begun = n;
+  work.placed = n == work.spheres.size();
+  if (work.target_edges && !plan.box_follows) {
+    Spheres<D> moved = work.spheres.in<D>();
+    Vector<D> edges = work.edges;
+    if (edges != *work.target_edges) resize_box<D>(moved, edges, *work.target_edges);
+    work.spheres = std::move(moved);
+    work.edges = edges;
+  }
+
+  const Stage& first = plan.scene.stages.front();
+  const bool frees_overlap = table_of(first).traits.frees_box;
+  Spheres<D> there = work.spheres.in<D>();
+  there.resize(n);
+  for (int k = 0; k < D; ++k)
+    for (std::size_t i = 0; i < n && work.has_wall(k); ++i) {
+      const double x = there.x[static_cast<std::size_t>(k)][i], r = there.r[i];
+      if (x >= r && work.edges[k] - x >= r) continue;
+      work.may_overlap = true;
+      if (!frees_overlap)
+        refuse(start, i, fmt::format("this sphere crosses a wall along axis {}; begin with \"relax\"", k));
+    }
+  const Vector<D> edges = edges_around_walls<D>(work.edges, work.walls);
+  const Boundary<D> boundary{edges};
+  // Half of what a box is grown by beyond contact is more than its rounding.
+  const double rounding = 0.5 * tolerance::growth(edges.maxCoeff() / std::ranges::min(there.r));
+  WorstPair worst;
+  for (const auto& [i, j] : overlapping<D>(there, edges, work.allowed_overlap)) {
+    const double distance = boundary.minimum_image(there.center(i) - there.center(j)).norm();
+    const double sum = there.r[i] + there.r[j];
+    if (distance < (1 - work.allowed_overlap) * (1 + rounding) * sum) worst.look_at(i, j, distance, sum);
+  }
+  if (!(worst.ratio > -1)) return;
+  work.may_overlap = true;
+  if (!frees_overlap) refuse_overlap(start, worst, first.name());
+}
+
+/// Those that are clear of the others, and of the walls, stand in the bed from now on.
+void take_start_in_bed(const Plan& plan, const Frame& frame, Work& work) {
+  const StartSpheres& start = plan.start;
+  const Stage& first = plan.scene.stages.front();
+  const bool frees_overlap = table_of(first).traits.frees_bed;
+  work.stand_in_bed();
+  Bed& bed = work.bed();
+  const Container& container = bed.container();
+  const double gap = least_gap * bed.skin();
+  const std::size_t n = start.spheres.size();
+  Spheres<3> spheres;
+  CellGrid<3> grid(container.bounds(), container.boundary(), work.supply->smallest(), work.supply->largest(),
+                   n);
+  WorstPair worst;
+  std::vector<bool> stands(n, false);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double r = work.supply->radius(static_cast<std::uint32_t>(i));
+    Vector<3> c = container.boundary().wrap(frame.to_local(start.spheres.center(i)));
+    if (!container.contains(c, 0))
+      refuse(start, i, "this sphere lies outside of the container; check the unit, \"start_unit\" says it");
+    stands[i] = container.contains(c, r + gap);
+    if (!stands[i]) {
+      const std::optional<Vector<3>> touching = work.exact_place(c, r);
+      stands[i] = touching.has_value();
+      if (touching) c = *touching;
+      if (!touching && !frees_overlap)
+        refuse(start, i,
+               fmt::format("this sphere protrudes from the container by {:.3g} of its radius; begin with "
+                           "\"relax\", which pushes it inside",
+                           1 - container.clearance(c) / r));
+    }
+    grid.for_each_near(c, r + gap, [&](std::uint32_t j) {
+      const double distance = container.boundary().minimum_image(c - spheres.center(j)).norm();
+      const double sum = r + spheres.r[j];
+      if (distance >= sum + gap) return;
+      worst.look_at(i, j, distance, sum);
+      if (stands[j]) stands[i] = false;
+    });
+    grid.insert(static_cast<std::uint32_t>(i), c, r);
+    spheres.push_back(c, r);
+    if (stands[i]) bed.insert(c, r, static_cast<std::uint32_t>(i));
+  }
+  if (worst.ratio > -1 && !frees_overlap) refuse_overlap(start, worst, first.name());
+  work.supply->set_placed(stands);
+  work.begun = n;
+  if (bed.size() < n) work.crowded_start = std::move(spheres);
+}
+
+}  // namespace
+
+void take_start(const Plan& plan, const Frame& frame, Work& work) {
+  if (plan.start.spheres.empty()) return;
+  const EffectTimer timer(work.effects["start"]);
+  const Stage& first = plan.scene.stages.front();
+  if (table_of(first).traits.stands_in_bed(plan.scene)) return take_start_in_bed(plan, frame, work);
+  with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
+    take_start_in_box<decltype(dimension)::value>(plan, frame.scale, work);
+  });
+  if (!work.placed && !table_of(first).traits.joins_start)
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("\"{}\" finds no places for {} spheres among the {} of the start: begin with "
+                            "\"relax\", or draw no others",
+                            first.name(), work.spheres.size() - work.begun, work.begun),
+                first.locations.whole);
+}
+
+}  // namespace bernal
