@@ -135,6 +135,7 @@ bool Search::measure(const std::vector<Point>& points) {
   if (own_row)
     rounds.limit = std::min(longest_of_the_rest * left(), std::max(longest_ratio * own_row->row.wall_seconds,
                                                                    longest_share * options_.seconds));
+  if (generous_) rounds.limit = 0.5 * left();
   rounds.monitor.cancelled = options_.monitor.cancelled;
   rounds.monitor.on_progress = [&](const Progress& progress) {
     options_.monitor.report(
@@ -173,7 +174,7 @@ void Search::go() {
   phase_ = "combinations";
   if (cancelled_ || !combinations()) return;
   phase_ = "one key at a time";
-  complete_ = one_at_a_time();
+  complete_ = one_at_a_time() && slower_ones() && one_at_a_time();
 }
 
 bool Search::one_at_a_time() {
@@ -334,6 +335,20 @@ std::vector<Point> Search::between_front() {
         if (makes_a_difference(k)) add(other);
       }
   return points;
+}
+
+/// Single keys that were cut off, again, now that there is time for them; the quickest first.
+bool Search::slower_ones() {
+  std::vector<std::pair<double, Point>> slower;
+  for (const Found& found : found_)
+    if (found.row.slower && found.row.changed.size() == 1)
+      slower.emplace_back(found.row.seconds, found.point);
+  std::ranges::sort(slower);
+  generous_ = true;
+  for (const auto& [seconds, point] : slower)
+    if (!measure({point})) return false;
+  generous_ = false;
+  return true;
 }
 
 /// Whether some step of the knob alone has made one that can be told.

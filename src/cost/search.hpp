@@ -45,6 +45,7 @@ class Search {
   bool measure(const std::vector<Point>& points);  ///< false once there is nothing more to be measured
   bool one_at_a_time();                            ///< true where nothing is left; so the next one
   bool combinations();
+  bool slower_ones();
   bool makes_a_difference(std::size_t knob) const;
   bool differ(const CostRow&, const CostRow&) const;
   std::vector<Point> promising() const;
@@ -62,6 +63,7 @@ class Search {
   std::map<Point, std::size_t> index_;
   std::set<Point> tried_;  // those that cannot be run, too
   std::string phase_;
+  bool generous_ = false;  ///< a run may take half of the time that is left
   double budget_end_ = 0;  ///< seconds at which the part of the search that is on ends
   std::size_t made_ = 0;
   bool cancelled_ = false, complete_ = false;
