@@ -20,7 +20,7 @@
 namespace bernal::cost {
 namespace {
 
-constexpr std::size_t plain = 0, filtered = 1, exact_level = 2;
+constexpr std::size_t plain_level = 0, filtered_level = 1, exact_level = 2;
 /// So many queries are put to one level before the next has its turn, so that a machine that slows down hurts
 /// all alike.
 constexpr std::size_t block = 128;
@@ -89,8 +89,8 @@ PricedRow price(std::string decision, const PricedContainer* container, std::uin
       judge(queries[k], std::array<Answer, level_count>{answers[0][k], answers[1][k], answers[2][k]},
             accounts);
   }
-  row.level[plain] = accounts[plain].priced(true);
-  row.level[filtered] = accounts[filtered].priced(accounts[filtered].bound < 1);
+  row.level[plain_level] = accounts[plain_level].priced(true);
+  row.level[filtered_level] = accounts[filtered_level].priced(accounts[filtered_level].bound < 1);
   row.level[exact_level] = accounts[exact_level].priced(false);
   return row;
 }
@@ -143,12 +143,13 @@ PricedRow price_insides(std::string name, const PricedContainer& container, std:
       [&](Population population, Random& random) { return draw(container, population, random); },
       [&](std::size_t level, const Query& q) -> char { return container.at[level]->contains(q.c, q.r); },
       [&](const Query& q, const auto& said, Account* accounts) {
-        accounts[plain].bound = std::min(accounts[plain].bound, container.exact().free_path_bound(q.c, q.r));
-        accounts[filtered].differ += said[filtered] != said[exact_level];
-        if (said[plain] == said[exact_level]) return;
-        ++accounts[plain].differ;
+        accounts[plain_level].bound =
+            std::min(accounts[plain_level].bound, container.exact().free_path_bound(q.c, q.r));
+        accounts[filtered_level].differ += said[filtered_level] != said[exact_level];
+        if (said[plain_level] == said[exact_level]) return;
+        ++accounts[plain_level].differ;
         const auto gap = static_cast<double>(least_gap(container, {q.c, q.r, Vector<3>::Zero(), 0}, 0));
-        accounts[plain].worst = std::max(accounts[plain].worst, std::abs(gap));
+        accounts[plain_level].worst = std::max(accounts[plain_level].worst, std::abs(gap));
       });
 }
 
@@ -172,10 +173,12 @@ PricedRow price_distances(const PricedContainer& container, std::uint64_t count,
       },
       [&](std::size_t level, const Query& q) { return clear_radius(*container.at[level], q.c, q.limit); },
       [&](const Query& q, const auto& said, Account* accounts) {
-        accounts[plain].bound = std::min(accounts[plain].bound, container.exact().free_path_bound(q.c, q.r));
-        accounts[plain].differ += said[plain] != said[exact_level];
-        accounts[filtered].differ += said[filtered] != said[exact_level];
-        accounts[plain].worst = std::max(accounts[plain].worst, std::abs(said[plain] - said[exact_level]));
+        accounts[plain_level].bound =
+            std::min(accounts[plain_level].bound, container.exact().free_path_bound(q.c, q.r));
+        accounts[plain_level].differ += said[plain_level] != said[exact_level];
+        accounts[filtered_level].differ += said[filtered_level] != said[exact_level];
+        accounts[plain_level].worst =
+            std::max(accounts[plain_level].worst, std::abs(said[plain_level] - said[exact_level]));
       });
 }
 
@@ -192,20 +195,23 @@ PricedRow price_ways(const PricedContainer& container, std::uint64_t count, cons
         const bool all_the_way = exact == q.limit;
         // 4 of the 64 roundoffs of the same lengths, and two doubles
         const double of_filter = bound / 16 + 2 * speed * (std::nextafter(exact, 9.0) - exact);
-        accounts[filtered].differ += said[filtered] > exact || (said[filtered] == q.limit) != all_the_way;
-        accounts[filtered].worst = std::max(accounts[filtered].worst, speed * (exact - said[filtered]));
-        accounts[filtered].bound = std::min(accounts[filtered].bound, of_filter);
+        accounts[filtered_level].differ +=
+            said[filtered_level] > exact || (said[filtered_level] == q.limit) != all_the_way;
+        accounts[filtered_level].worst =
+            std::max(accounts[filtered_level].worst, speed * (exact - said[filtered_level]));
+        accounts[filtered_level].bound = std::min(accounts[filtered_level].bound, of_filter);
 
         const Motion motion{q.c, q.r, q.direction, q.limit};
-        accounts[plain].differ += (said[plain] == q.limit) != all_the_way;
-        accounts[plain].bound = std::min(accounts[plain].bound, 2 * bound);
+        accounts[plain_level].differ += (said[plain_level] == q.limit) != all_the_way;
+        accounts[plain_level].bound = std::min(accounts[plain_level].bound, 2 * bound);
         long double gap = 0;
-        if (said[plain] > exact)
-          gap = least_gap_on_way(container, motion, exact, said[plain]);
-        else if (said[plain] < q.limit)
-          gap = least_gap(container, motion, said[plain]);
-        if (gap > 0 && said[plain] > exact) gap = 0;
-        accounts[plain].worst = std::max(accounts[plain].worst, std::abs(static_cast<double>(gap)));
+        if (said[plain_level] > exact)
+          gap = least_gap_on_way(container, motion, exact, said[plain_level]);
+        else if (said[plain_level] < q.limit)
+          gap = least_gap(container, motion, said[plain_level]);
+        if (gap > 0 && said[plain_level] > exact) gap = 0;
+        accounts[plain_level].worst =
+            std::max(accounts[plain_level].worst, std::abs(static_cast<double>(gap)));
       });
 }
 
@@ -240,11 +246,11 @@ PricedRow price_pairs(std::uint64_t count, const Monitor& monitor) {
         return Pair{a, b};
       },
       [&](std::size_t level, const Pair& p) -> char {
-        if (level == plain) {
+        if (level == plain_level) {
           const double sum = p[0].r + p[1].r;
           return (p[0].c - p[1].c).squaredNorm() >= sum * sum;
         }
-        if (level == filtered) {
+        if (level == filtered_level) {
           const Truth clear = verify::balls_clear<verify::Bounded>(space, p[0], p[1], 0);
           if (clear != Truth::unknown) return clear == Truth::yes;
         }
@@ -254,17 +260,18 @@ PricedRow price_pairs(std::uint64_t count, const Monitor& monitor) {
       [&](const Pair& p, const auto& said, Account* accounts) {
         // Of the squares: three differences and products, two sums, and the square of a sum: 8 roundoffs.
         const double sum = p[0].r + p[1].r;
-        accounts[plain].bound = std::min(accounts[plain].bound, 8 * tolerance::roundoff * sum);
-        accounts[filtered].differ += said[filtered] != said[exact_level];
-        if (said[plain] == said[exact_level]) return;
-        ++accounts[plain].differ;
+        accounts[plain_level].bound = std::min(accounts[plain_level].bound, 8 * tolerance::roundoff * sum);
+        accounts[filtered_level].differ += said[filtered_level] != said[exact_level];
+        if (said[plain_level] == said[exact_level]) return;
+        ++accounts[plain_level].differ;
         const auto wide = (p[0].c.cast<long double>() - p[1].c.cast<long double>()).eval();
         const long double gap = wide.norm() - (static_cast<long double>(p[0].r) + p[1].r);
         // In units of a pair whose radii add up to 1, as pairs have no container.
-        accounts[plain].worst = std::max(accounts[plain].worst, static_cast<double>(std::abs(gap) / sum));
+        accounts[plain_level].worst =
+            std::max(accounts[plain_level].worst, static_cast<double>(std::abs(gap) / sum));
       });
   row.ulp = std::numeric_limits<double>::epsilon();
-  row.level[plain]->bound = 8 * tolerance::roundoff;
+  row.level[plain_level]->bound = 8 * tolerance::roundoff;
   return row;
 }
 
@@ -285,15 +292,15 @@ PricedRow price_certificate(const PricedContainer& container, std::uint64_t coun
     for (c[1] = bounds.lower[1] + edge / 2; c[1] < bounds.upper[1]; c[1] += edge)
       for (c[0] = bounds.lower[0] + edge / 2; c[0] < bounds.upper[0]; c[0] += edge) {
         const bool larger = spheres.size() % 2 == 1 && c[2] > bounds.center()[2];
-        if (container.at[filtered]->contains(Vector<3>(c), edge / 2))
+        if (container.at[filtered_level]->contains(Vector<3>(c), edge / 2))
           spheres.push_back(c, larger ? std::nextafter(edge / 2, 1.0) : edge / 2);
       }
   Certificate certificates[2];
-  for (const std::size_t level : {filtered, exact_level}) {
+  for (const std::size_t level : {filtered_level, exact_level}) {
     const double start = thread_seconds();
     const Certificate certificate =
         certify(spheres, container.shape,
-                {.arithmetic = level == filtered ? Arithmetic::filtered : Arithmetic::exact,
+                {.arithmetic = level == filtered_level ? Arithmetic::filtered : Arithmetic::exact,
                  .list = CertifyOptions::all,
                  .threads = 1,
                  .monitor = {{}, monitor.cancelled}});
@@ -305,7 +312,7 @@ PricedRow price_certificate(const PricedContainer& container, std::uint64_t coun
         .decisions = decisions,
         .nanoseconds = 1e9 * seconds / static_cast<double>(std::max<std::uint64_t>(1, decisions)),
         .exact_share = static_cast<double>(certificate.decided_exact) / static_cast<double>(decisions)};
-    certificates[level - filtered] = certificate;
+    certificates[level - filtered_level] = certificate;
   }
   const auto& [one, other] = certificates;
   const auto unlike = [](const auto& some, const auto& others) {
@@ -314,7 +321,7 @@ PricedRow price_certificate(const PricedContainer& container, std::uint64_t coun
     return count_unlike;
   };
   if (one.overlaps != other.overlaps || one.protrusions != other.protrusions)
-    row.level[filtered]->differ =
+    row.level[filtered_level]->differ =
         unlike(one.overlaps, other.overlaps) + unlike(other.overlaps, one.overlaps) +
         unlike(one.protrusions, other.protrusions) + unlike(other.protrusions, one.protrusions);
   return row;

@@ -20,7 +20,7 @@ constexpr double grain = 0x1p-24;
 constexpr std::array<std::array<int, 4>, 5> whole = {
     {{1, 2, 2, 3}, {2, -3, 6, 7}, {-6, 2, 3, 7}, {4, 4, -7, 9}, {-1, 8, 4, 9}}};
 /// Across the axis (2, 1, 2) of the cylinder; each of length 3.
-const std::array<Vector<3>, 2> across = {Vector<3>{1, 2, -2}, Vector<3>{2, -2, -1}};
+const std::array<Vector<3>, 2> ways_across = {Vector<3>{1, 2, -2}, Vector<3>{2, -2, -1}};
 
 const Box box_shape{Vector<3>(-1, -0.75, -0.5), Vector<3>(2, 1.5, 1.25)};
 const Cylinder cylinder_shape{{-0.75, -0.25, -0.5}, {2, 1, 2}, 0.75, 1.5};
@@ -99,7 +99,7 @@ Vector<3> place_inside(const Container& container, Random& random) {
 const std::array<int, 4>& whole_vector(Random& random) {
   return whole[static_cast<std::size_t>(random.uniform() * whole.size())];
 }
-const Vector<3>& vector_across(Random& random) { return across[random.uniform() < 0.5 ? 0 : 1]; }
+const Vector<3>& vector_across(Random& random) { return ways_across[random.uniform() < 0.5 ? 0 : 1]; }
 
 /// A ball that touches exactly.
 Query touching(const PricedContainer& priced, Random& random) {

@@ -29,6 +29,11 @@ enum class Sides {
   all,   ///< a box like any other
 };
 
+/// What fits between floor and lid, in shares of what is predicted without them; a box is that large.
+inline constexpr double share_between_lids = 0.94;
+/// More than fits there: what grows to that jams before, and the tail is taken out.
+inline constexpr double share_that_jams = 0.98;
+
 /// A cube for so many spheres of these sizes, without stages: as large as the packing needs where it has no
 /// sides, else as large as they need at that packing fraction.
 Scene room_for(const SizeClass& sizes, std::int64_t count, Sides sides, double packing_fraction);

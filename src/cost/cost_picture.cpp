@@ -10,7 +10,7 @@
 namespace bernal::cost {
 namespace {
 
-constexpr double width = 980, height = 600;
+constexpr double drawing_width = 980, drawing_height = 600;
 constexpr PlotArea area = {78, 92, 690, 530};
 constexpr double legend_at = 716;
 /// Told apart by shape and colour: Okabe & Ito's colours, but for yellow, which is none on white.
@@ -149,7 +149,7 @@ std::string cost_svg(const CostReport& report, const CostHeading& heading) {
   const std::string style =
       "<style>.chosen{fill:none;stroke:#c0322b;stroke-width:2.2}.scatter{stroke:#9aa7b4;stroke-width:1}</"
       "style>";
-  return figures::svg_document(width, height,
+  return figures::svg_document(drawing_width, drawing_height,
                                fmt::format("What accuracy costs: {}, {}", heading.scene, heading.machine),
                                style + std::move(plot).finish());
 }

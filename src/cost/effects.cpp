@@ -21,8 +21,6 @@ namespace {
 constexpr int seeds_of_an_effect = 3;
 constexpr std::int64_t usual_count = 1500;
 constexpr std::int64_t least_wide_count = 300;  // for growth the box has to be some large spheres wide
-/// What jams between floor and lid, in shares of what is predicted without them.
-constexpr double share_between_lids = 0.94, share_that_jams = 0.98;
 
 /// Two scenes that differ in the effect and in nothing else.
 struct EffectPair {

@@ -9,7 +9,7 @@
 namespace bernal::cost {
 namespace {
 
-constexpr double picture_width = 720, row_height = 26, top = 74, names_end = 200;
+constexpr double picture_width = 720, row_height = 26, first_row = 74, names_end = 200;
 constexpr double least_ratio = 0.04, most_ratio = 25, most_gain = 0.1;  // that are drawn; beyond, at the edge
 
 /// A bar from the axis to a value, its scatter, and the number beside it.
@@ -32,10 +32,10 @@ std::string draw(const EffectsPicture& picture) {
     widest = std::max(widest, std::abs(row.gain) + row.gain_scatter);
   widest = std::min(widest, most_gain);
   const double axis_end = 1.55 * widest;  // the numbers stand beside the bars
-  const double bottom = top + row_height * static_cast<double>(picture.rows.size());
-  Plot left({names_end + 10, top, 445, bottom}, {-axis_end, axis_end, "", Scale::linear},
+  const double bottom = first_row + row_height * static_cast<double>(picture.rows.size());
+  Plot left({names_end + 10, first_row, 445, bottom}, {-axis_end, axis_end, "", Scale::linear},
             {0, 1, "", Scale::linear});
-  Plot right({465, top, 710, bottom}, {least_ratio / 8, most_ratio * 8, "", Scale::logarithmic},
+  Plot right({465, first_row, 710, bottom}, {least_ratio / 8, most_ratio * 8, "", Scale::logarithmic},
              {0, 1, "", Scale::linear});
   const auto heading = [](Plot& plot, double origin, std::string_view text) {
     const PlotArea& area = plot.area();
@@ -47,7 +47,7 @@ std::string draw(const EffectsPicture& picture) {
   heading(right, 1, "time, with / without");
   for (std::size_t k = 0; k < picture.rows.size(); ++k) {
     const EffectsPicture::Row& row = picture.rows[k];
-    const double y = top + row_height * (static_cast<double>(k) + 0.5);
+    const double y = first_row + row_height * (static_cast<double>(k) + 0.5);
     figures::add_text(left, names_end, y + 4, "end", row.name);
     const auto within = [&](double gain) { return std::clamp(gain, -widest, widest); };
     bar(left, y, 0, within(row.gain - row.gain_scatter), within(row.gain),

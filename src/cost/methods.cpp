@@ -20,10 +20,6 @@ namespace {
 
 /// Seconds of a run, on the wall, after which a method counts as too slow for the picture.
 constexpr double slowest = 15;
-/// What fits between floor and lid, in shares of what is predicted without them; the box is that large.
-constexpr double share_between_lids = 0.94;
-/// More than fits there: what grows to that jams before, and the tail is taken out.
-constexpr double share_that_jams = 0.98;
 constexpr int until_full = 200;
 
 /// A method with the knob that trades time for packing fraction.
