@@ -54,11 +54,14 @@ class CellLayout {
     return static_cast<std::uint32_t>(level.offset + i);
   }
 
-  /// The cells that may hold a centre whose distance from c is below `half` on every axis.
+  /// The cells that may hold a centre whose distance from c is below `half` on every axis: at least one, also
+  /// where `half` is below 0.
   Block block_around(const Level& level, const Vector<D>& c, double half) const {
     Block block;
-    for (int k = 0; k < D; ++k)
+    for (int k = 0; k < D; ++k) {
       block[k] = repeats_[k] ? cells_around(level, k, c[k], half) : cells_between(level, k, c[k], half);
+      block[k].count = std::max(1, block[k].count);
+    }
     return block;
   }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <type_traits>
@@ -187,6 +188,21 @@ TEST(PeriodicCells, LooksAtTwentySevenCells) {
   grid.for_each_near(Vector<3>::Constant(0.999), r, [&](std::uint32_t) { ++visited; });
   const double expected = 27 * 8e-6 * n;  // cells of edge 2 r
   EXPECT_LE(static_cast<double>(visited), expected + 6 * std::sqrt(expected));
+}
+
+// Who is deep inside of a large sphere asks for less than nothing; small ones are never so near.
+TEST(PeriodicCells, KnowOfReachesBelowZero) {
+  const Boundary<3> box{Vector<3>::Constant(10)};
+  CellGrid<3> grid(box, 0.01, 1, 100);
+  const Vector<3> at(9.99, 0.01, 5);
+  grid.insert(0, at, 1);
+  for (std::uint32_t i = 1; i < 100; ++i) grid.insert(i, Vector<3>::Constant(0.1 * i), 0.01);
+  for (const double reach : {-0.005, -0.5, -0.99}) {
+    std::vector<int> visits(100, 0);
+    grid.for_each_near(at, reach, [&](std::uint32_t i) { ++visits[i]; });
+    EXPECT_EQ(visits[0], 1) << reach;
+    EXPECT_LE(std::ranges::max(visits), 1) << reach;
+  }
 }
 
 }  // namespace periodic_cell_grid_test
