@@ -95,9 +95,9 @@ PricedRow price(std::string decision, const PricedContainer* container, std::uin
   return row;
 }
 
-std::vector<Wall> walls_of_analytic(const Domain& shape) {
+std::vector<AnalyticWall> walls_of_analytic(const Domain& shape) {
   return std::visit(
-      [](const auto& kind) -> std::vector<Wall> {
+      [](const auto& kind) -> std::vector<AnalyticWall> {
         if constexpr (requires { walls_of(kind); }) return walls_of(kind);
         return {};
       },
@@ -108,7 +108,7 @@ std::vector<Wall> walls_of_analytic(const Domain& shape) {
 long double least_gap(const PricedContainer& container, const Motion& m, double t) {
   long double least = std::numeric_limits<long double>::infinity();
   if (!container.is_mesh()) {
-    for (const Wall& wall : walls_of_analytic(container.shape))
+    for (const AnalyticWall& wall : walls_of_analytic(container.shape))
       least = std::min(least, gap_after(wall, m, t));
     return least;
   }

@@ -64,7 +64,7 @@ class BoxContainer final : public Container {
   Box shape_;
   Bounds<3> bounds_;
   Bounds<3> ends_;  // infinite along an axis that has none
-  std::vector<Wall> walls_;
+  std::vector<AnalyticWall> walls_;
   std::vector<Facet> facets_;
 };
 

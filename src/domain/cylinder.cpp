@@ -68,7 +68,7 @@ class CylinderContainer final : public Container {
  private:
   Cylinder shape_;
   Vector<3> axis_;
-  std::vector<Wall> walls_;
+  std::vector<AnalyticWall> walls_;
   std::vector<Facet> facets_;
 };
 

@@ -71,7 +71,7 @@ ExactVector place_after(const Motion& motion, double t) {
   return exact(motion.c) + Dyadic(t) * exact(motion.direction);
 }
 
-bool clears_exactly(const Wall& wall, const ExactVector& p, double r) {
+bool clears_exactly(const AnalyticWall& wall, const ExactVector& p, double r) {
   ++exact_decisions;
   const ExactVector w = p - exact(wall.point);
   const Dyadic room = Dyadic(wall.radius) - Dyadic(r);

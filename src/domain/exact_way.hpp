@@ -17,7 +17,7 @@ namespace bernal {
 ///   sphere    |w|² <= (radius - r)² and r <= radius
 ///
 /// Cost: about 2 µs.
-bool clears_exactly(const Wall& wall, const ExactVector& p, double r);
+bool clears_exactly(const AnalyticWall& wall, const ExactVector& p, double r);
 
 /// Whether no point of the triangle is nearer than r > 0 to any of the points c + s·direction, 0 <= s <= t:
 /// the way clears the triangle.

@@ -206,7 +206,7 @@ double filtered_free_path(const Corners& triangle, const Motion& m) {
 
 /// The gap of the ball at c + t·direction in long double, and where it ends.
 struct WideGap {
-  WideGap(const Wall& wall, const Motion& m)
+  WideGap(const AnalyticWall& wall, const Motion& m)
       : kind(wall.kind), w(wide(m.c) - wide(wall.point)), v(wide(m.direction)), axis(wide(wall.axis)) {
     room = static_cast<long double>(wall.radius) - m.r;
     lengths = w.norm() + std::abs(static_cast<long double>(wall.radius)) + m.r;
@@ -244,14 +244,14 @@ struct WideGap {
   long double room = 0, lengths = 0, speed = 0;
 };
 
-double exact_free_path(const Wall& wall, const Motion& m) {
+double exact_free_path(const AnalyticWall& wall, const Motion& m) {
   const long double end = WideGap(wall, m).end();
   return exact_path(
       m, [&](double t) { return clears_exactly(wall, place_after(m, t), m.r); },
       end > 0 ? round_down(end) : 0);
 }
 
-double filtered_free_path(const Wall& wall, const Motion& m) {
+double filtered_free_path(const AnalyticWall& wall, const Motion& m) {
   const WideGap gap(wall, m);
   if (gap.at(0) > gap.error(0)) {
     if (std::isfinite(m.limit) && gap.at(m.limit) > gap.error(m.limit)) return m.limit;
@@ -293,7 +293,7 @@ double free_path(const Corners& triangle, const Motion& motion, WallArithmetic a
   return plain_free_path({Facet::Kind::triangle, 0, triangle[0], triangle[1], triangle[2], 0}, motion);
 }
 
-double free_path(const Wall& wall, const Motion& motion, WallArithmetic arithmetic) {
+double free_path(const AnalyticWall& wall, const Motion& motion, WallArithmetic arithmetic) {
   if (arithmetic == WallArithmetic::exact) return exact_free_path(wall, motion);
   if (arithmetic == WallArithmetic::filtered) return filtered_free_path(wall, motion);
   Facet facet{wall.kind, 0, wall.point, wall.axis, Vector<3>::Zero(), wall.radius};
@@ -302,9 +302,9 @@ double free_path(const Wall& wall, const Motion& motion, WallArithmetic arithmet
   return plain_free_path(facet, motion);
 }
 
-double free_path(std::span<const Wall> walls, const Motion& motion, WallArithmetic arithmetic) {
+double free_path(std::span<const AnalyticWall> walls, const Motion& motion, WallArithmetic arithmetic) {
   Motion rest = motion;
-  for (const Wall& wall : walls) rest.limit = free_path(wall, rest, arithmetic);
+  for (const AnalyticWall& wall : walls) rest.limit = free_path(wall, rest, arithmetic);
   return rest.limit;
 }
 
@@ -319,7 +319,9 @@ long double gap_after(const Facet& f, const Motion& m, long double t) {
   return nearest_of_triangle(ways_from(way.from_start, way.direction, t)).offset.norm() - way.r;
 }
 
-long double gap_after(const Wall& wall, const Motion& m, long double t) { return WideGap(wall, m).at(t); }
+long double gap_after(const AnalyticWall& wall, const Motion& m, long double t) {
+  return WideGap(wall, m).at(t);
+}
 
 double clear_radius(const Container& container, const Vector<3>& c, double reach) {
   const double guess = container.clearance_within(c, reach);
@@ -337,7 +339,7 @@ double first_contact_exactly(const Facet& f, const Motion& m, double skin) {
     if (way_clears_exactly(corners, m, ignore, std::min(m.limit, largest_double))) return m.limit;
     return exact_free_path(corners, {m.c, stop, m.direction, m.limit});
   }
-  const Wall wall = wall_of(f);
+  const AnalyticWall wall = wall_of(f);
   const auto clears = [&](double t, double r) { return clears_exactly(wall, place_after(m, t), r); };
   const double limit = std::min(m.limit, largest_double);
   const bool starts_clear = clears(0, ignore);

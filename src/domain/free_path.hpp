@@ -31,9 +31,9 @@ namespace bernal {
 // Cost, per wall that limits: plain 0.1 µs, filtered 0.5 µs, exact 10 to 100 µs.
 
 double free_path(const Corners& triangle, const Motion& motion, WallArithmetic arithmetic);
-double free_path(const Wall& wall, const Motion& motion, WallArithmetic arithmetic);
+double free_path(const AnalyticWall& wall, const Motion& motion, WallArithmetic arithmetic);
 /// The least of them, each asked only as far as the ones before allow.
-double free_path(std::span<const Wall> walls, const Motion& motion, WallArithmetic arithmetic);
+double free_path(std::span<const AnalyticWall> walls, const Motion& motion, WallArithmetic arithmetic);
 double free_path(const Facet& facet, const Motion& motion, WallArithmetic arithmetic);
 
 /// A bound of the error of a distance as kernels/first_contact.hpp computes it for a ball on its way, in
@@ -57,7 +57,7 @@ double lengths_of(const Facet& facet, const Motion& motion);
 /// or, of a triangle, where that is nearer to its centre than its radius. In the 64 bits of long double:
 /// wrong by less than 32 of their roundoffs of the lengths that occur, a 64th of a roundoff of double.
 long double gap_after(const Facet& facet, const Motion& motion, long double t);
-long double gap_after(const Wall& wall, const Motion& motion, long double t);
+long double gap_after(const AnalyticWall& wall, const Motion& motion, long double t);
 
 /// The bounded distance at the container's level: the largest double r <= reach such that the ball of radius
 /// r about c lies inside as `contains` decides it; 0 if not even r = 0 does. Where that is exact or filtered,

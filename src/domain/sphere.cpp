@@ -43,7 +43,7 @@ class SphereContainer final : public Container {
 
  private:
   Sphere shape_;
-  std::vector<Wall> walls_;
+  std::vector<AnalyticWall> walls_;
   std::array<Facet, 1> wall_;
 };
 
