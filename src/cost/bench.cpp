@@ -28,7 +28,7 @@ const std::vector<BenchTable>& tables() {
       {{"effects", "every effect off and on: what it buys in packing fraction and costs in time",
         "2 minutes"},
        cost::effects},
-      {{"arithmetic", "decisions about walls in double, filtered and exact", "2 minutes"},
+      {{"arithmetic", "decisions about walls in double, filtered and exact", "a minute"},
        cost::bench_arithmetic}};
   return all;
 }

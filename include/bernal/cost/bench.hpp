@@ -25,7 +25,7 @@ std::span<const Bench> all_benches();
 struct BenchOptions {
   /// Spheres of every packing; 0: as many as each bench says. Times grow with them.
   std::int64_t spheres = 0;
-  /// Of the table of arithmetic, in all; 0: as many as take two minutes.
+  /// Of the table of arithmetic, in all; 0: a million, which take less than a minute.
   std::int64_t decisions = 0;
   std::uint64_t seed = 1;  ///< the first, where several packings are made
   Monitor monitor = {};
