@@ -23,7 +23,8 @@ struct Protocol {
 const std::string insert = "[[stage]]\ndo = \"insert\"\npacking_fraction = 0.2\n";
 const std::string compress = "[[stage]]\ndo = \"compress\"\nmax_iterations = 8\n";
 const std::string shake = "[[stage]]\ndo = \"shake\"\nrounds = 1\n";
-const std::string refill = "[[stage]]\ndo = \"refill\"\nmax_rounds = 1\nshakes = 0\nmax_iterations = 4\n";
+const std::string refill =
+    "[[stage]]\ndo = \"refill\"\nmax_rounds = 1\nprobes = 1\nshakes = 0\nmax_iterations = 4\n";
 const std::string relax = "[[stage]]\ndo = \"relax\"\n";
 const std::string polish = "[[stage]]\ndo = \"relax\"\npolish = 1e-6\n";
 const std::string grow = "[[stage]]\ndo = \"grow\"\nrate = 0.1\npressure = 1e3\n";
