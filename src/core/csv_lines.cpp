@@ -46,7 +46,10 @@ bool CsvLines::next() {
   if (next == NextLine::none) return false;
   ++number_;
   if (next == NextLine::too_long) fail("this line is too long for a sphere; is it another file?");
-  if (stream_.eof()) fail("the file ends in the middle of this line; it was cut off, write it again");
+  if (stream_.eof())
+    fail(
+        "the file ends in the middle of this line; write it again, or end it with a line feed if it is "
+        "whole");
   if (line_.ends_with('\r')) line_.pop_back();
   return true;
 }
