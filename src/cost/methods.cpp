@@ -120,16 +120,18 @@ std::string value_text(const Method& method, double value) {
   return method.knob == "rounds" && value == until_full ? "until full" : fmt::format("{}", value);
 }
 
-/// Median and half the range, of trials that came to their end.
+/// Median and half the range, of trials that came to their end. Where a packing fraction is asked for, what
+/// was not reached by one of them is nothing that the method reaches.
 struct Reached {
   Spread phi, core, seconds;
   std::size_t trials = 0;
   bool with_core = false;
 };
-Reached reached_by(const Series& series) {
+Reached reached_by(const Series& series, const Method& method) {
   std::vector<double> phi, core, seconds;
   for (const Trial& trial : series.trials) {
     if (trial.cut_off) continue;
+    if (method.knob == "share" && trial.outcome != Outcome::converged) return {};
     if (!trial.certified)
       throw Error(ErrorCode::bad_argument, series.setting->name + ": the packing is not certified");
     phi.push_back(trial.packing_fraction);
@@ -175,7 +177,9 @@ std::string summary_of(const Ladders& ladders, const std::vector<Method>& method
                        Sides sides) {
   constexpr double nearly = 0.01;
   const Rung *densest = nullptr, *soonest = nullptr;
-  const auto reached = [&](const Rung* rung) { return reached_by(rounds.series[rung->setting]); };
+  const auto reached = [&](const Rung* rung) {
+    return reached_by(rounds.series[rung->setting], methods[rung->method]);
+  };
   const auto of_room = [&](const Rung& rung) {
     return methods[rung.method].sides == sides && reached(&rung).trials > 0;
   };
@@ -210,12 +214,13 @@ std::string table_of(const Ladders& ladders, const std::vector<Method>& methods,
       ladders.sizes.name);
   for (const Rung& rung : ladders.rungs) {
     const Method& method = methods[rung.method];
-    const Reached reached = reached_by(rounds.series[rung.setting]);
+    const Reached reached = reached_by(rounds.series[rung.setting], method);
     const std::string begin =
         fmt::format("| {} | {} | {} {} | ", method.sides == Sides::none ? "periodic" : "floor and lid",
                     method.name, method.knob, value_text(method, rung.value));
+    const bool all_cut_off = std::ranges::all_of(rounds.series[rung.setting].trials, &Trial::cut_off);
     if (reached.trials == 0)
-      text += begin + fmt::format("| | more than {:g} |\n", slowest);
+      text += begin + (all_cut_off ? fmt::format("| | more than {:g} |\n", slowest) : "not reached | | |\n");
     else
       text += begin + fmt::format("{} | {} | {:.3g} |\n", with_scatter(reached.phi),
                                   reached.with_core ? fmt::format("{:.3f}", reached.core.median) : "",
@@ -231,7 +236,7 @@ BenchFile picture_of(const Ladders& ladders, const std::vector<Method>& methods,
         std::string(methods[m].name), colour_of(methods, m), methods[m].sides != Sides::none, {}};
     for (const Rung& rung : ladders.rungs) {
       if (rung.method != m) continue;
-      const Reached reached = reached_by(rounds.series[rung.setting]);
+      const Reached reached = reached_by(rounds.series[rung.setting], methods[m]);
       if (reached.trials > 0)
         line.points.push_back({reached.seconds.median, reached.phi.median, reached.phi.half_width});
     }
