@@ -47,9 +47,7 @@ bool CsvLines::next() {
   ++number_;
   if (next == NextLine::too_long) fail("this line is too long for a sphere; is it another file?");
   if (stream_.eof())
-    fail(
-        "the file ends in the middle of this line; write it again, or end it with a line feed if it is "
-        "whole");
+    fail("the file ends in the middle of this line; write it again if it was cut off, else add a line feed");
   if (line_.ends_with('\r')) line_.pop_back();
   return true;
 }
