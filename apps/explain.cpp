@@ -1,5 +1,8 @@
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <sstream>
+#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,22 +23,68 @@ struct ExplainCall {
   bool json = false;
 };
 
+/// To two digits: what is expected is no better known.
+std::string in_words(double seconds) {
+  const auto two_digits = [](double x, const char* unit) {
+    return x < 9.95 ? fmt::format("{:.1f} {}", x, unit)
+                    : fmt::format("{:.0f} {}", x < 99.5 ? x : 10 * std::round(x / 10), unit);
+  };
+  if (seconds < 1e-4) return "under 0.1 ms";
+  if (seconds < 0.995) return two_digits(1e3 * seconds, "ms");
+  if (seconds < 99.5) return two_digits(seconds, "s");
+  return seconds < 5970 ? two_digits(seconds / 60, "min") : two_digits(seconds / 3600, "h");
+}
+std::string bytes_in_words(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", std::ceil(bytes / 1e3));
+  if (bytes < 1e9) return fmt::format("{:.0f} MB", bytes / 1e6);
+  return fmt::format("{:.1f} GB", bytes / 1e9);
+}
+
+/// Words in lines of at most that width, two blanks before each.
+std::string in_lines(const std::string& words, std::size_t width) {
+  std::istringstream all(words);
+  std::string text, line;
+  for (std::string word; all >> word;) {
+    if (line.size() + word.size() + 3 > width) {
+      text += line + '\n';
+      line.clear();
+    }
+    line += (line.empty() ? "  " : " ") + word;
+  }
+  return text + line + '\n';
+}
+
+/// Two lines an effect: its name and price; what it is. Times within others stand in brackets.
+void print_effects(const Plan& plan) {
+  fmt::print("What would run:\n  {:<16}  {:>10}  {:>7}  {}\n", "effect", "time", "memory", "cost");
+  bool any_part = false;
+  for (const PlanItem& item : plan.items) {
+    const std::string time = item.if_needed        ? "if needed"
+                             : !(item.seconds > 0) ? ""
+                             : item.part           ? "(" + in_words(item.seconds) + ")"
+                                                   : in_words(item.seconds);
+    any_part = any_part || (item.part && !item.if_needed && item.seconds > 0);
+    fmt::print("  {:<16}  {:>10}  {:>7}  {}\n{}", item.name, time,
+               item.bytes > 0 ? bytes_in_words(item.bytes) : "", item.cost, "      " + item.what + "\n");
+  }
+  fmt::print("  {:<16}  {:>10}  {:>7}  with what the program itself takes\n", "together",
+             in_words(plan.expected_seconds), bytes_in_words(plan.expected_memory_bytes));
+  if (any_part) fmt::print("Times in brackets are parts of others.\n");
+}
+
 void print(const Plan& plan) {
   const Scene& scene = plan.scene;
   fmt::print("{}", describe(plan));
   fmt::print("accuracy   walls {}, overlap {}\n", name_of(scene.walls), scene.overlap);
-  fmt::print("expected   about {:.3g} spheres, packing fraction {:.3f}, {:.3g} MB of memory\n\n",
-             plan.expected_count, plan.expected_packing_fraction, plan.expected_memory_bytes / 1e6);
+  fmt::print("expected   about {:.3g} spheres, packing fraction {:.3f}\n", plan.expected_count,
+             plan.expected_packing_fraction);
+  fmt::print("           about {} to pack them on one core, {} of memory\n\n",
+             in_words(plan.expected_seconds), bytes_in_words(plan.expected_memory_bytes));
 
-  std::size_t name_width = 0, what_width = 0;
-  for (const PlanItem& item : plan.items) {
-    name_width = std::max(name_width, item.name.size());
-    what_width = std::max(what_width, item.what.size());
-  }
-  fmt::print("What would run:\n");
-  for (const PlanItem& item : plan.items)
-    fmt::print("  {:<{}}  {:<{}}  {}\n", item.name, name_width, item.what, what_width, item.cost);
-  if (!plan.absent.empty()) fmt::print("\nNot called for, not built: {}.\n", fmt::join(plan.absent, ", "));
+  print_effects(plan);
+  if (!plan.absent.empty())
+    fmt::print("\nNot called for, not built:\n{}",
+               in_lines(fmt::format("{}.", fmt::join(plan.absent, ", ")), 100));
   if (scene.stages_are_default)
     fmt::print("\nThe scene names no stages. This protocol runs; paste it to change it:\n\n{}",
                stages_as_toml(scene));
@@ -55,7 +104,13 @@ nlohmann::ordered_json as_json(const Plan& plan) {
   container["notes"] = plan.container_notes;
   ordered_json items = ordered_json::array();
   for (const PlanItem& item : plan.items)
-    items.push_back({{"name", item.name}, {"what", item.what}, {"cost", item.cost}});
+    items.push_back({{"name", item.name},
+                     {"what", item.what},
+                     {"cost", item.cost},
+                     {"seconds", item.seconds},
+                     {"bytes", item.bytes},
+                     {"part", item.part},
+                     {"if_needed", item.if_needed}});
   return {{"unit", name_of(plan.scene.unit)},
           {"container", container},
           {"spheres", {{"target", describe_target(plan)}, {"sizes", describe_sizes(plan.scene)}}},
@@ -63,6 +118,7 @@ nlohmann::ordered_json as_json(const Plan& plan) {
           {"expected",
            {{"count", plan.expected_count},
             {"packing_fraction", plan.expected_packing_fraction},
+            {"seconds", plan.expected_seconds},
             {"memory_bytes", plan.expected_memory_bytes}}},
           {"items", items},
           {"absent", plan.absent},
@@ -91,7 +147,9 @@ Command explain_command() {
           {required({"SCENE", &call->scene, "The scene, a TOML file"}), json_option(call->json)},
           "Prints what was understood, what would run, how many spheres to expect and, where the scene "
           "names\n"
-          "no stages, those that run, with all their defaults.\n"
+          "no stages, those that run, with all their defaults. Times are those of packing on one core; with\n"
+          "the memory they are estimates by each stage's own model: three in four of the scenes that were\n"
+          "measured take between half and twice as long, the worst a fifth or five times.\n"
           "Exit codes: 0 done; 2 bad input.",
           [call] { return explain(*call); }};
 }

@@ -7,6 +7,8 @@
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/tolerance.hpp"
+#include "core/event_clock.hpp"
+#include "core/made.hpp"
 #include "neighbors/cell_grid.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/holes.hpp"
@@ -66,7 +68,7 @@ class Insertion {
     std::ranges::copy_if(order_, std::back_inserter(waiting), [&](Id i) { return !placed_[i]; });
     const bool all = waiting.empty();
     if (!all && !cancelled_) move_to_holes<D>(spheres_, edges_, std::move(waiting), random_);
-    work_.effects["trial places"].calls += trials_;
+    if (trials_.events() > 0) work_.effects["trial places"] += {"", trials_.events(), trials_.seconds()};
     work_.spheres = std::move(spheres_);
     work_.edges = edges_;
     work_.needed_volume = edges_.prod();
@@ -112,8 +114,9 @@ class Insertion {
     for (int t = 0; t < tries; ++t) {
       Vector<D> c = uniform_point(random_, box);
       for (int k = 0; k <= most_pushes; ++k) {
-        ++trials_;
+        const auto start = trials_.start();
         const Push push = push_at(c, i);
+        trials_.stop(start);
         if (push.overlaps == 0) {
           place(i, c);
           return true;
@@ -189,7 +192,8 @@ class Insertion {
   bool cancelled_ = false;
   std::size_t count_ = 0;  // of those
   std::vector<Id> order_;
-  std::uint64_t trials_ = 0;
+  EventClock trials_;
+  const Made made_{"trial places"};
 };
 
 }  // namespace

@@ -79,6 +79,10 @@ bool flies(FillMethod method) { return method == FillMethod::patent || method ==
 
 std::string_view name_of(FillMethod method) { return methods[static_cast<std::size_t>(method)]; }
 
+double reached_by_flight(const FillTask& task) {
+  return share_of_flight[task.dimension - 1] * task.attainable * (task.has_walls ? share_between_walls : 1);
+}
+
 FillChoice choose_filling(FillMethod method, const FillTask& task) {
   if (method != FillMethod::automatic) {
     if (task.has_walls && method == FillMethod::classes)
@@ -87,8 +91,7 @@ FillChoice choose_filling(FillMethod method, const FillTask& task) {
                   "\"patent\" and \"relaxation\"");
     return {method, "as the scene asks for it"};
   }
-  const double reached =
-      share_of_flight[task.dimension - 1] * task.attainable * (task.has_walls ? share_between_walls : 1);
+  const double reached = reached_by_flight(task);
   const auto phi = task.packing_fraction;
   const char* between = task.has_walls ? " between walls surely" : "";
   if (task.size_ratio > wide_sizes && !task.has_walls)
@@ -103,25 +106,6 @@ FillChoice choose_filling(FillMethod method, const FillTask& task) {
   return {FillMethod::relaxation,
           fmt::format("as {:.3f} is more than the {:.3f} that flight{} reaches", phi, reached, between)};
 }
-
-template <>
-const StageEntry& entry_of<Fly>();
-
-namespace {
-
-/// The method and why it, at the first of its effects.
-std::vector<PlanItem> effects_of(const Fly& options, const FillTask& task) {
-  const FillChoice choice = choose_filling(options.method, task);
-  const auto all = entry_of<Fly>().box_effects.begin();
-  std::vector<PlanItem> items = {
-      {"fly", fmt::format("by {}, {}", name_of(choice.method), choice.reason), ""}};
-  const bool in_flight = flies(choice.method), by_classes = choice.method == FillMethod::classes;
-  items.insert(items.end(), all + (in_flight ? 0 : by_classes ? 2 : 4), all + (in_flight ? 2 : 6));
-  if (choice.method == FillMethod::patent) items[2].cost = "O(N) each";
-  return items;
-}
-
-}  // namespace
 
 StageEnd fly(Work& work, const FillChoice& choice, const Fly& options) {
   if (work.placed && work.edges == *work.target_edges) {
@@ -189,17 +173,8 @@ const StageEntry& entry_of<Fly>() {
         if (!chosen.dt) chosen.dt = choice.method == FillMethod::patent ? 0.01 : 0.25;
         return fly(work, choice, chosen);
       }),
-      .box_effects = {{"flight",
-                       "new spheres at random places, from large to small, while those that are there fly",
-                       "O(N) a batch"},
-                      {"collisions", "elastic, between spheres and at walls", "O(log N) each"},
-                      {"insertion", "from large to small, between those that are there", "O(1) a trial"},
-                      {"trial places", "random, and pushed out of what they overlap", "O(1) each"},
-                      {"neighbour lists", "of all spheres together, from the background grid",
-                       "O(N) an iteration"},
-                      {"relaxation", "overlapping spheres push each other apart; what is stuck is stirred",
-                       "some 1,000 sweeps of O(N)"}},
-      .chosen_effects = of_options(effects_of),
+      .may_bring = {"flight", "collisions", "insertion", "trial places", "neighbour lists", "relaxation"},
+      .effects = of_options(effects_of_flight),
       .leaves_overlap = of_options(+[](const Fly& options, const FillTask& task) {
         return !flies(choose_filling(options.method, task).method);
       })};

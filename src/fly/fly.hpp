@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "bernal/fly/fly.hpp"
-#include "work/work.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 
@@ -17,6 +17,12 @@ struct FillChoice {
 /// All know walls but `classes`.
 /// Throws Error{bad_argument} where the method that is named cannot do it.
 FillChoice choose_filling(FillMethod method, const FillTask& task);
+
+/// The packing fraction that flight gets to in about a second.
+double reached_by_flight(const FillTask& task);
+
+/// The method and why it, and its effects. Throws as `choose_filling`.
+std::vector<PlanItem> effects_of_flight(const Fly& options, const Outlook& outlook);
 
 /// Collision filling in n dimensions: puts spheres of prescribed radii into the box of prescribed edges, in 1
 /// to 8 dimensions; neither changes by a bit. Spheres come from large to small; those that cross a periodic

@@ -31,6 +31,8 @@ class EventFlight {
   /// One stretch of flight.
   void fly();
   std::uint64_t collisions() const { return collisions_; }
+  /// What they took, with foreseeing the next ones.
+  double seconds_of_collisions() const { return times_.seconds(); }
 
  private:
   struct Event {
@@ -59,6 +61,8 @@ class EventFlight {
   bool is_stale(const Event& event) const;
   void collide(const Event& event);
 
+  const Made made_{"collisions"};
+  EventClock times_;
   FlyingSpheres<D>& spheres_;
   std::size_t batch_;
   double dt_;

@@ -114,7 +114,7 @@ void PatentFlight<D>::collide(const Hit& hit) {
 }
 
 template <int D>
-void PatentFlight<D>::fly() {
+void PatentFlight<D>::step() {
   ++steps_;
   if (spheres_.size() == 0) return;
   const auto n = static_cast<Eigen::Index>(spheres_.size());

@@ -34,11 +34,19 @@ class PatentFlight {
   /// One batch of new spheres. Returns how many found a place.
   std::size_t insert();
   /// One step of flight.
-  void fly();
+  void fly() {
+    const auto start = EventClock::Clock::now();
+    const std::uint64_t before = collisions_;
+    step();
+    if (collisions_ > before) seconds_of_collisions_ += EventClock::seconds_since(start);
+  }
   std::uint64_t collisions() const { return collisions_; }
+  /// Of the steps that ended with one.
+  double seconds_of_collisions() const { return seconds_of_collisions_; }
   std::uint64_t steps() const { return steps_; }
 
  private:
+  void step();
   /// A pair or, if `wall` is not negative, a sphere and the wall of that axis.
   struct Hit {
     Id first, second;
@@ -51,6 +59,8 @@ class PatentFlight {
   double time_to(const Hit& hit) const;
   void collide(const Hit& hit);
 
+  const Made made_{"collisions"};
+  double seconds_of_collisions_ = 0;
   FlyingSpheres<D>& spheres_;
   std::size_t batch_;
   double dt_;

@@ -32,7 +32,8 @@ StageEnd fly_until_full(Work& work, const Fly& options) {
     work.placed_count = spheres.size();
     work.milestone("fly", std::min(share, 0.99), 0);
   }
-  work.effects["collisions"].calls += flight.collisions();
+  if (flight.collisions() > 0)
+    work.effects["collisions"] += {"", flight.collisions(), flight.seconds_of_collisions()};
   work.spheres = spheres.result();
   work.edges = *work.target_edges;
   work.placed = true;

@@ -8,6 +8,8 @@
 
 #include "bernal/core/random.hpp"
 #include "bernal/core/tolerance.hpp"
+#include "core/event_clock.hpp"
+#include "core/made.hpp"
 #include "neighbors/partial_grid.hpp"
 #include "work/work.hpp"
 
@@ -174,6 +176,7 @@ class FlyingSpheres {
   Columns x, v;
 
  private:
+  const Made made_{"flight"};
   void wrap(double& c, int k) const {
     if (!repeats_[k] || (c >= 0 && c < edges_[k])) return;
     c -= edges_[k] * std::floor(c / edges_[k]);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/made.hpp"
 #include "hard/prefetch.hpp"
 
 namespace bernal {
@@ -92,6 +93,7 @@ class Calendar {
     bins_[event.bin] = id;
   }
 
+  const Made made_{"collisions"};
   std::vector<Event> events_;
   std::vector<Id> bins_;
   double horizon_ = 0;

@@ -202,6 +202,13 @@ Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Work& 
     next_filled = filled + volume_a_milestone;
     report(flight.size(), std::max(filled, squeezed / std::log(options.pressure)));
   }
+  const FlightTimes& times = flight.times();
+  const auto add_time = [&](const char* effect, double seconds) {
+    if (seconds > 0) work.effects[effect].seconds += seconds;
+  };
+  add_time("collisions", times.collisions.seconds());
+  add_time("reflections", times.reflections.seconds());
+  add_time("neighbour shells", times.departures.seconds() + times.builds);
   flight.write_to(spheres);
   return {end, flight.size()};
 }
@@ -277,29 +284,11 @@ const StageEntry& entry_of<Grow>() {
             .reaches = Reaches::close_packing}),
        .act_in_bed = act(grow_in_container),
        .act_in_box = act(grow),
-       .bed_effects = {insertion,
-                       {"neighbour shells", "each sphere renews its own list, and that of its walls",
-                        "about 1 µs"},
-                       collisions,
-                       reflections,
-                       {"growth",
-                        "until the spheres have their radii; what jams before loses the last of the drawn "
-                        "sequence",
-                        "some 2,000 collisions a sphere"}},
-       .box_effects = {insertion,
-                       {"neighbour shells", "each sphere renews its own list", "about 1 µs"},
-                       collisions,
-                       reflections,
-                       {"growth", "until the spheres jam", "some 2,000 collisions a sphere"}},
-       .chosen_effects =
-           [](const void*, const FillTask& task) {
-             auto effects = entry_of<Grow>().box_effects;
-             if (!task.has_walls)
-               std::erase_if(effects, [](const PlanItem& e) { return e.name == "reflections"; });
-             return effects;
-           },
-       .require = [](const void*, const Domain& container, double smallest_radius,
-                     const FillTask&) { walls_for_growth(container, smallest_radius); }};
+       .may_bring = {"insertion", "neighbour shells", "collisions", "reflections", "growth", "polish"},
+       .effects = of_options(effects_of_growth),
+       .require = [](const void*, const Domain& container, double smallest_radius, const FillTask&) {
+         walls_for_growth(container, smallest_radius);
+       }};
   return entry;
 }
 

@@ -4,7 +4,7 @@
 
 #include "bernal/hard/grow.hpp"
 #include "hard/walls.hpp"
-#include "work/work.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 
@@ -64,6 +64,9 @@ StageEnd grow(Work& work, const Grow& options);
 /// 0.60 in 17 s, 0.62 in 24 s, where relaxation takes 0.8 s and 2.7 s; 0.63 in 41 s, where relaxation ends at
 /// 0.6288 after 59 s. One thread.
 StageEnd grow_in_container(Work& work, const Grow& options);
+
+/// What it brings with it, with its price.
+std::vector<PlanItem> effects_of_growth(const Grow& options, const Outlook& outlook);
 
 /// The walls that growth takes the shape to have. Throws Error{bad_scene} if it is not convex.
 std::vector<Wall<3>> walls_for_growth(const Domain& shape, double smallest_radius);

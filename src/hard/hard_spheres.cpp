@@ -187,7 +187,11 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   const double size_then = std::min(largest, size_ + growth_ * horizon_);
   const double freedom = wanted_freedom();
   const bool rebuild = size_then > largest_listed_ || freedom != freedom_;
-  if (rebuild) build_shells(freedom, size_then);
+  if (rebuild) {
+    const auto start = EventClock::Clock::now();
+    build_shells(freedom, size_then);
+    times_.builds += EventClock::seconds_since(start);
+  }
 
   const double energy = kinetic_energy();
   const double expected_collisions =
@@ -216,9 +220,11 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
       period_.stopped = true;
       break;
     }
+    const Id what = calendar_.what(i);
+    EventClock& clock = clock_of(what);
+    const auto start = clock.start();
     prefetch();
     now_ = calendar_.time(i);
-    const Id what = calendar_.what(i);
     spheres_[i].fly_to(now_);
     if (is_partner(what)) {
       spheres_[what].fly_to(now_);
@@ -239,6 +245,7 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
       }
       predict(i);
     }
+    clock.stop(start);
   }
 
   for (FlyingSphere<D>& s : spheres_) {

@@ -7,6 +7,8 @@
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
 #include "bernal/hard/grow.hpp"
+#include "core/event_clock.hpp"
+#include "core/made.hpp"
 #include "hard/calendar.hpp"
 #include "hard/collision_kernels.hpp"
 #include "hard/shells.hpp"
@@ -30,6 +32,12 @@ struct FlightPeriod {
   double wall_momentum = 0;
   double heating = 0;    ///< relative growth of the kinetic energy
   bool stopped = false;  ///< it was told to stop
+};
+
+/// What the events of all periods took: those of collisions with what they let look again.
+struct FlightTimes {
+  EventClock collisions, reflections, departures;
+  double builds = 0;  ///< seconds
 };
 
 /// What `HardSpheres` may be told.
@@ -71,6 +79,8 @@ class HardSpheres {
   FlightPeriod fly(double growth, double largest = std::numeric_limits<double>::infinity(),
                    const Monitor& monitor = {});
 
+  const FlightTimes& times() const { return times_; }
+
   std::size_t count() const { return spheres_.size(); }
   double size() const { return size_; }
   /// Of all spheres, in units of m k T / m = 1.
@@ -108,6 +118,11 @@ class HardSpheres {
     return mass;
   }
 
+  EventClock& clock_of(Id what) {
+    return what == leave ? times_.departures : what == touch_wall ? times_.reflections : times_.collisions;
+  }
+
+  const Made made_{"growth"};
   std::vector<FlyingSphere<D>> spheres_;
   std::vector<Id> original_;  // the place of each in the caller's order
   Vector<D> edges_;
@@ -128,6 +143,7 @@ class HardSpheres {
   double now_ = 0;
   std::size_t prefetched_ = 0;  // bins of the calendar for which the memory was asked
 
+  FlightTimes times_;
   FlightPeriod period_;                                          // the last one, or the one at hand
   double virial_ = 0;                                            // sum over the period's collisions
   std::uint64_t listed_collisions_ = 0, listed_departures_ = 0;  // since the lists were built

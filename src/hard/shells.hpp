@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bernal/core/vector.hpp"
+#include "core/made.hpp"
 #include "hard/home_grid.hpp"
 #include "hard/neighbor_pool.hpp"
 #include "hard/prefetch.hpp"
@@ -52,6 +53,7 @@ class Shells {
     double freedom;
   };
 
+  const Made made_{"neighbour shells"};
   std::vector<Place> places_;
   std::vector<double> reaches_;  // radius and freedom
   NeighborPool lists_;

@@ -22,6 +22,7 @@ constexpr double slack = 1.001;
 
 template <int D>
 void Walls<D>::start(std::size_t count, double most) {
+  if (!made_) made_.emplace("reflections");
   near_.start(count, 0);
   next_.assign(count, 0);
   if (most <= reach_) return;

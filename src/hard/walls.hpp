@@ -3,9 +3,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/made.hpp"
 #include "hard/flying_sphere.hpp"
 #include "hard/neighbor_pool.hpp"
 
@@ -94,6 +96,7 @@ class Walls {
   void fill_cells(const Vector<D>& lower, const Vector<D>& size, int level, std::size_t first,
                   const std::vector<Id>& near);
 
+  std::optional<Made> made_;  // where there are walls
   std::vector<Wall<D>> walls_;
   Vector<D> edges_;
   double reach_ = -1;                   // that the cells are good for

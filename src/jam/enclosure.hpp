@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "bernal/domain/container.hpp"
+#include "core/made.hpp"
 #include "kernels/closest_point.hpp"
 
 namespace bernal {
@@ -54,6 +55,7 @@ class Enclosure {
   double same_place() const { return same_place_; }
 
  private:
+  Made made_{"walls"};
   std::vector<PlaneWall<D>> planes_;
   const Container* container_ = nullptr;
   double same_place_ = 0;

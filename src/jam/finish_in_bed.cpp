@@ -56,13 +56,11 @@ StageEnd finish_in_bed(StageEnd end, double polish, Work& work) {
         100 * (Jammed::most_growth - 1));
     return StageEnd::hit_limit;
   }
-  Effect& walls = work.effects["walls"];
   const double skin = bed.skin() / work.supply->smallest();
   for (int k = 0; k < most_tries; ++k) {
     const double size = jammed.growth * (1 - std::ldexp(skin, k));
     const std::shared_ptr<Bed> polished = bed_of(jammed.spheres, tags, size, work);
     if (!polished) continue;
-    walls += bed.wall_queries();
     work.supply->multiply_by(size);
     work.size_scale *= size;
     work.bed_ = polished;

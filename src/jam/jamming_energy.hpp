@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "bernal/core/spheres.hpp"
+#include "core/made.hpp"
 #include "jam/near_walls.hpp"
 #include "jam/trust_region.hpp"
 #include "neighbors/periodic_pairs.hpp"
@@ -143,6 +144,7 @@ class JammingEnergy final : public SmoothFunction {
   Vector<D> away_of(const typename PeriodicPairs<D>::Pair& pair) const;
   double width() const;
 
+  Made made_{"polish"};
   std::vector<std::uint32_t> order_;  // place of a sphere here -> its number outside
   std::vector<double> radius_;
   double least_radius_ = 0, largest_radius_ = 0;

@@ -341,6 +341,7 @@ template <int D>
 StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish_to,
                                 Work& work) {
   if (polish_to > 0 && end == StageEnd::converged) {
+    const EffectTimer timer(work.effects["polish"]);
     end = polish<D>(spheres, edges, polish_to, work);
     free_of_overlap<D>(spheres, edges, work);
   }

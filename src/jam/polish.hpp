@@ -2,7 +2,7 @@
 #include <functional>
 
 #include "bernal/domain/container.hpp"
-#include "work/work.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 
@@ -37,6 +37,9 @@ namespace bernal {
 /// the isostatic number, of frictionless spheres that nothing but the pressure presses together.
 template <int D>
 StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work);
+
+/// What it is expected to cost.
+PlanItem polishing(const Outlook& outlook);
 
 /// Spheres that were polished in a container.
 struct Jammed {

@@ -9,6 +9,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
+#include "run/price_effects.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
 #include "sizes/cut_above.hpp"
@@ -16,12 +17,6 @@
 
 namespace bernal {
 namespace {
-
-/// Bytes a sphere takes in the packer: its place, its lists of about 30 neighbours, its cell, and the copies
-/// that writing and certifying make.
-constexpr double bytes_a_sphere = 600;
-/// The same for relaxation in a periodic box.
-constexpr double bytes_a_relaxed_sphere = 400;
 
 /// Of so many spheres as are asked for: those of the start, and others that are drawn from these.
 double volume_of_count(const Plan& plan, const SizeDistribution& radii) {
@@ -110,9 +105,6 @@ void expect_in_container(Plan& plan) {
   if (scene.target.count)
     plan.expected_count = std::min(plan.expected_count, static_cast<double>(*scene.target.count));
   plan.expected_packing_fraction = plan.expected_count * mean_volume / volume;
-  plan.expected_memory_bytes = plan.expected_count * bytes_a_sphere;
-  plan.items.push_back({"walls", fmt::format("{}, {}", kind_of(container), name_of(scene.walls)),
-                        std::holds_alternative<Mesh>(container) ? "O(log faces) a query" : "O(1) a query"});
 }
 
 void require_stage_that_places(const Scene& scene) {
@@ -231,7 +223,6 @@ void expect_in_periodic_box(Plan& plan) {
     if (scene.target.count) plan.expected_count = static_cast<double>(*scene.target.count);
   }
   plan.expected_packing_fraction = plan.expected_count * mean_volume / volume_of(plan.domain);
-  plan.expected_memory_bytes = plan.expected_count * bytes_a_relaxed_sphere;
 }
 
 /// What is there from the start is what can be expected at least.
@@ -244,22 +235,10 @@ void expect_start(Plan& plan) {
   if (!plan.box_follows)
     plan.expected_packing_fraction =
         std::max(plan.expected_packing_fraction, volume / volume_of(plan.domain));
-  plan.expected_memory_bytes *= std::max(1.0, n / std::max(1.0, plan.expected_count));
   plan.expected_count = std::max(plan.expected_count, n);
-  plan.items.push_back(
-      {"start", fmt::format("{} spheres that have places", grouped(spheres.size())), "O(N)"});
-}
-
-/// Those of its effects that the plan calls for.
-std::vector<PlanItem> effects_of(const Stage& stage, const Plan& plan) {
-  const StageEntry& entry = entry_of(stage);
-  if (entry.table.traits.stands_in_bed(plan.scene)) return entry.bed_effects;
-  if (!entry.chosen_effects) return entry.box_effects;
-  try {
-    return entry.chosen_effects(entry.table.options(stage), fill_task_of(plan));
-  } catch (const Error& error) {
-    throw Error(ErrorCode::bad_scene, error.what(), stage.locations.of("method"));
-  }
+  plan.items.push_back({.name = "start",
+                        .what = fmt::format("{} spheres that have places", grouped(spheres.size())),
+                        .cost = "O(N)"});
 }
 
 }  // namespace
@@ -297,25 +276,11 @@ Plan build(const Scene& stated) {
   }
   expect_start(plan);
   require_overlap(plan);
+  price_effects(plan);
   require_drawable_count(plan);
   require_memory(plan);
   require_fit_for_stages(plan);
   plan.places_expected = any_in_bed(scene) && any_stage(scene, &StageTraits::places_expected, true);
-
-  const auto has = [&](const std::string& name) {
-    return std::ranges::find(plan.items, name, &PlanItem::name) != plan.items.end();
-  };
-  for (const Stage& stage : scene.stages)
-    for (const PlanItem& item : effects_of(stage, plan))
-      if (!has(item.name)) plan.items.push_back(item);
-  if (scene.walls == WallArithmetic::exact)
-    plan.items.push_back({std::string(exact_walls_effect), "of every place and every move limit at a wall",
-                          "2 to 100 µs a decision"});
-  for (const StageEntry* stage : stage_entries())
-    for (const PlanItem& item :
-         stage->table.traits.stands_in_bed(scene) ? stage->bed_effects : stage->box_effects)
-      if (!has(item.name) && std::ranges::find(plan.absent, item.name) == plan.absent.end())
-        plan.absent.push_back(item.name);
   return plan;
 }
 

@@ -19,6 +19,7 @@
 #include "run/stages.hpp"
 #include "run/start.hpp"
 #include "sizes/cut_above.hpp"
+#include "work/counted_container.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
@@ -119,8 +120,9 @@ class Run {
     } else {
       frame_ = frame_for(scene_, plan_.domain, *plan_.radii);
       work.domain = to_local(plan_.domain, frame_);
-      work.container = packing_.container;
-      if (!work.container) work.container = make_container(work.domain, scene_.walls, frame_.resolution);
+      std::shared_ptr<const Container> made = packing_.container;
+      if (!made) made = make_container(work.domain, scene_.walls, frame_.resolution);
+      work.container = walls_ = std::make_shared<CountedContainer>(std::move(made));
       volume = std::pow(frame_.scale, 3) * work.container->volume();
       if (!std::isfinite(source.radii.max()))
         source.cut = tail_cut(scene_, plan_.domain, source.radii, packing_.container);
@@ -166,7 +168,7 @@ class Run {
   }
 
   /// All spheres of the sequence, in a box of the plan's proportions, with the edges that the scene asks for.
-  void put_into_box(Work& work) const {
+  void put_into_box(Work& work) {
     const Box& box = std::get<Box>(plan_.domain);
     work.edges /= frame_.scale;
     work.domain = Box{box.corner / frame_.scale, work.edges, box.periodic};
@@ -175,7 +177,8 @@ class Run {
       work.walls.flip();
     }
     if (any_in_bed_) {
-      work.container = make_container(work.domain, scene_.walls, frame_.resolution);
+      work.container = walls_ =
+          std::make_shared<CountedContainer>(make_container(work.domain, scene_.walls, frame_.resolution));
       work.target_edges = work.edges;
       work.fill_task = fill_task_of(plan_);
       if (table_of(scene_.stages.front()).traits.stands_in_bed(scene_)) return;
@@ -252,7 +255,6 @@ class Run {
     for (double& r : spheres.r) r *= frame_.scale;
     if (work.stands_in_bed()) {
       wrap(spheres, packing_.domain);
-      effects_["walls"] += work.bed().wall_queries();
     } else {
       const Vector<dynamic> edges = work.edges * frame_.scale;
       packing_.domain = periodic_box(edges, work.walls);
@@ -260,6 +262,7 @@ class Run {
     }
     state_edges();
     packing_.size_scale = work.size_scale;
+    if (walls_ && walls_->asked().calls > 0) effects_["walls"] += walls_->asked();
     packing_.effects = effects_.all();
   }
 
@@ -293,7 +296,8 @@ class Run {
   const Stopwatch watch_;
   EffectLog effects_;
   Frame frame_;
-  std::unique_ptr<Container> of_scene_;  // where a sphere is to be placed exactly
+  std::shared_ptr<const CountedContainer> walls_;  // null where no stage asks any
+  std::unique_ptr<Container> of_scene_;            // where a sphere is to be placed exactly
 };
 
 }  // namespace

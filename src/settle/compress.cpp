@@ -66,6 +66,7 @@ class GlobalSweeps {
     }
   }
 
+  const Made made_{"compression"};
   Bed& bed_;
   Mover mover_;
   Vector<3> direction_;
@@ -164,10 +165,6 @@ std::vector<schema::Key> compression_keys() {
                  {0.01, 10})};
 }
 
-PlanItem compressing(std::string when) {
-  return {"compression", std::move(when), "about 0.5 µs a sphere and sweep"};
-}
-
 template <>
 const StageEntry& entry_of<Compress>() {
   static const StageEntry entry = {
@@ -176,7 +173,8 @@ const StageEntry& entry_of<Compress>() {
                                       .keys = compression_keys()},
                                      {.in_bed = true, .only_moves = true}),
       .act_in_bed = act(compress),
-      .bed_effects = {neighbor_lists, compressing("to first touch along the global and local directions")},
+      .may_bring = {"neighbour lists", "compression"},
+      .effects = of_options(effects_of_compression),
       .require = of_options(+[](const Compress& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), o.direction);
       })};

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "bernal/settle/refill.hpp"
 #include "bernal/settle/shake.hpp"
 #include "work/stage_entry.hpp"
 
@@ -31,7 +32,11 @@ StageEnd shake(Work& work, const Shake& options);
 void require_support(const Boundary<3>& boundary, const Vector<3>& direction);
 /// What every stage has that ends with a compression: its keys, and its item of the plan.
 std::vector<schema::Key> compression_keys();
-PlanItem compressing(std::string when);
+
+/// What they bring with them, with their prices.
+std::vector<PlanItem> effects_of_compression(const Compress& options, const Outlook& outlook);
+std::vector<PlanItem> effects_of_shaking(const Shake& options, const Outlook& outlook);
+std::vector<PlanItem> effects_of_refilling(const Refill& options, const Outlook& outlook);
 
 /// One sweep: every sphere slides along a random direction of its own, normalised
 /// `pull` + `tilt`·(random unit vector, its part along `across` removed if that is not zero), at most

@@ -176,8 +176,8 @@ const StageEntry& entry_of<Insert>() {
                         between(0, 1))}},
            {.in_bed = true, .reaches = Reaches::insertion}),
        .act_in_bed = act(insert),
-       .bed_effects = {{"insertion", "one sphere after the other, where it overlaps nothing",
-                        "O(1) a trial"}},
+       .may_bring = {"insertion"},
+       .effects = of_options(effects_of_insertion),
        .reached = of_options(+[](const Insert& options) { return options.packing_fraction; })};
   return entry;
 }

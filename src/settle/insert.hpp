@@ -1,6 +1,6 @@
 #pragma once
 #include "bernal/settle/insert.hpp"
-#include "work/work.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 
@@ -35,5 +35,8 @@ StageEnd insert_largest_first(Work& work, double densest_so_far = 0);
 /// hardly any are left, these are inserted, and one that has no place is passed over. Returns how the two
 /// ended.
 StageEnd insert_what_else_fits(Work& work, StageEnd end);
+
+/// What it brings with it, with its price.
+std::vector<PlanItem> effects_of_insertion(const Insert& options, const Outlook& outlook);
 
 }  // namespace bernal

@@ -25,6 +25,7 @@ constexpr double least_trials = 3e5;
 /// wall stays where it is.
 std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
   const EffectTimer timer(work.effects["refilling"]);
+  const Made made("refilling");
   const Bed& bed = work.bed();
   const Container& container = bed.container();
   Random random = work.random(Stream::refill);
@@ -137,10 +138,8 @@ const StageEntry& entry_of<Refill>() {
                              inside(&Shake::compress, compression_keys()))))},
           {.in_bed = true, .reaches = Reaches::settled}),
       .act_in_bed = act(refill),
-      .bed_effects = {{"refilling", "random probes of the free space", "O(1) a probe"},
-                      neighbor_lists,
-                      compressing("after each refilling"),
-                      {"shaking", "after each refilling", "about 0.5 µs a sphere and sweep"}},
+      .may_bring = {"refilling", "neighbour lists", "compression", "shaking"},
+      .effects = of_options(effects_of_refilling),
       .require = of_options(+[](const Refill& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), o.shake.compress.direction);
       })};

@@ -44,10 +44,8 @@ const StageEntry& entry_of<Shake>() {
                inside(&Shake::compress, compression_keys()))},
           {.in_bed = true, .only_moves = true}),
       .act_in_bed = act(shake),
-      .bed_effects = {neighbor_lists,
-                      {"shaking", "local directions across the global one",
-                       "about 0.5 µs a sphere and sweep"},
-                      compressing("after each round")},
+      .may_bring = {"neighbour lists", "shaking", "compression"},
+      .effects = of_options(effects_of_shaking),
       .require = of_options(+[](const Shake& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), o.compress.direction);
       })};

@@ -81,12 +81,12 @@ class Crowd {
 
   double sweeps() const { return sweeps_; }
   Effect lists_built() const { return ground_.lists_built(); }
-  std::uint64_t wall_queries() const { return ground_.wall_queries(); }
 
  private:
   void measure();
   std::vector<std::uint32_t> most_squeezed(std::size_t count) const;
 
+  const Made made_{"relaxation"};
   Ground ground_;
   Spheres<D> spheres_;
   std::vector<float> squeeze_;  // of each sphere the sum of its squared overlap ratios, when last measured

@@ -34,7 +34,6 @@ void require_resolution(double resolution) {
 void ContainerGround::place(const Spheres<3>& spheres) {
   if (packing_) {
     lists_built_ += packing_->lists_built();
-    wall_queries_ += packing_->wall_queries();
   }
   packing_ = std::make_unique<SoftPacking>(spheres, *container_, soft_kernels().front());
   if (margin_ == 0) {

@@ -48,7 +48,6 @@ class ContainerGround {
                                    Random& random) const;
 
   Effect lists_built() const { return lists_built_ + packing_->lists_built(); }
-  std::uint64_t wall_queries() const { return wall_queries_ + packing_->wall_queries(); }
 
  private:
   const Container* container_;
@@ -56,7 +55,6 @@ class ContainerGround {
   std::unique_ptr<SoftPacking> packing_;
   double margin_ = 0;
   Effect lists_built_;
-  std::uint64_t wall_queries_ = 0;
 };
 
 /// What a `Crowd` stands on in a box of 1 to 8 dimensions that repeats itself along all axes or along those

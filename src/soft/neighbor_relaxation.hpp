@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
+#include "core/made.hpp"
 #include "soft/fixed_point_grid.hpp"
 #include "work/effect_log.hpp"
 
@@ -74,6 +75,7 @@ class NeighborRelaxation {
   Floats away(const Place& from, const Place& to) const;
   __m128 squares_of(const Place& from, Id a, Id b, Id c, Id d) const;
 
+  Made made_{"relaxation"}, lists_made_{"neighbour lists"};
   std::size_t count_;
   Vector<D> edges_;
   Floats scale_{}, inverse_scale_{};  // of a unit of the coordinates
@@ -94,7 +96,7 @@ class NeighborRelaxation {
   bool stale_ = true;
   double wear_ = 0.9;
   int age_ = 0;  // of the lists, in sweeps
-  Effect lists_built_;
+  Effect lists_built_{"neighbour lists", 0, 0};
 };
 
 }  // namespace bernal

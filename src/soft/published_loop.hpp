@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bernal/core/random.hpp"
+#include "core/made.hpp"
 #include "soft/linked_cells.hpp"
 
 namespace bernal {
@@ -129,6 +130,7 @@ class PublishedLoop {
     }
   }
 
+  const Made made_{"relaxation"};
   bool settle_;
   Random random_;
   double r_max_;

@@ -163,18 +163,6 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
   return end;
 }
 
-std::vector<PlanItem> effects_in_box(const Relax& options, const FillTask&) {
-  const auto relaxation = [](const char* why) {
-    return PlanItem{"relaxation", why, "some 1,000 sweeps of O(N)"};
-  };
-  if (options.method == RelaxMethod::fast)
-    return {neighbor_lists, relaxation("overlapping spheres push each other apart while the box grows")};
-  return {
-      relaxation(options.method == RelaxMethod::reference
-                     ? "the published loop while the box grows; spheres found by linked lists in cells"
-                     : "the published loop while the box grows; spheres found in arrays sorted by cells")};
-}
-
 template <int D>
 StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
   const bool engine_works = D > 3 || !work.walls.empty() || SoftEngine<D>::is_wide(spheres, edges);
@@ -294,17 +282,8 @@ const StageEntry& entry_of<Relax>() {
           traits),
       .act_in_bed = act(relax_in_container),
       .act_in_box = act(relax),
-      .bed_effects = {{"insertion", "random places, where so few are asked for that these are enough",
-                       "O(1) a trial"},
-                      neighbor_lists,
-                      {"relaxation",
-                       "overlapping spheres and walls push; what is stuck is stirred or put into "
-                       "holes",
-                       "some 1,000 sweeps of O(N)"}},
-      .box_effects = {neighbor_lists,
-                      {"relaxation", "overlapping spheres push each other apart while the box grows",
-                       "some 1,000 sweeps of O(N)"}},
-      .chosen_effects = of_options(effects_in_box),
+      .may_bring = {"insertion", "neighbour lists", "relaxation", "polish"},
+      .effects = of_options(effects_of_relaxation),
       .require = [](const void*, const Domain& container, double smallest_radius, const FillTask& task) {
         const bool is_dilute = task.packing_fraction > 0 && task.packing_fraction <= dilute * task.attainable;
         if (!is_dilute)

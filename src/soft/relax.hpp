@@ -2,12 +2,19 @@
 #include <cstddef>
 
 #include "bernal/soft/relax.hpp"
-#include "work/work.hpp"
+#include "work/stage_entry.hpp"
 
 namespace bernal {
 
 /// Spheres that fill less than this share of what is likely to fit find places free of overlap by themselves.
 inline constexpr double dilute = 0.3;
+
+/// What it brings with it, with its price.
+std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook& outlook);
+/// Lists and relaxation that take so long together.
+std::vector<PlanItem> effects_of_pushing(double seconds, const Outlook& outlook, std::string what);
+/// What filling a box by relaxation is expected to take.
+double seconds_of_filling_box(const Outlook& outlook);
 
 /// Sweeps between two growths of the box: `options.period`, or T = alpha (log10 N)², rounded, at least 1
 /// (equation 6; figure 5 holds the two against each other).

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/made.hpp"
 #include "soft/soft_kernels.hpp"
 
 namespace bernal {
@@ -50,6 +51,7 @@ class SoftLists {
   std::vector<Place> sweep_order(const std::vector<SoftSphere>& compact, const std::array<double, 3>& edges);
   void find_neighbors(const std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges);
 
+  Made made_{"relaxation"}, lists_made_{"neighbour lists"};
   const SoftKernels& kernels_;
   float skin_;
   float largest_;  // radius

@@ -85,8 +85,6 @@ class SoftPacking {
 
   /// How often lists were built.
   const Effect& lists_built() const { return lists_built_; }
-  /// How often the container was asked about its wall.
-  std::uint64_t wall_queries() const { return walls_ ? walls_->queries() : 0; }
 
  private:
   /// Radii become up to `most` times these; places are still to be set.
@@ -113,7 +111,7 @@ class SoftPacking {
   std::vector<float> radii_;          // as given, by id
   bool stale_ = true;                 // the lists
   std::vector<SoftSphere> built_at_;  // where they were when the lists were built
-  Effect lists_built_;
+  Effect lists_built_{"neighbour lists", 0, 0};
   double moved_ = 0;  // largest move since then, when it was last looked at
   double wear_ = 0.9;
   int age_ = 0;       // of the lists, in sweeps, when it was last looked at

@@ -79,7 +79,6 @@ void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<
     if (!(length > 0)) continue;
     const View& view = views_[ids[p]];
     if (length < view.clearance - way(view.at, from).norm()) continue;
-    ++queries_;
     const double free = container_.first_contact(from, 0, move / length, length);
     if (free < length) shorten(spheres[p], built_at[p], (1 - kept) * free / length);
   }
@@ -91,7 +90,6 @@ bool SoftWalls::look(const Vector<3>& at, double r, double skin, View& view) con
   if (view.clearance - moved >= near) return false;
   if (view.reach - moved >= near)
     return (view.is_fine ? view.clearance : view.pieces.front().distance) - moved < near;
-  ++queries_;
   view.at = at;
   view.pieces.clear();
   view.is_fine = false;
@@ -200,7 +198,6 @@ double SoftWalls::look_through(const NearSphere& near, double r, std::vector<Wal
 /// The same of a sphere at a fine wall, where the container knows.
 double SoftWalls::ask(NearSphere& near, double r, std::vector<WallContact>& contacts) const {
   if (near.beyond - near.way >= r) return near.beyond - near.way;
-  ++queries_;
   container_.contacts(near.last, r, contacts);
   const double nearest =
       contacts.empty() ? container_.clearance_within(near.last, r + skin_) : contacts.front().distance;
@@ -260,7 +257,6 @@ void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spher
     if (length <= (1 - kept) * push.free[near.lane]) continue;
     const Vector<3>& c = near.last;
     if (views_[near.id].is_fine) {
-      ++queries_;
       const double free = container_.first_contact(c, 0, move / length, length);
       if (free < length) shorten(now, before, (1 - kept) * free / length);
       continue;

@@ -1,11 +1,11 @@
 #pragma once
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <variant>
 #include <vector>
 
 #include "bernal/domain/container.hpp"
+#include "core/made.hpp"
 #include "kernels/closest_point.hpp"
 #include "soft/soft_kernels.hpp"
 
@@ -61,9 +61,6 @@ class SoftWalls {
   /// Shortens the moves of the group from `push.before` so that no centre passes the wall.
   void guard(std::size_t group, const WallPush& push, SoftSphere* spheres) const;
 
-  /// How often the container was asked.
-  std::uint64_t queries() const { return queries_; }
-
  private:
   static constexpr std::uint32_t run = 32;  // pieces that share an entry of least_until_
   struct Piece {
@@ -101,6 +98,7 @@ class SoftWalls {
   double ask(NearSphere&, double r, std::vector<WallContact>& contacts) const;
   bool look(const Vector<3>& at, double r, double skin, View& view) const;
 
+  const Made made_{"walls"};
   const Container& container_;
   const bool repeats_;  // along some axis
   Vector<3> corner_, unit_;
@@ -113,7 +111,6 @@ class SoftWalls {
   std::vector<WallPush> ahead_;       // of every group, or none
   std::vector<float> until_;          // no piece is nearer to the centre than this less NearSphere::way
   std::vector<float> least_until_;  // of every so many pieces of a sphere: a fine mesh has thousands of them
-  mutable std::atomic<std::uint64_t> queries_ = 0;
 };
 
 }  // namespace bernal

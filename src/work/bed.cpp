@@ -77,7 +77,6 @@ bool Bed::fits_between_spheres(const Vector<3>& c, double r) const {
 
 bool Bed::fits(const Vector<3>& c, double r) const {
   if (!fits_between_spheres(c, r)) return false;
-  const EffectTimer wall_timer(walls_);
   std::optional<EffectTimer> exact_timer;
   if (Effect* exact = exact_walls()) exact_timer.emplace(*exact);
   return container_.contains(c, r + skin_);
@@ -184,7 +183,6 @@ double Bed::enclose(double buffer) {
   const std::size_t blocks = (n + block_size - 1) / block_size;
   std::vector<std::vector<Id>> near_spheres(blocks);
   std::vector<std::vector<NearFacet>> near_facets(blocks);
-  std::vector<Effect> walls(blocks);
   box_centers_.resize(n);
   first_neighbor_.assign(n + 1, 0);
   first_facet_.assign(n + 1, 0);
@@ -213,10 +211,7 @@ double Bed::enclose(double buffer) {
       if (far_from_wall_[i] - (ball.center - far_from_wall_at_[i]).norm() > reach) continue;
       const double wide_reach = reach + 2 * buffer;
       facets.clear();
-      {
-        const EffectTimer wall_timer(walls[block]);
-        container_.facets_near(ball.center, wide_reach, facets);
-      }
+      container_.facets_near(ball.center, wide_reach, facets);
       far_from_wall_[i] = facets.empty() ? wide_reach : facets.front().distance;
       far_from_wall_at_[i] = ball.center;
       for (const NearFacet& f : facets) {
@@ -228,10 +223,6 @@ double Bed::enclose(double buffer) {
   });
   concatenate(near_spheres, first_neighbor_, neighbors_);
   concatenate(near_facets, first_facet_, facets_);
-  for (const Effect& w : walls) {
-    walls_.calls += w.calls;
-    walls_.seconds += w.seconds;
-  }
   return buffer;
 }
 

@@ -100,9 +100,6 @@ class Bed {
     return {neighbors_.data() + first_neighbor_[i], first_neighbor_[i + 1] - first_neighbor_[i]};
   }
 
-  /// What asking the container cost: near facets and whether spheres may appear.
-  const Effect& wall_queries() const { return walls_; }
-
   /// How many neighbours the lists hold for a sphere, on average.
   double mean_neighbors() const {
     return balls_.empty() ? 0 : static_cast<double>(neighbors_.size()) / static_cast<double>(size());
@@ -127,6 +124,7 @@ class Bed {
 
   const Container& container_;
   EffectLog& effects_;
+  const Made made_{"walls"};
   const bool repeats_;  // along some axis
   double skin_;
   double longest_buffer_;
@@ -136,7 +134,6 @@ class Bed {
   CellGrid<3> grid_;
   double sum_of_radii_ = 0;
   double sum_of_volumes_ = 0;
-  mutable Effect walls_{"walls", 0, 0};  // one thread asks `fits`
 
   double buffer_ = 0;
   std::vector<Vector<3>> box_centers_;

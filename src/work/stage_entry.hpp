@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -9,16 +10,31 @@
 
 namespace bernal {
 
+/// What a stage is expected to meet: all that the price of its effects depends on.
+struct Outlook {
+  FillTask task;
+  bool in_bed = false;
+  bool placed = false;     ///< stages before it have given all spheres places
+  double filled = 0;       ///< packing fraction in the bed that stages before it are likely to leave
+  double spheres = 0;      ///< expected in the end
+  double aim = 0;          ///< packing fraction, expected in the end
+  double spread = 1;       ///< mean of r³ over that of r, cubed: 1 for equal spheres
+  double width = 0;        ///< shortest edge in largest diameters, but for one in 10,000
+  double at_walls = 0;     ///< share of the spheres that touch or nearly touch a wall
+  double wall_query = 0;   ///< seconds that a question to the walls takes; 0 without walls
+  bool is_filled = false;  ///< as many as can be placed are asked for, at any price
+};
+
 /// All that there is to know of a stage. Each defines its own beside its act, as entry_of<Its options>().
 struct StageEntry {
   StageTable table;
   /// What it does on spheres that stand in a bed, and in a box; empty where it cannot.
   std::function<StageEnd(const void*, Work&)> act_in_bed = {}, act_in_box = {};
-  /// Effects that it may bring with it there, for `Plan::items`.
-  std::vector<PlanItem> bed_effects = {}, box_effects = {};
-  /// Those of box_effects that the plan calls for, where that is a choice. Throws Error{bad_argument}
+  /// Names of all effects that it may bring with it anywhere: those that a plan does not call for are absent.
+  std::vector<std::string> may_bring = {};
+  /// Those that it brings with it there, with what they are expected to cost. Throws Error{bad_argument}
   /// where the options ask for what cannot be done.
-  std::function<std::vector<PlanItem>(const void*, const FillTask&)> chosen_effects = {};
+  std::function<std::vector<PlanItem>(const void*, const Outlook&)> effects = {};
   /// In a bed: throws Error{bad_scene} where a container, in the packer's coordinates, is none for it and
   /// spheres of that radius.
   std::function<void(const void*, const Domain&, double smallest_radius, const FillTask&)> require = {};
@@ -31,8 +47,24 @@ struct StageEntry {
 template <class Options>
 const StageEntry& entry_of();
 
-inline const PlanItem neighbor_lists{"neighbour lists", "of all spheres together, from the background grid",
-                                     "O(N) an iteration"};
+/// Lists of neighbours that are a part of what another effect costs.
+inline PlanItem neighbor_lists(double seconds, double bytes) {
+  return {.name = "neighbour lists",
+          .what = "of all spheres together, from the background grid",
+          .cost = "O(N) an iteration",
+          .seconds = seconds,
+          .bytes = bytes,
+          .part = true};
+}
+
+/// So many questions of each sphere to the walls, a part of what another effect costs.
+inline PlanItem questions_to_walls(double each, const Outlook& outlook) {
+  return {.name = "walls",
+          .what = {},
+          .cost = {},
+          .seconds = each * outlook.spheres * outlook.wall_query,
+          .part = true};
+}
 
 /// The part of an entry that its scenes need.
 template <class Options>

@@ -1,7 +1,6 @@
 #pragma once
 #include <algorithm>
 #include <filesystem>
-#include <string_view>
 #include <vector>
 
 #include "bernal/scene/read_scene.hpp"
@@ -27,13 +26,6 @@ inline Scene small(Scene scene, std::int64_t count = 300) {
                   .fill = false,
                   .where = scene.target.where};
   return scene;
-}
-
-/// Of effects that are single events, shorter than a look at the clock.
-inline bool is_only_counted(std::string_view effect) {
-  for (const char* event : {"collisions", "reflections", "neighbour shells", "trial places", "walls"})
-    if (effect == event) return true;
-  return false;
 }
 
 }  // namespace bernal::testing

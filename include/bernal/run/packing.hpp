@@ -26,9 +26,16 @@ struct PlanItem {
   std::string name;  ///< "walls", "neighbour lists", "compress", …
   std::string what;  ///< one phrase
   std::string cost;  ///< "O(N)", "O(N log T)", …
+  /// What it is expected to cost a run on one thread, by the stages' own models: three times in four within a
+  /// factor of two, see tests/bench/estimates_table. 0 where that is nothing or `if_needed`.
+  double seconds = 0, bytes = 0;
+  bool part = false;       ///< its seconds are among those of another line, as in `Packing::effects`
+  bool if_needed = false;  ///< it runs only where the others do not reach what is asked for
 };
 
-/// What one effect (insertion, compression, walls, neighbour lists, …) cost in a run.
+/// What one effect (insertion, compression, walls, neighbour lists, …) cost in a run. Seconds of one may be
+/// among those of another; those of walls are summed over threads. Of single events (collisions, questions to
+/// walls, …) one in 64 is timed and the sum scaled.
 struct Effect {
   std::string name;
   std::uint64_t calls = 0;

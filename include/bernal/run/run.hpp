@@ -39,7 +39,8 @@ struct Plan {
   /// What the stages are likely to reach, and what the result is likely to be: less, where less is asked for.
   double attainable_packing_fraction = 0, expected_packing_fraction = 0;
   double expected_count = 0;
-  double expected_memory_bytes = 0;
+  /// Of the run alone, on one thread; the most that it holds at a time, and what the process takes anyway.
+  double expected_seconds = 0, expected_memory_bytes = 0;
   bool places_expected = false;     ///< some stage ends with as many spheres as are expected to fit
   std::vector<PlanItem> items;      ///< what would run, in order
   std::vector<std::string> absent;  ///< effects that the scene does not call for and that are not built

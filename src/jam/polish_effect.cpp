@@ -1,0 +1,25 @@
+#include "jam/polish.hpp"
+
+#include <cmath>
+
+namespace bernal {
+namespace {
+
+/// Steps of the solver grow with the number of spheres; each is some sweeps over all contacts.
+constexpr double seconds_of_thousand = 7, power_of_count = 1.5, bytes_a_sphere = 1300;
+/// Spheres that come loose first have a longer way to go.
+constexpr double factor_in_bed = 1.5;
+
+}  // namespace
+
+PlanItem polishing(const Outlook& outlook) {
+  return {.name = "polish",
+          .what = "contacts are closed by minimising an energy, until they just hold the spheres",
+          .cost = "some 10,000 products with the Hessian, O(N) each",
+          .seconds = seconds_of_thousand * std::pow(outlook.spheres / 1000, power_of_count) *
+                     (outlook.in_bed ? factor_in_bed : 1),
+          .bytes = bytes_a_sphere * outlook.spheres,
+          .part = !outlook.in_bed};
+}
+
+}  // namespace bernal

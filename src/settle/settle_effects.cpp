@@ -1,0 +1,116 @@
+// What insertion, compression, shaking and refilling bring with them, and what that costs: one core, seconds
+// and bytes. The constants are fitted to runs of 500 to 30,000 spheres; tests/bench/ESTIMATES.md holds the
+// estimates against runs.
+#include <algorithm>
+#include <cmath>
+
+#include "settle/compress.hpp"
+#include "settle/insert.hpp"
+#include "work/stage_entry.hpp"
+
+namespace bernal {
+namespace {
+
+/// A place that is tried. So many are for one sphere: 1 / (1 - phi / limit)^power, where phi is filled, at
+/// most the attempts that the stage allows.
+constexpr double seconds_a_trial = 0.35e-6, limit_of_insertion = 0.385, power_of_insertion = 1.2;
+/// A sphere's way down, once and for all; that of a bed that has settled before; and what local directions
+/// add. A round of shaking without the compression after it. A probe.
+constexpr double first_compression = 50e-6, later_compression = 7e-6, of_tilt = 0.45, shaking_round = 6e-6,
+                 seconds_a_probe = 0.12e-6;
+/// Rounds of refilling until 1,000 spheres have settled densely, how they become more with their number, and
+/// fewer where less is asked for.
+constexpr double rounds_until_full = 10, rounds_by_count = 0.2, rounds_by_share = 4;
+/// To walls, of a sphere: while it is inserted, sinks for the first time, and in each compression after that.
+constexpr double questions_of_insertion = 2, questions_of_first = 18, questions_of_later = 1.5;
+constexpr double share_of_lists = 0.25;
+constexpr double bytes_a_sphere = 120, bytes_of_lists = 190, bytes_a_probe = 40;
+/// Packing fraction of what has settled.
+constexpr double settled = 0.57;
+
+double compression(const Compress& options, const Outlook& outlook, double each) {
+  return outlook.spheres * each * (options.tilt > 0 ? 1 + of_tilt : 1);
+}
+
+std::vector<PlanItem> effects_of_compressing(double sweeping, double questions, std::string when,
+                                             const Outlook& outlook) {
+  const PlanItem walls = questions_to_walls(questions, outlook);
+  const double seconds = sweeping + walls.seconds;
+  return {walls,
+          neighbor_lists(share_of_lists * seconds, bytes_of_lists * outlook.spheres),
+          {.name = "compression",
+           .what = std::move(when),
+           .cost = "about 0.5 µs a sphere and sweep",
+           .seconds = seconds,
+           .bytes = bytes_a_sphere * outlook.spheres}};
+}
+
+PlanItem shaking(double rounds, std::string what, const Outlook& outlook) {
+  return {.name = "shaking",
+          .what = std::move(what),
+          .cost = "about 0.5 µs a sphere and sweep",
+          .seconds = rounds * shaking_round * outlook.spheres};
+}
+
+}  // namespace
+
+double seconds_of_insertion(double phi, double spheres, double attempts) {
+  const double crowded = std::max(1e-3, 1 - phi / limit_of_insertion);
+  return spheres * seconds_a_trial * std::min(attempts, std::pow(crowded, -power_of_insertion));
+}
+
+std::vector<PlanItem> effects_of_insertion(const Insert& options, const Outlook& outlook) {
+  const double phi = std::min(options.packing_fraction, outlook.aim);
+  const double spheres = outlook.spheres * phi / outlook.aim;
+  const PlanItem walls = questions_to_walls(questions_of_insertion, outlook);
+  const bool on_lattice = options.layout == Layout::lattice;
+  return {walls,
+          {.name = "insertion",
+           .what = on_lattice ? "sites of a lattice, one sphere after the other"
+                              : "random places, one sphere after the other",
+           .cost = on_lattice ? "O(1) a site" : "O(1) a trial",
+           .seconds = walls.seconds + (on_lattice ? spheres * seconds_a_trial
+                                                  : seconds_of_insertion(phi, spheres, options.attempts)),
+           .bytes = bytes_a_sphere * outlook.spheres}};
+}
+
+std::vector<PlanItem> effects_of_compression(const Compress& options, const Outlook& outlook) {
+  Outlook now = outlook;
+  now.spheres *= std::min(1.0, outlook.filled / outlook.aim);
+  return effects_of_compressing(compression(options, now, first_compression), questions_of_first,
+                                "to first touch along the global and local directions", now);
+}
+
+std::vector<PlanItem> effects_of_shaking(const Shake& options, const Outlook& outlook) {
+  Outlook now = outlook;
+  now.spheres *= std::min(1.0, outlook.filled / outlook.aim);
+  std::vector<PlanItem> items =
+      effects_of_compressing(options.rounds * compression(options.compress, now, later_compression),
+                             options.rounds * questions_of_later, "after each round of shaking", now);
+  items.insert(items.begin() + 2, shaking(options.rounds, "local directions across the global one", now));
+  return items;
+}
+
+std::vector<PlanItem> effects_of_refilling(const Refill& options, const Outlook& outlook) {
+  const double share = outlook.is_filled ? 1 : std::min(1.0, outlook.aim / settled);
+  const double rounds = std::min(static_cast<double>(options.max_rounds),
+                                 1 + rounds_until_full * std::pow(outlook.spheres / 1000, rounds_by_count) *
+                                         std::pow(share, rounds_by_share));
+  const double probes = std::min(4e6, 1000 + options.probes * outlook.spheres / outlook.aim);
+  std::vector<PlanItem> items = {{.name = "refilling",
+                                  .what = "random probes of the free space",
+                                  .cost = "O(1) a probe",
+                                  .seconds = probes * seconds_a_probe * (1 + rounds),
+                                  .bytes = bytes_a_probe * probes}};
+  const double each = compression(options.shake.compress, outlook, later_compression);
+  for (PlanItem& item : effects_of_compressing(rounds * each * (1 + options.shake.rounds),
+                                               rounds * (1 + options.shake.rounds) * questions_of_later,
+                                               "after each refilling", outlook))
+    items.push_back(item);
+  items.push_back(shaking(rounds * options.shake.rounds, "after each refilling", outlook));
+  if (outlook.placed && !outlook.is_filled && outlook.filled >= outlook.aim)
+    for (PlanItem& item : items) item.if_needed = true, item.seconds = 0;
+  return items;
+}
+
+}  // namespace bernal

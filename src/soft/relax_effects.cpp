@@ -1,0 +1,124 @@
+// What relaxation brings with it, and what that costs: one core, seconds and bytes. The constants are fitted
+// to runs of 300 to 30,000 spheres; tests/bench/estimates_table holds the estimates against runs.
+#include <algorithm>
+#include <cmath>
+
+#include "jam/polish.hpp"
+#include "soft/relax.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr double microsecond = 1e-6;
+
+/// A sphere and sweep against that of three dimensions, by dimension; and where the box is too narrow for
+/// sorted arrays, or has walls, and spheres are swept one after the other, as they are from four dimensions
+/// on.
+constexpr double by_dimension[] = {12, 0.55, 1, 5.5, 13, 17, 22, 28};
+constexpr double one_by_one = 3.5, narrow = 4;
+/// Sizes that differ make longer lists: the power of their spread that a sphere costs more.
+constexpr double cost_of_spread = 1, cost_of_spread_in_bed = 1.5;
+/// From so many spheres on the memory has to be waited for.
+constexpr double many = 1e5, cost_of_many = 0.4;
+/// A box that grows, for each sphere and (log10 N)²: at the start and the end, and for each unit of alpha.
+constexpr double cycles_at_ends = 0.29 * microsecond, cycles_of_alpha = 0.57 * microsecond;
+constexpr double most_in_cycles = 1e4;
+/// Spheres that start in a box they soon fit into, of that.
+constexpr double share_in_a_loose_box = 0.1, loose_box = 0.9;
+/// The published loop against the fast one.
+constexpr double reference_factor = 70;
+/// Of a domain of fixed size, for each sphere, h being what is asked for over what is attainable:
+/// first + difficulty / (limit - h)².
+struct Hardness {
+  double first, difficulty, limit, most;
+  double of(double h) const { return first + difficulty / std::pow(limit - std::min(h, most), 2); }
+};
+constexpr Hardness between_walls{2, 0.25, 1.093, 1.03}, in_box{2, 0.1, 1.055, 1.02};
+/// As many as can be placed: those for which there is no room are tried, too.
+constexpr double factor_of_filling = 8;
+/// Where all are at walls, they have so many times more to try.
+constexpr double cost_of_walls = 2;
+/// Lists, of the whole.
+constexpr double share_of_lists = 0.2;
+/// To walls, of a sphere.
+constexpr double questions = 6;
+constexpr double bytes_a_sphere = 130, bytes_of_lists = 130;
+
+double dimension_factor(const Outlook& outlook) {
+  const int dimension = outlook.task.dimension;
+  const bool sorted =
+      dimension != 2 && dimension != 3 ? true : !outlook.task.has_walls && outlook.width > narrow;
+  return by_dimension[static_cast<std::size_t>(dimension - 1)] * (sorted ? 1 : one_by_one) *
+         std::pow(std::max(1.0, outlook.spheres / many), cost_of_many);
+}
+
+double seconds_in_growing_box(const Relax& options, const Outlook& outlook) {
+  const double decades = std::log10(std::clamp(outlook.spheres, 2.0, most_in_cycles));
+  const double cycles = cycles_at_ends + cycles_of_alpha * options.alpha;
+  const double loose =
+      outlook.task.packing_fraction > 0 && outlook.task.packing_fraction < loose_box * outlook.task.attainable
+          ? share_in_a_loose_box
+          : 1;
+  const double method = options.method == RelaxMethod::fast ? 1 : reference_factor;
+  return method * loose * outlook.spheres * decades * decades * cycles * dimension_factor(outlook) *
+         std::pow(outlook.spread, cost_of_spread);
+}
+
+double seconds_in_bed(const Outlook& outlook) {
+  const double hardness = outlook.aim / outlook.task.attainable;
+  return microsecond * outlook.spheres * between_walls.of(hardness) *
+         std::pow(outlook.spread, cost_of_spread_in_bed) * (1 + cost_of_walls * outlook.at_walls) *
+         (outlook.is_filled ? factor_of_filling : 1);
+}
+
+}  // namespace
+
+std::vector<PlanItem> effects_of_pushing(double seconds, const Outlook& outlook, std::string what) {
+  return {neighbor_lists(share_of_lists * seconds, bytes_of_lists * outlook.spheres),
+          {.name = "relaxation",
+           .what = std::move(what),
+           .cost = "some 1,000 sweeps of O(N)",
+           .seconds = seconds,
+           .bytes = bytes_a_sphere * outlook.spheres}};
+}
+
+double seconds_of_filling_box(const Outlook& outlook) {
+  return microsecond * outlook.spheres * in_box.of(outlook.aim / outlook.task.attainable) *
+         dimension_factor(outlook) * std::pow(outlook.spread, cost_of_spread);
+}
+
+std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook& outlook) {
+  std::vector<PlanItem> items;
+  if (outlook.in_bed) {
+    const PlanItem walls = questions_to_walls(questions, outlook);
+    const bool is_dilute =
+        outlook.task.packing_fraction > 0 && outlook.aim <= dilute * outlook.task.attainable;
+    items = effects_of_pushing(is_dilute ? 0 : walls.seconds + seconds_in_bed(outlook), outlook,
+                               "spheres and walls push; what is stuck is stirred or put into holes");
+    items.insert(items.begin(), {.name = "insertion",
+                                 .what = is_dilute ? "random places, which are enough for so few"
+                                                   : "random places for what is left over",
+                                 .cost = "O(1) a trial",
+                                 .seconds = is_dilute ? 2 * microsecond * outlook.spheres : 0,
+                                 .if_needed = !is_dilute});
+    items.push_back(walls);
+    for (PlanItem& item : items)
+      if (item.name != "insertion" && item.name != "walls" && is_dilute) item.if_needed = true;
+  } else {
+    items = effects_of_pushing(seconds_in_growing_box(options, outlook), outlook,
+                               options.method == RelaxMethod::fast
+                                   ? "spheres push each other apart while the box grows"
+                               : options.method == RelaxMethod::reference
+                                   ? "the published loop while the box grows, on linked lists in cells"
+                                   : "the published loop while the box grows, on arrays sorted by cells");
+    if (options.method != RelaxMethod::fast) items.erase(items.begin());  // it looks into cells
+  }
+  if (options.polish > 0) {
+    const PlanItem polish = polishing(outlook);
+    if (polish.part) items.back().seconds += polish.seconds;
+    items.push_back(polish);
+  }
+  return items;
+}
+
+}  // namespace bernal
