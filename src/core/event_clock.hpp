@@ -21,14 +21,31 @@ class EventClock {
     return seconds > clock() ? seconds - clock() : 0.1 * seconds;
   }
 
-  /// Before an event and after it; what comes between `start` and `stop` counts.
-  Clock::time_point start() const { return is_timed(events_) ? Clock::now() : Clock::time_point(); }
-  void stop(Clock::time_point start) {
-    ++events_;
-    if (start == Clock::time_point()) return;
-    ++timed_;
-    seconds_ += seconds_since(start);
-  }
+  /// Adds the seconds of its own life.
+  class Seconds {
+   public:
+    explicit Seconds(double& sum) : sum_(sum), start_(Clock::now()) {}
+    ~Seconds() { sum_ += seconds_since(start_); }
+    Seconds(const Seconds&) = delete;
+    Seconds& operator=(const Seconds&) = delete;
+
+   private:
+    double& sum_;
+    const Clock::time_point start_;
+  };
+
+  /// An event that lasts as long as this lives.
+  class Event {
+   public:
+    explicit Event(EventClock& clock) : clock_(clock), start_(clock.start()) {}
+    ~Event() { clock_.stop(start_); }
+    Event(const Event&) = delete;
+    Event& operator=(const Event&) = delete;
+
+   private:
+    EventClock& clock_;
+    const Clock::time_point start_;
+  };
 
   std::uint64_t events() const { return events_; }
   /// Of all; 0 where none was timed.
@@ -37,6 +54,15 @@ class EventClock {
   }
 
  private:
+  /// Before an event and after it: what comes between counts.
+  Clock::time_point start() const { return is_timed(events_) ? Clock::now() : Clock::time_point(); }
+  void stop(Clock::time_point start) {
+    ++events_;
+    if (start == Clock::time_point()) return;
+    ++timed_;
+    seconds_ += seconds_since(start);
+  }
+
   /// What two looks in a row take.
   static double clock() {
     static const double least = [] {

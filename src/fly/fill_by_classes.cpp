@@ -114,9 +114,8 @@ class Insertion {
     for (int t = 0; t < tries; ++t) {
       Vector<D> c = uniform_point(random_, box);
       for (int k = 0; k <= most_pushes; ++k) {
-        const auto start = trials_.start();
+        const EventClock::Event trial(trials_);
         const Push push = push_at(c, i);
-        trials_.stop(start);
         if (push.overlaps == 0) {
           place(i, c);
           return true;

@@ -209,11 +209,10 @@ void EventFlight<D>::fly() {
       end_ = event.time;
       break;
     }
-    const auto start = times_.start();
+    const EventClock::Event timed(times_);
     move_to(event.first, event.time);
     if (event.second < wall) move_to(event.second, event.time);
     collide(event);
-    times_.stop(start);
   }
   if (collisions_ == most)  // all stand at the latest time that is free of collisions
     end_ = events_.empty() ? end_ : std::min(end_, events_.top().time);

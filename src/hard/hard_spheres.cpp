@@ -156,6 +156,7 @@ void HardSpheres<D>::sort_along_curve() {
 
 template <int D>
 void HardSpheres<D>::build_shells(double freedom, double largest) {
+  const EventClock::Seconds timed(times_.builds);
   sort_along_curve();
   freedom_ = freedom;
   listed_collisions_ = listed_departures_ = 0;
@@ -187,11 +188,7 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   const double size_then = std::min(largest, size_ + growth_ * horizon_);
   const double freedom = wanted_freedom();
   const bool rebuild = size_then > largest_listed_ || freedom != freedom_;
-  if (rebuild) {
-    const auto start = EventClock::Clock::now();
-    build_shells(freedom, size_then);
-    times_.builds += EventClock::seconds_since(start);
-  }
+  if (rebuild) build_shells(freedom, size_then);
 
   const double energy = kinetic_energy();
   const double expected_collisions =
@@ -221,8 +218,7 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
       break;
     }
     const Id what = calendar_.what(i);
-    EventClock& clock = clock_of(what);
-    const auto start = clock.start();
+    const EventClock::Event event(clock_of(what));
     prefetch();
     now_ = calendar_.time(i);
     spheres_[i].fly_to(now_);
@@ -231,21 +227,17 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
       collide(i, what);
       calendar_.schedule(i, infinite, look_again);
       calendar_.schedule(what, infinite, look_again);
-      predict(i);
-      predict(what);
-    } else {
-      if (what == leave) {
-        ++period_.departures;
-        const Vector<D> home = Boundary<D>{edges_}.wrap(spheres_[i].position());
-        for (int k = 0; k < D; ++k) spheres_[i].x[k] = home[k];
-        shells_.settle(i, home);
-        if (!walls_.empty()) walls_.settle(i, home, spheres_[i].r * largest_listed_ + shells_.freedom(i));
-      } else if (what == touch_wall) {
-        reflect(i);
-      }
-      predict(i);
+    } else if (what == leave) {
+      ++period_.departures;
+      const Vector<D> home = Boundary<D>{edges_}.wrap(spheres_[i].position());
+      for (int k = 0; k < D; ++k) spheres_[i].x[k] = home[k];
+      shells_.settle(i, home);
+      if (!walls_.empty()) walls_.settle(i, home, spheres_[i].r * largest_listed_ + shells_.freedom(i));
+    } else if (what == touch_wall) {
+      reflect(i);
     }
-    clock.stop(start);
+    predict(i);
+    if (is_partner(what)) predict(what);
   }
 
   for (FlyingSphere<D>& s : spheres_) {

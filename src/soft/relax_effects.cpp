@@ -16,6 +16,9 @@ constexpr double microsecond = 1e-6;
 /// on.
 constexpr double by_dimension[] = {12, 0.55, 1, 5.5, 13, 17, 22, 28};
 constexpr double one_by_one = 3.5, narrow = 4;
+/// Diameters across a box from which on it is surely wide enough for sorted arrays at the start, too, when it
+/// is smaller.
+constexpr double surely_wide = 2.5;
 /// Sizes that differ make longer lists: the power of their spread that a sphere costs more.
 constexpr double cost_of_spread = 1, cost_of_spread_in_bed = 1.5;
 /// From so many spheres on the memory has to be waited for.
@@ -111,7 +114,10 @@ std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook&
                                : options.method == RelaxMethod::reference
                                    ? "the published loop while the box grows, on linked lists in cells"
                                    : "the published loop while the box grows, on arrays sorted by cells");
-    if (options.method != RelaxMethod::fast) items.erase(items.begin());  // it looks into cells
+    if (options.method != RelaxMethod::fast)
+      items.erase(items.begin());  // it looks into cells
+    else if (outlook.task.dimension <= 3 && !outlook.task.has_walls && outlook.width < surely_wide)
+      items.front().if_needed = true;  // as the published loop does, which may take the place of the fast one
   }
   if (options.polish > 0) {
     const PlanItem polish = polishing(outlook);

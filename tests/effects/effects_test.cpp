@@ -15,6 +15,7 @@
 #include "run/stages.hpp"
 #include "support/plans.hpp"
 #include "support/scenes.hpp"
+#include "work/counted_container.hpp"
 #include "work/effect_log.hpp"
 
 // Only what a scene calls for is made, allocates and runs. This executable counts every allocation of the
@@ -127,6 +128,10 @@ std::vector<std::pair<std::string, Scene>> scenes() {
   add_periodic("published loop", "[[stage]]\ndo = \"relax\"\nmethod = \"reference\"\nstop = 0.01\n");
   add_periodic("published loop on sorted arrays",
                "[[stage]]\ndo = \"relax\"\nmethod = \"reference-sorted\"\nstop = 0.01\n");
+  all.emplace_back("four in a periodic box",
+                   parse_scene("[container]\nkind = \"periodic\"\n[spheres]\ncount = 4\nradius = 0.05\n"
+                               "[[stage]]\ndo = \"relax\"\n",
+                               "test.toml"));
   add_periodic("polished", "[[stage]]\ndo = \"relax\"\npolish = 1e-6\n");
   const std::string box = "[container]\nkind = \"box\"\nsize = [1.0, 1.0, 1.0]\n";
   const std::string exact = box + spheres + "[accuracy]\nwalls = \"exact\"\n";
@@ -228,24 +233,93 @@ TEST(Made, CountsACalendarAsOneOfCollisions) {
 
 TEST(EffectTimer, NamesWhatAllocationsAreMadeFor) {
   EffectLog log;
+  Effect &growth = log["growth"], &collisions = log["collisions"];
+  const auto allocate_so_often = [](int often) {
+    for (; often > 0; --often) ::operator delete(::operator new(80));
+  };
   ledger = {};
   ledger.open = true;
   {
-    const EffectTimer outer(log["growth"]);
-    const std::vector<double> one(10);
+    const EffectTimer outer(growth);
+    allocate_so_often(1);
     {
-      const EffectTimer inner(log["collisions"]);
-      const std::vector<double> two(10), three(10);
+      const EffectTimer inner(collisions);
+      allocate_so_often(3);
     }
-    const std::vector<double> four(10);
+    allocate_so_often(1);
   }
-  const std::vector<double> five(10);
+  allocate_so_often(1);
   ledger.open = false;
   Counts allocated;
   for (std::size_t k = 0; k < ledger.count; ++k) allocated[ledger.names[k].data()] = ledger.allocations[k];
   EXPECT_EQ(allocated["growth"], 2u);
-  EXPECT_EQ(allocated["collisions"], 2u);
+  EXPECT_EQ(allocated["collisions"], 3u);
   EXPECT_EQ(allocated.size(), 2u);
+}
+
+/// Answers every question in a way of its own.
+class Answering final : public Container {
+ public:
+  Answering() : Container(WallArithmetic::exact, 1e-12, {.edges = Vector<3>(3, 4, 5)}) {}
+  std::string_view kind() const override { return "answering"; }
+  Bounds<3> bounds() const override { return {Vector<3>::Zero(), Vector<3>(3, 4, 5)}; }
+  double volume() const override { return 60; }
+  double clearance(const Vector<3>& p) const override { return p[0]; }
+  double clearance_within(const Vector<3>& p, double reach) const override { return p[0] + reach; }
+  bool contains(const Vector<3>&, double r) const override { return r == 2; }
+  double first_contact(const Vector<3>& c, double r, const Vector<3>& direction,
+                       double limit) const override {
+    return c[0] + 2 * r + 3 * direction[0] + 4 * limit;
+  }
+  double free_path(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const override {
+    return c[0] + 3 * r + 5 * direction[0] + 7 * limit;
+  }
+  void facets_near(const Vector<3>&, double reach, std::vector<NearFacet>& out) const override {
+    out.assign(1, NearFacet{reach, {}});
+  }
+  bool few_facets_near(const Vector<3>&, double reach, std::size_t most,
+                       std::vector<NearFacet>& out) const override {
+    out.assign(most, NearFacet{reach, {}});
+    return most == 2;
+  }
+  void contacts(const Vector<3>& c, double r, std::vector<WallContact>& out) const override {
+    out.assign(1, {c, r});
+  }
+};
+
+TEST(CountedContainer, PassesEveryQuestionOnAndCountsIt) {
+  const Answering asked;
+  const CountedContainer counted(std::make_shared<Answering>());
+  EXPECT_EQ(counted.arithmetic(), asked.arithmetic());
+  EXPECT_EQ(counted.resolution(), asked.resolution());
+  EXPECT_EQ(counted.boundary().edges, asked.boundary().edges);
+  EXPECT_EQ(counted.kind(), asked.kind());
+  EXPECT_EQ(counted.bounds().upper, asked.bounds().upper);
+  EXPECT_EQ(counted.volume(), asked.volume());
+  EXPECT_EQ(counted.asked().calls, 0u) << "what is known needs no question";
+
+  const Vector<3> c(0.5, 0, 0), u(1, 0, 0);
+  EXPECT_EQ(counted.clearance(c), asked.clearance(c));
+  EXPECT_EQ(counted.clearance_within(c, 9), asked.clearance_within(c, 9));
+  EXPECT_TRUE(counted.contains(c, 2));
+  EXPECT_FALSE(counted.contains(c, 3));
+  EXPECT_EQ(counted.first_contact(c, 1, u, 2), asked.first_contact(c, 1, u, 2));
+  EXPECT_EQ(counted.free_path(c, 1, u, 2), asked.free_path(c, 1, u, 2));
+  EXPECT_EQ(counted.asked().calls, 6u);
+
+  std::vector<NearFacet> facets;
+  counted.facets_near(c, 0.25, facets);
+  ASSERT_EQ(facets.size(), 1u);
+  EXPECT_EQ(facets[0].distance, 0.25);
+  EXPECT_TRUE(counted.few_facets_near(c, 0.125, 2, facets));
+  ASSERT_EQ(facets.size(), 2u);
+  EXPECT_FALSE(counted.few_facets_near(c, 0.125, 3, facets));
+  std::vector<WallContact> contacts;
+  counted.contacts(c, 0.75, contacts);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_EQ(contacts[0].distance, 0.75);
+  EXPECT_EQ(counted.asked().calls, 10u);
+  EXPECT_GT(counted.asked().seconds, 0);
 }
 
 // A cost model knows what makes a run long.
