@@ -40,16 +40,17 @@ std::string bytes_in_words(double bytes) {
   return fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
-/// Words in lines of at most that width, two blanks before each.
-std::string in_lines(const std::string& words, std::size_t width) {
+/// Words in lines of at most 100 columns, so many blanks before each.
+std::string in_lines(const std::string& words, std::size_t blanks) {
+  constexpr std::size_t width = 100;
   std::istringstream all(words);
-  std::string text, line;
+  std::string text, line(blanks, ' ');
   for (std::string word; all >> word;) {
-    if (line.size() + word.size() + 3 > width) {
+    if (line.size() > blanks && line.size() + 1 + word.size() > width) {
       text += line + '\n';
-      line.clear();
+      line.assign(blanks, ' ');
     }
-    line += (line.empty() ? "  " : " ") + word;
+    line += (line.size() > blanks ? " " : "") + word;
   }
   return text + line + '\n';
 }
@@ -59,13 +60,14 @@ void print_effects(const Plan& plan) {
   fmt::print("What would run:\n  {:<16}  {:>10}  {:>7}  {}\n", "effect", "time", "memory", "cost");
   bool any_part = false;
   for (const PlanItem& item : plan.items) {
-    const std::string time = item.if_needed        ? "if needed"
-                             : !(item.seconds > 0) ? ""
-                             : item.part           ? "(" + in_words(item.seconds) + ")"
-                                                   : in_words(item.seconds);
-    any_part = any_part || (item.part && !item.if_needed && item.seconds > 0);
-    fmt::print("  {:<16}  {:>10}  {:>7}  {}\n{}", item.name, time,
-               item.bytes > 0 ? bytes_in_words(item.bytes) : "", item.cost, "      " + item.what + "\n");
+    const bool takes_time = item.seconds > 0, is_part = item.part && takes_time;
+    const std::string time = takes_time ? in_words(item.seconds) : item.if_needed ? "if needed" : "";
+    any_part = any_part || is_part;
+    std::string line =
+        fmt::format("  {:<16}  {:>10}  {:>7}  {}", item.name, is_part ? "(" + time + ")" : time,
+                    item.bytes > 0 ? bytes_in_words(item.bytes) : "", item.cost);
+    line.erase(line.find_last_not_of(' ') + 1);
+    fmt::print("{}\n{}", line, in_lines((item.if_needed && takes_time ? "if needed: " : "") + item.what, 6));
   }
   fmt::print("  {:<16}  {:>10}  {:>7}  with what the program itself takes\n", "together",
              in_words(plan.expected_seconds), bytes_in_words(plan.expected_memory_bytes));
@@ -84,7 +86,7 @@ void print(const Plan& plan) {
   print_effects(plan);
   if (!plan.absent.empty())
     fmt::print("\nNot called for, not built:\n{}",
-               in_lines(fmt::format("{}.", fmt::join(plan.absent, ", ")), 100));
+               in_lines(fmt::format("{}.", fmt::join(plan.absent, ", ")), 2));
   if (scene.stages_are_default)
     fmt::print("\nThe scene names no stages. This protocol runs; paste it to change it:\n\n{}",
                stages_as_toml(scene));

@@ -55,7 +55,8 @@ std::vector<PlanItem> effects_of_flight(const Fly& options, const Outlook& outlo
                      .seconds = seconds,
                      .bytes = bytes_a_sphere * n});
     items.push_back({.name = "collisions",
-                     .what = "elastic, between spheres and at walls",
+                     .what = outlook.task.has_walls ? "elastic, between spheres and at walls"
+                                                    : "elastic, between spheres",
                      .cost = choice.method == FillMethod::patent ? "O(N) each" : "O(log N) each",
                      .seconds = share_of_collisions * seconds,
                      .bytes = bytes_of_pairs * n,
