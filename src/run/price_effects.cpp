@@ -88,6 +88,10 @@ void price_effects(Plan& plan) {
       .spread = spread_of(plan),
       .width = bounds_of<dynamic>(plan.domain).size().minCoeff() / (2 * plan.radii->quantile(1 - 1e-4)),
       .is_filled = scene.target.fill};
+  // Those of the start have places, and fill their share.
+  const auto there = static_cast<double>(plan.start.spheres.size());
+  outlook.placed = there > 0 && there >= plan.expected_count;
+  outlook.filled = there > 0 ? outlook.aim * std::min(1.0, there / plan.expected_count) : 0;
   const bool asks_walls = any_in_bed(scene);
   if (asks_walls) {
     const double bytes =
@@ -118,7 +122,7 @@ void price_effects(Plan& plan) {
   const auto is_planned = [&](const std::string& name) {
     return std::ranges::find(plan.items, name, &PlanItem::name) != plan.items.end();
   };
-  std::vector<std::string> all = {"walls", std::string(exact_walls_effect)};
+  std::vector<std::string> all = {"start", "walls", std::string(exact_walls_effect)};
   for (const StageEntry* stage : stage_entries())
     all.insert(all.end(), stage->may_bring.begin(), stage->may_bring.end());
   for (const std::string& name : all)

@@ -178,7 +178,7 @@ TEST_P(EffectsOf, TheSceneAreAllThatIsMadeThatAllocatesAndThatRuns) {
 
 TEST_P(EffectsOf, ThePlanAndThoseThatAreAbsentAreAllThatThereAre) {
   const Plan plan = build(GetParam().second);
-  std::set<std::string> all = {"walls", "exact walls"};
+  std::set<std::string> all = {"start", "walls", "exact walls"};
   for (const StageEntry* stage : stage_entries())
     all.insert(stage->may_bring.begin(), stage->may_bring.end());
   std::set<std::string> told = names_of(plan);
