@@ -5,7 +5,9 @@
 
 namespace bernal {
 
-/// The time of events that are shorter than two looks at the clock: one in 64 is timed, and the sum scaled.
+/// The time of events that are shorter than two looks at the clock: of those after the first 64, which are
+/// timed one by one as they may have to wait for memory and are all where there are no more, one in 64 is
+/// timed, and the sum scaled.
 ///
 /// The n-th event is timed where the fraction of n times the golden ratio is below 1/64: as evenly spread as
 /// every 64th, but out of step with whatever repeats itself every few events. Error: the spread of single
@@ -15,7 +17,14 @@ class EventClock {
  public:
   using Clock = std::chrono::steady_clock;
 
-  static constexpr bool is_timed(std::uint64_t n) { return n * 0x9E3779B97F4A7C15U >> 58 == 0; }
+  static constexpr std::uint64_t first = 64;
+  static constexpr bool is_timed(std::uint64_t n) { return n < first || n * 0x9E3779B97F4A7C15U >> 58 == 0; }
+  /// Of all events, those after the first having been timed so often and taken so long.
+  static double seconds_of(std::uint64_t events, double of_first, std::uint64_t timed, double seconds) {
+    if (events <= first) return of_first;
+    const auto more = static_cast<double>(events - first);
+    return of_first + (timed > 0 ? seconds / static_cast<double>(timed) : of_first / first) * more;
+  }
   static double seconds_since(Clock::time_point start) {
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     return seconds > clock() ? seconds - clock() : 0.1 * seconds;
@@ -48,19 +57,21 @@ class EventClock {
   };
 
   std::uint64_t events() const { return events_; }
-  /// Of all; 0 where none was timed.
-  double seconds() const {
-    return timed_ > 0 ? seconds_ * static_cast<double>(events_) / static_cast<double>(timed_) : 0;
-  }
+  double seconds() const { return seconds_of(events_, of_first_, timed_, seconds_); }
 
  private:
   /// Before an event and after it: what comes between counts.
   Clock::time_point start() const { return is_timed(events_) ? Clock::now() : Clock::time_point(); }
   void stop(Clock::time_point start) {
-    ++events_;
+    const bool is_first = events_++ < first;
     if (start == Clock::time_point()) return;
-    ++timed_;
-    seconds_ += seconds_since(start);
+    const double seconds = seconds_since(start);
+    if (is_first) {
+      of_first_ += seconds;
+    } else {
+      ++timed_;
+      seconds_ += seconds;
+    }
   }
 
   /// What two looks in a row take.
@@ -77,7 +88,7 @@ class EventClock {
   }
 
   std::uint64_t events_ = 0, timed_ = 0;
-  double seconds_ = 0;
+  double of_first_ = 0, seconds_ = 0;
 };
 
 }  // namespace bernal

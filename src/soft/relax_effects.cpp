@@ -28,6 +28,9 @@ constexpr double cycles_at_ends = 0.29 * microsecond, cycles_of_alpha = 0.57 * m
 constexpr double most_in_cycles = 1e4;
 /// Spheres that start in a box they soon fit into, of that.
 constexpr double share_in_a_loose_box = 0.1, loose_box = 0.9;
+/// Of that, what spheres take that start at phi0 = h times what is attainable: `from_loose`, and more by so
+/// much from `loose_start` on.
+constexpr double loose_start = 0.9, from_loose = 0.05, cost_of_overlap = 3;
 /// The published loop against the fast one.
 constexpr double reference_factor = 70;
 /// Of a domain of fixed size, for each sphere, h being what is asked for over what is attainable:
@@ -62,9 +65,14 @@ double seconds_in_growing_box(const Relax& options, const Outlook& outlook) {
       outlook.task.packing_fraction > 0 && outlook.task.packing_fraction < loose_box * outlook.task.attainable
           ? share_in_a_loose_box
           : 1;
+  const double start =
+      options.phi0
+          ? std::clamp(from_loose + cost_of_overlap * (*options.phi0 / outlook.task.attainable - loose_start),
+                       from_loose, 1.0)
+          : 1;
   const double method = options.method == RelaxMethod::fast ? 1 : reference_factor;
-  return method * loose * outlook.spheres * decades * decades * cycles * dimension_factor(outlook) *
-         std::pow(outlook.spread, cost_of_spread);
+  return method * std::min(loose, start) * outlook.spheres * decades * decades * cycles *
+         dimension_factor(outlook) * std::pow(outlook.spread, cost_of_spread);
 }
 
 double seconds_in_bed(const Outlook& outlook) {
@@ -116,6 +124,8 @@ std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook&
                                    : "the published loop while the box grows, on arrays sorted by cells");
     if (options.method != RelaxMethod::fast)
       items.erase(items.begin());  // it looks into cells
+    else if (outlook.placed)
+      items.front().if_needed = true;  // what hardly overlaps is only let grow
     else if (outlook.task.dimension <= 3 && !outlook.task.has_walls && outlook.width < surely_wide)
       items.front().if_needed = true;  // as the published loop does, which may take the place of the fast one
   }

@@ -15,8 +15,8 @@ namespace bernal {
 
 /// The walls of a run: passes every question on and counts it, so that all who ask are counted in one place.
 ///
-/// One question in 64 is timed, see `EventClock`; questions of several threads at once count for the time of
-/// each. Cost: 3 ns a question beside that of the container.
+/// The first 64 questions are timed and one in 64 of the others, see `EventClock`; questions of several
+/// threads at once count for the time of each. Cost: 3 ns a question beside that of the container.
 class CountedContainer final : public Container {
  public:
   explicit CountedContainer(std::shared_ptr<const Container> container)
@@ -55,8 +55,7 @@ class CountedContainer final : public Container {
 
   /// All questions so far.
   Effect asked() const {
-    const double calls = static_cast<double>(calls_), timed = static_cast<double>(timed_);
-    return {"walls", calls_, timed > 0 ? 1e-9 * nanoseconds_ * calls / timed : 0};
+    return {"walls", calls_, 1e-9 * EventClock::seconds_of(calls_, of_first_, timed_, nanoseconds_)};
   }
 
  private:
@@ -64,22 +63,28 @@ class CountedContainer final : public Container {
   std::invoke_result_t<Ask> counted(const Ask& ask) const {
     const std::uint64_t n = calls_.fetch_add(1, std::memory_order_relaxed);
     if (!EventClock::is_timed(n)) return ask();
-    const Timed timed{*this, EventClock::Clock::now()};
+    const Timed timed{*this, n < EventClock::first, EventClock::Clock::now()};
     return ask();
   }
   struct Timed {
     const CountedContainer& of;
+    bool is_first;
     EventClock::Clock::time_point start;
     ~Timed() {
-      of.timed_.fetch_add(1, std::memory_order_relaxed);
-      of.nanoseconds_.fetch_add(1e9 * EventClock::seconds_since(start), std::memory_order_relaxed);
+      const double nanoseconds = 1e9 * EventClock::seconds_since(start);
+      if (is_first) {
+        of.of_first_.fetch_add(nanoseconds, std::memory_order_relaxed);
+      } else {
+        of.timed_.fetch_add(1, std::memory_order_relaxed);
+        of.nanoseconds_.fetch_add(nanoseconds, std::memory_order_relaxed);
+      }
     }
   };
 
   const std::shared_ptr<const Container> container_;
   const Made made_{"walls"};
   mutable std::atomic<std::uint64_t> calls_ = 0, timed_ = 0;
-  mutable std::atomic<double> nanoseconds_ = 0;
+  mutable std::atomic<double> of_first_ = 0, nanoseconds_ = 0;
 };
 
 }  // namespace bernal
