@@ -13,10 +13,12 @@
 #include "bernal/core/text.hpp"
 #include "bernal/io/json.hpp"
 #include "bernal/io/read_packing.hpp"
+#include "bernal/io/section.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "say.hpp"
 
 using namespace bernal;
 
@@ -27,7 +29,21 @@ struct MeasureCall {
   MeasureOptions options;
   int threads = 0;
   bool json = false;
+  std::string plane;              ///< of a section; empty: measurements are asked for
+  std::filesystem::path picture;  ///< of the section
 };
+
+/// Draws the section and measures nothing else.
+int draw_section(const MeasureCall& call) {
+  if (call.picture.empty())
+    throw Error(ErrorCode::bad_argument, "--section \"z = 1.5\" needs -o FILE.svg, where it is drawn");
+  if (call.json)
+    throw Error(ErrorCode::bad_argument,
+                "--section draws a picture, and --json prints measurements; ask for one");
+  write_section(read_packing(call.folder), call.plane, call.picture);
+  say(stdout, "{}\n", plain_text(call.picture.string(), 5000));
+  return exit_code::done;
+}
 
 /// From which gap on spheres hold each other.
 std::string where_contacts_tell(const Measurements& measured) {
@@ -254,6 +270,7 @@ Measurements measured_of(const Packing& packing, const MeasureCall& call) {
 }
 
 int measure_folder(const MeasureCall& call) {
+  if (!call.plane.empty()) return draw_section(call);
   std::optional<tbb::global_control> limit;
   if (call.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
@@ -280,7 +297,13 @@ Command measure_command() {
        within({"--gap", &call->options.contact_gap,
                "Spheres touch below this gap over the sum of their radii; 0.002 if absent", "RATIO"},
               0.0, 1.0),
-       threads_option(call->threads, "the answer"), json_option(call->json)},
+       {"--section", &call->plane,
+        "Draw the circles that this plane cuts of the spheres, and the outline of their container: "
+        "\"z = 1.5\", \"0.6 x + 0.8 z = 2\"; nothing else is measured",
+        "PLANE"},
+       needs({"-o,--output", &call->picture, "The file for the section", "FILE.svg"}, "--section"),
+       threads_option(call->threads, "the answer"),
+       json_option(call->json)},
       "Rattlers are taken out one after the other until every sphere left is held by D + 1 contacts.\n"
       "In a container: the chambers that the smallest spheres cannot leave, with the packing fraction "
       "of\n"

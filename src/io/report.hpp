@@ -27,8 +27,12 @@ std::map<std::string, std::string> manifest_in(const std::string& report);
 /// `container` or `box`, see `domain_json`; `min_wall_gap` is null where no sphere is near a wall.
 std::string json_of(const Report& report);
 
-/// report.html: one page without scripts or outside files. `picture` is the SVG of the packing or empty,
-/// `scene` the scene as TOML.
-std::string html_of(const Report& report, std::string_view picture, std::string_view scene);
+/// SVG, or empty where there is none.
+struct Pictures {
+  std::string_view packing, section;
+};
+
+/// report.html: one page without scripts or outside files; `scene` is the scene as TOML.
+std::string html_of(const Report& report, const Pictures& pictures, std::string_view scene);
 
 }  // namespace bernal

@@ -153,7 +153,7 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
   check_writable(folder);
   const std::vector<std::string> earlier = files_of_earlier_result(folder);
   for (const std::string name : {"scene.toml", "spheres.csv", "spheres.vtp", "report.json", "report.html",
-                                 "packing.svg", "container.off"}) {
+                                 "packing.svg", "section.svg", "container.off"}) {
     const fs::path there = folder / name;
     std::error_code unknown;
     if (!stands(there) || std::ranges::find(earlier, name) != earlier.end()) continue;

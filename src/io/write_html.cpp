@@ -173,7 +173,7 @@ void write_certificate(Page& page, const Report& report) {
 
 }  // namespace
 
-std::string html_of(const Report& report, std::string_view picture, std::string_view scene) {
+std::string html_of(const Report& report, const Pictures& pictures, std::string_view scene) {
   const Packing& packing = report.packing;
   std::string title =
       fmt::format("{} spheres in a {}", grouped(packing.spheres.size()), name_of(packing.domain));
@@ -188,12 +188,13 @@ std::string html_of(const Report& report, std::string_view picture, std::string_
   page.add("</style></head>\n<body><main>\n<h1>{}</h1>\n<span class=\"dim\">packed by bernal {}</span>\n",
            escaped(title), escaped(packing.version));
   write_headline(page, report);
-  if (picture.empty()) {
+  if (pictures.packing.empty()) {
     page.add("<p class=\"dim\">There is no picture of {} dimension{}.</p>\n", packing.spheres.dimension(),
              packing.spheres.dimension() == 1 ? "" : "s");
   } else {
-    page.raw("<div class=\"picture\">\n");
-    page.raw(picture);
+    page.raw("<div class=\"pair\">\n");
+    for (const std::string_view picture : {pictures.packing, pictures.section})
+      if (!picture.empty()) page.add("<div class=\"picture\">\n{}</div>\n", picture);
     page.raw("</div>\n");
   }
   write_scene(page, report, scene);

@@ -7,6 +7,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/io/read_packing.hpp"
+#include "bernal/io/section.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -33,6 +34,17 @@ Certificate certify_written(const std::filesystem::path& csv, const Packing& pac
     throw Error(ErrorCode::cannot_write, "reads back differently from what was written", {csv.string()});
   }
   return certify(written.spheres, packing.domain, {.allowed_overlap = packing.scene.overlap});
+}
+
+/// Empty in other dimensions than three, and where a container is too thin for a plane to have an area in it.
+std::string middle_section(const Packing& packing) {
+  if (packing.spheres.dimension() != 3) return {};
+  try {
+    return section_svg(section_of(packing.spheres, packing.domain, middle_plane(packing.domain)),
+                       packing.spheres, name_of(packing.scene.unit));
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 }  // namespace
@@ -68,13 +80,15 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   staged.write("scene.toml", scene);
   manifest["scene.toml"] = sha256_of(staged.written("scene.toml"));
   if (!picture.empty()) staged.write("packing.svg", picture);
+  const std::string section = middle_section(packing);
+  if (!section.empty()) staged.write("section.svg", section);
   if (const auto* walls = std::get_if<Mesh>(&packing.domain); walls && walls_are_made(packing.scene))
     staged.write("container.off", as_off_file(*walls));
   for (const std::string& name : staged.names()) manifest.try_emplace(name);
   for (const char* name : {"report.json", "report.html"}) manifest[name];
   const Report report{packing, certificate, measured, radii.all.get(), hash_of(packing.spheres), manifest};
   staged.write("report.json", json_of(report));
-  staged.write("report.html", html_of(report, picture, scene));
+  staged.write("report.html", html_of(report, {picture, section}, scene));
 
   // What the scene names stays where it is.
   std::vector<std::string> replaced = files_of_earlier_result(folder);

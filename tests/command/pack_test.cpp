@@ -34,7 +34,7 @@ TEST(Pack, WritesEveryFileOfTheContract) {
   std::vector<std::string> names;
   for (const auto& [name, text] : files) names.push_back(name);
   EXPECT_EQ(names, (std::vector<std::string>{"packing.svg", "report.html", "report.json", "scene.toml",
-                                             "spheres.csv", "spheres.vtp"}));
+                                             "section.svg", "spheres.csv", "spheres.vtp"}));
   EXPECT_TRUE(files.at("spheres.csv").starts_with("# unit: mm\nx,y,z,r\n"));
   EXPECT_EQ(std::ranges::count(files.at("spheres.csv"), '\n'), 302);
 

@@ -145,7 +145,8 @@ TEST(ResultFolder, PackedAgainInItsPlaceItKeepsItsMesh) {
 }
 
 TEST(ResultFolder, WhatNoResultLeftThereIsNotReplaced) {
-  for (const char* name : {"packing.svg", "container.off", "spheres.csv", "report.json", "scene.toml"}) {
+  for (const char* name :
+       {"packing.svg", "section.svg", "container.off", "spheres.csv", "report.json", "scene.toml"}) {
     const Folder folder;
     folder.write(name, "mine");
     error_of([&] { check_writable(folder.path(), testing::example().scene); });
@@ -174,7 +175,7 @@ TEST(ResultFolder, AMeshThatLiesThereAlreadyIsNotCopiedOrTouched) {
   write_packing(packing, folder.path(), {.with_mesh = true});
   write_packing(packing, folder.path());
   EXPECT_EQ(text_of(mesh), test::as_obj(box));
-  EXPECT_EQ(names_in(folder.path()).size(), 7u);
+  EXPECT_EQ(names_in(folder.path()).size(), 8u);
 }
 
 TEST(ResultFolder, AChangeDuringTheRunIsNotArchived) {

@@ -27,8 +27,8 @@ std::set<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-const std::set<std::string> all_files = {"packing.svg", "report.html", "report.json",
-                                         "scene.toml",  "spheres.csv", "spheres.vtp"};
+const std::set<std::string> all_files = {"packing.svg", "report.html", "report.json", "scene.toml",
+                                         "section.svg", "spheres.csv", "spheres.vtp"};
 
 std::vector<std::string> texts_of(const fs::path& folder) {
   std::vector<std::string> texts;
@@ -36,7 +36,7 @@ std::vector<std::string> texts_of(const fs::path& folder) {
   return texts;
 }
 
-TEST(WritePacking, WritesTheSixFilesIntoAFolderThatItMakes) {
+TEST(WritePacking, WritesTheSevenFilesIntoAFolderThatItMakes) {
   const Folder folder;
   const fs::path target = folder / "some/where";
   const Packing packing = example();
@@ -142,17 +142,17 @@ TEST(WritePacking, ARenameThatFailsTakesBackTheOthers) {
   // A folder stands where the last file is to go: everything before it has been renamed by then.
   const Folder folder;
   write_packing(example(1), folder.path());
-  fs::remove(folder / "packing.svg");
+  fs::remove(folder / "section.svg");
   fs::remove(folder / "spheres.vtp");
-  fs::create_directory(folder / "packing.svg");
+  fs::create_directory(folder / "section.svg");
   const std::string csv = text_of(folder / "spheres.csv"), json = text_of(folder / "report.json");
   const Error error = error_of([&] { write_packing(example(2), folder.path()); });
   EXPECT_EQ(error.code(), ErrorCode::cannot_write);
-  EXPECT_EQ(error.location().file, (folder / "packing.svg").string());
+  EXPECT_EQ(error.location().file, (folder / "section.svg").string());
   EXPECT_EQ(text_of(folder / "spheres.csv"), csv);
   EXPECT_EQ(text_of(folder / "report.json"), json);
   EXPECT_EQ(names_in(folder.path()), (std::set<std::string>{"packing.svg", "report.html", "report.json",
-                                                            "scene.toml", "spheres.csv"}));
+                                                            "scene.toml", "section.svg", "spheres.csv"}));
 }
 
 TEST(CheckWritable, LeavesNothingBehind) {

@@ -21,8 +21,9 @@ struct WriteOptions {
   Monitor monitor = {};
 };
 
-/// Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html and, in two and three dimensions,
-/// packing.svg into `folder`, which is made if it does not exist.
+/// Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html, in two and three dimensions
+/// packing.svg and in three section.svg, that of `middle_plane`, into `folder`, which is made if it does not
+/// exist.
 ///
 /// Everything is written whole under temporary names, spheres.csv is read back and certified against the
 /// packing's container, and only then do they take the place of all files of an earlier result: a failure

@@ -1,0 +1,254 @@
+#include "bernal/io/section.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <regex>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "support/containers.hpp"
+#include "support/folder.hpp"
+#include "support/packings.hpp"
+
+namespace bernal {
+namespace section_test {
+
+using testing::Folder;
+using testing::packing_of;
+using testing::scattered;
+using testing::text_of;
+
+Vector<3> in_space(const SectionPlane& plane, const Vector<2>& p) {
+  return plane.offset * plane.normal + p[0] * plane.right + p[1] * plane.up;
+}
+
+/// By the even-odd rule.
+bool is_within(const std::vector<std::vector<Vector<2>>>& outline, const Vector<2>& p) {
+  bool inside = false;
+  for (const auto& loop : outline) {
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const Vector<2>&a = loop[k], &b = loop[(k + 1) % loop.size()];
+      if ((a[1] > p[1]) == (b[1] > p[1])) continue;
+      inside ^= p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+    }
+  }
+  return inside;
+}
+
+/// Axes, oblique, and such as meet corners or run along facets.
+std::vector<std::string> planes_for(const Domain& domain) {
+  const Vector<3> c = bounds_of(domain).center();
+  const double width = bounds_of(domain).size().minCoeff();
+  std::vector<std::string> planes;
+  const Vector<3> normals[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, -2, 3}, {-1, 1, 1}};
+  for (const Vector<3>& n : normals)
+    for (const double off : {0.0, 0.11, -0.17})
+      planes.push_back(
+          fmt::format("{} x + {} y + {} z = {}", n[0], n[1], n[2], n.dot(c) + off * width * n.norm()));
+  return planes;
+}
+
+std::string error_of(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Section, OutlineIsWhereTheContainerIs) {
+  for (const test::ContainerUnderTest& tested : test::containers_under_test()) {
+    const Bounds<3> bounds = bounds_of(tested.shape);
+    Random random(3, stream(Stream::test));
+    int inside = 0, decided = 0;
+    for (const std::string& text : planes_for(tested.shape)) {
+      const SectionPlane plane = section_plane(text);
+      EXPECT_NEAR(std::abs(plane.right.cross(plane.up).dot(plane.normal)), 1, 1e-14);
+      const Section section = section_of(Spheres<3>{}, tested.shape, plane);
+      int within = 0;
+      Bounds<2> window{section.outline[0][0], section.outline[0][0]};
+      for (const auto& loop : section.outline)
+        for (const Vector<2>& p : loop) window = {window.lower.cwiseMin(p), window.upper.cwiseMax(p)};
+      constexpr int trials = 120;
+      for (int k = 0; k < trials; ++k) {
+        const Vector<2> p = uniform_point(random, window);
+        const Vector<3> q = in_space(plane, p);
+        const bool in_bounds =
+            (q.array() >= bounds.lower.array()).all() && (q.array() <= bounds.upper.array()).all();
+        const auto clearance = static_cast<double>(test::precise_clearance(tested.shape, q));
+        within += is_within(section.outline, p);
+        if (std::abs(clearance) < 1e-4 || (is_periodic(tested.shape) && !in_bounds)) continue;
+        EXPECT_EQ(is_within(section.outline, p), clearance > 0) << tested.name << ", " << text;
+        ++decided;
+        inside += clearance > 0;
+      }
+      // Five standard deviations of the share.
+      const double share = section.area / window.volume();
+      EXPECT_NEAR(within, trials * share, 1 + 5 * std::sqrt(trials * share * (1 - share) + 1e-9))
+          << tested.name << ", " << text;
+    }
+    EXPECT_GT(inside, 50) << tested.name;
+    EXPECT_GT(decided, 500) << tested.name;
+  }
+}
+
+TEST(Section, CirclesAreWhatSpheresLeaveOnThePlane) {
+  const Box box{Vector<3>(-1, 2, 0), Vector<3>(10, 8, 9)};
+  const Spheres<3> spheres = scattered(400, 0.2, 1.2, bounds_of(box), 5, true);
+  Random random(4, stream(Stream::test));
+  for (const std::string text : {"y = 5", "z = 4.5", "x + 2 y - 3 z = -2", "2 x = 7"}) {
+    const SectionPlane plane = section_plane(text);
+    const Section section = section_of(spheres, box, plane);
+    ASSERT_GT(section.circles.size(), 20u);
+    double area = 0;
+    for (const Section::Circle& circle : section.circles) {
+      // The circle's points are on the sphere, and its centre on the plane is the foot of the sphere's.
+      const Vector<3> foot = in_space(plane, circle.center), c = spheres.center(circle.sphere);
+      EXPECT_NEAR((c - foot).cross(plane.normal).norm(), 0, 1e-14 * 30);
+      EXPECT_NEAR((foot + circle.radius * plane.right - c).norm(), spheres.r[circle.sphere], 1e-14 * 30);
+      area += std::numbers::pi * circle.radius * circle.radius;
+    }
+    EXPECT_NEAR(section.covered_area, area, 1e-12 * area);
+    std::set<std::size_t> cut;
+    for (const Section::Circle& circle : section.circles) cut.insert(circle.sphere);
+    for (std::size_t i = 0; i < spheres.size(); ++i)
+      EXPECT_EQ(cut.contains(i), std::abs(plane.normal.dot(spheres.center(i)) - plane.offset) < spheres.r[i]);
+  }
+}
+
+/// The mean over parallel planes is the packing fraction (Cavalieri; Delesse 1847), images included.
+TEST(Section, MeanAreaFractionOfAPeriodicBoxIsThePackingFraction) {
+  const Box box = periodic_box(Vector<3>(6, 5, 7));
+  Spheres<3> spheres;
+  Random random(9, stream(Stream::test));
+  double volume = 0;
+  for (int i = 0; i < 12; ++i) {
+    spheres.push_back(uniform_point(random, bounds_of(box)), random.uniform(0.5, 2.4));
+    volume += 4. / 3 * std::numbers::pi * std::pow(spheres.r.back(), 3);
+  }
+  constexpr int planes = 700;
+  double mean = 0;
+  for (int k = 0; k < planes; ++k)
+    mean += section_of(spheres, box, section_plane(fmt::format("z = {}", 7 * (k + 0.5) / planes)))
+                .area_fraction() /
+            planes;
+  // Along z the area is a parabola a sphere: the midpoint rule is off by h² / 24 of the jump of its slope,
+  // 4 π r at both ends.
+  const double h = 7. / planes;
+  EXPECT_NEAR(mean, volume / 210, 12 * h * h / 24 * 4 * std::numbers::pi * 2.4 / 30);
+}
+
+TEST(Section, ObliquePlanesOfPeriodicDomainsCountWhatIsInThem) {
+  const std::vector<Domain> domains = {periodic_box(Vector<3>(6, 5, 7)),
+                                       periodic_box(Vector<3>(6, 5, 7), {false, false, true}),
+                                       Cylinder{{1, 2, 3}, {0, 0, 1}, 4, 6, true}};
+  for (const Domain& domain : domains) {
+    const Bounds<3> bounds = bounds_of(domain);
+    const Boundary<3> boundary = boundary_of<3>(domain);
+    Random random(11, stream(Stream::test));
+    Spheres<3> spheres;
+    for (int i = 0; i < 20; ++i) {
+      const double r = random.uniform(0.4, 1.6);
+      Bounds<3> inner = bounds;
+      for (int k = 0; k < 3; ++k) {
+        const double margin = boundary.repeats(k) ? 0 : std::holds_alternative<Cylinder>(domain) ? 2.2 : r;
+        inner.lower[k] += margin;
+        inner.upper[k] -= margin;
+      }
+      spheres.push_back(uniform_point(random, inner), r);
+    }
+    const SectionPlane plane = section_plane("x + 0.5 y + 2 z = 16");
+    const Section section = section_of(spheres, domain, plane);
+    Bounds<2> window{section.outline[0][0], section.outline[0][0]};
+    for (const Vector<2>& p : section.outline[0])
+      window = {window.lower.cwiseMin(p), window.upper.cwiseMax(p)};
+    constexpr int trials = 800;
+    double covered = 0;
+    for (int k = 0; k < trials; ++k) {
+      const Vector<2> p = uniform_point(random, window);
+      if (!is_within(section.outline, p)) continue;
+      for (std::size_t i = 0; i < spheres.size(); ++i)
+        for (int image = 0; image < 27; ++image) {
+          const Vector<3> shift =
+              Vector<3>(image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1).cwiseProduct(boundary.edges);
+          if ((!boundary.repeats(0) && image % 3 != 1) || (!boundary.repeats(1) && image / 3 % 3 != 1) ||
+              (!boundary.repeats(2) && image / 9 != 1))
+            continue;
+          covered += (in_space(plane, p) - spheres.center(i) - shift).norm() < spheres.r[i];
+        }
+    }
+    covered *= window.volume() / trials;
+    ASSERT_GT(covered, 1) << name_of(domain) << " " << section.covered_area;
+    // What one point adds has a variance of at most a few; five standard deviations.
+    EXPECT_NEAR(section.covered_area, covered, 5 * 2 * window.volume() / std::sqrt(trials));
+  }
+}
+
+TEST(Section, TheMiddleIsSeenFromTheSide) {
+  const auto text = [](const Domain& domain) { return middle_plane(domain).text; };
+  EXPECT_EQ(text(Box{{1, 2, 3}, {4, 4, 4}}), "y = 4");
+  EXPECT_EQ(text(Cylinder{{0, 0, 0}, {0, 0, 1}, 1, 2}), "y = 0");
+  EXPECT_EQ(text(periodic_box(Vector<3>(2, 4, 8))), "z = 4");
+  EXPECT_EQ(text(periodic_box(Vector<3>(2, 4, 8), {false, false, true})), "y = 2");
+  EXPECT_EQ(text(periodic_box(Vector<3>(2, 4, 8), {false, true, false})), "x = 1");
+  // Two cubes with nothing in the middle between them: through one of them.
+  Mesh apart = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  test::append(apart, test::box_mesh({0, 5, 0}, {1, 1, 1}));
+  EXPECT_NEAR(section_of(Spheres<3>{}, apart, middle_plane(apart)).area, 1, 1e-14);
+  EXPECT_EQ(middle_plane(Box{}).right, Vector<3>(1, 0, 0));
+  EXPECT_EQ(middle_plane(Box{}).up, Vector<3>(0, 0, 1));
+}
+
+TEST(Section, WhatIsNoSectionIsRefused) {
+  const Packing packing = packing_of(scattered(30, 0.5, 1, bounds_of(Box{{0, 0, 0}, {10, 10, 10}}), 2),
+                                     Box{{0, 0, 0}, {10, 10, 10}});
+  const Folder folder;
+  const auto said = [&](std::string_view plane) {
+    return error_of([&] { write_section(packing, plane, folder / "a.svg"); });
+  };
+  EXPECT_EQ(said("z = 11"),
+            "the plane \"z = 11\" does not meet the box, which reaches from 0, 0, 0 to 10, 10, 10");
+  EXPECT_NE(said("z < 3").find("a section is asked for as"), std::string::npos);
+  EXPECT_NE(said("the middle").find("is no plane"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.svg"));
+  folder.write("a.svg", "mine");
+  EXPECT_NE(said("z = 3").find("is no picture"), std::string::npos);
+  EXPECT_EQ(text_of(folder / "a.svg"), "mine");
+  std::filesystem::remove(folder / "a.svg");
+  EXPECT_EQ(said("z = 3"), "");
+  const std::string first = text_of(folder / "a.svg");
+  EXPECT_EQ(said("z = 4"), "");
+  EXPECT_NE(text_of(folder / "a.svg"), first);
+}
+
+TEST(Section, PictureHasEveryCircleAndWhatItIs) {
+  const Box box{{0, 0, 0}, {10, 10, 10}};
+  Spheres<3> spheres;
+  spheres.push_back({5, 4, 5}, 2);
+  spheres.push_back({2, 5, 2}, 1);
+  spheres.push_back({8, 9.5, 8}, 1);
+  const auto picture = [&](const Domain& domain, std::string_view plane) {
+    return section_svg(section_of(spheres, domain, section_plane(plane)), spheres, "mm");
+  };
+  static const std::regex circle("<circle cx=\"([^\"]+)\" cy=\"([^\"]+)\" r=\"([^\"]+)\"/>");
+  const auto circles = [](const std::string& svg) {
+    const std::string discs = svg.substr(0, svg.find("<g font-family"));
+    return std::distance(std::sregex_iterator(discs.begin(), discs.end(), circle), std::sregex_iterator());
+  };
+  const std::string walls = picture(box, "y = 5");
+  EXPECT_EQ(circles(walls), 2);
+  EXPECT_EQ(walls.find("clip-path"), std::string::npos);
+  // π (4 - 1) + π of 100
+  EXPECT_NE(walls.find("y = 5 mm   ·   area fraction 0.1257   ·   2 circles"), std::string::npos) << walls;
+  EXPECT_NE(picture(periodic_box(Vector<3>(10, 10, 10)), "x = 8").find("clip-path"), std::string::npos);
+  EXPECT_EQ(circles(picture(box, "z = 0.5")), 0);
+}
+
+}  // namespace section_test
+}  // namespace bernal
