@@ -216,10 +216,10 @@ std::string disc_svg(const Spheres<dynamic>& spheres, const Box& box, std::strin
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const double r = spheres.r[i];
     for (int image = 0; image < 9; ++image) {
-      const int across = image % 3 - 1, up = image / 3 - 1;
-      if ((box.has_wall(0) && across != 0) || (box.has_wall(1) && up != 0)) continue;
-      const Vector<2> c(spheres.x[0][i] - box.corner[0] + across * box.size[0],
-                        spheres.x[1][i] - box.corner[1] + up * box.size[1]);
+      const int column = image % 3 - 1, row = image / 3 - 1;
+      if ((box.has_wall(0) && column != 0) || (box.has_wall(1) && row != 0)) continue;
+      const Vector<2> c(spheres.x[0][i] - box.corner[0] + column * box.size[0],
+                        spheres.x[1][i] - box.corner[1] + row * box.size[1]);
       if ((c.array() + r <= 0).any() || (c.array() - r >= window.array()).any()) continue;
       const bool sticks_out = (c.array() < r).any() || (c.array() + r > window.array()).any();
       picture.discs.push_back({c, r, r, sticks_out && (part < 1 || box.repeats())});
