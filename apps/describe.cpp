@@ -19,8 +19,9 @@ std::string describe_container(const Plan& plan) {
   if (const auto* mesh = std::get_if<MeshFile>(&plan.scene.container))
     text += fmt::format(" {}", plain_text(mesh->file.string()));
   if (plan.box_follows) text += ", as large as the packing needs";
-  return fmt::format("{}{} {:.6g} {}, volume {:.6g} {}^{}", text, plan.box_follows ? ": about" : ",",
-                     fmt::join(size, " x "), unit, volume_of(plan.domain), unit, size.size());
+  return fmt::format("{}{} {:.6g} {}, {} {:.6g} {}^{}", text, plan.box_follows ? ": about" : ",",
+                     fmt::join(size, " x "), unit, size.size() == 2 ? "area" : "volume",
+                     volume_of(plan.domain), unit, size.size());
 }
 
 }  // namespace

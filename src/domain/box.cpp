@@ -12,13 +12,13 @@ namespace {
 class BoxContainer final : public Container {
  public:
   BoxContainer(const Box& shape, WallArithmetic arithmetic, double resolution)
-      : Container(arithmetic, resolution, boundary_of<3>(shape)),
+      : Container(arithmetic, resolution, boundary_of<3>(shape), shape.dimension()),
         shape_(shape),
         bounds_(bounds_of(shape)),
         walls_(walls_of(shape)) {
     for (int side = 0; side < 6; ++side) {
       const int axis = side / 2;
-      if (shape.repeats(axis)) {
+      if (axis >= shape.dimension() || shape.repeats(axis)) {
         ends_.lower[axis] = -std::numeric_limits<double>::infinity();
         ends_.upper[axis] = std::numeric_limits<double>::infinity();
         continue;

@@ -1,5 +1,6 @@
 #include "bernal/domain/container.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "bernal/core/error.hpp"
@@ -122,12 +123,13 @@ void Container::walls_near(const Vector<3>& c, double reach, std::vector<WallPoi
 std::unique_ptr<Container> make_analytic_container(const Domain& shape, WallArithmetic arithmetic,
                                                    double resolution) {
   if (const auto* box = std::get_if<Box>(&shape)) {
-    require(box->dimension() == 3 && box->corner.size() == 3, "a container has three dimensions");
-    require(box->periodic.empty() || box->periodic.size() == 3,
+    const int dimension = box->dimension();
+    require((dimension == 2 || dimension == 3) && box->corner.size() == dimension,
+            "a container has two or three dimensions");
+    require(box->periodic.empty() || box->periodic.size() == static_cast<std::size_t>(dimension),
             "a box repeats itself or ends on each of its axes");
-    require(box->corner.allFinite() && is_length(box->size[0]) && is_length(box->size[1]) &&
-                is_length(box->size[2]),
-            "a box needs three positive edges and a finite corner");
+    require(box->corner.allFinite() && std::ranges::all_of(box->size, is_length),
+            "a box needs positive edges and a finite corner");
     return make_box(*box, arithmetic, resolution);
   }
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
@@ -143,6 +145,10 @@ std::unique_ptr<Container> make_analytic_container(const Domain& shape, WallArit
     require(is_length(sphere->radius) && sphere->center.allFinite(),
             "a sphere needs a positive radius and a finite center");
     return make_sphere(*sphere, arithmetic, resolution);
+  }
+  if (const auto* polygon = std::get_if<Polygon>(&shape)) {
+    require_simple(*polygon);
+    return make_polygon(*polygon, arithmetic, resolution);
   }
   throw Error(ErrorCode::bad_argument, "a mesh is no analytic container: use make_mesh_container");
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <type_traits>
+#include <utility>
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
@@ -65,6 +66,63 @@ double area_of_mesh(const Mesh& mesh) {
   return twice_area / 2;
 }
 
+/// The points of a domain of two dimensions in the plane z = 0.
+Vector<3> in_space(const Vector<dynamic>& p) {
+  Vector<3> q = Vector<3>::Zero();
+  q.head(p.size()) = p;
+  return q;
+}
+
+Bounds<2> bounds_of_polygon(const Polygon& s) {
+  Bounds<2> bounds;
+  bool first = true;
+  for (const auto& loop : s.loops) {
+    for (const Vector<2>& p : loop) {
+      if (std::exchange(first, false)) bounds = {p, p};
+      bounds = {bounds.lower.cwiseMin(p), bounds.upper.cwiseMax(p)};
+    }
+  }
+  return bounds;
+}
+
+/// Twice, about the first corner; positive where it runs counter-clockwise.
+double twice_area_of(const std::vector<Vector<2>>& loop) {
+  double twice = 0;
+  for (std::size_t k = 2; k < loop.size(); ++k) {
+    const Vector<2> a = loop[k - 1] - loop[0], b = loop[k] - loop[0];
+    twice += a[0] * b[1] - a[1] * b[0];
+  }
+  return twice;
+}
+
+bool is_within(const std::vector<Vector<2>>& loop, const Vector<2>& p) {
+  bool inside = false;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Vector<2>&a = loop[k], &b = loop[(k + 1) % loop.size()];
+    if ((a[1] > p[1]) != (b[1] > p[1])) inside ^= p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+  }
+  return inside;
+}
+
+/// A line that an even number of others encloses bounds the region from outside, another one a hole in it.
+double area_of_polygon(const Polygon& s) {
+  double area = 0;
+  for (const auto& loop : s.loops) {
+    if (loop.empty()) continue;
+    bool hole = false;
+    for (const auto& other : s.loops) hole ^= &other != &loop && is_within(other, loop.front());
+    area += (hole ? -0.5 : 0.5) * std::abs(twice_area_of(loop));
+  }
+  return area;
+}
+
+double length_of(const Polygon& s) {
+  double length = 0;
+  for (const auto& loop : s.loops)
+    for (std::size_t k = 0; k < loop.size(); ++k) length += (loop[(k + 1) % loop.size()] - loop[k]).norm();
+  return length;
+}
+
 double spacing(double x) {
   x = std::abs(x);
   return std::nextafter(x, std::numeric_limits<double>::infinity()) - x;
@@ -90,7 +148,8 @@ std::string_view kind_of(const Domain& domain) {
       Overloaded{[](const Box& s) -> std::string_view { return s.repeats() ? "periodic" : "box"; },
                  [](const Cylinder&) -> std::string_view { return "cylinder"; },
                  [](const Sphere&) -> std::string_view { return "sphere"; },
-                 [](const Mesh&) -> std::string_view { return "mesh"; }},
+                 [](const Mesh&) -> std::string_view { return "mesh"; },
+                 [](const Polygon&) -> std::string_view { return "polygon"; }},
       domain);
 }
 
@@ -109,7 +168,7 @@ std::string name_of(const Domain& domain) {
 
 int dimension_of(const Domain& domain) {
   const auto* box = std::get_if<Box>(&domain);
-  return box ? box->dimension() : 3;
+  return box ? box->dimension() : std::holds_alternative<Polygon>(domain) ? 2 : 3;
 }
 
 bool has_walls(const Domain& domain) {
@@ -124,7 +183,7 @@ int symmetries_of(const Domain& domain) {
                                  return shifts;
                                },
                                [](const Cylinder& s) { return s.periodic ? 2 : 1; },
-                               [](const Sphere&) { return 3; }, [](const Mesh&) { return 0; }},
+                               [](const Sphere&) { return 3; }, [](const auto&) { return 0; }},
                     domain);
 }
 
@@ -138,7 +197,17 @@ bool is_periodic(const Domain& domain) {
 template <int D>
 Bounds<D> bounds_of(const Domain& domain) {
   return std::visit(Overloaded{[](const Box& s) {
+                                 if constexpr (D == 3)
+                                   if (s.dimension() == 2)
+                                     return Bounds<D>{in_space(s.corner), in_space(s.corner + s.size)};
                                  return Bounds<D>{s.corner, s.corner + s.size};
+                               },
+                               [](const Polygon& s) {
+                                 const Bounds<2> bounds = bounds_of_polygon(s);
+                                 if constexpr (D == 3)
+                                   return Bounds<D>{in_space(bounds.lower), in_space(bounds.upper)};
+                                 else
+                                   return Bounds<D>{bounds.lower, bounds.upper};
                                },
                                [](const auto& s) {
                                  Bounds<3> bounds;
@@ -163,32 +232,34 @@ double volume_of(const Domain& domain) {
                                },
                                [](const Cylinder& s) { return pi * s.radius * s.radius * s.height; },
                                [](const Sphere& s) { return ball_volume(3, s.radius); },
-                               [](const Mesh& s) { return volume_of_mesh(s); }},
+                               [](const Mesh& s) { return volume_of_mesh(s); },
+                               [](const Polygon& s) { return area_of_polygon(s); }},
                     domain);
 }
 
 double area_of(const Domain& domain) {
   using std::numbers::pi;
-  return std::visit(Overloaded{[](const Box& s) {
-                                 const Vector<3> e = bounds_of(s).size();
-                                 double area = 0;
-                                 for (const int k : {2, 0, 1})
-                                   if (s.has_wall(k)) area += 2 * (e[(k + 1) % 3] * e[(k + 2) % 3]);
-                                 return area;
-                               },
-                               [](const Cylinder& s) {
-                                 return 2 * pi * s.radius * ((s.periodic ? 0 : s.radius) + s.height);
-                               },
-                               [](const Sphere& s) { return 4 * pi * s.radius * s.radius; },
-                               [](const Mesh& s) { return area_of_mesh(s); }},
-                    domain);
+  return std::visit(
+      Overloaded{
+          [](const Box& s) {
+            const Vector<3> e = bounds_of(s).size();
+            double area = 0;
+            if (s.dimension() == 2) return 2 * ((s.has_wall(0) ? e[1] : 0) + (s.has_wall(1) ? e[0] : 0));
+            for (const int k : {2, 0, 1})
+              if (s.has_wall(k)) area += 2 * (e[(k + 1) % 3] * e[(k + 2) % 3]);
+            return area;
+          },
+          [](const Cylinder& s) { return 2 * pi * s.radius * ((s.periodic ? 0 : s.radius) + s.height); },
+          [](const Sphere& s) { return 4 * pi * s.radius * s.radius; },
+          [](const Mesh& s) { return area_of_mesh(s); }, [](const Polygon& s) { return length_of(s); }},
+      domain);
 }
 
 template <int D>
 Boundary<D> boundary_of(const Domain& domain) {
   Boundary<D> metric;
   if (const auto* box = std::get_if<Box>(&domain)) {
-    for (int k = 0; k < D; ++k) {
+    for (int k = 0; k < std::min(D, box->dimension()); ++k) {
       if (!box->repeats(k)) continue;
       metric.edges[k] = box->size[k];
       metric.origin[k] = box->corner[k];
@@ -238,11 +309,12 @@ Frame frame_of(const Domain& shape) {
 
 Domain to_local(const Domain& shape, const Frame& frame) {
   return std::visit(Overloaded{[&](const Box& s) -> Domain {
-                                 const Vector<3> lower = frame.to_local(s.corner);
-                                 Vector<3> size = frame.to_local(s.corner + s.size) - lower;
-                                 for (int k = 0; k < 3; ++k)  // periods scale without rounding
+                                 const int dimension = s.dimension();
+                                 const Vector<3> lower = frame.to_local(in_space(s.corner));
+                                 Vector<3> size = frame.to_local(in_space(s.corner + s.size)) - lower;
+                                 for (int k = 0; k < dimension; ++k)  // periods scale without rounding
                                    if (s.repeats(k)) size[k] = s.size[k] / frame.scale;
-                                 return Box{lower, size, s.periodic};
+                                 return Box{lower.head(dimension), size.head(dimension), s.periodic};
                                },
                                [&](Cylinder s) -> Domain {
                                  s.base = frame.to_local(s.base);
@@ -257,6 +329,11 @@ Domain to_local(const Domain& shape, const Frame& frame) {
                                },
                                [&](Mesh s) -> Domain {
                                  for (Vector<3>& v : s.vertices) v = frame.to_local(v);
+                                 return s;
+                               },
+                               [&](Polygon s) -> Domain {
+                                 for (auto& loop : s.loops)
+                                   for (Vector<2>& v : loop) v = frame.to_local(in_space(v)).head<2>();
                                  return s;
                                }},
                     shape);

@@ -19,4 +19,8 @@ bool contains_exactly(const Shape& shape, const Vector<3>& c, double r) {
   return contains_exactly(walls_of(shape), c, r);
 }
 
+/// The same of a polygon: the centre lies inside and no edge, ends included, is nearer to it than r. Cost:
+/// O(edges), beside that of those that are about as near.
+bool contains_exactly(const Polygon&, const Vector<3>& c, double r);
+
 }  // namespace bernal

@@ -17,6 +17,11 @@ constexpr double most_waste = 16, good_waste = 3;
 constexpr std::size_t most_questions = 150000;
 constexpr double widening = 1.001;
 
+/// Of bounds in the plane z = 0 the area.
+double size_of(const Bounds<3>& bounds, int dimension) {
+  return dimension == 2 ? bounds.size().head<2>().prod() : bounds.volume();
+}
+
 bool may_reach_into(const Container& container, const Bounds<3>& cell) {
   return container.clearance_within(cell.center(), 0) >= -widening * 0.5 * cell.diagonal();
 }
@@ -28,13 +33,16 @@ Places::Places(const Container& container) {
   cells_.clear();
   halve(container);
   volume_ = 0;
-  for (const Bounds<3>& cell : cells_) volume_up_to_.push_back(volume_ += cell.volume());
+  for (const Bounds<3>& cell : cells_)
+    volume_up_to_.push_back(volume_ += size_of(cell, container.dimension()));
 }
 
 /// False where the grid is not worth having.
 bool Places::take_grid(const Container& container) {
   const Bounds<3> bounds = container.bounds();
-  const double edge = std::cbrt(bounds.volume() / cells_wanted);
+  const int dimension = container.dimension();
+  const double size = size_of(bounds, dimension) / cells_wanted;
+  const double edge = dimension == 2 ? std::sqrt(size) : std::cbrt(size);
   std::array<int, 3> count;
   Vector<3> cell_size;
   double all = 1;
@@ -54,14 +62,14 @@ bool Places::take_grid(const Container& container) {
       }
     }
   }
-  volume_ = static_cast<double>(cells_.size()) * cell_size.prod();
+  volume_ = static_cast<double>(cells_.size()) * size_of({Vector<3>::Zero(), cell_size}, dimension);
   return volume_ <= most_waste * container.volume();
 }
 
 /// In the order in which they come, cells are in falling order of their volumes.
 void Places::halve(const Container& container) {
   cells_ = {container.bounds()};
-  volume_ = cells_.front().volume();
+  volume_ = size_of(cells_.front(), container.dimension());
   std::size_t first = 0;
   for (std::size_t asked = 0; asked < most_questions && first < cells_.size(); ++first) {
     if (volume_ <= good_waste * container.volume()) break;
@@ -75,7 +83,7 @@ void Places::halve(const Container& container) {
       if (may_reach_into(container, half))
         cells_.push_back(half);
       else
-        volume_ -= half.volume();
+        volume_ -= size_of(half, container.dimension());
     }
   }
   cells_.erase(cells_.begin(), cells_.begin() + static_cast<std::ptrdiff_t>(first));
@@ -92,7 +100,7 @@ Vector<3> Places::draw(Random& random) const {
 
 bool fills_its_bounds(const Container& container) {
   constexpr double least_share = 1. / 64;
-  return container.volume() >= least_share * container.bounds().volume();
+  return container.volume() >= least_share * size_of(container.bounds(), container.dimension());
 }
 
 std::vector<Vector<3>> points_inside(const Container& container, std::size_t count, std::uint64_t seed,

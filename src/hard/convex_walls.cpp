@@ -221,6 +221,9 @@ struct WallsOf {
     return {{.round = true, .center = sphere.center, .extent = sphere.radius}};
   }
   std::vector<Wall<3>> operator()(const Mesh& mesh) const { return Planes(mesh, tolerance).find(); }
+  std::vector<Wall<3>> operator()(const Polygon&) const {
+    throw Error(ErrorCode::bad_argument, "a polygon lies in the plane and has no walls of three dimensions");
+  }
 };
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "bernal/core/error.hpp"
+
 namespace bernal {
 namespace {
 
@@ -78,6 +80,10 @@ Mesh drawable(const Sphere& sphere) {
 }
 
 Mesh drawable(const Mesh& mesh) { return mesh; }
+
+Mesh drawable(const Polygon&) {
+  throw Error(ErrorCode::bad_argument, "a polygon lies in the plane and has no surface");
+}
 
 Vector<3> normal_of(const Mesh& mesh, std::uint32_t triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];

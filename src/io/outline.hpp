@@ -8,7 +8,7 @@ namespace bernal {
 
 /// The domain, or one period of it, as triangles that are good enough to draw: exact for boxes and a mesh, a
 /// fine prism for a cylinder; a sphere becomes two cones base to base, seen along their axis, whose rim is
-/// its outline.
+/// its outline. Precondition: three dimensions.
 Mesh drawable_mesh(const Domain& domain);
 
 /// A straight piece of the outline, wholly visible or wholly hidden behind the container's own surface.

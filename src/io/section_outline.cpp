@@ -68,6 +68,10 @@ std::vector<FlatLoop> cut_of(const Box& box, const SectionPlane& plane) {
   return cut_of(drawable_mesh(box), plane);
 }
 
+std::vector<FlatLoop> cut_of(const Polygon& polygon, const SectionPlane& plane) {
+  return cut_of(drawable_mesh(polygon), plane);
+}
+
 std::vector<FlatLoop> cut_of(const Sphere& sphere, const SectionPlane& plane) {
   const double h = height_above(plane, sphere.center);
   if (!(std::abs(h) < sphere.radius)) return {};

@@ -205,6 +205,15 @@ std::string solid_svg(const Spheres<dynamic>& spheres, const Domain& domain, std
 
 constexpr double most_discs = 20'000;
 
+/// Of a polygon all discs are shown. Cost: O(N).
+std::string disc_svg(const Spheres<dynamic>& spheres, const Polygon& polygon, std::string_view unit) {
+  const Bounds<dynamic> bounds = bounds_of<dynamic>(polygon);
+  DiscPicture picture{{}, polygon.loops, {bounds.lower, bounds.upper}};
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    picture.discs.push_back({spheres.center(i), spheres.r[i], spheres.r[i]});
+  return svg_of(picture, SizeScale(spheres.r), spheres.size(), unit);
+}
+
 /// Discs in a box of two dimensions: what is in it, images that reach into it included, and faintly what
 /// sticks out of it. Of very many discs a part of the box is shown, which the key says. Precondition: two
 /// dimensions, centres in one period. Cost: O(N).
@@ -234,6 +243,7 @@ std::string disc_svg(const Spheres<dynamic>& spheres, const Box& box, std::strin
 std::string svg_of(const Spheres<dynamic>& spheres, const Domain& domain, std::string_view unit) {
   switch (spheres.dimension()) {
     case 2:
+      if (const auto* polygon = std::get_if<Polygon>(&domain)) return disc_svg(spheres, *polygon, unit);
       return disc_svg(spheres, std::get<Box>(domain), unit);
     case 3:
       return solid_svg(spheres, domain, unit);

@@ -11,7 +11,9 @@ inline Spheres<3> localised(const Spheres<dynamic>& spheres, const Frame& frame)
   Spheres<3> local;
   local.reserve(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    local.push_back(frame.to_local(spheres.center(i)), spheres.r[i] / frame.scale);
+    Vector<3> center = Vector<3>::Zero();  // of two dimensions in the plane z = 0
+    center.head(spheres.dimension()) = spheres.center(i);
+    local.push_back(frame.to_local(center), spheres.r[i] / frame.scale);
   }
   return local;
 }

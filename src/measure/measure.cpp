@@ -78,7 +78,8 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
   measured.packing_fraction = packing_fraction(spheres, domain);
   std::vector<double> gaps = options.gaps;
   gaps.push_back(options.contact_gap);
-  const bool needs_container = has_walls(domain) && dimension_of(domain) == 3 && !spheres.empty();
+  const bool asked_of_box = std::holds_alternative<Box>(domain) && dimension_of(domain) != 3;
+  const bool needs_container = has_walls(domain) && !asked_of_box && !spheres.empty();
   const auto container = needs_container ? local_container(domain, options.container) : nullptr;
   measured.by_gap = measure_contacts(spheres, domain, gaps, container);
   measured.held_from = smallest_holding_gap(measured.by_gap, spheres.size());

@@ -195,7 +195,8 @@ std::vector<NearWall> near_faces(const Box& box, const Spheres<dynamic>& spheres
 std::vector<NearWall> near_walls(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
                                  const std::shared_ptr<const Container>& made) {
   if (spheres.empty() || !has_walls(domain)) return {};
-  if (!has_own_frame(domain)) return near_faces(std::get<Box>(domain), spheres, widest_gap);
+  const auto* box = std::get_if<Box>(&domain);
+  if (box && !has_own_frame(domain)) return near_faces(*box, spheres, widest_gap);
   const Frame frame = frame_of(domain);
   const auto container = local_container(domain, made);
   const Spheres<3> local = localised(spheres, frame);

@@ -80,7 +80,7 @@ void expect_in_container(Plan& plan) {
                                   exact ? WallArithmetic::plain : scene.walls);
     });
   };
-  if (std::holds_alternative<Mesh>(container)) make_container();  // what fits into it is asked of it
+  if (is_faceted(container)) make_container();  // what fits into it is asked of it
   require_fitting(scene, container, made, plan.radii->min());
   const bool has_limit = std::visit(
       [](const auto& kind) {

@@ -79,6 +79,7 @@ struct MakeDomain {
   Domain operator()(const Box& box) const { return box; }
   Domain operator()(const Cylinder& cylinder) const { return cylinder; }
   Domain operator()(const Sphere& sphere) const { return sphere; }
+  Domain operator()(const Polygon& polygon) const { return polygon; }
   Domain operator()(MeshFile& mesh) const {
     const Unit unit = scene.unit;
     try {

@@ -28,7 +28,7 @@ constexpr double negligible = 1e-3;
 /// Of random close packing, what walls and corners leave of it where a container is some spheres thick: what
 /// is not filled needs no room.
 constexpr double filled = 0.8;
-/// Of the mean thickness V / A of a mesh: spheres up to this fit somewhere, without a look.
+/// Of the mean thickness V / A of a mesh or polygon: spheres up to this fit somewhere, without a look.
 constexpr double surely_fitting = 0.5;
 /// Of a mesh's largest sphere, what rounding may hide.
 constexpr double hidden = 1e-9;
@@ -40,6 +40,10 @@ struct LargestRadius {
   double operator()(const Mesh& m) const {
     const double by_volume = std::cbrt(3 * volume_of(m) / (4 * std::numbers::pi));
     return std::min(0.5 * bounds_of(m).size().minCoeff(), by_volume);
+  }
+  double operator()(const Polygon& p) const {
+    const double by_area = std::sqrt(volume_of(p) / std::numbers::pi);
+    return std::min(0.5 * bounds_of<dynamic>(p).size().minCoeff(), by_area);
   }
 };
 
@@ -69,7 +73,7 @@ struct Largest {
 };
 Largest largest_in(const Domain& shape, const std::shared_ptr<const Container>& made) {
   const double bound = largest_fitting_radius(shape);
-  if (!std::holds_alternative<Mesh>(shape)) return {bound, bound};
+  if (!is_faceted(shape)) return {bound, bound};
   const Frame frame = frame_of(shape);
   const LargestRoom room = largest_room(*local_container(shape, made));
   return {room.radius * frame.scale, std::min(bound, (1 + hidden) * room.bound * frame.scale)};
@@ -80,8 +84,7 @@ Largest largest_in(const Domain& shape, const std::shared_ptr<const Container>& 
 void require_fitting(const Scene& scene, const Domain& container,
                      const std::shared_ptr<const Container>& made, double radius, std::string_view remedy) {
   Largest largest{largest_fitting_radius(container), largest_fitting_radius(container)};
-  if (std::holds_alternative<Mesh>(container) &&
-      radius > surely_fitting * volume_of(container) / area_of(container))
+  if (is_faceted(container) && radius > surely_fitting * volume_of(container) / area_of(container))
     largest = largest_in(container, made);
   if (radius <= largest.bound) return;
   const double shown = scene.sizes_are_diameters ? 2 : 1;
@@ -110,7 +113,7 @@ double tail_cut(const Scene& scene, const Domain& container, const SizeDistribut
   if (std::isfinite(radii.max())) return radii.max();
   const double median = radii.quantile(0.5), largest = largest_in(container, made).known;
   if (median > largest) require_fitting(scene, container, made, median);
-  const auto volume_above = [&](double r) { return radii.moment_above(3, r); };
+  const auto volume_above = [&](double r) { return radii.moment_above(dimension_of(container), r); };
   const double all = volume_above(0);
   const Frame frame = frame_of(container);
   std::shared_ptr<const Container> local = made;

@@ -98,12 +98,11 @@ void price_effects(Plan& plan) {
         std::holds_alternative<Mesh>(plan.domain)
             ? mesh_reader + bytes_a_face * static_cast<double>(std::get<Mesh>(plan.domain).triangles.size())
             : 0;
-    plan.items.push_back(
-        {.name = "walls",
-         .what = fmt::format("{}, {}", kind_of(plan.domain), name_of(scene.walls)),
-         .cost = std::holds_alternative<Mesh>(plan.domain) ? "O(log faces) a query" : "O(1) a query",
-         .bytes = bytes,
-         .part = true});
+    plan.items.push_back({.name = "walls",
+                          .what = fmt::format("{}, {}", kind_of(plan.domain), name_of(scene.walls)),
+                          .cost = is_faceted(plan.domain) ? "O(log faces) a query" : "O(1) a query",
+                          .bytes = bytes,
+                          .part = true});
     outlook.wall_query = wall_query(scene, plan.domain);
     outlook.at_walls = share_at_walls(plan);
   }

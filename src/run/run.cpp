@@ -45,8 +45,10 @@ Frame frame_of_box(const Vector<dynamic>& edges, double largest_radius) {
 /// Of sizes up to the largest sphere that fits: those beyond are not drawn.
 double random_close_packing_of(const Plan& plan) {
   const SizeDistribution& radii = *plan.radii;
-  if (std::isfinite(radii.max())) return close_packing_fraction(radii, 3);
-  return close_packing_fraction(CutAbove(radii, tail_cut(plan.scene, plan.domain, radii, plan.container)), 3);
+  const int dimension = plan.scene.dimension();
+  if (std::isfinite(radii.max())) return close_packing_fraction(radii, dimension);
+  return close_packing_fraction(CutAbove(radii, tail_cut(plan.scene, plan.domain, radii, plan.container)),
+                                dimension);
 }
 
 /// One run of a plan's stages.
@@ -123,7 +125,7 @@ class Run {
       std::shared_ptr<const Container> made = packing_.container;
       if (!made) made = make_container(work.domain, scene_.walls, frame_.resolution);
       work.container = walls_ = std::make_shared<CountedContainer>(std::move(made));
-      volume = std::pow(frame_.scale, 3) * work.container->volume();
+      volume = std::pow(frame_.scale, work.dimension()) * work.container->volume();
       if (!std::isfinite(source.radii.max()))
         source.cut = tail_cut(scene_, plan_.domain, source.radii, packing_.container);
       work.supply = std::make_shared<Supply>(source, volume, scene_.target, fraction);
@@ -156,7 +158,7 @@ class Run {
     for (const bool in_the_middle : {false, true}) {
       for (int n = 0; n < 27; ++n) {
         Vector<3> p = at;
-        for (int k = 0, step = n; k < 3; ++k, step /= 3) {
+        for (int k = 0, step = n; k < scene_.dimension(); ++k, step /= 3) {
           if (in_the_middle && std::abs(p[k] - middle[k]) < near) p[k] = middle[k];
           if (step % 3 > 0) p[k] = std::nextafter(p[k], step % 3 == 1 ? infinity : -infinity);
         }
@@ -245,8 +247,7 @@ class Run {
 
   /// Back into the scene's unit and place, in the order of the drawn sequence.
   void hand_over(Work& work) {
-    packing_.spheres =
-        work.stands_in_bed() ? Spheres<dynamic>(work.bed().spheres()) : std::move(work.spheres);
+    packing_.spheres = work.stands_in_bed() ? work.bed().spheres_as_packed() : std::move(work.spheres);
     Spheres<dynamic>& spheres = packing_.spheres;
     for (int k = 0; k < spheres.dimension(); ++k) {
       const double origin = k < 3 ? frame_.origin[k] : 0;
@@ -276,9 +277,10 @@ class Run {
   }
 
   void tell(const Course& course) {
-    packing_.history.push_back({std::string(course.stage), course.spheres, course.packing_fraction,
-                                course.potential ? frame_.scale * *course.potential + frame_.origin[2] : 0,
-                                course.max_overlap, watch_.seconds()});
+    packing_.history.push_back(
+        {std::string(course.stage), course.spheres, course.packing_fraction,
+         course.potential ? frame_.scale * *course.potential + frame_.origin[scene_.dimension() - 1] : 0,
+         course.max_overlap, watch_.seconds()});
     const double expected = plan_.expected_packing_fraction;
     const double share = expected > 0 ? std::min(course.packing_fraction / expected, 0.99) : 0;
     const std::string overlap =

@@ -36,16 +36,22 @@ struct WorstPair {
   throw Error(ErrorCode::bad_packing, why, {start.file, start.first_line + static_cast<int>(i)});
 }
 
-[[noreturn]] void refuse_overlap(const StartSpheres& start, const WorstPair& worst, std::string_view stage) {
+/// What frees spheres of their overlap.
+constexpr std::string_view relax_frees = "begin with \"relax\", which pushes spheres apart and inside";
+
+std::string_view remedy_in_bed(int dimension) {
+  return dimension == 2 ? "move it, or leave it out; no stage does that for discs between walls"
+                        : relax_frees;
+}
+
+[[noreturn]] void refuse_overlap(const StartSpheres& start, const WorstPair& worst, std::string_view stage,
+                                 std::string_view remedy = relax_frees) {
   const std::string how =
       worst.ratio > 0
           ? fmt::format("overlaps that of line {} by a ratio of {:.3g}",
                         start.first_line + static_cast<int>(worst.i), worst.ratio)
           : fmt::format("touches that of line {} to rounding", start.first_line + static_cast<int>(worst.i));
-  refuse(start, worst.j,
-         fmt::format("this sphere {}, and no pair may for \"{}\": begin with \"relax\", which pushes them "
-                     "apart",
-                     how, stage));
+  refuse(start, worst.j, fmt::format("this sphere {}, and no pair may for \"{}\": {}", how, stage, remedy));
 }
 
 template <int D>
@@ -121,7 +127,7 @@ void take_start_in_bed(const Plan& plan, const Frame& frame, Work& work) {
   std::vector<bool> stands(n, false);
   for (std::size_t i = 0; i < n; ++i) {
     const double r = work.supply->radius(static_cast<std::uint32_t>(i));
-    Vector<3> c = container.boundary().wrap(frame.to_local(start.spheres.center(i)));
+    Vector<3> c = container.boundary().wrap(frame.to_local(place_in_bed(start.spheres.center(i))));
     if (!container.contains(c, 0))
       refuse(start, i, "this sphere lies outside of the container; check the unit, \"start_unit\" says it");
     stands[i] = container.contains(c, r + gap);
@@ -131,9 +137,8 @@ void take_start_in_bed(const Plan& plan, const Frame& frame, Work& work) {
       if (touching) c = *touching;
       if (!touching && !frees_overlap)
         refuse(start, i,
-               fmt::format("this sphere protrudes from the container by {:.3g} of its radius; begin with "
-                           "\"relax\", which pushes it inside",
-                           1 - container.clearance(c) / r));
+               fmt::format("this sphere protrudes from the container by {:.3g} of its radius: {}",
+                           1 - container.clearance(c) / r, remedy_in_bed(container.dimension())));
     }
     grid.for_each_near(c, r + gap, [&](std::uint32_t j) {
       const double distance = container.boundary().minimum_image(c - spheres.center(j)).norm();
@@ -146,7 +151,8 @@ void take_start_in_bed(const Plan& plan, const Frame& frame, Work& work) {
     spheres.push_back(c, r);
     if (stands[i]) bed.insert(c, r, static_cast<std::uint32_t>(i));
   }
-  if (worst.ratio > -1 && !frees_overlap) refuse_overlap(start, worst, first.name());
+  if (worst.ratio > -1 && !frees_overlap)
+    refuse_overlap(start, worst, first.name(), remedy_in_bed(container.dimension()));
   work.supply->set_placed(stands);
   work.begun = n;
   if (bed.size() < n) work.crowded_start = std::move(spheres);

@@ -29,6 +29,12 @@ bool is_absurd(double v) {
 
 bool is_absurd(const Value& value) {
   if (const auto* number = std::get_if<double>(&value)) return is_absurd(*number);
+  if (const auto* polygon = std::get_if<Polygon>(&value)) {
+    for (const auto& loop : polygon->loops)
+      for (const Vector<2>& p : loop)
+        if (is_absurd(p[0]) || is_absurd(p[1])) return true;
+    return false;
+  }
   const auto* numbers = std::get_if<std::vector<double>>(&value);
   return numbers && std::ranges::any_of(*numbers, [](double v) { return is_absurd(v); });
 }
@@ -46,10 +52,27 @@ bool all(const Value& value) {
          std::ranges::all_of(*numbers, fits);
 }
 
-bool is_direction(const Value& value) {
-  return all<is_coordinate, 3>(value) && std::ranges::any_of(std::get<std::vector<double>>(value),
-                                                             [](double v) { return is_length(std::abs(v)); });
+/// Two or three of them.
+template <bool (*fits)(double)>
+bool two_or_three(const Value& value) {
+  return all<fits, 2>(value) || all<fits, 3>(value);
 }
+
+template <bool (*has_components)(const Value&)>
+bool is_direction(const Value& value) {
+  return has_components(value) && std::ranges::any_of(std::get<std::vector<double>>(value),
+                                                      [](double v) { return is_length(std::abs(v)); });
+}
+/// What they are to each other the domain says.
+bool are_lines(const Value& value) {
+  const auto* polygon = std::get_if<Polygon>(&value);
+  return polygon && !polygon->loops.empty() && std::ranges::all_of(polygon->loops, [](const auto& loop) {
+           return loop.size() >= 3 && std::ranges::all_of(loop, [](const Vector<2>& p) {
+                    return is_coordinate(p[0]) && is_coordinate(p[1]);
+                  });
+         });
+}
+bool is_line(const Value& value) { return are_lines(value) && std::get<Polygon>(value).loops.size() == 1; }
 bool are_axes(const Value& value) {
   if (!all<is_axis>(value)) return false;
   const auto& axes = std::get<std::vector<double>>(value);
@@ -80,10 +103,16 @@ const std::map<Type, Rule> rules = {
      {"a positive length",
       [](const Value& v) { return std::holds_alternative<double>(v) && is_length(std::get<double>(v)); }}},
     {Type::file, {"the path of a file", is_file, false}},
-    {Type::direction, {"a direction [x, y, z]", is_direction}},
+    {Type::direction, {"a direction [x, y, z]", is_direction<all<is_coordinate, 3>>}},
+    {Type::push,
+     {"a direction [x, y, z], in two dimensions [x, y]", is_direction<two_or_three<is_coordinate>>}},
     {Type::position, {"a point [x, y, z]", all<is_coordinate, 3>}},
     {Type::names, {"a name or an array of names", are_names, false}},
-    {Type::extents, {"three positive lengths [a, b, c]", all<is_length, 3>}},
+    {Type::corner, {"a point [x, y, z], in two dimensions [x, y]", two_or_three<is_coordinate>}},
+    {Type::extents, {"two or three positive lengths [a, b, c]", two_or_three<is_length>}},
+    {Type::points, {"an array of three points [x, y] or more", is_line}},
+    {Type::lines, {"an array of arrays of three points [x, y] or more", are_lines}},
+    {Type::coordinates, {"an array of coordinates", all<is_coordinate>}},
     {Type::lengths, {"an array of positive lengths", all<is_length>}},
     {Type::shares, {"an array of positive numbers", all<is_length>}},
     {Type::amounts, {"an array of numbers of at least 0", all<is_amount>}},

@@ -77,11 +77,12 @@ void check_target(const Scene& scene) {
     fail("a periodic box without size needs a \"count\" in [spheres]; or give it \"size\" or \"edge\"");
 }
 
-/// The stage that packs any scene.
-void take_default_stage(Scene& scene) {
+/// The stage that packs any scene; in a bed of two dimensions all that work there, one after the other.
+void take_default_stages(Scene& scene) {
   scene.stages_are_default = true;
+  const bool in_plane = !scene.is_periodic() && scene.dimension() == 2;
   for (const StageTable* table : stage_tables())
-    if (table->traits.is_default) {
+    if (in_plane ? table->traits.in_plane : table->traits.is_default) {
       scene.stages.push_back(table->make());
       scene.stages.back().locations.whole.file = scene.file.string();
     }
@@ -93,7 +94,7 @@ bool has_fixed_walls(const PeriodicBox& box) {
 
 std::string_view name_of_domain(const Scene& scene) {
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
-  if (!box) return "container with walls";
+  if (!box) return scene.dimension() == 2 ? "container of two dimensions" : "container with walls";
   return box->walls.empty() ? "periodic box" : "periodic box that ends at walls along some axes";
 }
 
@@ -136,14 +137,33 @@ void require_end(const Scene& scene) {
                   target.where);
 }
 
+/// What is pushed is pushed down where nothing is said of it, along the last axis that there is.
+void complete_pushes(const Entry& entry, void* options, const Scene& scene, const Section& section) {
+  const auto dimension = static_cast<std::size_t>(scene.dimension());
+  for (const Key& key : entry.keys) {
+    if (key.type != Type::push) continue;
+    const auto value = std::get<std::vector<double>>(*key.of(options));
+    if (value.size() == dimension) continue;
+    if (section.locations.keys.contains(key.name) ||
+        toml_text(value) != toml_text(*key.of(entry.defaults.get())))
+      section.refuse(key.name, fmt::format("must have a component for each of {} dimensions, but it has {}",
+                                           dimension, value.size()));
+    std::vector<double> down(dimension, 0.0);
+    down.back() = -1;
+    key.member.set(options, down);
+  }
+}
+
 void complete_stages(Scene& scene) {
-  if (scene.stages.empty()) take_default_stage(scene);
+  if (scene.stages.empty()) take_default_stages(scene);
   bool keeps_sizes = false;  // in a bed
   for (Stage& stage : scene.stages) {
     const StageTable& table = table_of(stage);
     const Section section = section_of(stage, table);
     require_possible(scene, stage);
     check(table.keys, table.options(stage), section, table.traits.stands_in_bed(scene));
+    if (table.traits.stands_in_bed(scene))
+      complete_pushes(table.keys, table.options_of(stage), scene, section);
     if (table.keys.complete) table.keys.complete(table.options_of(stage), scene, section);
     keeps_sizes = keeps_sizes || (table.traits.keeps_sizes && table.traits.stands_in_bed(scene));
   }
@@ -160,7 +180,7 @@ bool StageTraits::stands_in_bed(const Scene& scene) const {
 }
 
 bool StageTraits::works_in(const Scene& scene) const {
-  if (stands_in_bed(scene)) return in_bed;
+  if (stands_in_bed(scene)) return in_bed && (in_plane || scene.dimension() == 3);
   const auto& box = std::get<PeriodicBox>(scene.container);
   return in_box && (box_between_walls || box.walls.empty());
 }

@@ -17,9 +17,10 @@
 
 namespace bernal::schema {
 
-/// What a user may write to the right of an equals sign; a distribution is an array of one.
+/// What a user may write to the right of an equals sign; a distribution is an array of one, and so is a line
+/// of points.
 using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
-                           std::vector<std::string>, std::vector<SceneSizes>>;
+                           std::vector<std::string>, std::vector<SceneSizes>, Polygon>;
 
 /// What the value of a key must be. Vectors have three components; arrays have at least one.
 enum class Type {
@@ -30,9 +31,14 @@ enum class Type {
   word,          ///< one of Key::words
   file,          ///< a path, relative to the scene's folder
   direction,     ///< [x, y, z], not all zero
+  push,          ///< the same, or [x, y]: as many components as the scene has dimensions
   position,      ///< [x, y, z] in the scene's unit; or one of Key::words, if there are any
   names,         ///< array of strings, or one: each one of Key::words, if there are any
-  extents,       ///< [a, b, c], each a length
+  corner,        ///< [x, y, z] or [x, y] in the scene's unit
+  extents,       ///< [a, b, c] or [a, b], each a length
+  points,        ///< array of three [x, y] or more, a closed line
+  lines,         ///< array of such
+  coordinates,   ///< array of numbers in the scene's unit
   lengths,       ///< array of lengths
   shares,        ///< array of positive numbers
   amounts,       ///< array of numbers of at least 0

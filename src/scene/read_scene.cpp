@@ -13,6 +13,7 @@
 #include "bernal/core/text.hpp"
 #include "core/file_kind.hpp"
 #include "scene/read_columns.hpp"
+#include "scene/read_value.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"
@@ -29,74 +30,6 @@ using Names = std::vector<std::string_view>;
 Names names_of(const auto& entries) {
   Names names;
   for (const auto& entry : entries) names.push_back(entry.name);
-  return names;
-}
-
-/// What the user wrote, short enough for an error of one line.
-std::string written(const toml::node& node) {
-  constexpr std::size_t longest = 60;
-  if (const auto* text = node.as_string()) {
-    std::string_view shown = text->get();
-    if (shown.size() <= longest) return toml_string(shown);
-    shown = shown.substr(0, longest);
-    while (!shown.empty() && (shown.back() & 0xC0) == 0x80) shown.remove_suffix(1);  // whole UTF-8 characters
-    return toml_string(shown.substr(0, shown.size() - 1)) + "…";
-  }
-  if (const auto* number = node.as_floating_point()) return toml_text(number->get());
-  if (const auto* number = node.as_integer()) return toml_text(number->get());
-  if (const auto* flag = node.as_boolean()) return toml_text(flag->get());
-  if (node.is_table()) return "a table";
-  if (const auto* array = node.as_array()) {
-    std::vector<std::string> items;
-    for (const toml::node& item : *array) {
-      if (items.size() == 6 || item.is_array()) return fmt::format("an array of {} values", array->size());
-      items.push_back(written(item));
-    }
-    return fmt::format("[{}]", fmt::join(items, ", "));
-  }
-  return "a date or time";
-}
-
-/// The number in a node, to the nearest double. -0 is 0.
-double number_in(const toml::node& node) {
-  if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
-  return node.as_floating_point()->get() + 0.0;
-}
-
-/// The node as a value, whole numbers as doubles if that is asked for; nothing for tables and dates.
-std::optional<schema::Value> value_in(const toml::node& node, bool as_double) {
-  if (const auto* flag = node.as_boolean()) return flag->get();
-  if (const auto* text = node.as_string()) return text->get();
-  if (const auto* number = node.as_integer(); number && !as_double) return number->get();
-  if (node.is_number()) return number_in(node);
-  const toml::array* array = node.as_array();
-  if (!array) return std::nullopt;
-  std::vector<double> numbers;
-  for (const toml::node& item : *array) {
-    if (!item.is_number()) return std::nullopt;
-    numbers.push_back(number_in(item));
-  }
-  return numbers;
-}
-
-/// The node as names, whole numbers among them; nothing for anything else.
-std::optional<schema::Value> names_in(const toml::node& node) {
-  std::vector<std::string> names;
-  const auto take = [&](const toml::node& item) {
-    if (const auto* text = item.as_string())
-      names.push_back(text->get());
-    else if (const auto* number = item.as_integer())
-      names.push_back(fmt::format("{}", number->get()));
-    else
-      return false;
-    return true;
-  };
-  if (const toml::array* array = node.as_array()) {
-    for (const toml::node& item : *array)
-      if (!take(item)) return std::nullopt;
-  } else if (!take(node)) {
-    return std::nullopt;
-  }
   return names;
 }
 
@@ -275,8 +208,10 @@ class Reader {
   Value read_value(const toml::node& node, const Key& key, const std::string& where) const {
     if (key.type == Type::distribution) return std::vector{read_sizes(node, key, where)};
     if (key.type == Type::parts) return read_parts(node, key, where);
-    const std::optional<Value> value =
-        key.type == Type::names ? names_in(node) : value_in(node, key.type != Type::integer);
+    const bool line = key.type == Type::points;
+    const std::optional<Value> value = line || key.type == Type::lines ? lines_in(node, line)
+                                       : key.type == Type::names       ? names_in(node)
+                                                                 : value_in(node, key.type != Type::integer);
     if (value && schema::accepts(key, *value)) return *value;
     if (key.type == Type::word && node.is_string())
       fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
@@ -308,6 +243,7 @@ class Reader {
                     Locations& locations) const {
     const std::string file = std::get<std::string>(read_value(node, *entry.find("file"), where));
     const Location at_file = locations.of("file");
+    if (entry.columns.empty()) return take_points(file, entry, where, options, locations);
     const std::array keys = {entry.find(entry.columns.at(0)), entry.find(entry.columns.at(1))};
     try {
       const auto columns = read_columns(beside_the_scene(file), keys);
@@ -315,6 +251,25 @@ class Reader {
         keys[k]->member.set(options, columns[k]);
         locations.keys[std::string(keys[k]->name)] = at_file;
       }
+    } catch (const Error& error) {
+      if (!error.location().file.empty()) throw;
+      throw Error(error.code(), fmt::format("\"file\" in {}: {}", where, error.what()), at_file);
+    }
+  }
+
+  /// The corners of a line from a file of two columns.
+  void take_points(const std::filesystem::path& file, const Entry& entry, const std::string& where,
+                   void* options, Locations& locations) const {
+    static const Key x{.name = "x", .type = Type::coordinates}, y{.name = "y", .type = Type::coordinates};
+    const Location at_file = locations.of("file");
+    try {
+      const auto columns = read_columns(beside_the_scene(file), {&x, &y});
+      Polygon polygon{{{}}};
+      for (std::size_t k = 0; k < columns[0].size(); ++k)
+        polygon.loops.front().emplace_back(columns[0][k], columns[1][k]);
+      const auto key = std::ranges::find(entry.keys, Type::points, &Key::type);
+      key->member.set(options, polygon);
+      locations.keys[std::string(key->name)] = at_file;
     } catch (const Error& error) {
       if (!error.location().file.empty()) throw;
       throw Error(error.code(), fmt::format("\"file\" in {}: {}", where, error.what()), at_file);

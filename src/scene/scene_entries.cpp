@@ -106,6 +106,14 @@ void box_rule(const Box& box, const Section& section) {
                    "must not repeat itself; a box that does is of the kind \"periodic\", a PeriodicBox");
 }
 
+/// Where nothing is said of the corner it is the origin, of as many coordinates as the box has.
+void complete_box(Box& box, Scene&, const Section& section) {
+  if (box.corner.size() == box.size.size()) return;
+  if (section.locations.keys.contains("corner") || !box.corner.isZero(0))
+    section.refuse("corner", fmt::format("must have {} coordinates, as \"size\" has", box.size.size()));
+  box.corner = Vector<dynamic>::Zero(box.size.size());
+}
+
 void cylinder_rule(const Cylinder& cylinder, const Section& section) {
   if (cylinder.periodic && cylinder.coordinate_axis() < 0)
     section.refuse("axis", "must lie along x, y or z where \"periodic\" is true");
@@ -264,10 +272,11 @@ const std::array<const Entry*, 3>& own_entries() {
 const std::vector<Entry>& container_entries() {
   static const std::vector<Entry> all = {
       entry<Box>({.name = "box",
-                  .help = "a box along the axes",
-                  .keys = {required(key(Type::extents, &Box::size, "size", "its three edges")),
-                           key(Type::position, &Box::corner, "corner", "its lowest corner")},
-                  .rule = rule(box_rule)}),
+                  .help = "a box along the axes; with two edges a rectangle, for discs",
+                  .keys = {required(key(Type::extents, &Box::size, "size", "its edges")),
+                           key(Type::corner, &Box::corner, "corner", "its lowest corner")},
+                  .rule = rule(box_rule),
+                  .complete = completion(complete_box)}),
       entry<Cylinder>(
           {.name = "cylinder",
            .help = "a circular cylinder along any axis",
@@ -338,7 +347,8 @@ const std::vector<Entry>& container_entries() {
                          "the packing decides how large the box is; size only gives its proportions")},
            .choices = {{{"size"}, {"edge"}, {}}},
            .rule = rule(periodic_rule),
-           .complete = completion(complete_periodic)})};
+           .complete = completion(complete_periodic)}),
+      polygon_entry()};
   return all;
 }
 

@@ -18,6 +18,7 @@ const std::array<const Entry*, 3>& own_entries();
 /// In the order of the alternatives of SceneContainer and SceneSizes.
 const std::vector<Entry>& container_entries();
 const std::vector<Entry>& size_entries();
+Entry polygon_entry();
 
 inline const Entry& entry_of(const SceneContainer& container) {
   return container_entries()[container.index()];

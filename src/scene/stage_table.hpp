@@ -16,8 +16,9 @@ enum class Reaches {
 
 /// What a stage needs and promises, so that nobody asks for its name.
 struct StageTraits {
-  bool in_bed = false;  ///< it works on spheres that stand in a bed: in containers and between fixed walls
-  bool in_box = false;  ///< it works on spheres that stand in a box: in periodic boxes
+  bool in_bed = false;    ///< it works on spheres that stand in a bed: in containers and between fixed walls
+  bool in_box = false;    ///< it works on spheres that stand in a box: in periodic boxes
+  bool in_plane = false;  ///< in a bed of two dimensions, too
   bool box_between_walls = false;  ///< in a box that ends at walls along some axes, too
   bool prefers_bed = false;        ///< of one that works in both: where walls are fixed it takes the bed
   int least_dimension = 1, most_dimensions = max_dimension;  ///< of boxes

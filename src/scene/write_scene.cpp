@@ -27,6 +27,13 @@ static std::string text_of(const SceneSizes& sizes) {
                      fmt::join(assignments(entry, schema::options_of(sizes)), ", "));
 }
 
+/// "[[x, y], [x, y]]"
+static std::string text_of(const std::vector<Vector<2>>& loop) {
+  std::vector<std::string> points;
+  for (const Vector<2>& p : loop) points.push_back(fmt::format("[{}, {}]", p[0], p[1]));
+  return fmt::format("[{}]", fmt::join(points, ", "));
+}
+
 std::string toml_text(const schema::Value& value) {
   struct {
     std::string operator()(bool v) const { return v ? "true" : "false"; }
@@ -46,6 +53,11 @@ std::string toml_text(const schema::Value& value) {
       for (const SceneSizes& part : v) parts.push_back(text_of(part));
       return fmt::format("[{}]", fmt::join(parts, ", "));
     }
+    std::string operator()(const Polygon& v) const {
+      std::vector<std::string> loops;
+      for (const auto& loop : v.loops) loops.push_back(text_of(loop));
+      return fmt::format("[{}]", fmt::join(loops, ", "));
+    }
   } write;
   return std::visit(write, value);
 }
@@ -54,10 +66,11 @@ std::vector<std::string> assignments(const schema::Entry& entry, const void* opt
   std::vector<std::string> out;
   for (const auto& [key, value] : entry.said(options)) {
     if (!key->acts_here(in_bed)) continue;
-    const bool one = key->type == schema::Type::distribution;
-    out.push_back(
-        fmt::format("{} = {}", key->name,
-                    one ? text_of(std::get<std::vector<SceneSizes>>(value).front()) : toml_text(value)));
+    const std::string text =
+        key->type == schema::Type::distribution ? text_of(std::get<std::vector<SceneSizes>>(value).front())
+        : key->type == schema::Type::points     ? text_of(std::get<Polygon>(value).loops.front())
+                                                : toml_text(value);
+    out.push_back(fmt::format("{} = {}", key->name, text));
   }
   return out;
 }

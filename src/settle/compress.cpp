@@ -89,7 +89,7 @@ void sweep_at_random(Bed& bed, const Vector<3>& pull, double tilt, const Vector<
                      Random& random) {
   Mover mover(bed);
   for (Bed::Id i = 0; i < bed.size(); ++i) {
-    Vector<3> u = uniform_direction<3>(random);
+    Vector<3> u = bed.random_direction(random);
     u -= u.dot(across) * across;
     u = pull + tilt * u;
     const double length = u.norm();
@@ -113,9 +113,15 @@ void require_support(const Boundary<3>& boundary, const Vector<3>& direction) {
               "\"relax\" or \"grow\"");
 }
 
+Vector<3> direction_of(const Compress& options) {
+  Vector<3> direction = Vector<3>::Zero();
+  direction.head(options.direction.size()) = options.direction;
+  return direction.normalized();
+}
+
 StageEnd compress(Work& work, const Compress& options) {
   Bed& bed = work.bed();
-  const Vector<3> direction = options.direction.normalized();
+  const Vector<3> direction = direction_of(options);
   require_support(bed.container().boundary(), direction);
   if (bed.size() == 0) return StageEnd::converged;
   const EffectTimer timer(work.effects["compression"]);
@@ -152,7 +158,7 @@ StageEnd compress(Work& work, const Compress& options) {
 
 std::vector<schema::Key> compression_keys() {
   using namespace schema;
-  return {key(Type::direction, &Compress::direction, "direction",
+  return {key(Type::push, &Compress::direction, "direction",
               "where the spheres are pushed; its length is of no matter"),
           number(&Compress::tilt, "tilt",
                  "how far a sphere's own direction leaves the common one; 0: not at all", {0, 100}),
@@ -171,12 +177,12 @@ const StageEntry& entry_of<Compress>() {
       .table = stage_table<Compress>({.name = "compress",
                                       .help = "move every sphere along a direction until it touches",
                                       .keys = compression_keys()},
-                                     {.in_bed = true, .only_moves = true}),
+                                     {.in_bed = true, .in_plane = true, .only_moves = true}),
       .act_in_bed = act(compress),
       .may_bring = {"neighbour lists", "compression"},
       .effects = of_options(effects_of_compression),
       .require = of_options(+[](const Compress& o, const Domain& domain, double, const FillTask&) {
-        require_support(boundary_of<3>(domain), o.direction);
+        require_support(boundary_of<3>(domain), direction_of(o));
       })};
   return entry;
 }

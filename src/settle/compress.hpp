@@ -30,6 +30,8 @@ StageEnd shake(Work& work, const Shake& options);
 /// Throws Error{bad_scene} if spheres that are pressed along `direction` would fall for ever: it must have no
 /// component along an axis that repeats itself.
 void require_support(const Boundary<3>& boundary, const Vector<3>& direction);
+/// As a unit vector; in two dimensions in the plane z = 0.
+Vector<3> direction_of(const Compress& options);
 /// What every stage has that ends with a compression: its keys, and its item of the plan.
 std::vector<schema::Key> compression_keys();
 

@@ -27,7 +27,7 @@ constexpr std::size_t last_few = 16;
 constexpr double last_share = 0.01;
 
 double share_of_container(const Work& work, std::size_t count) {
-  return volume_of(work.drawn(count).spheres) / work.container->volume();
+  return work.volume_of_drawn(count) / work.container->volume();
 }
 
 bool falls_short(const Work& work) {
@@ -112,7 +112,7 @@ StageEnd insert_largest_first(Work& work, double densest_so_far) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t tag) { return supply.radius(tag); });
-  double within_reach = volume_of(work.drawn(count).spheres);  // if all that follow find a place
+  double within_reach = work.volume_of_drawn(count);  // if all that follow find a place
   const double enough = densest_so_far * bed.container().volume();
 
   Random random = work.random(Stream::insert);
@@ -126,7 +126,7 @@ StageEnd insert_largest_first(Work& work, double densest_so_far) {
     if (r != without_place) in_a_row = 0;
     if (within_reach < enough) break;
     if (in_a_row == most_in_a_row) {
-      within_reach -= ball_volume(3, r);
+      within_reach -= ball_volume(work.dimension(), r);
       continue;
     }
     std::optional<Vector<3>> place;
@@ -140,7 +140,7 @@ StageEnd insert_largest_first(Work& work, double densest_so_far) {
       placed[tag] = true;
     } else {
       without_place = r;
-      within_reach -= ball_volume(3, r);
+      within_reach -= ball_volume(work.dimension(), r);
       ++in_a_row;
       ++failures;
     }
@@ -159,26 +159,26 @@ StageEnd insert_what_else_fits(Work& work, StageEnd end) {
 template <>
 const StageEntry& entry_of<Insert>() {
   using namespace schema;
-  static const StageEntry entry =
-      {.table = stage_table<Insert>(
-           {.name = "insert",
-            .help = "place spheres where they overlap nothing, at random or on a lattice",
-            .keys =
-                {word(&Insert::layout, "layout",
-                      "random places, or a lattice: face-centred, as wide as holds what is to be placed, its "
-                      "sites taken in random order",
-                      {"random", "lattice"}),
-                 buys_accuracy(
-                     {1, 10, 100, 1000, 10000},
-                     integer(&Insert::attempts, "attempts",
-                             "random: places tried for one sphere before it has to wait", {1, 1e9})),
-                 number(&Insert::packing_fraction, "packing_fraction", "where insertion stops",
-                        between(0, 1))}},
-           {.in_bed = true, .reaches = Reaches::insertion}),
-       .act_in_bed = act(insert),
-       .may_bring = {"insertion"},
-       .effects = of_options(effects_of_insertion),
-       .reached = of_options(+[](const Insert& options) { return options.packing_fraction; })};
+  static const StageEntry entry = {
+      .table = stage_table<Insert>(
+          {.name = "insert",
+           .help = "place spheres where they overlap nothing, at random or on a lattice",
+           .keys = {word(&Insert::layout, "layout",
+                         "random places, or a lattice: face-centred, of discs hexagonal, as wide as holds "
+                         "what is to "
+                         "be placed, its sites taken in random order",
+                         {"random", "lattice"}),
+                    buys_accuracy(
+                        {1, 10, 100, 1000, 10000},
+                        integer(&Insert::attempts, "attempts",
+                                "random: places tried for one sphere before it has to wait", {1, 1e9})),
+                    number(&Insert::packing_fraction, "packing_fraction", "where insertion stops",
+                           between(0, 1))}},
+          {.in_bed = true, .in_plane = true, .reaches = Reaches::insertion}),
+      .act_in_bed = act(insert),
+      .may_bring = {"insertion"},
+      .effects = of_options(effects_of_insertion),
+      .reached = of_options(+[](const Insert& options) { return options.packing_fraction; })};
   return entry;
 }
 

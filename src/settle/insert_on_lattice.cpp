@@ -22,6 +22,21 @@ constexpr int most_halvings = 2;
 /// Spheres of the window that are tried at one site.
 constexpr std::size_t most_tried = 32;
 
+/// Of sites that are `spacing` apart: the steps of a face-centred lattice, in the plane z = 0 of a hexagonal
+/// one.
+Vector<3> steps_of(double spacing, int dimension) {
+  if (dimension == 2) return {0.5 * spacing, 0.5 * std::numbers::sqrt3 * spacing, 0};
+  return Vector<3>::Constant(spacing / std::numbers::sqrt2);
+}
+
+/// At which so many sites fill the container evenly.
+double even_spacing(const Container& container, std::size_t sites) {
+  const double volume = container.volume();
+  const auto n = static_cast<double>(sites);
+  return container.dimension() == 2 ? std::sqrt(2 / std::numbers::sqrt3 * volume / n)
+                                    : std::cbrt(std::numbers::sqrt2 * volume / n);
+}
+
 /// The points first + (i, j, k) step with i + j + k even, for i, j, k from 0 to below `count`.
 struct Lattice {
   Vector<3> first, step;
@@ -31,21 +46,23 @@ struct Lattice {
   /// open bounds, in whose middle it lies. No sites where they do not fit.
   Lattice(const Container& container, double r, double spacing, double skin) {
     const Bounds<3> bounds = container.bounds();
-    const double least_step = spacing / std::numbers::sqrt2;
-    for (int k = 0; k < 3; ++k) {
+    const Vector<3> least_step = steps_of(spacing, container.dimension());
+    step = first = Vector<3>::Zero();
+    count = {1, 1, 1};
+    for (int k = 0; k < container.dimension(); ++k) {
       const auto at = static_cast<std::size_t>(k);
       if (container.boundary().repeats(k)) {
         const double period = container.boundary().edges[k];
-        count[at] = 2 * std::max(1, static_cast<int>(period / (2 * least_step)));
+        count[at] = 2 * std::max(1, static_cast<int>(period / (2 * least_step[k])));
         step[k] = period / count[at];
         first[k] = container.boundary().origin[k];
         continue;
       }
       const double room = bounds.size()[k] - 2 * (r + 2 * skin);
-      const int steps = room >= 0 ? static_cast<int>(room / least_step) : -1;
+      const int steps = room >= 0 ? static_cast<int>(room / least_step[k]) : -1;
       count[at] = steps + 1;
-      step[k] = least_step;
-      first[k] = bounds.center()[k] - 0.5 * steps * least_step;
+      step[k] = least_step[k];
+      first[k] = bounds.center()[k] - 0.5 * steps * least_step[k];
     }
   }
 
@@ -86,7 +103,7 @@ Sites widest_lattice(const Work& work, std::size_t needed) {
     const Lattice lattice(bed.container(), r, spacing, bed.skin());
     return Sites{lattice, lattice.sites(bed, r, work.monitor)};
   };
-  const double even = std::cbrt(std::numbers::sqrt2 * bed.container().volume() / static_cast<double>(needed));
+  const double even = even_spacing(bed.container(), needed);
   double wide = std::max(touching, widest_tried * even), close = wide;
   Sites widest = sites_at(wide);
   while (widest.free.size() < needed && close > touching) {

@@ -32,7 +32,7 @@ std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
   const double radius =
       bed.size() > 0 ? bed.mean_radius() : work.supply->radius(work.supply->window().front());
   const double smallest = work.supply->smallest() + bed.skin();
-  const double capacity = container.volume() / ball_volume(3, radius);
+  const double capacity = container.volume() / ball_volume(work.dimension(), radius);
   const double wanted = std::min(most_probes, 1000 + probes_a_sphere * capacity);
   std::vector<Probe> probes;
   for (double trial = 0; trial < std::max(least_trials, most_trials * wanted); ++trial) {
@@ -93,7 +93,7 @@ void fill_free_space(Work& work, std::vector<Probe>& probes) {
 /// come, in their order, take the first place that is large enough. Cost: O(1) a probe, and that of the
 /// compression.
 StageEnd refill(Work& work, const Refill& options) {
-  require_support(work.bed().container().boundary(), options.shake.compress.direction);
+  require_support(work.bed().container().boundary(), direction_of(options.shake.compress));
   if (work.supply->exhausted()) return StageEnd::converged;
   std::vector<Probe> probes = draw_probes(work, options.probes);
   for (int round = 0; round < options.max_rounds; ++round) {
@@ -136,12 +136,12 @@ const StageEntry& entry_of<Refill>() {
                               number(&Shake::amplitude, "amplitude",
                                      "longest way in one sweep of shaking, in mean radii", above(0, 100))},
                              inside(&Shake::compress, compression_keys()))))},
-          {.in_bed = true, .reaches = Reaches::settled}),
+          {.in_bed = true, .in_plane = true, .reaches = Reaches::settled}),
       .act_in_bed = act(refill),
       .may_bring = {"refilling", "neighbour lists", "compression", "shaking"},
       .effects = of_options(effects_of_refilling),
       .require = of_options(+[](const Refill& o, const Domain& domain, double, const FillTask&) {
-        require_support(boundary_of<3>(domain), o.shake.compress.direction);
+        require_support(boundary_of<3>(domain), direction_of(o.shake.compress));
       })};
   return entry;
 }

@@ -9,7 +9,7 @@ constexpr int sweeps_a_round = 10;
 
 StageEnd shake(Work& work, const Shake& options) {
   Bed& bed = work.bed();
-  const Vector<3> direction = options.compress.direction.normalized();
+  const Vector<3> direction = direction_of(options.compress);
   require_support(bed.container().boundary(), direction);
   for (int round = 0; round < options.rounds; ++round) {
     if (work.monitor.stop()) return StageEnd::cancelled;
@@ -42,12 +42,12 @@ const StageEntry& entry_of<Shake>() {
                 number(&Shake::amplitude, "amplitude", "longest way in one sweep, in mean radii",
                        above(0, 100))},
                inside(&Shake::compress, compression_keys()))},
-          {.in_bed = true, .only_moves = true}),
+          {.in_bed = true, .in_plane = true, .only_moves = true}),
       .act_in_bed = act(shake),
       .may_bring = {"neighbour lists", "shaking", "compression"},
       .effects = of_options(effects_of_shaking),
       .require = of_options(+[](const Shake& o, const Domain& domain, double, const FillTask&) {
-        require_support(boundary_of<3>(domain), o.compress.direction);
+        require_support(boundary_of<3>(domain), direction_of(o.compress));
       })};
   return entry;
 }

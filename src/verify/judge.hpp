@@ -20,7 +20,8 @@ Tally judge_pairs(const BallTree<3>& balls, const OpenSpace<3>& space, const Cou
 ///
 /// A box has two pieces of wall for every axis that ends, a cylinder three (base, top, side) or, repeating
 /// itself, its side, and a sphere one: every ball is tried against each. Of a mesh the triangles whose boxes
-/// touch the ball's are tried, and the side of its centre is decided. Throws Error{bad_mesh} for a mesh that
+/// touch the ball's are tried, and the side of its centre is decided, and of a polygon the edges
+/// likewise. Throws Error{bad_mesh} for a mesh that
 /// encloses nothing and Error{bad_argument} for absurd measures. Cost: O(N), for a mesh of T triangles
 /// O(T log T + N log T + near pieces). Precondition: D is the dimension of the domain.
 template <int D>

@@ -9,6 +9,7 @@
 #include "bernal/core/error.hpp"
 #include "core/every_dimension.hpp"
 #include "verify/mesh_wall.hpp"
+#include "verify/polygon_wall.hpp"
 #include "verify/predicates.hpp"
 
 namespace bernal::verify {
@@ -134,6 +135,7 @@ Tally judge_all(const BallTree<D>& balls, const Wall& wall, const Course& course
 template <int D>
 Tally judge_walls(const BallTree<D>& balls, const Domain& domain, const Course& course) {
   if (const auto* box = std::get_if<bernal::Box>(&domain)) return judge_all(balls, BoxWall<D>(*box), course);
+  if constexpr (D == 2) return judge_all(balls, PolygonWall(std::get<Polygon>(domain)), course);
   if constexpr (D == 3) {
     if (const auto* cylinder = std::get_if<Cylinder>(&domain))
       return judge_all(balls, CylinderWall(*cylinder), course);

@@ -192,4 +192,32 @@ Sign crossing_above(const Vector<3>& p, const Corners& corner) {
   return height == -orientation ? orientation : Sign::zero;
 }
 
+/// The distance of p in the plane from the edge between a and b, ends included, is at least r.
+template <class Number>
+Truth ball_clears_edge(const Vector<2>& p, double r, const Vector<2>& a, const Vector<2>& b) {
+  const auto minus = [](double s, double t) { return Number(s) - Number(t); };
+  const Number r_squared = square(Number(r));
+  const Number wx = minus(p[0], a[0]), wy = minus(p[1], a[1]);
+  const Number ex = minus(b[0], a[0]), ey = minus(b[1], a[1]);
+  const Truth clear = at_least(square(wx) + square(wy), r_squared) &
+                      at_least(square(minus(p[0], b[0])) + square(minus(p[1], b[1])), r_squared);
+  if (clear == Truth::no) return Truth::no;
+  const Number along = wx * ex + wy * ey, length_squared = square(ex) + square(ey);
+  const Truth beyond = at_least(Number(0), along) | at_least(along, length_squared);
+  if (beyond == Truth::yes) return clear;
+  return clear & (beyond | at_least(square(wx * ey - wy * ex), r_squared * length_squared));
+}
+
+/// Whether the ray from p along the first axis crosses the edge between a and b, of which the lower end
+/// belongs to it and the upper one does not: so a line that passes a corner is crossed there once, and one
+/// that only touches the ray twice or not at all. For a p on the edge the answer is of no matter: no disc
+/// around it clears that.
+template <class Number>
+Truth crossing_to_the_right(const Vector<2>& p, const Vector<2>& a, const Vector<2>& b) {
+  if ((a[1] > p[1]) == (b[1] > p[1])) return Truth::no;
+  const auto minus = [](double s, double t) { return Number(s) - Number(t); };
+  const Number side = minus(b[0], a[0]) * minus(p[1], a[1]) - minus(b[1], a[1]) * minus(p[0], a[0]);
+  return b[1] > a[1] ? is_positive(side.sign()) : is_negative(side.sign());
+}
+
 }  // namespace bernal::verify

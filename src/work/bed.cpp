@@ -61,11 +61,17 @@ Bed::Bed(const Container& container, double r_min, double r_max, std::size_t exp
 double Bed::potential(const Vector<3>& direction) const {
   double sum = 0, weight = 0;
   for (const Ball& b : balls_) {
-    const double mass = b.r * b.r * b.r;
+    const double mass = dimension() == 2 ? b.r * b.r : b.r * b.r * b.r;
     sum -= mass * direction.dot(b.center);
     weight += mass;
   }
   return weight > 0 ? sum / weight : 0;
+}
+
+Vector<3> Bed::random_direction(Random& random) const {
+  if (dimension() == 3) return uniform_direction<3>(random);
+  const Vector<2> u = uniform_direction<2>(random);
+  return {u[0], u[1], 0};
 }
 
 bool Bed::fits_between_spheres(const Vector<3>& c, double r) const {
@@ -109,7 +115,7 @@ void Bed::insert(const Vector<3>& place, double r, std::uint32_t tag) {
   far_from_wall_.push_back(0);
   far_from_wall_at_.push_back(c);
   sum_of_radii_ += r;
-  sum_of_volumes_ += ball_volume(3, r);
+  sum_of_volumes_ += ball_volume(dimension(), r);
 }
 
 void Bed::remove_tags_from(std::uint32_t first) {
@@ -157,7 +163,7 @@ void Bed::reorder(const std::vector<Id>& order) {
     const double r = balls_[i].r;
     grid_.insert(i, balls_[i].center, r);
     sum_of_radii_ += r;
-    sum_of_volumes_ += ball_volume(3, r);
+    sum_of_volumes_ += ball_volume(dimension(), r);
   }
 }
 
@@ -234,6 +240,12 @@ Spheres<3> Bed::spheres() const {
   result.reserve(order.size());
   for (const Id i : order) result.push_back(container_.boundary().wrap(balls_[i].center), balls_[i].r);
   return result;
+}
+
+Spheres<dynamic> Bed::spheres_as_packed() const {
+  Spheres<dynamic> all(spheres());
+  all.x.resize(static_cast<std::size_t>(dimension()));
+  return all;
 }
 
 }  // namespace bernal

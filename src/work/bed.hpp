@@ -16,7 +16,15 @@ namespace bernal {
 /// The effect of `walls = "exact"`: decisions about walls that doubles would nearly always have made.
 inline constexpr std::string_view exact_walls_effect = "exact walls";
 
-/// The bed: spheres in their container while they are being packed, in the packer's frame.
+/// The place of a centre of two or three coordinates; of two in the plane z = 0.
+inline Vector<3> place_in_bed(const Vector<dynamic>& center) {
+  Vector<3> place = Vector<3>::Zero();
+  place.head(center.size()) = center;
+  return place;
+}
+
+/// The bed: spheres in their container while they are being packed, in the packer's frame; in a container of
+/// two dimensions discs, which stay in the plane z = 0.
 ///
 /// Every stage obeys walls and neighbours through the same two calls: `fits` for a sphere that appears,
 /// `Mover::free_path` for one that moves. Both keep every gap at or above skin/2 (core/tolerance.hpp), so
@@ -59,6 +67,9 @@ class Bed {
   double packing_fraction() const { return sum_of_volumes_ / container_.volume(); }
   /// Mean of the volume-weighted height of the spheres against `direction`: potential energy a volume.
   double potential(const Vector<3>& direction) const;
+  int dimension() const { return container_.dimension(); }
+  /// A random unit vector of the container's dimension.
+  Vector<3> random_direction(Random& random) const;
 
   /// Whether a sphere may appear at c: no neighbour and no wall nearer than the skin. O(1) besides the wall.
   bool fits(const Vector<3>& c, double r) const;
@@ -107,6 +118,8 @@ class Bed {
 
   /// The spheres in the order of their tags, centres in the period.
   Spheres<3> spheres() const;
+  /// The same with as many coordinates as the container has.
+  Spheres<dynamic> spheres_as_packed() const;
 
  private:
   friend class Mover;

@@ -20,7 +20,8 @@ namespace bernal {
 class CountedContainer final : public Container {
  public:
   explicit CountedContainer(std::shared_ptr<const Container> container)
-      : Container(container->arithmetic(), container->resolution(), container->boundary()),
+      : Container(container->arithmetic(), container->resolution(), container->boundary(),
+                  container->dimension()),
         container_(std::move(container)) {}
 
   std::string_view kind() const override { return container_->kind(); }

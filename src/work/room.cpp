@@ -52,22 +52,25 @@ std::vector<NearFacet> nearest_facets(const Container& container, const Vector<3
 }
 
 /// The step, in units of its greatest length, that leaves the most room beyond what there is.
-Vector<3> uphill(const std::vector<Obstacle>& obstacles, double room, double step) {
+Vector<3> uphill(const std::vector<Obstacle>& obstacles, double room, double step, int dimension) {
   std::vector<HalfSpace<4>> spaces;
   for (const Obstacle& o : obstacles) {
     Vector<4> a;
     a << -o.away, 1;
     spaces.push_back({a, (o.distance - room) / step});
   }
-  return optimum<4>(Vector<4>::Unit(3), spaces, {-Vector<4>::Ones(), Vector<4>(1, 1, 1, 2)}).head<3>();
+  const double across = dimension == 2 ? 0 : 1;  // the plane
+  return optimum<4>(Vector<4>::Unit(3), spaces, {Vector<4>(-1, -1, -across, -1), Vector<4>(1, 1, across, 2)})
+      .head<3>();
 }
 
 /// The step, in units of its greatest length, that goes farthest along the direction and keeps the room.
-Vector<3> along(const Vector<3>& direction, const std::vector<Obstacle>& obstacles, double room,
-                double step) {
+Vector<3> along(const Vector<3>& direction, const std::vector<Obstacle>& obstacles, double room, double step,
+                int dimension) {
   std::vector<HalfSpace<3>> spaces;
   for (const Obstacle& o : obstacles) spaces.push_back({-o.away, std::max(0.0, o.distance - room) / step});
-  return optimum<3>(direction, spaces, {-Vector<3>::Ones(), Vector<3>::Ones()});
+  const Vector<3> most(1, 1, dimension == 2 ? 0 : 1);
+  return optimum<3>(direction, spaces, {-most, most});
 }
 
 /// Of a round wall the nearest tangent plane, and others all around, so that a step does not end beyond the
@@ -126,7 +129,7 @@ Room room_at(const Vector<3>& place, double reach, const Surroundings& surroundi
 
 }  // namespace
 
-Room climb(Room from, double enough, double step, const Surroundings& surroundings) {
+Room climb(Room from, double enough, double step, const Surroundings& surroundings, int dimension) {
   const double least = least_step * std::max(step, from.radius);
   const auto leads_on = [&] {
     return step > least && !(std::isfinite(enough) && step < hopeless * (enough - from.radius));
@@ -137,8 +140,8 @@ Room climb(Room from, double enough, double step, const Surroundings& surroundin
     const std::vector<Obstacle> obstacles = obstacles_near(surroundings, from.place, reach);
     const bool beyond = std::ranges::any_of(obstacles, [](const Obstacle& o) { return o.away.isZero(0); });
     if (obstacles.empty() || beyond) return from;
-    const Room to = room_at(from.place + step * uphill(obstacles, from.radius, step), reach + 2 * step,
-                            surroundings, from.radius);
+    const Room to = room_at(from.place + step * uphill(obstacles, from.radius, step, dimension),
+                            reach + 2 * step, surroundings, from.radius);
     if (to.radius > from.radius) {
       from = to;
       step *= longer;
@@ -149,8 +152,8 @@ Room climb(Room from, double enough, double step, const Surroundings& surroundin
   return from;
 }
 
-Room slide(Room from, double room, const Vector<3>& direction, double step,
-           const Surroundings& surroundings) {
+Room slide(Room from, double room, const Vector<3>& direction, double step, const Surroundings& surroundings,
+           int dimension) {
   const double least = 1e-12 * room;
   for (int k = 0; k < most_steps && step > least; ++k) {
     const double reach = room + std::sqrt(3.0) * step;
@@ -161,7 +164,7 @@ Room slide(Room from, double room, const Vector<3>& direction, double step,
         straight = std::min(straight, std::max(0.0, o.distance - (1 + rounding) * room) / closing);
     const Vector<3> way = straight > hardly * step
                               ? Vector<3>(straight * direction)
-                              : Vector<3>(step * along(direction, obstacles, room, step));
+                              : Vector<3>(step * along(direction, obstacles, room, step, dimension));
     const Room to = room_at(from.place + way, reach, surroundings, room);
     if (way.dot(direction) > least && to.radius >= room)
       from = to;
@@ -188,7 +191,7 @@ LargestRoom largest_room(const Container& container, int most_cells) {
     // The roomiest so far is a good place to climb from.
     if (cell.clearance > largest.radius) {
       const Room top = climb({center, cell.clearance}, std::numeric_limits<double>::infinity(),
-                             0.5 * cell.clearance, walls);
+                             0.5 * cell.clearance, walls, container.dimension());
       largest.place = top.place;
       largest.radius = top.radius;
     }

@@ -28,15 +28,18 @@ struct Room {
 /// The room at a place, as far as `reach`.
 Room room_at(const Vector<3>& place, double reach, const Surroundings& surroundings);
 
+// In two dimensions places stay in the plane z = 0.
+
 /// From a place uphill to one with the room `enough`, or to the top of the hill: the roomiest place that is
 /// near. Steps, at most `step` long on an axis, are those that make the nearest obstacle farthest when each
 /// is taken for the plane through its nearest point: a linear programme. Between planes one step finds the
 /// top, to rounding; between curved walls some ten do. Cost: the surroundings and some 10 µs a step.
-Room climb(Room from, double enough, double step, const Surroundings& surroundings);
+Room climb(Room from, double enough, double step, const Surroundings& surroundings, int dimension = 3);
 
 /// From a place that has at least this room along `direction`, round what is in the way, to where it goes no
 /// further, keeping the room; some 100 steps at most. Cost: as `climb`.
-Room slide(Room from, double room, const Vector<3>& direction, double step, const Surroundings& surroundings);
+Room slide(Room from, double room, const Vector<3>& direction, double step, const Surroundings& surroundings,
+           int dimension = 3);
 
 /// The roomiest place that is known in a container, and what no place exceeds.
 struct LargestRoom : Room {

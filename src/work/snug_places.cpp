@@ -46,11 +46,12 @@ std::optional<Vector<3>> SnugPlaces::from(const Vector<3>& start, double r, bool
   const double enough = r + clear * bed.skin();
   const Surroundings surroundings = bed.surroundings(give);
   const double step = 2 * r;
-  const Room top = climb(room_at(start, 2 * clearance, surroundings), enough, step, surroundings);
+  const Room top =
+      climb(room_at(start, 2 * clearance, surroundings), enough, step, surroundings, bed.dimension());
   if (touching) {
     if (top.radius < enough - seemingly * r || !work_.exact_place) return {};
     // Back a little from where it would touch what is not to be touched.
-    const Room end = slide(top, std::min(top.radius, enough), along_, step, surroundings);
+    const Room end = slide(top, std::min(top.radius, enough), along_, step, surroundings, bed.dimension());
     const double way = along_.dot(end.place - top.place), back = std::min(way, 2 * give);
     for (const Vector<3>& from_here : {Vector<3>(end.place - back * along_), top.place}) {
       const std::optional<Vector<3>> place = work_.exact_place(from_here, r);
@@ -59,7 +60,7 @@ std::optional<Vector<3>> SnugPlaces::from(const Vector<3>& start, double r, bool
     return {};
   }
   if (top.radius < enough) return {};
-  const Vector<3> place = slide(top, enough, along_, step, surroundings).place;
+  const Vector<3> place = slide(top, enough, along_, step, surroundings, bed.dimension()).place;
   return bed.fits(place, r) ? std::optional(place) : std::nullopt;
 }
 

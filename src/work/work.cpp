@@ -33,6 +33,12 @@ void Work::Drawn::extend(std::size_t count, const Supply& supply) {
   placed.resize(spheres.size(), false);
 }
 
+double Work::volume_of_drawn(std::size_t count) const {
+  double volume = 0;
+  for (const double r : drawn(count).spheres.r) volume += ball_volume(dimension(), r);
+  return volume;
+}
+
 std::size_t Work::count_filling(double packing_fraction) const {
   return supply->count_filling(packing_fraction * container->volume());
 }
@@ -57,7 +63,7 @@ const Room& Work::roomiest() const {
     // Of one place in the middle, where nothing is nearer than what bounds the largest sphere, that is known.
     const Room middle{container->bounds().center(), container->clearance(container->bounds().center())};
     roomiest_ = middle;
-    if (std::holds_alternative<Mesh>(domain)) {
+    if (is_faceted(domain)) {
       const LargestRoom known = largest_room(*container);
       roomiest_ = Room{known.place, known.radius};
     }
@@ -87,7 +93,7 @@ void Work::insert_in_bed(const Spheres<dynamic>& others,
   const std::vector<std::uint32_t> tags = tags_of(others.r, *supply);
   std::vector<bool> has_place(tags.empty() ? 0 : tags.back() + std::size_t{1}, false);
   for (std::size_t i = 0; i < others.size(); ++i) {
-    const Vector<3> place = others.center(i);
+    const Vector<3> place = place_in_bed(others.center(i));
     if (may_stand && !may_stand(place, others.r[i])) continue;
     bed_->insert(place, others.r[i], tags[i]);
     has_place[tags[i]] = true;
@@ -115,7 +121,7 @@ void Work::stand_in_bed() {
 
 void Work::stand_in_box() {
   if (!bed_) return;
-  spheres = bed_->spheres();
+  spheres = bed_->spheres_as_packed();
   const double enough = nearly_all * attainable * volume_of(domain);
   placed = target.is_open() ? volume_of_spheres() >= enough && !spheres.empty()
                             : spheres.size() == supply->wanted();
@@ -136,7 +142,7 @@ void Work::milestone(std::string_view stage) const {
   on_course({.stage = stage,
              .spheres = bed().size(),
              .packing_fraction = bed().packing_fraction(),
-             .potential = bed().potential(-Vector<3>::UnitZ())});
+             .potential = bed().potential(-Vector<3>::Unit(bed().dimension() - 1))});
 }
 
 void Work::milestone(std::string_view stage, double done, double max_overlap) const {
@@ -163,8 +169,7 @@ Keepsake::Keepsake(const Work& work)
       packing_fraction_(packing_fraction_of(work)),
       edges_(in_bed_ ? bounds_of<dynamic>(work.domain).size() : work.edges),
       needed_volume_(work.needed_volume) {
-  if (packing_fraction_ > 0)
-    spheres_ = work.stands_in_bed() ? Spheres<dynamic>(work.bed().spheres()) : work.spheres;
+  if (packing_fraction_ > 0) spheres_ = work.stands_in_bed() ? work.bed().spheres_as_packed() : work.spheres;
 }
 
 void Keepsake::give_back_if_denser(Work& work) const {

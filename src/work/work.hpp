@@ -142,6 +142,8 @@ struct Work {
   Drawn drawn(std::size_t count) const;
   /// The roomiest place of the container, as far as it is known. Looked for once.
   const Room& roomiest() const;
+  /// Of so many of the sequence, or all that stand in the bed if these are more.
+  double volume_of_drawn(std::size_t count) const;
   /// Whether the walls leave a sphere of this radius less room than the skin, so that it only fits touching.
   bool is_snug(double r) const { return r + bed().skin() > roomiest().radius; }
   /// Whether a sphere may appear at a place: clear of others by the skin; and of walls, or touching them

@@ -13,8 +13,8 @@ namespace bernal::testing {
 
 inline std::size_t below(Random& random, std::size_t n) { return static_cast<std::size_t>(random() % n); }
 
-/// How many inputs a fuzzer tries: those of the variable BERNAL_FUZZ, or one in so many of them where each takes
-/// that much longer, which it prints; or a few.
+/// How many inputs a fuzzer tries: those of the variable BERNAL_FUZZ, or one in so many of them where each
+/// takes that much longer, which it prints; or a few.
 inline std::size_t fuzz_inputs(std::size_t few, std::size_t one_in = 1) {
   const char* asked = std::getenv("BERNAL_FUZZ");
   if (asked == nullptr) return few;

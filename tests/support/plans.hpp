@@ -47,6 +47,9 @@ inline Domain scaled(Domain shape, double factor) {
   } else if (auto* sphere = std::get_if<Sphere>(&shape)) {
     sphere->center *= factor;
     sphere->radius *= factor;
+  } else if (auto* polygon = std::get_if<Polygon>(&shape)) {
+    for (auto& loop : polygon->loops)
+      for (Vector<2>& v : loop) v *= factor;
   } else {
     for (Vector<3>& v : std::get<Mesh>(shape).vertices) v *= factor;
   }
@@ -55,11 +58,14 @@ inline Domain scaled(Domain shape, double factor) {
 
 inline Domain shifted(Domain shape, const Vector<3>& by) {
   if (auto* box = std::get_if<Box>(&shape)) {
-    box->corner += by;
+    box->corner += by.head(box->dimension());
   } else if (auto* cylinder = std::get_if<Cylinder>(&shape)) {
     cylinder->base += by;
   } else if (auto* sphere = std::get_if<Sphere>(&shape)) {
     sphere->center += by;
+  } else if (auto* polygon = std::get_if<Polygon>(&shape)) {
+    for (auto& loop : polygon->loops)
+      for (Vector<2>& v : loop) v += by.head<2>();
   } else {
     for (Vector<3>& v : std::get<Mesh>(shape).vertices) v += by;
   }

@@ -104,7 +104,8 @@ TEST(SceneInCpp, IsRefusedWhereNoTextCouldSayIt) {
   expect([](Scene& s) { s.container = Cylinder{.radius = -1}; },
          "\"radius\" in [container] must be a positive length, not -1");
   expect([](Scene& s) { s.container = Cylinder{.axis = {0, 1, 1}, .periodic = true}; }, "along x, y or z");
-  expect([](Scene& s) { s.container = Box{{0, 0}, {1, 1}}; }, "three positive lengths");
+  expect([](Scene& s) { s.container = Box{{0}, {1}}; }, "two or three positive lengths");
+  expect([](Scene& s) { s.container = Polygon{}; }, "needs \"vertices\"");
   expect([](Scene& s) { s.container = Box{{0, 0, 0}, {1, 1, 1}, {true, true, true}}; }, "PeriodicBox");
   expect([](Scene& s) { s.container = PeriodicBox{.size = {1, 2}}; }, "each of 3 dimensions");
   expect([](Scene& s) { s.container = PeriodicBox{.size = {1, 2, 3}, .edge = 1}; }, "exclude each other");

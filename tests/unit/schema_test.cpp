@@ -45,6 +45,17 @@ std::string sample(const Key& key, int choice) {
       return choice == 0 ? "\"part.stl\"" : "'''/tmp/a \"strange\" \\ name.stl'''";
     case Type::direction:  // along an axis, as columns need it
       return choice == 0 ? "[0, -1e-5, 0]" : "[4.000000000000001, 0, 0]";
+    case Type::push:
+      return choice == 0 ? "[0, -1e-5, 0]" : "[4.000000000000001, 0, 0]";
+    case Type::corner:
+      return choice == 0 ? "[0, -1, 1e-5]" : "[3, 4.000000000000001, 0]";
+    case Type::points:
+      return "[[0, 0], [9, -1e-5], [0, 9.000000000000002]]";
+    case Type::lines:
+      return choice == 0 ? "[[[1, 1], [2, 1], [1, 2]]]"
+                         : "[[[1, 1], [2, 1], [1, 2]], [[3, 3], [4, 3], [3, 4]]]";
+    case Type::coordinates:  // of no key, only of columns
+      return "[1, -2, 0]";
     case Type::position:
       return choice == 0 ? "[0, -1, 1e-5]" : "[3, 4.000000000000001, 0]";
     case Type::extents:
@@ -71,7 +82,15 @@ std::string sample(const Key& key, int choice) {
   return "";
 }
 
+/// A file of the points of a polygon.
+std::string file_of_points() {
+  static const testing::Folder folder;
+  static const auto file = folder.write("points.csv", "x, y\n0, 0\n9, 0\n0, 9\n");
+  return fmt::format("\"{}\"", file.string());
+}
+
 std::string sample_of(const Entry& entry, const Key& key, int choice) {
+  if (key.type == Type::file && entry.name == "polygon") return file_of_points();
   return key.type == Type::file && !entry.columns.empty() ? file_of_columns() : sample(key, choice);
 }
 

@@ -33,7 +33,9 @@ struct WallContact {
 };
 
 /// The walls of a domain of three dimensions: a region that is bounded, or bounded but for the axes along
-/// which it repeats itself.
+/// which it repeats itself. Or of one of two dimensions, whose points are those with z = 0 and whose volume
+/// is an area: a disc there is a sphere that stays in the plane, among walls upright on it, and all formulas
+/// hold. Queries take points with z = 0 then and answer with such.
 ///
 /// Lengths are in the unit of the shape it was made from. All queries are const and may be called from
 /// several threads at once.
@@ -42,6 +44,7 @@ class Container {
   virtual ~Container() = default;
 
   virtual std::string_view kind() const = 0;
+  int dimension() const { return dimension_; }
   /// Along an axis that repeats itself, one period.
   virtual Bounds<3> bounds() const = 0;
   virtual double volume() const = 0;
@@ -108,18 +111,19 @@ class Container {
   WallArithmetic arithmetic() const { return arithmetic_; }
 
  protected:
-  Container(WallArithmetic arithmetic, double resolution, const Boundary<3>& boundary = {})
-      : arithmetic_(arithmetic), resolution_(resolution), boundary_(boundary) {}
+  Container(WallArithmetic arithmetic, double resolution, const Boundary<3>& boundary = {}, int dimension = 3)
+      : arithmetic_(arithmetic), resolution_(resolution), dimension_(dimension), boundary_(boundary) {}
 
  private:
   WallArithmetic arithmetic_;
   double resolution_;
+  int dimension_;
   Boundary<3> boundary_;
 };
 
-/// The container of a box of three dimensions, cylinder or sphere. Throws Error{bad_argument} for lengths
-/// that are not positive and finite, an axis without direction or a periodic one that is oblique, and for a
-/// mesh: see `make_mesh_container` in bernal/cad.
+/// The container of a box of two or three dimensions, cylinder, sphere or polygon. Throws Error{bad_argument}
+/// for lengths that are not positive and finite, an axis without direction or a periodic one that is oblique,
+/// and for a mesh: see `make_mesh_container` in bernal/cad.
 std::unique_ptr<Container> make_analytic_container(const Domain&, WallArithmetic, double resolution);
 
 }  // namespace bernal

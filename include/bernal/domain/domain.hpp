@@ -62,9 +62,21 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-using Domain = std::variant<Box, Cylinder, Sphere, Mesh>;
+/// The points of the plane from which a ray crosses closed lines an odd number of times: of an outline and
+/// the holes in it what is between them. Every line joins its corners in their order and the last to the
+/// first, in either sense; edges without length count for nothing. See `require_simple`.
+struct Polygon {
+  std::vector<std::vector<Vector<2>>> loops;
+};
 
-/// "box", "cylinder", "sphere", "mesh"; "periodic" for a box that repeats itself along some axis.
+/// Throws Error{bad_argument} that names the edges and the place, unless a polygon has finite corners, at
+/// least three a line that are not in a row, and edges that meet nowhere but at the ends of neighbours.
+/// Exact. Cost: O(n log n), and every pair of edges whose bounds overlap.
+void require_simple(const Polygon&);
+
+using Domain = std::variant<Box, Cylinder, Sphere, Mesh, Polygon>;
+
+/// "box", "cylinder", "sphere", "mesh", "polygon"; "periodic" for a box that repeats itself along some axis.
 std::string_view kind_of(const Domain&);
 /// What to call it in a sentence: "cylinder", "periodic cylinder", "periodic box", "box periodic but along
 /// axis 2".
@@ -75,19 +87,23 @@ int dimension_of(const Domain&);
 bool has_walls(const Domain&);
 /// Whether it repeats itself along some axis.
 bool is_periodic(const Domain&);
+/// Whether its walls are facets, which may leave room anywhere: a mesh or a polygon.
+inline bool is_faceted(const Domain& domain) {
+  return std::holds_alternative<Mesh>(domain) || std::holds_alternative<Polygon>(domain);
+}
 /// How many independent motions, shifts and turns, take the domain into itself for as far as they go: a shift
 /// along each axis that repeats itself, a turn about the axis of a cylinder, three about a sphere's centre. A
-/// mesh has none.
+/// mesh or a polygon has none.
 int symmetries_of(const Domain&);
 
 /// Smallest axis-aligned bounds, to rounding; along an axis that repeats itself, one period. Precondition: D
-/// is the dimension, or dynamic.
+/// is the dimension, or dynamic; or D is 3 and the domain one of the plane z = 0.
 template <int D = 3>
 Bounds<D> bounds_of(const Domain&);
 /// Enclosed volume, or that of one period, to rounding; an area in two dimensions, and so on. (For a mesh
 /// the sum of signed tetrahedra about its bounds' centre.)
 double volume_of(const Domain&);
-/// Area of the walls; precondition: three dimensions.
+/// Area of the walls, in two dimensions their length; precondition: two or three dimensions.
 double area_of(const Domain&);
 /// The metric: the periods of the axes that have one. Precondition: D is the dimension.
 template <int D>
@@ -108,7 +124,7 @@ struct Frame {
   Vector<3> to_scene(const Vector<3>& p) const { return origin + scale * p; }
 };
 
-/// The frame centred on the bounds of a domain of three dimensions.
+/// The frame centred on the bounds of a domain of three dimensions, or of two in the plane z = 0.
 Frame frame_of(const Domain&);
 
 /// The domain in local coordinates; corners and vertices are rounded to within `frame.resolution`, periods

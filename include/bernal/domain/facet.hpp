@@ -13,6 +13,8 @@ namespace bernal {
 /// | cylinder | a point of the axis | unit axis       |        | R      | R - |p - a|⊥b        |
 /// | sphere   | centre           |                    |        | R      | R - |p - a|          |
 /// | triangle | vertex           | vertex             | vertex |        | |p - triangle| (unsigned) |
+///
+/// A triangle without area, two of whose vertices are one, is a segment: an edge of a polygon.
 struct Facet {
   enum class Kind : std::uint8_t { plane, cylinder, sphere, triangle };
   Kind kind = Kind::plane;

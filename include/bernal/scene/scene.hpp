@@ -29,9 +29,9 @@ struct PeriodicBox {
   bool scalable = false;            ///< the packing decides how large it is; size only gives its proportions
 };
 
-/// What is to be filled: `scene.container = Cylinder{.radius = 2, .height = 5}`. A box of three dimensions
-/// with walls all around is a Box; one that repeats itself is a PeriodicBox.
-struct SceneContainer : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox> {
+/// What is to be filled: `scene.container = Cylinder{.radius = 2, .height = 5}`. A box of two or three
+/// dimensions with walls all around is a Box; one that repeats itself is a PeriodicBox.
+struct SceneContainer : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox, Polygon> {
   using variant::variant;
   Locations locations;
 };
@@ -112,8 +112,9 @@ struct Scene {
   }
   bool is_periodic() const { return std::holds_alternative<PeriodicBox>(container); }
   int dimension() const {
-    const auto* box = std::get_if<PeriodicBox>(&container);
-    return box ? box->dimension : 3;
+    if (const auto* box = std::get_if<PeriodicBox>(&container)) return box->dimension;
+    if (const auto* box = std::get_if<Box>(&container)) return box->dimension();
+    return std::holds_alternative<Polygon>(container) ? 2 : 3;
   }
 };
 

@@ -6,7 +6,7 @@ namespace bernal {
 /// initial packing).
 enum class Layout {
   random,   ///< each at a uniformly random place
-  lattice,  ///< on the sites of a face-centred lattice as wide as it can be
+  lattice,  ///< on those of a face-centred lattice, of discs a hexagonal one, as wide as can be
 };
 
 /// The initial packing: spheres come one after the other, each to a place where it overlaps nothing.

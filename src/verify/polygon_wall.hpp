@@ -1,0 +1,35 @@
+#pragma once
+#include "bernal/domain/domain.hpp"
+#include "verify/ball.hpp"
+#include "verify/box_tree.hpp"
+#include "verify/tally.hpp"
+
+namespace bernal::verify {
+
+/// The edges of a polygon as a wall.
+///
+/// Inside is where a ray crosses the edges an odd number of times, which is well defined for closed lines
+/// whatever they do; that they do not cross each other is the polygon's precondition and of no matter here.
+class PolygonWall {
+ public:
+  /// Throws Error{bad_argument} unless there are corners and all of them are finite.
+  explicit PolygonWall(const Polygon& polygon);
+
+  /// Tries the disc against the near edges and decides the side of its centre; counts both.
+  Stand stand_of(const Ball<2>& ball, Arithmetic arithmetic, Tally& tally) const;
+
+ private:
+  struct Edge {
+    Vector<2> a, b;
+
+    Box<2> box() const;
+    double center(int axis) const { return 0.5 * a[axis] + 0.5 * b[axis]; }
+  };
+
+  static std::vector<Edge> edges_of(const Polygon& polygon);
+  bool center_inside(const Ball<2>& ball, Arithmetic arithmetic, Tally& tally) const;
+
+  BoxTree<Edge, 2> edges_;
+};
+
+}  // namespace bernal::verify
