@@ -12,7 +12,8 @@ Member outline() {
   Member member;
   member.get = [](const void* polygon) -> std::optional<Value> {
     const auto& loops = static_cast<const Polygon*>(polygon)->loops;
-    return loops.empty() ? std::nullopt : std::optional<Value>(Polygon{{loops.front()}});
+    return loops.empty() || loops.front().empty() ? std::nullopt
+                                                  : std::optional<Value>(Polygon{{loops.front()}});
   };
   member.set = [](void* polygon, const Value& value) {
     auto& loops = static_cast<Polygon*>(polygon)->loops;
@@ -37,6 +38,21 @@ Member holes() {
   return member;
 }
 
+/// A line that is simple with the outline lies inside it, outside it, or around it. Inside, it takes from the
+/// area.
+void require_holes_inside(const Polygon& polygon, const Section& section) {
+  const Polygon outline{{polygon.loops.front()}};
+  const double whole = volume_of(outline);
+  for (std::size_t k = 1; k < polygon.loops.size(); ++k) {
+    const auto& hole = polygon.loops[k];
+    if (volume_of(Polygon{{hole}}) < whole && volume_of(Polygon{{outline.loops.front(), hole}}) <= whole)
+      continue;
+    section.refuse("holes", fmt::format("must lie inside the outline, but hole {}, which begins at ({:.6g}, "
+                                        "{:.6g}), does not",
+                                        k, hole.front()[0], hole.front()[1]));
+  }
+}
+
 void polygon_rule(const Polygon& polygon, const Section& section) {
   if (polygon.loops.empty() || polygon.loops.front().empty())
     section.fail("",
@@ -49,6 +65,7 @@ void polygon_rule(const Polygon& polygon, const Section& section) {
     section.fail(section.locations.keys.contains("vertices") ? "vertices" : "",
                  fmt::format("{}: {}", section.name, error.what()));
   }
+  require_holes_inside(polygon, section);
 }
 
 Key file_of_points() {
@@ -62,7 +79,9 @@ Entry polygon_entry() {
       {.name = "polygon",
        .help = "a polygon in the plane, for discs",
        .keys = {key(Type::points, outline(), "vertices", "its corners in order, in either sense"),
-                file_of_points(), key(Type::lines, holes(), "holes", "polygons that are taken out of it")},
+                file_of_points(),
+                key(Type::lines, holes(), "holes",
+                    "polygons in it that are taken out; one in another is an island")},
        .choices = {{{"vertices"}, {"file"}}},
        .rule = rule(polygon_rule)});
 }

@@ -231,11 +231,21 @@ class Reader {
       const auto found = table.find(key.name);
       if (found == table.end()) continue;
       locations.keys[std::string(key.name)] = at(found->first.source());
-      if (key.member.set)
+      if (key.member.set) {
         key.member.set(options, read_value(found->second, key, where));
-      else
-        take_columns(found->second, entry, where, options, locations);
+        continue;
+      }
+      for (const Key& other : entry.keys)
+        if (comes_from_file(entry, other) && table.contains(other.name))
+          fail(found->first.source(), "\"{}\" and \"{}\" in {} exclude each other; give one of them",
+               other.name, key.name, where);
+      take_columns(found->second, entry, where, options, locations);
     }
+  }
+
+  static bool comes_from_file(const Entry& entry, const Key& key) {
+    return entry.columns.empty() ? key.type == Type::points
+                                 : std::ranges::find(entry.columns, key.name) != entry.columns.end();
   }
 
   /// Puts what stands in the file in its place, so that the scene is whole without the file.

@@ -195,6 +195,20 @@ TEST(Discs, WhatCannotBeDoneIsRefusedInOneLine) {
   EXPECT_NE(said("[container]\nkind = \"polygon\"\nvertices = [[0, 0], [9, 9]]\n", "")
                 .find("an array of three points [x, y] or more"),
             std::string::npos);
+  // Outside and around the outline; one in a hole is an island.
+  const std::string square = "[container]\nkind = \"polygon\"\nvertices = [[0, 0], [9, 0], [9, 9], [0, 9]]\n";
+  for (const std::string hole : {"[[20, 0], [22, 0], [22, 2]]", "[[-9, -9], [99, -9], [0, 99]]"})
+    EXPECT_NE(said(square + "holes = [[[2, 2], [6, 2], [6, 6], [2, 6]], " + hole + "]\n", "")
+                  .find("must lie inside the outline, but hole 2"),
+              std::string::npos)
+        << hole;
+  EXPECT_EQ(said(square + "holes = [[[2, 2], [6, 2], [6, 6], [2, 6]], [[3, 3], [5, 3], [5, 5]]]\n", ""), "");
+  EXPECT_NE(said("[container]\nkind = \"polygon\"\nholes = [[[2, 2], [6, 2], [6, 6]]]\n", "")
+                .find("needs \"vertices\", an array of three points"),
+            std::string::npos);
+  EXPECT_NE(
+      said(square + "file = \"outline.csv\"\n", "").find("\"vertices\" and \"file\" in [container] exclude"),
+      std::string::npos);
   EXPECT_NE(testing::error_of(scene_in(box, "packing_fraction = \"predicted\"\nradius = 0.2"))
                 .find("in three dimensions, not in 2"),
             std::string::npos);
