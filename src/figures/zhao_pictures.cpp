@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bernal/io/section.hpp"
 #include "figures/drawing.hpp"
-#include "figures/section.hpp"
 #include "figures/zhao.hpp"
 #include "io/write_svg.hpp"
 
@@ -100,10 +100,9 @@ File packing_figure(const ZhaoResults& results, std::size_t row) {
   const Packing& packing = shown.packing;
   const std::string body =
       nested_svg(svg_of(packing.spheres, packing.domain, ""), 8, 44, 500, 520) +
-      nested_svg(section_svg(packing.spheres, std::get<Box>(packing.domain), 400), 536, 80, 410, 410) +
-      fmt::format(
-          "<text x=\"741\" y=\"520\" text-anchor=\"middle\">its middle plane, every circle where it is "
-          "cut</text>");
+      nested_svg(section_svg(section_of(packing.spheres, packing.domain, middle_plane(packing.domain)),
+                             packing.spheres, ""),
+                 505, 44, 455, 520);
   return {fmt::format("zhao2007_fig{}.svg", of.figure),
           svg_document(970, 580,
                        fmt::format("Figure {}: {} spheres, {}: packing fraction {:.4f}", of.figure,

@@ -7,7 +7,6 @@
 #include "bernal/figures/figures.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "figures/page.hpp"
-#include "figures/section.hpp"
 #include "figures/zhao.hpp"
 #include "support/folder.hpp"
 
@@ -44,52 +43,6 @@ TEST(Page, ExponentOfAPowerLaw) {
   ys.back() *= 2;
   EXPECT_GT(fitted_power(xs, ys).error, 0.03);
   EXPECT_NEAR(fitted_power(std::vector{1.0, 10.0}, std::vector{2.0, 20.0}).exponent, 1, 1e-12);
-}
-
-/// Of disjoint circles over all heights of a plane the areas add up to the volume of the spheres.
-TEST(Section, AreasAddUpToVolumes) {
-  Spheres<dynamic> spheres(3);
-  Random random(3, 1);
-  const Vector<3> edges(2, 3, 2.5);
-  double volume = 0;
-  for (int k = 0; k < 40; ++k) {
-    Vector<dynamic> c(3);
-    for (int i = 0; i < 3; ++i) c[i] = random.uniform(0, edges[i]);
-    spheres.push_back(c, random.uniform(0.05, 0.8));
-    volume += 4 * std::numbers::pi / 3 * std::pow(spheres.r.back(), 3);
-  }
-  const Box box = periodic_box(edges);
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::array<int, 2> others = axis == 0   ? std::array{1, 2}
-                                      : axis == 1 ? std::array{0, 2}
-                                                  : std::array{0, 1};
-    constexpr int planes = 2000;
-    double sum = 0;
-    for (int k = 0; k < planes; ++k) {
-      for (const CutCircle& c : cut_circles(spheres, box, axis, (k + 0.5) / planes * edges[axis])) {
-        ASSERT_LE(c.radius, spheres.r[c.sphere]);
-        // Every circle is drawn where it reaches into the box; of its images one has its centre there.
-        if (c.center[0] < 0 || c.center[0] >= edges[others[0]]) continue;
-        if (c.center[1] < 0 || c.center[1] >= edges[others[1]]) continue;
-        sum += std::numbers::pi * c.radius * c.radius * edges[axis] / planes;
-      }
-    }
-    // The midpoint rule over pieces of parabolas, cut at their ends.
-    EXPECT_NEAR(sum / volume, 1, 1e-4) << axis;
-  }
-}
-
-TEST(Section, WallsHaveNoImages) {
-  Spheres<dynamic> spheres(3);
-  Vector<dynamic> c(3);
-  c << 0.2, 0.5, 0.5;
-  spheres.push_back(c, 0.3);
-  Box box;
-  EXPECT_EQ(cut_circles(spheres, box, 2, 0.6).size(), 1u);
-  EXPECT_NEAR(cut_circles(spheres, box, 2, 0.6).front().radius, std::sqrt(0.08), 1e-12);
-  EXPECT_TRUE(cut_circles(spheres, box, 2, 0.85).empty());
-  box.periodic = {true, true, true};
-  EXPECT_EQ(cut_circles(spheres, box, 2, 0.6).size(), 2u);
 }
 
 /// A file of the text, its pictures in it whole, its links there.
