@@ -21,7 +21,8 @@ TEST(AnalyticContainer, AbsurdShapesAreRefused) {
       Cylinder{{0, 0, 0}, {0, 0, 1}, -1, 1},
       Cylinder{{0, 0, 0}, {0, 0, 1}, 1, std::nan("")},
       Cylinder{{0, 0, 0}, {0, 1, 1}, 1, 1, true},
-      Box{{0, 0}, {1, 1}},
+      Box{{0}, {1}},
+      Box{{0, 0, 0, 0}, {1, 1, 1, 1}},
       Box{{0, 0, 0}, {1, 1, 1}, {true}},
       Sphere{{0, 0, 0}, 0},
   };
