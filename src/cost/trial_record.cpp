@@ -9,6 +9,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/version.hpp"
+#include "core/fnv.hpp"
 #include "cost/rounds.hpp"
 
 namespace bernal::cost {
@@ -163,9 +164,9 @@ std::string key_of_trial(const std::string& key, std::uint64_t seed, int threads
 }  // namespace
 
 std::string hash_of_text(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  return fmt::format("{:016x}", hash);
+  Fnv1a fnv;
+  fnv.absorb(text);
+  return fmt::format("{:016x}", fnv.hash());
 }
 
 TrialRecord::TrialRecord(std::filesystem::path file) : file_(std::move(file)) {

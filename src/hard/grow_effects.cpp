@@ -93,11 +93,7 @@ std::vector<PlanItem> effects_of_growth(const Grow& options, const Outlook& outl
       outlook.task.packing_fraction > 0 && outlook.aim <= options.phi_init.value_or(0.2);
   for (PlanItem& item : items)
     if (starts_grown && (item.name == "collisions" || item.name == "reflections")) item.if_needed = true;
-  if (options.polish > 0) {
-    const PlanItem polish = polishing(outlook);
-    if (polish.part) items.back().seconds += polish.seconds;
-    items.push_back(polish);
-  }
+  if (options.polish > 0) add_polishing(items, outlook);
   return items;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <vector>
 
 #include "bernal/domain/container.hpp"
 #include "work/stage_entry.hpp"
@@ -38,8 +39,8 @@ namespace bernal {
 template <int D>
 StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work);
 
-/// What it is expected to cost.
-PlanItem polishing(const Outlook& outlook);
+/// Appends what it is expected to cost, which in a box the last of the items holds, too.
+void add_polishing(std::vector<PlanItem>& items, const Outlook& outlook);
 
 /// Spheres that were polished in a container.
 struct Jammed {

@@ -12,14 +12,16 @@ constexpr double factor_in_bed = 1.5;
 
 }  // namespace
 
-PlanItem polishing(const Outlook& outlook) {
-  return {.name = "polish",
-          .what = "contacts are closed by minimising an energy, until they just hold the spheres",
-          .cost = "some 10,000 products with the Hessian, O(N) each",
-          .seconds = seconds_of_thousand * std::pow(outlook.spheres / 1000, power_of_count) *
-                     (outlook.in_bed ? factor_in_bed : 1),
-          .bytes = bytes_a_sphere * outlook.spheres,
-          .part = !outlook.in_bed};
+void add_polishing(std::vector<PlanItem>& items, const Outlook& outlook) {
+  const double seconds = seconds_of_thousand * std::pow(outlook.spheres / 1000, power_of_count) *
+                         (outlook.in_bed ? factor_in_bed : 1);
+  if (!outlook.in_bed) items.back().seconds += seconds;
+  items.push_back({.name = "polish",
+                   .what = "contacts are closed by minimising an energy, until they just hold the spheres",
+                   .cost = "some 10,000 products with the Hessian, O(N) each",
+                   .seconds = seconds,
+                   .bytes = bytes_a_sphere * outlook.spheres,
+                   .part = !outlook.in_bed});
 }
 
 }  // namespace bernal

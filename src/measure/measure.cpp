@@ -1,6 +1,5 @@
 #include "bernal/measure/measure.hpp"
 
-#include <bit>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -8,6 +7,7 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
+#include "core/fnv.hpp"
 #include "core/parallel.hpp"
 
 namespace bernal {
@@ -31,16 +31,6 @@ std::optional<double> smallest_holding_gap(const std::vector<Contacts>& by_gap, 
     if (c.backbone > 0 && 2 * c.backbone >= spheres && !(smallest && *smallest <= c.contact_gap))
       smallest = c.contact_gap;
   return smallest;
-}
-
-// Fowler, Noll & Vo, 64-bit FNV-1a (RFC 9923).
-constexpr std::uint64_t fnv_offset_basis = 0xcbf29ce484222325;
-constexpr std::uint64_t fnv_prime = 0x100000001b3;
-
-std::uint64_t absorb(std::uint64_t hash, double value) {
-  const auto bits = std::bit_cast<std::uint64_t>(value);
-  for (int shift = 0; shift < 64; shift += 8) hash = (hash ^ ((bits >> shift) & 0xff)) * fnv_prime;
-  return hash;
 }
 
 }  // namespace
@@ -99,12 +89,12 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
 }
 
 std::string hash_of(const Spheres<dynamic>& spheres) {
-  std::uint64_t hash = fnv_offset_basis;
+  Fnv1a fnv;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    for (const auto& column : spheres.x) hash = absorb(hash, column[i]);
-    hash = absorb(hash, spheres.r[i]);
+    for (const auto& column : spheres.x) fnv.absorb(column[i]);
+    fnv.absorb(spheres.r[i]);
   }
-  return fmt::format("{:016x}", hash);
+  return fmt::format("{:016x}", fnv.hash());
 }
 
 }  // namespace bernal

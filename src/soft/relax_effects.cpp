@@ -129,11 +129,7 @@ std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook&
     else if (outlook.task.dimension <= 3 && !outlook.task.has_walls && outlook.width < surely_wide)
       items.front().if_needed = true;  // as the published loop does, which may take the place of the fast one
   }
-  if (options.polish > 0) {
-    const PlanItem polish = polishing(outlook);
-    if (polish.part) items.back().seconds += polish.seconds;
-    items.push_back(polish);
-  }
+  if (options.polish > 0) add_polishing(items, outlook);
   return items;
 }
 
