@@ -2,31 +2,27 @@
 
 #include <algorithm>
 #include <cctype>
-#include <functional>
 #include <iterator>
 #include <limits>
 #include <set>
 
 #include "bernal/core/random.hpp"
 #include "bernal/measure/measure.hpp"
-#include "bernal/verify/certificate.hpp"
-#include "support/meshes.hpp"
-#include "support/plans.hpp"
 #include "support/scenes.hpp"
+#include "support/scenes_under_test.hpp"
 
 // What is true of every packing, whatever its scene. A new container, size distribution or stage is held to
 // these laws by its example in data/scenes, or by one line here.
 namespace bernal {
 namespace packings_test {
 
+using testing::box;
+using testing::expect_certified;
 using testing::plan_of;
-
-struct SceneUnderTest {
-  std::string name;
-  std::function<Plan()> plan;
-
-  friend void PrintTo(const SceneUnderTest& tested, std::ostream* out) { *out << tested.name; }
-};
+using testing::relax;
+using testing::run_with;
+using testing::SceneUnderTest;
+using testing::unequal_edges;
 
 std::string in_camel_case(const std::string& snake) {
   std::string name;
@@ -38,122 +34,14 @@ std::string in_camel_case(const std::string& snake) {
   return name;
 }
 
-const std::string box = "[container]\nkind = \"box\"\nsize = [1.0, 1.0, 1.0]\n";
-
-/// Short relaxations of few spheres: laws do not ask for density.
-const std::string relax = "[[stage]]\ndo = \"relax\"\nalpha = 1\n";
-const std::string unequal_edges =
-    "[container]\nkind = \"periodic\"\nsize = [2.0, 1.0, 0.7]\nscalable = true\n"
-    "[spheres]\ncount = 100\nradius = 0.3\n" +
-    relax;
-
-/// Those that are made here.
-std::vector<SceneUnderTest> own_scenes() {
-  std::vector<SceneUnderTest> scenes;
-  const auto add = [&](std::string name, const std::string& toml) {
-    scenes.push_back({std::move(name), [toml] { return plan_of(toml); }});
-  };
-  add("ObliqueCylinderFarAway",
-      "[container]\nkind = \"cylinder\"\nradius = 2.0\nheight = 5.0\naxis = [1.0, 2.0, 3.0]\n"
-      "base = [3000.0, -2000.0, 5000.0]\n[spheres]\nfill = true\nradius = 0.3\n");
-  add("Sphere",
-      "[container]\nkind = \"sphere\"\nradius = 1.0\n[spheres]\nfill = true\n"
-      "radius = { distribution = \"uniform\", min = 0.1, max = 0.2 }\n");
-  add("LognormalInABox", box +
-                             "[spheres]\nfill = true\n"
-                             "radius = { distribution = \"lognormal\", median = 0.06, sigma = 0.4 }\n");
-  add("UphillInABox", box +
-                          "[spheres]\npacking_fraction = 0.4\nradius = 0.07\n[[stage]]\ndo = \"insert\"\n"
-                          "[[stage]]\ndo = \"compress\"\ndirection = [1.0, 1.0, 3.0]\n"
-                          "[[stage]]\ndo = \"refill\"\ndirection = [1.0, 1.0, 3.0]\n");
-  const std::string periodic = "[container]\nkind = \"periodic\"\n";
-  add("PeriodicBox", periodic +
-                         "[spheres]\ncount = 120\n"
-                         "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n" +
-                         relax);
-  add("PeriodicPlane", periodic +
-                           "dimension = 2\n[spheres]\ncount = 150\n"
-                           "radius = { distribution = \"uniform\", min = 1.0, max = 2.0 }\n" +
-                           relax);
-  add("PeriodicUnequalEdges", unequal_edges);
-  add("PeriodicBoxOfGivenSize",
-      periodic + "size = [1.0, 1.2, 0.9]\n[spheres]\npacking_fraction = 0.55\nradius = 0.09\n" + relax);
-  const std::string fly = "[[stage]]\ndo = \"fly\"\n";
-  add("FlightBetweenWalls", periodic +
-                                "size = [1.0, 1.2, 0.9]\nwalls = [1]\n[spheres]\npacking_fraction = 0.3\n"
-                                "radius = { distribution = \"uniform\", min = 0.05, max = 0.07 }\n" +
-                                fly + "method = \"flight\"\n");
-  add("PatentInThePlane",
-      periodic + "dimension = 2\nedge = 1.0\n[spheres]\npacking_fraction = 0.5\nradius = 0.03\n" + fly +
-          "method = \"patent\"\n");
-  add("FlightThenRelaxation",
-      periodic + "edge = 1.0\n[spheres]\npacking_fraction = 0.4\nradius = 0.08\n" + fly + relax);
-  const std::string grow = "[[stage]]\ndo = \"grow\"\nrate = 0.1\npressure = 1e4\n";
-  add("GrowthInABox", box +
-                          "[spheres]\n"
-                          "radius = { distribution = \"lognormal\", median = 0.06, sigma = 0.3 }\n" +
-                          grow);
-  add("GrowthInASphere",
-      "[container]\nkind = \"sphere\"\nradius = 1.0\n[spheres]\nfill = true\nradius = 0.12\n" + grow);
-  add("GrowthBetweenTwoWalls", periodic +
-                                   "size = [1.0, 1.2, 0.9]\nwalls = [1]\n[spheres]\npacking_fraction = 0.5\n"
-                                   "radius = { distribution = \"uniform\", min = 0.06, max = 0.08 }\n" +
-                                   grow);
-  scenes.push_back({"GrowthInAPrism", [=] {
-                      return plan_of(box + "[spheres]\npacking_fraction = 0.5\nradius = 0.12\n" + grow,
-                                     test::prism_mesh(8, 1, 2));
-                    }});
-  const std::string column =
-      "[container]\nkind = \"cylinder\"\nradius = 1.0\nheight = 2.5\nperiodic = true\n";
-  const std::string sideways = "direction = [1.0, -0.5, 0.0]\n";
-  const std::string settle = "[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"compress\"\n" + sideways +
-                             "[[stage]]\ndo = \"shake\"\n" + sideways + "[[stage]]\ndo = \"refill\"\n" +
-                             sideways;
-  add("RelaxationInAColumn",
-      column + "[spheres]\nradius = { distribution = \"uniform\", min = 0.1, max = 0.2 }\n");
-  add("SettlingInAColumn", column + "[spheres]\nfill = true\nradius = 0.15\n" + settle);
-  add("GrowthInAColumn", column + "[spheres]\nradius = 0.15\n" + grow);
-  const auto add_in = [&](std::string name, const Domain& domain, const std::string& toml) {
-    scenes.push_back({std::move(name), [=] { return plan_of(box + toml, domain); }});
-  };
-  const Box slab{{0.5, -1, 2}, {1.1, 1, 0.8}, {true, true, false}};
-  const Box channel{{0.5, -1, 2}, {1.1, 1, 0.8}, {false, false, true}};
-  add_in("RelaxationInASlab", slab, "[spheres]\nradius = 0.08\n");
-  add_in("SettlingInASlab", slab,
-         "[spheres]\nfill = true\nradius = 0.08\n[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"refill\"\n");
-  add_in("SettlingInAChannel", channel, "[spheres]\nfill = true\nradius = 0.08\n" + settle);
-  add_in("GrowthInAChannel", channel, "[spheres]\nradius = 0.08\n" + grow);
-  add_in("RelaxationBetweenNoWalls", Box{{3, 0, 0}, {1, 1, 1}, {true, true, true}},
-         "[spheres]\nradius = 0.09\n[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"relax\"\n");
-  scenes.push_back({"LShapeMesh", [] {
-                      return plan_of("unit = \"m\"\n" + box + "[spheres]\nfill = true\nradius = 0.1\n",
-                                     test::translated(test::l_shape_mesh(), {0, 0, -7}));
-                    }});
-  return scenes;
-}
-
 std::vector<SceneUnderTest> scenes_under_test() {
   std::vector<SceneUnderTest> scenes;
   for (const auto& file : testing::example_scenes()) {
     scenes.push_back({in_camel_case(file.stem().string()),
                       [file] { return build(testing::small(read_scene(file), 500)); }});
   }
-  std::ranges::move(own_scenes(), std::back_inserter(scenes));
+  std::ranges::move(testing::own_scenes(), std::back_inserter(scenes));
   return scenes;
-}
-
-Packing run_with(const Plan& plan, int threads = 1) {
-  RunOptions options;
-  options.threads = threads;
-  return run(plan, options);
-}
-
-void expect_certified(const Packing& packing) {
-  const Certificate filtered = certify(packing.spheres, packing.domain);
-  const Certificate exact = certify(packing.spheres, packing.domain, {.arithmetic = Arithmetic::exact});
-  EXPECT_TRUE(filtered.certified) << filtered.statement;
-  EXPECT_TRUE(exact.certified) << exact.statement;
-  EXPECT_EQ(filtered.pairs_tested, exact.pairs_tested);
 }
 
 class EveryPacking : public ::testing::TestWithParam<SceneUnderTest> {};
@@ -241,26 +129,6 @@ TEST_P(EveryPacking, HasTheRadiiThatWereDrawn) {
   }
   const bool periodic = plan.scene.is_periodic();
   EXPECT_LE(passed_over, periodic ? 0 : std::max<std::size_t>(16, packing.spheres.size() / 50));
-}
-
-class EveryPackingOfTheTests : public ::testing::TestWithParam<SceneUnderTest> {};
-
-INSTANTIATE_TEST_SUITE_P(, EveryPackingOfTheTests, ::testing::ValuesIn(own_scenes()),
-                         [](const auto& tested) { return tested.param.name; });
-
-/// What a packing is, it stays or becomes denser, where the same stages begin from it. No gap between walls
-/// or spheres that they leave is too narrow for them.
-TEST_P(EveryPackingOfTheTests, IsAStartForTheSameStages) {
-  Plan plan = GetParam().plan();
-  const Packing packing = run_with(plan);
-  plan.start = {.spheres = packing.spheres};
-  if (plan.scene.is_periodic()) plan.start.edges = bounds_of<dynamic>(packing.domain).size();
-  const Packing from_it = run_with(plan);
-  expect_certified(from_it);
-  EXPECT_EQ(from_it.outcome, Outcome::converged) << from_it.reason;
-  EXPECT_GT(from_it.packing_fraction(), 0.97 * packing.packing_fraction());
-  ASSERT_FALSE(from_it.spheres.empty());
-  EXPECT_EQ(from_it.spheres.r.front(), packing.spheres.r.front());
 }
 
 /// Stops the run when it asks for the k-th time.

@@ -18,71 +18,15 @@
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
-#include "io/write_csv.hpp"
-#include "support/written_files.hpp"
+#include "support/starts.hpp"
 
 namespace bernal {
 namespace start_test {
 
+using namespace testing::starts;
 using testing::error_of;
-using testing::Folder;
 
-/// A scene in a folder, beside the files that it starts from.
-class Start : public ::testing::Test {
- protected:
-  Scene scene(const std::string& toml) const { return read_scene(folder.write("scene.toml", toml)); }
-  Packing packed(const std::string& toml, int threads = 1) const {
-    return run(build(scene(toml)), {.threads = threads});
-  }
-  /// What is wrong with it, on one line that names a file.
-  std::string refusal(const std::string& toml) const {
-    const Error error = error_of([&] { packed(toml); });
-    EXPECT_FALSE(error.location().file.empty()) << error.what();
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-    return error.what();
-  }
-  void write(const std::string& name, const Spheres<dynamic>& spheres, double radii = 1) const {
-    Spheres<dynamic> written = spheres;
-    for (double& r : written.r) r *= radii;
-    std::filesystem::remove(folder / name);
-    OutputFile file(folder / name);
-    write_csv(file, written, "m");
-    file.close();
-  }
-
-  Folder folder;
-};
-
-const std::string box = "[container]\nkind = \"box\"\nsize = [8.0, 8.0, 8.0]\n";
-const std::string two = "x,y,z,r\n2,2,2,0.5\n4,4,6,1\n";
-const std::string from_two = "[spheres]\nstart = \"two.csv\"\n";
-std::string stage(const std::string& name, const std::string& more = "") {
-  return "[[stage]]\ndo = \"" + name + "\"\n" + more;
-}
-std::string periodic(double edge, const std::string& more = "") {
-  return fmt::format("[container]\nkind = \"periodic\"\nedge = {}\n{}", edge, more);
-}
-std::string periodic_of(const Packing& packing, const std::string& more = "") {
-  const Vector<dynamic> edges = bounds_of<dynamic>(packing.domain).size();
-  return fmt::format("[container]\nkind = \"periodic\"\ndimension = {}\nsize = [{}]\n{}", edges.size(),
-                     fmt::join(edges, ", "), more);
-}
-
-void expect_certified(const Packing& packing) {
-  const Certificate certificate =
-      certify(packing.spheres, packing.domain, {.allowed_overlap = packing.scene.overlap});
-  EXPECT_TRUE(certificate.certified) << certificate.statement;
-}
-
-/// Random close packing of few spheres, as another program might leave it.
-Packing relaxed(int dimension, int count, const std::string& sizes = "radius = 1.0\n") {
-  return run(
-      build(parse_scene(fmt::format("[container]\nkind = \"periodic\"\ndimension = {}\n[spheres]\ncount = "
-                                    "{}\n{}[[stage]]\ndo = \"relax\"\nalpha = 2\n",
-                                    dimension, count, sizes),
-                        "test.toml")),
-      {.threads = 1});
-}
+using Start = StartFixture;
 
 TEST_F(Start, LeavesSpheresWhereTheyAreUntilAStageMovesThem) {
   folder.write("two.csv", two);
@@ -330,96 +274,6 @@ TEST_F(Start, BetweenWallsOfABoxKeepsItsPlaces) {
   EXPECT_NE(refusal(periodic(8, walled) + from_two + "start_box = [9.0, 9.0, 9.0]\n" + stage("relax"))
                 .find("is not the container"),
             std::string::npos);
-}
-
-TEST_F(Start, OfAResultFolderKnowsItsBox) {
-  const Packing theirs = relaxed(3, 60);
-  write_packing(theirs, folder / "theirs");
-  const std::string from = "[container]\nkind = \"periodic\"\n[spheres]\nstart = \"theirs\"\n";
-  const Packing again = packed(from + stage("relax"));
-  expect_certified(again);
-  EXPECT_EQ(again.spheres.r, theirs.spheres.r);
-  EXPECT_NEAR(again.packing_fraction(), theirs.packing_fraction(), 1e-9);
-  EXPECT_EQ(again.scene.start.file->filename(), "spheres.csv");
-}
-
-/// The scene that a result carries makes it again, though it now says how large the box has become.
-TEST_F(Start, IsStatedByTheSceneOfTheResult) {
-  const Packing theirs = relaxed(3, 60);
-  write("theirs.csv", theirs.spheres, 1.001);
-  const Packing packing = packed(periodic_of(theirs, "scalable = true\n") +
-                                 "[spheres]\nstart = \"theirs.csv\"\n" + stage("relax", "polish = 1e-6\n"));
-  EXPECT_EQ(packing.scene.start.sha256.front().size(), 64u);
-  EXPECT_EQ(packing.scene.start.box.size(), 3u);
-  EXPECT_EQ(packing.scene.target.count, 60);
-  write_packing(packing, folder / "out");
-  const Scene written = read_scene(folder / "out" / "scene.toml");
-  EXPECT_EQ(scene_as_toml(written), scene_as_toml(packing.scene));
-  const Packing again = run(build(written), {.threads = 2});
-  EXPECT_EQ(hash_of(again.spheres), hash_of(packing.spheres));
-
-  std::ofstream(folder / "theirs.csv", std::ios::app) << "1,1,1,1\n";
-  EXPECT_NE(std::string(error_of([&] { build(written); }).what()).find("is not the file that is meant"),
-            std::string::npos);
-  std::filesystem::remove(folder / "theirs.csv");
-  const Packing read = read_packing(folder / "out");  // which is a packing without it, too
-  expect_certified(read);
-  EXPECT_FALSE(asked_radii_of(read.scene, read.spheres.size()).asked.sizes);
-}
-
-TEST_F(Start, IsCopiedWithTheFilesOfTheResult) {
-  folder.write("two.csv", two);
-  const Packing packing = packed(box + from_two + stage("insert"));
-  write_packing(packing, folder / "out", {.with_mesh = true});
-  std::filesystem::remove(folder / "two.csv");
-  EXPECT_EQ(hash_of(run(build(read_scene(folder / "out" / "scene.toml")), {.threads = 1}).spheres),
-            hash_of(packing.spheres));
-}
-
-TEST_F(Start, IsNotReplacedByTheResult) {
-  const Packing theirs = relaxed(3, 60);
-  write_packing(theirs, folder / "theirs");
-  const Scene from = scene("[container]\nkind = \"periodic\"\n[spheres]\nstart = \"theirs\"\n");
-  EXPECT_NE(
-      std::string(error_of([&] { check_writable(folder / "theirs", from); }).what()).find("starts from"),
-      std::string::npos);
-  check_writable(folder / "other", from);
-}
-
-TEST_F(Start, IsWhatSizesAreComparedWith) {
-  folder.write("two.csv", two);
-  const Packing alone = packed(box + from_two + stage("insert"));
-  SceneRadii radii = asked_radii_of(alone.scene, 2);
-  SizeComparison sizes = *measure(alone.spheres, alone.domain, radii.asked).sizes;
-  EXPECT_EQ(sizes.ks_statistic, 0);
-  EXPECT_EQ(sizes.drawn->missing, 0u);
-  const Packing more = packed(
-      box + from_two +
-      "count = 202\nradius = { distribution = \"uniform\", min = 0.1, max = 0.3 }\ndraw = \"quantiles\"\n" +
-      stage("insert"));
-  ASSERT_EQ(more.spheres.size(), 202u);
-  radii = asked_radii_of(more.scene, 202);
-  sizes = *measure(more.spheres, more.domain, radii.asked).sizes;
-  EXPECT_EQ(sizes.drawn->missing, 0u);
-  EXPECT_LT(sizes.ks_statistic, 0.02);  // quantiles
-  EXPECT_NEAR(sizes.volume_ratio, 1, 0.01);
-}
-
-TEST_F(Start, ThatIsStoppedIsStillCertified) {
-  const Packing theirs = relaxed(3, 100);
-  write("over.csv", theirs.spheres, 1.05);
-  const Plan plan = build(scene(periodic_of(theirs, "scalable = true\n") +
-                                "[spheres]\nstart = \"over.csv\"\n" + stage("relax", "polish = 1e-6\n")));
-  for (const int after : {0, 3, 30}) {
-    int polls = 0;
-    RunOptions options;
-    options.threads = 1;
-    options.monitor.cancelled = [&] { return ++polls > after; };
-    const Packing packing = run(plan, options);
-    EXPECT_EQ(packing.outcome, Outcome::cancelled);
-    EXPECT_EQ(packing.spheres.size(), 100u);
-    expect_certified(packing);
-  }
 }
 
 }  // namespace start_test

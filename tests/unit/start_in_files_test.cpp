@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "bernal/io/read_packing.hpp"
+#include "bernal/io/write_packing.hpp"
+#include "bernal/measure/measure.hpp"
+#include "support/starts.hpp"
+
+// What result folders know of the spheres that they started from.
+namespace bernal {
+namespace start_in_files_test {
+
+using namespace testing::starts;
+using testing::error_of;
+
+using StartInFiles = StartFixture;
+
+TEST_F(StartInFiles, OfAResultFolderKnowsItsBox) {
+  const Packing theirs = relaxed(3, 60);
+  write_packing(theirs, folder / "theirs");
+  const std::string from = "[container]\nkind = \"periodic\"\n[spheres]\nstart = \"theirs\"\n";
+  const Packing again = packed(from + stage("relax"));
+  expect_certified(again);
+  EXPECT_EQ(again.spheres.r, theirs.spheres.r);
+  EXPECT_NEAR(again.packing_fraction(), theirs.packing_fraction(), 1e-9);
+  EXPECT_EQ(again.scene.start.file->filename(), "spheres.csv");
+}
+
+/// The scene that a result carries makes it again, though it now says how large the box has become.
+TEST_F(StartInFiles, IsStatedByTheSceneOfTheResult) {
+  const Packing theirs = relaxed(3, 60);
+  write("theirs.csv", theirs.spheres, 1.001);
+  const Packing packing = packed(periodic_of(theirs, "scalable = true\n") +
+                                 "[spheres]\nstart = \"theirs.csv\"\n" + stage("relax", "polish = 1e-6\n"));
+  EXPECT_EQ(packing.scene.start.sha256.front().size(), 64u);
+  EXPECT_EQ(packing.scene.start.box.size(), 3u);
+  EXPECT_EQ(packing.scene.target.count, 60);
+  write_packing(packing, folder / "out");
+  const Scene written = read_scene(folder / "out" / "scene.toml");
+  EXPECT_EQ(scene_as_toml(written), scene_as_toml(packing.scene));
+  const Packing again = run(build(written), {.threads = 2});
+  EXPECT_EQ(hash_of(again.spheres), hash_of(packing.spheres));
+
+  std::ofstream(folder / "theirs.csv", std::ios::app) << "1,1,1,1\n";
+  EXPECT_NE(std::string(error_of([&] { build(written); }).what()).find("is not the file that is meant"),
+            std::string::npos);
+  std::filesystem::remove(folder / "theirs.csv");
+  const Packing read = read_packing(folder / "out");  // which is a packing without it, too
+  expect_certified(read);
+  EXPECT_FALSE(asked_radii_of(read.scene, read.spheres.size()).asked.sizes);
+}
+
+TEST_F(StartInFiles, IsCopiedWithTheFilesOfTheResult) {
+  folder.write("two.csv", two);
+  const Packing packing = packed(box + from_two + stage("insert"));
+  write_packing(packing, folder / "out", {.with_mesh = true});
+  std::filesystem::remove(folder / "two.csv");
+  EXPECT_EQ(hash_of(run(build(read_scene(folder / "out" / "scene.toml")), {.threads = 1}).spheres),
+            hash_of(packing.spheres));
+}
+
+TEST_F(StartInFiles, IsNotReplacedByTheResult) {
+  const Packing theirs = relaxed(3, 60);
+  write_packing(theirs, folder / "theirs");
+  const Scene from = scene("[container]\nkind = \"periodic\"\n[spheres]\nstart = \"theirs\"\n");
+  EXPECT_NE(
+      std::string(error_of([&] { check_writable(folder / "theirs", from); }).what()).find("starts from"),
+      std::string::npos);
+  check_writable(folder / "other", from);
+}
+
+TEST_F(StartInFiles, IsWhatSizesAreComparedWith) {
+  folder.write("two.csv", two);
+  const Packing alone = packed(box + from_two + stage("insert"));
+  SceneRadii radii = asked_radii_of(alone.scene, 2);
+  SizeComparison sizes = *measure(alone.spheres, alone.domain, radii.asked).sizes;
+  EXPECT_EQ(sizes.ks_statistic, 0);
+  EXPECT_EQ(sizes.drawn->missing, 0u);
+  const Packing more = packed(
+      box + from_two +
+      "count = 202\nradius = { distribution = \"uniform\", min = 0.1, max = 0.3 }\ndraw = \"quantiles\"\n" +
+      stage("insert"));
+  ASSERT_EQ(more.spheres.size(), 202u);
+  radii = asked_radii_of(more.scene, 202);
+  sizes = *measure(more.spheres, more.domain, radii.asked).sizes;
+  EXPECT_EQ(sizes.drawn->missing, 0u);
+  EXPECT_LT(sizes.ks_statistic, 0.02);  // quantiles
+  EXPECT_NEAR(sizes.volume_ratio, 1, 0.01);
+}
+
+TEST_F(StartInFiles, ThatIsStoppedIsStillCertified) {
+  const Packing theirs = relaxed(3, 100);
+  write("over.csv", theirs.spheres, 1.05);
+  const Plan plan = build(scene(periodic_of(theirs, "scalable = true\n") +
+                                "[spheres]\nstart = \"over.csv\"\n" + stage("relax", "polish = 1e-6\n")));
+  for (const int after : {0, 3, 30}) {
+    int polls = 0;
+    RunOptions options;
+    options.threads = 1;
+    options.monitor.cancelled = [&] { return ++polls > after; };
+    const Packing packing = run(plan, options);
+    EXPECT_EQ(packing.outcome, Outcome::cancelled);
+    EXPECT_EQ(packing.spheres.size(), 100u);
+    expect_certified(packing);
+  }
+}
+
+}  // namespace start_in_files_test
+}  // namespace bernal
