@@ -199,6 +199,15 @@ double attainable_in_box(const Plan& plan, const SizeDistribution& radii) {
   return attainable;
 }
 
+/// What the stage that decides how dense the packing is says of itself.
+double reached_by_last(const Scene& scene) {
+  double reached = 1;
+  for (const Stage& stage : scene.stages)
+    if (const StageEntry& entry = entry_of(stage); !entry.table.traits.only_moves)
+      reached = entry.reached ? entry.reached(entry.table.options(stage)) : 1;
+  return reached;
+}
+
 void expect_in_periodic_box(Plan& plan) {
   const Scene& scene = plan.scene;
   const int dimension = scene.dimension();
@@ -215,7 +224,10 @@ void expect_in_periodic_box(Plan& plan) {
   const double mean_volume = mean_volume_of(plan, radii);
   double attainable = plan.attainable_packing_fraction = attainable_in_box(plan, radii);
   resolve_predicted(plan);
-  if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
+  if (scene.target.packing_fraction)
+    attainable = std::min(attainable, *scene.target.packing_fraction);
+  else if (plan.box_follows)
+    attainable = std::min(attainable, reached_by_last(scene));
   if (plan.box_follows) {
     plan.expected_count = static_cast<double>(*scene.target.count);
     Vector<dynamic>& edges = std::get<Box>(plan.domain).size;

@@ -34,8 +34,8 @@ constexpr std::size_t points = 5000;
 /// How much of itself a covering sphere may lack, as the wall's nearest point is known to rounding only.
 constexpr double slack = 0.02;
 constexpr int most_moves = 8;
-/// What random insertion reaches of what relaxation does: 0.31 where there are no walls.
-constexpr double share_inserted = 0.5;
+/// The largest of 10,000 spheres.
+constexpr double quantile_of_largest = 1 - 1e-4;
 /// What relaxation reaches of rods in line, which nothing stops from filling it.
 constexpr double in_line = 0.99;
 
@@ -147,11 +147,19 @@ double expected_packing_fraction(const Scene& scene, const Domain& shape, const 
                                  const std::shared_ptr<const Container>& made) {
   if (reaches(scene, Reaches::close_packing)) return reached_by_relaxation(shape, radii, made);
   if (!reaches(scene, Reaches::settled)) {
+    const int dimension = dimension_of(shape);
+    const double largest = radii.quantile(quantile_of_largest);
+    const EmptyBed bed{.dimension = dimension,
+                    .relaxed = reached_by_relaxation(shape, radii, made),
+                    .wall_share = wall_share(shape, radii),
+                    .evenness = std::min(1.0, radii.moment(dimension) / std::pow(largest, dimension))};
     double fraction = 0;
     for (const Stage& stage : scene.stages)
-      if (const StageEntry& entry = entry_of(stage); entry.reached)
-        fraction = entry.reached(entry.table.options(stage));
-    return std::min(fraction, share_inserted * reached_by_relaxation(shape, radii, made));
+      if (const StageEntry& entry = entry_of(stage); entry.full) {
+        const void* options = entry.table.options(stage);
+        fraction = std::max(fraction, std::min(entry.reached(options), entry.full(options, bed)));
+      }
+    return fraction;
   }
   const bool flat = dimension_of(shape) == 2;
   return (flat ? share_of_close_packing_flat : share_of_close_packing) *

@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t milestone_every = 8192;
 /// For each place inside a container: in one so thin and oblique that more are beyond it, spheres wait.
 constexpr double most_drawn = 1000;
+/// Of what relaxation reaches, where random insertion ends: 0.31 where there are no walls.
+constexpr double share_inserted = 0.5;
 
 /// Where a stage reaches less than this of what is likely to fit, insertion is tried as well.
 constexpr double far_short = 0.8;
@@ -165,8 +167,7 @@ const StageEntry& entry_of<Insert>() {
            .help = "place spheres where they overlap nothing, at random or on a lattice",
            .keys = {word(&Insert::layout, "layout",
                          "random places, or a lattice: face-centred, of discs hexagonal, as wide as holds "
-                         "what is to "
-                         "be placed, its sites taken in random order",
+                         "what is to be placed, its sites taken in random order",
                          {"random", "lattice"}),
                     buys_accuracy(
                         {1, 10, 100, 1000, 10000},
@@ -178,7 +179,10 @@ const StageEntry& entry_of<Insert>() {
       .act_in_bed = act(insert),
       .may_bring = {"insertion"},
       .effects = of_options(effects_of_insertion),
-      .reached = of_options(+[](const Insert& options) { return options.packing_fraction; })};
+      .reached = of_options(+[](const Insert& options) { return options.packing_fraction; }),
+      .full = of_options(+[](const Insert& options, const EmptyBed& bed) {
+        return options.layout == Layout::lattice ? full_lattice(bed) : share_inserted * bed.relaxed;
+      })};
   return entry;
 }
 

@@ -284,11 +284,15 @@ const StageEntry& entry_of<Relax>() {
       .act_in_box = act(relax),
       .may_bring = {"insertion", "neighbour lists", "relaxation", "polish"},
       .effects = of_options(effects_of_relaxation),
-      .require = [](const void*, const Domain& container, double smallest_radius, const FillTask& task) {
-        const bool is_dilute = task.packing_fraction > 0 && task.packing_fraction <= dilute * task.attainable;
-        if (!is_dilute)
-          require_resolution(0x1p-32 * bounds_of<3>(container).size().maxCoeff() / smallest_radius);
-      }};
+      .require =
+          [](const void*, const Domain& container, double smallest_radius, const FillTask& task) {
+            const bool is_dilute =
+                task.packing_fraction > 0 && task.packing_fraction <= dilute * task.attainable;
+            if (!is_dilute)
+              require_resolution(0x1p-32 * bounds_of<3>(container).size().maxCoeff() / smallest_radius);
+          },
+      .reached = of_options(
+          +[](const Relax& options) { return options.polish > 0 ? 1 : options.phi0.value_or(1); })};
   return entry;
 }
 

@@ -25,6 +25,14 @@ struct Outlook {
   bool is_filled = false;  ///< as many as can be placed are asked for, at any price
 };
 
+/// Where spheres are placed one after the other and stay: what decides how densely.
+struct EmptyBed {
+  int dimension = 3;
+  double relaxed = 0;     ///< packing fraction that relaxation would reach there
+  double wall_share = 0;  ///< area of the wall times the mean diameter, over the volume
+  double evenness = 1;    ///< mean volume of a sphere over that of the largest: 1 for equal spheres
+};
+
 /// All that there is to know of a stage. Each defines its own beside its act, as entry_of<Its options>().
 struct StageEntry {
   StageTable table;
@@ -40,8 +48,10 @@ struct StageEntry {
   std::function<void(const void*, const Domain&, double smallest_radius, const FillTask&)> require = {};
   /// Of one that may leave overlap, whether it does with these options.
   std::function<bool(const void*, const FillTask&)> leaves_overlap = {};
-  /// Of a stage that reaches what its options say: that packing fraction.
+  /// Of a stage that reaches what its options say and no more: that packing fraction.
   std::function<double(const void*)> reached = {};
+  /// Of one that places spheres which then stay: the packing fraction at which no more find room.
+  std::function<double(const void*, const EmptyBed&)> full = {};
 };
 
 template <class Options>

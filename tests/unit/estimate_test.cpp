@@ -110,5 +110,23 @@ TEST(Estimate, IsALittleLessThanWhatRelaxationReachesWithPatience) {
   }
 }
 
+/// Walls cut a lattice off in ways that only counting knows.
+TEST(Estimate, OfALatticeIsThatOfTheLattice) {
+  const std::string spheres = "[spheres]\nfill = true\nradius = ";
+  const std::string lattice = "[[stage]]\ndo = \"insert\"\nlayout = \"lattice\"\npacking_fraction = 0.99\n";
+  for (const std::string& scene :
+       {"[container]\nkind = \"box\"\nsize = [1.0, 1.0, 1.0]\n" + spheres + "0.02\n",
+        "[container]\nkind = \"box\"\nsize = [1.0, 1.0, 1.0]\n" + spheres + "0.05\n",
+        "[container]\nkind = \"box\"\nsize = [2.0, 1.0]\n" + spheres + "0.02\n",
+        "[container]\nkind = \"sphere\"\nradius = 0.6\n" + spheres + "0.05\n",
+        "[container]\nkind = \"cylinder\"\nradius = 0.5\nheight = 2.0\n" + spheres + "0.05\n",
+        "[container]\nkind = \"box\"\nsize = [1.0, 1.0, 1.0]\n" + spheres +
+            "{ distribution = \"uniform\", min = 0.016, max = 0.02 }\n"}) {
+    const Packing packing = run(testing::plan_of(scene + lattice), {.seed = {}, .threads = 1, .monitor = {}});
+    EXPECT_NEAR(packing.packing_fraction(), packing.expected_packing_fraction, 0.04) << scene;
+    EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+  }
+}
+
 }  // namespace estimate_test
 }  // namespace bernal

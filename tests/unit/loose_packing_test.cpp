@@ -35,6 +35,7 @@ TEST(LoosePacking, HasThePackingFractionThatItStartsAt) {
       const Packing packing = loose(phi0, 1000, seed, "fast");
       EXPECT_LE(packing.packing_fraction(), phi0 * (1 + 1e-12));
       EXPECT_GT(packing.packing_fraction(), phi0 - 0.001);
+      EXPECT_NEAR(packing.expected_packing_fraction, phi0, 1e-9);
       coordination += measure_contacts(packing, 0.002).coordination / 3;
     }
     EXPECT_GT(coordination, last_coordination) << phi0;
