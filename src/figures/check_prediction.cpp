@@ -13,7 +13,13 @@ namespace {
 
 constexpr double largest_share_of_one = 0.02;
 
-/// The rod model for these spheres and no others.
+SceneSizes population(double mean, double sigma) {
+  if (sigma < 1e-9) return Constant{mean};
+  return Lognormal{.median = mean * std::exp(-0.5 * sigma * sigma), .sigma = sigma, .basis = Basis::volume};
+}
+
+}  // namespace
+
 double predicted_for(const std::vector<double>& radii) {
   std::map<double, double> classes;
   for (const double r : radii) classes[r] += 1;
@@ -25,13 +31,6 @@ double predicted_for(const std::vector<double>& radii) {
   return predict_packing_fraction(*make_classes(std::move(sizes), std::move(numbers), Basis::number), 16000)
       .phi;
 }
-
-SceneSizes population(double mean, double sigma) {
-  if (sigma < 1e-9) return Constant{mean};
-  return Lognormal{.median = mean * std::exp(-0.5 * sigma * sigma), .sigma = sigma, .basis = Basis::volume};
-}
-
-}  // namespace
 
 std::int64_t spheres_for(const SizeDistribution& radii) {
   for (const std::int64_t count : {10'000, 20'000, 50'000, 100'000}) {

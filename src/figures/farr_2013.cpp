@@ -136,14 +136,18 @@ std::string figure_2_of(const Columns& c) {
     if (source == "rods")
       rods[sigma] = c.number("phi", k);
     else
-      rows.push_back({source == "KTS" ? "KTS, printed" : source + ", here", sigma, c.text("spheres", k),
-                      rounded(c.number("phi", k), 4), rounded(rods[sigma], 4)});
+      rows.push_back(
+          {source == "KTS" ? "KTS, printed" : source + ", here", sigma, c.text("spheres", k),
+           rounded(c.number("phi", k), 4),
+           source == "KTS" ? rounded(rods[sigma], 4) : rounded(c.number("phi_rods_of_them", k), 4)});
   }
   return "## Figure 2: packings of lognormal spheres\n\n![figure 2](fig2.svg)\n\n" +
-             markdown_table({"source", "sigma", "spheres", "packing fraction", "rod model"}, rows) +
-             R"(
-Of the printed points those of table 2 alone are in the text. Growth is left out at sigma = 1: the largest of
-50,000 spheres leaves the box too little room there.
+         markdown_table({"source", "sigma", "spheres", "packing fraction", "rod model of these"}, rows) +
+         R"(
+Of the printed points those of table 2 alone are in the text. The rod model is that of the very spheres that
+were packed, which are so many and no more; of KTS, of the distribution. At sigma = 1 sizes end four sigmas
+above the median by number, so that 16 % of the volume are cut off: larger spheres leave the box of 50,000
+too little room.
 
 )";
 }

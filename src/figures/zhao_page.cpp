@@ -49,19 +49,23 @@ Packing fractions of equal spheres, mean ± standard deviation of one packing wh
 The curves of their figure 5 are not in the text, nor are its fixed periods; what the text says is that
 with a fixed period the packing fraction falls as N rises, most where the period is short, and that it
 hardly changes with the adaptive one.)";
-  const std::vector<int> counts = results.counts({});
-  const auto change = [&](const ZhaoRun& from) {
-    ZhaoRun few = from, many = from;
-    few.spheres = counts[counts.size() > 2 ? counts.size() - 3 : 0];
-    many.spheres = counts.back();
-    return phi_of(results.of(many)).mean - phi_of(results.of(few)).mean;
+  const ZhaoRun adaptive{}, few_sweeps{.period = fixed_periods[0]}, more_sweeps{.period = fixed_periods[1]};
+  const auto of = [&](ZhaoRun run, int spheres) {
+    run.spheres = spheres;
+    return results.of(run);
   };
-  if (counts.size() > 1)
+  std::vector<int> counts = results.counts(adaptive);
+  std::erase_if(counts, [&](int n) { return of(few_sweeps, n).empty() || of(more_sweeps, n).empty(); });
+  if (counts.size() > 1) {
+    const int few = counts[counts.size() > 2 ? counts.size() - 3 : 0], many = counts.back();
+    const auto change = [&](const ZhaoRun& run) {
+      return phi_of(of(run, many)).mean - phi_of(of(run, few)).mean;
+    };
     text += fmt::format(
         R"( Here, from {} to {} spheres: {:+.4f} with the adaptive period, {:+.4f} with T = {} and {:+.4f} with T = {}.)",
-        counts[counts.size() > 2 ? counts.size() - 3 : 0], counts.back(), change({}),
-        change({.period = fixed_periods[1]}), fixed_periods[1], change({.period = fixed_periods[0]}),
-        fixed_periods[0]);
+        few, many, change(adaptive), change(more_sweeps), more_sweeps.period, change(few_sweeps),
+        few_sweeps.period);
+  }
   return text + "\n\n";
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <vector>
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/predict/mixtures.hpp"
@@ -27,6 +28,9 @@ struct PredictionCheck {
   Outcome outcome = Outcome::converged;
   double seconds = 0;
 };
+
+/// The rod model for spheres of these radii and no others, with 16,000 rods.
+double predicted_for(const std::vector<double>& radii);
 
 /// How many spheres stand for a distribution: 10,000, or the least of 20,000, 50,000, 100,000 and 200,000 of
 /// which the largest has at most 2 % of the volume, or 200,000.
