@@ -187,6 +187,21 @@ inline double entry(const Vector<3>& c, const Vector<3>& direction, double reach
   return (squared - reach * std::sqrt(squared)) / approach;
 }
 
+/// The same, or farther: where one plane allows no further the next one is taken, until the point may come
+/// within `reach` or has gone `way`. A ball that rests on a wide flat wall and slides along it comes near to
+/// much of it, and reaches little.
+inline double entry(const Vector<3>& c, const Vector<3>& direction, double reach, double way,
+                    const CGAL::Bbox_3& box) {
+  constexpr int most_planes = 8;
+  double t = 0;
+  for (int k = 0; k < most_planes && t <= way; ++k) {
+    const double further = entry(c + t * direction, direction, reach, box);
+    if (further == 0) break;
+    t += further;
+  }
+  return t;
+}
+
 /// A sphere on its way. A box is entered if the sphere, widened by its skin, may reach it before the first
 /// contact so far. Rounding of that test is far below the half skin by which a triangle may be ignored.
 class MoveTraversal {
@@ -200,7 +215,7 @@ class MoveTraversal {
     return do_intersect_with_priority(c, node).first;
   }
   std::pair<bool, Priority> do_intersect_with_priority(const Vector<3>& c, const Node& node) const {
-    const double t = entry(c, direction_, reach_, node.bbox());
+    const double t = entry(c, direction_, reach_, limit_, node.bbox());
     return {t <= limit_ && !tree_.oriented(node).is_beyond(c, reach_ + limit_), -t};
   }
   template <typename Iterator>
@@ -245,7 +260,7 @@ class PathTraversal {
   }
   std::pair<bool, Priority> do_intersect_with_priority(const Vector<3>& c, const Node& node) const {
     const double way = motion_.limit * speed_ + reach_ - motion_.r;
-    const double t = advance(c, way, node.bbox());
+    const double t = entry(c, unit_, reach_, way, node.bbox());
     return {t <= way && !tree_.oriented(node).is_beyond(c, reach_ + way), -t};
   }
   template <typename Iterator>
@@ -259,19 +274,6 @@ class PathTraversal {
   double limit() const { return motion_.limit; }
 
  private:
-  /// From where one plane allows no further the next one is taken: a ball that rests on a wide flat wall and
-  /// slides along it comes near to much of it, and reaches little. Stops where the ball may reach the box.
-  double advance(const Vector<3>& c, double way, const CGAL::Bbox_3& box) const {
-    constexpr int most_planes = 8;
-    double t = 0;
-    for (int k = 0; k < most_planes && t <= way; ++k) {
-      const double further = entry(c + t * unit_, unit_, reach_, box);
-      if (further == 0) break;
-      t += further;
-    }
-    return t;
-  }
-
   const WallTree& tree_;
   Motion motion_;
   Vector<3> unit_;

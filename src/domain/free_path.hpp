@@ -19,9 +19,8 @@ namespace bernal {
 //
 //   exact     the largest double t of which that is true, decided in integers (domain/exact_way.hpp): the
 //             next double is past the contact. No filter is asked.
-//   filtered  a double t <= exact and > exact - 4u·(L / |direction| + t) - 2 doubles; the limit if and only
-//   if
-//             `exact` is the limit. Where extended precision cannot prove that, `exact` decides.
+//   filtered  a double t <= exact and > exact - 4u·(L / |direction| + t) - 2 doubles; the limit if and
+//             only if `exact` is the limit. Where extended precision cannot prove that, `exact` decides.
 //   plain     kernels/first_contact.hpp with `rounding_skin` in place of the skin: the ball never reaches
 //             beyond the wall by more than `rounding_bound`, and where it stops before the limit, its gap was
 //             at most twice that on the way. No bound is meant for t itself: a ball that grazes a wall gains
