@@ -45,10 +45,14 @@ std::vector<const CostRow*> drawn_rows(const CostReport& report) {
 class Markers {
  public:
   explicit Markers(const CostReport& report) {
-    for (const CostRow* row : drawn_rows(report))
+    for (const CostRow* row : drawn_rows(report)) {
+      if (row->outcome != Outcome::converged) some_fall_short_ = true;
       if (row->changed.size() == 1) knobs_.try_emplace(row->changed.front(), knobs_.size());
+      if (row->changed.size() > 1) some_change_several_ = true;
+    }
   }
   std::string of(const CostRow& row, double x, double y) const {
+    if (row.outcome != Outcome::converged) return short_of_it(x, y);
     if (row.changed.empty()) return own(x, y);
     return row.changed.size() == 1 ? of_knob(knobs_.at(row.changed.front()), x, y) : several(x, y);
   }
@@ -62,7 +66,8 @@ class Markers {
     std::map<std::size_t, std::string_view> in_order;
     for (const auto& [name, k] : knobs_) in_order[k] = name;
     for (const auto& [k, name] : in_order) line(of_knob(k, legend_at + 8, y - 4), name);
-    line(several(legend_at + 8, y - 4), "several keys changed");
+    if (some_change_several_) line(several(legend_at + 8, y - 4), "several keys changed");
+    if (some_fall_short_) line(short_of_it(legend_at + 8, y - 4), "does not reach what is asked");
     line(fmt::format("<path class=\"line heavy\" d=\"M{} {}h16\"/>", legend_at, y - 4),
          "front, numbered as in the table");
     line(fmt::format("<circle class=\"chosen\" cx=\"{}\" cy=\"{}\" r=\"8\"/>", legend_at + 8, y - 4),
@@ -76,11 +81,15 @@ class Markers {
   static std::string several(double x, double y) {
     return marker(0, x, y, 3.2, "fill=\"#ffffff\" stroke=\"#5d6b7a\" stroke-width=\"1.3\"");
   }
+  static std::string short_of_it(double x, double y) {
+    return fmt::format("<path class=\"short\" d=\"M{:.1f} {:.1f}l7 7m0 -7l-7 7\"/>", x - 3.5, y - 3.5);
+  }
   static std::string of_knob(std::size_t k, double x, double y) {
     return marker(k, x, y, 4.4, fmt::format("fill=\"{}\"", colours[k % colours.size()]));
   }
 
   std::map<std::string, std::size_t> knobs_;
+  bool some_change_several_ = false, some_fall_short_ = false;
 };
 
 /// Numbers beside the points of the front, as many as have room.
@@ -147,7 +156,8 @@ std::string cost_svg(const CostReport& report, const CostHeading& heading) {
   add_numbers(plot, report);
   markers.legend(plot, area.top + 14);
   const std::string style =
-      "<style>.chosen{fill:none;stroke:#c0322b;stroke-width:2.2}.scatter{stroke:#9aa7b4;stroke-width:1}</"
+      "<style>.chosen{fill:none;stroke:#c0322b;stroke-width:2.2}.short{stroke:#5d6b7a;stroke-width:1.6}."
+      "scatter{stroke:#9aa7b4;stroke-width:1}</"
       "style>";
   return figures::svg_document(drawing_width, drawing_height,
                                fmt::format("What accuracy costs: {}, {}", heading.scene, heading.machine),
