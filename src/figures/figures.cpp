@@ -22,7 +22,7 @@ struct Entry {
 constexpr Entry entries[] = {
     {{"fig1", "Farr: lognormal spheres, sigma 0 to 3, and the error of his fit", "1 s", false, false},
      figures::figure_1},
-    {{"fig2", "Farr: lognormal spheres, the rod model against packings", "1 s, with --pack 1 min", true,
+    {{"fig2", "Farr: lognormal spheres, the rod model against packings", "1 s, with --pack 3 min", true,
       false},
      figures::figure_2},
     {{"fig3", "Farr: pictures of the packings of table 2, by growth", "15 s", false, false},
@@ -39,12 +39,12 @@ constexpr Entry entries[] = {
     {{"table2", "Farr: mixtures of two lognormal populations, the rod model against packings",
       "1 s, with --pack 20 s", true, false},
      figures::table_2},
-    {{"farr2013", "all of these, and a page of printed and own values", "90 s", true, false},
+    {{"farr2013", "all of these, and a page of printed and own values", "90 s, with --pack 5 min", true, false},
      figures::farr_2013},
     {{"zhao2007", "Zhao, Li & Liu: figures 1, 2, 5, 8 to 12, table 2, and a page",
-      "7 min, with --pack 15 min", true, true},
+      "5 min, with --pack 10 min", true, true},
      figures::zhao_2007},
-    {{"han2005", "Han, Feng & Owen: the cylinder, local directions, shaking, time, and a page", "3 min",
+    {{"han2005", "Han, Feng & Owen: the cylinder, local directions, shaking, time, and a page", "2 min",
       false, true},
      figures::han_2005}};
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bernal/core/text.hpp"
 #include "io/html_text.hpp"
 
 namespace bernal {
@@ -39,7 +40,9 @@ Ticks::Ticks(const Axis& axis) : scale_(axis.scale) {
 
 std::string Ticks::text(double value) const {
   if (scale_ == Scale::exponents) return fmt::format("1e{:.0f}", value);
-  if (scale_ == Scale::logarithmic) return fmt::format("{:.4g}", value);
+  if (scale_ == Scale::logarithmic)
+    return value >= 1e4 && value < 1e7 ? grouped(static_cast<std::uint64_t>(std::round(value)))
+                                       : fmt::format("{:.4g}", value);
   const int decimals = static_cast<int>(std::ceil(-std::log10(step_) - 1e-9));
   if (decimals > 5 || std::abs(value) >= 1e6) return fmt::format("{:.3g}", value);
   return fmt::format("{:.{}f}", value == 0 ? 0.0 : value, std::max(0, decimals));
