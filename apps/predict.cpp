@@ -86,6 +86,7 @@ double width_of(const Scene& scene) {
 PredictionCheck check(const Scene& scene, PredictCall& call) {
   ProgressBar bar(call.quiet);
   call.packing.monitor = bar.monitor();
+  call.packing.gap_factor = call.gap_factor.value_or(rod_gap_factor);
   return check_prediction(scene_to_check(scene.sizes, scene.sizes_are_diameters, call.packing), call.packing);
 }
 

@@ -20,7 +20,7 @@ SceneSizes population(double mean, double sigma) {
 
 }  // namespace
 
-double predicted_for(const std::vector<double>& radii) {
+double predicted_for(const std::vector<double>& radii, double gap_factor) {
   std::map<double, double> classes;
   for (const double r : radii) classes[r] += 1;
   std::vector<double> sizes, numbers;
@@ -28,7 +28,8 @@ double predicted_for(const std::vector<double>& radii) {
     sizes.push_back(size);
     numbers.push_back(number);
   }
-  return predict_packing_fraction(*make_classes(std::move(sizes), std::move(numbers), Basis::number), 16000)
+  return predict_packing_fraction(*make_classes(std::move(sizes), std::move(numbers), Basis::number), 16000,
+                                  gap_factor)
       .phi;
 }
 
@@ -65,7 +66,7 @@ Scene scene_to_check(const SceneSizes& sizes, bool sizes_are_diameters, const Ch
 PredictionCheck check_prediction(const Scene& scene, const CheckOptions& options) {
   const Packing packing = run(build(scene), {{}, options.threads, options.monitor});
   return {.phi = packing.packing_fraction(),
-          .predicted = predicted_for(packing.spheres.r),
+          .predicted = predicted_for(packing.spheres.r, options.gap_factor),
           .spheres = packing.spheres.size(),
           .certified = certify(packing.spheres, packing.domain, {.allowed_overlap = scene.overlap}).certified,
           .coordination = measure_contacts(packing.spheres, packing.domain).coordination,

@@ -12,6 +12,9 @@ namespace {
 constexpr double most_cells_along_an_axis = 1 << 20;
 /// Spheres of which the distances are taken at once.
 constexpr std::size_t block = 32;
+/// So few that are not sorted are looked at one after the other.
+constexpr std::size_t few_unsorted = 64;
+constexpr PartialGrid::Id none = ~PartialGrid::Id{0};
 
 /// What a query costs on k axes, in comparisons of two spheres, when on each axis it opens so many of so many
 /// cells: a row of cells along the first axis costs as much to open as looking at eight spheres (measured in
@@ -58,16 +61,13 @@ PartialGrid::PartialGrid(const Vector<dynamic>& edges, const EachAxis<bool>& rep
     per_length_[k] = cells_[k] / edges[k];
   }
   start_.assign(static_cast<std::size_t>(all) + 1, 0);
+  last_added_.assign(static_cast<std::size_t>(all), none);
 }
 
 void PartialGrid::sort(const Columns& x, const std::vector<double>& r, std::size_t n) {
   std::vector<std::uint32_t> slot(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    std::size_t index = 0;
-    for (int k = axes_ - 1; k >= 0; --k)
-      index = index * static_cast<std::size_t>(cells_[k]) + coordinate(k, x[k][i]);
-    slot[i] = static_cast<std::uint32_t>(index);
-  }
+  for (std::size_t i = 0; i < n; ++i)
+    slot[i] = static_cast<std::uint32_t>(cell_of([&](int k) { return x[k][i]; }));
   counting_sort(slot, start_.size() - 1, start_);
   ids_.resize(n);
   r_.resize(n);
@@ -75,6 +75,8 @@ void PartialGrid::sort(const Columns& x, const std::vector<double>& r, std::size
   for (std::size_t s = 0; s < n; ++s) r_[s] = r[ids_[s]];
   for (int k = 0; k < dimension_; ++k) x_[k].resize(n);
   update(x);
+  if (!added_before_.empty()) std::ranges::fill(last_added_, none);
+  added_before_.clear();
 }
 
 void PartialGrid::update(const Columns& x) {
@@ -83,6 +85,9 @@ void PartialGrid::update(const Columns& x) {
 }
 
 void PartialGrid::add(const double* c, double r) {
+  Id& last = last_added_[cell_of([&](int k) { return c[k]; })];
+  added_before_.push_back(last);
+  last = static_cast<Id>(ids_.size());
   for (int k = 0; k < dimension_; ++k) x_[k].push_back(c[k]);
   r_.push_back(r);
   ids_.push_back(static_cast<Id>(ids_.size()));
@@ -124,6 +129,12 @@ bool PartialGrid::search(const double* c, double reach, Visitor visitor, void* i
     return look_at(c, reach, first, last, visitor, it);
   };
   if (axes_ == 0) return visit(0, ids_.size());
+  const bool in_chains = unsorted() > few_unsorted;
+  std::vector<Id> added;
+  const auto gather = [&](std::size_t from, std::size_t to) {
+    for (std::size_t cell = from; cell < to; ++cell)
+      for (Id s = last_added_[cell]; s != none; s = added_before_[s - start_.back()]) added.push_back(s);
+  };
   const double half = reach + largest_;
   EachAxis<int> first{}, count{}, step{};
   for (int k = 0; k < axes_; ++k) {
@@ -151,7 +162,12 @@ bool PartialGrid::search(const double* c, double reach, Visitor visitor, void* i
     const auto begin = row + static_cast<std::size_t>(first[0]);
     const auto end = row + static_cast<std::size_t>(std::min(first[0] + count[0], cells_[0]));
     if (visit(start_[begin], start_[end])) return true;
-    if (beyond > 0 && visit(start_[row], start_[row + static_cast<std::size_t>(beyond)])) return true;
+    const std::size_t wrapped = row + static_cast<std::size_t>(std::max(0, beyond));
+    if (visit(start_[row], start_[wrapped])) return true;
+    if (in_chains) {
+      gather(begin, end);
+      gather(row, wrapped);
+    }
     int k = 1;
     for (; k < axes_; ++k) {
       if (++step[k] < count[k]) break;
@@ -159,7 +175,10 @@ bool PartialGrid::search(const double* c, double reach, Visitor visitor, void* i
     }
     if (k >= axes_) break;
   }
-  return visit(start_.back(), ids_.size());
+  if (!in_chains) return visit(start_.back(), ids_.size());
+  // As they came, so that it makes no difference how they are found.
+  std::ranges::sort(added);
+  return std::ranges::any_of(added, [&](Id s) { return visit(s, s + std::size_t{1}); });
 }
 
 }  // namespace bernal

@@ -17,7 +17,8 @@ namespace bernal {
 ///
 /// The axes are those of a box [0, edge); where one repeats itself, distances are those to the nearest image.
 /// Spheres may move after `sort`: `update` takes their places, and queries look `slack` farther. Those that
-/// `add` brings stay unsorted, and every query looks at all of them: sort again when they become many.
+/// `add` brings stay unsorted: queries look at all of them while they are few, then find them in chains, a
+/// chain a cell.
 ///
 /// The dimension is known when the program runs: the inner loops run over spheres, not over axes.
 ///
@@ -76,6 +77,14 @@ class PartialGrid {
   using Visitor = bool (*)(void* it, Id id, double squared);
 
   std::size_t coordinate(int k, double x) const;
+  /// The cell of a place, a coordinate an axis.
+  template <class Coordinate>
+  std::size_t cell_of(Coordinate&& x) const {
+    std::size_t index = 0;
+    for (int k = axes_ - 1; k >= 0; --k)
+      index = index * static_cast<std::size_t>(cells_[k]) + coordinate(k, x(k));
+    return index;
+  }
   bool search(const double* c, double reach, Visitor visitor, void* it) const;
   bool look_at(const double* c, double reach, std::size_t first, std::size_t last, Visitor visitor,
                void* it) const;
@@ -92,6 +101,8 @@ class PartialGrid {
   EachAxis<std::vector<double>> x_;
   std::vector<double> r_;
   std::vector<Id> ids_;
+  // Of those that are not sorted: the last one in each cell, and of each the one before it.
+  std::vector<Id> last_added_, added_before_;
 };
 
 /// A column an axis, of arrays or of Eigen's columns.

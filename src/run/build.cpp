@@ -10,6 +10,7 @@
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
 #include "run/price_effects.hpp"
+#include "run/sizes_at_hand.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
 #include "sizes/cut_above.hpp"
@@ -108,6 +109,7 @@ void expect_in_container(Plan& plan) {
   if (scene.target.count)
     plan.expected_count = std::min(plan.expected_count, static_cast<double>(*scene.target.count));
   plan.expected_packing_fraction = plan.expected_count * mean_volume / volume;
+  if (!scene.target.packing_fraction) plan.expected_count = std::max(1.0, plan.expected_count);  // one fits
 }
 
 void require_stage_that_places(const Scene& scene) {
@@ -179,14 +181,33 @@ Vector<dynamic> proportions_of(const Vector<dynamic>& edges) {
   return (edges / edges.maxCoeff()).unaryExpr(rounded);
 }
 
+/// That of so many spheres of these sizes as there are likely to be, with those of the start.
+double close_packing_at_hand(const Plan& plan, const SizeDistribution& radii) {
+  const int dimension = plan.scene.dimension();
+  const double without_end = close_packing_fraction(radii, dimension);
+  if (dimension != 3 || !plan.scene.draws()) return without_end;
+  const std::vector<double>& there = plan.start.spheres.r;
+  double drawn = 0;
+  if (plan.scene.target.count) {
+    drawn = static_cast<double>(*plan.scene.target.count) - static_cast<double>(there.size());
+  } else {
+    double volume = without_end * volume_of(plan.domain);
+    for (const double r : there) volume -= ball_volume(3, r);
+    drawn = volume / (ball_volume(3, 1) * radii.moment(3));
+  }
+  const auto sizes = sizes_at_hand(there, radii, std::max(there.empty() ? 1.0 : 0.0, drawn));
+  return sizes ? close_packing_fraction(*sizes, 3) : without_end;
+}
+
 /// What the stages are likely to reach: of a box that follows from the packing, in that box, whose walls
 /// lower what makes it so large.
 double attainable_in_box(const Plan& plan, const SizeDistribution& radii) {
   constexpr int rounds = 5;
+  constexpr double least_attainable = 0.05;  // below, the larger ones do not fit into what all would fill
   const Scene& scene = plan.scene;
   const bool between_walls = has_walls(plan.domain) && scene.dimension() == 3 &&
                              any_stage(scene, &StageTraits::reaches, Reaches::close_packing);
-  if (!any_in_bed(scene) && !between_walls) return close_packing_fraction(radii, scene.dimension());
+  if (!any_in_bed(scene) && !between_walls) return close_packing_at_hand(plan, radii);
   if (!plan.box_follows) return expected_packing_fraction(scene, plan.domain, radii);
   Box box = std::get<Box>(plan.domain);
   double attainable = close_packing_fraction(radii, 3);
@@ -194,7 +215,9 @@ double attainable_in_box(const Plan& plan, const SizeDistribution& radii) {
     const double volume = volume_of_count(plan, radii) / scene.target.packing_fraction.value_or(attainable);
     box.size *= std::cbrt(volume / box.size.prod());
     if (largest_fitting_radius(box) < radii.quantile(0.5)) break;
-    attainable = expected_packing_fraction(scene, box, radii);
+    const double reached = expected_packing_fraction(scene, box, radii);
+    if (reached < least_attainable) break;
+    attainable = reached;
   }
   return attainable;
 }

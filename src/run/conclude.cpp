@@ -42,6 +42,7 @@ std::string_view why_no_more(StageEnd end) {
 }
 
 std::string larger(double factor) {
+  if (factor < 1 + 1e-12) return "larger by a rounding than";
   return factor < 1.001 ? fmt::format("larger by a share of {:.2g} of its volume than", factor - 1)
                         : fmt::format("{:.4g} times as large by volume as", factor);
 }
@@ -52,7 +53,10 @@ Conclusion of_open_target(const Packing& packing, const Work& work, StageEnd end
   const std::size_t n = packing.spheres.size();
   const double phi = packing.packing_fraction(), expected = packing.expected_packing_fraction;
   const auto fraction = [](double f) { return fmt::format("{:.3g}", f); };
-  if (phi < near_expectation * expected)
+  // Of few, one more or less is a large share.
+  const double expected_count = phi > 0 ? static_cast<double>(n) * expected / phi : 1;
+  const double near = near_expectation * (1 - 1 / std::sqrt(std::max(1.0, expected_count)));
+  if (phi < near * expected || n == 0)
     return {Outcome::full,
             fmt::format("{} {} placed, packing fraction {}, where {} was expected; {}", counted(n), are(n),
                         fraction(phi), fraction(expected), why_no_more(end))};

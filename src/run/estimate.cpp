@@ -150,9 +150,9 @@ double expected_packing_fraction(const Scene& scene, const Domain& shape, const 
     const int dimension = dimension_of(shape);
     const double largest = radii.quantile(quantile_of_largest);
     const EmptyBed bed{.dimension = dimension,
-                    .relaxed = reached_by_relaxation(shape, radii, made),
-                    .wall_share = wall_share(shape, radii),
-                    .evenness = std::min(1.0, radii.moment(dimension) / std::pow(largest, dimension))};
+                       .relaxed = reached_by_relaxation(shape, radii, made),
+                       .wall_share = wall_share(shape, radii),
+                       .evenness = std::min(1.0, radii.moment(dimension) / std::pow(largest, dimension))};
     double fraction = 0;
     for (const Stage& stage : scene.stages)
       if (const StageEntry& entry = entry_of(stage); entry.full) {

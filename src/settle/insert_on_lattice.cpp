@@ -1,11 +1,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
 
 #include "settle/insert.hpp"
+#include "work/snug_places.hpp"
 
 namespace bernal {
 namespace {
@@ -19,6 +23,9 @@ constexpr int most_bisections = 12;
 constexpr double enough_sites = 1.01;
 /// Of a lattice that holds too few: how often it is halved for what is still to come.
 constexpr int most_halvings = 2;
+/// Where sites for the largest hold less than this of what is to be placed, those are taken that hold it,
+/// and a large sphere stands on several of them.
+constexpr double share_of_large = 0.3;
 /// Spheres of the window that are tried at one site.
 constexpr std::size_t most_tried = 32;
 
@@ -99,8 +106,9 @@ struct Sites {
   std::vector<Vector<3>> free;
 };
 
-/// The widest that has so many free sites, or the one whose spheres touch. Wide ones are tried first: where
-/// few spheres are wanted in much room, the others have sites without number.
+/// The widest that has so many free sites, or of those tried, down to the one whose spheres touch, the one
+/// with the most. Wide ones are tried first: where few spheres are wanted in much room, the others have sites
+/// without number.
 Sites widest_lattice(const Work& work, std::size_t needed) {
   const Bed& bed = work.bed();
   const double r = work.supply->largest(), touching = 2 * (r + bed.skin());
@@ -114,8 +122,10 @@ Sites widest_lattice(const Work& work, std::size_t needed) {
   while (widest.free.size() < needed && close > touching) {
     wide = close;
     close = std::max(touching, closer * close);
-    widest = sites_at(close);
+    Sites tried = sites_at(close);
+    if (tried.free.size() > widest.free.size()) widest = std::move(tried);
   }
+  if (widest.free.size() < needed) return widest;
   for (int k = 0; k < most_bisections && close < wide; ++k) {
     if (static_cast<double>(widest.free.size()) <= enough_sites * static_cast<double>(needed)) break;
     const double middle = 0.5 * (close + wide);
@@ -143,28 +153,49 @@ StageEnd insert_on_lattice(Work& work, const Insert& options) {
     return supply.exhausted() || bed.packing_fraction() >= options.packing_fraction;
   };
   const std::size_t enough = std::min(work.count_filling(options.packing_fraction), supply.wanted());
-  if (is_done() || enough <= bed.size()) return StageEnd::converged;
 
-  auto [lattice, sites] = widest_lattice(work, enough - bed.size());
+  SnugPlaces snug(work);  // where a lattice has no site
+  if (snug.only_some_touch()) snug.place_those_that_touch();
+  if (is_done() || enough <= bed.size()) return StageEnd::converged;
+  const std::size_t needed = enough - bed.size();
+  auto [lattice, sites] = widest_lattice(work, needed);
+  if (static_cast<double>(sites.size()) < share_of_large * static_cast<double>(needed) &&
+      supply.smallest() < supply.largest()) {
+    lattice = {bed.container(), supply.smallest(), even_spacing(bed.container(), needed), bed.skin()};
+    sites = lattice.sites(bed, supply.smallest(), work.monitor);
+  }
   for (int halvings = 0;; ++halvings) {
+    std::map<std::uint32_t, int> in_vain;  // sites of this lattice that a sphere was tried at
     for (std::size_t left = sites.size(); left > 0 && !is_done(); --left) {
       if (work.monitor.stop()) return StageEnd::cancelled;
       std::swap(sites[random() % left], sites[left - 1]);
       const Vector<3>& site = sites[left - 1];
+      double too_large = std::numeric_limits<double>::infinity();
       for (std::size_t k = 0; k < std::min(most_tried, supply.window().size()); ++k) {
         const std::uint32_t tag = supply.window()[k];
-        if (!bed.fits(site, supply.radius(tag))) continue;
-        bed.insert(site, supply.radius(tag), tag);
+        const double r = supply.radius(tag);
+        if (r >= too_large) continue;
+        if (const auto tried = in_vain.find(tag); tried != in_vain.end() && tried->second >= options.attempts)
+          continue;
+        if (!bed.fits(site, r)) {
+          too_large = r;
+          ++in_vain[tag];
+          continue;
+        }
+        bed.insert(site, r, tag);
         supply.take(k);
         if (bed.size() % a_milestone_every == 0) work.milestone("insert");
         break;
       }
     }
     if (is_done()) return StageEnd::converged;
-    if (halvings == most_halvings || supply.smallest() == supply.largest()) return StageEnd::full;
+    if (halvings == most_halvings || supply.smallest() == supply.largest()) break;
     lattice.halve(bed.container().boundary());
     sites = lattice.sites(bed, supply.smallest(), work.monitor);
   }
+  while (!is_done())
+    if (snug.place_waiting(options.packing_fraction) == 0) return StageEnd::full;
+  return StageEnd::converged;
 }
 
 }  // namespace bernal

@@ -65,12 +65,18 @@ bool is_loose(const Work& work) {
                                                              work.target_edges->prod();
 }
 
-/// Whether spheres are as dense where they begin as relaxation makes them, or in the box that is asked for:
-/// then they are relaxed from there, and not from a denser state, which would make another packing of them.
+/// Whether spheres are as dense where they begin as relaxation makes them: then they are relaxed from there,
+/// and not from a denser state, which would make another packing of them.
 bool begins_in_its_box(const Work& work, const Relax& options) {
-  if (work.begun == 0 || !work.placed || options.phi0) return false;
-  return work.target_edges ||
+  return work.begun > 0 && work.placed && !options.phi0 &&
          work.volume_of_spheres() >= loose * random_close_packing[work.dimension() - 1] * work.edges.prod();
+}
+
+/// Whether they begin in the box that is asked for, free of overlap.
+template <int D>
+bool is_done(const Spheres<D>& spheres, const Vector<D>& edges, const Work& work, const Relax& options) {
+  return work.begun > 0 && work.placed && !options.phi0 && work.target_edges &&
+         work.edges == *work.target_edges && is_free_of_overlap<D>(spheres, edges, work.walls);
 }
 
 /// Those they begin in, or of phi0, or about those that are asked for; never so small that a sphere overlaps
@@ -178,6 +184,9 @@ StageEnd relax_in(Work& work, const Relax& options) {
     throw Error(ErrorCode::bad_scene, "the reference method of relax knows no walls; leave \"method\" out");
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
+  if (is_done<D>(spheres, edges, work, options))
+    return finish_in_periodic_box<D>(std::move(spheres), edges, StageEnd::converged,
+                                     is_loose(work) ? 0 : options.polish, work);
   if (begins_in_its_box(work, options) && hardly_overlaps<D>(spheres, edges, work, options)) {
     free_of_overlap<D>(spheres, edges, work);
     return finish_in_periodic_box<D>(std::move(spheres), edges, StageEnd::converged,

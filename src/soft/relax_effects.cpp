@@ -29,8 +29,13 @@ constexpr double most_in_cycles = 1e4;
 /// Spheres that start in a box they soon fit into, of that.
 constexpr double share_in_a_loose_box = 0.1, loose_box = 0.9;
 /// Of that, what spheres take that start at phi0 = h times what is attainable: `from_loose`, and more by so
-/// much from `loose_start` on.
-constexpr double loose_start = 0.9, from_loose = 0.05, cost_of_overlap = 3;
+/// much from `loose_start` on; beyond that of the default with a power of it.
+constexpr double loose_start = 0.9, from_loose = 0.05, cost_of_overlap = 3, default_start = 1.336,
+                 power_of_start = 1.25;
+/// The power of beta over its default.
+constexpr double power_of_beta = 0.9, default_beta = 30;
+/// The most of a sphere and sweep in a container.
+constexpr double longest_sweep = 0.2 * microsecond;
 /// The published loop against the fast one.
 constexpr double reference_factor = 70;
 /// Of a domain of fixed size, for each sphere, h being what is asked for over what is attainable:
@@ -60,26 +65,30 @@ double dimension_factor(const Outlook& outlook) {
 
 double seconds_in_growing_box(const Relax& options, const Outlook& outlook) {
   const double decades = std::log10(std::clamp(outlook.spheres, 2.0, most_in_cycles));
-  const double cycles = cycles_at_ends + cycles_of_alpha * options.alpha;
+  const double alpha = options.period ? *options.period / (decades * decades) : options.alpha;
+  const double cycles = cycles_at_ends + cycles_of_alpha * alpha;
   const double loose =
       outlook.task.packing_fraction > 0 && outlook.task.packing_fraction < loose_box * outlook.task.attainable
           ? share_in_a_loose_box
           : 1;
-  const double start =
-      options.phi0
-          ? std::clamp(from_loose + cost_of_overlap * (*options.phi0 / outlook.task.attainable - loose_start),
-                       from_loose, 1.0)
-          : 1;
+  const double h = options.phi0.value_or(0) / outlook.task.attainable;
+  const double start = options.phi0
+                           ? std::clamp(from_loose + cost_of_overlap * (h - loose_start), from_loose, 1.0) *
+                                 std::max(1.0, std::pow(h / default_start, power_of_start))
+                           : 1;
   const double method = options.method == RelaxMethod::fast ? 1 : reference_factor;
-  return method * std::min(loose, start) * outlook.spheres * decades * decades * cycles *
+  return method * std::pow(options.beta / default_beta, power_of_beta) *
+         (start > 1 ? loose * start : std::min(loose, start)) * outlook.spheres * decades * decades * cycles *
          dimension_factor(outlook) * std::pow(outlook.spread, cost_of_spread);
 }
 
-double seconds_in_bed(const Outlook& outlook) {
+double seconds_in_bed(const Relax& options, const Outlook& outlook) {
   const double hardness = outlook.aim / outlook.task.attainable;
-  return microsecond * outlook.spheres * between_walls.of(hardness) *
-         std::pow(outlook.spread, cost_of_spread_in_bed) * (1 + cost_of_walls * outlook.at_walls) *
-         (outlook.is_filled ? factor_of_filling : 1);
+  const double seconds = microsecond * outlook.spheres * between_walls.of(hardness) *
+                         std::pow(outlook.spread, cost_of_spread_in_bed) *
+                         (1 + cost_of_walls * outlook.at_walls) * (outlook.is_filled ? factor_of_filling : 1);
+  const double most = options.sweeps * longest_sweep * outlook.spheres;
+  return std::min({seconds, most, options.seconds > 0 ? options.seconds : seconds});
 }
 
 }  // namespace
@@ -104,7 +113,7 @@ std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook&
     const PlanItem walls = questions_to_walls(questions, outlook);
     const bool is_dilute =
         outlook.task.packing_fraction > 0 && outlook.aim <= dilute * outlook.task.attainable;
-    items = effects_of_pushing(is_dilute ? 0 : walls.seconds + seconds_in_bed(outlook), outlook,
+    items = effects_of_pushing(is_dilute ? 0 : walls.seconds + seconds_in_bed(options, outlook), outlook,
                                "spheres and walls push; what is stuck is stirred or put into holes");
     items.insert(items.begin(), {.name = "insertion",
                                  .what = is_dilute ? "random places, which are enough for so few"

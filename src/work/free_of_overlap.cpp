@@ -7,6 +7,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "bernal/domain/boundary.hpp"
 #include "core/every_dimension.hpp"
+#include "domain/dyadic.hpp"
 #include "neighbors/cell_grid.hpp"
 #include "work/random_insertion.hpp"
 
@@ -76,6 +77,28 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping(const Spheres<D
 }
 
 template <int D>
+bool is_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls) {
+  constexpr double wide_enough = 2.001;  // that of two images one is far
+  const Vector<D> around = edges_around_walls<D>(edges, walls);
+  if (!(around.minCoeff() > wide_enough * 2 * std::ranges::max(spheres.r))) return false;
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    for (std::size_t i = 0; i < spheres.size() && walls[k]; ++i) {
+      const Dyadic x = spheres.x[k][i], r = spheres.r[i];
+      if (x < r || Dyadic(edges[static_cast<int>(k)]) - x < r) return false;
+    }
+  return std::ranges::none_of(overlapping<D>(spheres, around, 0), [&](const auto& pair) {
+    const auto [i, j] = pair;
+    Dyadic squared;
+    for (int k = 0; k < D; ++k) {
+      const auto& x = spheres.x[static_cast<std::size_t>(k)];
+      const double images = std::round((x[j] - x[i]) / around[k]);
+      squared = squared + square(Dyadic(x[i]) - Dyadic(x[j]) + Dyadic(images) * Dyadic(around[k]));
+    }
+    return squared < square(Dyadic(spheres.r[i]) + Dyadic(spheres.r[j]));
+  });
+}
+
+template <int D>
 Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edges, double allowed,
                                 const std::vector<bool>& walls) {
   const double touching = contact_factor(spheres, edges_around_walls(edges, walls));
@@ -99,6 +122,7 @@ void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, Work& work) {
 #define BERNAL_INSTANTIATE(D)                                                                          \
   template std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping(const Spheres<D>&,         \
                                                                             const Vector<D>&, double); \
+  template bool is_free_of_overlap(const Spheres<D>&, const Vector<D>&, const std::vector<bool>&);     \
   template void free_of_overlap(Spheres<D>&, Vector<D>&, Work&);                                       \
   template double contact_factor(const Spheres<D>&, const Vector<D>&);                                 \
   template Vector<D> edges_free_of_overlap(const Spheres<D>&, const Vector<D>&, double,                \

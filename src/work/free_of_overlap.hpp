@@ -58,6 +58,12 @@ Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edge
 template <int D>
 void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, Work& work);
 
+/// Whether nothing overlaps, nor crosses a wall, decided exactly of the numbers as they stand: touching is
+/// allowed. Of a box narrower than two of the largest spheres it may say no where it is so.
+/// Preconditions and cost: as `overlapping`, and 5 µs a pair that touches to rounding.
+template <int D>
+bool is_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls);
+
 /// The pairs of spheres in a periodic box that overlap by more than the ratio `allowed`, or are so near to it
 /// that rounding leaves it open: d < (1 - allowed) (ri + rj), of the nearest images. Pairs that are not here
 /// certainly do not. Precondition: centres are in [0, edge), and there are spheres.

@@ -128,5 +128,43 @@ TEST(Estimate, OfALatticeIsThatOfTheLattice) {
   }
 }
 
+/// The fewer places are tried, the looser random insertion ends.
+TEST(Estimate, OfInsertionKnowsHowOftenItIsTried) {
+  for (const int attempts : {1, 10, 100, 1000})
+    for (const std::string& container :
+         {std::string("size = [1.0, 1.0, 1.0]"), std::string("size = [2.0, 1.0]")}) {
+      const Packing packing =
+          run(testing::plan_of("[container]\nkind = \"box\"\n" + container +
+                               "\n[spheres]\nfill = true\nradius = "
+                               "0.03\n[[stage]]\ndo = \"insert\"\npacking_fraction = 0.9\nattempts = " +
+                               std::to_string(attempts) + "\n"),
+              {.seed = {}, .threads = 1, .monitor = {}});
+      EXPECT_NEAR(packing.packing_fraction(), packing.expected_packing_fraction, 0.04)
+          << container << attempts;
+    }
+}
+
+/// A few draws lack the tail of a wide distribution, which much of its prediction is of; and spheres that are
+/// there are packed with those that are drawn.
+TEST(Estimate, IsOfTheSpheresThatThereAre) {
+  const auto expected = [](const std::string& spheres) {
+    return testing::plan_of("[container]\nkind = \"periodic\"\n[spheres]\n" + spheres)
+        .expected_packing_fraction;
+  };
+  const std::string wide = "radius = { distribution = \"lognormal\", median = 1.0, sigma = 2.0 }\n";
+  EXPECT_LT(expected("count = 1000\n" + wide), 0.8);
+  EXPECT_LT(expected("count = 1000\n" + wide), expected("count = 100000\n" + wide));
+  const std::string narrow = "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n";
+  EXPECT_NEAR(expected("count = 1000\n" + narrow), expected("count = 100000\n" + narrow), 1e-12);
+}
+
+TEST(Estimate, OfABoxBetweenWallsInWhichOnlySmallOnesWouldFit) {
+  const Plan plan = testing::plan_of(
+      "[container]\nkind = \"periodic\"\nwalls = [2]\n[spheres]\ncount = 4\nradius = { distribution = "
+      "\"classes\", values = [0.1, 0.2, 3.0], shares = [1, 1, 1] }\n");
+  EXPECT_GT(plan.expected_packing_fraction, 0.05);
+  EXPECT_TRUE(std::isfinite(volume_of(plan.domain)));
+}
+
 }  // namespace estimate_test
 }  // namespace bernal

@@ -150,5 +150,22 @@ TEST(Boundary, VisitsAllImagesWithinReach) {
   }
 }
 
+TEST(IsFreeOfOverlap, IsDecidedExactly) {
+  const Vector<3> edges(10, 10, 10);
+  const std::vector<bool> walls = {false, false, true};
+  const auto is_free = [&](double x, double z, const std::vector<bool>& ends) {
+    Spheres<3> spheres;
+    spheres.push_back(Vector<3>(9.5, 2, z), 1);
+    spheres.push_back(Vector<3>(x, 2, 5), 1);
+    return is_free_of_overlap<3>(spheres, edges, ends);
+  };
+  EXPECT_TRUE(is_free(1.5, 5, {}));  // they touch, across the seam
+  EXPECT_FALSE(is_free(std::nextafter(1.5, 0), 5, {}));
+  EXPECT_TRUE(is_free(5, 1, walls));
+  EXPECT_FALSE(is_free(5, std::nextafter(1, 0), walls));
+  EXPECT_TRUE(is_free(5, 9, walls));
+  EXPECT_FALSE(is_free(5, std::nextafter(9, 10), walls));
+}
+
 }  // namespace free_of_overlap_test
 }  // namespace bernal

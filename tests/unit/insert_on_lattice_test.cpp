@@ -119,5 +119,27 @@ TEST(InsertOnLattice, OfHardlyAnySpheresInMuchRoomCostsNothing) {
   EXPECT_LT(packing.seconds, 5);
 }
 
+/// The largest of many are far larger than the mean: a lattice on which they touch would hold next to
+/// nothing.
+TEST(InsertOnLattice, HoldsSizesWithATailNoLooserThanRandomPlaces) {
+  const std::string tail =
+      "[spheres]\nfill = true\ndiameter = { distribution = \"lognormal\", median = 0.5, sigma = 0.5 }\n";
+  const Packing regular = packed(box + tail + lattice(0.3));
+  expect_certified(regular);
+  const Packing random = packed(box + tail + "[[stage]]\ndo = \"insert\"\n");
+  EXPECT_GT(regular.packing_fraction(), random.packing_fraction());
+}
+
+TEST(InsertOnLattice, PlacesTheOneThatFitsExactly) {
+  const std::string diameter = "[spheres]\nfill = true\nradius = 0.5\n";
+  const Packing slab =
+      packed("[container]\nkind = \"box\"\nsize = [10.0, 10.0, 1.0]\n" + diameter + lattice(0.9));
+  expect_certified(slab);
+  EXPECT_GT(slab.spheres.size(), 40u);
+  const Packing ball = packed("[container]\nkind = \"sphere\"\nradius = 1.0\n" + diameter + lattice(0.9));
+  expect_certified(ball);
+  EXPECT_GE(ball.spheres.size(), 1u);
+}
+
 }  // namespace insert_on_lattice_test
 }  // namespace bernal

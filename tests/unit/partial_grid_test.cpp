@@ -111,6 +111,34 @@ TEST(PartialGrid, FindsThemWhenTheyHaveMovedAndWhenNewOnesCome) {
   scatter.expect_complete(grid);
 }
 
+// Which are then found in chains, as they came.
+TEST(PartialGrid, FindsManyNewOnesInTheirOrder) {
+  for (const double edge : {0.7, 3.0})
+    for (int axes = 0; axes <= 3; ++axes) {
+      Scatter<3> scatter(50, edge, {true, false, true});
+      PartialGrid grid = scatter.grid(axes, 0.1);
+      for (int round = 0; round < 2; ++round) {
+        for (int k = 0; k < 200; ++k) {
+          scatter.spheres_.push_back(scatter.anywhere(), 0.15);
+          grid.add(scatter.spheres_.center(scatter.spheres_.size() - 1).data(), 0.15);
+        }
+        scatter.drift(0.1);
+        grid.update(columns_of(scatter.spheres_.x));
+        scatter.expect_complete(grid);
+        std::uint32_t last = 0;
+        const auto sorted = static_cast<std::uint32_t>(grid.size() - grid.unsorted());
+        grid.for_each_near(scatter.anywhere().data(), 0.3, [&](std::uint32_t id, double) {
+          if (id < sorted) return;
+          EXPECT_GT(id, last);
+          last = id;
+        });
+        grid.sort(columns_of(scatter.spheres_.x), scatter.spheres_.r, scatter.spheres_.size());
+        EXPECT_EQ(grid.unsorted(), 0u);
+        scatter.expect_complete(grid);
+      }
+    }
+}
+
 // Few spheres are compared one by one; the more there are, the more axes pay.
 TEST(PartialGrid, TakesMoreAxesTheMoreSpheresThereAre) {
   int before = 0;

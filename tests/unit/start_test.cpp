@@ -276,5 +276,35 @@ TEST_F(Start, BetweenWallsOfABoxKeepsItsPlaces) {
             std::string::npos);
 }
 
+/// In a box of given size what overlaps a little is freed there, what only touches stays as it is, and what
+/// is loose is squeezed into a smaller one.
+TEST_F(Start, InABoxOfGivenSizeStaysInIt) {
+  folder.write("overlaps.csv", "x,y,z,r\n2,2,2,0.5\n2.9,2,2,0.5\n7,7,7,0.6\n");
+  const std::string from = "[spheres]\nstart = \"overlaps.csv\"\n";
+  const Packing freed = packed(periodic(10) + from + stage("relax"));
+  expect_certified(freed);
+  EXPECT_EQ(freed.outcome, Outcome::converged) << freed.reason;
+  EXPECT_EQ(bounds_of<dynamic>(freed.domain).size(), Vector<3>::Constant(10));
+
+  folder.write("touches.csv", "x,y,z,r\n2,2,2,0.5\n3,2,2,0.5\n9.5,2,2,2\n");
+  const Packing same = packed(periodic(10) + "[spheres]\nstart = \"touches.csv\"\n" + stage("relax"));
+  expect_certified(same);
+  EXPECT_EQ(same.outcome, Outcome::converged) << same.reason;
+  EXPECT_EQ(same.spheres.x[0], (std::vector<double>{2, 3, 9.5}));
+
+  const Packing loose =
+      run(build(parse_scene("[container]\nkind = \"periodic\"\n[spheres]\ncount = 200\nradius = "
+                            "1.0\n[[stage]]\ndo = \"relax\"\nphi0 = 0.05\n",
+                            "test.toml")),
+          {.seed = {}, .threads = 1, .monitor = {}});
+  write("loose.csv", loose.spheres);
+  const Packing squeezed =
+      packed(periodic_of(loose, "scalable = true\n") +
+             "[spheres]\nstart = \"loose.csv\"\npacking_fraction = 0.4\n" + stage("relax"));
+  expect_certified(squeezed);
+  EXPECT_EQ(squeezed.outcome, Outcome::converged) << squeezed.reason;
+  EXPECT_NEAR(squeezed.packing_fraction(), 0.4, 1e-9);
+}
+
 }  // namespace start_test
 }  // namespace bernal

@@ -4,6 +4,7 @@
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/predict/mixtures.hpp"
+#include "bernal/predict/predict.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/soft/relax.hpp"
 
@@ -16,6 +17,7 @@ struct CheckOptions {
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: as many as the machine has
   Monitor monitor = {};
+  double gap_factor = rod_gap_factor;  ///< of the prediction
 };
 
 /// What a packing in a periodic box says about a prediction.
@@ -30,7 +32,7 @@ struct PredictionCheck {
 };
 
 /// The rod model for spheres of these radii and no others, with 16,000 rods.
-double predicted_for(const std::vector<double>& radii);
+double predicted_for(const std::vector<double>& radii, double gap_factor = rod_gap_factor);
 
 /// How many spheres stand for a distribution: 10,000, or the least of 20,000, 50,000, 100,000 and 200,000 of
 /// which the largest has at most 2 % of the volume, or 200,000.
