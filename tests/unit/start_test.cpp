@@ -120,6 +120,10 @@ TEST_F(Start, HasToGoWithTheScene) {
   expect(box + "[spheres]\nstart = \"none.csv\"\n", "none.csv");
   expect(box + "[spheres]\nstart_unit = \"mm\"\nradius = 1.0\n", "needs the \"start\" itself");
   expect(box + from_two + "start_box = [1.0, 1.0, 1.0]\n", "is for periodic boxes");
+  folder.write("line.csv", "x0,r\n1,0.5\n");
+  expect(box + "[spheres]\nstart = \"line.csv\"\n", "have 1 dimension, but the scene has 3");
+  folder.write("large.csv", "x,y,z,r\n1,1,1,5\n");
+  expect(periodic(8) + "[spheres]\nstart = \"large.csv\"\n", "does not fit into the periodic box, which");
   expect(box + from_two + "start_sha256 = \"12\"\n", "64 hexadecimal digits");
   expect(box + from_two + "start_sha256 = \"" + std::string(64, '0') + "\"\n",
          "is not the file that is meant");
