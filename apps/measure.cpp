@@ -29,8 +29,8 @@ struct MeasureCall {
   MeasureOptions options;
   int threads = 0;
   bool json = false;
-  std::string plane;              ///< of a section; empty: measurements are asked for
-  std::filesystem::path picture;  ///< of the section
+  std::optional<std::string> plane;  ///< of a section, where no measurements are asked for
+  std::filesystem::path picture;     ///< of the section
 };
 
 /// Draws the section and measures nothing else.
@@ -40,7 +40,7 @@ int draw_section(const MeasureCall& call) {
   if (call.json)
     throw Error(ErrorCode::bad_argument,
                 "--section draws a picture, and --json prints measurements; ask for one");
-  write_section(read_packing(call.folder), call.plane, call.picture);
+  write_section(read_packing(call.folder), *call.plane, call.picture);
   say(stdout, "{}\n", plain_text(call.picture.string(), 5000));
   return exit_code::done;
 }
@@ -69,9 +69,11 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
     fmt::print("isostatic         {} contacts would just hold the backbone; there are {:.3g} % {}\n",
                grouped(*c.isostatic), 100 * std::abs(ratio - 1), ratio < 1 ? "fewer" : "more");
   }
+  const bool can_polish = packing.spheres.dimension() != 2 || is_periodic(packing.domain);
   if (!packing.spheres.empty())
-    fmt::print("contacts tell     {}{}\n", where_contacts_tell(measured),
-               measured.holds(c) ? "" : ", so not at this one; \"polish\" of relax and grow closes them");
+    fmt::print("contacts tell     {}{}{}\n", where_contacts_tell(measured),
+               measured.holds(c) ? "" : ", so not at this one",
+               measured.holds(c) || !can_polish ? "" : "; \"polish\" of relax and grow closes them");
 
   fmt::print("\n{:>8} {:>12} {:>13} {:>10} {:>18} {:>13}\n", "gap", "contacts", "coordination", "rattlers",
              "backbone contacts", "of isostatic");
@@ -212,7 +214,9 @@ void print_drawn(const DrawnComparison& drawn) {
   else
     fmt::print("drawn sequence    {} of as many draws are missing; quantiles differ by up to {:.2g} %",
                grouped(drawn.missing), 100 * drawn.largest_deviation);
-  if (drawn.above_largest > 0) fmt::print("; {} larger draws passed over", grouped(drawn.above_largest));
+  if (drawn.above_largest > 0)
+    fmt::print("; {} larger draw{} passed over", grouped(drawn.above_largest),
+               drawn.above_largest == 1 ? "" : "s");
   fmt::print("\n");
 }
 
@@ -229,8 +233,9 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
                sizes.classes.size(), *sizes.chi_squared_p_value);
   fmt::print("mean              {:.6g}, asked {:.6g}\n", factor * sizes.mean_radius,
              factor * sizes.asked_mean_radius);
-  fmt::print("mean volume       {:.5f} of what was asked; ± {:.5f} is expected of independent draws\n",
-             sizes.volume_ratio, sizes.volume_ratio_error);
+  fmt::print("mean {}       {:.5f} of what was asked; ± {:.5f} is expected of independent draws\n",
+             packing.spheres.dimension() == 2 ? "area  " : "volume", sizes.volume_ratio,
+             sizes.volume_ratio_error);
   if (sizes.drawn) print_drawn(*sizes.drawn);
   if (sizes.classes.size() == 1) return;
   if (!sizes.classes.empty()) {
@@ -270,7 +275,7 @@ Measurements measured_of(const Packing& packing, const MeasureCall& call) {
 }
 
 int measure_folder(const MeasureCall& call) {
-  if (!call.plane.empty()) return draw_section(call);
+  if (call.plane) return draw_section(call);
   std::optional<tbb::global_control> limit;
   if (call.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
@@ -297,7 +302,7 @@ Command measure_command() {
        within({"--gap", &call->options.contact_gap,
                "Spheres touch below this gap over the sum of their radii; 0.002 if absent", "RATIO"},
               0.0, 1.0),
-       {"--section", &call->plane,
+       {"--section", [call](const std::string& plane) { call->plane = plane; },
         "Draw the circles that this plane cuts of the spheres, and the outline of their container: "
         "\"z = 1.5\", \"0.6 x + 0.8 z = 2\"; nothing else is measured",
         "PLANE"},

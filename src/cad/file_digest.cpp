@@ -18,27 +18,41 @@
 #include "core/file_kind.hpp"
 
 namespace bernal {
-namespace {
 
 namespace fs = std::filesystem;
 
+struct Sha256::State {
+  SHA2_CTX context;
+};
+
+Sha256::Sha256() : state_(std::make_unique<State>()) { SHA256Init(&state_->context); }
+Sha256::~Sha256() = default;
+
+void Sha256::add(std::string_view bytes) {
+  SHA256Update(&state_->context, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+}
+
+std::string Sha256::digits() {
+  std::array<char, SHA256_DIGEST_STRING_LENGTH> digits;
+  SHA256End(&state_->context, digits.data());
+  return digits.data();
+}
+
+namespace {
+
 std::string sha256_of_all(std::span<const fs::path> files) {
-  SHA2_CTX hash;
-  SHA256Init(&hash);
+  Sha256 hash;
   std::vector<char> block(1 << 16);
   for (const fs::path& file : files) {
     errno = 0;
     std::ifstream in(file, std::ios::binary);
     while (in.read(block.data(), std::ssize(block)) || in.gcount() > 0)
-      SHA256Update(&hash, reinterpret_cast<const std::uint8_t*>(block.data()),
-                   static_cast<std::size_t>(in.gcount()));
+      hash.add({block.data(), static_cast<std::size_t>(in.gcount())});
     if (!in.eof())
       throw Error(ErrorCode::bad_mesh, std::string("cannot be read: ") + std::strerror(errno),
                   {file.string()});
   }
-  std::array<char, SHA256_DIGEST_STRING_LENGTH> digits;
-  SHA256End(&hash, digits.data());
-  return digits.data();
+  return hash.digits();
 }
 
 }  // namespace

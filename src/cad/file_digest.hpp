@@ -1,10 +1,25 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace bernal {
+
+/// The SHA-256 of bytes that come one after the other.
+class Sha256 {
+ public:
+  Sha256();
+  ~Sha256();
+  void add(std::string_view bytes);
+  /// Of all that came, 64 hexadecimal digits; nothing may come after.
+  std::string digits();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// The SHA-256 of a file's bytes, 64 hexadecimal digits: what `sha256sum` prints. Throws Error{bad_mesh}
 /// where the file cannot be read. Cost: reading it, and about 3 ns a byte.

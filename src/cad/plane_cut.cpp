@@ -161,11 +161,14 @@ CutPlane plane_in(std::string_view text) {
   plane.normal -= on_the_right;
   plane.offset = right_constant - left_constant;
   if (plane.normal.isZero(0) || !plane.normal.allFinite() || !std::isfinite(plane.offset)) refuse_text(text);
+  // To unit length: neither that of 1e200 x + 1e200 y nor that of a tiny one is lost on the way.
+  const double largest = plane.normal.cwiseAbs().maxCoeff();
+  plane.normal /= largest;
+  plane.offset /= largest;
   const double length = plane.normal.norm();
-  if ((plane.normal.array() == 0).count() < 2) {
-    plane.normal /= length;
-    plane.offset /= length;
-  }
+  plane.normal /= length;
+  plane.offset /= length;
+  if (!std::isfinite(plane.offset)) refuse_text(text);
   return text[sign] == '>' ? plane.turned() : plane;
 }
 

@@ -1,3 +1,5 @@
+#include "domain/simple_polygon.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -121,6 +123,17 @@ void require_simple(const Polygon& polygon) {
     }
     open.push_back(i);
   }
+}
+
+bool is_inside(const std::vector<Vector<2>>& line, const Vector<2>& point) {
+  bool inside = false;
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    const Vector<2>&a = line[k], &b = line[(k + 1) % line.size()];
+    if ((a[1] > point[1]) == (b[1] > point[1])) continue;
+    // Of the ray towards +x: an edge that runs upwards crosses it where the point is on its left.
+    inside ^= orientation(a, b, point) == (b[1] > a[1] ? 1 : -1);
+  }
+  return inside;
 }
 
 }  // namespace bernal

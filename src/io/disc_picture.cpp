@@ -52,7 +52,8 @@ std::string svg_of(const DiscPicture& picture, const SizeScale& sizes, std::size
     if (disc.sticks_out) largest = std::max(largest, disc.radius);
   const bool clipped = largest > 0;
   const double out_of_it = std::min(farthest_out, largest / size.maxCoeff());
-  const double border = out_of_it * canvas_size + canvas_margin;
+  const double beyond = out_of_it * canvas_size;  // an inner picture cuts off what reaches farther
+  const double border = beyond + canvas_margin;
   const double scale = (canvas_size - 2 * border) / size.maxCoeff();
   const double top = border + (picture.caption.empty() ? 0 : caption_height);
   const Canvas canvas{std::max(narrowest_canvas, scale * size[0] + 2 * border),
@@ -82,11 +83,12 @@ std::string svg_of(const DiscPicture& picture, const SizeScale& sizes, std::size
   std::string out = svg_head(canvas.width, canvas.height, spheres);
   if (clipped) {
     out += fmt::format(
-        "<clipPath id=\"bernalbox\"><path clip-rule=\"evenodd\" d=\"{}\"/></clipPath>\n"
-        "<g opacity=\"0.25\">\n",
-        path);
+        "<clipPath id=\"bernalbox\"><path clip-rule=\"evenodd\" d=\"{0}\"/></clipPath>\n"
+        "<svg x=\"{1:.2f}\" y=\"{2:.2f}\" width=\"{3:.2f}\" height=\"{4:.2f}\" "
+        "viewBox=\"{1:.2f} {2:.2f} {3:.2f} {4:.2f}\"><g opacity=\"0.25\">\n",
+        path, left - beyond, top - beyond, scale * size[0] + 2 * beyond, scale * size[1] + 2 * beyond);
     append_discs(out, across, rim);
-    out += "</g>\n<g clip-path=\"url(#bernalbox)\">\n";
+    out += "</g></svg>\n<g clip-path=\"url(#bernalbox)\">\n";
   } else {
     out += "<g>\n";
   }

@@ -138,14 +138,16 @@ void write_contacts(Page& page, const Report& report) {
     page.row("rattlers", "–",
              "they tell nothing at this gap: fewer than half of the spheres hold each other");
   }
+  // No stage that polishes works on discs between walls.
+  const std::string remedy = report.packing.spheres.dimension() == 2 && !is_periodic(report.packing.domain)
+                                 ? ""
+                                 : "; contacts are closed by \"polish\" of relax and grow";
   if (measured.held_from)
     page.row("contacts tell from", fmt::format("{:g}", *measured.held_from),
-             "the least gap of those in the table at which half of the spheres hold each other; contacts are "
-             "closed by \"polish\" of relax and grow");
+             "the least gap of those in the table at which half of the spheres hold each other" + remedy);
   else if (!report.packing.spheres.empty())
     page.row("contacts tell from", "–",
-             "at no gap in the table do half of the spheres hold each other; contacts are closed by "
-             "\"polish\" of relax and grow");
+             "at no gap in the table do half of the spheres hold each other" + remedy);
   page.raw("</table></div>\n");
   write_by_gap(page, report.measured);
   page.raw("</div>\n");

@@ -120,7 +120,8 @@ void write_comparison(Page& page, const SizeComparison& c, const Sizes& sizes) {
         "differ from the drawn ones by up to {:.2g} %.",
         grouped(c.drawn->missing), 100 * c.drawn->largest_deviation);
   if (c.drawn && c.drawn->above_largest > 0)
-    page.add(" {} larger draws were passed over.", grouped(c.drawn->above_largest));
+    page.add(" {} larger {} passed over.", grouped(c.drawn->above_largest),
+             c.drawn->above_largest == 1 ? "draw was" : "draws were");
   page.raw("</p>\n");
 }
 

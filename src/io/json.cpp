@@ -62,6 +62,13 @@ static void to_json(Json& json, const Contacts& contacts) {
             {"isostatic_contacts", contacts.isostatic}}}};
 }
 
+/// A count of rattlers stands only where it says something.
+static Json contacts_json(const Measurements& measured, const Contacts& contacts) {
+  Json json = contacts;
+  if (!measured.holds(contacts)) json["rattlers"] = nullptr;
+  return json;
+}
+
 static void to_json(Json& json, const Chambers::Chamber& chamber) {
   json = {{"n", chamber.spheres},
           {"share", chamber.share},
@@ -204,9 +211,11 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
                {"unit", name_of(packing.scene.unit)},
                {"phi", measured.packing_fraction},
                domain_json(packing.domain)};
-  json.update(measured.contacts);
+  json.update(contacts_json(measured, measured.contacts));
   json["held_from_gap"] = measured.held_from;
-  json["by_gap"] = measured.by_gap;
+  json["by_gap"] = Json::array();
+  for (const Contacts& contacts : measured.by_gap)
+    json["by_gap"].push_back(contacts_json(measured, contacts));
   json["g_r"] = measured.radial;
   json["crystalline"] = measured.order;
   json["chambers"] = measured.chambers;
@@ -244,7 +253,7 @@ std::string json_of(const Report& report) {
                {"phi", packing.packing_fraction()},
                {"expected_phi", packing.expected_packing_fraction},
                {"size_scale", packing.size_scale}};
-  json.update(report.measured.contacts);
+  json.update(contacts_json(report.measured, report.measured.contacts));
   json.update({{"held_from_gap", report.measured.held_from},
                {"crystalline", report.measured.order},
                {"chambers", report.measured.chambers},

@@ -7,15 +7,10 @@
 
 namespace bernal {
 
-SizeScale::SizeScale(std::vector<double> radii) : empty_(radii.empty()) {
+SizeScale::SizeScale(const std::vector<double>& radii) : empty_(radii.empty()) {
   if (radii.empty()) return;
-  const auto at = [&](double share) {
-    const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(radii.size() - 1));
-    std::nth_element(radii.begin(), radii.begin() + place, radii.end());
-    return radii[static_cast<std::size_t>(place)];
-  };
-  smallest_ = at(0.01);
-  largest_ = at(0.99);
+  smallest_ = std::ranges::min(radii);
+  largest_ = std::ranges::max(radii);
   equal_ = !(largest_ > 1.001 * smallest_);
 }
 
@@ -59,17 +54,21 @@ void append_legend(std::string& out, const Canvas& canvas, const SizeScale& size
     out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {:.3g} {}</text>\n",
                        canvas.width - canvas_margin, y + 6, sizes.smallest(), unit);
   } else if (!sizes.empty()) {
+    const auto size = [&](double r) {  // with as many digits as tell the two apart
+      const bool same = fmt::format("{:.3g}", sizes.smallest()) == fmt::format("{:.3g}", sizes.largest());
+      return fmt::format("{:.{}g}", r, same ? 5 : 3);
+    };
     constexpr double step = 17;
     const double end = canvas.width - canvas_margin - 100;
-    out +=
-        fmt::format("<text x=\"{:.1f}\" y=\"{}\">{:.3g} {}</text>\n", end + 8, y + 6, sizes.largest(), unit);
+    out += fmt::format("<text x=\"{:.1f}\" y=\"{}\">{} {}</text>\n", end + 8, y + 6, size(sizes.largest()),
+                       unit);
     for (int c = 0; c < colour_classes; ++c) {
       out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{}\" r=\"{:.1f}\" fill=\"{}\"/>\n",
                          end - step * (colour_classes - c - 0.5), y, 4.0 + 4.0 * c / (colour_classes - 1),
                          fill(c));
     }
-    out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {:.3g}</text>\n",
-                       end - step * colour_classes - 8, y + 6, sizes.smallest());
+    out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {}</text>\n",
+                       end - step * colour_classes - 8, y + 6, size(sizes.smallest()));
   }
   out += "</g>\n";
 }

@@ -14,10 +14,11 @@ inline constexpr double canvas_margin = 12;
 inline constexpr double legend_height = 52;
 inline constexpr int colour_classes = 9;
 
-/// Maps radii to colour classes, evenly in ln r between the first and the last per cent of the spheres.
+/// Maps radii to colour classes, evenly in ln r between the least and the greatest of them, which the key
+/// names.
 class SizeScale {
  public:
-  explicit SizeScale(std::vector<double> radii);
+  explicit SizeScale(const std::vector<double>& radii);
 
   bool empty() const { return empty_; }
   bool equal() const { return equal_; }

@@ -29,7 +29,8 @@ void read_sphere(const CsvLines& lines, const std::vector<std::string>& columns,
     const bool last = k + 1 == columns.size();
     if ((comma == std::string_view::npos) != last) {
       const auto fields = 1 + std::count(lines.line().begin(), lines.line().end(), ',');
-      lines.fail(fmt::format("{} fields, expected {}: {}", fields, columns.size(), fmt::join(columns, ",")));
+      lines.fail(fmt::format("{} field{}, expected {}: {}", fields, fields == 1 ? "" : "s", columns.size(),
+                             fmt::join(columns, ",")));
     }
     const double value = lines.read_number(rest.substr(0, comma), columns[k]);
     if (last && !(value > 0)) lines.fail(fmt::format("the radius {} is not positive", value));
@@ -46,7 +47,7 @@ SpheresFile read_csv(const std::filesystem::path& file) {
 
   bool found = lines.next();
   while (found && lines.line().starts_with('#')) {
-    if (const std::string name = lines.unit(); !name.empty()) unit = name;
+    lines.says_unit(unit);
     found = lines.next();
   }
   if (!found) lines.fail(fmt::format("the header {} is missing", csv_header(3)));

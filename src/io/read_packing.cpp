@@ -19,11 +19,12 @@ Spheres<dynamic> of_the_scene(const Scene& scene, const std::filesystem::path& f
                             read.unit, name_of(scene.unit)),
                 {file.string()});
   if (read.spheres.dimension() != scene.dimension())
-    throw Error(ErrorCode::bad_packing,
-                fmt::format("the spheres have {} dimensions, but the scene has {}; is it the scene "
-                            "of another packing?",
-                            read.spheres.dimension(), scene.dimension()),
-                {file.string()});
+    throw Error(
+        ErrorCode::bad_packing,
+        fmt::format("the spheres have {} dimension{}, but the scene has {}; is it the scene "
+                    "of another packing?",
+                    read.spheres.dimension(), read.spheres.dimension() == 1 ? "" : "s", scene.dimension()),
+        {file.string()});
   return std::move(read).spheres;
 }
 

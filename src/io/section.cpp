@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <numbers>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "cad/known_formats.hpp"
 #include "cad/plane_cut.hpp"
+#include "core/csv_headings.hpp"
 #include "io/disc_picture.hpp"
+#include "io/result_folder.hpp"
 #include "io/section_outline.hpp"
 #include "io/staged_folder.hpp"
 
@@ -87,7 +91,14 @@ Bounds<2> bounds_of_loops(const std::vector<Loop>& loops) {
 }  // namespace
 
 SectionPlane section_plane(std::string_view text) {
-  const cad::CutPlane plane = cad::plane_in(text);
+  const cad::CutPlane plane = [&] {
+    try {
+      return cad::plane_in(text);
+    } catch (const Error&) {
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("\"{:.60}\" is no plane; write \"z = 1.1\" or \"0.6 x + 0.8 z = 2\"", text));
+    }
+  }();
   if (!plane.side_is_open)
     throw Error(ErrorCode::bad_argument,
                 fmt::format("\"{:.60}\" is a side of a plane; a section is asked for as \"z = 1.1\"", text));
@@ -102,6 +113,19 @@ SectionPlane middle_plane(const Domain& domain) {
              ? plane_across_axis(axis, where_it_is_cut(*mesh, axis))
              : plane;
 }
+
+namespace {
+
+/// "y = 5 mm" of "y = 5"; what is no length bears no unit.
+std::string caption_of(std::string_view plane, std::string_view unit) {
+  const std::string_view right = stripped(plane.substr(plane.find('=') + 1), " \t");
+  double length;
+  const auto [end, error] = std::from_chars(right.data(), right.data() + right.size(), length);
+  const bool is_length = error == std::errc() && end == right.data() + right.size() && !unit.empty();
+  return fmt::format("{}{}{}", plane, is_length ? " " : "", is_length ? unit : "");
+}
+
+}  // namespace
 
 Section section_of(const Spheres<dynamic>& spheres, const Domain& domain, const SectionPlane& plane) {
   Section section;
@@ -124,7 +148,7 @@ Section section_of(const Spheres<dynamic>& spheres, const Domain& domain, const 
   const Bounds<2> window = bounds_of_loops(section.outline);
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const double r = spheres.r[i];
-    const Vector<3> center(spheres.x[0][i], spheres.x[1][i], spheres.x[2][i]);
+    const Vector<3> center = boundary.wrap(Vector<3>(spheres.x[0][i], spheres.x[1][i], spheres.x[2][i]));
     for_each_shift(boundary, r, [&](const Vector<3>& shift) {
       const Vector<3> c = center + shift;
       const double h = plane.normal.dot(c) - plane.offset;
@@ -154,8 +178,8 @@ std::string section_svg(const Section& section, const Spheres<dynamic>& spheres,
   DiscPicture picture{{}, section.outline, bounds_of_loops(section.outline)};
   for (const Section::Circle& circle : section.circles)
     picture.discs.push_back({circle.center, circle.radius, spheres.r[circle.sphere], circle.sticks_out});
-  picture.caption = fmt::format("{}{}{}   ·   area fraction {:.4f}   ·   {} circle{}", section.plane.text,
-                                unit.empty() ? "" : " ", unit, section.area_fraction(),
+  picture.caption = fmt::format("{}   ·   area fraction {:.4f}   ·   {} circle{}",
+                                caption_of(section.plane.text, unit), section.area_fraction(),
                                 grouped(section.circles.size()), section.circles.size() == 1 ? "" : "s");
   return svg_of(picture, SizeScale(spheres.r), spheres.size(), unit);
 }
@@ -172,11 +196,17 @@ void write_section(const Packing& packing, std::string_view plane, const std::fi
     std::ifstream(file, std::ios::binary).read(head.data(), 4);
     return head == "<svg";
   };
+  if (cad::extension_of(file) != ".svg")
+    throw Error(ErrorCode::bad_argument, "a section is written as SVG: give a file that ends in .svg",
+                {file.string()});
+  const std::filesystem::path folder = file.parent_path().empty() ? "." : file.parent_path();
+  if (manifest_of(folder).contains(file.filename().string()))
+    throw Error(ErrorCode::cannot_write, "belongs to the result there; give the section another name",
+                {file.string()});
   std::error_code unknown;
   if (stands(file) && !(std::filesystem::is_regular_file(file, unknown) && is_picture()))
     throw Error(ErrorCode::cannot_write, "is no picture; nothing is written in its place", {file.string()});
-  const std::filesystem::path folder = file.parent_path();
-  StagedFolder staged(folder.empty() ? "." : folder);
+  StagedFolder staged(folder);
   staged.write(file.filename().string(), svg);
   staged.publish();
 }

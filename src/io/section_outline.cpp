@@ -24,11 +24,12 @@ double height_above(const SectionPlane& plane, const Vector<3>& p) {
   return plane.normal.dot(p) - plane.offset;
 }
 
-std::vector<FlatLoop> cut_of(const Mesh& mesh, const SectionPlane& plane) {
+/// With what lies on the plane taken for above it, or for below.
+std::vector<FlatLoop> cut_of(const Mesh& mesh, const SectionPlane& plane, bool on_is_above) {
   std::vector<double> heights;
   heights.reserve(mesh.vertices.size());
   for (const Vector<3>& v : mesh.vertices) heights.push_back(height_above(plane, v));
-  const auto above = [&](std::uint32_t v) { return heights[v] >= 0; };
+  const auto above = [&](std::uint32_t v) { return on_is_above ? heights[v] >= 0 : heights[v] > 0; };
 
   // The line enters a triangle through one edge and leaves it through another; both are known by their
   // corners, so that the pieces join without a tolerance.
@@ -62,6 +63,11 @@ std::vector<FlatLoop> cut_of(const Mesh& mesh, const SectionPlane& plane) {
     loops.push_back(std::move(loop));
   }
   return loops;
+}
+
+std::vector<FlatLoop> cut_of(const Mesh& mesh, const SectionPlane& plane) {
+  std::vector<FlatLoop> loops = cut_of(mesh, plane, true);
+  return loops.empty() ? cut_of(mesh, plane, false) : loops;
 }
 
 std::vector<FlatLoop> cut_of(const Box& box, const SectionPlane& plane) {
@@ -106,7 +112,7 @@ std::vector<FlatLoop> cut_of(const Cylinder& cylinder, const SectionPlane& plane
   Vector<3> steep = axis - s * plane.normal;
   double cosine = steep.norm();
   if (cosine < 1e-12) {
-    if (!(middle >= 0 && middle < cylinder.height)) return {};
+    if (!(middle >= 0 && middle <= cylinder.height)) return {};
     return cut_of(Sphere{center, r}, plane);
   }
   steep /= cosine;

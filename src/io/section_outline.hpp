@@ -4,7 +4,8 @@
 namespace bernal {
 
 /// What the plane cuts of the domain's walls, or of those of one period: see `Section::outline`. Empty where
-/// it misses them. A plane through corners or along facets counts as lying a hair above.
+/// it misses them. A plane through corners or along facets counts as lying a hair above, and where
+/// nothing is above, a hair below.
 std::vector<std::vector<Vector<2>>> section_outline(const Domain&, const SectionPlane&);
 
 /// Signed by the sense in which the line runs around it.

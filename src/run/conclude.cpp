@@ -125,9 +125,10 @@ std::string left_out(const Packing& packing, const Work& work, double unit) {
   std::string text;
   if (supply.cut_off() > 0)
     text += fmt::format(
-        "; {} draws from the tail of the sizes, above {}, were left out because the "
+        "; {} draw{} from the tail of the sizes, above {}, {} left out because the "
         "container has no room for their share of the volume",
-        grouped(supply.cut_off()), size(supply.cut()));
+        grouped(supply.cut_off()), supply.cut_off() == 1 ? "" : "s", size(supply.cut()),
+        supply.cut_off() == 1 ? "was" : "were");
   const std::size_t passed = supply.passed_over();
   if (passed == 0) return text;
   if (supply.smallest() == supply.largest())

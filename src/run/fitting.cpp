@@ -98,7 +98,7 @@ void require_fitting(const Scene& scene, const Domain& container,
       ErrorCode::bad_scene,
       fmt::format(
           "a sphere of {} {} does not fit into the {}, which takes {} up to {}: {} or check the units", one,
-          text(radius), kind_of(container), many, text(largest.known), remedy),
+          text(radius), name_of(container), many, text(largest.known), remedy),
       scene.sizes.locations.whole);
 }
 

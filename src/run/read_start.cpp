@@ -4,6 +4,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -53,21 +54,22 @@ void complete_box(Scene& scene) {
            "\"size\" of the container with scalable = true");
   if (static_cast<int>(edges.size()) != box->dimension)
     refuse(scene, "start",
-           fmt::format("the box of the start has {} dimensions, but the scene has {}", edges.size(),
-                       box->dimension));
+           fmt::format("the box of the start has {} dimension{}, but the scene has {}", edges.size(),
+                       edges.size() == 1 ? "" : "s", box->dimension));
   if (box->scalable) {
     box->size = edges;
     box->edge.reset();
   } else if (table_of(scene.stages.front()).traits.stands_in_bed(scene) && edges != edges_of(*box)) {
-    refuse(scene, "start_box",
-           "the box of the start is not the container, whose walls stay where they are: give the container "
-           "that size");
+    refuse(scene, scene.locations.keys.contains("start_box") ? "start_box" : "start",
+           fmt::format("the box of the start, {} {}, is not the container, {}, whose walls stay where they "
+                       "are: give the container that size",
+                       fmt::format("{:.10g}", fmt::join(edges, " x ")), name_of(scene.unit),
+                       fmt::format("{:.10g}", fmt::join(edges_of(*box), " x "))));
   }
 }
 
-void pin_digest(Scene& scene) {
+void pin_digest(Scene& scene, const std::string& digest) {
   Start& start = scene.start;
-  const std::string digest = sha256_of(*start.file);
   if (!start.sha256.empty() && cad::in_lower_case(start.sha256.front()) != digest)
     refuse(scene, "start_sha256",
            fmt::format("{} is not the file that is meant: its SHA-256 is {}; leave \"start_sha256\" out to "
@@ -98,7 +100,8 @@ StartSpheres read_start(Scene& scene) {
   if (!scene.start.file) return {};
   look_into_folder(scene);
   Start& start = scene.start;
-  NamedColumns read = read_spheres(*start.file);
+  Sha256 digest;  // of the very bytes that the spheres come from
+  NamedColumns read = read_spheres(*start.file, [&](std::string_view bytes) { digest.add(bytes); });
   const std::string file = start.file->string();
   if (!read.unit.empty() && start.unit && read.unit != name_of(*start.unit))
     refuse(scene, "start_unit",
@@ -107,10 +110,10 @@ StartSpheres read_start(Scene& scene) {
   const int dimension = read.spheres.dimension();
   if (dimension != scene.dimension())
     refuse(scene, "start",
-           fmt::format("the spheres of {} have {} dimensions, but the scene has {}", file, dimension,
-                       scene.dimension()));
+           fmt::format("the spheres of {} have {} dimension{}, but the scene has {}", file, dimension,
+                       dimension == 1 ? "" : "s", scene.dimension()));
   if (read.spheres.empty()) throw Error(ErrorCode::bad_packing, "there are no spheres in it", {file});
-  pin_digest(scene);
+  pin_digest(scene, digest.digits());
   complete_box(scene);
   complete_count(scene, read.spheres.size());
   if (!scene.draws()) scene.sizes.locations.whole = scene.locations.of("start");

@@ -39,6 +39,13 @@ bool is_absurd(const Value& value) {
   return numbers && std::ranges::any_of(*numbers, [](double v) { return is_absurd(v); });
 }
 
+bool has_endless_point(const Value& value) {
+  const auto* polygon = std::get_if<Polygon>(&value);
+  return polygon && std::ranges::any_of(polygon->loops, [](const auto& loop) {
+           return std::ranges::any_of(loop, [](const Vector<2>& p) { return !p.allFinite(); });
+         });
+}
+
 bool is_length(double v) { return v >= smallest_length && v <= largest_length; }
 bool is_coordinate(double v) { return std::abs(v) <= largest_length; }
 bool is_amount(double v) { return v == 0 || is_length(v); }
@@ -66,7 +73,7 @@ bool is_direction(const Value& value) {
 /// What they are to each other the domain says.
 bool are_lines(const Value& value) {
   const auto* polygon = std::get_if<Polygon>(&value);
-  return polygon && !polygon->loops.empty() && std::ranges::all_of(polygon->loops, [](const auto& loop) {
+  return polygon && std::ranges::all_of(polygon->loops, [](const auto& loop) {
            return loop.size() >= 3 && std::ranges::all_of(loop, [](const Vector<2>& p) {
                     return is_coordinate(p[0]) && is_coordinate(p[1]);
                   });
@@ -135,6 +142,7 @@ std::string expectation(const Key& key, const std::optional<Value>& given) {
   if (key.type == Type::names && !key.words.empty()) return fmt::format("an array of {}", words);
   if (key.type == Type::position && !key.words.empty()) return fmt::format("a point [x, y, z] or {}", words);
   const Rule& rule = rules.at(key.type);
+  if (given && has_endless_point(*given)) return fmt::format("{}, whose coordinates are finite", rule.kind);
   return given && rule.has_length && is_absurd(*given)
              ? fmt::format("{} from {} to {}", rule.kind, smallest_length, largest_length)
              : std::string(rule.kind);

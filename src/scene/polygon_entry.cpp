@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "domain/simple_polygon.hpp"
 #include "scene/scene_entries.hpp"
 
 namespace bernal::schema {
@@ -38,18 +39,14 @@ Member holes() {
   return member;
 }
 
-/// A line that is simple with the outline lies inside it, outside it, or around it. Inside, it takes from the
-/// area.
+/// A line that is simple with the outline lies inside it as a whole if one of its corners does.
 void require_holes_inside(const Polygon& polygon, const Section& section) {
-  const Polygon outline{{polygon.loops.front()}};
-  const double whole = volume_of(outline);
   for (std::size_t k = 1; k < polygon.loops.size(); ++k) {
-    const auto& hole = polygon.loops[k];
-    if (volume_of(Polygon{{hole}}) < whole && volume_of(Polygon{{outline.loops.front(), hole}}) <= whole)
-      continue;
+    const Vector<2>& corner = polygon.loops[k].front();
+    if (is_inside(polygon.loops.front(), corner)) continue;
     section.refuse("holes", fmt::format("must lie inside the outline, but hole {}, which begins at ({:.6g}, "
                                         "{:.6g}), does not",
-                                        k, hole.front()[0], hole.front()[1]));
+                                        k, corner[0], corner[1]));
   }
 }
 
@@ -59,12 +56,16 @@ void polygon_rule(const Polygon& polygon, const Section& section) {
                  fmt::format("{} needs \"vertices\", an array of three points [x, y] or more, or a \"file\" "
                              "of such",
                              section.name));
-  try {
-    require_simple(polygon);
-  } catch (const Error& error) {
-    section.fail(section.locations.keys.contains("vertices") ? "vertices" : "",
-                 fmt::format("{}: {}", section.name, error.what()));
-  }
+  const auto require = [&](const Polygon& lines, std::string_view key) {
+    try {
+      require_simple(lines);
+    } catch (const Error& error) {
+      section.fail(section.locations.keys.contains(key) ? key : "",
+                   fmt::format("{}: {}", section.name, error.what()));
+    }
+  };
+  require({{polygon.loops.front()}}, "vertices");
+  if (polygon.loops.size() > 1) require(polygon, "holes");
   require_holes_inside(polygon, section);
 }
 

@@ -39,12 +39,13 @@ class Reader {
  public:
   explicit Reader(const std::filesystem::path& file) : path_(file), file_(file.string()) {}
 
-  Scene read(std::string_view text) const {
+  Scene read(std::string_view text) {
     const toml::table root = parse(text);
     Scene scene;
     scene.file = path_;
     check_tables(root);
     read_own(root, schema::scene_entry(), "the scene", scene);
+    unit_ = scene.unit;
     read_container(root, scene);
     read_spheres(table_in(root, "spheres"), scene);
     if (root.contains("accuracy"))
@@ -256,7 +257,8 @@ class Reader {
     if (entry.columns.empty()) return take_points(file, entry, where, options, locations);
     const std::array keys = {entry.find(entry.columns.at(0)), entry.find(entry.columns.at(1))};
     try {
-      const auto columns = read_columns(beside_the_scene(file), keys);
+      // More points are measurements, not a distribution; and a scene has to hold them.
+      const auto columns = read_columns(beside_the_scene(file), {keys, unit_, 4096, "sum them up in fewer"});
       for (std::size_t k = 0; k < keys.size(); ++k) {
         keys[k]->member.set(options, columns[k]);
         locations.keys[std::string(keys[k]->name)] = at_file;
@@ -273,7 +275,10 @@ class Reader {
     static const Key x{.name = "x", .type = Type::coordinates}, y{.name = "y", .type = Type::coordinates};
     const Location at_file = locations.of("file");
     try {
-      const auto columns = read_columns(beside_the_scene(file), {&x, &y});
+      // So many, which the scene of a result holds, can be read there again.
+      const auto columns =
+          read_columns(beside_the_scene(file),
+                       {{&x, &y}, unit_, 20'000, "leave out corners that are finer than the discs can feel"});
       Polygon polygon{{{}}};
       for (std::size_t k = 0; k < columns[0].size(); ++k)
         polygon.loops.front().emplace_back(columns[0][k], columns[1][k]);
@@ -330,6 +335,7 @@ class Reader {
 
   std::filesystem::path path_;
   std::string file_;
+  Unit unit_ = {};  ///< of the scene, once it is read
 };
 
 }  // namespace

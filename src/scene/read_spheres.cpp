@@ -10,6 +10,8 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/dimension.hpp"
+#include "bernal/core/error.hpp"
+#include "core/csv_headings.hpp"
 #include "core/csv_lines.hpp"
 
 namespace bernal {
@@ -25,39 +27,15 @@ struct Columns {
   std::size_t size = 0;
   bool is_diameter = false;
   std::vector<std::string> names;  // as they stand in the header, by their place
+  std::vector<std::string> units;  // "" where it says none
+
+  /// Of the coordinates and the size.
+  std::vector<std::size_t> places() const {
+    std::vector<std::size_t> all = x;
+    all.push_back(size);
+    return all;
+  }
 };
-
-std::string_view trimmed(std::string_view text, std::string_view of) {
-  const auto first = text.find_first_not_of(of);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(of) - first + 1);
-}
-
-/// Of a line; several blanks part two fields as one does.
-void split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
-  fields.clear();
-  if (separator == ' ') {
-    for (line = trimmed(line, " "); !line.empty();) {
-      const std::size_t end = line.find(' ');
-      fields.push_back(line.substr(0, end));
-      line = end == line.npos ? std::string_view() : trimmed(line.substr(end), " ");
-    }
-    return;
-  }
-  for (;;) {
-    const std::size_t end = line.find(separator);
-    fields.push_back(trimmed(line.substr(0, end), " \t"));
-    if (end == line.npos) return;
-    line.remove_prefix(end + 1);
-  }
-}
-
-std::string in_lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
 
 /// The place of a column; throws where there are two of that name.
 std::optional<std::size_t> place_of(const std::vector<std::string>& names, std::string_view name,
@@ -71,18 +49,16 @@ std::optional<std::size_t> place_of(const std::vector<std::string>& names, std::
 
 /// Those of the line if it is a header: one that names coordinates and a size. Throws where it names too
 /// many.
-std::optional<Columns> columns_in(std::string_view line, const CsvLines& lines) {
+std::optional<Columns> columns_in(std::string_view header, const CsvLines& lines) {
   Columns columns;
-  for (const char separator : {',', ';', '\t', ' '})
-    if (line.find(separator) != line.npos) {
-      columns.separator = separator;
-      break;
-    }
-  std::vector<std::string_view> fields;
-  split(line, columns.separator, fields);
-  std::vector<std::string> names;
-  for (const std::string_view field : fields) names.push_back(in_lower_case(trimmed(field, " \"'")));
-  columns.count = names.size();
+  Headings headings = headings_in(header);
+  columns.separator = headings.separator;
+  columns.count = headings.columns.size();
+  std::vector<std::string>& names = columns.names;
+  for (Heading& heading : headings.columns) {
+    names.push_back(std::move(heading.name));
+    columns.units.push_back(std::move(heading.unit));
+  }
 
   std::vector<std::size_t> letters, numbers;
   for (const std::string_view letter : {"x", "y", "z"}) {
@@ -108,53 +84,105 @@ std::optional<Columns> columns_in(std::string_view line, const CsvLines& lines) 
   if (sizes.size() > 1)
     lines.fail(fmt::format("the header names the size of a sphere more than once, as {}; leave one of them",
                            fmt::join(sizes, " and ")));
-  columns.names = std::move(names);
   return columns;
 }
 
-Columns read_header(CsvLines& lines, std::string& unit) {
-  std::optional<Columns> columns;
-  bool found = lines.next();
-  for (bool first = true; found; first = false, found = lines.next()) {
-    std::string_view line = lines.line();
-    if (first && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-    const bool is_remark = line.starts_with('#');
-    if (const std::string name = lines.unit(); !name.empty())
-      unit = name;
-    else
-      columns = columns_in(is_remark ? line.substr(1) : line, lines);
-    if (columns || !is_remark) break;
+/// The columns that a remark names, if it reads as a header; else it is one for people.
+std::optional<Columns> columns_in_remark(std::string_view remark, const CsvLines& lines) {
+  remark.remove_prefix(1);
+  if (const std::size_t label = remark.find(':'); label != remark.npos) remark.remove_prefix(label + 1);
+  try {
+    return columns_in(remark, lines);
+  } catch (const Error&) {
+    return {};
   }
-  if (columns) return *columns;
+}
+
+/// Of the columns that are read, if they say one.
+void take_units(const Columns& columns, const CsvLines& lines, std::string& unit) {
+  const std::vector<std::size_t> places = columns.places();
+  const std::string& first = columns.units[places.front()];
+  const auto said = [](std::string_view name) { return name.empty() ? "no unit" : bernal::quoted(name); };
+  for (const std::size_t k : places)
+    if (columns.units[k] != first)
+      lines.fail(fmt::format("the header says that {} is in {} and {} in {}; say one unit for all of them",
+                             columns.names[places.front()], said(first), columns.names[k],
+                             said(columns.units[k])));
+  if (!first.empty()) lines.take_unit(first, unit);
+}
+
+/// `is_sphere` says whether the line after which it stops is one.
+Columns read_header(CsvLines& lines, std::string& unit, bool& is_sphere) {
+  std::vector<Columns> remarked;
+  bool found;
+  for (found = lines.next(); found; found = lines.next()) {
+    const std::string_view line = stripped(lines.line(), " \t");
+    if (line.empty()) continue;
+    if (!line.starts_with('#')) break;
+    if (lines.says_unit(unit)) continue;
+    if (auto columns = columns_in_remark(line, lines)) remarked.push_back(std::move(*columns));
+  }
+  std::optional<Columns> columns;
+  if (found) columns = columns_in(lines.line(), lines);
+  is_sphere = found && !columns;
+  if (!columns) {
+    std::vector<std::string_view> fields;
+    for (Columns& candidate : remarked) {
+      if (found) split_fields(lines.line(), candidate.separator, fields);
+      if (!found || fields.size() == candidate.count) columns = std::move(candidate);
+    }
+  }
+  if (columns) {
+    take_units(*columns, lines, unit);
+    return *columns;
+  }
   const std::string wanted = "columns such as x,y,z and r, radius, d or diameter";
   if (!found) lines.fail("the header is missing, which names " + wanted);
   lines.fail(fmt::format("expected a header that names {}; found {}", wanted, quoted(lines.line())));
 }
 
+/// As `CsvLines::read_number`, in quotation marks or not, with a plus or not.
+double number_in(std::string_view field, const std::string& column, const CsvLines& lines) {
+  field = unquoted(field);
+  if (field.size() > 1 && field[0] == '+' && field[1] != '-') field.remove_prefix(1);
+  return lines.read_number(field, column);
+}
+
 }  // namespace
 
-NamedColumns read_spheres(const std::filesystem::path& file) {
-  CsvLines lines(file);
+NamedColumns read_spheres(const std::filesystem::path& file,
+                          const std::function<void(std::string_view bytes)>& see) {
+  CsvLines lines(file, {.last_line_may_lack_feed = true, .see = see});
   NamedColumns read;
-  const Columns columns = read_header(lines, read.unit);
+  bool is_sphere = false;
+  const Columns columns = read_header(lines, read.unit, is_sphere);
   const std::size_t dimension = columns.x.size();
   if (dimension > max_dimension)
     lines.fail(
         fmt::format("the header names {} coordinates; there are at most {}", dimension, max_dimension));
   read.spheres = Spheres<dynamic>(static_cast<int>(dimension));
-  read.first_line = lines.number() + 1;
   std::vector<std::string_view> fields;
-  while (lines.next()) {
-    split(lines.line(), columns.separator, fields);
+  int empty_line = 0;
+  for (bool found = is_sphere || lines.next(); found; found = lines.next()) {
+    if (stripped(lines.line(), " \t").empty()) {
+      empty_line = lines.number();
+      continue;
+    }
+    if (read.spheres.empty())
+      read.first_line = lines.number();
+    else if (empty_line > read.first_line)
+      lines.fail(fmt::format("line {} is empty, and spheres follow; leave it out", empty_line));
+    split_fields(lines.line(), columns.separator, fields);
     if (fields.size() != columns.count)
-      lines.fail(fmt::format("{} fields, but the header has {}", fields.size(), columns.count));
+      lines.fail(fmt::format("{} {}, but the header has {}", fields.size(),
+                             fields.size() == 1 ? "field" : "fields", columns.count));
     for (std::size_t k = 0; k < dimension; ++k) {
-      const double x = lines.read_number(fields[columns.x[k]], columns.names[columns.x[k]]);
+      const double x = number_in(fields[columns.x[k]], columns.names[columns.x[k]], lines);
       if (std::abs(x) > farthest)
         lines.fail(fmt::format("{} = {} is beyond {}", columns.names[columns.x[k]], x, farthest));
       read.spheres.x[k].push_back(x);
     }
-    const double size = lines.read_number(fields[columns.size], columns.names[columns.size]);
+    const double size = number_in(fields[columns.size], columns.names[columns.size], lines);
     if (!(size >= smallest_size && size <= farthest))
       lines.fail(fmt::format("the {} {} is not a length from {} to {}",
                              columns.is_diameter ? "diameter" : "radius", size, smallest_size, farthest));

@@ -23,7 +23,8 @@ std::string written(const toml::node& node) {
   if (const auto* array = node.as_array()) {
     std::vector<std::string> items;
     for (const toml::node& item : *array) {
-      if (items.size() == 6 || item.is_array()) return fmt::format("an array of {} values", array->size());
+      if (items.size() == 6 || item.is_array())
+        return fmt::format("an array of {} value{}", array->size(), array->size() == 1 ? "" : "s");
       items.push_back(written(item));
     }
     return fmt::format("[{}]", fmt::join(items, ", "));

@@ -64,6 +64,39 @@ TEST_F(Measure, JsonIsOneObjectAndNothingElse) {
   EXPECT_TRUE(measured["sizes"]["ks_p_value"].is_null());
 }
 
+/// Two discs that nothing holds: the count of rattlers would say nothing, and neither does it stand there.
+TEST_F(Measure, SaysOfDiscsBetweenWallsWhatIsSo) {
+  folder.write(
+      "scene.toml",
+      "unit = \"mm\"\n[container]\nkind = \"box\"\nsize = [4, 2]\n[spheres]\ncount = 2\ndiameter = 1\n");
+  folder.write("spheres.csv", "# unit: mm\nx0,x1,r\n1,1,0.5\n3,1,0.5\n");
+  const Ended text = bernal({"measure", folder.path().string()});
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_EQ(text.out.find("polish"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("mean area "), std::string::npos) << text.out;
+  EXPECT_EQ(text.out.find("mean volume"), std::string::npos) << text.out;
+  const auto measured = nlohmann::json::parse(bernal({"measure", folder.path().string(), "--json"}).out);
+  EXPECT_TRUE(measured.at("held_from_gap").is_null());
+  EXPECT_TRUE(measured.at("rattlers").is_null());
+  for (const auto& at : measured.at("by_gap")) EXPECT_TRUE(at.at("rattlers").is_null());
+  EXPECT_EQ(measured.at("backbone").at("spheres"), 0);
+  // And discs that hold each other have it.
+  folder.write(
+      "scene.toml",
+      "unit = \"mm\"\n[container]\nkind = \"periodic\"\ndimension = 2\nsize = [4, 4]\n[spheres]\ncount = "
+      "4\ndiameter = 2\n");
+  folder.write("spheres.csv", "# unit: mm\nx0,x1,r\n1,1,1\n3,1,1\n1,3,1\n3,3,1\n");
+  EXPECT_EQ(nlohmann::json::parse(bernal({"measure", folder.path().string(), "--json"}).out).at("rattlers"),
+            0);
+}
+
+TEST_F(Measure, AnEmptyPlaneIsNone) {
+  const Ended ended = with(discs, {"--section", "", "-o", (folder / "a.svg").string()});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(ended.out, "");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.svg"));
+}
+
 TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
   const std::string box = folder.write("box.toml", small_scene).string(), out = (folder / "out").string();
   ASSERT_EQ(bernal({"pack", box, "-o", out, "--quiet"}).status, 0);

@@ -75,12 +75,13 @@ TEST(FuzzCsv, OfAnotherProgramIsSpheresOrAnError) {
   const std::string valid =
       "# made elsewhere\nid; X; diameter; y; z\n1; 0.1; 0.5; -2.5; 1e-07\n2; 3; 4; 5; 6.25\n";
   const testing::Folder folder;
-  ASSERT_TRUE(are_spheres(folder, valid, read_spheres));
+  const auto read = [](const std::filesystem::path& file) { return read_spheres(file); };
+  ASSERT_TRUE(are_spheres(folder, valid, read));
   const std::size_t mutations = testing::fuzz_inputs(3000);
   std::size_t accepted = 0;
   for (std::size_t i = 0; i < mutations; ++i) {
     Random random(2, stream(Stream::test, i));
-    accepted += are_spheres(folder, testing::mutated(valid, tokens, random), read_spheres);
+    accepted += are_spheres(folder, testing::mutated(valid, tokens, random), read);
   }
   EXPECT_GT(accepted, mutations / 50);
   EXPECT_LT(accepted, mutations / 2);

@@ -115,6 +115,13 @@ TEST(Csv, ReadsWhatOthersWrite) {
   EXPECT_EQ(windows.spheres.center(1), Vector<3>(-1, 0, 0.5));
   EXPECT_EQ(windows.spheres.r[1], 100);
 
+  for (const std::string head :
+       {"\xEF\xBB\xBF# unit: m", "#unit: m", "# Unit: m", "# unit : m", "# UNITS:m "}) {
+    const SpheresFile read = read_csv(folder.write("u.csv", head + "\nx,y,z,r\n1,2,3,4\n"));
+    EXPECT_EQ(read.unit, "m") << head;
+    EXPECT_EQ(read.spheres.size(), 1u) << head;
+  }
+
   const SpheresFile plain = read_csv(folder.write("p.csv", "x,y,z,r\n1,2,3,4\n"));
   EXPECT_EQ(plain.unit, "");
   EXPECT_EQ(plain.spheres.size(), 1u);
@@ -135,6 +142,7 @@ TEST(Csv, SaysWhereAndWhatIsWrong) {
       {"# unit: mm\n", 1, "header x,y,z,r is missing"},
       {"# unit: mm", 1, "cut off"},
       {"# unit: parsec\nx,y,z,r\n", 1, "unknown unit \"parsec\"; use one of"},
+      {"# unit: m\n#unit: mm\nx,y,z,r\n", 2, "is mm, and one before it says m"},
       {"1,2,3,4\n", 1, "expected the header x,y,z,r (or x0,x1,r and so on), found \"1,2,3,4\""},
       {"x,y,z,radius\n", 1, "found \"x,y,z,radius\""},
       {"x0,x1,x2,r\n1,2,3,4\n", 1, "found \"x0,x1,x2,r\""},
@@ -147,7 +155,7 @@ TEST(Csv, SaysWhereAndWhatIsWrong) {
       {head + "1,2,3\n", 3, "3 fields, expected 4"},
       {head + "1,2,3,4,5\n", 3, "5 fields, expected 4"},
       {head + "1,2,3,4,\n", 3, "5 fields, expected 4"},
-      {head + "1;2;3;4\n", 3, "1 fields, expected 4"},
+      {head + "1;2;3;4\n", 3, "1 field, expected 4"},
       {head + "\n1,2,3,4\n", 3, "empty line"},
       {head + "1,2,3,4\n\n", 4, "empty line"},
       {head + "1,2,3,4\n1,2,3,4", 4, "cut off"},
@@ -166,7 +174,7 @@ TEST(Csv, SaysWhereAndWhatIsWrong) {
       {head + "1,2,3,4\n1,2,3,-4\n", 4, "radius -4 is not positive"},
       {head + "1,2,3,nan\n", 3, "r = \"nan\" is not finite"},
       {head + std::string("1,2,3,4\0\n", 9), 3, "r = \"4\\x00\" is not a number"},
-      {head + std::string(1000, '7') + "\n", 3, "1 fields, expected 4"},
+      {head + std::string(1000, '7') + "\n", 3, "1 field, expected 4"},
       {head + "1,2,3,4\n" + std::string(1'000'000, '7') + "\n", 4, "too long for a sphere"},
       {head + "1,2,3,4\r5\n", 3, "r = \"4\\x0d5\" is not a number"},
   };

@@ -153,6 +153,26 @@ TEST(Picture, ShowsDiscsAndTheImagesThatReachIntoTheBox) {
   EXPECT_GT(painted(svg_of(low, square, "mm")).front().y, painted(svg).front().y);
 }
 
+/// The ends of the key are the least and the greatest radius, however few spheres have them.
+TEST(Picture, KeyNamesTheSmallestAndTheLargest) {
+  const auto key = [](const Spheres<2>& discs) {
+    const std::string svg = svg_of(discs, periodic_box(Vector<2>(40, 40)), "mm");
+    return svg.substr(svg.find("<g font-family"));
+  };
+  Spheres<2> discs;
+  for (int i = 0; i < 40 * 40; ++i) discs.push_back({i % 40 + 0.5, i / 40 + 0.5}, 0.15);
+  EXPECT_NE(key(discs).find(">radius 0.15 mm<"), std::string::npos) << key(discs);
+  discs.push_back({20, 20}, 0.3);
+  EXPECT_NE(key(discs).find(">radius 0.15<"), std::string::npos) << key(discs);
+  EXPECT_NE(key(discs).find(">0.3 mm<"), std::string::npos) << key(discs);
+  discs.push_back({30, 20}, 0.01);
+  EXPECT_NE(key(discs).find(">radius 0.01<"), std::string::npos) << key(discs);
+  Spheres<2> near;
+  near.push_back({1, 1}, 1);
+  near.push_back({5, 5}, 1.002);
+  EXPECT_NE(key(near).find(">1.002 mm<"), std::string::npos) << key(near);
+}
+
 TEST(Picture, OfVeryManyDiscsShowsAPart) {
   Spheres<2> discs;
   for (int i = 0; i < 400 * 400; ++i) discs.push_back({i % 400 + 0.5, i / 400 + 0.5}, 0.5);

@@ -51,6 +51,72 @@ TEST(ReadSpheres, CountsTheDimensionsInTheHeader) {
   EXPECT_TRUE(read_spheres(folder.write("s.csv", "x,y,z,r\n")).spheres.empty());
 }
 
+/// A unit that is not seen is an error of a factor of a thousand.
+TEST(ReadSpheres, SeesTheUnitHoweverItIsWritten) {
+  const Folder folder;
+  const std::vector<std::string> texts = {
+      "\xEF\xBB\xBF# unit: m\nx,y,z,r\n1,2,3,4\n",
+      "#unit: m\nx,y,z,r\n1,2,3,4\n",
+      "# Unit: m\nx,y,z,r\n1,2,3,4\n",
+      "# unit : m\r\nx,y,z,r\r\n1,2,3,4\r\n",
+      "# units:m \nx,y,z,r\n1,2,3,4\n",
+      "#\tUNIT:\tm,,,\nx,y,z,r\n1,2,3,4\n",
+      "\n# unit: m\n# unit: m\nx,y,z,r\n1,2,3,4\n",
+      "id,x [m],y[m],z [ m ],D [m]\n1,1,2,3,8\n",
+      "x (m);y (m);z (m);r (m)\n1;2;3;4\n",
+      "x [m] y [m] z [m] r [m]\n1 2 3 4\n",
+      "\"x [m]\",\"y [m]\",\"z [m]\",\"mass [kg]\",\"r [m]\"\n1,2,3,9,4\n",
+      "# unit: m\nx (m),y (m),z (m),r (m)\n1,2,3,4\n",
+  };
+  for (const std::string& text : texts) {
+    const NamedColumns read = read_spheres(folder.write("s.csv", text));
+    EXPECT_EQ(read.unit, "m") << text;
+    ASSERT_EQ(read.spheres.size(), 1u) << text;
+    EXPECT_EQ(read.spheres.center(0), Vector<3>(1, 2, 3)) << text;
+    EXPECT_EQ(read.spheres.r[0], 4) << text;
+  }
+  EXPECT_EQ(read_spheres(folder.write("s.csv", "# united: m\nx,r\n1,2\n")).unit, "");
+}
+
+TEST(ReadSpheres, TakesWhatIsHarmless) {
+  const Folder folder;
+  const std::vector<std::string> texts = {
+      "x,y,z,r\n1,2,3,4\n\n\n",
+      "x,y,z,r\n1,2,3,4\n \t\r\n",
+      "x,y,z,r\n1,2,3,4",
+      "x,y,z,r\r\n1,2,3,4\r",
+      "\nx,y,z,r\n\n1,2,3,4\n",
+      "x,y,z,r\n\"1\",\"2\",'3',\" 4 \"\n",
+      "x,y,z,r\n+1,+2.0,3,+.4e1\n",
+      "# Columns: id, x, y, z, r\nx,y,z,r\n1,2,3,4\n",
+      "# Columns: id, x, y, z, r\n7,1,2,3,4\n",
+      "# x y z r are what follows\n# x,y,z,r\n1,2,3,4\n",
+      "# x, x and r\nx,y,z,w,r\n1,2,3,9,4\n",
+  };
+  for (const std::string& text : texts) {
+    const NamedColumns read = read_spheres(folder.write("s.csv", text));
+    ASSERT_EQ(read.spheres.size(), 1u) << text;
+    EXPECT_EQ(read.spheres.center(0), Vector<3>(1, 2, 3)) << text;
+    EXPECT_EQ(read.spheres.r[0], 4) << text;
+    EXPECT_EQ(read.unit, "") << text;
+  }
+  const NamedColumns after = read_spheres(folder.write("s.csv", "x,r\n\n1,2\n3,4\n\n"));
+  EXPECT_EQ(after.spheres.size(), 2u);
+  EXPECT_EQ(after.first_line, 3);
+}
+
+/// The digest is taken of them, so they must be those that the spheres come from, all of them and once.
+TEST(ReadSpheres, TellsTheBytesThatItReads) {
+  const Folder folder;
+  std::string text = "\xEF\xBB\xBFx,r\r\n";
+  while (text.size() < 700'000) text += std::to_string(text.size()) + ",1\r\n";
+  for (const std::string& whole : {text, text + "1,2", text + "\n \n"}) {
+    std::string seen;
+    read_spheres(folder.write("s.csv", whole), [&](std::string_view bytes) { seen += bytes; });
+    EXPECT_EQ(seen, whole);
+  }
+}
+
 struct Refused {
   std::string text;
   int line;
@@ -73,14 +139,22 @@ TEST(ReadSpheres, SaysWhereAndWhatIsWrong) {
       {"# unit: parsec\nx,y,z,r\n", 1, "unknown unit \"parsec\""},
       {"x,y,z,r\n1,2,3\n", 2, "3 fields, but the header has 4"},
       {"x,y,z,r\n1,2,3,4\n1,2,3,4,5\n", 3, "5 fields, but the header has 4"},
-      {"x,y,z,r\n1,2,3,4\n\n", 3, "1 fields, but the header has 4"},
+      {"x,y,z,r\n1,2,3,4\n\n1,2,3,4\n", 4, "line 3 is empty, and spheres follow"},
+      {"x,y,z,r\n1\n", 2, "1 field, but the header has 4"},
+      {"x,y,z,r\n1,2", 2, "2 fields, but the header has 4"},
+      {"x,y,z,r\n1,2,+-3,4\n", 2, "z = \"+-3\" is not a number"},
+      {"x [mm],y [mm],z [mm],r\n1,2,3,4\n", 1, "x is in \"mm\" and r in no unit"},
+      {"x (mm),y (mm),z (m),r (mm)\n1,2,3,4\n", 1, "x is in \"mm\" and z in \"m\""},
+      {"x [px],y [px],z [px],r [px]\n1,2,3,4\n", 1, "unknown unit \"px\""},
+      {"# unit: m\nx [mm],y [mm],z [mm],r [mm]\n1,2,3,4\n", 2, "is mm, and one before it says m"},
+      {"# unit: m\n# unit: mm\nx,y,z,r\n1,2,3,4\n", 2, "is mm, and one before it says m"},
+      {"# Columns: id, x, y, z, r\n1,2,3,4\n", 2, "expected a header"},
       {"x,y,z,r\n1,two,3,4\n", 2, "y = \"two\" is not a number"},
       {"x,y,z,r\n1,nan,3,4\n", 2, "y = \"nan\" is not finite"},
       {"x,y,z,r\n1,2,1e31,4\n", 2, "z = 1e+31 is beyond 1e+30"},
       {"x,y,z,r\n1,2,3,0\n", 2, "the radius 0 is not a length"},
       {"x,y,z,d\n1,2,3,-4\n", 2, "the diameter -4 is not a length"},
       {"x,y,z,d\n1,2,3,1e-31\n", 2, "the diameter 1e-31 is not a length"},
-      {"x,y,z,r\n1,2,3,4", 2, "cut off"},
   };
   const Folder folder;
   for (const Refused& refused : cases) {

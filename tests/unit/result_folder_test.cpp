@@ -161,6 +161,14 @@ TEST(ResultFolder, WhatNoResultLeftThereIsNotReplaced) {
   error_of([&] { check_writable(folder.path(), scene); });
   write_packing(packed_into(mesh), folder / "out");
   EXPECT_EQ(text_of(mesh), test::as_off(box));
+  // Behind a link, in a folder where that name is bernal's own.
+  write_packing(packed_into(mesh), folder / "made");
+  folder.write("made/container.off", test::as_off(box));
+  fs::create_symlink("made/container.off", folder / "part.off");
+  scene.container = MeshFile{.file = folder / "part.off"};
+  EXPECT_NE(std::string(error_of([&] { check_writable(folder / "made", scene); }).what())
+                .find("is the part that the scene packs, by a link,"),
+            std::string::npos);
   // A file whose name ends in its own digest, as those of copies do.
   const std::string digest = std::get<MeshFile>(read_scene(folder / "out/scene.toml").container).sha256[0];
   const fs::path copy = folder.write("out/mine-" + digest.substr(0, 8) + ".off", test::as_off(box));

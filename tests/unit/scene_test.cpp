@@ -124,6 +124,22 @@ TEST(Scene, TakesTheColumnsOfAFileForItsOwn) {
   expect_equal(scene, parse_scene(scene_as_toml(scene), "elsewhere.toml"));
 }
 
+TEST(Scene, TakesTheUnitAndTheOrderThatAFileOfColumnsSays) {
+  const testing::Folder folder;
+  for (const char* text : {"# unit: cm\n0.05,100\n0.01,0\n", "#Unit : cm\n0.05,100\n0.01,0\n",
+                           "opening (cm);passing (%)\n.05;100\n.01;0\n", "passing,sizes\n100,0.5\n0,0.1\n"}) {
+    folder.write("sieve.csv", text);
+    const Scene scene = read_scene(folder.write(
+        "scene.toml",
+        "unit = \"mm\"\n" + with_spheres("diameter = { distribution = \"sieve\", file = \"sieve.csv\" }")));
+    const auto& sieve = std::get<Sieve>(scene.sizes);
+    ASSERT_EQ(sieve.sizes.size(), 2u) << text;
+    EXPECT_DOUBLE_EQ(sieve.sizes[0], 0.5) << text;
+    EXPECT_DOUBLE_EQ(sieve.sizes[1], 0.1) << text;
+    EXPECT_EQ(sieve.passing, (std::vector<double>{100, 0})) << text;
+  }
+}
+
 TEST(Scene, SaysWhatIsWrongInAFileOfColumns) {
   const testing::Folder folder;
   const auto refusal = [&](const std::string& content) -> std::string {

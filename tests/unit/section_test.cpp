@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/io/write_packing.hpp"
 #include "support/containers.hpp"
 #include "support/folder.hpp"
 #include "support/packings.hpp"
@@ -190,6 +191,57 @@ TEST(Section, ObliquePlanesOfPeriodicDomainsCountWhatIsInThem) {
   }
 }
 
+/// A centre outside of the period stands for its image inside.
+TEST(Section, DoesNotDependOnWhichImageIsMeant) {
+  const Box box = periodic_box(Vector<3>(6, 5, 7));
+  Random random(12, stream(Stream::test));
+  Spheres<3> inside, shifted;
+  for (int i = 0; i < 40; ++i) {
+    const Vector<3> c = uniform_point(random, bounds_of(box));
+    inside.push_back(c, random.uniform(0.3, 1.2));
+    const Vector<3> periods(i % 5 - 2, i % 3 - 1, i % 7 - 3);
+    shifted.push_back(c + periods.cwiseProduct(Vector<3>(6, 5, 7)), inside.r.back());
+  }
+  for (const std::string text : {"z = 1.5", "x = 0", "y = 5", "x + 0.5 y + 2 z = 11"}) {
+    const SectionPlane plane = section_plane(text);
+    const Section here = section_of(inside, box, plane), there = section_of(shifted, box, plane);
+    EXPECT_GT(here.circles.size(), 5u);
+    EXPECT_EQ(there.circles.size(), here.circles.size()) << text;
+    EXPECT_NEAR(there.covered_area, here.covered_area, 1e-9) << text;
+  }
+}
+
+TEST(Section, APlaneInAFaceCutsThatFace) {
+  const Box box{{0, 0, 0}, {10, 8, 6}};
+  const Domain mesh = test::box_mesh({0, 0, 0}, {10, 8, 6});
+  for (const Domain& domain : {Domain(box), mesh})
+    for (const auto& [text, area] :
+         {std::pair{"z = 0", 80.0}, {"z = 6", 80.0}, {"x = 0", 48.0}, {"x = 10", 48.0}})
+      EXPECT_NEAR(section_of(Spheres<3>{}, domain, section_plane(text)).area, area, 1e-12 * area) << text;
+  const Cylinder cylinder{{0, 0, 0}, {0, 0, 1}, 2, 5};
+  const double lid = section_of(Spheres<3>{}, cylinder, section_plane("z = 0")).area;
+  EXPECT_EQ(section_of(Spheres<3>{}, cylinder, section_plane("z = 5")).area, lid);
+  EXPECT_THROW(section_of(Spheres<3>{}, cylinder, section_plane("z = 5.1")), Error);
+  // At the end of a period stands what stands at its begin.
+  Spheres<3> spheres;
+  spheres.push_back({5, 4, 0.5}, 1);
+  const Box periodic = periodic_box(Vector<3>(10, 8, 6));
+  EXPECT_EQ(section_of(spheres, periodic, section_plane("z = 6")).covered_area,
+            section_of(spheres, periodic, section_plane("z = 0")).covered_area);
+}
+
+TEST(Section, PlanesOfAnyScaleAreTheSame) {
+  const SectionPlane plain = section_plane("x + y = 3");
+  for (const std::string factor : {"1e200", "1e300", "1e-200", "1e-300", "3"}) {
+    const SectionPlane plane =
+        section_plane(fmt::format("{0} x + {0} y = {1}", factor, 3 * std::stod(factor)));
+    EXPECT_NEAR((plane.normal - plain.normal).norm(), 0, 1e-15) << factor;
+    EXPECT_NEAR(plane.offset, plain.offset, 1e-15) << factor;
+  }
+  EXPECT_EQ(section_plane("1e200 z = 3e200").offset, 3);
+  EXPECT_EQ(section_plane("2 x = 7").offset, 3.5);
+}
+
 TEST(Section, TheMiddleIsSeenFromTheSide) {
   const auto text = [](const Domain& domain) { return middle_plane(domain).text; };
   EXPECT_EQ(text(Box{{1, 2, 3}, {4, 4, 4}}), "y = 4");
@@ -216,6 +268,8 @@ TEST(Section, WhatIsNoSectionIsRefused) {
             "the plane \"z = 11\" does not meet the box, which reaches from 0, 0, 0 to 10, 10, 10");
   EXPECT_NE(said("z < 3").find("a section is asked for as"), std::string::npos);
   EXPECT_NE(said("the middle").find("is no plane"), std::string::npos);
+  EXPECT_EQ(said("the middle").find('<'), std::string::npos);  // a side is no section
+  EXPECT_NE(said("").find("is no plane"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.svg"));
   folder.write("a.svg", "mine");
   EXPECT_NE(said("z = 3").find("is no picture"), std::string::npos);
@@ -225,6 +279,60 @@ TEST(Section, WhatIsNoSectionIsRefused) {
   const std::string first = text_of(folder / "a.svg");
   EXPECT_EQ(said("z = 4"), "");
   EXPECT_NE(text_of(folder / "a.svg"), first);
+}
+
+TEST(Section, IsWrittenAsSvgAndNotOverAResult) {
+  const Packing packing = packing_of(scattered(30, 0.5, 1, bounds_of(Box{{0, 0, 0}, {10, 10, 10}}), 2),
+                                     Box{{0, 0, 0}, {10, 10, 10}});
+  const Folder folder;
+  const auto said = [&](std::string_view name) {
+    return error_of([&] { write_section(packing, "z = 3", folder / name); });
+  };
+  for (const char* name : {"a.png", "a", "svg"}) {
+    EXPECT_NE(said(name).find("ends in .svg"), std::string::npos) << name;
+    EXPECT_FALSE(std::filesystem::exists(folder / name));
+  }
+  EXPECT_EQ(said("a.SVG"), "");
+  write_packing(packing, folder / "out");
+  for (const char* name : {"out/packing.svg", "out/section.svg"}) {
+    const std::string before = text_of(folder / name);
+    EXPECT_NE(said(name).find("belongs to the result there"), std::string::npos) << said(name);
+    EXPECT_EQ(text_of(folder / name), before);
+  }
+  EXPECT_EQ(said("out/z.svg"), "");
+}
+
+TEST(Section, CaptionsGiveLengthsTheirUnit) {
+  const Box box{{0, 0, 0}, {10, 10, 10}};
+  Spheres<3> spheres;
+  spheres.push_back({5, 5, 5}, 2);
+  const auto caption = [&](std::string_view plane) {
+    const std::string svg = section_svg(section_of(spheres, box, section_plane(plane)), spheres, "mm");
+    const std::size_t end = svg.find("   ·");
+    return svg.substr(svg.rfind('>', end) + 1, end - svg.rfind('>', end) - 1);
+  };
+  EXPECT_EQ(caption("y = 5"), "y = 5 mm");
+  EXPECT_EQ(caption("y=5.5e0"), "y=5.5e0 mm");
+  EXPECT_EQ(caption("x=y"), "x=y");
+  EXPECT_EQ(caption("x = 2 y"), "x = 2 y");
+}
+
+TEST(Section, WhatSticksOutLeavesTheWordsClear) {
+  // A sphere of the box's own size: its images reach far beyond.
+  Spheres<3> spheres;
+  spheres.push_back({0.2, 0.2, 5}, 4.9);
+  const Section section = section_of(spheres, periodic_box(Vector<3>(10, 10, 10)), section_plane("z = 5"));
+  const std::string svg = section_svg(section, spheres, "mm");
+  static const std::regex inner("<svg x=\"([^\"]+)\" y=\"([^\"]+)\" width=\"([^\"]+)\" height=\"([^\"]+)\"");
+  static const std::regex canvas("viewBox=\"0 0 ([0-9.]+) ([0-9.]+)\"");
+  std::smatch window, all;
+  ASSERT_TRUE(std::regex_search(svg, window, inner));
+  ASSERT_TRUE(std::regex_search(svg, all, canvas));
+  const auto value = [](const std::smatch& match, std::size_t k) { return std::stod(match[k]); };
+  EXPECT_GE(value(window, 1), 12);
+  EXPECT_LE(value(window, 1) + value(window, 3), value(all, 1) - 12 + 0.01);
+  EXPECT_GE(value(window, 2), 12 + 36);                                            // the caption
+  EXPECT_LE(value(window, 2) + value(window, 4), value(all, 2) - 52 - 12 + 0.51);  // scale bar and key
 }
 
 TEST(Section, PictureHasEveryCircleAndWhatItIs) {

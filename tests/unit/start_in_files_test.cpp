@@ -72,6 +72,22 @@ TEST_F(StartInFiles, IsNotReplacedByTheResult) {
   check_writable(folder / "other", from);
 }
 
+/// Nor by a detour: what a link leads to would be gone too.
+TEST_F(StartInFiles, IsNotReplacedBehindALink) {
+  const Packing theirs = relaxed(3, 60);
+  write_packing(theirs, folder / "theirs");
+  std::filesystem::create_symlink("theirs/spheres.csv", folder / "link.csv");
+  std::filesystem::create_directory_symlink("theirs", folder / "link");
+  for (const std::string start : {"link.csv", "link", "link/spheres.csv"}) {
+    const Scene from = scene(periodic_of(theirs) + "[spheres]\nstart = \"" + start + "\"\n");
+    for (const char* out : {"theirs", "link"})
+      EXPECT_NE(std::string(error_of([&] { check_writable(folder / out, from); }).what()).find("starts from"),
+                std::string::npos)
+          << start << " " << out;
+    check_writable(folder / "other", from);
+  }
+}
+
 TEST_F(StartInFiles, IsWhatSizesAreComparedWith) {
   folder.write("two.csv", two);
   const Packing alone = packed(box + from_two + stage("insert"));

@@ -120,6 +120,10 @@ TEST_F(Start, HasToGoWithTheScene) {
   expect(box + "[spheres]\nstart = \"none.csv\"\n", "none.csv");
   expect(box + "[spheres]\nstart_unit = \"mm\"\nradius = 1.0\n", "needs the \"start\" itself");
   expect(box + from_two + "start_box = [1.0, 1.0, 1.0]\n", "is for periodic boxes");
+  folder.write("line.csv", "x0,r\n1,0.5\n");
+  expect(box + "[spheres]\nstart = \"line.csv\"\n", "have 1 dimension, but the scene has 3");
+  folder.write("large.csv", "x,y,z,r\n1,1,1,5\n");
+  expect(periodic(8) + "[spheres]\nstart = \"large.csv\"\n", "does not fit into the periodic box, which");
   expect(box + from_two + "start_sha256 = \"12\"\n", "64 hexadecimal digits");
   expect(box + from_two + "start_sha256 = \"" + std::string(64, '0') + "\"\n",
          "is not the file that is meant");
@@ -272,7 +276,7 @@ TEST_F(Start, BetweenWallsOfABoxKeepsItsPlaces) {
   EXPECT_NE(refusal(periodic(8, walled) + from_two + stage("fly")).find("does not lie between the walls"),
             std::string::npos);
   EXPECT_NE(refusal(periodic(8, walled) + from_two + "start_box = [9.0, 9.0, 9.0]\n" + stage("relax"))
-                .find("is not the container"),
+                .find("the box of the start, 9 x 9 x 9 m, is not the container, 8 x 8 x 8"),
             std::string::npos);
 }
 

@@ -49,8 +49,9 @@ struct Section {
   double area_fraction() const { return covered_area / area; }
 };
 
-/// Precondition: three dimensions, centres in one period. Throws Error{bad_argument} where the plane does not
-/// meet the domain. Cost: O(N + T) for T triangles, in oblique planes of periodic domains more.
+/// Precondition: three dimensions. A plane in a face cuts that face. Throws Error{bad_argument} where the
+/// plane does not meet the domain. Cost: O(N + T) for T triangles, in oblique planes of periodic domains
+/// more.
 Section section_of(const Spheres<dynamic>&, const Domain&, const SectionPlane&);
 
 /// A picture of the section: exact circles, coloured by the radii of the spheres as `packing.svg` is, the
@@ -58,8 +59,8 @@ Section section_of(const Spheres<dynamic>&, const Domain&, const SectionPlane&);
 std::string section_svg(const Section&, const Spheres<dynamic>&, std::string_view unit);
 
 /// Writes that picture of `plane`, "z = 1.5", into a file, or leaves what stands there as it is. Throws
-/// Error{bad_argument} for no plane, one that misses the domain or other dimensions than three, and
-/// Error{cannot_write}.
+/// Error{bad_argument} for no plane, one that misses the domain, other dimensions than three or a file that
+/// does not end in .svg, and Error{cannot_write}, as where the file belongs to a result.
 void write_section(const Packing&, std::string_view plane, const std::filesystem::path& file);
 
 }  // namespace bernal
