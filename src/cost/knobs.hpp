@@ -47,8 +47,8 @@ struct Subject {
 Subject subject_of(const Scene& scene);
 
 /// The knobs that the scene has, in the order of its tables. Meshes that stand for a curved container are
-/// written into the folder. Those that cannot be turned in this scene are left out. Cost: a `build` for each
-/// that is not of a stage.
-std::vector<Knob> knobs_of(const Subject& subject, const std::filesystem::path& folder);
+/// written into the folder, and the record names them. Those that cannot be turned in this scene are left
+/// out. Cost: a `build` for each that is not of a stage.
+std::vector<Knob> knobs_of(const Subject& subject, const std::filesystem::path& folder, TrialRecord& record);
 
 }  // namespace bernal::cost

@@ -242,10 +242,12 @@ const StageEntry& entry_of<Relax>() {
                                       number(&Relax::alpha, "alpha",
                                              "sweeps between two growths of the box, in units of (log10 N)^2",
                                              above(0, 1e6))),
-                        integer(&Relax::period, "period",
-                                "sweeps between two growths of the box, however many spheres, in place of "
-                                "alpha",
-                                {1, 1e6}),
+                        buys_accuracy(
+                            {10, 20, 50, 150, 500, 2000},
+                            integer(&Relax::period, "period",
+                                    "sweeps between two growths of the box, however many spheres, in place "
+                                    "of alpha",
+                                    {1, 1e6})),
                         buys_accuracy({3, 10, 30, 100},
                                       number(&Relax::beta, "beta",
                                              "the box grows by the largest overlap ratio divided by this",
