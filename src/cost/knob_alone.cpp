@@ -52,10 +52,10 @@ class KnobAlone {
 
   std::string sentence() const {
     if (seen_.size() < 2)
-      return fmt::format("{}: no other value was measured with every seed{}.", knob_.name,
+      return fmt::format("{}: no other value was measured with every seed{}.", name(),
                          failed_.empty() ? ", for want of time" : failed_);
     std::string text = changes_nothing() ? without_effect() : both_ways();
-    return fmt::format("{}: {}{}.", knob_.name, text, failed_);
+    return fmt::format("{}: {}{}.", name(), text, failed_);
   }
 
  private:
@@ -64,6 +64,9 @@ class KnobAlone {
     const CostRow* row;
   };
 
+  std::string name() const {
+    return knob_.note.empty() ? knob_.name : fmt::format("{} ({})", knob_.name, knob_.note);
+  }
   bool changes_nothing() const {
     return std::ranges::all_of(seen_,
                                [&](const Seen& s) { return are_same_spheres(*s.row, *seen_.front().row); });

@@ -115,7 +115,7 @@ std::optional<Knob> target_knob(const Subject& subject) {
 std::optional<Knob> face_knob(const Subject& subject, const std::filesystem::path& folder,
                               TrialRecord& record) {
   if (!faceted(*subject.domain, face_counts.front())) return {};
-  Knob knob{.name = "faces"};
+  Knob knob{.name = "faces", .note = "no key: of a mesh that stands for the container"};
   for (const int faces : face_counts) {
     const Faceted made = *faceted(*subject.domain, faces);
     const std::filesystem::path file = folder / fmt::format("container_{}_faces.off", faces);

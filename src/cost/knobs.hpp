@@ -27,6 +27,7 @@ struct Knob {
   /// The step of a number, which must be one that the key accepts; empty where there are no others.
   std::function<Step(double)> step_at = {};
   bool is_whole = false;
+  std::string note = {};  ///< what it is, where it is no key of a scene
 
   std::size_t place_of(std::size_t step) const;  ///< in the order
   /// A new step half way, the geometric mean to two digits; none where there is no room. Precondition:

@@ -65,7 +65,8 @@ std::optional<std::string> sentence_of_rods(const Scene& scene) {
     most = std::max(most, phi);
   }
   return fmt::format(
-      "rods: {} of them predict what {} do within {:.1e}, in {:.2g} ms in place of {:.2g} ms: nothing to buy "
+      "rods (no key: of the prediction that is asked for): {} of them predict what {} do within {:.1e}, in "
+      "{:.2g} ms in place of {:.2g} ms: nothing to buy "
       "here.",
       rods.front(), rods.back(), most - least, 1e3 * seconds.front(), 1e3 * seconds.back());
 }
@@ -160,8 +161,10 @@ std::string ending_of(const Search& search) {
   if (search.cancelled()) return "stopped; the same call goes on from here";
   if (search.complete())
     return cut_off == 0 ? "nothing was left to try"
-                        : fmt::format("nothing was left to try but {} that {} cut off as slower", cut_off,
-                                      cut_off == 1 ? "was" : "were");
+                        : fmt::format(
+                              "nothing was left to try but {} that {} cut off as slower, for which more "
+                              "--time is needed",
+                              cut_off, cut_off == 1 ? "was" : "were");
   if (search.capped()) return fmt::format("the most settings were tried, {}", search.found().size());
   return "the time was over; the same call goes on from here";
 }

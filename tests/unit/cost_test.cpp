@@ -1,5 +1,6 @@
 // What accuracy costs: the front against brute force, the knobs of scenes, and whole measurements of small
 // ones.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -321,6 +322,24 @@ TEST(Cost, SaysWhatOneSeedDoesNotTellAndWhyItEnded) {
   EXPECT_NE(page.find("with one seed nothing is known of how seeds differ"), page.npos);
   EXPECT_EQ(page.find("two seeds"), page.npos);
   for (const CostRow& row : report.rows) EXPECT_FALSE(row.phi_change_error);
+}
+
+// Where overlap is allowed, `bernal pack` states more than what counts here: both are said.
+TEST(Cost, StatesWhatPackStates) {
+  const testing::Folder folder;
+  Scene scene = equal_spheres(PeriodicBox{}, 60, Relax{.alpha = 3, .stop = 0.01});
+  scene.overlap = 0.01;
+  const CostReport report =
+      measure_cost(scene, folder.path(), {.seconds = 60, .seeds = 1, .threads = 1, .most_settings = 1});
+  const CostRow& own = report.rows[report.own];
+  ASSERT_GT(own.max_overlap, 0);
+  const double stated = run(build(scene), {{}, 1, {}}).packing_fraction();
+  EXPECT_NEAR(own.packed_phi, stated, 1e-12);
+  EXPECT_NEAR(own.own_phi, stated * std::pow(1 - own.max_overlap, 3), 1e-12);
+  const CostRow& chosen = report.rows[report.recommended];
+  const std::string page = testing::text_of(folder / "cost.md");
+  EXPECT_NE(page.find(fmt::format("gives packing fraction {:.6f}", chosen.packed_phi)), page.npos);
+  EXPECT_NE(page.find(fmt::format("{:.6f}", chosen.own_phi)), page.npos);
 }
 
 TEST(Cost, SaysThatASceneDoesNotReachWhatItAsksFor) {
