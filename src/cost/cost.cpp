@@ -27,6 +27,7 @@ CostReport measure_cost(const Scene& scene, const std::filesystem::path& folder,
   const std::filesystem::path record_file = folder / "trials.csv";
   check_outputs(folder, scene, TrialRecord::read(record_file, options.fresh));
   Subject subject = subject_of(scene);
+  subject.with_limits = true;
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(ErrorCode::cannot_write, "cannot be made: " + failed.message(), {folder.string()});

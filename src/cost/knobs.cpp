@@ -62,7 +62,7 @@ Knob knob_of(const schema::Key& key, const schema::Value& own, const Put& put) {
     });
     values.insert(behind, own);
   }
-  Knob knob{.name = std::string(key.name)};
+  Knob knob{.name = std::string(key.name), .is_limit = key.is_limit};
   for (const schema::Value& value : values) {
     if (is_own(value)) knob.own = knob.steps.size();
     knob.order.push_back(knob.steps.size());
@@ -225,7 +225,7 @@ std::vector<Knob> knobs_of(const Subject& subject, const std::filesystem::path& 
     const bool in_bed = table.traits.stands_in_bed(scene);
     const int number = ++stages_of_name[table.name()];
     for (const auto& [key, value] : table.keys.said(table.options(scene.stages[i]))) {
-      if (key->ladder.empty() || !key->acts_here(in_bed)) continue;
+      if (key->ladder.empty() || !key->acts_here(in_bed) || (key->is_limit && !subject.with_limits)) continue;
       const Put put = [i, key = key](Scene& s, const schema::Value& v) {
         key->member.set(table_of(s.stages[i]).options_of(s.stages[i]), v);
       };

@@ -27,6 +27,7 @@ struct Knob {
   /// The step of a number, which must be one that the key accepts; empty where there are no others.
   std::function<Step(double)> step_at = {};
   bool is_whole = false;
+  bool is_limit = false;  ///< to be turned only where the scene ends at it
   std::string note = {};  ///< what it is, where it is no key of a scene
 
   std::size_t place_of(std::size_t step) const;  ///< in the order
@@ -44,6 +45,7 @@ struct Subject {
   bool places_expected = false;
   bool box_follows = false;
   bool is_predicted = false;  ///< the packing fraction that is asked for
+  bool with_limits = false;   ///< keys that buy something only where a run ends at them are knobs, too
 };
 Subject subject_of(const Scene& scene);
 

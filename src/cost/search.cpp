@@ -40,6 +40,9 @@ Search::Search(Subject subject, std::vector<Knob> knobs, TrialRecord& record, co
   for (int k = 0; k < options.seeds; ++k)
     seeds_.push_back((subject_.scene.seed + static_cast<std::uint64_t>(k)) & ((std::uint64_t{1} << 63) - 1));
   budget_end_ = options.seconds;
+  for (Knob& knob : knobs_)
+    if (knob.is_limit) limits_.push_back(knob);
+  std::erase_if(knobs_, [](const Knob& knob) { return knob.is_limit; });
 }
 
 const Search::Found* Search::at(const Point& point) const {
@@ -131,6 +134,7 @@ void Search::go() {
   phase_ = "the scene as it is";
   warm_up();
   if (!measure({own()}) || !at(own()) || at(own())->row.slower) return;
+  if (at(own())->row.outcome == Outcome::hit_limit) turn_limits();
   budget_end_ = watch_.seconds() + share_of_single_steps * left();
   phase_ = "one key at a time";
   one_at_a_time();
@@ -139,6 +143,14 @@ void Search::go() {
   if (cancelled_ || !combinations()) return;
   phase_ = "one key at a time";
   complete_ = one_at_a_time() && slower_ones() && one_at_a_time() && unfair_.empty() && !capped_;
+}
+
+void Search::turn_limits() {
+  for (Knob& knob : limits_) knobs_.push_back(std::move(knob));
+  limits_.clear();
+  index_.clear();
+  for (std::size_t k = 0; k < found_.size(); ++k) index_[found_[k].point = own()] = k;
+  tried_ = {own()};
 }
 
 void Search::warm_up() {

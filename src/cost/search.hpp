@@ -48,6 +48,7 @@ class Search {
 
  private:
   void warm_up();
+  void turn_limits();  ///< too, once it is known that the scene ends at one. Precondition: no more is known
   bool measure(const std::vector<Point>& points);  ///< false once there is nothing more to be measured
   bool one_at_a_time();                            ///< true where nothing is left; so the next one
   bool combinations();
@@ -61,7 +62,7 @@ class Search {
 
   const Stopwatch watch_;
   Subject subject_;
-  std::vector<Knob> knobs_;
+  std::vector<Knob> knobs_, limits_;
   TrialRecord& record_;
   CostOptions options_;
   std::vector<std::uint64_t> seeds_;

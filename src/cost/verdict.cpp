@@ -45,7 +45,9 @@ void mark_fronts(const Search& search, std::vector<CostRow>& rows, double phi_st
 
 /// Whether it keeps what the scene as it is has in other respects than density.
 bool is_as_accurate(const CostRow& row, const CostRow& own) {
-  const bool contacts = !own.held_from || (row.held_from && *row.held_from <= *own.held_from);
+  // What holds where a run gave up before all was in its place is no aim.
+  const bool falls_short = own.outcome != Outcome::converged && row.outcome == Outcome::converged;
+  const bool contacts = falls_short || !own.held_from || (row.held_from && *row.held_from <= *own.held_from);
   const bool sizes = own.size_scale != 1 || row.size_scale == 1;
   return contacts && sizes && row.max_overlap <= own.max_overlap && row.wall_error <= own.wall_error;
 }
@@ -93,7 +95,7 @@ std::string given_up(const CostRow& chosen, const CostRow& densest) {
   std::string text =
       fmt::format(", {} against the densest measured that is as accurate ({:.4f}, which took {}",
                   change_in_words(loss.mean), densest.phi, seconds_in_words(densest.seconds));
-  if (!loss.error) return text + "; with one seed, so nothing is known of how seeds differ)";
+  if (!loss.error) return text + ')';
   return text +
          fmt::format("; seed by seed {} to {})", change_in_words(loss.least), change_in_words(loss.most));
 }
@@ -101,12 +103,21 @@ std::string given_up(const CostRow& chosen, const CostRow& densest) {
 /// The densest that counts, and the quickest as dense as that and as the scene, and as accurate.
 void recommend(const Search& search, CostReport& report) {
   const CostRow& own = report.rows[report.own];
-  const auto may_be_taken = [&](const CostRow& row) {
+  const auto is_candidate = [&](const CostRow& row) {
     return search.counts(row) && !row.is_repeat && is_as_accurate(row, own);
+  };
+  const auto reaches_all = [](const CostRow& row) { return row.outcome == Outcome::converged; };
+  // What reaches all that is asked for comes before what is dense and does not.
+  const bool some_do = std::ranges::any_of(
+      report.rows, [&](const CostRow& row) { return is_candidate(row) && reaches_all(row); });
+  const auto may_be_taken = [&](const CostRow& row) {
+    return is_candidate(row) && (!some_do || reaches_all(row));
   };
   std::size_t densest = report.own;
   for (std::size_t k = 0; k < report.rows.size(); ++k)
-    if (may_be_taken(report.rows[k]) && report.rows[k].phi > report.rows[densest].phi) densest = k;
+    if (may_be_taken(report.rows[k]) &&
+        (!may_be_taken(report.rows[densest]) || report.rows[k].phi > report.rows[densest].phi))
+      densest = k;
   const auto is_as_dense = [&](const CostRow& row) {
     return is_no_loss(row, report.rows[densest]) && is_no_loss(row, own);
   };
@@ -134,7 +145,9 @@ void recommend(const Search& search, CostReport& report) {
   if (report.recommended != report.own)
     report.recommendation +=
         fmt::format("; the scene as it is reaches {:.4f} in {}", own.phi, seconds_in_words(own.seconds));
-  report.recommendation += "." + shortfall(chosen);
+  report.recommendation += ".";
+  if (own.runs == 1) report.recommendation += " Of one seed: nothing is known of how seeds differ.";
+  report.recommendation += shortfall(chosen);
 }
 
 /// What there is for whoever has less time: that share of it. Null where there is nothing.

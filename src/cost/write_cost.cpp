@@ -117,11 +117,11 @@ std::vector<std::string> explanations(const CostReport& report, const CostHeadin
           "{:.2g}{}. c marks the second front: contacts closed further than in the one before it. What "
           "gives the same spheres as another setting with fewer changes is on neither.",
           report.rows.size(), report.phi_step,
-          heading.seeds == 1
+          report.rows[report.own].runs == 1
               ? "; with one seed nothing is known of how seeds differ"
               : fmt::format(", the standard error of what the median setting differs from the scene by, "
                             "with the same {} seeds",
-                            heading.seeds)),
+                            report.rows[report.own].runs)),
       "The packing fraction is strict: of the spheres shrunk by the largest overlap that is left, at the "
       "sizes "
       "that are asked for (a row says by what factor all of them are larger), and of the "

@@ -275,7 +275,9 @@ const StageEntry& entry_of<Relax>() {
                             integer(&Relax::patience, "patience",
                                     "how often what is stuck is stirred before some spheres are taken out",
                                     {0, 1e6})),
-                        integer(&Relax::sweeps, "sweeps", "of all spheres, after which it stops", {1, 1e9}),
+                        buys_accuracy_as_limit({10000, 40000, 160000, 640000},
+                                               integer(&Relax::sweeps, "sweeps",
+                                                       "of all spheres, after which it stops", {1, 1e9})),
                         number(
                             &Relax::seconds, "seconds",
                             "after which it stops, and then one seed need not give one packing; 0: any time",
