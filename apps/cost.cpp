@@ -60,9 +60,14 @@ nlohmann::ordered_json json_of_row(const CostRow& row) {
           {"contacts_over_isostatic", or_null(row.contact_ratio)},
           {"wall_error", row.wall_error},
           {"memory_bytes", or_null(row.memory_bytes)},
+          {"size_scale", row.size_scale},
+          {"phi_change", row.phi_change},
+          {"phi_change_error", or_null(row.phi_change_error)},
+          {"same_as_another", row.is_repeat},
           {"runs", row.runs},
           {"slower", row.slower},
           {"outcome", name_of(row.outcome)},
+          {"reason", plain_text(row.reason)},
           {"certified", row.certified},
           {"pareto", row.pareto},
           {"pareto_contacts", row.pareto_contacts}};
@@ -82,6 +87,8 @@ void print_json(const CostReport& report) {
                                        {"runs_made", report.runs_made},
                                        {"runs_kept", report.runs_kept},
                                        {"complete", report.complete},
+                                       {"ending", report.ending},
+                                       {"refused", report.refused},
                                        {"stopped", report.cancelled},
                                        {"toml", report.toml},
                                        {"files", std::move(files)}};
@@ -94,10 +101,8 @@ void print_words(const CostReport& report, bool quiet) {
     for (const CostRow& row : report.rows) on_front += row.pareto;
     say(stderr, "measured   {} settings, {} on the front; {} runs, {} of them known before\n",
         report.rows.size(), on_front, report.runs_made + report.runs_kept, report.runs_kept);
-    say(stderr, "           {}\n",
-        report.cancelled  ? "stopped; the same call goes on from here"
-        : report.complete ? "nothing was left to try"
-                          : "the time is over; the same call goes on from here");
+    say(stderr, "           {}\n", report.ending);
+    for (const std::string& refused : report.refused) say(stderr, "refused    {}\n", refused);
     for (const std::string& verdict : report.verdicts) say(stderr, "{}\n", verdict);
     say(stderr, "advice     {}\n", report.recommendation);
   }
@@ -157,7 +162,9 @@ Command cost_command() {
       "combined, every setting with several seeds, in an order that a machine that slows down hurts all\n"
       "alike. Seconds are those of the processor, all threads together.\n"
       "Writes cost.csv, cost.md, cost.html, cost.svg and recommended.toml, and keeps every run in\n"
-      "trials.csv: the same call again goes on where the last one ended. On a machine with nothing else to\n"
+      "trials.csv: the same call again goes on where the last one ended. Files of these names that it did\n"
+      "not write, or that were changed since, are refused before anything runs. On a machine with nothing "
+      "else to\n"
       "do the times are better.\n"
       "Exit codes: 0 done, also when the time is over; 2 bad input, or not one run ends in the time;\n"
       "3 stopped by Ctrl-C: what was measured is written.",

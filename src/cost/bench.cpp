@@ -1,6 +1,7 @@
 #include "bernal/cost/bench.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <string>
 
 #include <fmt/format.h>
@@ -53,6 +54,13 @@ BenchOptions part_of(const BenchOptions& options, double from, double to) {
   return part;
 }
 
+std::string first_line_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
 }  // namespace
 
 std::span<const Bench> all_benches() {
@@ -98,8 +106,13 @@ std::vector<std::filesystem::path> write_benches(const std::vector<BenchFile>& f
                                                  const std::filesystem::path& folder) {
   if (files.empty()) return {};
   StagedFolder staged(folder);
-  for (const BenchFile& file : files) staged.write(file.name, file.text);
-  return staged.publish();
+  std::vector<std::string> earlier;
+  for (const BenchFile& file : files) {
+    if (first_line_of(folder / file.name) == file.text.substr(0, file.text.find('\n')))
+      earlier.push_back(file.name);
+    staged.write(file.name, file.text);
+  }
+  return staged.publish(earlier);
 }
 
 }  // namespace bernal

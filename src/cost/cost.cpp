@@ -6,7 +6,10 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "cad/file_digest.hpp"
+#include "cost/cost_folder.hpp"
 #include "cost/search.hpp"
 #include "cost/verdict.hpp"
 #include "cost/write_cost.hpp"
@@ -20,16 +23,17 @@ CostReport measure_cost(const Scene& scene, const std::filesystem::path& folder,
     throw Error(ErrorCode::bad_argument, "a cost is measured in more than 0 seconds, with 1 seed or more");
   CostOptions rest = options;
   const Stopwatch watch;
-  Subject subject = subject_of(scene);
   finish_publishing(folder);
+  const std::filesystem::path record_file = folder / "trials.csv";
+  check_outputs(folder, scene, TrialRecord::read(record_file, options.fresh));
+  Subject subject = subject_of(scene);
+  subject.with_limits = true;
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(ErrorCode::cannot_write, "cannot be made: " + failed.message(), {folder.string()});
-  const std::filesystem::path record_file = folder / "trials.csv";
-  if (options.fresh) std::filesystem::remove(record_file);
-  TrialRecord record(record_file);
+  TrialRecord record(record_file, options.fresh);
   const std::filesystem::path whole_folder = std::filesystem::absolute(folder).lexically_normal();
-  std::vector<Knob> knobs = knobs_of(subject, whole_folder);
+  std::vector<Knob> knobs = knobs_of(subject, whole_folder, record);
   rest.seconds = std::max(1e-3, options.seconds - watch.seconds());
   Search search(std::move(subject), std::move(knobs), record, rest);
   search.go();
@@ -51,7 +55,7 @@ CostReport measure_cost(const Scene& scene, const std::filesystem::path& folder,
   report.runs_kept = runs - std::min(runs, report.runs_made);
   const int threads =
       options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  const CostHeading heading{scene.file.empty() ? "a scene" : scene.file.filename().string(),
+  const CostHeading heading{scene.file.empty() ? "a scene" : plain_text(scene.file.filename().string()),
                             fmt::format("{} thread{}", threads, threads == 1 ? "" : "s"), options.seeds};
   const std::string picture = cost_svg(report, heading);
   StagedFolder staged(folder);
@@ -60,7 +64,9 @@ CostReport measure_cost(const Scene& scene, const std::filesystem::path& folder,
   staged.write("cost.svg", picture);
   staged.write("cost.html", cost_html(report, heading, picture));
   staged.write("recommended.toml", report.toml);
-  report.files = staged.publish();
+  for (const std::string& name : staged.names()) record.add_file(name, sha256_of(staged.written(name)));
+  // What somebody wrote there meanwhile is kept under another name.
+  report.files = staged.publish(files_of_earlier_call(folder, record));
   return report;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <map>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "cost/cost_folder.hpp"
 #include "cost/faceted.hpp"
 #include "io/write_off.hpp"
 #include "scene/scene_entries.hpp"
@@ -19,8 +19,9 @@
 namespace bernal::cost {
 namespace {
 
-/// Packing fractions that are asked for where the scene asks for none, over what is attainable.
-constexpr std::array target_shares = {0.75, 0.85, 0.92, 0.96, 0.98, 1.01, 1.02};
+/// Packing fractions that are asked for where the scene asks for none, over what is attainable. Few of them
+/// lie below it: they say little more than what was asked for.
+constexpr std::array target_shares = {0.85, 0.95, 1.01, 1.02};
 constexpr std::array face_counts = {12, 30, 100, 300, 1000};
 
 std::optional<double> number_of(const schema::Value& value) {
@@ -50,13 +51,18 @@ Knob knob_of(const schema::Key& key, const schema::Value& own, const Put& put) {
     for (schema::Value& value : values) value = *number_of(value) * *number_of(own);
   const auto is_own = [&](const schema::Value& value) { return text_of_value(value) == text_of_value(own); };
   if (std::ranges::none_of(values, is_own)) {
-    const bool falls = *number_of(values.front()) > *number_of(values.back());
-    const auto behind = std::ranges::find_if(values, [&](const schema::Value& value) {
+    // A 0 before smaller and smaller numbers stands for none of it, the least accurate of all.
+    const auto last = values.end() - 1;
+    const bool begins_with_off =
+        *number_of(values.front()) == 0 && *number_of(*(values.begin() + 1)) > *number_of(*last);
+    const auto first = values.begin() + (begins_with_off ? 1 : 0);
+    const bool falls = *number_of(*first) > *number_of(*last);
+    const auto behind = std::find_if(first, values.end(), [&](const schema::Value& value) {
       return falls ? *number_of(value) < *number_of(own) : *number_of(value) > *number_of(own);
     });
     values.insert(behind, own);
   }
-  Knob knob{.name = std::string(key.name)};
+  Knob knob{.name = std::string(key.name), .is_limit = key.is_limit};
   for (const schema::Value& value : values) {
     if (is_own(value)) knob.own = knob.steps.size();
     knob.order.push_back(knob.steps.size());
@@ -106,16 +112,15 @@ std::optional<Knob> target_knob(const Subject& subject) {
 }
 
 /// Meshes that stand for a curved container, the coarsest first, then the container itself.
-std::optional<Knob> face_knob(const Subject& subject, const std::filesystem::path& folder) {
+std::optional<Knob> face_knob(const Subject& subject, const std::filesystem::path& folder,
+                              TrialRecord& record) {
   if (!faceted(*subject.domain, face_counts.front())) return {};
-  Knob knob{.name = "faces"};
+  Knob knob{.name = "faces", .note = "no key: of a mesh that stands for the container"};
   for (const int faces : face_counts) {
     const Faceted made = *faceted(*subject.domain, faces);
     const std::filesystem::path file = folder / fmt::format("container_{}_faces.off", faces);
     std::filesystem::create_directories(folder);
-    std::ofstream out(file, std::ios::binary);
-    if (!(out << as_off_file(made.mesh) << std::flush))
-      throw Error(ErrorCode::cannot_write, "cannot be written", {file.string()});
+    write_beside(file, as_off_file(made.mesh), record);
     const auto turn = [file, domain = subject.domain](Setting& setting) {
       setting.scene.container = MeshFile{.file = file, .unit = setting.scene.unit};
       setting.meant = domain;
@@ -141,19 +146,26 @@ bool can_be_turned(const Knob& knob, const Subject& subject, bool lightly) {
   }
 }
 
+/// A table of the scene that a knob is of: the stage of that name, counted from 1, or another table.
+struct PlaceOfKnob {
+  std::string name;
+  int number = 0;
+};
+
 /// Names that several knobs have become longer ones.
-void tell_apart(std::vector<Knob>& knobs, const std::vector<std::string>& places) {
+void tell_apart(std::vector<Knob>& knobs, const std::vector<PlaceOfKnob>& places) {
   std::map<std::string, int> uses, uses_at;
+  const auto at_place = [&](std::size_t k) { return places[k].name + " " + knobs[k].name; };
   for (std::size_t k = 0; k < knobs.size(); ++k) {
     ++uses[knobs[k].name];
-    ++uses_at[places[k] + " " + knobs[k].name];
+    ++uses_at[at_place(k)];
   }
-  int stage = 0;
-  for (std::size_t k = 0; k < knobs.size(); ++k) {
-    const std::string at_place = places[k] + " " + knobs[k].name;
-    if (uses[knobs[k].name] == 1) continue;
-    knobs[k].name = uses_at[at_place] == 1 ? at_place : fmt::format("{} ({})", at_place, ++stage);
-  }
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < knobs.size(); ++k)
+    names.push_back(uses[knobs[k].name] == 1    ? knobs[k].name
+                    : uses_at[at_place(k)] == 1 ? at_place(k)
+                                                : fmt::format("{} ({})", at_place(k), places[k].number));
+  for (std::size_t k = 0; k < knobs.size(); ++k) knobs[k].name = std::move(names[k]);
 }
 
 }  // namespace
@@ -163,6 +175,8 @@ std::size_t Knob::place_of(std::size_t step) const {
 }
 
 std::optional<std::size_t> Knob::insert_between(std::size_t cheaper, std::size_t dearer) {
+  // Fewer spheres than the scene places are no answer to what accuracy costs.
+  if (name == "packing_fraction" && place_of(dearer) <= place_of(own)) return {};
   const auto a = steps[cheaper].number, b = steps[dearer].number;
   if (!step_at || !a || !b || !(*a > 0) || !(*b > 0)) return {};
   const double mean = std::sqrt(*a * *b);
@@ -195,24 +209,27 @@ Subject subject_of(const Scene& scene) {
   return subject;
 }
 
-std::vector<Knob> knobs_of(const Subject& subject, const std::filesystem::path& folder) {
+std::vector<Knob> knobs_of(const Subject& subject, const std::filesystem::path& folder, TrialRecord& record) {
   std::vector<Knob> knobs;
-  std::vector<std::string> places;
-  const auto keep = [&](std::optional<Knob> knob, std::string_view place, bool lightly = false) {
+  std::vector<PlaceOfKnob> places;
+  std::map<std::string_view, int> stages_of_name;
+  const auto keep = [&](std::optional<Knob> knob, std::string_view place, int number = 0) {
+    const bool lightly = number > 0;
     if (!knob || knob->steps.size() < 2 || !can_be_turned(*knob, subject, lightly)) return;
     knobs.push_back(std::move(*knob));
-    places.emplace_back(place);
+    places.push_back({std::string(place), number});
   };
   const Scene& scene = subject.scene;
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {
     const StageTable& table = table_of(scene.stages[i]);
     const bool in_bed = table.traits.stands_in_bed(scene);
+    const int number = ++stages_of_name[table.name()];
     for (const auto& [key, value] : table.keys.said(table.options(scene.stages[i]))) {
-      if (key->ladder.empty() || !key->acts_here(in_bed)) continue;
+      if (key->ladder.empty() || !key->acts_here(in_bed) || (key->is_limit && !subject.with_limits)) continue;
       const Put put = [i, key = key](Scene& s, const schema::Value& v) {
         key->member.set(table_of(s.stages[i]).options_of(s.stages[i]), v);
       };
-      keep(knob_of(*key, value, put), table.name(), true);
+      keep(knob_of(*key, value, put), table.name(), number);
     }
   }
   for (const auto& [key, value] : schema::accuracy_entry().said(&scene)) {
@@ -237,7 +254,7 @@ std::vector<Knob> knobs_of(const Subject& subject, const std::filesystem::path& 
     }
     keep(std::move(knob), container.name);
   }
-  keep(face_knob(subject, folder), "container");
+  keep(face_knob(subject, folder, record), "container");
   keep(target_knob(subject), "spheres");
   tell_apart(knobs, places);
   return knobs;

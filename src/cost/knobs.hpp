@@ -27,6 +27,8 @@ struct Knob {
   /// The step of a number, which must be one that the key accepts; empty where there are no others.
   std::function<Step(double)> step_at = {};
   bool is_whole = false;
+  bool is_limit = false;  ///< to be turned only where the scene ends at it
+  std::string note = {};  ///< what it is, where it is no key of a scene
 
   std::size_t place_of(std::size_t step) const;  ///< in the order
   /// A new step half way, the geometric mean to two digits; none where there is no room. Precondition:
@@ -43,12 +45,13 @@ struct Subject {
   bool places_expected = false;
   bool box_follows = false;
   bool is_predicted = false;  ///< the packing fraction that is asked for
+  bool with_limits = false;   ///< keys that buy something only where a run ends at them are knobs, too
 };
 Subject subject_of(const Scene& scene);
 
 /// The knobs that the scene has, in the order of its tables. Meshes that stand for a curved container are
-/// written into the folder. Those that cannot be turned in this scene are left out. Cost: a `build` for each
-/// that is not of a stage.
-std::vector<Knob> knobs_of(const Subject& subject, const std::filesystem::path& folder);
+/// written into the folder, and the record names them. Those that cannot be turned in this scene are left
+/// out. Cost: a `build` for each that is not of a stage.
+std::vector<Knob> knobs_of(const Subject& subject, const std::filesystem::path& folder, TrialRecord& record);
 
 }  // namespace bernal::cost

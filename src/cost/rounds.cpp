@@ -14,10 +14,6 @@
 namespace bernal::cost {
 namespace {
 
-int threads_of(int threads) {
-  return threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
-}
-
 /// The same for one number of settings, so that a run that goes on does so in the same order.
 std::vector<std::size_t> order_of_round(std::size_t settings, std::size_t round) {
   std::vector<std::size_t> order(settings);
@@ -55,6 +51,10 @@ class Budget {
 
 }  // namespace
 
+int threads_of(int threads) {
+  return threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
+}
+
 Rounds interleaved(const std::vector<Setting>& settings, TrialRecord& record, const RoundOptions& options) {
   const int threads = threads_of(options.threads);
   Rounds rounds;
@@ -78,7 +78,7 @@ Rounds interleaved(const std::vector<Setting>& settings, TrialRecord& record, co
     for (const std::size_t k : order_of_round(settings.size(), round)) {
       const Setting& setting = settings[k];
       std::string& refused = rounds.series[k].refused;
-      if (!refused.empty() || measured(setting, options.seeds[round])) continue;
+      if (!refused.empty() || rounds.series[k].unfair || measured(setting, options.seeds[round])) continue;
       rounds.cancelled = rounds.cancelled || options.monitor.stop();
       rounds.out_of_time = rounds.out_of_time || !(budget.left() > 0);
       if (rounds.cancelled || rounds.out_of_time) break;
@@ -93,6 +93,10 @@ Rounds interleaved(const std::vector<Setting>& settings, TrialRecord& record, co
         // That it is slower than what happened to be left of the time says nothing.
         rounds.out_of_time = trial.cut_off && !(budget.left() > 0) && trial.seconds < 0.9 * options.limit;
         if (rounds.cancelled || rounds.out_of_time) break;
+        if (trial.cut_off && trial.seconds < options.fair) {
+          rounds.series[k].unfair = true;
+          continue;
+        }
         record.add(setting, trial);
         ++rounds.made;
       } catch (const Error& error) {

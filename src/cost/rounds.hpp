@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,14 +23,19 @@ struct Setting {
 
 /// The trials that were made, in a file that grows by a line with each of them, so that nothing measured is
 /// lost. A trial is known by the text of its scene, its seed, the number of threads and the version.
+///
+/// Beside the trials it names the files that were written from them, each with its digest, so that a later
+/// call tells these from files of somebody else.
 class TrialRecord {
  public:
   /// In memory only.
   TrialRecord() = default;
   /// Reads what the file holds, if there is one; a last line that was not written to its end is left out.
-  /// Throws Error{bad_argument} where the file is none of these, Error{cannot_write} where nothing can be
-  /// added to it.
-  explicit TrialRecord(std::filesystem::path file);
+  /// `afresh`: the trials are forgotten, the names of files are not. Throws Error{bad_argument} where the
+  /// file is none of these, Error{cannot_write} where nothing can be added to it.
+  explicit TrialRecord(std::filesystem::path file, bool afresh = false);
+  /// The same, and nothing is written or made yet: what a call would find.
+  static TrialRecord read(const std::filesystem::path& file, bool afresh = false);
 
   /// Null where there is none.
   const Trial* find(const Setting&, std::uint64_t seed, int threads) const;
@@ -37,9 +43,19 @@ class TrialRecord {
   void add(const Setting&, const Trial&);
   std::size_t size() const { return trials_.size(); }
 
+  /// Files in the folder of the record.
+  void add_file(const std::string& name, const std::string& sha256);
+  bool names_file(const std::string& name, const std::string& sha256) const {
+    return written_.contains({name, sha256});
+  }
+
  private:
+  std::size_t read_whole(const std::string& whole, bool afresh);  ///< bytes of whole lines
+  void append(const std::string& text) const;
+
   std::filesystem::path file_;
   std::map<std::string, Trial> trials_;
+  std::set<std::pair<std::string, std::string>> written_;  ///< names and digests
 };
 
 struct RoundOptions {
@@ -49,6 +65,8 @@ struct RoundOptions {
   /// forgotten.
   double budget = std::numeric_limits<double>::infinity();
   double limit = std::numeric_limits<double>::infinity();  ///< of one trial
+  /// One that was cut off sooner had no fair try: it is forgotten, and so nothing is known of its setting.
+  double fair = 0;
   bool pass_over_refused = false;  ///< a scene that cannot be run is told of in its series, not thrown
   /// Hears how far all of them have come: the fraction is that of trials, or of the budget if that is more.
   Monitor monitor = {};
@@ -59,12 +77,16 @@ struct Series {
   const Setting* setting = nullptr;
   std::vector<Trial> trials = {};
   std::string refused = {};  ///< why it cannot be run
+  bool unfair = false;       ///< a run was cut off before `RoundOptions::fair`
 };
 struct Rounds {
   std::vector<Series> series;  ///< in the order of the settings
   std::size_t made = 0;        ///< trials that were not in the record before
   bool out_of_time = false, cancelled = false;
 };
+
+/// As many as the machine has for 0.
+int threads_of(int threads);
 
 /// Runs every setting once with the first seed, then with the second, and so on. Within a round the order is
 /// shuffled, and every second round goes through the order of the one before backwards, so that a machine

@@ -1,9 +1,11 @@
 #include "cost/search.hpp"
 
+#include "cost/cost_row.hpp"
 #include "cost/front.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,61 +20,16 @@ constexpr std::size_t batch = 6;
 /// A setting is cut off after so many times what the scene as it is takes, or that share of all the time if
 /// it is more; and never takes more than a quarter of the time that is left.
 constexpr double longest_ratio = 10, longest_share = 0.05, longest_of_the_rest = 0.25;
+/// One that was cut off before it had so many times what the scene takes had no fair try.
+constexpr double fair_ratio = 3;
+/// What is run first runs slower than the same run again, until threads, caches and memory are there: so much
+/// of the time, and no more than these seconds, goes into a run that does not count.
+constexpr double warming_share = 0.03, most_warming = 1;
 /// A knob that changes the seconds by less than this share, and the packing fraction by less than can be
 /// told, makes no difference.
 constexpr double telling_share = 0.1;
 /// Combinations that are looked at: of so many knobs.
 constexpr std::size_t most_combined = 3;
-
-CostRow row_of(const Series& series, double wall_deviation, double mean_radius) {
-  CostRow row;
-  row.runs = static_cast<int>(series.trials.size());
-  row.certified = true;
-  row.outcome = Outcome::converged;
-  const auto over = [&](auto value) {
-    std::vector<double> all;
-    for (const Trial& trial : series.trials)
-      if (!trial.cut_off) all.push_back(value(trial));
-    if (all.empty()) all.push_back(0);
-    return spread_of(std::move(all));
-  };
-  const auto over_some = [&](std::optional<double> Trial::*value) -> std::optional<double> {
-    std::vector<double> all;
-    for (const Trial& trial : series.trials)
-      if (trial.*value) all.push_back(*(trial.*value));
-    return all.size() < series.trials.size() ? std::nullopt : std::optional(spread_of(std::move(all)).median);
-  };
-  for (const Trial& trial : series.trials) {
-    row.slower = row.slower || trial.cut_off;
-    row.certified = row.certified && trial.certified;
-    row.outcome = std::max(row.outcome, trial.outcome);
-  }
-  const Spread phi = over([](const Trial& t) { return t.packing_fraction; });
-  const Spread seconds = over([](const Trial& t) { return t.cpu_seconds; });
-  row.phi = phi.median;
-  row.phi_scatter = phi.half_width;
-  row.seconds = seconds.median;
-  row.seconds_scatter = seconds.half_width;
-  row.wall_seconds = over([](const Trial& t) { return t.seconds; }).median;
-  if (row.slower)
-    for (const Trial& trial : series.trials) row.seconds = std::max(row.seconds, trial.cpu_seconds);
-  row.prepare_seconds = over([](const Trial& t) { return t.prepare_seconds; }).median;
-  row.memory_bytes = over_some(&Trial::peak_bytes);
-  row.early_overlap = over([](const Trial& t) { return t.early_overlap; }).median;
-  row.max_overlap = over([](const Trial& t) { return t.max_overlap; }).median;
-  row.held_from = over_some(&Trial::held_from);
-  if (row.held_from)  // a decade: nothing lies between two of them
-    for (const Trial& trial : series.trials) row.held_from = std::max(row.held_from, trial.held_from);
-  row.contact_ratio = over_some(&Trial::contact_ratio);
-  row.coordination = over([](const Trial& t) { return t.coordination; }).median;
-  row.spheres = over([](const Trial& t) { return static_cast<double>(t.spheres); }).median;
-  row.wall_error =
-      std::max(wall_deviation / mean_radius, over([](const Trial& t) { return t.protrusion; }).median);
-  row.hash = series.trials.front().hash;
-  row.own_phi = series.trials.front().packing_fraction;
-  row.own_seconds = series.trials.front().cpu_seconds;
-  return row;
-}
 
 double logarithm(double seconds) { return std::log(std::max(1e-6, seconds)); }
 
@@ -83,6 +40,9 @@ Search::Search(Subject subject, std::vector<Knob> knobs, TrialRecord& record, co
   for (int k = 0; k < options.seeds; ++k)
     seeds_.push_back((subject_.scene.seed + static_cast<std::uint64_t>(k)) & ((std::uint64_t{1} << 63) - 1));
   budget_end_ = options.seconds;
+  for (Knob& knob : knobs_)
+    if (knob.is_limit) limits_.push_back(knob);
+  std::erase_if(knobs_, [](const Knob& knob) { return knob.is_limit; });
 }
 
 const Search::Found* Search::at(const Point& point) const {
@@ -118,10 +78,13 @@ bool Search::counts(const CostRow& row) const {
 
 double Search::phi_step() const {
   constexpr double least = 1e-5;
-  std::vector<double> scatter;
-  for (const Found& found : found_)
-    if (found.row.runs > 1 && counts(found.row)) scatter.push_back(found.row.phi_scatter);
-  return scatter.empty() ? least : std::max(least, spread_of(std::move(scatter)).median);
+  const Found* own_row = at(own());
+  std::vector<double> errors;
+  for (const Found& found : found_) {
+    if (!counts(found.row) || are_same_spheres(found.row, own_row->row)) continue;
+    if (const auto error = difference_of(found.row, own_row->row).error) errors.push_back(*error);
+  }
+  return errors.empty() ? least : std::clamp(spread_of(std::move(errors)).median, least, most_tolerated);
 }
 
 bool Search::measure(const std::vector<Point>& points) {
@@ -135,6 +98,7 @@ bool Search::measure(const std::vector<Point>& points) {
   if (own_row)
     rounds.limit = std::min(longest_of_the_rest * left(), std::max(longest_ratio * own_row->row.wall_seconds,
                                                                    longest_share * options_.seconds));
+  if (own_row) rounds.fair = fair_ratio * own_row->row.wall_seconds;
   if (generous_) rounds.limit = 0.5 * left();
   rounds.monitor.cancelled = options_.monitor.cancelled;
   rounds.monitor.on_progress = [&](const Progress& progress) {
@@ -146,6 +110,8 @@ bool Search::measure(const std::vector<Point>& points) {
   made_ += made.made;
   tried_.insert(points.begin(), points.end());
   for (std::size_t k = 0; k < points.size(); ++k) {
+    if (!made.series[k].refused.empty()) refused_[points[k]] = made.series[k].refused;
+    made.series[k].unfair ? unfair_.insert(points[k]).second : unfair_.erase(points[k]) > 0;
     if (made.series[k].trials.empty()) continue;
     double deviation = 0;
     for (std::size_t i = 0; i < knobs_.size(); ++i)
@@ -166,7 +132,9 @@ bool Search::measure(const std::vector<Point>& points) {
 
 void Search::go() {
   phase_ = "the scene as it is";
+  warm_up();
   if (!measure({own()}) || !at(own()) || at(own())->row.slower) return;
+  if (at(own())->row.outcome == Outcome::hit_limit) turn_limits();
   budget_end_ = watch_.seconds() + share_of_single_steps * left();
   phase_ = "one key at a time";
   one_at_a_time();
@@ -174,7 +142,36 @@ void Search::go() {
   phase_ = "combinations";
   if (cancelled_ || !combinations()) return;
   phase_ = "one key at a time";
-  complete_ = one_at_a_time() && slower_ones() && one_at_a_time();
+  complete_ = one_at_a_time() && slower_ones() && one_at_a_time() && unfair_.empty() && !capped_;
+}
+
+void Search::turn_limits() {
+  for (Knob& knob : limits_) knobs_.push_back(std::move(knob));
+  limits_.clear();
+  index_.clear();
+  for (std::size_t k = 0; k < found_.size(); ++k) index_[found_[k].point = own()] = k;
+  tried_ = {own()};
+}
+
+void Search::warm_up() {
+  Setting as_it_is = setting_of(own());
+  const double limit = std::min(most_warming, warming_share * options_.seconds);
+  const bool is_known = std::ranges::all_of(seeds_, [&](std::uint64_t seed) {
+    return record_.find(as_it_is, seed, threads_of(options_.threads)) != nullptr;
+  });
+  if (!is_known)
+    run_trial(as_it_is.scene, {.seed = seeds_.front(),
+                               .threads = options_.threads,
+                               .limit = limit,
+                               .monitor = {{}, options_.monitor.cancelled}});
+}
+
+bool Search::repeats(const Found& found) const {
+  return std::ranges::any_of(found_, [&](const Found& other) {
+    const std::size_t changes = found.row.changed.size(), fewer = other.row.changed.size();
+    return &other != &found && are_same_spheres(other.row, found.row) &&
+           std::tuple(fewer, other.row.seconds, &other) < std::tuple(changes, found.row.seconds, &found);
+  });
 }
 
 bool Search::one_at_a_time() {
@@ -219,7 +216,7 @@ std::vector<std::size_t> Search::points_of_front() const {
   std::vector<Offer> offers;
   std::vector<std::size_t> which;
   for (std::size_t k = 0; k < found_.size(); ++k) {
-    if (!counts(found_[k].row)) continue;
+    if (!counts(found_[k].row) || repeats(found_[k])) continue;
     offers.push_back({found_[k].row.seconds, found_[k].row.phi});
     which.push_back(k);
   }
@@ -343,6 +340,7 @@ bool Search::slower_ones() {
   for (const Found& found : found_)
     if (found.row.slower && found.row.changed.size() == 1)
       slower.emplace_back(found.row.seconds, found.point);
+  for (const Point& point : unfair_) slower.emplace_back(0, point);
   std::ranges::sort(slower);
   generous_ = true;
   for (const auto& [seconds, point] : slower)
@@ -374,6 +372,7 @@ bool Search::combinations() {
     if (points.empty()) return true;
     if (!measure(points)) return false;
   }
+  capped_ = true;
   return true;
 }
 

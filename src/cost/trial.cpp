@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 #include <ranges>
+#include <thread>
 
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
@@ -56,19 +57,22 @@ double early_overlap_of(const Packing& packing) {
 }
 
 void certify_trial(Trial& trial, const Packing& packing, const TrialOptions& options) {
-  const Certificate own = certify(packing.spheres, packing.domain,
-                                  {.allowed_overlap = packing.scene.overlap, .threads = options.threads});
-  const Certificate meant =
-      options.meant ? certify(packing.spheres, *options.meant,
-                              {.allowed_overlap = packing.scene.overlap, .threads = options.threads})
-                    : own;
+  // More than the machine has would be told by the library of threads, on the terminal.
+  const int threads = std::min(options.threads, static_cast<int>(std::thread::hardware_concurrency()));
+  const auto certified_in = [&](const Domain& domain) {
+    return certify(packing.spheres, domain, {.allowed_overlap = packing.scene.overlap, .threads = threads});
+  };
+  const Certificate own = certified_in(packing.domain);
+  const Certificate meant = options.meant ? certified_in(*options.meant) : own;
   trial.certified = own.certified;
   trial.max_overlap = std::max(0.0, own.max_overlap);
   if (meant.worst_wall) trial.wall_gap = meant.min_wall_gap;
   trial.protrusion = std::max(0.0, -meant.min_wall_gap);
-  const double shrunk = std::pow(1 - trial.max_overlap, packing.spheres.dimension());
+  trial.size_scale = packing.size_scale;
+  trial.packed_fraction = packing.packing_fraction();
   trial.packing_fraction =
-      shrunk * packing_fraction(packing.spheres, options.meant ? *options.meant : packing.domain);
+      packing_fraction(packing.spheres, options.meant ? *options.meant : packing.domain) *
+      std::pow((1 - trial.max_overlap) / trial.size_scale, packing.spheres.dimension());
 }
 
 void count_contacts(Trial& trial, const Packing& packing) {
@@ -80,6 +84,7 @@ void count_contacts(Trial& trial, const Packing& packing) {
       measure_contacts(packing.spheres, packing.domain, gaps, packing.container);
   trial.coordination = by_gap.back().coordination;
   for (const Contacts& contacts : by_gap | std::views::take(gaps.size() - 1)) {
+    if (contacts.contact_gap < trial.max_overlap) continue;
     if (2 * contacts.rattlers > packing.spheres.size()) continue;
     trial.held_from = contacts.contact_gap;
     trial.rattlers = contacts.rattlers;

@@ -22,9 +22,11 @@ struct Trial {
   bool cut_off = false;  ///< it reached `TrialOptions::limit`: all that is known is that it is slower
 
   std::uint64_t spheres = 0;
-  /// Strict: of the spheres shrunk by the largest overlap that is left, so that none overlaps:
-  /// phi (1 - max_overlap)^D, of what is certified.
+  /// Strict: of the spheres shrunk by the largest overlap that is left, so that none overlaps, and of the
+  /// sizes that the scene asks for: phi ((1 - max_overlap) / size_scale)^D, of what is certified.
   double packing_fraction = 0;
+  double packed_fraction = 0;  ///< as the packing states it, of its own domain
+  double size_scale = 1;       ///< see `Packing::size_scale`
   /// Of what lies a few spheres from the walls and deeper, where there are walls and it was asked for. The
   /// file of a record does not hold it.
   std::optional<double> core_packing_fraction;
@@ -35,7 +37,8 @@ struct Trial {
   /// Gap of the sphere nearest to a wall, by the certificate; absent where none is near.
   std::optional<double> wall_gap;
   /// The smallest gap ratio at which half of the spheres or more are held by contacts: how far the contacts
-  /// are closed. Absent where they are not at 0.01.
+  /// are closed. None that is below `max_overlap`: a pair that overlaps is as far from touching as one that
+  /// lies so much apart. Absent where they are not at 0.01.
   std::optional<double> held_from;
   /// Contacts of the backbone over those that just hold it, at that gap; 1 is isostatic.
   std::optional<double> contact_ratio;

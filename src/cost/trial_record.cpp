@@ -11,16 +11,20 @@
 #include "bernal/version.hpp"
 #include "core/fnv.hpp"
 #include "cost/rounds.hpp"
+#include "io/staged_folder.hpp"
 
 namespace bernal::cost {
 namespace {
 
 constexpr std::string_view header =
-    "key,setting,seed,threads,outcome,reason,cut_off,spheres,packing_fraction,certified,max_overlap,"
-    "early_overlap,protrusion,wall_gap,held_from,contact_ratio,rattlers,coordination,hash,seconds,cpu_"
-    "seconds,"
-    "prepare_seconds,peak_bytes,effects";
-constexpr std::size_t columns = 24;
+    "key,setting,seed,threads,outcome,reason,cut_off,spheres,packing_fraction,packed_fraction,size_scale,"
+    "certified,max_overlap,early_overlap,protrusion,wall_gap,held_from,contact_ratio,rattlers,coordination,"
+    "hash,seconds,cpu_seconds,prepare_seconds,peak_bytes,effects";
+constexpr std::size_t columns = 26;
+/// With which the record of any version begins.
+constexpr std::string_view begin_of_header = "key,setting,seed,threads,";
+/// Of a line that names a file and its digest.
+constexpr std::string_view file_mark = "# file,";
 
 std::string in_quotes(std::string_view text) {
   std::string out = "\"";
@@ -58,6 +62,9 @@ std::string text_of(const std::vector<Effect>& effects) {
   return text;
 }
 
+/// No number of a trial is larger, whatever it counts.
+constexpr double longest = 1e15;
+
 /// Takes the cells one after the other; throws where one is no such value.
 class Cells {
  public:
@@ -74,9 +81,14 @@ class Cells {
   Number number() {
     return parsed<Number>(text());
   }
-  std::optional<double> number_or_none() {
+  /// In [least, most]; no number that is none, none without end.
+  double number(double least, double most = std::numeric_limits<double>::max()) {
+    return within(parsed<double>(text()), least, most);
+  }
+  std::optional<double> number_or_none(double least = 0) {
     const std::string cell = text();
-    return cell.empty() ? std::nullopt : std::optional(parsed<double>(cell));
+    if (cell.empty()) return {};
+    return within(parsed<double>(cell), least, std::numeric_limits<double>::max());
   }
   Outcome outcome() {
     const std::string cell = text();
@@ -92,12 +104,16 @@ class Cells {
       const std::size_t first = second == part.npos || second == 0 ? part.npos : part.rfind(':', second - 1);
       if (first == part.npos) refuse();
       all.push_back({part.substr(0, first), parsed<std::uint64_t>(part.substr(first + 1, second - first - 1)),
-                     parsed<double>(part.substr(second + 1))});
+                     within(parsed<double>(part.substr(second + 1)), 0, longest)});
     }
     return all;
   }
 
  private:
+  static double within(double value, double least, double most) {
+    if (!(value >= least && value <= most)) refuse();
+    return value;
+  }
   template <class Number>
   static Number parsed(const std::string& cell) {
     Number value{};
@@ -106,7 +122,7 @@ class Cells {
     return value;
   }
   [[noreturn]] static void refuse() {
-    throw Error(ErrorCode::bad_argument, "this line is no trial; remove the file, or name another folder");
+    throw Error(ErrorCode::bad_argument, "this line is no trial; remove it, or name another folder");
   }
 
   std::vector<std::string> cells_;
@@ -115,36 +131,39 @@ class Cells {
 
 std::string line_of(const std::string& key, const std::string& name, const Trial& t) {
   const auto flag = [](bool value) { return value ? "yes" : "no"; };
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", key,
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", key,
                      in_quotes(name), t.seed, t.threads, name_of(t.outcome), in_quotes(t.reason),
-                     flag(t.cut_off), t.spheres, t.packing_fraction, flag(t.certified), t.max_overlap,
-                     t.early_overlap, t.protrusion, text_of(t.wall_gap), text_of(t.held_from),
-                     text_of(t.contact_ratio), t.rattlers, t.coordination, t.hash, t.seconds, t.cpu_seconds,
-                     t.prepare_seconds, text_of(t.peak_bytes), in_quotes(text_of(t.effects)));
+                     flag(t.cut_off), t.spheres, t.packing_fraction, t.packed_fraction, t.size_scale,
+                     flag(t.certified), t.max_overlap, t.early_overlap, t.protrusion, text_of(t.wall_gap),
+                     text_of(t.held_from), text_of(t.contact_ratio), t.rattlers, t.coordination, t.hash,
+                     t.seconds, t.cpu_seconds, t.prepare_seconds, text_of(t.peak_bytes),
+                     in_quotes(text_of(t.effects)));
 }
 
 Trial trial_of(Cells& cells) {
   Trial t;
   t.seed = cells.number<std::uint64_t>();
-  t.threads = cells.number<int>();
+  t.threads = static_cast<int>(cells.number(1, 1e6));
   t.outcome = cells.outcome();
   t.reason = cells.text();
   t.cut_off = cells.flag();
   t.spheres = cells.number<std::uint64_t>();
-  t.packing_fraction = cells.number<double>();
+  t.packing_fraction = cells.number(0, 1);
+  t.packed_fraction = cells.number(0, longest);
+  t.size_scale = cells.number(1e-6, longest);
   t.certified = cells.flag();
-  t.max_overlap = cells.number<double>();
-  t.early_overlap = cells.number<double>();
-  t.protrusion = cells.number<double>();
-  t.wall_gap = cells.number_or_none();
+  t.max_overlap = cells.number(0, 1);
+  t.early_overlap = cells.number(0, longest);
+  t.protrusion = cells.number(0, longest);
+  t.wall_gap = cells.number_or_none(-longest);
   t.held_from = cells.number_or_none();
   t.contact_ratio = cells.number_or_none();
   t.rattlers = cells.number<std::uint64_t>();
-  t.coordination = cells.number<double>();
+  t.coordination = cells.number(0, longest);
   t.hash = cells.text();
-  t.seconds = cells.number<double>();
-  t.cpu_seconds = cells.number<double>();
-  t.prepare_seconds = cells.number<double>();
+  t.seconds = cells.number(0, longest);
+  t.cpu_seconds = cells.number(0, longest);
+  t.prepare_seconds = cells.number(0, longest);
   t.peak_bytes = cells.number_or_none();
   t.effects = cells.effects();
   return t;
@@ -169,17 +188,84 @@ std::string hash_of_text(std::string_view text) {
   return fmt::format("{:016x}", fnv.hash());
 }
 
-TrialRecord::TrialRecord(std::filesystem::path file) : file_(std::move(file)) {
-  std::string whole;
-  if (std::ifstream in(file_, std::ios::binary); in) whole.assign(std::istreambuf_iterator<char>(in), {});
+namespace {
+
+std::string whole_text(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file))
+    throw Error(ErrorCode::cannot_write,
+                "is a folder, and a file is to be written there; remove it, or name another folder with -o",
+                {file.string()});
+  std::ifstream in(file, std::ios::binary);
+  if (!in && stands(file))
+    throw Error(ErrorCode::cannot_write, "cannot be read; remove it, or name another folder with -o",
+                {file.string()});
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TrialRecord TrialRecord::read(const std::filesystem::path& file, bool afresh) {
+  TrialRecord record;
+  record.file_ = file;
+  const std::string whole = whole_text(file);
+  record.read_whole(whole, afresh);
+  return record;
+}
+
+TrialRecord::TrialRecord(std::filesystem::path file, bool afresh) : file_(std::move(file)) {
+  const std::string whole = whole_text(file_);
+  const std::size_t end = read_whole(whole, afresh);
+  const auto cut = [&](std::size_t size) {
+    if (::truncate(file_.c_str(), static_cast<off_t>(size)) != 0)
+      throw Error(ErrorCode::cannot_write, "cannot be written", {file_.string()});
+  };
+  // What was cut off in the middle would run into the next line.
+  if (end < whole.size()) cut(end);
+  if (afresh && end > 0) cut(0);
+  if (!afresh && end > 0) {
+    append("");  // so that it is known before a run whether this can be
+    return;
+  }
+  std::string text = std::string(header) + '\n';
+  for (const auto& [name, sha256] : written_) text += fmt::format("{}{},{}\n", file_mark, name, sha256);
+  append(text);
+}
+
+void TrialRecord::append(const std::string& text) const {
+  std::ofstream out(file_, std::ios::app);
+  if (!(out << text << std::flush))
+    throw Error(ErrorCode::cannot_write, "cannot be written to; make it writable, or name another folder",
+                {file_.string()});
+}
+
+void TrialRecord::add_file(const std::string& name, const std::string& sha256) {
+  if (written_.emplace(name, sha256).second && !file_.empty())
+    append(fmt::format("{}{},{}\n", file_mark, name, sha256));
+}
+
+std::size_t TrialRecord::read_whole(const std::string& whole, bool afresh) {
   const std::size_t end = whole.rfind('\n') + 1;  // 0 where there is none
+  if (end == 0 && !header.starts_with(whole))
+    throw Error(ErrorCode::bad_argument, "is no record of trials; remove it, or name another folder",
+                {file_.string(), 1});
   int number = 0;
   std::istringstream lines(whole.substr(0, end));
   for (std::string line; std::getline(lines, line);) {
     const Location here{file_.string(), ++number};
-    if (number == 1 && line != header)
-      throw Error(ErrorCode::bad_argument, "is no record of trials; remove it, or name another folder", here);
+    if (number == 1 && line != header && !(afresh && line.starts_with(begin_of_header)))
+      throw Error(ErrorCode::bad_argument,
+                  line.starts_with(begin_of_header)
+                      ? "is the record of another version; give --fresh, or name another folder with -o"
+                      : "is no record of trials; remove it, or name another folder",
+                  here);
     if (number == 1) continue;
+    if (line.starts_with(file_mark)) {
+      const std::size_t comma = line.rfind(',');
+      if (comma >= file_mark.size())
+        written_.emplace(line.substr(file_mark.size(), comma - file_mark.size()), line.substr(comma + 1));
+      continue;
+    }
+    if (afresh) continue;
     try {
       Cells cells(cells_of(line));
       const std::string key = cells.text();
@@ -190,14 +276,7 @@ TrialRecord::TrialRecord(std::filesystem::path file) : file_(std::move(file)) {
       throw Error(error.code(), error.what(), here);
     }
   }
-  // What was cut off in the middle would run into the next line.
-  if (end < whole.size() && ::truncate(file_.c_str(), static_cast<off_t>(end)) != 0)
-    throw Error(ErrorCode::cannot_write, "cannot be written", {file_.string()});
-  if (number == 0) {
-    std::ofstream out(file_, std::ios::app);
-    if (!(out << header << '\n' << std::flush))
-      throw Error(ErrorCode::cannot_write, "cannot be written", {file_.string()});
-  }
+  return end;
 }
 
 const Trial* TrialRecord::find(const Setting& setting, std::uint64_t seed, int threads) const {
@@ -209,10 +288,7 @@ const Trial* TrialRecord::find(const Setting& setting, std::uint64_t seed, int t
 void TrialRecord::add(const Setting& setting, const Trial& trial) {
   const std::string key = key_of(setting.scene, setting.meant != nullptr);
   trials_[key_of_trial(key, trial.seed, trial.threads)] = trial;
-  if (file_.empty()) return;
-  std::ofstream out(file_, std::ios::app);
-  if (!(out << line_of(key, setting.name, trial) << std::flush))
-    throw Error(ErrorCode::cannot_write, "cannot be written", {file_.string()});
+  if (!file_.empty()) append(line_of(key, setting.name, trial));
 }
 
 }  // namespace bernal::cost

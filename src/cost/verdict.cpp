@@ -7,18 +7,17 @@
 
 #include <fmt/format.h>
 
+#include "bernal/core/text.hpp"
 #include "bernal/predict/predict.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "cost/cost_row.hpp"
 #include "cost/front.hpp"
+#include "cost/knob_alone.hpp"
 
 namespace bernal::cost {
 namespace {
 
-/// Packing fractions that differ by less are as good as equal to whoever asks for advice.
-constexpr double good_enough = 0.001;
-/// Seconds that differ by less than this share are told as equal.
-constexpr double same_seconds = 0.05;
 /// How much further, in the gap at which they hold, contacts are closed on the front of contacts from one
 /// setting to the next: gaps are looked at in decades.
 constexpr double contact_step = 0.5;
@@ -29,7 +28,8 @@ void mark_fronts(const Search& search, std::vector<CostRow>& rows, double phi_st
     std::vector<Offer> offers;
     std::vector<std::size_t> which;
     for (std::size_t k = 0; k < rows.size(); ++k)
-      if (const std::optional<double> value = worth(rows[k]); value && search.counts(rows[k])) {
+      if (const std::optional<double> value = worth(rows[k]);
+          value && search.counts(rows[k]) && !rows[k].is_repeat) {
         offers.push_back({rows[k].seconds, *value});
         which.push_back(k);
       }
@@ -45,134 +45,12 @@ void mark_fronts(const Search& search, std::vector<CostRow>& rows, double phi_st
 
 /// Whether it keeps what the scene as it is has in other respects than density.
 bool is_as_accurate(const CostRow& row, const CostRow& own) {
-  const bool contacts = !own.held_from || (row.held_from && *row.held_from <= *own.held_from);
-  return contacts && row.max_overlap <= own.max_overlap && row.wall_error <= own.wall_error;
+  // What holds where a run gave up before all was in its place is no aim.
+  const bool falls_short = own.outcome != Outcome::converged && row.outcome == Outcome::converged;
+  const bool contacts = falls_short || !own.held_from || (row.held_from && *row.held_from <= *own.held_from);
+  const bool sizes = own.size_scale != 1 || row.size_scale == 1;
+  return contacts && sizes && row.max_overlap <= own.max_overlap && row.wall_error <= own.wall_error;
 }
-
-std::string times(double ratio) {
-  if (std::abs(std::log(ratio)) < same_seconds) return "the same time";
-  return ratio >= 100 ? fmt::format("{:.0f} times the time", ratio)
-         : ratio >= 1 ? fmt::format("{:.3g} times the time", ratio)
-                      : fmt::format("{:.2g} of the time", ratio);
-}
-
-double ratio_of(const CostRow& row, const CostRow& to) {
-  return std::max(1e-6, row.seconds) / std::max(1e-6, to.seconds);
-}
-
-/// What a knob does alone, the others as in the scene.
-class KnobAlone {
- public:
-  KnobAlone(const Search& search, std::size_t knob) : knob_(search.knobs()[knob]) {
-    for (const std::size_t step : knob_.order) {
-      Point point = search.own();
-      point[knob] = step;
-      const Search::Found* found = search.at(point);
-      if (!found) continue;
-      if (search.counts(found->row)) {
-        if (step == knob_.own) own_ = seen_.size();
-        seen_.push_back({knob_.steps[step].text, &found->row});
-      } else if (found->row.slower || found->row.runs == search.at(search.own())->row.runs) {
-        failed_ += fmt::format("; {} {}", knob_.steps[step].text,
-                               found->row.slower
-                                   ? fmt::format("takes more than {}", seconds_in_words(found->row.seconds))
-                               : !found->row.certified ? "is not certified"
-                                                       : "does not reach what is asked");
-      }
-    }
-  }
-
-  std::string sentence(double phi_step) const {
-    if (seen_.size() < 2)
-      return failed_.empty() ? fmt::format("{}: not measured with every seed, for want of time.", knob_.name)
-                             : fmt::format("{}: only {} works{}.", knob_.name,
-                                           seen_.empty() ? "none" : seen_[0].text, failed_);
-    std::string text = changes_nothing() ? without_effect() : both_ways(phi_step);
-    return fmt::format("{}: {}{}.", knob_.name, text, failed_);
-  }
-
- private:
-  struct Seen {
-    std::string text;
-    const CostRow* row;
-  };
-
-  bool changes_nothing() const {
-    return std::ranges::all_of(seen_, [&](const Seen& s) { return s.row->hash == seen_.front().row->hash; });
-  }
-  std::string without_effect() const {
-    return fmt::format(
-        "without effect on this scene: from {} to {} the same packing, sphere for sphere, for {}",
-        seen_.front().text, seen_.back().text, times(ratio_of(*seen_.back().row, *seen_.front().row)));
-  }
-
-  std::string both_ways(double phi_step) const {
-    const auto by_phi = [](const Seen& s) { return s.row->phi; };
-    if (!own_) {
-      return fmt::format("from {} to {} the packing fraction goes from {:.4f} to {:.4f}, for {}",
-                         seen_.front().text, seen_.back().text, seen_.front().row->phi, seen_.back().row->phi,
-                         times(ratio_of(*seen_.back().row, *seen_.front().row)));
-    }
-    const Seen& own = seen_[*own_];
-    std::string text;
-    // Dearer: the densest of them, and the cheapest that is as dense.
-    if (*own_ + 1 < seen_.size()) {
-      const auto begin = seen_.begin() + static_cast<std::ptrdiff_t>(*own_) + 1;
-      const Seen& best = *std::max_element(
-          begin, seen_.end(), [&](const Seen& a, const Seen& b) { return by_phi(a) < by_phi(b); });
-      text += bought(own, best, phi_step);
-    }
-    if (*own_ > 0) {
-      const auto end = seen_.begin() + static_cast<std::ptrdiff_t>(*own_);
-      // The quickest that loses nothing, or else the quickest of all.
-      const Seen* saving = nullptr;
-      for (auto seen = seen_.begin(); seen != end; ++seen) {
-        const bool as_good = seen->row->phi >= own.row->phi - std::max(phi_step, good_enough / 2);
-        if (as_good && (!saving || seen->row->seconds < saving->row->seconds)) saving = &*seen;
-      }
-      const bool saves = saving && ratio_of(*saving->row, *own.row) < 1 - same_seconds;
-      if (!text.empty()) text += "; ";
-      text += saves ? saved(own, *saving) : lost(own, seen_.front());
-    }
-    return text;
-  }
-
-  static std::string contacts(const Seen& from, const Seen& to) {
-    if (!from.row->held_from || !to.row->held_from || *from.row->held_from == *to.row->held_from) return "";
-    return fmt::format(", and holds from gaps of {:g} in place of {:g}", *to.row->held_from,
-                       *from.row->held_from);
-  }
-  static std::string bought(const Seen& own, const Seen& other, double phi_step) {
-    const double gain = other.row->phi - own.row->phi;
-    const std::string step = fmt::format("from {} to {}", own.text, other.text);
-    const std::string price = times(ratio_of(*other.row, *own.row));
-    if (other.row->hash == own.row->hash)
-      return fmt::format("{} buys nothing, sphere for sphere, for {}", step, price);
-    if (gain > phi_step)
-      return fmt::format("{} buys {:.4f} for {}{}", step, gain, price, contacts(own, other));
-    const std::string why =
-        gain < -phi_step ? "" : fmt::format(", within what seeds differ by, {:.2g}", phi_step);
-    return fmt::format("{} buys no packing fraction ({:+.4f}{}) for {}{}", step, gain, why, price,
-                       contacts(own, other));
-  }
-  static std::string saved(const Seen& own, const Seen& other) {
-    return fmt::format("{} in place of {} would do: {:+.4f} for {}{}", other.text, own.text,
-                       other.row->phi - own.row->phi, times(ratio_of(*other.row, *own.row)),
-                       contacts(own, other));
-  }
-  static std::string lost(const Seen& own, const Seen& other) {
-    const double change = other.row->phi - own.row->phi;
-    return fmt::format("{} in place of {} {} for {}{}", other.text, own.text,
-                       std::abs(change) < good_enough / 2 ? fmt::format("saves nothing ({:+.4f})", change)
-                                                          : fmt::format("changes {:+.4f}", change),
-                       times(ratio_of(*other.row, *own.row)), contacts(own, other));
-  }
-
-  const Knob& knob_;
-  std::vector<Seen> seen_;
-  std::optional<std::size_t> own_;
-  std::string failed_;
-};
 
 /// Where the number of spheres follows from a prediction: what more rods would change.
 std::optional<std::string> sentence_of_rods(const Scene& scene) {
@@ -189,39 +67,71 @@ std::optional<std::string> sentence_of_rods(const Scene& scene) {
     most = std::max(most, phi);
   }
   return fmt::format(
-      "rods: {} of them predict what {} do within {:.1e}, in {:.2g} ms in place of {:.2g} ms: nothing to buy "
+      "rods (no key: of the prediction that is asked for): {} of them predict what {} do within {:.1e}, in "
+      "{:.2g} ms in place of {:.2g} ms: nothing to buy "
       "here.",
       rods.front(), rods.back(), most - least, 1e3 * seconds.front(), 1e3 * seconds.back());
 }
 
 std::string reaches(const CostRow& row) {
-  return fmt::format("packing fraction {:.4f} in {} of processor time", row.phi,
-                     seconds_in_words(row.seconds));
+  return fmt::format(
+      "packing fraction {:.4f}{} in {} of processor time", row.phi,
+      row.size_scale == 1
+          ? ""
+          : fmt::format(" at the sizes asked for, all sizes {:.6g} times those,", row.size_scale),
+      seconds_in_words(row.seconds));
 }
 
-/// The densest that counts, and the quickest as dense as that and as accurate as the scene.
+/// How it ends, where that is not as the scene asks.
+std::string shortfall(const CostRow& row) {
+  if (row.outcome == Outcome::converged) return "";
+  return fmt::format(" It does not reach what the scene asks for and ends as {}: {}.", name_of(row.outcome),
+                     plain_text(row.reason));
+}
+
+/// What the densest one has that another one lacks.
+std::string given_up(const CostRow& chosen, const CostRow& densest) {
+  const Difference loss = difference_of(chosen, densest);
+  std::string text =
+      fmt::format(", {} against the densest measured that is as accurate ({:.4f}, which took {}",
+                  change_in_words(loss.mean), densest.phi, seconds_in_words(densest.seconds));
+  if (!loss.error) return text + ')';
+  return text +
+         fmt::format("; seed by seed {} to {})", change_in_words(loss.least), change_in_words(loss.most));
+}
+
+/// The densest that counts, and the quickest as dense as that and as the scene, and as accurate.
 void recommend(const Search& search, CostReport& report) {
-  const auto counts = [&](const CostRow& row) { return search.counts(row); };
   const CostRow& own = report.rows[report.own];
+  const auto is_candidate = [&](const CostRow& row) {
+    return search.counts(row) && !row.is_repeat && is_as_accurate(row, own);
+  };
+  const auto reaches_all = [](const CostRow& row) { return row.outcome == Outcome::converged; };
+  // What reaches all that is asked for comes before what is dense and does not.
+  const bool some_do = std::ranges::any_of(
+      report.rows, [&](const CostRow& row) { return is_candidate(row) && reaches_all(row); });
+  const auto may_be_taken = [&](const CostRow& row) {
+    return is_candidate(row) && (!some_do || reaches_all(row));
+  };
   std::size_t densest = report.own;
   for (std::size_t k = 0; k < report.rows.size(); ++k)
-    if (counts(report.rows[k]) && is_as_accurate(report.rows[k], own) &&
-        report.rows[k].phi > report.rows[densest].phi)
+    if (may_be_taken(report.rows[k]) &&
+        (!may_be_taken(report.rows[densest]) || report.rows[k].phi > report.rows[densest].phi))
       densest = k;
-  const double tolerance = std::max(good_enough, report.phi_step);
+  const auto is_as_dense = [&](const CostRow& row) {
+    return is_no_loss(row, report.rows[densest]) && is_no_loss(row, own);
+  };
   report.recommended = densest;
   for (std::size_t k = 0; k < report.rows.size(); ++k) {
     const CostRow& row = report.rows[k];
-    if (counts(row) && is_as_accurate(row, own) && row.phi >= report.rows[densest].phi - tolerance &&
-        row.seconds < report.rows[report.recommended].seconds)
+    if (may_be_taken(row) && is_as_dense(row) && row.seconds < report.rows[report.recommended].seconds)
       report.recommended = k;
   }
   // Of those that take the same time the one that changes least.
   const double quickest = report.rows[report.recommended].seconds;
   for (std::size_t k = 0; k < report.rows.size(); ++k) {
     const CostRow& row = report.rows[k];
-    if (counts(row) && is_as_accurate(row, own) && row.phi >= report.rows[densest].phi - tolerance &&
-        row.seconds <= (1 + same_seconds) * quickest &&
+    if (may_be_taken(row) && is_as_dense(row) && row.seconds <= (1 + same_seconds) * quickest &&
         row.changed.size() < report.rows[report.recommended].changed.size())
       report.recommended = k;
   }
@@ -229,31 +139,47 @@ void recommend(const Search& search, CostReport& report) {
   report.recommendation = report.recommended == report.own
                               ? fmt::format("Leave the scene as it is: {}", reaches(chosen))
                               : fmt::format("Take {}: {}", chosen.setting, reaches(chosen));
-  if (densest != report.recommended)
-    report.recommendation +=
-        fmt::format(", within {:.2g} of the densest measured that is as accurate ({:.4f}, which took {})",
-                    tolerance, best.phi, seconds_in_words(best.seconds));
-  else
-    report.recommendation += ", the densest measured that is as accurate";
+  report.recommendation += densest != report.recommended
+                               ? given_up(chosen, best)
+                               : std::string(", the densest measured that is as accurate");
   if (report.recommended != report.own)
     report.recommendation +=
         fmt::format("; the scene as it is reaches {:.4f} in {}", own.phi, seconds_in_words(own.seconds));
   report.recommendation += ".";
+  if (own.runs == 1) report.recommendation += " Of one seed: nothing is known of how seeds differ.";
+  report.recommendation += shortfall(chosen);
 }
 
-/// What there is for whoever has less time.
-std::optional<std::string> sentence_for_less(const CostReport& report, double share) {
+/// What there is for whoever has less time: that share of it. Null where there is nothing.
+const CostRow* best_for(const CostReport& report, double share) {
   const CostRow& chosen = report.rows[report.recommended];
   const CostRow* best = nullptr;
   for (const CostRow& row : report.rows)
     if (row.pareto && row.seconds <= share * chosen.seconds && (!best || row.phi > best->phi)) best = &row;
-  if (!best) return {};
+  if (!best) return best;
   for (const CostRow& row : report.rows)  // as dense and as quick, and nearer to the scene
-    if (!row.slower && row.certified && row.phi >= best->phi - report.phi_step &&
+    if (!row.slower && row.certified && row.runs == best->runs && !row.is_repeat && is_no_loss(row, *best) &&
         row.seconds <= (1 + 2 * same_seconds) * best->seconds && row.changed.size() < best->changed.size())
       best = &row;
-  return fmt::format("With {} of that time: {}, {}.", share == 0.1 ? "a tenth" : "half", best->setting,
-                     reaches(*best));
+  return best;
+}
+
+std::string sentence_for_less(std::string_view share, const CostRow& row) {
+  return fmt::format("With {} of that time: {}, {}.", share, row.setting, reaches(row));
+}
+
+/// Of the search, why no more was measured.
+std::string ending_of(const Search& search) {
+  const auto cut_off = std::ranges::count_if(search.found(), [](const auto& f) { return f.row.slower; });
+  if (search.cancelled()) return "stopped; the same call goes on from here";
+  if (search.complete())
+    return cut_off == 0 ? "nothing was left to try"
+                        : fmt::format(
+                              "nothing was left to try but {} that {} cut off as slower, for which more "
+                              "--time is needed",
+                              cut_off, cut_off == 1 ? "was" : "were");
+  if (search.capped()) return fmt::format("the most settings were tried, {}", search.found().size());
+  return "the time was over; the same call goes on from here";
 }
 
 }  // namespace
@@ -273,23 +199,34 @@ CostReport report_of(const Search& search, const std::filesystem::path& folder) 
   for (const Search::Found* f : found) {
     if (f->point == search.own()) report.own = report.rows.size();
     report.rows.push_back(f->row);
+    CostRow& row = report.rows.back();
+    const Difference change = difference_of(row, search.at(search.own())->row);
+    row.phi_change = change.mean;
+    row.phi_change_error = change.error;
+    row.is_repeat = search.repeats(*f);
   }
+  for (const auto& [point, why] : search.refused())
+    report.refused.push_back(fmt::format("{}: {}", search.setting_of(point).name, plain_text(why)));
   mark_fronts(search, report.rows, report.phi_step);
   recommend(search, report);
-  for (const double share : {0.5, 0.1})
-    if (auto sentence = sentence_for_less(report, share)) report.verdicts.push_back(std::move(*sentence));
+  const CostRow *half = best_for(report, 0.5), *tenth = best_for(report, 0.1);
+  if (half && half != tenth) report.verdicts.push_back(sentence_for_less("half", *half));
+  if (tenth) report.verdicts.push_back(sentence_for_less("a tenth", *tenth));
   for (std::size_t k = 0; k < search.knobs().size(); ++k)
-    report.verdicts.push_back(KnobAlone(search, k).sentence(report.phi_step));
+    report.verdicts.push_back(sentence_of_knob(search, k));
   if (search.subject().is_predicted)
     if (auto sentence = sentence_of_rods(search.subject().scene))
       report.verdicts.push_back(std::move(*sentence));
   const Setting recommended = search.setting_of(found[report.recommended]->point);
   Scene scene = recommended.scene;
   complete(scene);
-  report.toml = scene_as_toml(scene, folder);
+  if (const CostRow& chosen = report.rows[report.recommended]; chosen.outcome != Outcome::converged)
+    report.toml = fmt::format("#{}\n", shortfall(chosen));
+  report.toml += scene_as_toml(scene, folder);
   report.runs_made = search.runs_made();
   report.complete = search.complete();
   report.cancelled = search.cancelled();
+  report.ending = ending_of(search);
   return report;
 }
 

@@ -37,10 +37,34 @@ constexpr std::string_view column_names[] = {"front",
                                              "MB",
                                              "end"};
 
-std::string end_of(const CostRow& row) {
+std::string end_of(const CostReport& report, const CostRow& row) {
   if (row.slower) return "cut off: slower";
-  if (!row.certified) return "not certified";
-  return std::string(name_of(row.outcome));
+  const std::string end = row.certified ? std::string(name_of(row.outcome)) : "not certified";
+  const int seeds = report.rows[report.own].runs;
+  return row.runs < seeds ? fmt::format("{}; {} of {} seeds", end, row.runs, seeds) : end;
+}
+
+/// With the factor of its sizes where they are not as asked.
+std::string setting_of_row(const CostRow& row) {
+  return row.size_scale == 1 ? row.setting : fmt::format("{} (sizes × {:.6g})", row.setting, row.size_scale);
+}
+
+/// What `bernal pack recommended.toml` states, and what of it counts here.
+std::string packed(const CostRow& row) {
+  const std::string stated = fmt::format("{:.6f}", row.packed_phi);
+  const std::string counted = fmt::format("{:.6f}", row.own_phi);
+  if (stated == counted) return stated;
+  return fmt::format("{} ({} as it counts here, strict and at the sizes asked for)", stated, counted);
+}
+
+/// Text as it is in Markdown, which knows HTML, too.
+std::string in_markdown(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (std::string_view("\\`*[]|").find(c) != std::string_view::npos) out += '\\';
+    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string_view(&c, 1);
+  }
+  return out;
 }
 
 std::vector<std::string> cells_of_row(const CostReport& report, std::size_t k) {
@@ -50,10 +74,10 @@ std::vector<std::string> cells_of_row(const CostReport& report, std::size_t k) {
   std::string number = place == front.end() ? "" : fmt::format("{}", place - front.begin() + 1);
   if (row.pareto_contacts) number += number.empty() ? "c" : " c";
   if (row.slower)
-    return {number, row.setting, "", "",         fmt::format("> {:.3g}", row.seconds), "", "", "",
-            "",     "",          "", end_of(row)};
+    return {number, setting_of_row(row), "", "", fmt::format("> {:.3g}", row.seconds), "", "", "", "", "",
+            "",     end_of(report, row)};
   return {number,
-          row.setting,
+          setting_of_row(row),
           fmt::format("{:.4f}", row.phi),
           fmt::format("{:.4f}", row.phi_scatter),
           fmt::format("{:.3g}", row.seconds),
@@ -63,7 +87,7 @@ std::vector<std::string> cells_of_row(const CostReport& report, std::size_t k) {
           row.contact_ratio ? fmt::format("{:.3f}", *row.contact_ratio) : "",
           row.wall_error > 0 ? fmt::format("{:.2g}", row.wall_error) : "0",
           row.memory_bytes ? fmt::format("{:.0f}", std::ceil(1e-6 * *row.memory_bytes)) : "",
-          end_of(row)};
+          end_of(report, row)};
 }
 
 /// Fronts, single keys and the scene as it is: the others are in cost.csv.
@@ -86,17 +110,21 @@ std::vector<std::string> explanations(const CostReport& report, const CostHeadin
           "those of the processor, of all threads together, without reading files; wall s beside them. "
           "Medians over the seeds; ± is half of what lies between the least and the greatest.{}",
           report.rows.size(), runs, heading.seeds, heading.seeds == 1 ? "" : "s", report.runs_made,
-          heading.machine, version(),
-          report.cancelled  ? " Stopped by the user: what is here was measured before."
-          : report.complete ? " Nothing was left to try."
-                            : " The time was over before all was tried; another call goes on from here."),
-      fmt::format("Shown are the fronts and what changes one key; all {} settings are in cost.csv. Numbers "
-                  "mark the front: in the order of seconds each is denser than all before it by more than "
-                  "{:.2g}, half of what two seeds differ by in the median setting. c marks the second front: "
-                  "contacts "
-                  "closed further than in all that is quicker.",
-                  report.rows.size(), report.phi_step),
-      "The packing fraction is strict: of the spheres shrunk by the largest overlap that is left, and of the "
+          heading.machine, version(), fmt::format(" The end: {}.", report.ending)),
+      fmt::format(
+          "Shown are the fronts and what changes one key; all {} settings are in cost.csv. Numbers "
+          "mark the front: in the order of seconds each is denser than the one before it by more than "
+          "{:.2g}{}. c marks the second front: contacts closed further than in the one before it. What "
+          "gives the same spheres as another setting with fewer changes is on neither.",
+          report.rows.size(), report.phi_step,
+          report.rows[report.own].runs == 1
+              ? "; with one seed nothing is known of how seeds differ"
+              : fmt::format(", the standard error of what the median setting differs from the scene by, "
+                            "with the same {} seeds",
+                            report.rows[report.own].runs)),
+      "The packing fraction is strict: of the spheres shrunk by the largest overlap that is left, at the "
+      "sizes "
+      "that are asked for (a row says by what factor all of them are larger), and of the "
       "volume of the scene's own container. Holds from gap: the smallest gap, in sums of two radii, at which "
       "contacts hold half of the spheres or more; contacts / isostatic counts them there. Wall error: how "
       "far "
@@ -110,27 +138,31 @@ std::string cost_csv(const CostReport& report) {
       "setting,phi,phi_scatter,seconds,seconds_scatter,largest_overlap,pareto,pareto_contacts,recommended,"
       "overlap_left,held_from,contacts_over_isostatic,coordination,wall_error,memory_bytes,spheres,wall_"
       "seconds,"
-      "prepare_seconds,runs,outcome,slower,certified,hash,phi_first_seed,seconds_first_seed\n";
+      "prepare_seconds,runs,outcome,slower,certified,hash,phi_first_seed,seconds_first_seed,size_scale,"
+      "packed_phi_first_seed,phi_change,phi_change_error,same_as_another,phi_step,reason\n";
   for (std::size_t k = 0; k < report.rows.size(); ++k) {
     const CostRow& r = report.rows[k];
     csv += fmt::format(
         "{},{:.8f},{:.8f},{:.6g},{:.6g},{:.6g},{},{},{},{:.6g},{},{},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{},{},"
         "{},{},"
-        "{},{:.8f},{:.6g}\n",
+        "{},{:.8f},{:.6g},{:.10g},{:.8f},{:.8f},{},{},{:.3g},{}\n",
         in_csv_quotes(r.setting), r.phi, r.phi_scatter, r.seconds, r.seconds_scatter, r.early_overlap,
         yes(r.pareto), yes(r.pareto_contacts), yes(k == report.recommended), r.max_overlap, cell(r.held_from),
         cell(r.contact_ratio), r.coordination, r.wall_error, cell(r.memory_bytes), r.spheres, r.wall_seconds,
         r.prepare_seconds, r.runs, name_of(r.outcome), yes(r.slower), yes(r.certified), r.hash, r.own_phi,
-        r.own_seconds);
+        r.own_seconds, r.size_scale, r.packed_phi, r.phi_change, cell(r.phi_change_error), yes(r.is_repeat),
+        report.phi_step, in_csv_quotes(plain_text(r.reason)));
   }
   return csv;
 }
 
 std::string cost_md(const CostReport& report, const CostHeading& heading) {
   std::string text = fmt::format("# What accuracy costs: {}\n\n**{}**\n\n![front](cost.svg)\n\n",
-                                 heading.scene, report.recommendation);
+                                 in_markdown(heading.scene), in_markdown(report.recommendation));
   text += "## What each key buys for this scene\n\n";
-  for (const std::string& verdict : report.verdicts) text += fmt::format("- {}\n", verdict);
+  for (const std::string& verdict : report.verdicts) text += fmt::format("- {}\n", in_markdown(verdict));
+  if (!report.refused.empty()) text += "\n## Refused\n\n";
+  for (const std::string& refused : report.refused) text += fmt::format("- {}\n", in_markdown(refused));
   text += "\n## Measured\n\n";
   for (const std::string& sentence : explanations(report, heading)) text += sentence + "\n\n";
   const auto line = [&](const auto& cells) {
@@ -147,8 +179,8 @@ std::string cost_md(const CostReport& report, const CostHeading& heading) {
   text += fmt::format(
       "\n## The recommendation, to paste\n\nAlso in recommended.toml. `bernal pack recommended.toml` gives "
       "packing "
-      "fraction {:.6f}, spheres of hash {}, in about {}.\n\n```toml\n{}```\n",
-      report.rows[report.recommended].own_phi, report.rows[report.recommended].hash,
+      "fraction {}, spheres of hash {}, in about {}.\n\n```toml\n{}```\n",
+      packed(report.rows[report.recommended]), report.rows[report.recommended].hash,
       seconds_in_words(report.rows[report.recommended].wall_seconds), report.toml);
   return text;
 }
@@ -174,11 +206,16 @@ std::string cost_html(const CostReport& report, const CostHeading& heading, std:
             fmt::format("of {} that were measured", report.rows.size()));
   page.card(chosen.memory_bytes ? fmt::format("{:.0f} MB", std::ceil(1e-6 * *chosen.memory_bytes)) : "?",
             "Recommended: memory", "at the peak of the run");
+  if (chosen.outcome != Outcome::converged)
+    page.card(name_of(chosen.outcome), "Recommended: does not reach what is asked for",
+              escaped(plain_text(chosen.reason)), "no");
   page.add("</div>\n<p class=\"statement\">{}</p>\n<div class=\"picture\">\n",
            escaped(report.recommendation));
   page.raw(picture);
   page.raw("</div>\n<h2>What each key buys for this scene</h2>\n<ul>\n");
   for (const std::string& verdict : report.verdicts) page.add("<li>{}</li>\n", escaped(verdict));
+  if (!report.refused.empty()) page.raw("</ul>\n<h2>Refused</h2>\n<ul>\n");
+  for (const std::string& refused : report.refused) page.add("<li>{}</li>\n", escaped(refused));
   page.raw("</ul>\n<h2>Measured</h2>\n");
   for (const std::string& sentence : explanations(report, heading))
     page.add("<p class=\"dim\">{}</p>\n", escaped(sentence));
@@ -197,9 +234,9 @@ std::string cost_html(const CostReport& report, const CostHeading& heading, std:
   }
   page.add(
       "</table></div>\n<h2>The recommendation, to paste</h2>\n<p>Also in <code>recommended.toml</code>. "
-      "<code>bernal pack recommended.toml</code> gives packing fraction {:.6f} and spheres of hash "
+      "<code>bernal pack recommended.toml</code> gives packing fraction {} and spheres of hash "
       "<code>{}</code>.</p>\n<pre>{}</pre>\n</main></body></html>\n",
-      chosen.own_phi, chosen.hash, escaped(report.toml));
+      packed(chosen), chosen.hash, escaped(report.toml));
   return std::move(page).finish();
 }
 

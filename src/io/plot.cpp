@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bernal/core/text.hpp"
 #include "io/html_text.hpp"
@@ -14,6 +15,7 @@ constexpr int most_ticks = 12;  // where the axis is so short that adding a step
 /// 1, 2 or 5 times a power of ten from one end to the other; powers alone where they are many.
 std::vector<double> logarithmic_ticks(double from, double to) {
   std::vector<double> values;
+  if (!(from > 0) || !(to < std::numeric_limits<double>::infinity())) return values;
   const bool powers_only = to / from > 2000;
   for (double decade = std::pow(10, std::floor(std::log10(from))); decade <= to * (1 + 1e-9); decade *= 10)
     for (const double v : {decade, 2 * decade, 5 * decade})

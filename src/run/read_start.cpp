@@ -98,6 +98,11 @@ void complete_count(Scene& scene, std::size_t there) {
 
 StartSpheres read_start(Scene& scene) {
   if (!scene.start.file) return {};
+  std::error_code unknown;
+  if (!std::filesystem::exists(*scene.start.file, unknown))
+    refuse(scene, "start",
+           fmt::format("there is no file or folder {}; its name is relative to the scene's file",
+                       scene.start.file->string()));
   look_into_folder(scene);
   Start& start = scene.start;
   Sha256 digest;  // of the very bytes that the spheres come from

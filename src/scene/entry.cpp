@@ -39,6 +39,10 @@ Key buys_accuracy(std::initializer_list<double> ladder, Key key) {
     key.ladder.push_back(key.type == Type::integer ? Value(static_cast<std::int64_t>(value)) : Value(value));
   return key;
 }
+Key buys_accuracy_as_limit(std::initializer_list<double> ladder, Key key) {
+  key.is_limit = true;
+  return buys_accuracy(ladder, std::move(key));
+}
 Key buys_accuracy(Key word) {
   for (const std::string_view value : word.words) word.ladder.emplace_back(std::string(value));
   return word;

@@ -136,6 +136,7 @@ struct Key {
   /// Of a key that buys accuracy with time: values from the cheapest to the dearest. Of a length: in units of
   /// the one that the scene has.
   std::vector<Value> ladder = {};
+  bool is_limit = false;  ///< it buys that only where a run ends at it
 
   std::optional<Value> of(const void* options) const {
     return member.get ? member.get(options) : std::nullopt;
@@ -177,6 +178,8 @@ inline Key required(Key key) {
 /// More accuracy for more time, from value to value; of a word from word to word.
 Key buys_accuracy(std::initializer_list<double> ladder, Key key);
 Key buys_accuracy(Key word);
+/// The same of a limit, where a run reaches it.
+Key buys_accuracy_as_limit(std::initializer_list<double> ladder, Key key);
 
 /// Lists of keys: where they act, of a part of the struct, together.
 std::vector<Key> acting(Acts, std::vector<Key>);

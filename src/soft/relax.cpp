@@ -242,10 +242,12 @@ const StageEntry& entry_of<Relax>() {
                                       number(&Relax::alpha, "alpha",
                                              "sweeps between two growths of the box, in units of (log10 N)^2",
                                              above(0, 1e6))),
-                        integer(&Relax::period, "period",
-                                "sweeps between two growths of the box, however many spheres, in place of "
-                                "alpha",
-                                {1, 1e6}),
+                        buys_accuracy(
+                            {10, 20, 50, 150, 500, 2000},
+                            integer(&Relax::period, "period",
+                                    "sweeps between two growths of the box, however many spheres, in place "
+                                    "of alpha",
+                                    {1, 1e6})),
                         buys_accuracy({3, 10, 30, 100},
                                       number(&Relax::beta, "beta",
                                              "the box grows by the largest overlap ratio divided by this",
@@ -273,7 +275,9 @@ const StageEntry& entry_of<Relax>() {
                             integer(&Relax::patience, "patience",
                                     "how often what is stuck is stirred before some spheres are taken out",
                                     {0, 1e6})),
-                        integer(&Relax::sweeps, "sweeps", "of all spheres, after which it stops", {1, 1e9}),
+                        buys_accuracy_as_limit({10000, 40000, 160000, 640000},
+                                               integer(&Relax::sweeps, "sweeps",
+                                                       "of all spheres, after which it stops", {1, 1e9})),
                         number(
                             &Relax::seconds, "seconds",
                             "after which it stops, and then one seed need not give one packing; 0: any time",

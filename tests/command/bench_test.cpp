@@ -1,5 +1,6 @@
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "check.hpp"
@@ -21,6 +22,11 @@ TEST(BenchCommand, PrintsATableOrWritesIt) {
   EXPECT_EQ(written.status, 0) << written.err;
   EXPECT_EQ(written.out, out + "/bench.md\n" + out + "/bench.csv\n");
   EXPECT_TRUE(text_of(out + "/bench.csv").starts_with("bench,"));
+  // Its own tables it replaces, and what somebody else wrote is kept.
+  std::ofstream(out + "/bench.md") << "a bench in the garden\n";
+  EXPECT_EQ(bernal({"bench", "fly", "--spheres", "200", "-o", out}).status, 0);
+  EXPECT_EQ(text_of(out + "/bench.md.kept"), "a bench in the garden\n");
+  EXPECT_FALSE(std::filesystem::exists(out + "/bench.csv.kept"));
 }
 
 TEST(BenchCommand, RefusesAbsurdInputInOneLine) {

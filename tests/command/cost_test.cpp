@@ -69,7 +69,50 @@ TEST(CostCommand, RefusesAbsurdInputInOneLine) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out" / "cost.md"));
   std::ofstream(folder / "out" / "trials.csv") << "x,y,z,r\n";
   expect_refused_in_one_line(bernal({"cost", scene, "-o", out}), {"trials.csv"});
-  EXPECT_EQ(bernal({"cost", scene, "-o", out, "--time", "1s", "--seeds", "1", "--fresh"}).status, 0);
+  expect_refused_in_one_line(bernal({"cost", scene, "-o", out, "--fresh"}), {"trials.csv", "remove it"});
+  EXPECT_EQ(text_of(out + "/trials.csv"), "x,y,z,r\n") << "neither is what somebody else wrote removed";
+}
+
+TEST(CostCommand, RefusesToReplaceWhatItDidNotWrite) {
+  const Folder folder;
+  const std::string scene = folder.write("tiny.toml", tiny_box).string(), out = (folder / "out").string();
+  const std::vector<std::string> again = {"cost", scene, "-o", out, "--time", "0.5s", "--seeds", "1"};
+  ASSERT_EQ(bernal(again).status, 0);
+  ASSERT_EQ(bernal(again).status, 0) << "its own files it replaces";
+  std::vector<std::string> afresh = again;
+  afresh.push_back("--fresh");
+  ASSERT_EQ(bernal(afresh).status, 0);
+  // The scene that it reads it never replaces.
+  const std::string advised = out + "/recommended.toml", text = text_of(advised);
+  expect_refused_in_one_line(bernal({"cost", advised, "-o", out}), {"recommended.toml", "-o"});
+  EXPECT_EQ(text_of(advised), text);
+  std::ofstream(advised, std::ios::app) << "# mine\n";
+  expect_refused_in_one_line(bernal(again), {"recommended.toml", "remove it", "-o"});
+  EXPECT_EQ(text_of(advised), text + "# mine\n");
+  std::filesystem::remove(advised);
+  ASSERT_EQ(bernal(again).status, 0);
+  // What is in the way is seen before anything runs.
+  std::filesystem::remove(out + "/cost.md");
+  std::filesystem::create_directory(out + "/cost.md");
+  expect_refused_in_one_line(bernal({"cost", scene, "-o", out, "--time", "10m"}), {"cost.md", "folder"});
+  const std::string other = (folder / "other").string();
+  std::filesystem::create_directory(other);
+  std::ofstream(other + "/cost.csv") << "costs,of,something,else";
+  expect_refused_in_one_line(bernal({"cost", scene, "-o", other, "--time", "10m"}), {"cost.csv"});
+  EXPECT_EQ(text_of(other + "/cost.csv"), "costs,of,something,else");
+  EXPECT_FALSE(std::filesystem::exists(other + "/trials.csv"));
+}
+
+TEST(CostCommand, ShowsNamesAsTextAndSaysNothingOfThreads) {
+  const Folder folder;
+  const std::string scene = folder.write("a<script>x.toml", tiny_box).string(),
+                    out = (folder / "out").string();
+  const Ended ended =
+      bernal({"cost", scene, "-o", out, "--time", "0.5s", "--seeds", "1", "--threads", "300"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.err.find("TBB"), std::string::npos) << ended.err;
+  for (const char* file : {"cost.md", "cost.html", "cost.svg"})
+    EXPECT_EQ(text_of(out + "/" + file).find("<script>"), std::string::npos) << file;
 }
 
 TEST(CostCommand, AnInterruptKeepsWhatIsMeasured) {

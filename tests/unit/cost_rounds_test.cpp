@@ -64,6 +64,15 @@ TEST(Trial, IsCutOffAtItsLimit) {
   EXPECT_LT(trial.seconds, 5);
 }
 
+// A pair that overlaps by some ratio says nothing of contacts that are closed further.
+TEST(Trial, HoldsFromNoGapThatIsSmallerThanTheOverlapsThatAreLeft) {
+  const Trial trial = run_trial(box_of(200, 3, 0.01), {.seed = 7, .threads = 1});
+  ASSERT_GT(trial.max_overlap, 1e-6);
+  if (trial.held_from) {
+    EXPECT_GE(*trial.held_from, trial.max_overlap);
+  }
+}
+
 std::vector<Setting> three_settings() {
   return {{"a", box_of(60, 1)}, {"b, \"quoted\"", box_of(60, 2)}, {"c", box_of(60, 3)}};
 }
@@ -136,11 +145,68 @@ TEST(Rounds, KeepToTheirBudget) {
   EXPECT_LT(watch.seconds(), 10);
 }
 
+// That something is slower than an unfairly short time is not known of it, and it is tried again.
+TEST(Rounds, ForgetWhatHadNoFairTry) {
+  const testing::Folder folder;
+  TrialRecord record(folder.path() / "trials.csv");
+  const std::vector<Setting> settings = {{"slow", box_of(20000, 500)}, {"quick", box_of(60, 1)}};
+  RoundOptions options{.seeds = {1, 2}, .threads = 1, .limit = 0.1, .fair = 100};
+  const Rounds rounds = interleaved(settings, record, options);
+  EXPECT_TRUE(rounds.series[0].unfair);
+  EXPECT_TRUE(rounds.series[0].trials.empty());
+  EXPECT_EQ(rounds.series[1].trials.size(), 2u) << "the others go on";
+  EXPECT_EQ(record.size(), 2u);
+  options.fair = 0.05;
+  EXPECT_TRUE(interleaved(settings, record, options).series[0].trials.front().cut_off);
+}
+
 TEST(Rounds, RefuseARecordThatIsNone) {
   const testing::Folder folder;
   const auto file = folder.path() / "trials.csv";
-  std::ofstream(file) << "x,y,z,r\n0,0,0,1\n";
-  EXPECT_THROW(TrialRecord{file}, Error);
+  for (const std::string text : {"x,y,z,r\n0,0,0,1\n", "a note of somebody", "x,y\n"}) {
+    std::ofstream(file) << text;
+    EXPECT_THROW(TrialRecord{file}, Error);
+    EXPECT_THROW(TrialRecord(file, true), Error) << "neither afresh";
+    EXPECT_EQ(testing::text_of(file), text);
+  }
+}
+
+TEST(Rounds, RefuseNumbersThatNoRunGives) {
+  const testing::Folder folder;
+  const auto file = folder.path() / "trials.csv";
+  {
+    TrialRecord record(file);
+    interleaved({{"a", box_of(60, 1)}}, record, {.seeds = {3}, .threads = 1});
+    record.add_file("cost.md", "0123");
+  }
+  const std::string good = testing::text_of(file);
+  EXPECT_TRUE(TrialRecord(file).names_file("cost.md", "0123"));
+  EXPECT_FALSE(TrialRecord(file).names_file("cost.md", "3210"));
+  const std::size_t line = good.find('\n') + 1;
+  std::vector<std::size_t> commas;
+  bool inside = false;
+  for (std::size_t k = line; k < good.size() && good[k] != '\n'; ++k) {
+    if (good[k] == '"') inside = !inside;
+    if (good[k] == ',' && !inside) commas.push_back(k);
+  }
+  const auto with = [&](std::size_t column, const std::string& cell) {
+    return good.substr(0, commas[column - 1] + 1) + cell + good.substr(commas[column]);
+  };
+  const std::size_t phi = 8, cpu_seconds = 22;
+  for (const auto& [column, cell] : {std::pair(phi, "7"), std::pair(phi, "nan"), std::pair(phi, "-0.1"),
+                                     std::pair(cpu_seconds, "inf"), std::pair(cpu_seconds, "-1")}) {
+    std::ofstream(file) << with(column, cell);
+    try {
+      TrialRecord record(file);
+      ADD_FAILURE() << cell;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.location().line, 2) << cell;
+    }
+  }
+  std::ofstream(file) << good;
+  EXPECT_EQ(TrialRecord(file).size(), 1u);
+  EXPECT_EQ(TrialRecord(file, true).size(), 0u);
+  EXPECT_TRUE(TrialRecord(file).names_file("cost.md", "0123")) << "what was written stays known";
 }
 
 TEST(Spread, IsTheMedianAndHalfTheRange) {

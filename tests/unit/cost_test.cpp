@@ -1,5 +1,6 @@
 // What accuracy costs: the front against brute force, the knobs of scenes, and whole measurements of small
 // ones.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -10,7 +11,11 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "bernal/settle/insert.hpp"
+#include "bernal/settle/refill.hpp"
+#include "bernal/settle/shake.hpp"
 #include "bernal/soft/relax.hpp"
+#include "cost/cost_row.hpp"
 #include "cost/faceted.hpp"
 #include "cost/front.hpp"
 #include "cost/knobs.hpp"
@@ -94,7 +99,8 @@ Scene equal_spheres(SceneContainer container, std::optional<std::int64_t> count,
 
 std::vector<std::string> names_of_knobs(const Scene& scene, const testing::Folder& folder) {
   std::vector<std::string> names;
-  for (const Knob& knob : knobs_of(subject_of(scene), folder.path())) names.push_back(knob.name);
+  TrialRecord record;
+  for (const Knob& knob : knobs_of(subject_of(scene), folder.path(), record)) names.push_back(knob.name);
   return names;
 }
 
@@ -115,7 +121,8 @@ TEST(Knobs, AreThoseOfTheScenesOwnProtocolAndDomain) {
 TEST(Knobs, TurnAScenesValues) {
   const testing::Folder folder;
   const Subject subject = subject_of(equal_spheres(Sphere{.radius = 6}, {}, Relax{.patience = 7}));
-  for (Knob& knob : knobs_of(subject, folder.path())) {
+  TrialRecord record;
+  for (Knob& knob : knobs_of(subject, folder.path(), record)) {
     SCOPED_TRACE(knob.name);
     ASSERT_EQ(knob.order.size(), knob.steps.size());
     std::set<std::string> texts;
@@ -135,6 +142,64 @@ TEST(Knobs, TurnAScenesValues) {
       EXPECT_EQ(knob.steps[*between].text, "9") << "the whole number nearest to the root of 7 times 12";
     }
   }
+}
+
+TEST(Knobs, OfAStageThatComesTwiceAreCountedAmongThatStage) {
+  const testing::Folder folder;
+  Scene scene = equal_spheres(Box{.size = Vector<3>(9, 9, 9)}, 50, Insert{});
+  scene.stages = {Insert{}, Shake{}, Refill{}, Shake{}};
+  const auto names = names_of_knobs(scene, folder);
+  EXPECT_EQ(std::ranges::count(names, "shake rounds (1)") + std::ranges::count(names, "rounds (1)"), 1);
+  EXPECT_EQ(std::ranges::count(names, "shake rounds (2)") + std::ranges::count(names, "rounds (2)"), 1);
+  for (const std::string& name : names) EXPECT_EQ(name.find("(3)"), name.npos) << name;
+}
+
+// A ratio to which contacts are closed: 0 stands for not at all, and so is the least accurate; of a largest
+// overlap it is the most accurate.
+TEST(Knobs, PutTheScenesOwnValueWhereItsAccuracyIs) {
+  const testing::Folder folder;
+  using Texts = std::vector<std::string>;
+  const auto ladder = [&](const Scene& scene, std::string_view name) {
+    Texts texts;
+    TrialRecord record;
+    for (const Knob& knob : knobs_of(subject_of(scene), folder.path(), record))
+      if (knob.name == name)
+        for (const std::size_t step : knob.order) texts.push_back(knob.steps[step].text);
+    return texts;
+  };
+  const auto polished = [](double to) { return equal_spheres(PeriodicBox{}, 60, Relax{.polish = to}); };
+  EXPECT_EQ(ladder(polished(1e-8), "polish"), (Texts{"0", "1e-06", "1e-08", "1e-10"}));
+  EXPECT_EQ(ladder(polished(1e-3), "polish"), (Texts{"0", "0.001", "1e-06", "1e-10"}));
+  EXPECT_EQ(ladder(polished(1e-12), "polish"), (Texts{"0", "1e-06", "1e-10", "1e-12"}));
+  Scene scene = equal_spheres(PeriodicBox{}, 60, Relax{});
+  scene.overlap = 1e-8;
+  EXPECT_EQ(ladder(scene, "overlap"), (Texts{"0.001", "0.0001", "1e-06", "1e-08", "0"}));
+  EXPECT_EQ(ladder(equal_spheres(PeriodicBox{}, 60, Relax{.period = 100}), "period"),
+            (Texts{"10", "20", "50", "100", "150", "500", "2000"}));
+}
+
+CostRow row_with(std::vector<double> phi_of_seed, double seconds = 1) {
+  CostRow row;
+  row.runs = static_cast<int>(phi_of_seed.size());
+  row.phi_of_seed = std::move(phi_of_seed);
+  row.seconds = seconds;
+  return row;
+}
+
+// Runs with the same seed are compared: what every seed loses is a loss, however much seeds differ.
+TEST(Difference, IsThatOfTheSameSeeds) {
+  const CostRow own = row_with({0.60, 0.62, 0.64});
+  const Difference loss = difference_of(row_with({0.598, 0.617, 0.638}), own);
+  EXPECT_NEAR(loss.mean, -0.007 / 3, 1e-12);
+  EXPECT_NEAR(*loss.error, 0.001 / 3, 1e-12) << "of -0.002, -0.003, -0.002";
+  EXPECT_NEAR(loss.least, -0.003, 1e-12);
+  EXPECT_NEAR(loss.most, -0.002, 1e-12);
+  EXPECT_FALSE(is_no_loss(row_with({0.598, 0.617, 0.638}), own));
+  EXPECT_TRUE(is_no_loss(row_with({0.5991, 0.6191, 0.6391}), own)) << "less than matters";
+  EXPECT_TRUE(is_no_loss(row_with({0.59, 0.625, 0.64}), own)) << "some seeds gain";
+  EXPECT_FALSE(is_no_loss(row_with({0.55, 0.64, 0.65}), own)) << "0.0067, whatever the seeds do";
+  EXPECT_FALSE(difference_of(row_with({0.6}), row_with({0.61})).error) << "of one seed nothing is known";
+  EXPECT_FALSE(is_no_loss(row_with({0.598}), row_with({0.6})));
 }
 
 CostReport measured(const Scene& scene, const testing::Folder& folder, double seconds, int seeds = 2) {
@@ -211,6 +276,96 @@ TEST(Cost, StopsWhenItIsTold) {
                            {.seconds = 60, .threads = 1, .monitor = at_once})
                   .rows.empty());
   EXPECT_FALSE(std::filesystem::exists(other / "cost.md"));
+}
+
+// Polished in a container all radii have grown: that is no density of the spheres that are asked for.
+TEST(Cost, ComparesPackingFractionsAtTheSizesThatAreAskedFor) {
+  const testing::Folder folder;
+  const Scene scene = equal_spheres(Box{.size = Vector<3>(8, 8, 8)}, 58, Relax{});
+  const CostReport report =
+      measure_cost(scene, folder.path(), {.seconds = 30, .seeds = 1, .threads = 1, .most_settings = 4});
+  const CostRow& own = report.rows[report.own];
+  std::size_t polished = 0;
+  for (const CostRow& row : report.rows) {
+    if (row.size_scale == 1 || row.slower) continue;
+    ++polished;
+    EXPECT_GT(row.packed_phi, own.packed_phi);
+    EXPECT_NEAR(row.phi, own.phi, 1e-9) << row.setting << ": as many spheres of the same sizes";
+  }
+  EXPECT_GT(polished, 0u);
+  EXPECT_EQ(report.rows[report.recommended].size_scale, 1);
+}
+
+TEST(Cost, CountsTheSameSpheresAsOneSetting) {
+  const testing::Folder folder;
+  const CostReport report =
+      measured(equal_spheres(Box{.size = Vector<3>(9, 9, 9)}, 20, Relax{}), folder, 60, 1);
+  const CostRow& own = report.rows[report.own];
+  EXPECT_FALSE(own.is_repeat);
+  std::size_t repeats = 0;
+  for (const CostRow& row : report.rows) {
+    if (&row == &own || row.hash != own.hash) continue;
+    ++repeats;
+    EXPECT_TRUE(row.is_repeat) << row.setting;
+    EXPECT_FALSE(row.pareto || row.pareto_contacts) << row.setting;
+  }
+  EXPECT_GT(repeats, 0u) << "patience has nothing to do here";
+  EXPECT_NE(report.rows[report.recommended].hash == own.hash, report.recommended != report.own);
+}
+
+TEST(Cost, SaysWhatOneSeedDoesNotTellAndWhyItEnded) {
+  const testing::Folder folder;
+  const CostReport report = measure_cost(equal_spheres(PeriodicBox{}, 30, Relax{}), folder.path(),
+                                         {.seconds = 60, .seeds = 1, .threads = 1, .most_settings = 3});
+  EXPECT_FALSE(report.complete);
+  EXPECT_TRUE(report.ending.starts_with("the most settings were tried")) << report.ending;
+  const std::string page = testing::text_of(folder / "cost.md");
+  EXPECT_NE(page.find("with one seed nothing is known of how seeds differ"), page.npos);
+  EXPECT_EQ(page.find("two seeds"), page.npos);
+  for (const CostRow& row : report.rows) EXPECT_FALSE(row.phi_change_error);
+}
+
+// Where overlap is allowed, `bernal pack` states more than what counts here: both are said.
+TEST(Cost, StatesWhatPackStates) {
+  const testing::Folder folder;
+  Scene scene = equal_spheres(PeriodicBox{}, 60, Relax{.alpha = 3, .stop = 0.01});
+  scene.overlap = 0.01;
+  const CostReport report =
+      measure_cost(scene, folder.path(), {.seconds = 60, .seeds = 1, .threads = 1, .most_settings = 1});
+  const CostRow& own = report.rows[report.own];
+  ASSERT_GT(own.max_overlap, 0);
+  const double stated = run(build(scene), {{}, 1, {}}).packing_fraction();
+  EXPECT_NEAR(own.packed_phi, stated, 1e-12);
+  EXPECT_NEAR(own.own_phi, stated * std::pow(1 - own.max_overlap, 3), 1e-12);
+  const CostRow& chosen = report.rows[report.recommended];
+  const std::string page = testing::text_of(folder / "cost.md");
+  EXPECT_NE(page.find(fmt::format("gives packing fraction {:.6f}", chosen.packed_phi)), page.npos);
+  EXPECT_NE(page.find(fmt::format("{:.6f}", chosen.own_phi)), page.npos);
+}
+
+// Where a scene ends at a limit, that is what stands between it and what it asks for.
+TEST(Cost, PutsOffALimitThatTheSceneEndsAt) {
+  const testing::Folder folder;
+  const Scene scene = equal_spheres(Box{.size = Vector<3>(8, 8, 8)}, 61, Relax{.sweeps = 10});
+  const CostReport report =
+      measure_cost(scene, folder.path(), {.seconds = 20, .seeds = 1, .threads = 1, .most_settings = 4});
+  ASSERT_EQ(report.rows[report.own].outcome, Outcome::hit_limit) << report.rows[report.own].reason;
+  EXPECT_TRUE(std::ranges::any_of(report.rows, [](const CostRow& row) {
+    return row.changed == std::vector<std::string>{"sweeps"} && row.outcome == Outcome::converged;
+  }));
+  EXPECT_EQ(report.rows[report.recommended].outcome, Outcome::converged) << report.recommendation;
+}
+
+TEST(Cost, SaysThatASceneDoesNotReachWhatItAsksFor) {
+  const testing::Folder folder;
+  Scene scene = equal_spheres(Box{.size = Vector<3>(6, 6, 6)}, 200, Insert{});
+  const CostReport report = measured(scene, folder, 20, 1);
+  ASSERT_NE(report.rows[report.own].outcome, Outcome::converged);
+  EXPECT_NE(report.recommendation.find("does not reach what the scene asks for"), std::string::npos);
+  EXPECT_TRUE(testing::text_of(folder / "recommended.toml").starts_with("# It does not reach"));
+  EXPECT_NE(testing::text_of(folder / "cost.html").find("does not reach what is asked for</span>"),
+            std::string::npos);
+  read_scene(folder / "recommended.toml");
 }
 
 TEST(Cost, RefusesATimeInWhichNothingEnds) {

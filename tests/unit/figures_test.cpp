@@ -104,6 +104,13 @@ TEST(Plot, LogarithmicAxes) {
   EXPECT_NEAR(plot.y_at(plot.y(3)), 3, 1e-12);
   EXPECT_EQ(Ticks({1, 10, "", Scale::logarithmic}).values(), (std::vector<double>{1, 2, 5, 10}));
   EXPECT_EQ(Ticks({0.1, 1e5, "", Scale::logarithmic}).values().size(), 7u);
+  // An axis that is none has none, and comes to an end.
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  for (const auto& [from, to] :
+       {std::pair(0.0, 10.0), std::pair(-1.0, 10.0), std::pair(1.0, inf), std::pair(inf, inf),
+        std::pair(std::nan(""), 10.0), std::pair(1.0, std::nan(""))})
+    EXPECT_TRUE(Ticks({from, to, "", Scale::logarithmic}).values().empty()) << from << " " << to;
+  EXPECT_LT(Ticks({1e-320, 1.7e308, "", Scale::logarithmic}).values().size(), 1000u);
 }
 
 TEST(Contours, OfAPlaneAreStraight) {

@@ -42,7 +42,8 @@ struct BenchFile {
 /// another name, and where something is packed that is not certified.
 std::vector<BenchFile> run_benches(std::span<const std::string> names, const BenchOptions& options = {});
 
-/// Writes them into `folder`, all or none; returns where they are. Throws Error{cannot_write}.
+/// Writes them into `folder`, all or none; returns where they are. A file of such a name that begins
+/// otherwise is somebody else's and is kept under another name. Throws Error{cannot_write}.
 std::vector<std::filesystem::path> write_benches(const std::vector<BenchFile>& files,
                                                  const std::filesystem::path& folder);
 

@@ -28,8 +28,15 @@ struct CostRow {
   std::vector<std::string> changed;  ///< the knobs that are not as in the scene: "alpha", "stop"
   int runs = 0;
   bool slower = false;  ///< a run was cut off: only that it is slower than `seconds` is known
-  /// Strict: of the spheres shrunk by the overlap that is left; of the volume of the scene's own container.
+  /// Strict: of the spheres shrunk by the overlap that is left, and of the sizes that are asked for; of the
+  /// volume of the scene's own container.
   double phi = 0, phi_scatter = 0;
+  std::vector<double> phi_of_seed;  ///< in the order of the seeds; the runs that were not cut off
+  /// By how much it is denser than the scene as it is with the same seed: the mean over the seeds, and its
+  /// standard error, of which one seed says nothing.
+  double phi_change = 0;
+  std::optional<double> phi_change_error;
+  double size_scale = 1;  ///< all sizes over those that are asked for, see `Packing::size_scale`
   double seconds = 0, seconds_scatter = 0;  ///< of processor time, all threads together, without preparing
   double wall_seconds = 0, prepare_seconds = 0;
   std::optional<double> memory_bytes;   ///< at the peak, beyond what the process had before
@@ -40,12 +47,16 @@ struct CostRow {
   double coordination = 0;              ///< at gaps of 0.002
   double wall_error = 0;  ///< how far the wall that was used may lie from the exact one, or a sphere sticks
                           ///< out of it, in mean radii
-  double spheres = 0;
+  double spheres = 0;     ///< with the scene's own seed
   Outcome outcome = Outcome::converged;  ///< the worst of the runs
+  std::string reason;                    ///< one sentence behind that outcome
   bool certified = false;                ///< all of them
   std::string hash;                      ///< of the spheres with the scene's own seed
   double own_phi = 0, own_seconds = 0;   ///< with the scene's own seed, processor time
-  bool pareto = false;           ///< no setting that is as quick is denser, see `CostReport::phi_step`
+  double packed_phi = 0;   ///< of the same run as `bernal pack` states it: with the overlap that is left
+  bool is_repeat = false;  ///< with fewer changes of the scene come the same spheres: neither on a front nor
+                           ///< recommended
+  bool pareto = false;     ///< no setting that is as quick is denser, see `CostReport::phi_step`
   bool pareto_contacts = false;  ///< no setting that is as quick closes its contacts further
 };
 
@@ -55,9 +66,14 @@ struct CostReport {
   std::size_t recommended = 0;
   std::string recommendation;  ///< one sentence
   std::vector<std::string>
-      verdicts;         ///< a sentence a knob: what it buys for this scene, or that it buys nothing
-  std::string toml;     ///< of the recommended scene, whole
-  double phi_step = 0;  ///< packing fractions that differ by less count as equal
+      verdicts;      ///< a sentence a knob: what it buys for this scene, or that it buys nothing
+  std::string toml;  ///< of the recommended scene, whole
+  /// Packing fractions that differ by less count as equal: the standard error, over the seeds, of what a
+  /// setting differs from the scene by, of the median setting, and at most 0.005. Of one seed nothing is
+  /// known; then it is 1e-5.
+  double phi_step = 0;
+  std::vector<std::string> refused;          ///< settings that cannot be run, each with why
+  std::string ending;                        ///< why no more was measured
   std::size_t runs_made = 0, runs_kept = 0;  ///< in this call, in earlier ones
   bool complete = false;                     ///< nothing was left to try
   bool cancelled = false;
@@ -77,13 +93,15 @@ struct CostReport {
 /// `phi_step`; and a second one whose contacts are closed further, by a factor of two of the gap. Only runs
 /// count that are certified and reach what they are asked for, if the scene as it is does.
 ///
-/// The recommendation is the quickest setting within 0.001, or `phi_step` if that is more, of the densest; of
-/// those that all reach the same packing fraction it is the quickest.
+/// The recommendation is the quickest setting that, with the same seeds, is as dense as the scene as it is
+/// and as the densest setting: within 0.001 in the mean, or within its standard error where that is more, and
+/// no more than 0.005. What gives the same spheres as another setting is never recommended in its place.
 ///
 /// Writes cost.csv, cost.md, cost.svg, cost.html and recommended.toml into `folder`, all or none, and beside
-/// them trials.csv, which holds every run and makes that none is made twice. Cost: the time that is given.
-/// Throws as `build`, Error{cannot_write}, and Error{bad_argument} where not one run of the scene as it is
-/// ends in the time given.
+/// them trials.csv, which holds every run and makes that none is made twice, and names these files with their
+/// digests. Cost: the time that is given. Throws as `build`, Error{bad_argument} where not one run of the
+/// scene as it is ends in the time given, and Error{cannot_write}, before anything is run, where a file of
+/// somebody else, one that was changed since, or the scene itself has one of the names.
 CostReport measure_cost(const Scene& scene, const std::filesystem::path& folder,
                         const CostOptions& options = {});
 
