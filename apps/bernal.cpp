@@ -30,6 +30,7 @@ constexpr const char* examples = R"(Examples:
   bernal pack bracket.stl --unit mm --diameter 2     fill a CAD part, without a scene; results in bracket/
   bernal verify out                                  certify what stands in the files, from scratch
   bernal measure out                                 contacts, rattlers, g(r), sizes against those asked for
+  bernal export out --to lammps -o out.data          for LAMMPS, YADE, OVITO, OpenMC, POV-Ray, …
   bernal inspect part.stl --unit mm                  can this CAD file be a container?
   bernal explain data/scenes/hopper.toml             what would run, and what it would cost
   bernal cost data/scenes/relax_equal.toml -o out    what accuracy costs in time there, and what to take
@@ -71,14 +72,15 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a run is not lost because nobody reads what it says
   int status = exit_code::done;
   try {
-    const Command command = {"bernal",
-                             description,
-                             {},
-                             examples,
-                             {},
-                             {pack_command(), verify_command(), inspect_command(), explain_command(),
-                              keys_command(), cost_command(), measure_command(), predict_command(),
-                              design_command(), map_command(), reproduce_command(), bench_command()}};
+    const Command command = {
+        "bernal",
+        description,
+        {},
+        examples,
+        {},
+        {pack_command(), verify_command(), inspect_command(), explain_command(), keys_command(),
+         cost_command(), measure_command(), export_command(), predict_command(), design_command(),
+         map_command(), reproduce_command(), bench_command()}};
     status = run_command_line(argc, argv, command, "bernal " + std::string(bernal::version()));
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::broken_pipe && reader_has_left()) return status;

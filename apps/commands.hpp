@@ -14,6 +14,7 @@ Command design_command();
 Command map_command();
 Command reproduce_command();
 Command bench_command();
+Command export_command();
 
 /// Exit codes, the same for every subcommand.
 namespace exit_code {

@@ -33,7 +33,15 @@ std::string describe(const Plan& plan) {
     text += fmt::format("start      {} of {}; \"{}\" begins from {}\n",
                         n == 1 ? "1 sphere" : grouped(n) + " spheres", plain_text(plan.start.file),
                         plan.scene.stages.front().name(), n == 1 ? "it" : "them");
-  return text + fmt::format("spheres    {}; {}\n", describe_target(plan), describe_sizes(plan.scene));
+  text += fmt::format("spheres    {}; {}\n", describe_target(plan), describe_sizes(plan.scene));
+  for (const Output& output : plan.scene.outputs)
+    text += fmt::format("output     {}\n", describe_output(output));
+  return text;
+}
+
+std::string describe_output(const Output& output) {
+  return fmt::format("{}, for {}, in {}", plain_text(output.file.string()), output.format,
+                     name_of(output.unit.value_or(Unit::m)));
 }
 
 std::string describe_sizes(const Scene& scene) {

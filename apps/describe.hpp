@@ -11,5 +11,8 @@ std::string describe(const bernal::Plan& plan);
 /// with the word radius or diameter, which users mix up.
 std::string describe_sizes(const bernal::Scene& scene);
 
+/// "lammps.data, for lammps, in m"; precondition: it is complete.
+std::string describe_output(const bernal::Output& output);
+
 /// "as many as fit", "10,000", "up to packing fraction 0.45".
 std::string describe_target(const bernal::Plan& plan);

@@ -113,6 +113,11 @@ nlohmann::ordered_json as_json(const Plan& plan) {
                      {"bytes", item.bytes},
                      {"part", item.part},
                      {"if_needed", item.if_needed}});
+  ordered_json outputs = ordered_json::array();
+  for (const Output& output : plan.scene.outputs)
+    outputs.push_back({{"format", output.format},
+                       {"file", plain_text(output.file.string())},
+                       {"unit", name_of(output.unit.value_or(Unit::m))}});
   return {{"unit", name_of(plan.scene.unit)},
           {"container", container},
           {"spheres", {{"target", describe_target(plan)}, {"sizes", describe_sizes(plan.scene)}}},
@@ -122,6 +127,7 @@ nlohmann::ordered_json as_json(const Plan& plan) {
             {"packing_fraction", plan.expected_packing_fraction},
             {"seconds", plan.expected_seconds},
             {"memory_bytes", plan.expected_memory_bytes}}},
+          {"outputs", outputs},
           {"items", items},
           {"absent", plan.absent},
           {"stages_are_default", plan.scene.stages_are_default},

@@ -77,6 +77,9 @@ void print_result(const Packing& packing, const WrittenPacking& written) {
   say(stderr, "proof      {}\n", written.certificate.statement);
   for (std::size_t i = 0; i < written.files.size(); ++i)
     say(stderr, "{:<9}  {}\n", i == 0 ? "files" : "", plain_text(written.files[i].string(), 5000));
+  for (std::size_t i = 0; i < written.notes.size(); ++i)
+    say(stderr, "output     {}: {}\n", plain_text(packing.scene.outputs[i].file.string(), 5000),
+        written.notes[i]);
 }
 
 int pack(const PackCall& call) {
@@ -141,7 +144,7 @@ Command pack_command() {
           "  bernal pack bracket.stl --unit mm --diameter 2        no scene needed; results in bracket/\n"
           "  bernal pack bracket.stl --unit mm --lognormal 2,0.3   median 2 mm, sigma 0.3\n\n"
           "Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html and, in two and three\n"
-          "dimensions, packing.svg: all or none.\n"
+          "dimensions, packing.svg, and what the scene's [[output]] tables ask for: all or none.\n"
           "For a mesh, prints the scene that the flags stand for, ready to be kept and changed.\n"
           "Ctrl-C ends the run at the next safe point and writes what is there, certified.\n"
           "Exit codes: 0 done; 2 bad input, nothing written; 3 ended without reaching what the scene asks.",

@@ -7,6 +7,7 @@
 //   scene.sizes = Lognormal{.median = 0.5, .sigma = 0.2};
 //   const Packing packing = run(build(scene));
 
+#include "bernal/export/export.hpp"
 #include "bernal/fly/fly.hpp"
 #include "bernal/hard/grow.hpp"
 #include "bernal/io/read_packing.hpp"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -17,6 +16,7 @@
 #include "cad/file_digest.hpp"
 #include "cad/known_formats.hpp"
 #include "io/report.hpp"
+#include "scene/output_table.hpp"
 
 namespace fs = std::filesystem;
 
@@ -25,10 +25,6 @@ namespace {
 
 /// Of the digest, in the names of copies.
 constexpr std::size_t digits_in_name = 8;
-
-constexpr std::array<const char*, 8> names_of_results = {"scene.toml",  "spheres.csv",  "spheres.vtp",
-                                                         "report.json", "report.html",  "packing.svg",
-                                                         "section.svg", "container.off"};
 
 /// "part-1f3870be.stl" of "part.stl".
 fs::path name_of_copy(const fs::path& file, const std::string& sha256) {
@@ -148,13 +144,17 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
     if (options.with_mesh && file.filename().string().size() > longest_name)
       refuse(file, "has too long a name for a copy, which ends in its digest; rename it");
   }
+  std::vector<std::string> names(names_of_result.begin(), names_of_result.end());
+  for (Output& output : packed.outputs) {
+    complete_output(output, packed);
+    std::ranges::move(files_of(output), std::back_inserter(names));
+  }
   for (const auto& [named, sha256] : files) {
     const bool is_start = packed.start.file && &named == &*packed.start.file;
     const fs::path file = fs::is_directory(named) ? named / "spheres.csv" : named;
     std::error_code unknown;
     const fs::path meant = fs::weakly_canonical(fs::absolute(file), unknown);
-    if (std::ranges::find(names_of_results, meant.filename().string()) == names_of_results.end() ||
-        !stands_in(meant, folder))
+    if (std::ranges::find(names, meant.filename().string()) == names.end() || !stands_in(meant, folder))
       continue;
     refuse(file, fmt::format("is {}{}, and the result would take its place; give another folder with -o",
                              is_start ? "what the scene starts from" : "the part that the scene packs",
@@ -162,7 +162,7 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
   }
   check_writable(folder);
   const std::vector<std::string> earlier = files_of_earlier_result(folder);
-  for (const std::string name : names_of_results) {
+  for (const std::string& name : names) {
     const fs::path there = folder / name;
     std::error_code unknown;
     if (!stands(there) || std::ranges::find(earlier, name) != earlier.end()) continue;

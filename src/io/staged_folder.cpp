@@ -35,7 +35,7 @@ constexpr std::string_view staging_prefix = ".bernal-staging-";
 /// `earlier_name` below it; and then, while they move into their places.
 constexpr const char* complete_name = ".bernal-complete";
 constexpr const char* placing_name = ".bernal-placing";
-constexpr const char* earlier_name = "earlier";
+constexpr const char* earlier_name = ".earlier";
 /// In it, which files it replaces, a line each; nothing that lacks it is touched.
 constexpr const char* replaced_name = ".replaced";
 

@@ -17,6 +17,7 @@
 #include "io/result_folder.hpp"
 #include "io/write_csv.hpp"
 #include "io/write_off.hpp"
+#include "io/write_output.hpp"
 #include "io/write_svg.hpp"
 #include "io/write_vtp.hpp"
 
@@ -84,6 +85,8 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   if (!section.empty()) staged.write("section.svg", section);
   if (const auto* walls = std::get_if<Mesh>(&packing.domain); walls && walls_are_made(packing.scene))
     staged.write("container.off", as_off_file(*walls));
+  std::vector<std::string> notes;
+  for (const Output& output : packing.scene.outputs) notes.push_back(write_output(packing, output, staged));
   for (const std::string& name : staged.names()) manifest.try_emplace(name);
   for (const char* name : {"report.json", "report.html"}) manifest[name];
   const Report report{packing, certificate, measured, radii.all.get(), hash_of(packing.spheres), manifest};
@@ -95,7 +98,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   std::erase_if(replaced, [&](const std::string& name) {
     return manifest.contains(name) && std::ranges::find(staged.names(), name) == staged.names().end();
   });
-  return {staged.publish(replaced), certificate};
+  return {staged.publish(replaced), certificate, notes};
 }
 
 }  // namespace bernal

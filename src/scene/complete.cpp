@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "scene/output_table.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"
@@ -171,7 +173,46 @@ void complete_stages(Scene& scene) {
   if (!scene.draw) scene.draw = keeps_sizes ? Draw::quantiles : Draw::random;
 }
 
+/// Every output has a name of its own, and none of the result's.
+void require_names(const Scene& scene) {
+  std::set<std::string, std::less<>> taken(names_of_result.begin(), names_of_result.end());
+  for (const Output& output : scene.outputs) {
+    const Section section = section_of(output);
+    if (output.file != output.file.filename() || output.file.string().starts_with('.'))
+      section.refuse("file",
+                     fmt::format("must be the name of a file in the folder of the result, without a dot "
+                                 "before it, not {}",
+                                 toml_string(output.file.string())));
+    for (const std::string& name : files_of(output))
+      if (!taken.insert(name).second)
+        section.fail("file", fmt::format("{} would write {}, which {}; give it another \"file\"",
+                                         section.name, toml_string(name),
+                                         std::ranges::find(names_of_result, name) == names_of_result.end()
+                                             ? "an output before it writes too"
+                                             : "is a file of every result"));
+  }
+}
+
 }  // namespace
+
+void complete_output(Output& output, const Scene& scene) {
+  const OutputTable& table = table_of(output);
+  const Section section = section_of(output);
+  check(table.keys, &output, section);
+  const int dimension = scene.dimension();
+  if (dimension < table.least_dimension || dimension > table.most_dimensions) {
+    std::vector<std::string_view> others;
+    for (const OutputTable* other : output_tables())
+      if (dimension >= other->least_dimension && dimension <= other->most_dimensions)
+        others.push_back(other->name());
+    section.fail(
+        "format",
+        fmt::format("the format \"{}\" cannot hold a packing of {} dimension{}; \"{}\" can", table.name(),
+                    dimension, dimension == 1 ? "" : "s", fmt::join(others, "\", \"")));
+  }
+  if (output.file.empty()) output.file = table.file;
+  if (!output.unit || !table.keys.find("unit")) output.unit = table.unit.value_or(scene.unit);
+}
 
 bool StageTraits::stands_in_bed(const Scene& scene) const {
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
@@ -198,6 +239,8 @@ void complete(Scene& scene) {
     check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",
                 scene);
   complete_stages(scene);
+  for (Output& output : scene.outputs) complete_output(output, scene);
+  require_names(scene);
 }
 
 const StageTable& table_of(const Stage& stage) {

@@ -12,6 +12,7 @@
 
 #include "bernal/core/text.hpp"
 #include "core/file_kind.hpp"
+#include "scene/output_table.hpp"
 #include "scene/read_columns.hpp"
 #include "scene/read_value.hpp"
 #include "scene/scene_entries.hpp"
@@ -51,6 +52,7 @@ class Reader {
     if (root.contains("accuracy"))
       read_own(table_in(root, "accuracy"), schema::accuracy_entry(), "[accuracy]", scene);
     read_stages(root, scene);
+    read_outputs(root, scene);
     complete(scene);
     return scene;
   }
@@ -101,7 +103,8 @@ class Reader {
   void check_tables(const toml::table& root) const {
     check_names(root, schema::scene_entry(), {tables.begin(), tables.end()}, "the scene");
     for (const std::string_view name : tables)
-      if (const toml::node* node = root.get(name); node && name != "stage" && !node->is_table())
+      if (const toml::node* node = root.get(name);
+          node && name != "stage" && name != "output" && !node->is_table())
         fail(node->source(), "\"{0}\" must be a table [{0}], not {1}", name, written(*node));
   }
 
@@ -152,12 +155,20 @@ class Reader {
       if (table.contains(key)) scene.target.where = scene.locations.of(key);
   }
 
+  /// All tables [[name]]; null where there are none.
+  const toml::array* tables_in(const toml::table& root, std::string_view name) const {
+    const toml::node* node = root.get(name);
+    if (!node) return nullptr;
+    const toml::array* all = node->as_array();
+    if (!all || all->empty() || !all->is_array_of_tables())
+      fail(node->source(), "\"{0}\" must be one table [[{0}]] {1} {0}, not {2}", name,
+           name == "output" ? "an" : "a", written(*node));
+    return all;
+  }
+
   void read_stages(const toml::table& root, Scene& scene) const {
-    const toml::node* node = root.get("stage");
-    if (!node) return;
-    const toml::array* stages = node->as_array();
-    if (!stages || stages->empty() || !stages->is_array_of_tables())
-      fail(node->source(), "\"stage\" must be one table [[stage]] a stage, not {}", written(*node));
+    const toml::array* stages = tables_in(root, "stage");
+    if (!stages) return;
     Names names;
     for (const StageTable* stage : stage_tables()) names.push_back(stage->name());
     for (const toml::node& item : *stages) {
@@ -166,6 +177,19 @@ class Reader {
       Stage& made = scene.stages.emplace_back(stage.make());
       read(table, stage.keys, "do", fmt::format("[[stage]] {}", stage.name()), stage.options_of(made),
            made.locations);
+    }
+  }
+
+  void read_outputs(const toml::table& root, Scene& scene) const {
+    const toml::array* outputs = tables_in(root, "output");
+    if (!outputs) return;
+    Names names;
+    for (const OutputTable* format : output_tables()) names.push_back(format->name());
+    for (const toml::node& item : *outputs) {
+      const toml::table& table = *item.as_table();
+      const OutputTable& format = *output_tables()[choose(table, "format", names, "[[output]]")];
+      Output& made = scene.outputs.emplace_back(Output{.format = std::string(format.name())});
+      read(table, format.keys, "format", fmt::format("[[output]] {}", format.name()), &made, made.locations);
     }
   }
 
@@ -331,7 +355,8 @@ class Reader {
     throw Error(ErrorCode::bad_scene, fmt::format(format, std::forward<Args>(args)...), at(where));
   }
 
-  static constexpr std::array<std::string_view, 4> tables = {"container", "spheres", "accuracy", "stage"};
+  static constexpr std::array<std::string_view, 5> tables = {"container", "spheres", "accuracy", "stage",
+                                                             "output"};
 
   std::filesystem::path path_;
   std::string file_;

@@ -2,6 +2,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "scene/output_table.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"
@@ -22,13 +23,15 @@ std::vector<Group> groups() {
     for (const Entry& entry : entries) all.push_back(&entry);
     return all;
   };
-  std::vector<const Entry*> stages;
+  std::vector<const Entry*> stages, outputs;
   for (const StageTable* table : stage_tables()) stages.push_back(&table->keys);
+  for (const OutputTable* table : output_tables()) outputs.push_back(&table->keys);
   const auto& own = schema::own_entries();
   return {{"Tables of a scene", {own.begin(), own.end()}},
           {"Containers: kind = \"…\" in [container]", addresses(schema::container_entries())},
           {"Sizes: distribution = \"…\" in radius or diameter", addresses(schema::size_entries())},
-          {"Stages: do = \"…\" in [[stage]]", stages}};
+          {"Stages: do = \"…\" in [[stage]]", stages},
+          {"Files for other programs: format = \"…\" in [[output]]", outputs}};
 }
 
 /// "alpha = 17" or "phi0", what it is, and what it must be.

@@ -5,6 +5,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "scene/output_table.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"
@@ -130,6 +131,9 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
                   container_as_toml(scene.container, folder), lines(schema::spheres_entry(), &named),
                   lines(schema::accuracy_entry(), &scene));
   if (!scene.stages.empty()) out.append("\n").append(stages_as_toml(scene));
+  for (const Output& output : scene.outputs)
+    out += fmt::format("\n[[output]]\nformat = {}\n{}", toml_string(output.format),
+                       lines(table_of(output).keys, &output));
   return out;
 }
 

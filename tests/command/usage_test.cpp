@@ -10,7 +10,7 @@ TEST(Usage, HelpNamesEverySubcommandWithExamples) {
   EXPECT_EQ(help.status, 0);
   EXPECT_EQ(help.err, "");
   for (const std::string command : {"pack", "verify", "inspect", "explain", "keys", "cost", "measure",
-                                    "predict", "design", "map", "reproduce"}) {
+                                    "export", "predict", "design", "map", "reproduce"}) {
     EXPECT_NE(help.out.find("\n  " + command), std::string::npos) << command;
     const Ended own = bernal({command, "--help"});
     EXPECT_EQ(own.status, 0);

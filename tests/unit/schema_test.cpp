@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "bernal/scene/read_scene.hpp"
+#include "scene/output_table.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "support/folder.hpp"
@@ -91,6 +92,9 @@ std::string file_of_points() {
 
 std::string sample_of(const Entry& entry, const Key& key, int choice) {
   if (key.type == Type::file && entry.name == "polygon") return file_of_points();
+  for (const OutputTable* format : output_tables())
+    if (&format->keys == &entry && key.type == Type::file)
+      return choice == 0 ? "\"mine.x\"" : "'a \"b\" \\c'";
   return key.type == Type::file && !entry.columns.empty() ? file_of_columns() : sample(key, choice);
 }
 
@@ -145,6 +149,11 @@ void for_every_entry(Visit visit) {
             fmt::format("diameter = {{ distribution = \"{}\", {} }}", e.name, joined(lines, ", ")));
       });
     for (const StageTable* stage : stage_tables()) visit_stage(*stage, n, visit);
+    for (const OutputTable* format : output_tables())
+      visit(format->keys, keys_of(format->keys, n), [&](const std::vector<std::string>& lines) {
+        return with_spheres(
+            fmt::format("radius = 1\n[[output]]\nformat = \"{}\"\n{}", format->name(), joined(lines, "\n")));
+      });
     visit(schema::scene_entry(), keys_of(schema::scene_entry(), n),
           [&](const std::vector<std::string>& lines) {
             return joined(lines, "\n") + "\n" + with_spheres("radius = 1");

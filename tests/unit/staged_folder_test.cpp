@@ -107,13 +107,13 @@ TEST(StagedFolder, WhatIsCompleteIsFinishedFromAnyStep) {
   for (int moved_out = 0; moved_out <= 4; ++moved_out) {
     const Folder folder;
     const fs::path complete = folder / ".bernal-complete";
-    fs::create_directories(complete / "earlier");
+    fs::create_directories(complete / ".earlier");
     for (const auto& [name, text] : later) std::ofstream(complete / name) << text;
     for (const auto& [name, text] : earlier)
       std::ofstream(complete / ".replaced", std::ios::app) << name << '\n';
     int k = 0;
     for (const auto& [name, text] : earlier)
-      std::ofstream((k++ < moved_out ? complete / "earlier" : folder.path()) / name) << text;
+      std::ofstream((k++ < moved_out ? complete / ".earlier" : folder.path()) / name) << text;
     finish_publishing(folder.path());
     EXPECT_EQ(files_in(folder.path()), later) << moved_out;
     EXPECT_EQ(entries_in(folder.path()), later.size());
@@ -121,9 +121,9 @@ TEST(StagedFolder, WhatIsCompleteIsFinishedFromAnyStep) {
   for (int moved_in = 0; moved_in <= 4; ++moved_in) {
     const Folder folder;
     const fs::path placing = folder / ".bernal-placing";
-    fs::create_directories(placing / "earlier");
+    fs::create_directories(placing / ".earlier");
     std::ofstream(placing / ".replaced") << "a\n";
-    for (const auto& [name, text] : earlier) std::ofstream(placing / "earlier" / name) << text;
+    for (const auto& [name, text] : earlier) std::ofstream(placing / ".earlier" / name) << text;
     int k = 0;
     for (const auto& [name, text] : later)
       std::ofstream((k++ < moved_in ? folder.path() : placing) / name) << text;
@@ -150,7 +150,7 @@ TEST(StagedFolder, NothingOfAUsersIsLost) {
   EXPECT_EQ(text_of(folder / "d.kept"), "mine");
   EXPECT_TRUE(fs::exists(folder / ".bernal-backup/mine"));
   // And after a kill: what has been written there since.
-  fs::create_directories(folder / ".bernal-placing/earlier");
+  fs::create_directories(folder / ".bernal-placing/.earlier");
   folder.write(".bernal-placing/.replaced", "a\n");
   folder.write(".bernal-placing/a", "3");
   folder.write("a", "mine");

@@ -12,6 +12,7 @@ namespace bernal {
 struct WrittenPacking {
   std::vector<std::filesystem::path> files;  ///< final paths, in the order of the contract
   Certificate certificate;                   ///< of spheres.csv as it was written and read back
+  std::vector<std::string> notes;            ///< of each of the scene's outputs, what its file holds
 };
 
 struct WriteOptions {
@@ -22,8 +23,8 @@ struct WriteOptions {
 };
 
 /// Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html, in two and three dimensions
-/// packing.svg and in three section.svg, that of `middle_plane`, into `folder`, which is made if it does not
-/// exist.
+/// packing.svg and in three section.svg, that of `middle_plane`, and what the scene's outputs ask for, into
+/// `folder`, which is made if it does not exist.
 ///
 /// Everything is written whole under temporary names, spheres.csv is read back and certified against the
 /// packing's container, and only then do they take the place of all files of an earlier result: a failure

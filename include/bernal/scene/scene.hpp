@@ -86,6 +86,18 @@ struct Start {
   std::vector<std::string> sha256 = {};
 };
 
+/// One more file of a result, as another program reads it: `scene.outputs = {{.format = "lammps"}}`. What its
+/// format cannot be told, see `bernal export --help`, is of no matter there.
+struct Output {
+  std::string format;
+  std::filesystem::path file = {};  ///< its name in the folder of the result; else the format's own
+  std::optional<Unit> unit = {};    ///< of its lengths; else what the program expects
+  double density = 2500;            ///< of the spheres, in kg/m³
+  /// So many classes of radii, of equal width; else one for every radius, where few occur, or one for all.
+  std::optional<int> types = {};
+  Locations locations = {};
+};
+
 /// A packing problem as the user states it: plain data. Lengths are in `unit`. What is left out `build` fills
 /// in, and it refuses with an Error{bad_scene} what no scene file could say.
 struct Scene {
@@ -103,7 +115,8 @@ struct Scene {
   double overlap = 0;              ///< largest overlap ratio that the result may keep
   std::vector<Stage> stages = {};  ///< in order; none: the one that suits any container
   bool stages_are_default = false;
-  Locations locations;  ///< of what stands in no container, sizes or stage
+  std::vector<Output> outputs = {};
+  Locations locations;  ///< of what stands in no container, sizes, stage or output
 
   /// Whether there are sizes to draw from.
   bool draws() const {

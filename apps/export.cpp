@@ -1,0 +1,111 @@
+#include "bernal/export/export.hpp"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/io/read_packing.hpp"
+#include "commands.hpp"
+#include "progress_bar.hpp"
+#include "say.hpp"
+
+using namespace bernal;
+
+namespace {
+
+struct ExportCall {
+  std::filesystem::path folder, file;
+  std::string format;
+  std::map<std::string, std::string> words;  ///< of the format's keys
+  bool quiet = false;
+};
+
+int export_result(const ExportCall& call) try {
+  const Output output = output_of(call.format, call.words);  // before a large packing is read
+  if (call.file == "-")
+    throw Error(ErrorCode::bad_argument, "a format may need several files; give -o the name of one");
+  ProgressBar bar(call.quiet);
+  bar.now("read");
+  const Packing packing = read_packing(call.folder);
+  const Monitor monitor = bar.monitor();
+  bar.now("write");
+  const WrittenExport written = write_export(packing, output, call.file, monitor);
+  bar.clear();
+  if (call.quiet) return exit_code::done;
+  say(stderr, "{:<10} {}\n", call.format, written.note);
+  for (std::size_t i = 0; i < written.files.size(); ++i)
+    say(stderr, "{:<10} {}\n", i == 0 ? "files" : "", plain_text(written.files[i].string(), 5000));
+  return exit_code::done;
+} catch (const Cancelled&) {
+  if (!call.quiet) say(stderr, "bernal: stopped by the user; nothing is written\n");
+  return exit_code::not_reached;
+}
+
+std::string dimensions_in_words(const ExportFormat& format) {
+  if (format.least_dimension == format.most_dimensions) return fmt::format("{}", format.least_dimension);
+  return fmt::format("{} {} {}", format.least_dimension,
+                     format.most_dimensions == format.least_dimension + 1 ? "or" : "to",
+                     format.most_dimensions);
+}
+
+/// Two lines a format, from the list of formats.
+std::string table_of_formats() {
+  std::string text = "Formats:\n";
+  for (const ExportFormat& format : export_formats()) {
+    std::string options;
+    for (const std::string& key : format.keys) options += " --" + key;
+    text += fmt::format("  {:<9} {}\n            lengths in {}{}, {}; {} dimensions;{}\n", format.name,
+                        format.what, format.unit, format.unit == "the scene's" ? " unit" : "",
+                        format.sizes == "diameter" ? "diameters" : "radii", dimensions_in_words(format),
+                        options.empty() ? " no options" : options);
+  }
+  return text;
+}
+
+std::string formats_with(const std::string& key) {
+  std::vector<std::string> names;
+  for (const ExportFormat& format : export_formats())
+    for (const std::string& of : format.keys)
+      if (of == key) names.push_back(format.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+Command export_command() {
+  const auto call = std::make_shared<ExportCall>();
+  Command command{
+      "export",
+      "Write a result as other programs read it",
+      {required({"RESULT", &call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read",
+                 "DIR"}),
+       required({"--to", &call->format, "The format, one of those below", "FORMAT"}),
+       required({"-o,--output", &call->file, "The file; those that go with it stand beside it", "FILE"})},
+      table_of_formats() +
+          "\nThe line that is printed says unit, sizes, density, types and the largest overlap that rounding "
+          "to\n"
+          "another unit or to single precision made. A scene writes the same with its result:\n"
+          "  [[output]]\n"
+          "  format = \"lammps\"\n"
+          "Examples:\n"
+          "  bernal export out --to lammps -o bed.data --density 2650 --types 3\n"
+          "  bernal export out --to povray -o bed.pov && povray +A +W1200 +H900 bed.pov\n"
+          "Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.",
+      [call] { return export_result(*call); }};
+  for (const ExportKey& key : export_keys()) {
+    std::string placeholder = key.name;
+    for (char& c : placeholder) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    command.options.push_back(
+        {"--" + key.name,
+         [call = call.get(), name = key.name](const std::string& word) { call->words[name] = word; },
+         fmt::format("{} ({})", key.what, formats_with(key.name)), placeholder});
+  }
+  command.options.push_back(quiet_option(call->quiet, "Print nothing but errors"));
+  return command;
+}

@@ -1,0 +1,80 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bernal/run/packing.hpp"
+#include "io/staged_folder.hpp"
+#include "scene/output_table.hpp"
+
+namespace bernal {
+
+/// A packing as a file is to hold it: every number is the one that its reader will have.
+struct Exported {
+  const Packing& packing;
+  const Output& output;  ///< complete
+  /// Lengths in the output's unit, rounded to the precision of the format, and the origin where the format
+  /// has it. In the order of the packing.
+  Spheres<dynamic> spheres;
+  Domain domain;
+  Vector<3> middle = Vector<3>::Zero();  ///< of the domain, that became the origin; else zero
+  std::vector<std::uint32_t> types;      ///< of each sphere, from 1
+  std::uint32_t type_count = 1;
+
+  std::size_t size() const { return spheres.size(); }
+  int dimension() const { return spheres.dimension(); }
+  /// 0 beyond the last axis.
+  double coordinate(int axis, std::size_t i) const {
+    const auto k = static_cast<std::size_t>(axis);
+    return k < spheres.x.size() ? spheres.x[k][i] : 0.0;
+  }
+  Unit unit() const { return *output.unit; }
+  double largest_radius() const;
+
+  /// Whether each of three axes repeats itself.
+  std::array<bool, 3> periods() const;
+  /// "p p f": one letter an axis, of those that repeat themselves and of others.
+  std::string periods_as(std::string_view yes, std::string_view no, std::string_view between = " ") const;
+  /// What a simulator may take for its box: the domain's bounds, and a largest radius more wherever there is
+  /// a wall, so that no sphere that yields a little leaves it; as much below and above a plane.
+  Bounds<3> box() const;
+
+  /// The file's name, fit for a comment; and as a word of a script, between quotation marks where it needs
+  /// them.
+  std::string name() const;
+  std::string name_as_word() const;
+  /// "bernal 0.1.0: 1,000 spheres in a periodic box, packing fraction 0.64", in ASCII.
+  std::string title() const;
+};
+
+/// Three axes as a row of numbers: "0 0 0.5".
+std::string row_of(const Vector<3>&);
+
+/// What numbers of a format are kept in.
+enum class Precision { as_double, as_float };
+
+/// A format: as a scene knows it, and what writes it.
+struct Format {
+  OutputTable table;
+  Precision precision = Precision::as_double;
+  bool centred = false;  ///< the origin is in the middle of the domain
+  /// Writes the file of the output's name and those beside it.
+  void (*write)(const Exported&, StagedFolder&) = nullptr;
+};
+
+std::span<const Format* const> formats();
+/// Throws Error{bad_scene} where there is no such format.
+const Format& format_of(const Output&);
+
+/// The packing as a file of that output has it. Precondition: the output is complete.
+Exported exported(const Packing&, const Output&);
+
+/// The type of every radius, from 1, and how many there are: classes of equal width if `asked`; else one for
+/// every radius where at most ten occur, or one for all.
+std::uint32_t take_types(std::span<const double> radii, const std::optional<int>& asked,
+                         std::vector<std::uint32_t>& types);
+
+}  // namespace bernal

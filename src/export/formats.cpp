@@ -1,0 +1,50 @@
+#include <array>
+
+#include "export/format.hpp"
+
+namespace bernal {
+
+// Each in its own file, src/export/write_<name>.cpp.
+const Format& lammps_format();
+const Format& liggghts_format();
+const Format& yade_format();
+const Format& esys_format();
+const Format& extxyz_format();
+const Format& gsd_format();
+const Format& pfc_format();
+const Format& mfix_format();
+const Format& openmc_format();
+const Format& povray_format();
+const Format& npy_format();
+
+/// A line a format.
+constexpr std::array all_formats = {lammps_format, liggghts_format, yade_format, esys_format,
+                                    extxyz_format, gsd_format,      pfc_format,  mfix_format,
+                                    openmc_format, povray_format,   npy_format};
+
+std::span<const Format* const> formats() {
+  static const auto entries = [] {
+    std::array<const Format*, all_formats.size()> made;
+    for (std::size_t k = 0; k < made.size(); ++k) made[k] = &all_formats[k]();
+    return made;
+  }();
+  return entries;
+}
+
+std::span<const OutputTable* const> output_tables() {
+  static const auto tables = [] {
+    std::array<const OutputTable*, all_formats.size()> made;
+    for (std::size_t k = 0; k < made.size(); ++k) made[k] = &formats()[k]->table;
+    return made;
+  }();
+  return tables;
+}
+
+const Format& format_of(const Output& output) {
+  const OutputTable& table = table_of(output);
+  for (const Format* format : formats())
+    if (&format->table == &table) return *format;
+  throw Error(ErrorCode::bad_scene, "this is the format of no file", output.locations.whole);
+}
+
+}  // namespace bernal

@@ -1,0 +1,69 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "scene/output_table.hpp"
+#include "scene/toml_text.hpp"
+
+namespace bernal {
+
+/// Absent where it is empty.
+static schema::Member name_of_output() {
+  schema::Member member(&Output::file);
+  member.get = [](const void* output) -> std::optional<schema::Value> {
+    const std::string name = static_cast<const Output*>(output)->file.string();
+    return name.empty() ? std::nullopt : std::optional<schema::Value>(name);
+  };
+  return member;
+}
+
+const std::vector<schema::Key>& output_keys() {
+  using namespace schema;
+  static const std::vector<Key> all = {
+      key(Type::file, name_of_output(), "file",
+          "its name in the folder of the result; if absent that of the format"),
+      word(&Output::unit, "unit",
+           "of its lengths; if absent what the program expects, see bernal export --help",
+           {unit_names().begin(), unit_names().end()}),
+      number(&Output::density, "density", "of the spheres, in kg/m3; 2500 is glass", above(0, 1e30)),
+      integer(
+          &Output::types, "types",
+          "so many types of spheres, classes of radii of equal width; if absent one for every radius where "
+          "at most ten occur, else one for all",
+          {1, 1000})};
+  return all;
+}
+
+schema::Entry output_entry(std::string_view name, std::string_view help,
+                           const std::vector<std::string_view>& keys) {
+  schema::Entry made{.name = name, .help = help, .keys = {}};
+  for (const schema::Key& key : output_keys())
+    if (key.name == "file" || std::ranges::find(keys, key.name) != keys.end()) made.keys.push_back(key);
+  return schema::entry<Output>(std::move(made));
+}
+
+const OutputTable& table_of(const Output& output) {
+  std::vector<std::string_view> names;
+  for (const OutputTable* table : output_tables()) {
+    if (table->name() == output.format) return *table;
+    names.push_back(table->name());
+  }
+  throw Error(ErrorCode::bad_scene,
+              fmt::format("unknown format {}{}", toml_string(output.format), remedy(output.format, names)),
+              output.locations.whole);
+}
+
+std::string file_beside(const std::filesystem::path& file, std::string_view ending) {
+  return file.stem().string() + std::string(ending);
+}
+
+std::vector<std::string> files_of(const Output& output) {
+  std::vector<std::string> names = {output.file.filename().string()};
+  for (const std::string_view ending : table_of(output).endings)
+    names.push_back(file_beside(output.file, ending));
+  return names;
+}
+
+}  // namespace bernal

@@ -1,0 +1,191 @@
+// What export says, refuses and leaves behind.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <set>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/tolerance.hpp"
+#include "support/export_packings.hpp"
+#include "support/exports.hpp"
+#include "support/written_files.hpp"
+
+namespace bernal {
+namespace export_calls_test {
+
+namespace fs = std::filesystem;
+using namespace testing::exports;
+using testing::error_of;
+using testing::Folder;
+using testing::text_of;
+
+/// Largest (ri + rj - d) / (ri + rj) by all pairs, and their nearest images along axes with an edge.
+double largest_overlap(const std::vector<std::array<double, 3>>& centers, const std::vector<double>& radii,
+                       const std::array<double, 3>& edges) {
+  long double largest = -1;
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      long double squared = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        long double d = static_cast<long double>(centers[i][k]) - centers[j][k];
+        if (edges[k] > 0) d -= edges[k] * std::nearbyint(d / edges[k]);
+        squared += d * d;
+      }
+      const long double sum = static_cast<long double>(radii[i]) + radii[j];
+      largest = std::max(largest, (sum - std::sqrt(squared)) / sum);
+    }
+  return static_cast<double>(largest);
+}
+
+/// The number after these words of a note; 0 where it says that there is no overlap.
+double said_overlap(const std::string& note) {
+  if (note.find("no overlap after rounding") != note.npos) return 0;
+  const std::size_t at = note.find("largest overlap after rounding to ");
+  EXPECT_NE(at, note.npos) << note;
+  return std::stod(note.substr(note.find(": ", at) + 2));
+}
+
+TEST(Export, SaysTheLargestOverlapThatRoundingMade) {
+  const Packing packing = periodic(false);  // whose spheres touch
+  const Folder folder;
+  const WrittenExport single = write_export(packing, output_of("gsd"), folder / "a.gsd");
+  const auto chunks = read_gsd(folder / "a.gsd");
+  const auto positions = chunks.at("particles/position").as<float>(),
+             diameters = chunks.at("particles/diameter").as<float>(),
+             box = chunks.at("configuration/box").as<float>();
+  std::vector<std::array<double, 3>> centers;
+  std::vector<double> radii;
+  for (std::size_t i = 0; i < diameters.size(); ++i) {
+    centers.push_back({positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]});
+    radii.push_back(0.5 * diameters[i]);
+  }
+  const double in_file = largest_overlap(centers, radii, {box[0], box[1], box[2]});
+  EXPECT_GT(in_file, 1e-8);  // single precision has 6e-8
+  EXPECT_LT(in_file, 1e-4);
+  EXPECT_NEAR(said_overlap(single.note), in_file, 0.06 * in_file) << single.note;
+  EXPECT_NE(single.note.find("extxyz"), std::string::npos) << single.note;
+
+  const WrittenExport metres = write_export(packing, output_of("yade"), folder / "a.txt");
+  const ReadBack read = read_yade(folder / "a.txt");
+  const double in_metres = std::max(
+      0.0, largest_overlap(read.centers, read.radii, {in_unit(3, "m"), in_unit(4, "m"), in_unit(5.3, "m")}));
+  EXPECT_LT(in_metres, 1e-13);
+  // The certificate gives the ratio in double: a difference of a sum and a root, each within some roundoffs.
+  EXPECT_NEAR(said_overlap(metres.note), in_metres, 0.06 * in_metres + 6 * tolerance::roundoff)
+      << metres.note;
+
+  const WrittenExport own = write_export(packing, output_of("yade", {{"unit", "mm"}}), folder / "b.txt");
+  EXPECT_NE(own.note.find("not rounded"), std::string::npos) << own.note;
+}
+
+TEST(Export, TheNoteSaysWhatTheFileHolds) {
+  const Folder folder;
+  const std::string note =
+      write_export(periodic(), output_of("lammps", {{"density", "1000"}}), folder / "a.data").note;
+  for (const char* words : {"spheres", "lengths in m, diameters", "density 1000 kg/m3", "3 types"})
+    EXPECT_NE(note.find(words), std::string::npos) << note;
+}
+
+TEST(Export, LiggghtsGetsTheWallsOfAMesh) {
+  const Mesh tetrahedron{{{0, 0, 0}, {90, 0, 0}, {0, 90, 0}, {0, 0, 90}},
+                         {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  Packing packing = packing_in(tetrahedron, "kind = \"box\"\nsize = [9, 9, 9]");
+  const Folder folder;
+  const WrittenExport written = write_export(packing, output_of("liggghts"), folder / "bed.data");
+  ASSERT_EQ(written.files.size(), 3u);
+  const std::string script = text_of(folder / "bed.in"), walls = text_of(folder / "bed.stl");
+  EXPECT_NE(script.find("read_data bed.data"), std::string::npos);
+  EXPECT_NE(script.find("mesh/surface file bed.stl"), std::string::npos);
+  EXPECT_NE(walls.find("vertex 0.09 0 0\n"), std::string::npos);
+  std::size_t facets = 0;
+  for (std::size_t at = 0; (at = walls.find("endfacet", at)) != walls.npos; ++at) ++facets;
+  EXPECT_EQ(facets, 4u);
+  write_export(in_cylinder(), output_of("liggghts"), folder / "c.data");
+  EXPECT_NE(text_of(folder / "c.in").find("zcylinder 0.002 0.001 0.002"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder / "c.stl"));
+}
+
+TEST(Export, AllFilesAppearOrNone) {
+  const Folder folder;
+  fs::create_directory(folder / "b.py");  // where one that goes with it belongs
+  const Packing packing = periodic();
+  EXPECT_EQ(error_of([&] { write_export(packing, output_of("openmc"), folder / "b.npy"); }).code(),
+            ErrorCode::cannot_write);
+  EXPECT_FALSE(fs::exists(folder / "b.npy"));
+  EXPECT_FALSE(fs::exists(folder / "b_radii.npy"));
+  EXPECT_TRUE(fs::is_directory(folder / "b.py"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+  // Into a folder that has to be made, and in the place of an earlier one.
+  const fs::path file = folder / "new/deep/c.txt";
+  write_export(packing, output_of("yade"), file);
+  const std::string first = text_of(file);
+  write_export(packing, output_of("yade", {{"unit", "mm"}}), file);
+  EXPECT_NE(text_of(file), first);
+}
+
+TEST(Export, AnInterruptLeavesNothing) {
+  const Packing packing = periodic(false);
+  for (const ExportFormat& format : export_formats()) {
+    for (int last = 0; last < 3; ++last) {
+      const Folder folder;
+      std::atomic<int> asked = 0;
+      const Monitor monitor{{}, [&] { return asked++ >= last; }};
+      bool stopped = false;
+      try {
+        write_export(packing, output_of(format.name), folder / "a.x", monitor);
+      } catch (const Cancelled&) {
+        stopped = true;
+      }
+      EXPECT_EQ(stopped, asked > last) << format.name;
+      EXPECT_EQ(fs::is_empty(folder.path()), stopped) << format.name;
+    }
+  }
+}
+
+TEST(Export, NoSpheresAreAFileToo) {
+  Packing packing = periodic();
+  packing.spheres = Spheres<3>();
+  for (const ExportFormat& format : export_formats()) {
+    const Folder folder;
+    EXPECT_NO_THROW(exported_to(folder, packing, format.name)) << format.name;
+  }
+  const Folder folder;
+  double density = 0;
+  EXPECT_EQ(read_lammps(exported_to(folder, packing, "lammps"), density).radii.size(), 0u);
+  EXPECT_EQ(read_gsd(exported_to(folder, packing, "gsd")).at("particles/N").as<std::uint32_t>()[0], 0u);
+  EXPECT_EQ(read_npy(exported_to(folder, packing, "npy")).shape, (std::vector<std::size_t>{0, 4}));
+}
+
+TEST(Export, RefusesWhatAFormatCannotHoldOrBeTold) {
+  const Folder folder;
+  const auto refused = [&](const auto& call, const std::vector<std::string>& words) {
+    const std::string what = error_of(call).what();
+    for (const std::string& word : words)
+      EXPECT_NE(what.find(word), std::string::npos) << word << ": " << what;
+  };
+  refused([&] { exported_to(folder, in_plane(), "yade"); }, {"\"yade\"", "2 dimensions", "lammps", "extxyz"});
+  refused([&] { output_of("lamps"); }, {"unknown format \"lamps\"", "did you mean \"lammps\"?"});
+  refused([&] { output_of("yade", {{"density", "7"}}); }, {"yade takes no density", "lammps"});
+  refused([&] { output_of("openmc", {{"unit", "mm"}}); }, {"openmc takes no unit"});
+  refused([&] { output_of("lammps", {{"density", "-7"}}); }, {"density must be", "-7"});
+  refused([&] { output_of("lammps", {{"density", "heavy"}}); }, {"density must be", "heavy"});
+  refused([&] { output_of("lammps", {{"types", "2.5"}}); }, {"types must be", "whole number", "2.5"});
+  refused([&] { output_of("lammps", {{"types", "0"}}); }, {"types must be", "0"});
+  refused([&] { output_of("lammps", {{"unit", "parsec"}}); }, {"unit must be", "parsec"});
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(Export, EveryFormatSaysWhatItIs) {
+  std::set<std::string> names, files;
+  for (const ExportFormat& format : export_formats()) {
+    EXPECT_TRUE(names.insert(format.name).second) << format.name;
+    EXPECT_TRUE(files.insert(format.file).second) << format.file;
+    EXPECT_FALSE(format.what.empty());
+    EXPECT_LE(format.least_dimension, 3);
+    EXPECT_GE(format.most_dimensions, 3);
+  }
+  EXPECT_GE(names.size(), 11u);
+}
+
+}  // namespace export_calls_test
+}  // namespace bernal
