@@ -21,7 +21,7 @@ namespace {
 
 /// Packing fractions that are asked for where the scene asks for none, over what is attainable. Few of them
 /// lie below it: they say little more than what was asked for.
-constexpr std::array target_shares = {0.85, 0.95, 1.01, 1.02};
+constexpr std::array target_shares = {0.85, 0.95, 1.0025, 1.005, 1.0075, 1.01, 1.0125, 1.015, 1.0175, 1.02};
 constexpr std::array face_counts = {12, 30, 100, 300, 1000};
 
 std::optional<double> number_of(const schema::Value& value) {

@@ -46,7 +46,8 @@ std::string end_of(const CostReport& report, const CostRow& row) {
 
 /// With the factor of its sizes where they are not as asked.
 std::string setting_of_row(const CostRow& row) {
-  return row.size_scale == 1 ? row.setting : fmt::format("{} (sizes × {:.6g})", row.setting, row.size_scale);
+  return row.slower || row.size_scale == 1 ? row.setting
+                                           : fmt::format("{} (sizes × {:.6g})", row.setting, row.size_scale);
 }
 
 /// What `bernal pack recommended.toml` states, and what of it counts here.

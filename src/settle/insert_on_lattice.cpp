@@ -21,6 +21,8 @@ constexpr double widest_tried = 2, closer = 0.8;
 /// Then it is found by bisection; so near to as many sites as are needed it is wide enough.
 constexpr int most_bisections = 12;
 constexpr double enough_sites = 1.01;
+/// A wider lattice that holds more than this times what a closer one does is kept.
+constexpr double far_more = 1.25;
 /// Of a lattice that holds too few: how often it is halved for what is still to come.
 constexpr int most_halvings = 2;
 /// Where sites for the largest hold less than this of what is to be placed, those are taken that hold it,
@@ -107,8 +109,8 @@ struct Sites {
 };
 
 /// The widest that has so many free sites, or of those tried, down to the one whose spheres touch, the one
-/// with the most. Wide ones are tried first: where few spheres are wanted in much room, the others have sites
-/// without number.
+/// with far more than the closer ones, if there is such a one. Wide ones are tried first: where few spheres
+/// are wanted in much room, the others have sites without number.
 Sites widest_lattice(const Work& work, std::size_t needed) {
   const Bed& bed = work.bed();
   const double r = work.supply->largest(), touching = 2 * (r + bed.skin());
@@ -123,7 +125,8 @@ Sites widest_lattice(const Work& work, std::size_t needed) {
     wide = close;
     close = std::max(touching, closer * close);
     Sites tried = sites_at(close);
-    if (tried.free.size() > widest.free.size()) widest = std::move(tried);
+    if (static_cast<double>(widest.free.size()) < far_more * static_cast<double>(tried.free.size()))
+      widest = std::move(tried);
   }
   if (widest.free.size() < needed) return widest;
   for (int k = 0; k < most_bisections && close < wide; ++k) {
