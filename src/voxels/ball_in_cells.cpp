@@ -7,7 +7,7 @@
 namespace bernal {
 namespace {
 
-constexpr double ball = 4.0 / 3.0 * std::numbers::pi;
+constexpr double whole_ball = 4.0 / 3.0 * std::numbers::pi;
 
 /// Where x > a.
 double cap(double a) { return std::numbers::pi / 3 * (1 - a) * (1 - a) * (2 + a); }
@@ -15,7 +15,7 @@ double cap(double a) { return std::numbers::pi / 3 * (1 - a) * (1 - a) * (2 + a)
 /// Where x > a and y > b, the caps of these being given.
 double wedge(double a, double b, double cap_a, double cap_b) {
   const double squared = 1 - a * a - b * b;
-  if (squared <= 0) return (a < 0 ? cap_b : 0) + (b < 0 ? cap_a : 0) - (a < 0 && b < 0 ? ball : 0);
+  if (squared <= 0) return (a < 0 ? cap_b : 0) + (b < 0 ? cap_a : 0) - (a < 0 && b < 0 ? whole_ball : 0);
   const double s = std::sqrt(squared), ab = a * b;
   const auto g = [](double t) { return 0.5 * t * (3 - t * t); };
   return 2.0 / 3.0 * (std::atan2(s, ab) + ab * s - g(a) * std::atan2(s, b) - g(b) * std::atan2(s, a));
@@ -60,7 +60,7 @@ void BallInCells::make_layer(std::size_t k, std::vector<double>& layer) const {
     const double b = ys[j], cap_b = caps_[1][j], wedge_bc = wedges_[0][k * ny + j];
     const double *wedges_ab = &wedges_[2][j * nx], *caps_a = caps_[0].data();
     const double squared = b * b + c * c, bc = b * c;
-    const double rest = ball / 8 - 0.25 * (cap_b + cap_c) + 0.5 * wedge_bc;
+    const double rest = whole_ball / 8 - 0.25 * (cap_b + cap_c) + 0.5 * wedge_bc;
     const int negative = (b < 0) + (c < 0);
     double* row = &layer[j * nx];
     for (std::size_t i = 0; i < nx; ++i) {
@@ -68,7 +68,8 @@ void BallInCells::make_layer(std::size_t k, std::vector<double>& layer) const {
       if (a * a + squared < 1) {
         row[i] = rest - 0.25 * caps_a[i] + 0.5 * (wedges_ab[i] + wedges_ca[i]) - a * bc;
       } else if (a < 0) {
-        row[i] = negative == 2   ? ball - caps_a[i] - cap_b - cap_c + wedges_ab[i] + wedges_ca[i] + wedge_bc
+        row[i] = negative == 2
+                     ? whole_ball - caps_a[i] - cap_b - cap_c + wedges_ab[i] + wedges_ca[i] + wedge_bc
                  : negative == 0 ? wedge_bc
                  : b < 0         ? wedge_bc + wedges_ca[i] - cap_c
                                  : wedge_bc + wedges_ab[i] - cap_b;
