@@ -62,8 +62,10 @@ std::string table_of_formats() {
     for (const std::string& key : format.keys) options += " --" + key;
     text += fmt::format("  {:<9} {}\n            lengths in {}{}, {}; {} dimensions;{}\n", format.name,
                         format.what, format.unit, format.unit == "the scene's" ? " unit" : "",
-                        format.sizes == "diameter" ? "diameters" : "radii", dimensions_in_words(format),
-                        options.empty() ? " no options" : options);
+                        format.sizes == "voxels"     ? "voxels"
+                        : format.sizes == "diameter" ? "diameters"
+                                                     : "radii",
+                        dimensions_in_words(format), options.empty() ? " no options" : options);
   }
   return text;
 }
@@ -95,6 +97,7 @@ Command export_command() {
           "  format = \"lammps\"\n"
           "Examples:\n"
           "  bernal export out --to lammps -o bed.data --density 2650 --types 3\n"
+          "  bernal export out --to nrrd -o bed.nrrd --resolution 512 --values labels\n"
           "  bernal export out --to povray -o bed.pov && povray +A +W1200 +H900 bed.pov\n"
           "Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.",
       [call] { return export_result(*call); }};

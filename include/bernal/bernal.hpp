@@ -22,3 +22,4 @@
 #include "bernal/soft/relax.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "bernal/version.hpp"
+#include "bernal/voxels/voxels.hpp"

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bernal/core/monitor.hpp"
 #include "bernal/run/packing.hpp"
 #include "io/staged_folder.hpp"
 #include "scene/output_table.hpp"
@@ -23,6 +24,7 @@ struct Exported {
   Vector<3> middle = Vector<3>::Zero();  ///< of the domain, that became the origin; else zero
   std::vector<std::uint32_t> types;      ///< of each sphere, from 1
   std::uint32_t type_count = 1;
+  Monitor monitor = {};  ///< of what takes long to write
 
   std::size_t size() const { return spheres.size(); }
   int dimension() const { return spheres.dimension(); }
@@ -63,6 +65,8 @@ struct Format {
   bool centred = false;  ///< the origin is in the middle of the domain
   /// Writes the file of the output's name and those beside it.
   void (*write)(const Exported&, StagedFolder&) = nullptr;
+  /// What a file holds that has no numbers of spheres, in words.
+  std::string (*note)(const Exported&) = nullptr;
 };
 
 std::span<const Format* const> formats();

@@ -52,11 +52,16 @@ std::string words_on_rounding(const Exported& file, const Format& format, const 
                      remedy);
 }
 
+std::string spheres_in(const Exported& file) {
+  return fmt::format("{} {}, lengths in {}", grouped(file.size()), file.size() == 1 ? "sphere" : "spheres",
+                     name_of(file.unit()));
+}
+
 std::string note_of(const Exported& file, const Format& format, const Monitor& monitor) {
+  if (format.note) return fmt::format("{}, {}", spheres_in(file), format.note(file));
   const OutputTable& table = format.table;
   std::string note =
-      fmt::format("{} {}, lengths in {}, {}", grouped(file.size()), file.size() == 1 ? "sphere" : "spheres",
-                  name_of(file.unit()), table.sizes == "diameter" ? "diameters" : "radii");
+      fmt::format("{}, {}", spheres_in(file), table.sizes == "diameter" ? "diameters" : "radii");
   if (table.keys.find("density")) note += fmt::format(", density {} kg/m3", file.output.density);
   if (table.keys.find("types"))
     note += fmt::format(", {} {}", file.type_count, file.type_count == 1 ? "type" : "types");
@@ -83,7 +88,8 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
                          const Monitor& monitor) {
   const Interruptible interruptible(monitor);
   const Format& format = format_of(output);
-  const Exported file = exported(packing, output);
+  Exported file = exported(packing, output);
+  file.monitor = monitor;
   format.write(file, staged);
   return note_of(file, format, monitor);
 }

@@ -86,7 +86,9 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   if (const auto* walls = std::get_if<Mesh>(&packing.domain); walls && walls_are_made(packing.scene))
     staged.write("container.off", as_off_file(*walls));
   std::vector<std::string> notes;
-  for (const Output& output : packing.scene.outputs) notes.push_back(write_output(packing, output, staged));
+  const Monitor bar{options.monitor.on_progress, {}};  // what a cancelled run has is written whole
+  for (const Output& output : packing.scene.outputs)
+    notes.push_back(write_output(packing, output, staged, bar));
   for (const std::string& name : staged.names()) manifest.try_emplace(name);
   for (const char* name : {"report.json", "report.html"}) manifest[name];
   const Report report{packing, certificate, measured, radii.all.get(), hash_of(packing.spheres), manifest};

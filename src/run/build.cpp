@@ -7,12 +7,14 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "bernal/voxels/voxels.hpp"
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
 #include "run/price_effects.hpp"
 #include "run/sizes_at_hand.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
+#include "scene/output_table.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/bed.hpp"
 
@@ -280,6 +282,18 @@ void expect_start(Plan& plan) {
                         .seconds = seconds_a_placed * n});
 }
 
+/// An image that is too large is refused before the run, not after it.
+void require_images(const Plan& plan) {
+  for (const Output& output : plan.scene.outputs) {
+    if (!output.voxel || !table_of(output).keys.find("voxel")) continue;
+    try {
+      voxel_grid(plan.domain, *output.voxel);
+    } catch (const Error& error) {
+      throw Error(ErrorCode::bad_scene, error.what(), output.locations.of("voxel"));
+    }
+  }
+}
+
 }  // namespace
 
 FillTask fill_task_of(const Plan& plan) {
@@ -318,6 +332,7 @@ Plan build(const Scene& stated) {
   price_effects(plan);
   require_drawable_count(plan);
   require_memory(plan);
+  require_images(plan);
   require_fit_for_stages(plan);
   plan.places_expected = any_in_bed(scene) && any_stage(scene, &StageTraits::places_expected, true);
   return plan;

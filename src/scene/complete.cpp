@@ -210,7 +210,10 @@ void complete_output(Output& output, const Scene& scene) {
         fmt::format("the format \"{}\" cannot hold a packing of {} dimension{}; \"{}\" can", table.name(),
                     dimension, dimension == 1 ? "" : "s", fmt::join(others, "\", \"")));
   }
+  constexpr int resolution_of_images = 256;
   if (output.file.empty()) output.file = table.file;
+  if (table.keys.find("resolution") && !output.voxel && !output.resolution)
+    output.resolution = resolution_of_images;
   if (!output.unit || !table.keys.find("unit")) output.unit = table.unit.value_or(scene.unit);
 }
 

@@ -32,7 +32,18 @@ const std::vector<schema::Key>& output_keys() {
           &Output::types, "types",
           "so many types of spheres, classes of radii of equal width; if absent one for every radius where "
           "at most ten occur, else one for all",
-          {1, 1000})};
+          {1, 1000}),
+      length(
+          &Output::voxel, "voxel",
+          "edge of an image's voxels in the scene's unit; along axes that repeat themselves the nearest that "
+          "divides the period"),
+      integer(&Output::resolution, "resolution",
+              "or so many voxels along the longest edge of the container's bounds; 256 if neither is given",
+              {1, 10000}),
+      word(&Output::values, "values",
+           "of voxels: binary (0 pore, 1 sphere, 2 outside the container), labels (0, i + 1 for sphere i, "
+           "4294967295) or fraction (exact volume of spheres in the voxel over its own)",
+           {"binary", "labels", "fraction"})};
   return all;
 }
 

@@ -21,6 +21,10 @@ struct Packed {
   std::string out() const { return folder / "out"; }
 };
 
+std::string sizes_in_words(const ExportFormat& format) {
+  return format.sizes == "radius" ? "radii" : format.sizes == "diameter" ? "diameters" : format.sizes;
+}
+
 TEST(ExportCommand, WritesEveryFormatAndSaysWhatItIs) {
   const Packed result;
   for (const ExportFormat& format : export_formats()) {
@@ -30,8 +34,7 @@ TEST(ExportCommand, WritesEveryFormatAndSaysWhatItIs) {
     EXPECT_EQ(ended.out, "");
     EXPECT_TRUE(fs::is_regular_file(file));
     const std::string unit = format.unit == "the scene's" ? "mm" : format.unit;
-    const std::string sizes = format.sizes == "radius" ? "radii" : "diameters";
-    for (const std::string& word : {std::string("300 spheres"), "lengths in " + unit, sizes})
+    for (const std::string& word : {std::string("300 spheres"), "lengths in " + unit, sizes_in_words(format)})
       EXPECT_NE(ended.err.find(word), std::string::npos) << word << "\nis not in: " << ended.err;
   }
 }
@@ -44,7 +47,7 @@ TEST(ExportCommand, HelpListsEveryFormatWithItsUnitAndSizes) {
     const std::string about = help.substr(at, help.find("dimensions", at) - at);
     EXPECT_NE(about.find(format.what), std::string::npos);
     EXPECT_NE(about.find("lengths in " + format.unit), std::string::npos) << about;
-    EXPECT_NE(about.find(format.sizes == "radius" ? "radii" : "diameters"), std::string::npos) << about;
+    EXPECT_NE(about.find(sizes_in_words(format)), std::string::npos) << about;
   }
   for (const ExportKey& key : export_keys()) EXPECT_NE(help.find("--" + key.name), std::string::npos);
 }

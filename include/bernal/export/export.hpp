@@ -17,7 +17,7 @@ struct ExportFormat {
   std::string what;   ///< for which program, and what of it
   std::string file;   ///< the name that a scene's output has if it says none: "lammps.data"
   std::string unit;   ///< of lengths if nothing else is asked for: "m", or "the scene's"
-  std::string sizes;  ///< "diameter" or "radius": what the file holds
+  std::string sizes;  ///< "diameter", "radius" or "voxels": what the file holds
   int least_dimension = 3, most_dimensions = 3;
   std::vector<std::string> keys;  ///< what it can be told, see `export_keys`
 };
@@ -53,7 +53,8 @@ struct WrittenExport {
 /// packing's own result would be overwritten, or what its scene was made from. Once the monitor says stop,
 /// throws Cancelled, and nothing is written.
 ///
-/// Cost: about 0.2 µs a sphere; the certificate, where it is asked, up to 0.8 µs.
+/// Cost: about 0.2 µs a sphere; the certificate, where it is asked, up to 0.8 µs. Of an image that of
+/// `voxelise`, which reports its progress.
 WrittenExport write_export(const Packing&, const Output&, const std::filesystem::path& file,
                            const Monitor& monitor = {});
 

@@ -16,6 +16,7 @@
 #include "bernal/domain/mesh_file.hpp"
 #include "bernal/scene/sizes.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
+#include "bernal/voxels/voxels.hpp"
 
 namespace bernal {
 
@@ -95,6 +96,11 @@ struct Output {
   double density = 2500;            ///< of the spheres, in kg/m³
   /// So many classes of radii, of equal width; else one for every radius, where few occur, or one for all.
   std::optional<int> types = {};
+  /// Of an image, one at most: the edge of a voxel in the scene's unit, or how many there are along the
+  /// longest edge of the domain's bounds; else 256 of them.
+  std::optional<double> voxel = {};
+  std::optional<int> resolution = {};
+  VoxelValues values = VoxelValues::binary;
   Locations locations = {};
 };
 
