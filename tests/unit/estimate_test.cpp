@@ -130,7 +130,7 @@ TEST(Estimate, OfALatticeIsThatOfTheLattice) {
 
 /// The fewer places are tried, the looser random insertion ends.
 TEST(Estimate, OfInsertionKnowsHowOftenItIsTried) {
-  for (const int attempts : {1, 10, 100, 1000})
+  for (const int attempts : {100, 1000, 10000})
     for (const std::string& container :
          {std::string("size = [1.0, 1.0, 1.0]"), std::string("size = [2.0, 1.0]")}) {
       const Packing packing =
