@@ -53,7 +53,8 @@ TEST(PredictCommand, GapsBetweenRodsMayBeOthers) {
   EXPECT_NEAR(loose["phi"], 0.60, 1e-4);
   EXPECT_EQ(loose["gap_factor"], 0.918);
   EXPECT_EQ(phi_of({"--classes", "1:1,5:1", "--gap-factor", "0"}), 1);
-  const json checked = predicted({"--lognormal", "0", "--gap-factor", "0.918", "--check", "--spheres", "100"});
+  const json checked =
+      predicted({"--lognormal", "0", "--gap-factor", "0.918", "--check", "--spheres", "100"});
   EXPECT_NEAR(checked["packed"]["phi_predicted_for_these_spheres"], checked["phi"], 1e-9);
   expect_refused_in_one_line(bernal({"predict", "--lognormal", "0", "--gap-factor", "-1"}), {"--gap-factor"});
   expect_refused_in_one_line(bernal({"predict", "--lognormal", "0", "--gap-factor", "1", "--fit"}),
