@@ -23,7 +23,7 @@ const Vector<3> up = eye.cross(right);
 
 const Vector<3>& View::towards_eye() { return eye; }
 
-View::View(std::span<const Vector<3>> corners, double canvas_size, double margin, double narrowest) {
+View::View(std::span<const Vector<3>> corners, double longest, double margin, double narrowest) {
   if (corners.empty()) return;
   origin_ = corners.front();  // keeps the differences below exact for shapes far from zero
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -36,7 +36,7 @@ View::View(std::span<const Vector<3>> corners, double canvas_size, double margin
     top = std::max(top, q.dot(up));
   }
   const double extent = std::max(rightmost - left, top - bottom);
-  if (extent > 0) scale_ = (canvas_size - 2 * margin) / extent;
+  if (extent > 0) scale_ = (longest - 2 * margin) / extent;
   y_ = margin + scale_ * top;
   width_ = std::max(scale_ * (rightmost - left) + 2 * margin, narrowest);
   height_ = scale_ * (top - bottom) + 2 * margin;

@@ -17,9 +17,9 @@ struct CanvasPoint {
 /// An orthographic three-quarter view with +z up, scaled so that what it has to show fills the canvas.
 class View {
  public:
-  /// `corners` are the points that must lie on the canvas; `margin` is left free around them, and
-  /// the canvas is at least `narrowest` wide.
-  View(std::span<const Vector<3>> corners, double canvas_size, double margin, double narrowest);
+  /// `corners` are the points that must lie on the canvas, whose longer side is `longest`; `margin` is left
+  /// free around them, and the canvas is at least `narrowest` wide.
+  View(std::span<const Vector<3>> corners, double longest, double margin, double narrowest);
 
   CanvasPoint operator()(const Vector<3>& p) const;
   double scale() const { return scale_; }  ///< canvas units per unit of length

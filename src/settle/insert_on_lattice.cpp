@@ -167,29 +167,31 @@ StageEnd insert_on_lattice(Work& work, const Insert& options) {
     lattice = {bed.container(), supply.smallest(), even_spacing(bed.container(), needed), bed.skin()};
     sites = lattice.sites(bed, supply.smallest(), work.monitor);
   }
-  for (int halvings = 0;; ++halvings) {
-    std::map<std::uint32_t, int> in_vain;  // sites of this lattice that a sphere was tried at
-    for (std::size_t left = sites.size(); left > 0 && !is_done(); --left) {
-      if (work.monitor.stop()) return StageEnd::cancelled;
-      std::swap(sites[random() % left], sites[left - 1]);
-      const Vector<3>& site = sites[left - 1];
-      double too_large = std::numeric_limits<double>::infinity();
-      for (std::size_t k = 0; k < std::min(most_tried, supply.window().size()); ++k) {
-        const std::uint32_t tag = supply.window()[k];
-        const double r = supply.radius(tag);
-        if (r >= too_large) continue;
-        if (const auto tried = in_vain.find(tag); tried != in_vain.end() && tried->second >= options.attempts)
-          continue;
-        if (!bed.fits(site, r)) {
-          too_large = r;
-          ++in_vain[tag];
-          continue;
-        }
+  std::map<std::uint32_t, int> in_vain;  // sites of this lattice that a sphere was tried at
+  const auto occupy = [&](const Vector<3>& site) {
+    double too_large = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < std::min(most_tried, supply.window().size()); ++k) {
+      const std::uint32_t tag = supply.window()[k];
+      const double r = supply.radius(tag);
+      if (r >= too_large) continue;
+      if (const auto tried = in_vain.find(tag); tried != in_vain.end() && tried->second >= options.attempts)
+        continue;
+      if (bed.fits(site, r)) {
         bed.insert(site, r, tag);
         supply.take(k);
         if (bed.size() % a_milestone_every == 0) work.milestone("insert");
-        break;
+        return;
       }
+      too_large = r;
+      ++in_vain[tag];
+    }
+  };
+  for (int halvings = 0;; ++halvings) {
+    in_vain.clear();
+    for (std::size_t left = sites.size(); left > 0 && !is_done(); --left) {
+      if (work.monitor.stop()) return StageEnd::cancelled;
+      std::swap(sites[random() % left], sites[left - 1]);
+      occupy(sites[left - 1]);
     }
     if (is_done()) return StageEnd::converged;
     if (halvings == most_halvings || supply.smallest() == supply.largest()) break;

@@ -65,18 +65,23 @@ bool is_loose(const Work& work) {
                                                              work.target_edges->prod();
 }
 
+/// Whether the spheres of a start have places, and nothing asks for others.
+bool begins_as_it_is(const Work& work, const Relax& options) {
+  return work.begun > 0 && work.placed && !options.phi0;
+}
+
 /// Whether spheres are as dense where they begin as relaxation makes them: then they are relaxed from there,
 /// and not from a denser state, which would make another packing of them.
 bool begins_in_its_box(const Work& work, const Relax& options) {
-  return work.begun > 0 && work.placed && !options.phi0 &&
+  return begins_as_it_is(work, options) &&
          work.volume_of_spheres() >= loose * random_close_packing[work.dimension() - 1] * work.edges.prod();
 }
 
 /// Whether they begin in the box that is asked for, free of overlap.
 template <int D>
 bool is_done(const Spheres<D>& spheres, const Vector<D>& edges, const Work& work, const Relax& options) {
-  return work.begun > 0 && work.placed && !options.phi0 && work.target_edges &&
-         work.edges == *work.target_edges && is_free_of_overlap<D>(spheres, edges, work.walls);
+  return begins_as_it_is(work, options) && work.target_edges && work.edges == *work.target_edges &&
+         is_free_of_overlap<D>(spheres, edges, work.walls);
 }
 
 /// Those they begin in, or of phi0, or about those that are asked for; never so small that a sphere overlaps
@@ -184,13 +189,14 @@ StageEnd relax_in(Work& work, const Relax& options) {
     throw Error(ErrorCode::bad_scene, "the reference method of relax knows no walls; leave \"method\" out");
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
-  if (is_done<D>(spheres, edges, work, options))
-    return finish_in_periodic_box<D>(std::move(spheres), edges, StageEnd::converged,
-                                     is_loose(work) ? 0 : options.polish, work);
+  const auto finish = [&](StageEnd end) {
+    return finish_in_periodic_box<D>(std::move(spheres), edges, end, is_loose(work) ? 0 : options.polish,
+                                     work);
+  };
+  if (is_done<D>(spheres, edges, work, options)) return finish(StageEnd::converged);
   if (begins_in_its_box(work, options) && hardly_overlaps<D>(spheres, edges, work, options)) {
     free_of_overlap<D>(spheres, edges, work);
-    return finish_in_periodic_box<D>(std::move(spheres), edges, StageEnd::converged,
-                                     is_loose(work) ? 0 : options.polish, work);
+    return finish(StageEnd::converged);
   }
   const Vector<D> start = edges_to_start_from(work, options);
   place<D>(spheres, edges, start, work);
@@ -206,9 +212,7 @@ StageEnd relax_in(Work& work, const Relax& options) {
       break;
     resize_box<D>(spheres, edges, start);
   }
-
-  const double polish_to = is_loose(work) ? 0 : options.polish;
-  return finish_in_periodic_box<D>(std::move(spheres), edges, end, polish_to, work);
+  return finish(end);
 }
 
 }  // namespace
