@@ -31,6 +31,7 @@ constexpr const char* examples = R"(Examples:
   bernal verify out                                  certify what stands in the files, from scratch
   bernal measure out                                 contacts, rattlers, g(r), sizes against those asked for
   bernal export out --to lammps -o out.data          for LAMMPS, YADE, OVITO, OpenMC, POV-Ray, …
+  bernal import dump.lammpstrj --unit mm -o out      another program's packing, to be certified and packed on
   bernal inspect part.stl --unit mm                  can this CAD file be a container?
   bernal explain data/scenes/hopper.toml             what would run, and what it would cost
   bernal cost data/scenes/relax_equal.toml -o out    what accuracy costs in time there, and what to take
@@ -79,7 +80,7 @@ int main(int argc, char** argv) {
         examples,
         {},
         {pack_command(), verify_command(), inspect_command(), explain_command(), keys_command(),
-         cost_command(), measure_command(), export_command(), predict_command(), design_command(),
+         cost_command(), measure_command(), export_command(), import_command(), predict_command(), design_command(),
          map_command(), reproduce_command(), bench_command()}};
     status = run_command_line(argc, argv, command, "bernal " + std::string(bernal::version()));
   } catch (const std::system_error& error) {

@@ -15,6 +15,7 @@ Command map_command();
 Command reproduce_command();
 Command bench_command();
 Command export_command();
+Command import_command();
 
 /// Exit codes, the same for every subcommand.
 namespace exit_code {

@@ -10,6 +10,7 @@
 #include "bernal/export/export.hpp"
 #include "bernal/fly/fly.hpp"
 #include "bernal/hard/grow.hpp"
+#include "bernal/import/import.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "bernal/measure/measure.hpp"

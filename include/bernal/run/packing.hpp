@@ -18,6 +18,7 @@ enum class Outcome {
   full,       ///< a count or packing fraction was asked that the stages could not reach: no place is left
   hit_limit,  ///< a limit on iterations ended it
   cancelled,  ///< the user did
+  imported,   ///< another program made it: nothing was asked of it
 };
 std::string_view name_of(Outcome);
 

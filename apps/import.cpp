@@ -1,0 +1,161 @@
+#include "bernal/import/import.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/verify/certificate.hpp"
+#include "commands.hpp"
+#include "progress_bar.hpp"
+#include "say.hpp"
+
+using namespace bernal;
+
+namespace {
+
+constexpr std::size_t listed_at_most = 10;
+
+struct ImportCall {
+  std::filesystem::path file, folder, radii, container;
+  ImportOptions options;
+  std::string unit;
+  int frame = 0, dimension = 0;
+  bool with_mesh = false, quiet = false;
+};
+
+/// "1,2,3"; of as many axes as the packing has.
+std::vector<double> lengths_in(const std::string& word, const std::string& option) {
+  std::vector<double> lengths;
+  for (std::size_t from = 0; from <= word.size();) {
+    const std::size_t end = std::min(word.find(',', from), word.size());
+    double value = 0;
+    const auto [stop, problem] = std::from_chars(word.data() + from, word.data() + end, value);
+    if (problem != std::errc{} || stop != word.data() + end)
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("{} takes lengths between commas, such as 10,10,20, not \"{}\"", option,
+                              plain_text(word)));
+    lengths.push_back(value);
+    from = end + 1;
+  }
+  return lengths;
+}
+
+/// Words of the command line as the library takes them.
+ImportOptions options_of(const ImportCall& call) {
+  ImportOptions options = call.options;
+  if (!call.unit.empty()) options.unit = unit_named(call.unit);
+  if (!call.radii.empty()) options.radii = call.radii;
+  if (!call.container.empty()) options.container = call.container;
+  if (call.frame > 0) options.frame = call.frame;
+  if (call.dimension > 0) options.dimension = call.dimension;
+  return options;
+}
+
+void print_imported(const ImportedPacking& imported, const WrittenPacking& written) {
+  const Certificate& c = written.certificate;
+  for (const ImportNote& note : imported.notes) say(stderr, "{:<10} {}\n", note.about, plain_text(note.text));
+  say(stderr, "certified  {}: {}\n", c.certified ? "yes" : "NO", c.statement);
+  for (const auto& [pair, ratio] : c.overlaps)
+    say(stderr, "overlap    {}, ratio {:.3g}\n", pair_text(pair), ratio);
+  for (const auto& [sphere, gap] : c.protrusions)
+    say(stderr, "protrudes  {}, gap {:.3g} of its radius\n", sphere, gap);
+  for (std::size_t i = 0; i < written.files.size(); ++i)
+    say(stderr, "{:<10} {}\n", i == 0 ? "files" : "", plain_text(written.files[i].string(), 5000));
+}
+
+int import_file(const ImportCall& call) try {
+  const ImportOptions options = options_of(call);
+  ProgressBar bar(call.quiet);
+  bar.now("read");
+  check_importable(call.file, call.folder);
+  const Monitor monitor = bar.monitor();
+  const ImportedPacking imported = import_packing(call.file, options, monitor);
+  bar.now("certify and measure");
+  const WrittenPacking written =
+      write_imported(imported.packing, call.file, call.folder,
+                     {.with_mesh = call.with_mesh, .list = listed_at_most, .monitor = monitor});
+  bar.clear();
+  if (!call.quiet) print_imported(imported, written);
+  return exit_code::done;
+} catch (const Cancelled&) {
+  if (!call.quiet) say(stderr, "bernal: stopped by the user; nothing is written\n");
+  return exit_code::not_reached;
+}
+
+/// Two lines a format, from the list of formats.
+std::string table_of_import_formats() {
+  std::string text = "Formats, told by the file's name and its first bytes:\n";
+  for (const ImportFormat& format : import_formats()) {
+    std::string of;
+    for (const std::string& option : format.options) of += " --" + option;
+    text += fmt::format("  {:<9} {}\n            unit: {}{}{}\n", format.name, format.what, format.unit,
+                        of.empty() ? "" : ";", of);
+  }
+  return text;
+}
+
+}  // namespace
+
+Command import_command() {
+  const auto call = std::make_shared<ImportCall>();
+  ImportOptions& options = call->options;
+  return {
+      "import",
+      "Take over another program's packing, as a result that verify, measure, export and start read",
+      {required({"FILE", &call->file, "What the other program wrote", "FILE"}),
+       required({"-o,--output", &call->folder, "Folder for the result; made if it does not exist", "DIR"}),
+       {"--from", &options.format, "The format, one of those below; if absent it is told by the file",
+        "FORMAT"},
+       {"--columns", &options.columns,
+        "Of a table, in its order: coordinates, r for the radius or d for the diameter, - for another "
+        "column; or "
+        "by number or name, as x=3,y=4,z=5,d=rad",
+        "x,y,z,r"},
+       {"--diameter", &options.diameter, "Of every sphere, where the file has no sizes", "D"},
+       excludes({"--radius", &options.radius, "The same", "R"}, "--diameter"),
+       {"--radii", &call->radii, "A .npy with the radius of every centre", "FILE.npy"},
+       {"--unit", &call->unit, "Of the file's lengths, where it does not say it: nm, um, mm, cm, m, in, ft",
+        "UNIT"},
+       {"--box", [&options](const std::string& word) { options.box = lengths_in(word, "--box"); },
+        "Edges of the box that the spheres lie in, whose corner is at zero: periodic, unless --periodic says "
+        "another",
+        "a,b,c"},
+       {"--periodic", &options.periodic,
+        "The axes along which the box repeats itself, such as xyz or xy, and along the others has walls; "
+        "none: "
+        "walls all around",
+        "AXES"},
+       {"--container", &call->container, "A scene, whose container the spheres lie in", "SCENE.toml"},
+       {"--shift", [&options](const std::string& word) { options.shift = lengths_in(word, "--shift"); },
+        "Added to every centre first", "x,y,z"},
+       within({"--frame", &call->frame, "Of a trajectory, from 1; the last if absent", "N"}, 1, 1 << 30),
+       within({"--dimension", &call->dimension, "2: the spheres lie in a plane, and discs are meant", "2|3"},
+              2, 3),
+       {"--with-mesh", &call->with_mesh,
+        "Copy the CAD files of the container beside the spheres too, so that the folder stands for itself"},
+       quiet_option(call->quiet, "Print nothing but errors")},
+      table_of_import_formats() +
+          "\nThe spheres lie in the container of --container, else in --box, else in the file's own box, "
+          "else in "
+          "the\nbounds of the spheres as walls; the printed lines say which. They come in the order of their "
+          "numbers where\nthey have some. Overlaps are no reason to refuse: the result is certified, or not, "
+          "and "
+          "the ten worst\noverlaps and protrusions are listed, here and in report.json. Then:\n"
+          "  bernal verify DIR                       exits 1 where spheres overlap\n"
+          "  bernal pack DIR/scene.toml -o OTHER     begins from them, pushes them apart\n"
+          "Examples:\n"
+          "  bernal import bed.csv --columns x,y,z,d --unit mm --box 10,10,20 -o bed\n"
+          "  bernal import dump.lammpstrj --unit m --frame 7 -o bed\n"
+          "  bernal import centers.npy --from openmc --radius 0.0425 --container vessel.toml -o bed\n"
+          "Exit codes: 0 imported, certified or not; 2 bad input; 3 stopped by Ctrl-C, nothing written.",
+      [call] { return import_file(*call); }};
+}

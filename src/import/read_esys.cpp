@@ -1,0 +1,80 @@
+#include <array>
+
+#include <fmt/format.h>
+
+#include "core/csv_headings.hpp"
+#include "import/foreign_lines.hpp"
+
+namespace bernal {
+namespace {
+
+/// The words of the file, one line after the other.
+class EsysWords {
+ public:
+  explicit EsysWords(ForeignLines& lines) : lines_(lines) {}
+
+  std::string next(std::string_view what) {
+    while (at_ == words_.size()) {
+      lines_.require_next(what);
+      const auto found = lines_.words();
+      words_.assign(found.begin(), found.end());
+      at_ = 0;
+    }
+    return words_[at_++];
+  }
+  double number(std::string_view what) {
+    const std::string word = next(what);
+    return lines_.number(word, what);
+  }
+  void expect(std::string_view word) {
+    if (const std::string found = next(word); found != word)
+      lines_.fail(fmt::format("expected {}, found {}", word, bernal::quoted(found)));
+  }
+
+ private:
+  ForeignLines& lines_;
+  std::vector<std::string> words_;
+  std::size_t at_ = 0;
+};
+
+FileContents read_esys(const Reading& reading) {
+  ForeignLines lines(reading);
+  EsysWords words(lines);
+  FileContents contents;
+  FileBox box;
+  words.expect("LSMGeometry");
+  words.next("the version");
+  words.expect("BoundingBox");
+  for (std::vector<double>* bound : {&box.lower, &box.upper})
+    for (int k = 0; k < 3; ++k) bound->push_back(words.number("BoundingBox"));
+  words.expect("PeriodicBoundaries");
+  for (int k = 0; k < 3; ++k)
+    box.ends.push_back(words.number("PeriodicBoundaries") != 0 ? AxisEnd::period : AxisEnd::wall);
+  words.expect("Dimension");
+  contents.is_flat = words.next("Dimension") == "2D";
+  words.expect("BeginParticles");
+  words.expect("Simple");
+  const std::string count = words.next("the number of particles");
+  const std::uint64_t claimed = lines.whole(count, "the number of particles");
+  const SphereColumns columns{.x = {0, 1, 2}, .size = 3, .names = {"x", "y", "z", "radius"}};
+  for (std::uint64_t i = 0; i < claimed; ++i) {
+    lines.require_next("a particle");
+    const auto row = lines.words();
+    if (!row.empty() && row[0] == "EndParticles") lines.expect_rows(claimed, i);
+    add_row(lines, columns, row, contents.spheres);
+  }
+  contents.box = std::move(box);
+  return contents;
+}
+
+}  // namespace
+
+const PackingReader& esys_reader() {
+  static const PackingReader reader{
+      .about = {"esys", "ESyS-Particle and GenGeo geometry, LSMGeometry", "--unit", {}},
+      .recognises = [](const FileBeginning& file) { return file.begins("LSMGeometry"); },
+      .read = read_esys};
+  return reader;
+}
+
+}  // namespace bernal
