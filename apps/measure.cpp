@@ -266,7 +266,7 @@ void print(const Packing& packing, const Measurements& measured) {
 }
 
 Measurements measured_of(const Packing& packing, const MeasureCall& call) {
-  const SceneRadii radii = asked_radii_of(packing.scene, packing.spheres.size());
+  const SceneRadii radii = asked_radii_of(packing);
   try {
     return measure(packing.spheres, packing.domain, radii.asked, call.options);
   } catch (const Error& error) {

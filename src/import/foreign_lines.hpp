@@ -53,6 +53,8 @@ struct SphereColumns {
   std::vector<std::string> names = {};  ///< of the coordinates, then the size, as the file calls them
 
   std::size_t least_fields() const;
+  /// Of as many dimensions as there are coordinates.
+  Spheres<dynamic> no_spheres() const { return Spheres<dynamic>(static_cast<int>(x.size())); }
   /// "x column 3, y column 4, diameter column 6 (d_p)".
   std::string in_words() const;
 };
@@ -62,7 +64,7 @@ struct SphereColumns {
 SphereColumns sphere_columns(const std::string& wish, const std::vector<std::string>& names,
                              const CsvLines& lines);
 
-/// Appends the sphere of a row. Throws for what is none.
+/// Appends the sphere of a row. Throws for what is none. Precondition: a column for each of the coordinates.
 void add_row(const ForeignLines& lines, const SphereColumns& columns, std::span<const std::string_view> row,
              Spheres<dynamic>& spheres);
 /// Throws Error{bad_packing} for a coordinate or a size that no sphere has.

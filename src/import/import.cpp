@@ -165,6 +165,10 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
   if (!place.shift.empty())
     made.notes.push_back({"moved", fmt::format("by {}, so that the corner of the box is at zero",
                                                fmt::format("{:.10g}", fmt::join(place.shift, ", ")))});
+  const auto& x = packing.spheres.x;
+  if (x.size() == 3 && x[2].size() > 2 &&
+      std::ranges::all_of(x[2], [&](double z) { return z == x[2].front(); }))
+    made.notes.push_back({"plane", "all centres have one z; --dimension 2 takes them for discs"});
   if (moved > 0)
     made.notes.push_back({"wrapped", fmt::format("{} of {} centres, which lay outside the box",
                                                  grouped(moved), grouped(packing.spheres.size()))});

@@ -88,7 +88,7 @@ FileBox box_of_import(const FileContents& contents, const ImportOptions& options
   box.ends.resize(dimension);
   if (!options.periodic.empty()) {
     box.ends = ends_of_word(options.periodic, dimension);
-    words += ", periodic as --periodic says";
+    words += ", its ends as --periodic says";
   }
   std::vector<std::size_t> guessed, wrapped;
   for (std::size_t k = 0; k < dimension; ++k) {

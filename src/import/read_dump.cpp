@@ -72,7 +72,12 @@ void unscale(FileContents& contents) {
   }
 }
 
-void read_frame_atoms(std::uint64_t claimed, const Reading& reading, ForeignLines& lines,
+/// What to do about a frame that was cut off.
+std::string or_before(int frame) {
+  return frame > 1 ? fmt::format("; --frame {} is the one before", frame - 1) : "";
+}
+
+void read_frame_atoms(int frame, std::uint64_t claimed, const Reading& reading, ForeignLines& lines,
                       FileContents& contents) {
   const auto words = lines.words();
   std::vector<std::string> names(words.begin() + 2, words.end());
@@ -88,14 +93,16 @@ void read_frame_atoms(std::uint64_t claimed, const Reading& reading, ForeignLine
     if (lines.line().starts_with(item)) break;
     const auto row = lines.words();
     if (row.size() != names.size())
-      lines.fail(
-          fmt::format("{} columns, but {} are named; was the line cut off?", row.size(), names.size()));
+      lines.fail(fmt::format("{} columns, but {} are named; was the line cut off?{}", row.size(),
+                             names.size(), or_before(frame)));
     add_row(lines, columns, row, contents.spheres);
     if (id == names.end()) continue;
     identities.id.push_back(lines.whole(row[id_place], "id"));
     identities.line.push_back(lines.number());
   }
-  lines.expect_rows(claimed, found);
+  if (found != claimed)
+    lines.fail(fmt::format("frame {} says that it has {} spheres, and here end {} of them; was it cut off?{}",
+                           frame, claimed, found, or_before(frame)));
   if (is_scaled && !contents.box) lines.fail("scaled coordinates xs, ys, zs need the box, and there is none");
   if (is_scaled) unscale(contents);
   if (id != names.end()) identities.sort(contents.spheres, reading);
@@ -108,7 +115,7 @@ FileContents read_dump(const Reading& reading) {
   FileContents contents;
   std::optional<std::uint64_t> claimed;
   for (int frame = 0;;) {
-    lines.require_next(fmt::format("the atoms of frame {}", wanted));
+    lines.require_next(fmt::format("the atoms of frame {}{}", wanted, or_before(wanted)));
     const bool here = frame == wanted;
     if (lines.line().starts_with(step_item)) {
       if (here) lines.fail(fmt::format("the frame before this line has no \"{}\"", atoms_item));
@@ -127,7 +134,7 @@ FileContents read_dump(const Reading& reading) {
       contents.box = read_bounds(reading, lines);
     } else if (here && lines.line().starts_with(atoms_item)) {
       if (!claimed) lines.fail(fmt::format("\"{}\" does not stand before the atoms", count_item));
-      read_frame_atoms(*claimed, reading, lines, contents);
+      read_frame_atoms(wanted, *claimed, reading, lines, contents);
       return contents;
     }
   }

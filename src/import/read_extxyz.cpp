@@ -139,6 +139,7 @@ FileContents read_extxyz(const Reading& reading) {
   contents.box = lattice_box(keys, reading, lines);
   const std::vector<std::string> names = property_columns(keys, lines);
   const SphereColumns columns = sphere_columns({}, names, lines);
+  contents.spheres = columns.no_spheres();
   for (std::uint64_t k = 0; k < count; ++k) {
     lines.require_next("an atom");
     const auto row = lines.words();

@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little, "GSD is little-endian,
 
 // The file layer and the schema "hoomd" of https://gsd.readthedocs.io, versions 1 and 2.
 constexpr std::uint64_t gsd_magic = 0x65DF65DF65DF65DF;
-constexpr std::uint64_t header_bytes = 256, entry_bytes = 32, block_bytes = 64;
+constexpr std::uint64_t entry_bytes = 32, block_bytes = 64, most_frames = 1 << 30;
 
 struct GsdEntry {
   std::uint64_t frame, rows;
@@ -96,12 +96,12 @@ class GsdFile {
     std::uint64_t last = 0;
     for (const GsdEntry& entry : file_.many<GsdEntry>(at, entries)) {
       if (entry.location == 0) break;
-      if (entry.id >= names_.size() || entry.location < 0 || entry.frame >= entries)
+      if (entry.id >= names_.size() || entry.location < 0 || entry.frame >= most_frames)
         file_.fail("has an index that does not fit its names; was it cut off or changed?");
       chunks_[names_[entry.id]][entry.frame] = entry;
       last = std::max(last, entry.frame);
     }
-    frames_ = chunks_.empty() ? 0 : static_cast<int>(std::min<std::uint64_t>(last, 1 << 30)) + 1;
+    frames_ = chunks_.empty() ? 0 : static_cast<int>(last) + 1;
   }
 
   BinaryFile file_;

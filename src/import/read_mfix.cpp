@@ -54,8 +54,8 @@ FileContents read_mfix(const Reading& reading) {
     }
     in_data = in_variables && is_number(words[0]);
   }
-  contents.spheres = Spheres<dynamic>(head.dimension);
   columns = sphere_columns({}, head.columns, lines);
+  contents.spheres = columns.no_spheres();
   for (bool found = true; found && contents.size() < head.particles; found = lines.next()) {
     const auto row = lines.words();
     if (!row.empty()) add_row(lines, columns, row, contents.spheres);

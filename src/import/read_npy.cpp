@@ -60,7 +60,7 @@ void read_radii(const std::filesystem::path& file, std::uint64_t rows, Spheres<d
 FileContents read_npy(const Reading& reading) {
   const NumpyArray array = read_numpy_array(reading.file);
   const SphereColumns columns = array_columns(reading, array);
-  FileContents contents{.spheres = Spheres<dynamic>(static_cast<int>(columns.x.size()))};
+  FileContents contents{.spheres = columns.no_spheres()};
   for (std::uint64_t i = 0; i < array.rows; ++i) {
     for (std::size_t k = 0; k < columns.x.size(); ++k) {
       const double x = array.at(i, columns.x[k]);

@@ -97,7 +97,7 @@ FileContents read_table(const Reading& reading) {
   const TableHead head = read_head(lines, unit);
   const SphereColumns columns = sphere_columns(reading.options.columns, head.names, lines);
   take_units_of(columns, head, lines, unit);
-  FileContents contents{.spheres = Spheres<dynamic>(static_cast<int>(columns.x.size()))};
+  FileContents contents{.spheres = columns.no_spheres()};
   std::vector<std::string_view> fields;
   std::size_t in_row = head.names.size();
   for (bool found = head.is_row || lines.next(); found; found = lines.next()) {

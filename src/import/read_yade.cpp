@@ -41,7 +41,10 @@ FileContents read_yade(const Reading& reading) {
       if (auto box = cell_in(lines)) contents.box = std::move(box);
       continue;
     }
-    if (!columns) columns = sphere_columns({}, names, lines);
+    if (!columns) {
+      columns = sphere_columns({}, names, lines);
+      contents.spheres = columns->no_spheres();
+    }
     split_at(line, " \t,", row);
     if (in_row == 0) in_row = row.size();
     if (row.size() != in_row)

@@ -53,6 +53,9 @@ Packing read_packing(const std::filesystem::path& folder) {
   packing.domain = packed_domain_of(packing.scene);
   packing.volume = volume_of(packing.domain);
   packing.seed = packing.scene.seed;
+  if (const auto& start = packing.scene.start.file;
+      start && std::filesystem::equivalent(*start, folder / "spheres.csv", unknown))
+    packing.outcome = Outcome::imported;  // only such a result begins from itself
   return packing;
 }
 

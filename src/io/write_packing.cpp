@@ -29,8 +29,7 @@ constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5
 constexpr std::uint32_t points_for_a_report = 4000;
 
 /// Certifies what stands in the file, not what stood in memory.
-Certificate certify_written(const std::filesystem::path& csv, const Packing& packing,
-                            std::size_t list) {
+Certificate certify_written(const std::filesystem::path& csv, const Packing& packing, std::size_t list) {
   const SpheresFile written = read_csv(csv);
   if (written.spheres != packing.spheres || written.unit != name_of(packing.scene.unit)) {
     throw Error(ErrorCode::cannot_write, "reads back differently from what was written", {csv.string()});
@@ -67,9 +66,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   }
   Certificate certificate = certify_written(csv, packing, options.list);
   certificate.statement += certified_walls(packing.scene);
-  SceneRadii radii;  // of what another program made none were asked for
-  if (packing.outcome != Outcome::imported) radii = asked_radii_of(packing.scene, packing.spheres.size());
-  radii.asked.seed = packing.seed;
+  const SceneRadii radii = asked_radii_of(packing);
   const Measurements measured = measure(packing.spheres, packing.domain, radii.asked,
                                         {.radial = {.work = distances_for_a_report},
                                          .chambers = {.points = points_for_a_report},

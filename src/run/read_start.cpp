@@ -173,4 +173,11 @@ SceneRadii asked_radii_of(const Scene& scene, std::size_t count) {
   return made;
 }
 
+SceneRadii asked_radii_of(const Packing& packing) {
+  if (packing.outcome == Outcome::imported) return {};
+  SceneRadii made = asked_radii_of(packing.scene, packing.spheres.size());
+  made.asked.seed = packing.seed;
+  return made;
+}
+
 }  // namespace bernal

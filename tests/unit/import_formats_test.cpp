@@ -159,6 +159,8 @@ TEST(ImportDump, IsRefusedInOneLine) {
                  {"a:6", "triclinic", "upright"});
   expect_refusal({"a", box + "ITEM: ATOMS id x y z\n1 1 1 1\n2 2 2 2\n", m}, {"--diameter"});
   expect_refusal({"a", dump_head}, {"--unit mm"});
+  expect_refusal({"a", std::string(dump_head) + (box + atoms) + "1 1 1 1 1\n", m},
+                 {"frame 2", "1 of them", "--frame 1"});
 }
 
 TEST(ImportLammps, DataOfSpheresAndOfAtoms) {
@@ -217,6 +219,7 @@ TEST(ImportYade, EveryFormatLine) {
   const ImportOptions mm{.unit = Unit::mm};
   expect_two(packing_of({"a.txt", "#format x_y_z_r\n1\t2\t3\t0.5\n4\t5\t6\t0.25\n", mm}));
   expect_two(packing_of({"a.txt", "#format id_x_y_z_r_matId\n0 1 2 3 0.5 0\n1 4 5 6 0.25 0\n", mm}));
+  EXPECT_EQ(packing_of({"a.txt", "#format x_y_r\n1 2 0.5\n", mm}).spheres.dimension(), 2);
   expect_refusal({"a.txt", "#format x_y_z\n1 2 3\n", mm}, {"--diameter"});
   expect_refusal({"a.txt", "#format jointedPM\n1 2 3\n", mm}, {"a.txt:2", "jointedPM"});
 }

@@ -77,6 +77,8 @@ struct SceneRadii {
   AskedRadii asked;  ///< of these
 };
 SceneRadii asked_radii_of(const Scene& scene, std::size_t count);
+/// Of a packing, by its own seed; none where another program made it.
+SceneRadii asked_radii_of(const Packing& packing);
 
 struct RunOptions {
   std::optional<std::uint64_t> seed;  ///< the scene's own if absent
