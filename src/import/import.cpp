@@ -183,9 +183,15 @@ void check_importable(const std::filesystem::path& file, const std::filesystem::
 
 WrittenPacking write_imported(Packing packing, const std::filesystem::path& file,
                               const std::filesystem::path& folder, const WriteOptions& options) {
-  check_importable(file, folder);
+  packing.scene.start.file = file;
+  check_writable(folder, packing.scene, options);
   packing.scene.start.file = folder / "spheres.csv";
-  return write_packing(packing, folder, options);
+  try {
+    return write_packing(packing, folder, options);
+  } catch (const Error& error) {  // of measuring, which gives up where nearly all spheres overlap
+    if (error.code() != ErrorCode::bad_argument) throw;
+    refuse_file(file, fmt::format("{}; check its sizes and their unit", error.what()));
+  }
 }
 
 }  // namespace bernal

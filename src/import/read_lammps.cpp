@@ -109,7 +109,8 @@ void read_atoms(std::string_view said, std::uint64_t claimed, const Reading& rea
       in_row = row.size();
     }
     if (row.size() != in_row)
-      lines.fail(fmt::format("{} columns, but the first atom has {}", row.size(), in_row));
+      lines.fail(
+          fmt::format("{} columns, but the first atom has {}; was the line cut off?", row.size(), in_row));
     identities.id.push_back(lines.whole(row[0], "id"));
     identities.line.push_back(lines.number());
     add_row(lines, columns, row, contents.spheres);

@@ -119,6 +119,10 @@ TEST(ImportCommand, RefusesInOneLine) {
   refused({file, "--unit", "mm", "--shift", "1"}, {"--shift", "3 dimensions"});
   refused({file, "--unit", "mm", "--container", folder / "none.toml"}, {"none.toml"});
   refused({file, "--unit", "mm", "--from", "gsd"}, {"a.csv"});
+  std::string piled = "x,y,z,r\n";  // in a box so wide that their volume says nothing
+  for (int i = 0; i < 1700; ++i) piled += "1,1,1,0.1\n";
+  refused({folder.write("piled.csv", piled).string(), "--unit", "mm", "--box", "99,99,99", "--quiet"},
+          {"piled.csv", "pairs", "check its sizes"});
   refused({"/dev/stdin", "--unit", "mm"}, {"/dev/stdin", "save"});
   refused({folder.path().string(), "--unit", "mm"}, {"is a folder"});
   // What is read from stays.
