@@ -111,7 +111,7 @@ Command import_command() {
   return {
       "import",
       "Take over another program's packing, as a result that verify, measure, export and start read",
-      {required({"FILE", &call->file, "What the other program wrote", "FILE"}),
+      {required({"FILE", &call->file, "What the other program wrote", "CSV|DUMP|GSD|…"}),
        required({"-o,--output", &call->folder, "Folder for the result; made if it does not exist", "DIR"}),
        {"--from", &options.format, "The format, one of those below; if absent it is told by the file",
         "FORMAT"},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -147,6 +148,7 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
   packing.volume = volume_of(packing.domain);
   packing.scene = std::move(place.scene);
   packing.version = version();
+  packing.expected_packing_fraction = std::numeric_limits<double>::quiet_NaN();  // nobody did
   packing.outcome = Outcome::imported;
   packing.reason =
       fmt::format("{} read from {}, {}",

@@ -167,6 +167,10 @@ void write_certificate(Page& page, const Report& report) {
     page.row("closest to the wall", fmt::format("{:.3g}", c.min_wall_gap),
              fmt::format("gap over radius; sphere {}, counted from 0", *c.worst_wall));
   }
+  for (const auto& [pair, ratio] : c.overlaps)
+    page.row("overlap", fmt::format("{:.3g}", ratio), "of the sum of radii; spheres " + pair_text(pair));
+  for (const auto& [sphere, gap] : c.protrusions)
+    page.row("sticks out", fmt::format("{:.3g}", -gap), fmt::format("of its radius; sphere {}", sphere));
   page.row("time", seconds_text(c.seconds), "");
   page.raw("</table></div>\n<p class=\"dim\">To repeat it: <code>bernal verify</code> on this folder.</p>\n");
 }

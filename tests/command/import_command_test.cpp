@@ -45,8 +45,14 @@ TEST(ImportCommand, ImportedRefusedDensifiedCertified) {
   EXPECT_EQ(report["outcome"], "imported");
   EXPECT_EQ(report["certified"], false);
   EXPECT_EQ(report["n"], 300);
+  EXPECT_TRUE(report["expected_phi"].is_null());
   ASSERT_EQ(report["certificate"]["overlaps"].size(), 10U);
   EXPECT_EQ(report["certificate"]["overlaps"][0]["ratio"], report["max_overlap"]);
+
+  const std::string page = text_of(folder / "out/report.html");
+  std::size_t rows = 0;
+  for (std::size_t at = 0; (at = page.find("<td>overlap</td>", at)) != page.npos; ++at) ++rows;
+  EXPECT_EQ(rows, 10U);
 
   const Ended refused = bernal({"verify", out, "--list=10"});
   EXPECT_EQ(refused.status, 1);
