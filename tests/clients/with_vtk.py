@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Reads images of bernal with the programs they are for: tests/clients/images.py [BERNAL]
+"""Reads images of bernal with the programs they are for: tests/clients/with_vtk.py [BERNAL]
 
 Packs a cylinder, exports it in every format of images and every kind of values, and compares what VTK (the readers of
 ParaView), teem and tifffile read with the raw voxels, value by value, and their spacing, origin and unit. A program that
