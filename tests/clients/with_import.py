@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Imports what other programs write: tests/clients/import.py [BERNAL]
+"""Imports what other programs write: tests/clients/with_import.py [BERNAL]
 
 LAMMPS and YADE press soft spheres together: imported, refused by verify for their overlaps, packed on from there by a
 scene, certified. LIGGGHTS, LAMMPS, ASE, gsd and NumPy write packings of known numbers, which come back. A program that is
