@@ -34,6 +34,10 @@ std::string describe(const Plan& plan) {
                         n == 1 ? "1 sphere" : grouped(n) + " spheres", plain_text(plan.start.file),
                         plan.scene.stages.front().name(), n == 1 ? "it" : "them");
   text += fmt::format("spheres    {}; {}\n", describe_target(plan), describe_sizes(plan.scene));
+  if (plan.scene.asks_for_gaps())
+    text += fmt::format(
+        "gaps       at least {:g} {} between spheres{}\n", plan.scene.gap, name_of(plan.scene.unit),
+        has_walls(plan.domain) ? fmt::format(" and {:g} from walls", plan.scene.wall_gap) : std::string());
   for (const Output& output : plan.scene.outputs)
     text += fmt::format("output     {}\n", describe_output(output));
   return text;

@@ -120,7 +120,11 @@ nlohmann::ordered_json as_json(const Plan& plan) {
                        {"unit", name_of(output.unit.value_or(Unit::m))}});
   return {{"unit", name_of(plan.scene.unit)},
           {"container", container},
-          {"spheres", {{"target", describe_target(plan)}, {"sizes", describe_sizes(plan.scene)}}},
+          {"spheres",
+           {{"target", describe_target(plan)},
+            {"sizes", describe_sizes(plan.scene)},
+            {"gap", plan.scene.gap},
+            {"wall_gap", plan.scene.wall_gap}}},
           {"accuracy", {{"walls", name_of(plan.scene.walls)}, {"overlap", plan.scene.overlap}}},
           {"expected",
            {{"count", plan.expected_count},

@@ -56,7 +56,9 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
   const bool walls = has_walls(packing.domain);
   fmt::print("contacts          {} pairs", grouped(c.pairs));
   if (walls) fmt::print(", {} with the wall", grouped(c.walls));
-  fmt::print(", at a gap below {:g} of the sum of the radii\n", c.contact_gap);
+  fmt::print(
+      ", at a gap below {:g} of the sum of the radii{}\n", c.contact_gap,
+      packing.scene.asks_for_gaps() ? ", beyond the gap that is asked for, which counts as theirs" : "");
   fmt::print("coordination      {:.4f}\n", c.coordination);
   if (measured.holds(c)) {
     fmt::print("rattlers          {} ({:.2f} %), held by fewer than {} contacts\n", grouped(c.rattlers),
@@ -268,7 +270,10 @@ void print(const Packing& packing, const Measurements& measured) {
 Measurements measured_of(const Packing& packing, const MeasureCall& call) {
   const SceneRadii radii = asked_radii_of(packing);
   try {
-    return measure(packing.spheres, packing.domain, radii.asked, call.options);
+    MeasureOptions options = call.options;
+    options.gap = packing.scene.gap;
+    options.wall_gap = packing.scene.wall_gap;
+    return measure(packing.spheres, packing.domain, radii.asked, options);
   } catch (const Error& error) {
     throw Error(error.code(), error.what(), {(call.folder / "spheres.csv").string()});
   }

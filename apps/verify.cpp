@@ -59,6 +59,11 @@ std::filesystem::path scene_file(const VerifyCall& call) {
               {call.target.string()});
 }
 
+/// Of distances of which the small ones are known.
+std::string least_text(const std::optional<double>& distance) {
+  return distance ? fmt::format("{:.9g}", *distance) : "more than twice that";
+}
+
 void print(const Certificate& c, const Domain& domain, std::string_view unit) {
   say(stdout, "certified  {}\n", c.certified ? "yes" : "NO");
   say(stdout, "spheres    {}, in {}\n", grouped(c.spheres), unit);
@@ -70,6 +75,13 @@ void print(const Certificate& c, const Domain& domain, std::string_view unit) {
         grouped(c.protruding_spheres));
   if (c.worst_wall)
     say(stdout, "; worst: sphere {}, gap {:.3g} of its radius", *c.worst_wall, c.min_wall_gap);
+  if (c.gap + c.wall_gap > 0) {
+    say(stdout, "\ngaps       {:g} between spheres", c.gap);
+    if (c.gap > 0) say(stdout, ", least {}", least_text(c.least_distance));
+    if (has_walls(domain)) say(stdout, "; {:g} from walls", c.wall_gap);
+    if (has_walls(domain) && c.wall_gap > 0) say(stdout, ", least {}", least_text(c.least_wall_distance));
+    say(stdout, "; ratios are those of spheres with half the gap around them");
+  }
   say(stdout, "\ndecided    {} in double with a proven bound, {} in exact arithmetic, in {:.3f} s\n",
       grouped(c.decided_double), grouped(c.decided_exact), c.seconds);
   for (const auto& [pair, ratio] : c.overlaps)
@@ -90,6 +102,8 @@ int verify(const VerifyCall& call) {
   ProgressBar bar(call.json, true);
   Certificate certificate = certify(spheres, domain,
                                     {.allowed_overlap = scene.overlap,
+                                     .gap = scene.gap,
+                                     .wall_gap = scene.wall_gap,
                                      .list = listed(call.list),
                                      .threads = call.threads,
                                      .monitor = bar.monitor()});

@@ -9,6 +9,7 @@
 #include "cad/clearance_field.hpp"
 #include "cad/triangle_tree.hpp"
 #include "domain/free_path.hpp"
+#include "domain/inset_container.hpp"
 
 namespace bernal {
 namespace {
@@ -94,7 +95,9 @@ std::unique_ptr<Container> make_mesh_container(const Mesh& mesh, WallArithmetic 
                                                double resolution) {
   if (mesh.triangles.size() < 4)
     throw Error(ErrorCode::bad_argument, "a mesh container needs a closed mesh; use read_container_mesh");
-  return std::make_unique<MeshContainer>(mesh, arithmetic, resolution);
+  auto facets = std::make_unique<MeshContainer>(mesh, arithmetic, resolution);
+  if (mesh.inset == 0) return facets;
+  return make_inset_container(std::move(facets), mesh.inset, volume_of(mesh));
 }
 
 std::unique_ptr<Container> make_container(const Domain& shape, WallArithmetic arithmetic, double resolution) {

@@ -60,7 +60,11 @@ void certify_trial(Trial& trial, const Packing& packing, const TrialOptions& opt
   // More than the machine has would be told by the library of threads, on the terminal.
   const int threads = std::min(options.threads, static_cast<int>(std::thread::hardware_concurrency()));
   const auto certified_in = [&](const Domain& domain) {
-    return certify(packing.spheres, domain, {.allowed_overlap = packing.scene.overlap, .threads = threads});
+    return certify(packing.spheres, domain,
+                   {.allowed_overlap = packing.scene.overlap,
+                    .gap = packing.scene.gap,
+                    .wall_gap = packing.scene.wall_gap,
+                    .threads = threads});
   };
   const Certificate own = certified_in(packing.domain);
   const Certificate meant = options.meant ? certified_in(*options.meant) : own;
@@ -80,8 +84,8 @@ void count_contacts(Trial& trial, const Packing& packing) {
   std::vector<double> gaps = MeasureOptions().gaps;
   std::ranges::sort(gaps);
   gaps.push_back(usual);
-  const std::vector<Contacts> by_gap =
-      measure_contacts(packing.spheres, packing.domain, gaps, packing.container);
+  const std::vector<Contacts> by_gap = measure_contacts_across(
+      packing.scene.gap, packing.scene.wall_gap, packing.spheres, packing.domain, gaps, packing.container);
   trial.coordination = by_gap.back().coordination;
   for (const Contacts& contacts : by_gap | std::views::take(gaps.size() - 1)) {
     if (contacts.contact_gap < trial.max_overlap) continue;

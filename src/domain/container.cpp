@@ -111,6 +111,9 @@ void Container::walls_near(const Vector<3>& c, double reach, std::vector<WallPoi
   thread_local std::vector<NearFacet> near;
   near.clear();
   facets_near(c, reach, near);
+  // Triangles share edges and corners, and the walls inside of them do not where they stand behind.
+  for (NearFacet& n : near)
+    if (n.facet.kind == Facet::Kind::triangle) n.facet.radius = 0;
   // A nearest point is known to a few resolutions, and so is its distance from another facet.
   const double tolerance = 32 * resolution_;
   for (std::size_t i = 0; i < near.size(); ++i) {

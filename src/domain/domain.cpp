@@ -123,6 +123,13 @@ double length_of(const Polygon& s) {
   return length;
 }
 
+/// Of what walls at so much inside of facets enclose, to first order in that; something in any case, for
+/// those who divide by it.
+double volume_within(double volume, double area, double inset) {
+  constexpr double least_share = 1e-3;
+  return inset == 0 ? volume : std::max(least_share * volume, volume - inset * area);
+}
+
 double spacing(double x) {
   x = std::abs(x);
   return std::nextafter(x, std::numeric_limits<double>::infinity()) - x;
@@ -226,15 +233,15 @@ template Bounds<dynamic> bounds_of(const Domain&);
 
 double volume_of(const Domain& domain) {
   using std::numbers::pi;
-  return std::visit(Overloaded{[](const Box& s) {
-                                 return s.repeats() || s.dimension() != 3 ? s.size.prod()
-                                                                          : bounds_of(s).volume();
-                               },
-                               [](const Cylinder& s) { return pi * s.radius * s.radius * s.height; },
-                               [](const Sphere& s) { return ball_volume(3, s.radius); },
-                               [](const Mesh& s) { return volume_of_mesh(s); },
-                               [](const Polygon& s) { return area_of_polygon(s); }},
-                    domain);
+  return std::visit(
+      Overloaded{[](const Box& s) {
+                   return s.repeats() || s.dimension() != 3 ? s.size.prod() : bounds_of(s).volume();
+                 },
+                 [](const Cylinder& s) { return pi * s.radius * s.radius * s.height; },
+                 [](const Sphere& s) { return ball_volume(3, s.radius); },
+                 [](const Mesh& s) { return volume_within(volume_of_mesh(s), area_of_mesh(s), s.inset); },
+                 [](const Polygon& s) { return volume_within(area_of_polygon(s), length_of(s), s.inset); }},
+      domain);
 }
 
 double area_of(const Domain& domain) {
@@ -329,11 +336,13 @@ Domain to_local(const Domain& shape, const Frame& frame) {
                                },
                                [&](Mesh s) -> Domain {
                                  for (Vector<3>& v : s.vertices) v = frame.to_local(v);
+                                 s.inset /= frame.scale;
                                  return s;
                                },
                                [&](Polygon s) -> Domain {
                                  for (auto& loop : s.loops)
                                    for (Vector<2>& v : loop) v = frame.to_local(in_space(v)).head<2>();
+                                 s.inset /= frame.scale;
                                  return s;
                                }},
                     shape);

@@ -1,5 +1,7 @@
 #include "bernal/domain/facet.hpp"
 
+#include <algorithm>
+
 #include "kernels/closest_point.hpp"
 #include "kernels/first_contact.hpp"
 
@@ -30,7 +32,7 @@ double distance(const Facet& f, const Vector<3>& p) {
     case Facet::Kind::triangle:
       break;
   }
-  return PreparedTriangle(f.a, f.b, f.c).offset(p).norm();
+  return PreparedTriangle(f.a, f.b, f.c).offset(p).norm() - f.radius;
 }
 
 Vector<3> closest_point(const Facet& f, const Vector<3>& p) {
@@ -47,7 +49,11 @@ Vector<3> closest_point(const Facet& f, const Vector<3>& p) {
     case Facet::Kind::triangle:
       break;
   }
-  return closest_point_of_triangle(p, f.a, f.b, f.c);
+  const Vector<3> nearest = closest_point_of_triangle(p, f.a, f.b, f.c);
+  if (f.radius == 0) return nearest;
+  const Vector<3> away = p - nearest;
+  const double length = away.norm();
+  return length > 0 ? Vector<3>(nearest + f.radius / length * away) : nearest;
 }
 
 double first_contact(const Facet& f, const Vector<3>& c, double r, const Vector<3>& direction, double limit,
@@ -62,7 +68,7 @@ double first_contact(const Facet& f, const Vector<3>& c, double r, const Vector<
     case Facet::Kind::triangle:
       break;
   }
-  return first_contact_with_triangle(c, r, direction, limit, f.a, f.b, f.c, skin);
+  return first_contact_with_triangle(c, std::max(0.0, r + f.radius), direction, limit, f.a, f.b, f.c, skin);
 }
 
 }  // namespace bernal

@@ -1,5 +1,6 @@
 #include "domain/free_path.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cfloat>
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <limits>
 
 #include "bernal/core/tolerance.hpp"
+#include "core/rounding.hpp"
 #include "domain/exact_way.hpp"
 #include "kernels/first_contact.hpp"
 
@@ -274,6 +276,12 @@ double plain_free_path(const Facet& f, const Motion& m) {
   return t == limit ? m.limit : std::min(t / length, m.limit);
 }
 
+/// Of a ball that is to keep away from the wall of a triangle the one that keeps away from the triangle.
+Motion around_inset(const Facet& f, Motion motion) {
+  motion.r = std::max(0.0, sum_rounded_up(motion.r, f.radius));
+  return motion;
+}
+
 }  // namespace
 
 double lengths_of(const Facet& f, const Motion& m) {
@@ -284,7 +292,7 @@ double lengths_of(const Facet& f, const Motion& m) {
       coordinate = std::max(coordinate, corner->cwiseAbs().maxCoeff());
       distance = std::max(distance, (m.c - *corner).norm());
     }
-  return coordinate + distance + f.radius + m.r;
+  return coordinate + distance + std::abs(f.radius) + m.r;
 }
 
 double free_path(const Corners& triangle, const Motion& motion, WallArithmetic arithmetic) {
@@ -309,13 +317,14 @@ double free_path(std::span<const AnalyticWall> walls, const Motion& motion, Wall
 }
 
 double free_path(const Facet& f, const Motion& motion, WallArithmetic arithmetic) {
-  if (f.kind == Facet::Kind::triangle) return free_path(Corners{f.a, f.b, f.c}, motion, arithmetic);
+  if (f.kind == Facet::Kind::triangle)
+    return free_path(Corners{f.a, f.b, f.c}, around_inset(f, motion), arithmetic);
   return free_path(wall_of(f), motion, arithmetic);
 }
 
 long double gap_after(const Facet& f, const Motion& m, long double t) {
   if (f.kind != Facet::Kind::triangle) return gap_after(wall_of(f), m, t);
-  const WideWay way({f.a, f.b, f.c}, m);
+  const WideWay way({f.a, f.b, f.c}, around_inset(f, m));
   return nearest_of_triangle(ways_from(way.from_start, way.direction, t)).offset.norm() - way.r;
 }
 
@@ -332,7 +341,8 @@ double clear_radius(const Container& container, const Vector<3>& c, double reach
   return last_clear(guess, reach, clears);
 }
 
-double first_contact_exactly(const Facet& f, const Motion& m, double skin) {
+double first_contact_exactly(const Facet& f, const Motion& of, double skin) {
+  const Motion m = f.kind == Facet::Kind::triangle ? around_inset(f, of) : of;
   const double stop = m.r + skin, ignore = m.r + 0.5 * skin;
   if (f.kind == Facet::Kind::triangle) {
     const Corners corners{f.a, f.b, f.c};

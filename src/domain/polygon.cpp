@@ -5,6 +5,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "domain/analytic.hpp"
 #include "domain/exact_analytic.hpp"
+#include "domain/inset_container.hpp"
 #include "domain/segment_tree.hpp"
 
 namespace bernal {
@@ -28,7 +29,7 @@ class PolygonContainer final : public Container {
       : Container(arithmetic, resolution, {}, 2),
         shape_(shape),
         bounds_(bounds_of(shape)),
-        volume_(volume_of(shape)),
+        volume_(volume_of(Polygon{shape.loops})),
         edges_(edges_of(shape)) {}
 
   std::string_view kind() const override { return "polygon"; }
@@ -83,7 +84,9 @@ class PolygonContainer final : public Container {
 }  // namespace
 
 std::unique_ptr<Container> make_polygon(const Polygon& shape, WallArithmetic arithmetic, double resolution) {
-  return std::make_unique<PolygonContainer>(shape, arithmetic, resolution);
+  auto facets = std::make_unique<PolygonContainer>(shape, arithmetic, resolution);
+  if (shape.inset == 0) return facets;
+  return make_inset_container(std::move(facets), shape.inset, volume_of(shape));
 }
 
 }  // namespace bernal

@@ -65,13 +65,16 @@ Scene scene_to_check(const SceneSizes& sizes, bool sizes_are_diameters, const Ch
 
 PredictionCheck check_prediction(const Scene& scene, const CheckOptions& options) {
   const Packing packing = run(build(scene), {{}, options.threads, options.monitor});
-  return {.phi = packing.packing_fraction(),
-          .predicted = predicted_for(packing.spheres.r, options.gap_factor),
-          .spheres = packing.spheres.size(),
-          .certified = certify(packing.spheres, packing.domain, {.allowed_overlap = scene.overlap}).certified,
-          .coordination = measure_contacts(packing.spheres, packing.domain).coordination,
-          .outcome = packing.outcome,
-          .seconds = packing.seconds};
+  return {
+      .phi = packing.packing_fraction(),
+      .predicted = predicted_for(packing.spheres.r, options.gap_factor),
+      .spheres = packing.spheres.size(),
+      .certified = certify(packing.spheres, packing.domain,
+                           {.allowed_overlap = scene.overlap, .gap = scene.gap, .wall_gap = scene.wall_gap})
+                       .certified,
+      .coordination = measure_contacts(packing.spheres, packing.domain).coordination,
+      .outcome = packing.outcome,
+      .seconds = packing.seconds};
 }
 
 }  // namespace bernal

@@ -220,7 +220,11 @@ struct WallsOf {
   std::vector<Wall<3>> operator()(const Sphere& sphere) const {
     return {{.round = true, .center = sphere.center, .extent = sphere.radius}};
   }
-  std::vector<Wall<3>> operator()(const Mesh& mesh) const { return Planes(mesh, tolerance).find(); }
+  std::vector<Wall<3>> operator()(const Mesh& mesh) const {
+    std::vector<Wall<3>> walls = Planes(mesh, tolerance).find();
+    for (Wall<3>& wall : walls) wall.extent -= mesh.inset;
+    return walls;
+  }
   std::vector<Wall<3>> operator()(const Polygon&) const {
     throw Error(ErrorCode::bad_argument, "a polygon lies in the plane and has no walls of three dimensions");
   }

@@ -117,9 +117,12 @@ void write_contacts(Page& page, const Report& report) {
   const bool walls = has_walls(report.packing.domain);
   page.add(
       "<h2>Contacts</h2>\n<p>Two spheres count as touching when the gap between them is below {:g} times the "
-      "sum of their radii{}.</p>\n",
+      "sum of their radii{}{}.</p>\n",
       c.contact_gap,
-      walls ? fmt::format("; a sphere and the wall when it is below {:g} of the radius", c.contact_gap) : "");
+      walls ? fmt::format("; a sphere and the wall when it is below {:g} of the radius", c.contact_gap) : "",
+      report.packing.scene.asks_for_gaps()
+          ? "; here that is beyond the gap that the scene asks for, half of which counts as each sphere’s"
+          : "");
   page.raw("<div class=\"pair\"><div class=\"wide\"><table>\n");
   page.row("between spheres", grouped(c.pairs), "pairs that touch");
   if (walls)

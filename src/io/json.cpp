@@ -153,7 +153,11 @@ static void to_json(Json& json, const Certificate& c) {
           {"worst_pair", c.worst_pair},
           {"max_overlap", c.max_overlap},
           {"worst_wall", c.worst_wall},
-          {"min_wall_gap", c.worst_wall ? Json(c.min_wall_gap) : Json()}};
+          {"min_wall_gap", c.worst_wall ? Json(c.min_wall_gap) : Json()},
+          {"gap", c.gap},
+          {"wall_gap", c.wall_gap},
+          {"least_distance", c.least_distance},
+          {"least_wall_distance", c.least_wall_distance}};
   if (!c.overlaps.empty()) json["overlaps"] = c.overlaps;
   if (!c.protrusions.empty()) json["protrusions"] = c.protrusions;
   json["seconds"] = c.seconds;
@@ -261,6 +265,10 @@ std::string json_of(const Report& report) {
                {"sizes", figures_of(report.measured.sizes)},
                {"max_overlap", certificate.max_overlap},
                {"min_wall_gap", of_certificate.at("min_wall_gap")},
+               {"gap", certificate.gap},
+               {"wall_gap", certificate.wall_gap},
+               {"least_distance", certificate.least_distance},
+               {"least_wall_distance", certificate.least_wall_distance},
                {"certified", certificate.certified},
                {"certificate", of_certificate},
                domain_json(packing.domain),

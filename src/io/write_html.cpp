@@ -59,6 +59,8 @@ void write_headline(Page& page, const Report& report) {
                 ? fmt::format("no overlap above {:g} of the sum of radii, which the scene allows; "
                               "nothing sticks out; proven on the written file",
                               allowed_overlap)
+            : report.certificate.gap + report.certificate.wall_gap > 0
+                ? "every gap is kept, nothing sticks out; proven on the written file"
                 : "no overlap, nothing sticks out; proven on the written file",
             certified ? "yes" : "no");
   page.card(seconds_text(packing.seconds), "Time",
@@ -158,6 +160,19 @@ void write_certificate(Page& page, const Report& report) {
       "overlapping pairs", grouped(c.overlapping_pairs),
       c.allowed_overlap > 0 ? fmt::format("by more than {:g} of the sum of radii", c.allowed_overlap) : "");
   if (walls) page.row("spheres that stick out", grouped(c.protruding_spheres), "");
+  const auto least = [](const std::optional<double>& distance) {
+    return distance ? fmt::format("{:.9g}", *distance) : std::string("more than twice that");
+  };
+  const std::string_view unit = name_of(report.packing.scene.unit);
+  if (c.gap > 0)
+    page.row(
+        "gap between spheres", fmt::format("{:g}", c.gap),
+        fmt::format("in {}, at least, as the scene asks; the least is {}. All ratios here, and contacts, "
+                    "are those of spheres with half of it around them",
+                    unit, least(c.least_distance)));
+  if (c.wall_gap > 0)
+    page.row("gap from walls", fmt::format("{:g}", c.wall_gap),
+             fmt::format("in {}, at least; the least is {}", unit, least(c.least_wall_distance)));
   if (c.worst_pair) {
     page.row(
         "closest pair", fmt::format("{:.3g}", -c.max_overlap),

@@ -34,7 +34,11 @@ Certificate certify_written(const std::filesystem::path& csv, const Packing& pac
   if (written.spheres != packing.spheres || written.unit != name_of(packing.scene.unit)) {
     throw Error(ErrorCode::cannot_write, "reads back differently from what was written", {csv.string()});
   }
-  return certify(written.spheres, packing.domain, {.allowed_overlap = packing.scene.overlap, .list = list});
+  return certify(written.spheres, packing.domain,
+                 {.allowed_overlap = packing.scene.overlap,
+                  .gap = packing.scene.gap,
+                  .wall_gap = packing.scene.wall_gap,
+                  .list = list});
 }
 
 /// Empty in other dimensions than three, and where a container is too thin for a plane to have an area in it.
@@ -68,7 +72,9 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   certificate.statement += certified_walls(packing.scene);
   const SceneRadii radii = asked_radii_of(packing);
   const Measurements measured = measure(packing.spheres, packing.domain, radii.asked,
-                                        {.radial = {.work = distances_for_a_report},
+                                        {.gap = packing.scene.gap,
+                                         .wall_gap = packing.scene.wall_gap,
+                                         .radial = {.work = distances_for_a_report},
                                          .chambers = {.points = points_for_a_report},
                                          .walls = {.work = wall_distances_for_a_report},
                                          .container = packing.container,

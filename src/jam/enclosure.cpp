@@ -36,7 +36,8 @@ Eigen::Matrix3d bend_of_facet(const Facet& facet, const WallView<3>& view) {
   return from_middle > 0 ? Eigen::Matrix3d(-view.distance / from_middle * bend) : Eigen::Matrix3d::Zero();
 }
 
-/// A face is flat, an edge bends across itself and a corner all ways.
+/// A face is flat, an edge bends across itself and a corner all ways; a wall inside of them as they do, and
+/// its distance is another.
 Eigen::Matrix3d bend_of_triangle(const TriangleWall& wall, const Vector<3>& p, const WallView<3>& view) {
   const Vector<3>* const corners[] = {&wall.a, &wall.b, &wall.c};
   Vector<3> nearest = Vector<3>::Zero(), along = nearest;
@@ -49,10 +50,12 @@ Eigen::Matrix3d bend_of_triangle(const TriangleWall& wall, const Vector<3>& p, c
     nearest = offset;
     along = to - from;
   }
-  if (view.distance * view.distance < (1 - same_distance) * least) return Eigen::Matrix3d::Zero();
+  const double distance = view.distance + wall.inset;
+  if (distance * distance < (1 - same_distance) * least) return Eigen::Matrix3d::Zero();
   Eigen::Matrix3d bend = across(view.normal);
   if (std::abs(nearest.dot(along)) <= square * nearest.norm() * along.norm())
     bend -= along * along.transpose() / along.squaredNorm();
+  if (wall.inset != 0) bend *= view.distance / distance;
   return bend;
 }
 
@@ -82,7 +85,7 @@ void Enclosure<D>::pieces_near(const Vector<D>& p, double reach, std::vector<Wal
     container_->facets_near(p, reach, near);
     for (const auto& [distance, facet] : near) {
       if (facet.kind == Facet::Kind::triangle)
-        out.push_back(TriangleWall{facet.a, facet.b, facet.c, {facet.a, facet.b, facet.c}});
+        out.push_back(TriangleWall{facet.a, facet.b, facet.c, {facet.a, facet.b, facet.c}, facet.radius});
       else
         out.push_back(facet);
     }
@@ -95,9 +98,10 @@ WallView<D> view_of(const WallPiece<D>& piece, const Vector<D>& p) {
     return {plane->inward, (p - plane->point).dot(plane->inward)};
   if constexpr (D == 3) {
     if (const auto* facet = std::get_if<Facet>(&piece)) return view_of_facet(*facet, p);
-    const Vector<3> away = std::get<TriangleWall>(piece).prepared.offset(p);
+    const auto& wall = std::get<TriangleWall>(piece);
+    const Vector<3> away = wall.prepared.offset(p);
     const double distance = away.norm();
-    return {away / distance, distance};
+    return {away / distance, distance - wall.inset};
   }
   return {Vector<D>::Zero(), 0};  // there are no others
 }

@@ -18,10 +18,11 @@ struct PlaneWall {
   Vector<D> point, inward;
 };
 
-/// One triangle of a wall.
+/// One triangle of a wall, which stands so far inside of it.
 struct TriangleWall {
   Vector<3> a, b, c;
   PreparedTriangle prepared;
+  double inset;
 };
 
 /// One smooth piece of the walls; in other than three dimensions all of them are planes.

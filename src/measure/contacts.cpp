@@ -83,6 +83,15 @@ Contacts measure_contacts(const Spheres<dynamic>& spheres, const Domain& domain,
   return measure_contacts(spheres, domain, {&contact_gap, 1}).front();
 }
 
+std::vector<Contacts> measure_contacts_across(double gap, double wall_gap, const Spheres<dynamic>& spheres,
+                                              const Domain& domain, std::span<const double> contact_gaps,
+                                              const std::shared_ptr<const Container>& made) {
+  if (gap == 0 && wall_gap == 0) return measure_contacts(spheres, domain, contact_gaps, made);
+  Spheres<dynamic> with_coats = spheres;
+  for (double& r : with_coats.r) r += 0.5 * gap;
+  return measure_contacts(with_coats, with_walls_moved(domain, wall_gap - 0.5 * gap), contact_gaps);
+}
+
 std::vector<Contacts> measure_contacts(const Spheres<dynamic>& spheres, const Domain& domain,
                                        std::span<const double> contact_gaps,
                                        const std::shared_ptr<const Container>& made) {

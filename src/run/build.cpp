@@ -11,6 +11,7 @@
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
 #include "run/price_effects.hpp"
+#include "run/room_for_gaps.hpp"
 #include "run/sizes_at_hand.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
@@ -72,18 +73,21 @@ std::unique_ptr<SizeDistribution> cut_above(const SizeDistribution& radii, doubl
   return cut < radii.max() ? std::make_unique<CutAbove>(radii, cut) : nullptr;
 }
 
+/// As what is only estimated needs it: exact arithmetic it does not.
+std::shared_ptr<const Container> container_of(const Plan& plan) {
+  const bool exact = plan.scene.walls == WallArithmetic::exact;
+  return ask_container(plan, [&] {
+    return make_local_container(plan.domain, frame_of(plan.domain),
+                                exact ? WallArithmetic::plain : plan.scene.walls);
+  });
+}
+
 void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Domain& container = plan.domain;
-  const bool exact = scene.walls == WallArithmetic::exact;  // which what is only estimated need not be
-  std::shared_ptr<const Container> made;
-  const auto make_container = [&] {
-    made = ask_container(plan, [&] {
-      return make_local_container(container, frame_of(container),
-                                  exact ? WallArithmetic::plain : scene.walls);
-    });
-  };
-  if (is_faceted(container)) make_container();  // what fits into it is asked of it
+  const bool exact = scene.walls == WallArithmetic::exact;
+  std::shared_ptr<const Container> made = plan.container;
+  if (is_faceted(container) && !made) made = container_of(plan);  // what fits into it is asked of it
   require_fitting(scene, container, made, plan.radii->min());
   const bool has_limit = std::visit(
       [](const auto& kind) {
@@ -94,8 +98,8 @@ void expect_in_container(Plan& plan) {
     require_fitting(scene, container, made, plan.radii->max(),
                     has_limit ? "give the sizes a \"max\" of that, use smaller ones" : "use smaller ones");
   frame_for(scene, container, *plan.radii);
-  if (!made) make_container();
-  if (!exact) plan.container = made;
+  if (!made) made = container_of(plan);
+  plan.container = exact ? nullptr : made;
   const double cut = tail_cut(scene, container, *plan.radii, made);
   const std::unique_ptr<SizeDistribution> without_tail = cut_above(*plan.radii, cut);
   const SizeDistribution& radii = without_tail ? *without_tail : *plan.radii;
@@ -282,6 +286,23 @@ void expect_start(Plan& plan) {
                         .seconds = seconds_a_placed * n});
 }
 
+/// All that is expected of a run, and what it needs for that.
+void expect(Plan& plan) {
+  const Scene& scene = plan.scene;
+  if (scene.is_periodic()) {
+    expect_in_periodic_box(plan);
+  } else {
+    expect_in_container(plan);
+  }
+  expect_start(plan);
+  require_overlap(plan);
+  price_effects(plan);
+  require_drawable_count(plan);
+  require_memory(plan);
+  require_fit_for_stages(plan);
+  plan.places_expected = any_in_bed(scene) && any_stage(scene, &StageTraits::places_expected, true);
+}
+
 /// An image that is too large is refused before the run, not after it.
 void require_images(const Plan& plan) {
   for (const Output& output : plan.scene.outputs) {
@@ -322,19 +343,17 @@ Plan build(const Scene& stated) {
   plan.start = read_start(plan.scene);
   plan.domain = domain_of(plan.scene, plan.container_notes);
   plan.radii = scene.draws() ? radii_of(scene) : radii_there(plan.start.spheres.r);
-  if (scene.is_periodic()) {
-    expect_in_periodic_box(plan);
+  if (scene.asks_for_gaps()) {
+    require_gaps(plan);
+    if (is_faceted(plan.domain)) plan.container = container_of(plan);
+    Plan with_room = plan_with_room(plan);
+    expect(with_room);
+    take_expectations(plan, with_room);
+    if (scene.walls == WallArithmetic::exact) plan.container = nullptr;
   } else {
-    expect_in_container(plan);
+    expect(plan);
   }
-  expect_start(plan);
-  require_overlap(plan);
-  price_effects(plan);
-  require_drawable_count(plan);
-  require_memory(plan);
   require_images(plan);
-  require_fit_for_stages(plan);
-  plan.places_expected = any_in_bed(scene) && any_stage(scene, &StageTraits::places_expected, true);
   return plan;
 }
 

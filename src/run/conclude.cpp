@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "run/room_for_gaps.hpp"
 
 namespace bernal {
 namespace {
@@ -105,7 +106,7 @@ Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, const 
             fmt::format("{}; {}", some_placed(n, static_cast<std::size_t>(*target.count)), why_no_more(end))};
   return {Outcome::full,
           fmt::format("packing fraction {:.4f} of {} is reached with {}; {}", packing.packing_fraction(),
-                      *target.packing_fraction, counted(n), why_no_more(end))};
+                      *packing.scene.target.packing_fraction, counted(n), why_no_more(end))};
 }
 
 std::string resized(double size_scale) {
@@ -118,7 +119,9 @@ std::string resized(double size_scale) {
 std::string left_out(const Packing& packing, const Work& work, double unit) {
   const Supply& supply = *work.supply;
   const double shown = (packing.scene.sizes_are_diameters ? 2 : 1) * unit;
-  const auto size = [&](double r) {
+  const double coat = coat_of(packing.scene) / unit;
+  const auto size = [&](double with_coat) {
+    const double r = with_coat - coat;
     return fmt::format("{} {:.4g} {}", packing.scene.sizes_are_diameters ? "diameter" : "radius", shown * r,
                        name_of(packing.scene.unit));
   };
@@ -141,7 +144,7 @@ std::string left_out(const Packing& packing, const Work& work, double unit) {
   }
   return text + fmt::format("; {} of the drawn sequence found no place and {} passed over: {}{}",
                             grouped(passed), passed == 1 ? "was" : "were", size(most),
-                            least < most ? fmt::format(" down to {:.4g}", shown * least) : "");
+                            least < most ? fmt::format(" down to {:.4g}", shown * (least - coat)) : "");
 }
 
 }  // namespace
@@ -158,8 +161,9 @@ void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& en
     conclusion = {Outcome::full, "no sphere has found a place; use smaller ones or check the units"};
   }
   packing.outcome = conclusion.outcome;
-  packing.reason = conclusion.reason +
-                   (in_bed ? resized(work.size_scale) + left_out(packing, work, ending.unit) : std::string());
+  packing.reason =
+      conclusion.reason +
+      (in_bed ? resized(packing.size_scale) + left_out(packing, work, ending.unit) : std::string());
 }
 
 }  // namespace bernal

@@ -13,6 +13,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "run/estimate.hpp"
+#include "run/room_for_gaps.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/bed.hpp"
 #include "work/room.hpp"
@@ -92,13 +93,19 @@ void require_fitting(const Scene& scene, const Domain& container,
       scene.sizes_are_diameters ? std::pair("diameter", "diameters") : std::pair("radius", "radii");
   const auto text = [&](double r) {  // with as many digits as tell the two apart
     const bool same = fmt::format("{:.6g}", radius) == fmt::format("{:.6g}", largest.known);
-    return fmt::format("{:.{}g} {}", shown * r, same ? 17 : 6, name_of(scene.unit));
+    return fmt::format("{:.{}g} {}", shown * (r - coat_of(scene)), same ? 17 : 6, name_of(scene.unit));
   };
+  const std::string_view gaps = scene.asks_for_gaps() ? " with the gaps that are asked for" : "";
+  if (scene.asks_for_gaps() && !(largest.known > coat_of(scene)))
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("no sphere fits into the {}{}: use smaller gaps or check the units",
+                            name_of(container), gaps),
+                scene.locations.of(scene.wall_gap > 0 ? "wall_gap" : "gap"));
   throw Error(
       ErrorCode::bad_scene,
       fmt::format(
-          "a sphere of {} {} does not fit into the {}, which takes {} up to {}: {} or check the units", one,
-          text(radius), name_of(container), many, text(largest.known), remedy),
+          "a sphere of {} {} does not fit into the {}{}, which takes {} up to {}: {} or check the units", one,
+          text(radius), name_of(container), gaps, many, text(largest.known), remedy),
       scene.sizes.locations.whole);
 }
 

@@ -16,8 +16,10 @@
 #include "run/conclude.hpp"
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
+#include "run/room_for_gaps.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
+#include "run/take_coats_off.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/counted_container.hpp"
 #include "work/work.hpp"
@@ -51,12 +53,15 @@ double random_close_packing_of(const Plan& plan) {
                                 dimension);
 }
 
-/// One run of a plan's stages.
+/// One run of a plan's stages. What they pack has room for the gaps that the scene asks for; what is handed
+/// over has not.
 class Run {
  public:
   Run(const Plan& plan, const Monitor& monitor, Packing& packing)
-      : plan_(plan),
-        scene_(plan.scene),
+      : stated_(plan),
+        with_room_(plan.scene.asks_for_gaps() ? std::optional(plan_with_room(plan)) : std::nullopt),
+        plan_(with_room_ ? *with_room_ : plan),
+        scene_(plan_.scene),
         monitor_(monitor),
         packing_(packing),
         any_in_bed_(any_in_bed(plan.scene)) {}
@@ -111,28 +116,29 @@ class Run {
               .monitor = monitor_,
               .effects = effects_,
               .on_course = [this](const Course& course) { tell(course); }};
-    Supply::Source source{*plan_.radii, work.dimension(), packing_.seed, *scene_.draw};
-    source.first = plan_.start.spheres.r;
+    Supply::Source source{*stated_.radii, work.dimension(), packing_.seed, *scene_.draw};
+    source.first = stated_.start.spheres.r;
+    source.coat = coat_of(scene_);
     double volume = volume_of(plan_.domain);
     if (scene_.is_periodic()) {
       if (any_in_bed_ && !std::isfinite(source.radii.max()))
-        source.cut = tail_cut(scene_, plan_.domain, source.radii);
-      work.supply = std::make_shared<Supply>(source, volume, scene_.target, fraction);
+        source.cut = tail_cut(scene_, plan_.domain, *plan_.radii);
+      work.supply = supply_from(source, volume, fraction);
       frame_ = frame_of_box(work.edges, work.supply->largest());
     } else {
       frame_ = frame_for(scene_, plan_.domain, *plan_.radii);
       work.domain = to_local(plan_.domain, frame_);
-      std::shared_ptr<const Container> made = packing_.container;
+      std::shared_ptr<const Container> made = plan_.container;
       if (!made) made = make_container(work.domain, scene_.walls, frame_.resolution);
       work.container = walls_ = std::make_shared<CountedContainer>(std::move(made));
       volume = std::pow(frame_.scale, work.dimension()) * work.container->volume();
       if (!std::isfinite(source.radii.max()))
-        source.cut = tail_cut(scene_, plan_.domain, source.radii, packing_.container);
-      work.supply = std::make_shared<Supply>(source, volume, scene_.target, fraction);
+        source.cut = tail_cut(scene_, plan_.domain, *plan_.radii, plan_.container);
+      work.supply = supply_from(source, volume, fraction);
     }
     if (!plan_.box_follows) {
       const double allowed = has_walls(plan_.domain) ? 0 : scene_.overlap;
-      require_fitting(scene_, plan_.domain, packing_.container, (1 - allowed) * work.supply->largest());
+      require_fitting(scene_, plan_.domain, plan_.container, (1 - allowed) * work.supply->largest());
     }
     if (any_in_bed_) require_long_periods(scene_, plan_.domain, work.supply->largest());
     work.supply->divide_by(frame_.scale);
@@ -140,7 +146,17 @@ class Run {
       work.exact_place = [this](const Vector<3>& place, double r) { return exact_place(place, r); };
     if (scene_.is_periodic()) put_into_box(work);
     take_start(plan_, frame_, work);
+    if (with_room_)
+      share_ = share_of_drawn(*work.supply, work.dimension()) * volume_of(plan_.domain) /
+               volume_of(stated_.domain);
     return work;
+  }
+
+  /// A packing fraction is asked of the scene's own spheres and its own domain.
+  std::shared_ptr<Supply> supply_from(const Supply::Source& source, double volume, double fraction) const {
+    const bool stated = with_room_ && scene_.target.packing_fraction;
+    return std::make_shared<Supply>(source, stated ? volume_of(stated_.domain) : volume, stated_.scene.target,
+                                    fraction);
   }
 
   /// Roundings of a place: as it is and with what is nearly in the middle there, each coordinate a few
@@ -191,10 +207,21 @@ class Run {
     if (!plan_.box_follows) {
       work.target_edges = work.edges;
     } else if (phi) {
-      const double volume = work.volume_of_spheres() / *phi;
-      work.target_edges = work.edges * std::pow(volume / work.edges.prod(), 1.0 / work.dimension());
+      work.target_edges = edges_filled_to(*phi, work);
     }
     work.fill_task = fill_task_of(plan_);
+  }
+
+  /// Edges of the box's proportions that the spheres fill to what the scene asks for.
+  Vector<dynamic> edges_filled_to(double phi, const Work& work) const {
+    const double dimension = work.dimension();
+    const double volume = work.volume_of_spheres() / phi;
+    if (!with_room_) return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
+    const double drawn = work.volume_of_spheres() * share_of_drawn(*work.supply, work.dimension());
+    const Vector<dynamic> around = edges_around(scene_, work.edges * frame_.scale) / frame_.scale;
+    const double stated = drawn / *stated_.scene.target.packing_fraction;
+    return edges_within(scene_, frame_.scale * around * std::pow(stated / around.prod(), 1.0 / dimension)) /
+           frame_.scale;
   }
 
   StageEnd run_stages(Work& work) {
@@ -253,18 +280,31 @@ class Run {
       const double origin = k < 3 ? frame_.origin[k] : 0;
       for (double& x : spheres.x[static_cast<std::size_t>(k)]) x = origin + frame_.scale * x;
     }
+    packing_.size_scale =
+        with_room_ ? take_coats_off(spheres.r, *work.supply, coat_of(scene_) / frame_.scale, work.size_scale)
+                   : work.size_scale;
     for (double& r : spheres.r) r *= frame_.scale;
+    if (with_room_) shift(spheres);
     if (work.stands_in_bed()) {
       wrap(spheres, packing_.domain);
     } else {
-      const Vector<dynamic> edges = work.edges * frame_.scale;
+      const bool as_stated = !plan_.box_follows && work.edges == *work.target_edges;
+      Vector<dynamic> edges = work.edges * frame_.scale;
+      if (with_room_)
+        edges = as_stated ? Vector<dynamic>(std::get<Box>(stated_.domain).size) : edges_around(scene_, edges);
       packing_.domain = periodic_box(edges, work.walls);
       packing_.volume = volume_of(packing_.domain);
     }
     state_edges();
-    packing_.size_scale = work.size_scale;
     if (walls_ && walls_->asked().calls > 0) effects_["walls"] += walls_->asked();
     packing_.effects = effects_.all();
+  }
+
+  /// Along axes at whose end there are walls, what is between these begins at zero for the stages.
+  void shift(Spheres<dynamic>& spheres) const {
+    if (const auto* box = std::get_if<PeriodicBox>(&scene_.container))
+      for (const int k : box->walls)
+        for (double& x : spheres.x[static_cast<std::size_t>(k)]) x += shift_of(scene_);
   }
 
   /// Of a periodic box, in the scene that the packing is of.
@@ -277,19 +317,22 @@ class Run {
   }
 
   void tell(const Course& course) {
+    const double fraction = share_ * course.packing_fraction;
     packing_.history.push_back(
-        {std::string(course.stage), course.spheres, course.packing_fraction,
+        {std::string(course.stage), course.spheres, fraction,
          course.potential ? frame_.scale * *course.potential + frame_.origin[scene_.dimension() - 1] : 0,
          course.max_overlap, watch_.seconds()});
-    const double expected = plan_.expected_packing_fraction;
-    const double share = expected > 0 ? std::min(course.packing_fraction / expected, 0.99) : 0;
+    const double expected = stated_.expected_packing_fraction;
+    const double share = expected > 0 ? std::min(fraction / expected, 0.99) : 0;
     const std::string overlap =
         course.max_overlap > 0 ? fmt::format(", largest overlap {:.1e}", course.max_overlap) : std::string();
-    monitor_.report({course.stage, course.done.value_or(share),
-                     fmt::format("{} spheres, packing fraction {:.4f}{}", grouped(course.spheres),
-                                 course.packing_fraction, overlap)});
+    monitor_.report(
+        {course.stage, course.done.value_or(share),
+         fmt::format("{} spheres, packing fraction {:.4f}{}", grouped(course.spheres), fraction, overlap)});
   }
 
+  const Plan& stated_;
+  const std::optional<Plan> with_room_;
   const Plan& plan_;
   const Scene& scene_;
   const Monitor& monitor_;
@@ -298,6 +341,7 @@ class Run {
   const Stopwatch watch_;
   EffectLog effects_;
   Frame frame_;
+  double share_ = 1;                               // of packing fractions, that is left without coats
   std::shared_ptr<const CountedContainer> walls_;  // null where no stage asks any
   std::unique_ptr<Container> of_scene_;            // where a sphere is to be placed exactly
 };

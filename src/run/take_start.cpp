@@ -45,12 +45,19 @@ std::string_view remedy_in_bed(int dimension) {
 }
 
 [[noreturn]] void refuse_overlap(const StartSpheres& start, const WorstPair& worst, std::string_view stage,
-                                 std::string_view remedy = relax_frees) {
+                                 double gap, std::string_view remedy = relax_frees) {
   const std::string how =
       worst.ratio > 0
           ? fmt::format("overlaps that of line {} by a ratio of {:.3g}",
                         start.first_line + static_cast<int>(worst.i), worst.ratio)
           : fmt::format("touches that of line {} to rounding", start.first_line + static_cast<int>(worst.i));
+  if (gap > 0) {
+    refuse(
+        start, worst.j,
+        fmt::format("this sphere is nearer to that of line {} than the gap of {:g}, and no pair may be for "
+                    "\"{}\": {}",
+                    start.first_line + static_cast<int>(worst.i), gap, stage, remedy));
+  }
   refuse(start, worst.j, fmt::format("this sphere {}, and no pair may for \"{}\": {}", how, stage, remedy));
 }
 
@@ -93,7 +100,9 @@ void take_start_in_box(const Plan& plan, double scale, Work& work) {
       if (x >= r && work.edges[k] - x >= r) continue;
       work.may_overlap = true;
       if (!frees_overlap)
-        refuse(start, i, fmt::format("this sphere crosses a wall along axis {}; begin with \"relax\"", k));
+        refuse(start, i,
+               fmt::format("this sphere {} a wall along axis {}; begin with \"relax\"",
+                           plan.scene.wall_gap > 0 ? "is nearer than the gap to" : "crosses", k));
     }
   const Vector<D> edges = edges_around_walls<D>(work.edges, work.walls);
   const Boundary<D> boundary{edges};
@@ -107,7 +116,7 @@ void take_start_in_box(const Plan& plan, double scale, Work& work) {
   }
   if (!(worst.ratio > -1)) return;
   work.may_overlap = true;
-  if (!frees_overlap) refuse_overlap(start, worst, first.name());
+  if (!frees_overlap) refuse_overlap(start, worst, first.name(), plan.scene.gap);
 }
 
 /// Those that are clear of the others, and of the walls, stand in the bed from now on.
@@ -137,8 +146,11 @@ void take_start_in_bed(const Plan& plan, const Frame& frame, Work& work) {
       if (touching) c = *touching;
       if (!touching && !frees_overlap)
         refuse(start, i,
-               fmt::format("this sphere protrudes from the container by {:.3g} of its radius: {}",
-                           1 - container.clearance(c) / r, remedy_in_bed(container.dimension())));
+               plan.scene.wall_gap > 0
+                   ? fmt::format("this sphere is nearer to the wall than the gap of {:g}: {}",
+                                 plan.scene.wall_gap, remedy_in_bed(container.dimension()))
+                   : fmt::format("this sphere protrudes from the container by {:.3g} of its radius: {}",
+                                 1 - container.clearance(c) / r, remedy_in_bed(container.dimension())));
     }
     grid.for_each_near(c, r + gap, [&](std::uint32_t j) {
       const double distance = container.boundary().minimum_image(c - spheres.center(j)).norm();
@@ -152,7 +164,7 @@ void take_start_in_bed(const Plan& plan, const Frame& frame, Work& work) {
     if (stands[i]) bed.insert(c, r, static_cast<std::uint32_t>(i));
   }
   if (worst.ratio > -1 && !frees_overlap)
-    refuse_overlap(start, worst, first.name(), remedy_in_bed(container.dimension()));
+    refuse_overlap(start, worst, first.name(), plan.scene.gap, remedy_in_bed(container.dimension()));
   work.supply->set_placed(stands);
   work.begun = n;
   if (bed.size() < n) work.crowded_start = std::move(spheres);

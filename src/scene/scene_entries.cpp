@@ -212,37 +212,44 @@ const Entry& scene_entry() {
 
 const Entry& spheres_entry() {
   static const Entry made = [] {
-    Entry of{.name = "spheres",
-             .help = "how many spheres there are, and how large",
-             .keys = {integer(Member(&Target::count).inside(&Scene::target), "count",
-                              "stop at this many spheres", {1, 0x1p31 - 1}),
-                      number(packing_fraction(), "packing_fraction",
-                             "stop when the spheres fill this fraction of the container; \"predicted\": as "
-                             "much as is predicted, less the error of that",
-                             between(0, 1)),
-                      flag(fill(), "fill", "true: as many spheres as the stages can place", {1, 1}),
-                      key(Type::distribution, sizes(false), "radius", "lengths are radii"),
-                      key(Type::distribution, sizes(true), "diameter", "lengths are diameters"),
-                      word(&Scene::draw, "draw",
-                           "sizes at random, or quantiles: evenly over the distribution; if absent quantiles "
-                           "where relax or grow packs a container, else random",
-                           words(draw_words)),
-                      key(Type::file, of_start(&Start::file), "start",
-                          "spheres to begin from: a CSV file whose header names x, y, z and r or d, or a "
-                          "folder with a result; those that are drawn come after them, and where no sizes "
-                          "are given these are all there are"),
-                      word(of_start(&Start::unit), "start_unit",
-                           "of the start, where its file has no line \"# unit: mm\"; if absent the scene's",
-                           words(unit_names())),
-                      key(Type::lengths, of_start(&Start::box), "start_box",
-                          "in periodic boxes: edges of the one that the start lies in; if absent those of "
-                          "the folder's box, else the size of the container"),
-                      names(of_start(&Start::sha256), "start_sha256",
-                            "of the start's file, as sha256sum prints it: other bytes are refused; a result "
-                            "names it")},
-             .choices = {{{"count"}, {"packing_fraction"}, {"fill"}, {"count", "packing_fraction"}, {}},
-                         {{"radius"}, {"diameter"}}},
-             .rule = rule(spheres_rule)};
+    Entry of{
+        .name = "spheres",
+        .help = "how many spheres there are, and how large",
+        .keys = {integer(Member(&Target::count).inside(&Scene::target), "count", "stop at this many spheres",
+                         {1, 0x1p31 - 1}),
+                 number(packing_fraction(), "packing_fraction",
+                        "stop when the spheres fill this fraction of the container; \"predicted\": as "
+                        "much as is predicted, less the error of that",
+                        between(0, 1)),
+                 flag(fill(), "fill", "true: as many spheres as the stages can place", {1, 1}),
+                 key(Type::distribution, sizes(false), "radius", "lengths are radii"),
+                 key(Type::distribution, sizes(true), "diameter", "lengths are diameters"),
+                 number(&Scene::gap, "gap",
+                        "least distance between the surfaces of two spheres, and of a sphere and its own "
+                        "image",
+                        {0}),
+                 number(&Scene::wall_gap, "wall_gap", "least distance of a sphere's surface from the walls",
+                        {0}),
+                 word(&Scene::draw, "draw",
+                      "sizes at random, or quantiles: evenly over the distribution; if absent quantiles "
+                      "where relax or grow packs a container, else random",
+                      words(draw_words)),
+                 key(Type::file, of_start(&Start::file), "start",
+                     "spheres to begin from: a CSV file whose header names x, y, z and r or d, or a "
+                     "folder with a result; those that are drawn come after them, and where no sizes "
+                     "are given these are all there are"),
+                 word(of_start(&Start::unit), "start_unit",
+                      "of the start, where its file has no line \"# unit: mm\"; if absent the scene's",
+                      words(unit_names())),
+                 key(Type::lengths, of_start(&Start::box), "start_box",
+                     "in periodic boxes: edges of the one that the start lies in; if absent those of "
+                     "the folder's box, else the size of the container"),
+                 names(of_start(&Start::sha256), "start_sha256",
+                       "of the start's file, as sha256sum prints it: other bytes are refused; a result "
+                       "names it")},
+        .choices = {{{"count"}, {"packing_fraction"}, {"fill"}, {"count", "packing_fraction"}, {}},
+                    {{"radius"}, {"diameter"}}},
+        .rule = rule(spheres_rule)};
     of.keys[1].words = {"predicted"};
     return entry<Scene>(std::move(of));
   }();

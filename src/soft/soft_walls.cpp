@@ -50,6 +50,7 @@ SoftWalls::SoftWalls(const Container& container, const Vector<3>& corner, const 
                      std::size_t spheres)
     : container_(container),
       repeats_(container.boundary().repeats()),
+      inset_(container.inset()),
       corner_(corner),
       unit_(unit),
       resolution_(unit.maxCoeff()),
@@ -94,18 +95,18 @@ bool SoftWalls::look(const Vector<3>& at, double r, double skin, View& view) con
   view.pieces.clear();
   view.is_fine = false;
   view.reach = 0;
-  view.clearance = container_.clearance_within(at, near + far_reach * skin);
+  view.clearance = container_.clearance_within(at, near + far_reach * skin - inset_) + inset_;
   if (view.clearance >= near) return false;
   std::vector<NearFacet> facets;
   view.reach = near + skin;
-  view.is_fine = !container_.few_facets_near(at, view.reach, most_pieces, facets);
+  view.is_fine = !container_.few_facets_near(at, view.reach - inset_, most_pieces, facets);
   if (view.is_fine) return true;
   view.pieces.reserve(facets.size());
   for (const NearFacet& f : facets) {
     if (f.facet.kind == Facet::Kind::triangle)
-      view.pieces.push_back({f.distance, PreparedTriangle(f.facet.a, f.facet.b, f.facet.c)});
+      view.pieces.push_back({f.distance + inset_, PreparedTriangle(f.facet.a, f.facet.b, f.facet.c)});
     else
-      view.pieces.push_back({f.distance, f.facet});
+      view.pieces.push_back({f.distance + inset_, f.facet});
   }
   return !view.pieces.empty();
 }
@@ -119,7 +120,7 @@ void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<
     for (std::size_t g = b * groups_a_task; g < std::min(groups, (b + 1) * groups_a_task); ++g) {
       for (std::size_t l = 0; l < lanes; ++l) {
         const SoftSphere& s = spheres[g * lanes + l];
-        if (s.r > 0 && look(place(s), s.r, skin, views_[ids[g * lanes + l]]))
+        if (s.r > 0 && look(place(s), radius_at_wall(s), skin, views_[ids[g * lanes + l]]))
           near_lanes[g] = static_cast<std::uint16_t>(near_lanes[g] | 1u << l);
       }
     }
@@ -152,7 +153,7 @@ void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere&
   const double moved = way(view.at, near.last).norm();
   near.beyond = (view.is_fine ? view.clearance : view.reach) - moved;
   for (const Piece& piece : view.pieces) {
-    if (piece.distance - moved >= sphere.r + skin_) {
+    if (piece.distance - moved >= radius_at_wall(sphere) + skin_) {
       near.beyond = piece.distance - moved;
       break;
     }
@@ -198,9 +199,11 @@ double SoftWalls::look_through(const NearSphere& near, double r, std::vector<Wal
 /// The same of a sphere at a fine wall, where the container knows.
 double SoftWalls::ask(NearSphere& near, double r, std::vector<WallContact>& contacts) const {
   if (near.beyond - near.way >= r) return near.beyond - near.way;
-  container_.contacts(near.last, r, contacts);
-  const double nearest =
-      contacts.empty() ? container_.clearance_within(near.last, r + skin_) : contacts.front().distance;
+  container_.contacts(near.last, r - inset_, contacts);
+  for (WallContact& contact : contacts) contact.distance += inset_;
+  const double nearest = contacts.empty()
+                             ? container_.clearance_within(near.last, r + skin_ - inset_) + inset_
+                             : contacts.front().distance;
   near.beyond = nearest + near.way;
   return nearest;
 }
@@ -228,7 +231,7 @@ void SoftWalls::work_out(std::size_t group, const SoftSphere* spheres, WallPush&
     NearSphere& near = near_[n];
     const std::uint32_t l = near.lane;
     const Vector<3> c = place(spheres[l]);
-    const double r = spheres[l].r;
+    const double r = radius_at_wall(spheres[l]);
     near.way += way(near.last, c).norm();
     near.last = c;
     contacts.clear();

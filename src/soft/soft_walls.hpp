@@ -33,6 +33,9 @@ struct alignas(64) WallPush {
 /// only when the sphere has gone far enough since the last time to touch it. Where there are too many of them
 /// for that, the container is asked for the contacts instead. Cost of a sweep: about 20 ns a facet that is
 /// looked at, some µs where the container is asked.
+///
+/// Distances in here are those from the facets, and of a container whose wall stands inside of them, or
+/// behind, radii are by that inset larger at a wall: so a centre never passes the facets in any case.
 class SoftWalls {
  public:
   /// Spheres have the radii that SoftSphere gives them, times at most `swelling`. A sphere's place on axis k
@@ -84,6 +87,7 @@ class SoftWalls {
     double beyond;                          // no other piece is nearer to it than this less `way`
   };
 
+  double radius_at_wall(const SoftSphere& s) const { return s.r + inset_; }
   Vector<3> place(const SoftSphere& s) const;
   Vector<3> way_between(const SoftSphere& from, const SoftSphere& to) const;
   /// The short way from one place of a sphere to another; along an axis that repeats itself the place jumps
@@ -101,6 +105,7 @@ class SoftWalls {
   const Made made_{"walls"};
   const Container& container_;
   const bool repeats_;  // along some axis
+  const double inset_;
   Vector<3> corner_, unit_;
   double resolution_;
   double skin_ = 0;

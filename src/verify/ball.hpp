@@ -1,9 +1,11 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
 #include "bernal/core/vector.hpp"
 #include "verify/box_tree.hpp"
+#include "verify/tally.hpp"
 
 namespace bernal::verify {
 
@@ -18,13 +20,33 @@ struct Ball {
   double center(int axis) const { return c[axis]; }
 };
 
+/// How far from a wall a centre has to stay: a radius, and the gap that is to be beyond it.
+struct Reach {
+  double r, gap = 0;
+
+  template <class Number>
+  Number as() const {
+    return gap == 0 ? Number(r) : Number(r) + Number(gap);
+  }
+};
+
 template <int D>
 using BallTree = BoxTree<Ball<D>, D>;
 
-/// Whether a ball lies inside, and its least gap from a near wall over its radius; infinite if none is near.
+/// Whether a ball lies inside, as far from the walls as is asked for; by how much more, at the least from a
+/// near wall, over its reach; and how far it is from that. Infinite if none is near.
 struct Stand {
   bool inside = true;
   double gap = std::numeric_limits<double>::infinity();
+  double distance = std::numeric_limits<double>::infinity();
+
+  /// One more piece of wall, at that signed distance from the centre, in double.
+  void add(double clearance, const Reach& reach, bool holds) {
+    const double least = reach.r + reach.gap;
+    inside = inside && holds;
+    gap = std::min(gap, with_sign((clearance - least) / least, holds));
+    distance = std::min(distance, on_side_of(reach.gap, clearance - reach.r, holds));
+  }
 };
 
 }  // namespace bernal::verify

@@ -62,6 +62,16 @@ Box<D> box_of_ball(const Vector<D>& c, double r) {
   return box;
 }
 
+/// The box with `by` >= 0 more on every side, never smaller than that.
+template <int D>
+Box<D> widened(Box<D> box, double by) {
+  for (int k = 0; k < D && by > 0; ++k) {
+    box.lower[k] = rounded_down(box.lower[k] - by);
+    box.upper[k] = rounded_up(box.upper[k] + by);
+  }
+  return box;
+}
+
 /// A bounding-volume hierarchy over items that have `Box<D> box() const` and `double center(int axis) const`
 /// (finite): a complete binary tree, each node split at the median along the longer extent of its centres.
 /// So its depth is log2(N / 8) for any input: clustered, coincident, any ratio of sizes.

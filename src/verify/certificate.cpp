@@ -22,7 +22,16 @@ std::string counted(std::uint64_t n, std::string_view one, std::string_view many
 }
 std::string counted_spheres(std::uint64_t n) { return counted(n, "sphere", "spheres"); }
 
-void check_arguments(const Spheres<dynamic>& spheres, const Domain& domain, double allowed_overlap) {
+void check_arguments(const Spheres<dynamic>& spheres, const Domain& domain, const CertifyOptions& options) {
+  const double allowed_overlap = options.allowed_overlap;
+  for (const double gap : {options.gap, options.wall_gap})
+    if (!(std::isfinite(gap) && gap >= 0))
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("a gap is {}; it must be finite, and not negative", gap));
+  const auto has_inset = [](const auto& shape) { return shape && shape->inset != 0; };
+  if (has_inset(std::get_if<Mesh>(&domain)) || has_inset(std::get_if<Polygon>(&domain)))
+    throw Error(ErrorCode::bad_argument, "the domain has an inset; certify with a wall_gap instead");
+
   if (spheres.dimension() != dimension_of(domain))
     throw Error(ErrorCode::bad_argument, fmt::format("the spheres have {} coordinates, the domain has {}",
                                                      spheres.dimension(), dimension_of(domain)));
@@ -98,6 +107,13 @@ std::string what_was_decided(const Certificate& c, const Domain& domain, const s
       counted(c.walls_tested, mesh ? "near triangle" : "wall", mesh ? "near triangles" : "walls"), limit);
 }
 
+std::string gaps_kept(const Certificate& c) {
+  if (!(c.gap + c.wall_gap > 0)) return "";
+  if (!(c.wall_gap > 0)) return fmt::format(", all {} apart", c.gap);
+  if (!(c.gap > 0)) return fmt::format(", all {} from the walls", c.wall_gap);
+  return fmt::format(", all {} apart and {} from the walls", c.gap, c.wall_gap);
+}
+
 std::string statement_of(const Certificate& c, const Domain& domain) {
   if (c.cancelled)
     return fmt::format("Not certified: it was stopped after {} and {}.",
@@ -107,21 +123,32 @@ std::string statement_of(const Certificate& c, const Domain& domain) {
   if (c.certified) {
     if (c.spheres == 0) return "Certified: there are no spheres.";
     std::string closest;
-    if (c.worst_pair)
+    if (c.least_distance)
+      return fmt::format("Certified: {}{}; least distance {:.9g}.", what_was_decided(c, domain, limit),
+                         gaps_kept(c), *c.least_distance);
+    if (c.worst_pair && c.gap == 0)
       closest = c.max_overlap > 0 ? fmt::format("; largest overlap {:.2g}", c.max_overlap)
                                   : fmt::format("; closest pair gap {:.2g}", 0.0 - c.max_overlap);
     if (!closest.empty()) closest += " of the sum of radii";
-    return fmt::format("Certified: {}{}.", what_was_decided(c, domain, limit), closest);
+    return fmt::format("Certified: {}{}{}.", what_was_decided(c, domain, limit), gaps_kept(c), closest);
   }
   std::string faults;
   if (c.overlapping_pairs > 0)
-    faults = fmt::format("{}{} (worst {}, overlap ratio {:.2g})",
-                         counted(c.overlapping_pairs, "overlapping pair", "overlapping pairs"), limit,
-                         worst_pair_text(c), c.max_overlap);
-  if (c.protruding_spheres > 0)
-    faults += fmt::format("{}{} across or outside the wall (worst {}, gap {:.2g} of its radius)",
-                          faults.empty() ? "" : ", ", counted_spheres(c.protruding_spheres), *c.worst_wall,
-                          c.min_wall_gap);
+    faults = c.gap > 0 ? fmt::format("{} nearer than the gap of {} (worst {}; least distance {:.9g})",
+                                     counted(c.overlapping_pairs, "pair", "pairs"), c.gap, worst_pair_text(c),
+                                     *c.least_distance)
+                       : fmt::format("{}{} (worst {}, overlap ratio {:.2g})",
+                                     counted(c.overlapping_pairs, "overlapping pair", "overlapping pairs"),
+                                     limit, worst_pair_text(c), c.max_overlap);
+  if (c.protruding_spheres > 0) {
+    if (!faults.empty()) faults += ", ";
+    faults += c.wall_gap > 0
+                  ? fmt::format("{} nearer to the wall than its gap of {} (worst {}; least distance {:.9g})",
+                                counted_spheres(c.protruding_spheres), c.wall_gap, *c.worst_wall,
+                                *c.least_wall_distance)
+                  : fmt::format("{} across or outside the wall (worst {}, gap {:.2g} of its radius)",
+                                counted_spheres(c.protruding_spheres), *c.worst_wall, c.min_wall_gap);
+  }
   return fmt::format("Not certified: {}.", faults);
 }
 
@@ -137,11 +164,13 @@ std::string worst_pair_text(const Certificate& c) { return c.worst_pair ? pair_t
 
 Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, const CertifyOptions& options) {
   const Stopwatch watch;
-  check_arguments(spheres, domain, options.allowed_overlap);
+  check_arguments(spheres, domain, options);
 
   Certificate result;
   result.spheres = spheres.size();
   result.allowed_overlap = options.allowed_overlap;
+  result.gap = options.gap;
+  result.wall_gap = options.wall_gap;
   if (auto complaint = complaint_about(spheres)) {
     result.statement = *std::move(complaint);
   } else {
@@ -167,6 +196,11 @@ Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, const
       result.worst_wall = tally.worst_wall.sphere;
       result.min_wall_gap = tally.worst_wall.gap;
     }
+    if (tally.least_distance <= verify::distances_known_up_to(options.gap))
+      result.least_distance = tally.least_distance;
+    if (options.gap + options.wall_gap > 0 &&
+        tally.least_wall_distance <= verify::wall_distances_known_up_to(options))
+      result.least_wall_distance = tally.least_wall_distance;
     result.overlaps = std::move(tally.overlaps).sorted();
     result.protrusions = std::move(tally.protrusions).sorted();
     result.certified = !result.cancelled && tally.overlapping == 0 && tally.protruding == 0;

@@ -14,7 +14,7 @@ template <int D, class Space>
 class PairJudge {
  public:
   PairJudge(const BallTree<D>& balls, const Space& space, const Course& course)
-      : balls_(balls), space_(space), course_(course) {}
+      : balls_(balls), space_(space), course_(course), gap_(course.options().gap) {}
 
   Tally judge_all() const {
     return course_.for_each("pairs", balls_.leaves(), 16,
@@ -29,37 +29,42 @@ class PairJudge {
       if constexpr (Space::repeats) judge_own_images(mine[i], tally);
       judge_near(mine[i], mine.subspan(i + 1), tally);
     }
-    balls_.for_each_leaf_touching_after(l, space_.reach_of(balls_.box_of_leaf(l)), [&](std::size_t m) {
-      const auto reach = space_.reach_of(balls_.box_of_leaf(m));
+    balls_.for_each_leaf_touching_after(l, reach_of(balls_.box_of_leaf(l)), [&](std::size_t m) {
+      const auto reach = reach_of(balls_.box_of_leaf(m));
       for (const Ball<D>& ball : mine)
         if (touch(ball.box(), reach)) judge_near(ball, balls_.leaf(m), tally);
     });
   }
 
   void judge_near(const Ball<D>& ball, std::span<const Ball<D>> others, Tally& tally) const {
-    const auto reach = space_.reach_of(ball.box());
+    const auto reach = reach_of(ball.box());
     for (const Ball<D>& other : others)
       if (touch(other.box(), reach))
         ball.index < other.index ? judge(ball, other, tally) : judge(other, ball, tally);
   }
 
+  /// What touches it is as near as to be looked at.
+  auto reach_of(const Box<D>& box) const {
+    return space_.reach_of(widened(box, distances_known_up_to(gap_)));
+  }
+
   void judge(const Ball<D>& a, const Ball<D>& b, Tally& tally) const {
-    const double reach = a.r + b.r;
-    record(a.index, b.index, (distance(a, b) - reach) / reach, tally,
-           [&]<class Number>(double allowed) { return balls_clear<Number>(space_, a, b, allowed); });
+    record(a.index, b.index, distance(a, b), a.r + b.r, tally,
+           [&]<class Number>(double allowed) { return balls_clear<Number>(space_, a, b, allowed, gap_); });
   }
 
   /// A ball and its nearest images, an edge away.
   void judge_own_images(const Ball<D>& ball, Tally& tally) const {
     const double edge = space_.edges.minCoeff(), diameter = 2 * ball.r;
-    if (diameter < edge) return;
-    record(ball.index, ball.index, (edge - diameter) / diameter, tally,
-           [&]<class Number>(double allowed) { return own_images_clear<Number>(ball.r, edge, allowed); });
+    if (diameter + distances_known_up_to(gap_) < edge) return;
+    record(ball.index, ball.index, edge, diameter, tally, [&]<class Number>(double allowed) {
+      return own_images_clear<Number>(ball.r, edge, allowed, gap_);
+    });
   }
 
-  /// Decides one near pair. `gap` is its gap over its sum of radii, in double.
+  /// Decides one near pair, by its distance and its sum of radii in double.
   template <class Predicate>
-  void record(std::uint64_t first, std::uint64_t second, double gap, Tally& tally,
+  void record(std::uint64_t first, std::uint64_t second, double distance, double sum, Tally& tally,
               const Predicate& clear) const {
     const auto holds = [&](double allowed, Decisions& decisions) {
       return decide(course_.options().arithmetic, decisions,
@@ -69,7 +74,10 @@ class PairJudge {
     const bool as_allowed = holds(allowed, tally.decisions);
     Decisions only_for_the_sign;
     const bool strictly = allowed == 0 ? as_allowed : holds(0, only_for_the_sign);
-    tally.add_pair({{first, second}, 0.0 - with_sign(gap, strictly)}, as_allowed);
+    const double reach = sum + gap_;
+    tally.add_pair({{first, second}, 0.0 - with_sign((distance - reach) / reach, strictly)}, as_allowed);
+    if (gap_ > 0)
+      tally.least_distance = std::min(tally.least_distance, on_side_of(gap_, distance - sum, strictly));
   }
 
   double distance(const Ball<D>& a, const Ball<D>& b) const {
@@ -82,6 +90,7 @@ class PairJudge {
   const BallTree<D>& balls_;
   const Space& space_;
   const Course& course_;
+  const double gap_;
 };
 
 }  // namespace

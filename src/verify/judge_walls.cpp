@@ -21,22 +21,23 @@ bool positive(double x) { return std::isfinite(x) && x > 0; }
 template <int D>
 class PieceJudge {
  public:
-  PieceJudge(const Ball<D>& ball, Arithmetic arithmetic, Tally& tally)
-      : ball_(ball), arithmetic_(arithmetic), tally_(tally) {}
+  PieceJudge(const Ball<D>& ball, const CertifyOptions& options, Tally& tally)
+      : reach_{ball.r, options.wall_gap}, arithmetic_(options.arithmetic), tally_(tally) {}
+
+  const Reach& reach() const { return reach_; }
 
   /// `clearance` is the signed distance of the centre from the piece, in double.
   template <class Predicate>
   void piece(double clearance, const Predicate& predicate) {
     ++tally_.walls;
     const bool holds = decide(arithmetic_, tally_.decisions, predicate) == Truth::yes;
-    stand_.inside = stand_.inside && holds;
-    stand_.gap = std::min(stand_.gap, with_sign((clearance - ball_.r) / ball_.r, holds));
+    stand_.add(clearance, reach_, holds);
   }
 
   const Stand& stand() const { return stand_; }
 
  private:
-  const Ball<D>& ball_;
+  Reach reach_;
   Arithmetic arithmetic_;
   Tally& tally_;
   Stand stand_;
@@ -53,13 +54,14 @@ class BoxWall {
           "a box needs a finite corner and a positive finite size");
   }
 
-  Stand stand_of(const Ball<D>& ball, Arithmetic arithmetic, Tally& tally) const {
-    PieceJudge judge(ball, arithmetic, tally);
+  Stand stand_of(const Ball<D>& ball, const CertifyOptions& options, Tally& tally) const {
+    PieceJudge judge(ball, options, tally);
     for (int k = 0; k < D; ++k) {
       if (!box_.has_wall(k)) continue;
-      const double c = ball.c[k], r = ball.r, lower = lower_[k], upper = upper_[k];
-      judge.piece(c - lower, [=]<class Number>() { return above<Number>(c, r, lower); });
-      judge.piece(upper - c, [=]<class Number>() { return below<Number>(c, r, upper); });
+      const double c = ball.c[k], lower = lower_[k], upper = upper_[k];
+      const Reach& r = judge.reach();
+      judge.piece(c - lower, [&]<class Number>() { return above<Number>(c, r, lower); });
+      judge.piece(upper - c, [&]<class Number>() { return below<Number>(c, r, upper); });
     }
     return judge.stand();
   }
@@ -77,11 +79,11 @@ class SphereWall {
             "a sphere needs a finite centre and a positive finite radius");
   }
 
-  Stand stand_of(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
+  Stand stand_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
     const Vector<3> d = ball.c - sphere_.center;
-    PieceJudge judge(ball, arithmetic, tally);
+    PieceJudge judge(ball, options, tally);
     judge.piece(sphere_.radius - std::hypot(d[0], d[1], d[2]),
-                [&]<class Number>() { return ball_in_ball<Number>(ball.c, ball.r, sphere_); });
+                [&]<class Number>() { return ball_in_ball<Number>(ball.c, judge.reach(), sphere_); });
     return judge.stand();
   }
 
@@ -99,22 +101,22 @@ class CylinderWall {
     unit_axis_ = cylinder.axis.stableNormalized();
   }
 
-  Stand stand_of(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
+  Stand stand_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
     const Vector<3> w = ball.c - cylinder_.base;
     const Vector<3> across = w.cross(unit_axis_);
     const double height = w.dot(unit_axis_);
-    PieceJudge judge(ball, arithmetic, tally);
+    PieceJudge judge(ball, options, tally);
     if (!cylinder_.periodic) judge_lids(judge, ball, height);
     judge.piece(cylinder_.radius - std::hypot(across[0], across[1], across[2]),
-                [&]<class Number>() { return inside_side<Number>(ball.c, ball.r, cylinder_); });
+                [&]<class Number>() { return inside_side<Number>(ball.c, judge.reach(), cylinder_); });
     return judge.stand();
   }
 
  private:
   void judge_lids(PieceJudge<3>& judge, const Ball<3>& ball, double height) const {
-    judge.piece(height, [&]<class Number>() { return above_base<Number>(ball.c, ball.r, cylinder_); });
+    judge.piece(height, [&]<class Number>() { return above_base<Number>(ball.c, judge.reach(), cylinder_); });
     judge.piece(cylinder_.height - height,
-                [&]<class Number>() { return below_top<Number>(ball.c, ball.r, cylinder_); });
+                [&]<class Number>() { return below_top<Number>(ball.c, judge.reach(), cylinder_); });
   }
 
   const Cylinder& cylinder_;
@@ -125,8 +127,9 @@ template <int D, class Wall>
 Tally judge_all(const BallTree<D>& balls, const Wall& wall, const Course& course) {
   const auto all = balls.items();
   return course.for_each("walls", all.size(), 64, [&](std::size_t i, Tally& tally) {
-    const Stand stand = wall.stand_of(all[i], course.options().arithmetic, tally);
+    const Stand stand = wall.stand_of(all[i], course.options(), tally);
     tally.add_ball({all[i].index, stand.gap}, stand.inside);
+    tally.least_wall_distance = std::min(tally.least_wall_distance, stand.distance);
   });
 }
 

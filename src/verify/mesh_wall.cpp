@@ -125,24 +125,28 @@ Corners MeshWall::corners(const Facet& facet) const {
   return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
 }
 
-Stand MeshWall::stand_of(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
+Stand MeshWall::stand_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
+  const Arithmetic arithmetic = options.arithmetic;
+  const Reach reach{ball.r, options.wall_gap};
   bool clear = true;
   double distance = Box<3>::infinity;
-  facets_.for_each_touching(ball.box(), [&](const Facet& facet) {
-    const Corners corner = corners(facet);
-    ++tally.walls;
-    const Truth clears = decide(arithmetic, tally.decisions, [&]<class Number>() {
-      return ball_clears_triangle<Number>(ball.c, ball.r, corner);
-    });
-    clear = clear && clears == Truth::yes;
-    distance = std::min(distance, distance_from_triangle(ball.c, corner));
-  });
+  facets_.for_each_touching(widened(ball.box(), wall_distances_known_up_to(options)),
+                            [&](const Facet& facet) {
+                              const Corners corner = corners(facet);
+                              ++tally.walls;
+                              const Truth clears = decide(arithmetic, tally.decisions, [&]<class Number>() {
+                                return ball_clears_triangle<Number>(ball.c, reach, corner);
+                              });
+                              clear = clear && clears == Truth::yes;
+                              distance = std::min(distance, distance_from_triangle(ball.c, corner));
+                            });
 
   const bool center_is_inside = center_inside(ball, arithmetic, tally);
   if (!center_is_inside) distance = -distance_from(ball.c);
   const bool holds = center_is_inside && clear;
-  if (distance == Box<3>::infinity) return {holds, distance};
-  return {holds, with_sign((distance - ball.r) / ball.r, holds)};
+  Stand stand{.inside = holds};
+  if (distance < Box<3>::infinity) stand.add(distance, reach, holds);
+  return stand;
 }
 
 bool MeshWall::center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {

@@ -20,7 +20,7 @@ class MeshWall {
   explicit MeshWall(const Mesh& mesh);
 
   /// Tries the ball against the near triangles and decides the side of its centre; counts both.
-  Stand stand_of(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const;
+  Stand stand_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const;
 
  private:
   struct Facet {

@@ -42,13 +42,15 @@ std::vector<PolygonWall::Edge> PolygonWall::edges_of(const Polygon& polygon) {
   return edges;
 }
 
-Stand PolygonWall::stand_of(const Ball<2>& ball, Arithmetic arithmetic, Tally& tally) const {
+Stand PolygonWall::stand_of(const Ball<2>& ball, const CertifyOptions& options, Tally& tally) const {
+  const Arithmetic arithmetic = options.arithmetic;
+  const Reach reach{ball.r, options.wall_gap};
   bool clear = true;
   double distance = Box<2>::infinity;
-  edges_.for_each_touching(ball.box(), [&](const Edge& edge) {
+  edges_.for_each_touching(widened(ball.box(), wall_distances_known_up_to(options)), [&](const Edge& edge) {
     ++tally.walls;
     clear &= decide(arithmetic, tally.decisions, [&]<class Number>() {
-               return ball_clears_edge<Number>(ball.c, ball.r, edge.a, edge.b);
+               return ball_clears_edge<Number>(ball.c, reach, edge.a, edge.b);
              }) == Truth::yes;
     distance = std::min(distance, distance_from_edge(ball.c, edge.a, edge.b));
   });
@@ -61,8 +63,9 @@ Stand PolygonWall::stand_of(const Ball<2>& ball, Arithmetic arithmetic, Tally& t
     distance = -distance;
   }
   const bool holds = inside && clear;
-  if (distance == Box<2>::infinity) return {holds, distance};
-  return {holds, with_sign((distance - ball.r) / ball.r, holds)};
+  Stand stand{.inside = holds};
+  if (distance < Box<2>::infinity) stand.add(distance, reach, holds);
+  return stand;
 }
 
 bool PolygonWall::center_inside(const Ball<2>& ball, Arithmetic arithmetic, Tally& tally) const {

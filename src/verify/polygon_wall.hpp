@@ -16,7 +16,7 @@ class PolygonWall {
   explicit PolygonWall(const Polygon& polygon);
 
   /// Tries the disc against the near edges and decides the side of its centre; counts both.
-  Stand stand_of(const Ball<2>& ball, Arithmetic arithmetic, Tally& tally) const;
+  Stand stand_of(const Ball<2>& ball, const CertifyOptions& options, Tally& tally) const;
 
  private:
   struct Edge {

@@ -9,7 +9,7 @@
 // The questions that a certificate answers, each written once and evaluated in any arithmetic `Number` that
 // has +, -, ×, `square`, `magnitude`, `smaller` and `sign`: Bounded (a filter) or Exact. Only ring operations
 // and comparisons occur, no division and no root, so Exact answers them about the doubles as written. Radii
-// are positive throughout.
+// are positive throughout, gaps not negative.
 
 namespace bernal::verify {
 
@@ -39,11 +39,11 @@ Triple<Number> cross(const Triple<Number>& a, const Triple<Number>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// (1 - allowed)(ri + rj), for 0 <= allowed < 1.
+/// (1 - allowed)(ri + rj + gap), for 0 <= allowed < 1.
 template <class Number>
-Number least_distance(double ri, double rj, double allowed) {
-  if (allowed == 0) return Number(ri) + Number(rj);
-  return (Number(ri) + Number(rj)) * (Number(1) - Number(allowed));
+Number least_distance(double ri, double rj, double allowed, double gap) {
+  const Number sum = gap == 0 ? Number(ri) + Number(rj) : Number(ri) + Number(rj) + Number(gap);
+  return allowed == 0 ? sum : sum * (Number(1) - Number(allowed));
 }
 
 template <class Number, int D, class Space>
@@ -54,34 +54,37 @@ Number squared_distance(const Space& space, const Ball<D>& a, const Ball<D>& b) 
   (std::make_integer_sequence<int, D>());
 }
 
-/// |ci - cj| >= (1 - allowed)(ri + rj) in an OpenSpace or, for the nearest images, a PeriodicSpace.
+/// |ci - cj| >= (1 - allowed)(ri + rj + gap) in an OpenSpace or, for the nearest images, a PeriodicSpace.
 template <class Number, int D, class Space>
-Truth balls_clear(const Space& space, const Ball<D>& a, const Ball<D>& b, double allowed) {
-  return at_least(squared_distance<Number>(space, a, b), square(least_distance<Number>(a.r, b.r, allowed)));
+Truth balls_clear(const Space& space, const Ball<D>& a, const Ball<D>& b, double allowed, double gap = 0) {
+  return at_least(squared_distance<Number>(space, a, b),
+                  square(least_distance<Number>(a.r, b.r, allowed, gap)));
 }
 
 /// The ball keeps its distance from its own images along an axis with that edge.
 template <class Number>
-Truth own_images_clear(double r, double edge, double allowed) {
-  return at_least(Number(edge), least_distance<Number>(r, r, allowed));
+Truth own_images_clear(double r, double edge, double allowed, double gap) {
+  return at_least(Number(edge), least_distance<Number>(r, r, allowed, gap));
 }
 
 /// c - r >= lower, in one coordinate.
 template <class Number>
-Truth above(double c, double r, double lower) {
-  return at_least(Number(c) - Number(r), Number(lower));
+Truth above(double c, const Reach& r, double lower) {
+  return at_least(Number(c) - r.as<Number>(), Number(lower));
 }
 /// c + r <= upper, in one coordinate.
 template <class Number>
-Truth below(double c, double r, double upper) {
-  return at_least(Number(upper), Number(c) + Number(r));
+Truth below(double c, const Reach& r, double upper) {
+  return at_least(Number(upper), Number(c) + r.as<Number>());
 }
 
 /// The ball lies in the ball of radius R around `center`: |c - center| <= R - r.
 template <class Number>
-Truth ball_in_ball(const Vector<3>& c, double r, const Sphere& s) {
-  if (s.radius < r) return Truth::no;
-  return at_least(square(Number(s.radius) - Number(r)), squared_norm(difference<Number>(c, s.center)));
+Truth ball_in_ball(const Vector<3>& c, const Reach& r, const Sphere& s) {
+  const Number room = Number(s.radius) - r.as<Number>();
+  const Truth is_room = at_least(room, Number(0));
+  if (is_room != Truth::yes) return is_room;
+  return at_least(square(room), squared_norm(difference<Number>(c, s.center)));
 }
 
 // A cylinder has three pieces of wall. With w = c - base, the axis a of any length and h = w·a, the height of
@@ -89,28 +92,31 @@ Truth ball_in_ball(const Vector<3>& c, double r, const Sphere& s) {
 
 /// h >= r |a|
 template <class Number>
-Truth above_base(const Vector<3>& c, double r, const Cylinder& s) {
+Truth above_base(const Vector<3>& c, const Reach& r, const Cylinder& s) {
   const Triple<Number> a = vector<Number>(s.axis);
   const Number h = dot(difference<Number>(c, s.base), a);
-  return at_least(h, Number(0)) & at_least(square(h), square(Number(r)) * squared_norm(a));
+  return at_least(h, Number(0)) & at_least(square(h), square(r.as<Number>()) * squared_norm(a));
 }
 /// h <= (height - r) |a|
 template <class Number>
-Truth below_top(const Vector<3>& c, double r, const Cylinder& s) {
+Truth below_top(const Vector<3>& c, const Reach& r, const Cylinder& s) {
   const Triple<Number> a = vector<Number>(s.axis);
   const Number h = dot(difference<Number>(c, s.base), a);
-  const Number limit_squared = square(Number(s.height) - Number(r)) * squared_norm(a);
-  const Truth h_not_positive = at_least(Number(0), h);
-  return s.height >= r ? h_not_positive | at_least(limit_squared, square(h))
-                       : h_not_positive & at_least(square(h), limit_squared);
+  const Number limit = Number(s.height) - r.as<Number>();
+  const Number limit_squared = square(limit) * squared_norm(a);
+  const Truth h_not_positive = at_least(Number(0), h), is_room = at_least(limit, Number(0));
+  if (is_room == Truth::unknown) return Truth::unknown;
+  return is_room == Truth::yes ? h_not_positive | at_least(limit_squared, square(h))
+                               : h_not_positive & at_least(square(h), limit_squared);
 }
 /// |w × a| <= (R - r) |a|
 template <class Number>
-Truth inside_side(const Vector<3>& c, double r, const Cylinder& s) {
-  if (s.radius < r) return Truth::no;
+Truth inside_side(const Vector<3>& c, const Reach& r, const Cylinder& s) {
+  const Number room = Number(s.radius) - r.as<Number>();
+  const Truth is_room = at_least(room, Number(0));
+  if (is_room != Truth::yes) return is_room;
   const Triple<Number> a = vector<Number>(s.axis);
-  const Number limit_squared = square(Number(s.radius) - Number(r)) * squared_norm(a);
-  return at_least(limit_squared, squared_norm(cross(difference<Number>(c, s.base), a)));
+  return at_least(square(room) * squared_norm(a), squared_norm(cross(difference<Number>(c, s.base), a)));
 }
 
 using Corners = std::array<Vector<3>, 3>;
@@ -121,8 +127,8 @@ using Corners = std::array<Vector<3>, 3>;
 /// projects between its ends, the face only where p projects inside; a vertex always belongs to the triangle,
 /// and so may be asked without a condition. Edges and faces without extent impose nothing.
 template <class Number>
-Truth ball_clears_triangle(const Vector<3>& p, double r, const Corners& corner) {
-  const Number r_squared = square(Number(r));
+Truth ball_clears_triangle(const Vector<3>& p, const Reach& r, const Corners& corner) {
+  const Number r_squared = square(r.as<Number>());
   const Triple<Number> to_p[3] = {difference<Number>(p, corner[0]), difference<Number>(p, corner[1]),
                                   difference<Number>(p, corner[2])};
   const Triple<Number> edge[3] = {difference<Number>(corner[1], corner[0]),
@@ -194,9 +200,9 @@ Sign crossing_above(const Vector<3>& p, const Corners& corner) {
 
 /// The distance of p in the plane from the edge between a and b, ends included, is at least r.
 template <class Number>
-Truth ball_clears_edge(const Vector<2>& p, double r, const Vector<2>& a, const Vector<2>& b) {
+Truth ball_clears_edge(const Vector<2>& p, const Reach& r, const Vector<2>& a, const Vector<2>& b) {
   const auto minus = [](double s, double t) { return Number(s) - Number(t); };
-  const Number r_squared = square(Number(r));
+  const Number r_squared = square(r.as<Number>());
   const Number wx = minus(p[0], a[0]), wy = minus(p[1], a[1]);
   const Number ex = minus(b[0], a[0]), ey = minus(b[1], a[1]);
   const Truth clear = at_least(square(wx) + square(wy), r_squared) &

@@ -32,6 +32,8 @@ Tally& Tally::operator+=(const Tally& other) {
   if (worse(other.worst_wall, worst_wall)) worst_wall = other.worst_wall;
   overlaps.add(other.overlaps);
   protrusions.add(other.protrusions);
+  least_distance = std::min(least_distance, other.least_distance);
+  least_wall_distance = std::min(least_wall_distance, other.least_wall_distance);
   return *this;
 }
 

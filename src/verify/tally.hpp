@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -75,6 +76,9 @@ struct Tally {
   Certificate::Protrusion worst_wall = {0, std::numeric_limits<double>::infinity()};
   WorstOf<Certificate::Overlap> overlaps;
   WorstOf<Certificate::Protrusion> protrusions;
+  /// Between the surfaces of near balls, and of a ball and a near wall.
+  double least_distance = std::numeric_limits<double>::infinity();
+  double least_wall_distance = std::numeric_limits<double>::infinity();
 
   /// `list`: of the most to be listed.
   explicit Tally(std::size_t list) : overlaps(list), protrusions(list) {}
@@ -104,5 +108,18 @@ auto decide(Arithmetic arithmetic, Decisions& decisions, const Predicate& predic
 /// A ratio that was computed in double, with the sign that was decided exactly: not negative if `holds`,
 /// negative otherwise. Rounding can be wrong about the sign only within a few roundoffs of zero.
 double with_sign(double ratio, bool holds);
+
+/// A distance that was computed in double, on that side of a limit that was decided exactly.
+inline double on_side_of(double limit, double distance, bool holds) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return holds ? std::max(distance, limit) : std::min(distance, std::nextafter(limit, -infinity));
+}
+
+/// Where a gap is asked for, distances of up to twice that are looked at, so that the least is known; of
+/// walls those of up to the other gap as well.
+inline double distances_known_up_to(double gap) { return 2 * gap; }
+inline double wall_distances_known_up_to(const CertifyOptions& options) {
+  return std::max(options.gap, 2 * options.wall_gap);
+}
 
 }  // namespace bernal::verify

@@ -21,7 +21,7 @@ class CountedContainer final : public Container {
  public:
   explicit CountedContainer(std::shared_ptr<const Container> container)
       : Container(container->arithmetic(), container->resolution(), container->boundary(),
-                  container->dimension()),
+                  container->dimension(), container->inset()),
         container_(std::move(container)) {}
 
   std::string_view kind() const override { return container_->kind(); }

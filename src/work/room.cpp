@@ -94,8 +94,10 @@ void append_tangents(const Facet& facet, const Vector<3>& place, std::vector<Obs
 }  // namespace
 
 Surroundings walls_of(const Container& container) {
-  return [&container](const Vector<3>& place, double reach, std::vector<Obstacle>& obstacles) {
-    if (const double clearance = container.clearance_within(place, reach); !(clearance > 0)) {
+  const double outside = std::max(0.0, -container.inset());
+  return [&container, outside](const Vector<3>& place, double reach, std::vector<Obstacle>& obstacles) {
+    const double asked = std::max(reach, 2 * outside);
+    if (const double clearance = container.clearance_within(place, asked); !(clearance > outside)) {
       obstacles.push_back({Vector<3>::Zero(), clearance});
       return;
     }

@@ -5,6 +5,8 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
+#include "core/rounding.hpp"
+#include "sizes/enlarged.hpp"
 
 namespace bernal {
 namespace {
@@ -29,22 +31,31 @@ void Supply::refuse_count(const Target& target) {
 
 Supply::Supply(const Source& source, double volume, const Target& target, double fraction)
     : dimension_(source.dimension), cut_(source.cut) {
-  const double mean_volume = ball_volume(dimension_, 1) * source.radii.moment(dimension_);
+  const bool counts_drawn = target.packing_fraction.has_value();
+  const Enlarged with_coats(source.radii, source.coat);
+  const SizeDistribution& counted =
+      counts_drawn || source.coat == 0 ? source.radii : static_cast<const SizeDistribution&>(with_coats);
+  const double mean_volume = ball_volume(dimension_, 1) * counted.moment(dimension_);
   fraction = target.packing_fraction.value_or(fraction);
   const double expected = target.count ? static_cast<double>(*target.count) : fraction * volume / mean_volume;
   if (!(expected < most_spheres)) refuse_count(target);
   RadiusSequence sequence(source.radii, source.seed, source.draw);
   radii_.reserve(static_cast<std::size_t>(expected * 1.01) + 16);
-  radii_.assign(source.first.begin(), source.first.end());
   double filled = 0;
-  for (const double r : radii_) filled += ball_volume(dimension_, r);
+  const auto add = [&](double drawn) {
+    const double r = sum_rounded_up(drawn, source.coat);
+    radii_.push_back(r);
+    if (source.coat > 0) drawn_.push_back(drawn);
+    filled += ball_volume(dimension_, counts_drawn ? drawn : r);
+  };
+  for (const double r : source.first) add(r);
   std::uint64_t drawn = 0;
   while (target.count ? radii_.size() < static_cast<std::size_t>(*target.count)
                       : filled < fraction * volume) {
     constexpr std::uint64_t between_looks = 4096;
     if (++drawn % between_looks == 0) throw_if_interrupted();
     const double r = sequence.next();
-    if (r > source.cut) {
+    if (sum_rounded_up(r, source.coat) > source.cut) {
       if (++cut_off_ > most_cut_off * (radii_.size() + 1000))
         throw Error(
             ErrorCode::bad_scene,
@@ -52,8 +63,7 @@ Supply::Supply(const Source& source, double volume, const Target& target, double
             target.where);
       continue;
     }
-    radii_.push_back(r);
-    filled += ball_volume(dimension_, r);
+    add(r);
   }
   const auto [smallest, largest] = std::ranges::minmax(radii_);
   smallest_ = smallest;
@@ -66,6 +76,7 @@ Supply::Supply(const Source& source, double volume, const Target& target, double
 
 void Supply::divide_by(double unit) {
   for (double& r : radii_) r /= unit;
+  for (double& r : drawn_) r /= unit;
   cut_ /= unit;
   smallest_ /= unit;
   largest_ /= unit;

@@ -32,6 +32,9 @@ class Supply {
     /// Larger radii are drawn again, and counted.
     double cut = std::numeric_limits<double>::infinity();
     std::vector<double> first = {};  ///< radii of the start, which come before those drawn, whatever the cut
+    /// What every sphere has around it: that is in all radii, and no part of the drawn ones. Of a packing
+    /// fraction that is asked for the volume without it counts.
+    double coat = 0;
   };
 
   /// Draws as many radii as the target asks for, or as fill `fraction` of the volume where it leaves that
@@ -43,6 +46,8 @@ class Supply {
   /// All sizes are so many times as large from now on.
   void multiply_by(double factor);
   const std::vector<double>& radii() const { return radii_; }
+  /// As it was drawn, without its coat: the packer's unit, and no later `multiply_by`.
+  double drawn(std::size_t tag) const { return drawn_.empty() ? radii_[tag] : drawn_[tag]; }
 
   /// Nothing more is to be placed: the target has been reached.
   bool exhausted() const { return window_.empty(); }
@@ -81,6 +86,7 @@ class Supply {
 
   int dimension_ = 3;
   std::vector<double> radii_;
+  std::vector<double> drawn_;  // where there are coats
   std::vector<std::uint32_t> window_;
   std::vector<std::uint32_t> taken_first_;  // ascending
   bool in_sequence_ = true;                 // but for a window's width, spheres were taken in their order

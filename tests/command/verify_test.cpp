@@ -53,6 +53,35 @@ TEST_F(Verify, AllowsTheOverlapThatTheSceneAllows) {
   EXPECT_EQ(with("# unit: mm\nx,y,z,r\n1,1,1,1\n2.7,1,1,1\n").status, 1);
 }
 
+// A quarter apart and an eighth from the walls, exactly.
+TEST_F(Verify, ProvesTheGapsThatTheSceneAsksFor) {
+  folder.write("scene.toml", std::string(box_scene) + "gap = 0.25\nwall_gap = 0.125\n");
+  const std::string kept = "# unit: mm\nx,y,z,r\n1,1,1,0.875\n3,1,1,0.875\n";
+  const Ended ended = with(kept);
+  EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
+  EXPECT_NE(ended.out.find("0.25 between spheres, least 0.25; 0.125 from walls, least 0.125"),
+            std::string::npos)
+      << ended.out;
+  const Ended nearer = with("# unit: mm\nx,y,z,r\n1,1,1,0.875\n2.9999999999999996,1,1,0.875\n");
+  EXPECT_EQ(nearer.status, 1);
+  EXPECT_NE(nearer.out.find("1 pair nearer than the gap of 0.25 (worst 0 and 1"), std::string::npos)
+      << nearer.out;
+  const Ended at_wall = with("# unit: mm\nx,y,z,r\n1,1,0.9999999999999999,0.875\n3,1,1,0.875\n");
+  EXPECT_EQ(at_wall.status, 1);
+  EXPECT_NE(at_wall.out.find("1 sphere nearer to the wall than its gap of 0.125 (worst 0"), std::string::npos)
+      << at_wall.out;
+
+  const std::string file = folder.write("theirs.csv", kept).string();
+  EXPECT_EQ(bernal({"verify", file, "--scene", scene}).status, 0);
+  const auto json = nlohmann::json::parse(bernal({"verify", file, "--scene", scene, "--json"}).out);
+  EXPECT_EQ(json["gap"], 0.25);
+  EXPECT_EQ(json["wall_gap"], 0.125);
+  EXPECT_EQ(json["least_distance"], 0.25);
+  EXPECT_EQ(json["least_wall_distance"], 0.125);
+  folder.write("scene.toml", std::string(box_scene) + "gap = 0.2500001\nwall_gap = 0.125\n");
+  EXPECT_EQ(bernal({"verify", file, "--scene", scene}).status, 1);
+}
+
 TEST_F(Verify, JsonIsOneObjectAndNothingElse) {
   with(touching);
   const Ended json = bernal({"verify", folder.path().string(), "--json", "--threads", "1"});

@@ -80,6 +80,8 @@ inline Plan scaled(Plan plan, double factor) {
     for (double& x : column) x *= factor;
   for (double& r : plan.start.spheres.r) r *= factor;
   plan.start.edges *= factor;
+  plan.scene.gap *= factor;
+  plan.scene.wall_gap *= factor;
   return plan;
 }
 

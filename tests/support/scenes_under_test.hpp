@@ -120,8 +120,10 @@ inline Packing run_with(const Plan& plan, int threads = 1) {
 }
 
 inline void expect_certified(const Packing& packing) {
-  const Certificate filtered = certify(packing.spheres, packing.domain);
-  const Certificate exact = certify(packing.spheres, packing.domain, {.arithmetic = Arithmetic::exact});
+  CertifyOptions options{.gap = packing.scene.gap, .wall_gap = packing.scene.wall_gap};
+  const Certificate filtered = certify(packing.spheres, packing.domain, options);
+  options.arithmetic = Arithmetic::exact;
+  const Certificate exact = certify(packing.spheres, packing.domain, options);
   EXPECT_TRUE(filtered.certified) << filtered.statement;
   EXPECT_TRUE(exact.certified) << exact.statement;
   EXPECT_EQ(filtered.pairs_tested, exact.pairs_tested);

@@ -98,7 +98,8 @@ class Container {
   /// smooth patch that is nearer than r the nearest point, however finely it is cut into facets.
   virtual void contacts(const Vector<3>& c, double r, std::vector<WallContact>& out) const;
 
-  /// Appends the wall points within `reach` of `c`, one a facet, edge or corner (each once), nearest first.
+  /// Appends the wall points within `reach` of `c`, one a facet, edge or corner (each once), nearest first;
+  /// where the wall has an inset the points of its facets, and their clearances from the wall.
   void walls_near(const Vector<3>& c, double reach, std::vector<WallPoint>& out) const;
 
   /// The periods. Queries take a point for what it is, not for its image in one period.
@@ -107,16 +108,26 @@ class Container {
   /// Largest rounding error of a coordinate: `Frame::resolution` of the frame the container lives in.
   double resolution() const { return resolution_; }
 
+  /// How far inside of its facets the wall stands, see `Mesh::inset`. Where that is negative, what is behind
+  /// the facets is not inside for all that: `contains` says so, and a clearance of -inset at most.
+  double inset() const { return inset_; }
+
   /// How `contains` and `free_path` are decided.
   WallArithmetic arithmetic() const { return arithmetic_; }
 
  protected:
-  Container(WallArithmetic arithmetic, double resolution, const Boundary<3>& boundary = {}, int dimension = 3)
-      : arithmetic_(arithmetic), resolution_(resolution), dimension_(dimension), boundary_(boundary) {}
+  Container(WallArithmetic arithmetic, double resolution, const Boundary<3>& boundary = {}, int dimension = 3,
+            double inset = 0)
+      : arithmetic_(arithmetic),
+        resolution_(resolution),
+        inset_(inset),
+        dimension_(dimension),
+        boundary_(boundary) {}
 
  private:
   WallArithmetic arithmetic_;
   double resolution_;
+  double inset_;
   int dimension_;
   Boundary<3> boundary_;
 };

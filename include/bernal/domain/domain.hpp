@@ -60,6 +60,9 @@ struct Sphere {
 struct Mesh {
   std::vector<Vector<3>> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// The walls stand so far inside of the triangles, or behind them where that is negative: what is nearer to
+  /// a triangle is not of the domain. Its bounds and its area are those of the triangles all the same.
+  double inset = 0;
 };
 
 /// The points of the plane from which a ray crosses closed lines an odd number of times: of an outline and
@@ -67,6 +70,7 @@ struct Mesh {
 /// first, in either sense; edges without length count for nothing. See `require_simple`.
 struct Polygon {
   std::vector<std::vector<Vector<2>>> loops;
+  double inset = 0;  ///< as that of a mesh
 };
 
 /// Throws Error{bad_argument} that names the edges and the place, unless a polygon has finite corners, at
@@ -101,13 +105,20 @@ int symmetries_of(const Domain&);
 template <int D = 3>
 Bounds<D> bounds_of(const Domain&);
 /// Enclosed volume, or that of one period, to rounding; an area in two dimensions, and so on. (For a mesh
-/// the sum of signed tetrahedra about its bounds' centre.)
+/// the sum of signed tetrahedra about its bounds' centre.) With an inset to first order in that.
 double volume_of(const Domain&);
 /// Area of the walls, in two dimensions their length; precondition: two or three dimensions.
 double area_of(const Domain&);
 /// The metric: the periods of the axes that have one. Precondition: D is the dimension.
 template <int D>
 Boundary<D> boundary_of(const Domain&);
+
+/// The domain with all its walls moved inwards by so much, or outwards where that is negative; what repeats
+/// itself stays as it is. Rounded inwards, by some roundoffs of the coordinates, and not at all where every
+/// sum is a double: a ball of radius r that lies inside has a clearance of r + `by` from the walls before.
+/// Sizes become negative where nothing is left. Throws Error{bad_argument} for a mesh or a polygon that has
+/// an inset already.
+Domain with_walls_moved(const Domain&, double by);
 
 /// Replaces every centre by its image in one period: that in [lower, lower + period) along axes that have
 /// one, where results and files have them. Precondition: spheres of the domain's dimension.

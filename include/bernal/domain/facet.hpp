@@ -12,9 +12,11 @@ namespace bernal {
 /// | plane    | a point          | inward unit normal |        |        | (p - a)·b            |
 /// | cylinder | a point of the axis | unit axis       |        | R      | R - |p - a|⊥b        |
 /// | sphere   | centre           |                    |        | R      | R - |p - a|          |
-/// | triangle | vertex           | vertex             | vertex |        | |p - triangle| (unsigned) |
+/// | triangle | vertex           | vertex             | vertex | R      | |p - triangle| - R, negative only
+/// within R |
 ///
-/// A triangle without area, two of whose vertices are one, is a segment: an edge of a polygon.
+/// A triangle without area, two of whose vertices are one, is a segment: an edge of a polygon. Its R is how
+/// far inside of it the wall stands, see `Mesh::inset`; 0 for most, and negative where it stands behind.
 struct Facet {
   enum class Kind : std::uint8_t { plane, cylinder, sphere, triangle };
   Kind kind = Kind::plane;

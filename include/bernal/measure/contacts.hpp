@@ -50,4 +50,11 @@ std::vector<Contacts> measure_contacts(const Spheres<dynamic>&, const Domain&,
                                        std::span<const double> contact_gaps,
                                        const std::shared_ptr<const Container>& made = {});
 
+/// The same of spheres that keep a gap from each other and one from the walls, in the domain's unit: what
+/// holds them in their places are others, and walls, at that distance. So contacts are those of spheres with
+/// half the gap around them, between walls that they then touch, and their gap ratios too.
+std::vector<Contacts> measure_contacts_across(double gap, double wall_gap, const Spheres<dynamic>&,
+                                              const Domain&, std::span<const double> contact_gaps,
+                                              const std::shared_ptr<const Container>& made = {});
+
 }  // namespace bernal

@@ -117,6 +117,8 @@ struct Scene {
       {};  ///< without it quantiles where a stage keeps them in a container, else random
   Target target;
   Start start = {};
+  double gap = 0;       ///< least distance between the surfaces of two spheres, or of one and its own image
+  double wall_gap = 0;  ///< least distance of a sphere's surface from the walls
   WallArithmetic walls = WallArithmetic::filtered;
   double overlap = 0;              ///< largest overlap ratio that the result may keep
   std::vector<Stage> stages = {};  ///< in order; none: the one that suits any container
@@ -129,6 +131,7 @@ struct Scene {
     const auto* constant = std::get_if<Constant>(&sizes);
     return !constant || constant->value != 0;
   }
+  bool asks_for_gaps() const { return gap > 0 || wall_gap > 0; }
   bool is_periodic() const { return std::holds_alternative<PeriodicBox>(container); }
   int dimension() const {
     if (const auto* box = std::get_if<PeriodicBox>(&container)) return box->dimension;

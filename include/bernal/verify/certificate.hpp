@@ -32,12 +32,18 @@ enum class Arithmetic {
 /// does not repeat itself, in any dimension; the base, the top and the side of a cylinder, only the side of a
 /// periodic one; the surface of a sphere; the triangles of a mesh.
 ///
+/// Where gaps are asked for, balls and walls keep them: |ci - cj| >= ri + rj + gap, in all images, and the
+/// ball of radius ri + wall_gap lies inside. What is said below of overlap and protrusion then means too
+/// small a gap as well, and all ratios are those of spheres with half the gap around each, (ri + rj + gap -
+/// d) / (ri + rj + gap), and with the wall's gap around them, (clearance - r - wall_gap) / (r + wall_gap).
+///
 /// Pairs and triangles that bounding boxes separate are not counted; every other one is decided exactly, and
 /// so is every sphere against each of the other walls.
 struct Certificate {
   bool certified = false;  ///< no overlap above the allowed, no protrusion, every radius positive and finite
-  double allowed_overlap = 0;  ///< the largest overlap ratio of a pair that counted as none
-  bool cancelled = false;      ///< the monitor ended it: the figures are of what was decided until then
+  double allowed_overlap = 0;    ///< the largest overlap ratio of a pair that counted as none
+  double gap = 0, wall_gap = 0;  ///< that were asked for
+  bool cancelled = false;        ///< the monitor ended it: the figures are of what was decided until then
 
   std::uint64_t spheres = 0;
   std::uint64_t pairs_tested = 0;    ///< near pairs
@@ -62,6 +68,11 @@ struct Certificate {
   /// no sphere is near a wall.
   double min_wall_gap = 0;
 
+  /// Where gaps are asked for, the least distance between the surfaces of two spheres, and of a sphere from
+  /// the wall, negative outside; on the side of what is asked for that was decided exactly. None where that
+  /// is more than twice the gap, or of a wall more than twice its gap and more than the other.
+  std::optional<double> least_distance, least_wall_distance;
+
   struct Overlap {
     std::array<std::uint64_t, 2> pair;  ///< as `worst_pair`
     double ratio;                       ///< as `max_overlap`; above what is allowed
@@ -83,6 +94,8 @@ struct Certificate {
 
 struct CertifyOptions {
   double allowed_overlap = 0;  ///< in [0, 1): the largest overlap ratio of a pair that still counts as none
+  double gap = 0;  ///< that spheres keep from each other, finite and not negative, in the unit of the domain
+  double wall_gap = 0;  ///< the same, from the walls
   Arithmetic arithmetic = Arithmetic::filtered;
   /// How many overlapping pairs and how many protruding spheres are listed at most: the worst of each.
   std::size_t list = 0;
@@ -96,9 +109,9 @@ struct CertifyOptions {
 ///
 /// A sphere whose centre is not finite or whose radius is not positive and finite makes the packing not
 /// certified, as the statement says; then nothing else is tested. Throws Error{bad_argument} for columns of
-/// different lengths, spheres that have not the dimension of the domain, a box whose members are not of one
-/// dimension and absurd measures of a domain, Error{bad_mesh} for a mesh with a boundary. That a mesh does
-/// not intersect itself is not checked.
+/// different lengths, gaps that are none, spheres that have not the dimension of the domain, a box whose
+/// members are not of one dimension and absurd measures of a domain, Error{bad_mesh} for a mesh with a
+/// boundary. That a mesh does not intersect itself is not checked.
 ///
 /// Cost: O(N log N + near pairs), about 0.7 µs a sphere at N = 30,000 and 0.9 at 10,000,000 on one core, a
 /// quarter more where the domain repeats itself; a mesh of T triangles adds O(T log T), about 0.5 µs each.
