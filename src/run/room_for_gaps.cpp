@@ -57,6 +57,20 @@ double share_without_coats(const Plan& plan, const Plan& with_room) {
   return has_size(plan) ? share * volume_of(with_room.domain) / volume_of(plan.domain) : share;
 }
 
+/// The edges of a box of the same proportions, within which the region has as much volume as those span.
+Vector<dynamic> box_as_roomy_as(const Scene& scene, const Vector<dynamic>& edges) {
+  if (edges_within(scene, edges) == edges) return edges;
+  constexpr int halvings = 100;
+  double low = 0, high = 1;
+  const auto has_room = [&](double times) {
+    const Vector<dynamic> within = edges_within(scene, times * edges);
+    return within.minCoeff() > 0 && within.prod() >= edges.prod();
+  };
+  while (!has_room(high)) high *= 2;
+  for (int k = 0; k < halvings; ++k) (has_room(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
+  return high * edges;
+}
+
 StartSpheres with_coats(StartSpheres start, const Scene& scene) {
   for (double& r : start.spheres.r) r = sum_rounded_up(r, coat_of(scene));
   if (start.edges.size() > 0) start.edges = edges_within(scene, start.edges);
@@ -126,7 +140,7 @@ Plan plan_with_room(const Plan& plan) {
 void take_expectations(Plan& plan, const Plan& with_room) {
   plan.box_follows = with_room.box_follows;
   if (plan.box_follows)
-    std::get<Box>(plan.domain).size = edges_around(plan.scene, std::get<Box>(with_room.domain).size);
+    std::get<Box>(plan.domain).size = box_as_roomy_as(plan.scene, std::get<Box>(with_room.domain).size);
   const double share = share_without_coats(plan, with_room);
   plan.attainable_packing_fraction = share * with_room.attainable_packing_fraction;
   plan.expected_packing_fraction = share * with_room.expected_packing_fraction;

@@ -56,7 +56,7 @@ std::vector<Case> cases() {
   return {
       {"SettledInABox", box, "fill = true\n" + wide, settled, 0.02},
       {"RelaxedInABox", box, wide, relaxed, 0.02},
-      {"PolishedInABox", box, equal, stage("relax", "polish = 1e-10"), 0.02},
+      {"PolishedInABox", box, "radius = 0.1\n", stage("relax", "polish = 1e-10"), 0.02},
       {"GrownInABox", box, "packing_fraction = 0.3\n" + wide, grown, 0.02},
       {"SettledInAnObliqueCylinder", oblique, "fill = true\n" + equal, settled, 0.02},
       {"RelaxedInAnObliqueCylinder", oblique, wide, relaxed, 0.03},
@@ -74,7 +74,7 @@ std::vector<Case> cases() {
       {"RelaxedThenGrown", periodic, "count = 60\n" + wide, relaxed + grown, 0.02},
       {"RelaxedInTheUnitBox", periodic + "edge = 1.0\n", "packing_fraction = 0.35\n" + wide, relaxed, 0.02},
       {"SizesOneToTen", periodic,
-       "count = 400\nradius = { distribution = \"uniform\", min = 0.1, max = 1.0, "
+       "count = 150\nradius = { distribution = \"uniform\", min = 0.1, max = 1.0, "
        "basis = \"volume\" }\n",
        relaxed, 0.05},
       {"RelaxedBetweenTwoWalls", between, "packing_fraction = 0.3\n" + wide, relaxed, 0.02},

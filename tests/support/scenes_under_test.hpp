@@ -106,6 +106,17 @@ inline std::vector<SceneUnderTest> own_scenes() {
   add_in("GrowthInAChannel", channel, "[spheres]\nradius = 0.08\n" + grow);
   add_in("RelaxationBetweenNoWalls", Box{{3, 0, 0}, {1, 1, 1}, {true, true, true}},
          "[spheres]\nradius = 0.09\n[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"relax\"\n");
+  add("GapsInAnObliqueCylinder",
+      "[container]\nkind = \"cylinder\"\nradius = 2.0\nheight = 5.0\naxis = [1.0, 2.0, 3.0]\n"
+      "[spheres]\nradius = { distribution = \"uniform\", min = 0.2, max = 0.3 }\ngap = 0.03\n");
+  add("GapsBetweenTwoWalls", periodic +
+                                 "size = [1.0, 1.2, 0.9]\nwalls = [1]\n[spheres]\npacking_fraction = 0.35\n"
+                                 "radius = 0.06\ngap = 0.01\nwall_gap = 0.02\n" +
+                                 grow);
+  scenes.push_back({"GapsInAnLShape", [] {
+                      return plan_of(box + "[spheres]\ncount = 200\nradius = 0.09\ngap = 0.01\n",
+                                     test::l_shape_mesh());
+                    }});
   scenes.push_back({"LShapeMesh", [] {
                       return plan_of("unit = \"m\"\n" + box + "[spheres]\nfill = true\nradius = 0.1\n",
                                      test::translated(test::l_shape_mesh(), {0, 0, -7}));
