@@ -71,8 +71,7 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
   const bool asked_of_box = std::holds_alternative<Box>(domain) && dimension_of(domain) != 3;
   const bool needs_container = has_walls(domain) && !asked_of_box && !spheres.empty();
   const auto container = needs_container ? local_container(domain, options.container) : nullptr;
-  measured.by_gap =
-      measure_contacts_across(options.gap, options.wall_gap, spheres, domain, gaps, container);
+  measured.by_gap = measure_contacts_across(options.gap, options.wall_gap, spheres, domain, gaps, container);
   measured.held_from = smallest_holding_gap(measured.by_gap, spheres.size());
   measured.contacts = measured.by_gap.back();
   measured.by_gap.pop_back();
