@@ -164,6 +164,58 @@ TEST(Export, LiggghtsGetsTheWallsOfAMesh) {
   EXPECT_FALSE(fs::exists(folder / "c.stl"));
 }
 
+// Its wall is `xcylinder R y z`, `ycylinder R z x`, `zcylinder R x y`.
+TEST(Export, LiggghtsGetsTheMiddleOfACylinderInItsOwnOrder) {
+  for (const auto& [axis, line] :
+       std::vector<std::pair<Vector<3>, std::string>>{{Vector<3>::UnitX(), "xcylinder 0.002 0.002 -0.001"},
+                                                      {Vector<3>::UnitY(), "ycylinder 0.002 -0.001 0.001"},
+                                                      {Vector<3>::UnitZ(), "zcylinder 0.002 0.001 0.002"}}) {
+    const Folder folder;
+    const Cylinder cylinder{.base = {1, 2, -1}, .axis = axis, .radius = 2, .height = 5};
+    write_export(packing_in(cylinder, "kind = \"cylinder\"\nradius = 2\nheight = 5"), output_of("liggghts"),
+                 folder / "c.data");
+    EXPECT_NE(text_of(folder / "c.in").find(line + "\n"), std::string::npos) << line;
+  }
+}
+
+TEST(Export, LiggghtsSaysWhatWallsItLacks) {
+  const auto note_of = [](const Domain& domain) {
+    const Folder folder;
+    return write_export(packing_in(domain, "kind = \"box\"\nsize = [9, 9, 9]"), output_of("liggghts"),
+                        folder / "c.data")
+        .note;
+  };
+  for (const Domain& domain :
+       std::vector<Domain>{Sphere{.center = {1, 2, 3}, .radius = 4},
+                           Cylinder{.base = {1, 2, -1}, .axis = {0, 1, 1}, .radius = 2, .height = 5}})
+    EXPECT_NE(note_of(domain).find("has no walls"), std::string::npos) << note_of(domain);
+  for (const Domain& domain :
+       std::vector<Domain>{Cylinder{.base = {1, 2, -1}, .radius = 2, .height = 5}, testing::example_box})
+    EXPECT_EQ(note_of(domain).find("has no walls"), std::string::npos) << note_of(domain);
+}
+
+// Its words are quoted by either mark, and nothing else means anything between those.
+TEST(Export, LiggghtsReadsAnyName) {
+  const Mesh walls{{{0, 0, 0}, {90, 0, 0}, {0, 90, 0}, {0, 0, 90}},
+                   {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  const Packing packing = packing_in(walls, "kind = \"box\"\nsize = [9, 9, 9]");
+  for (const auto& [name, mark] : std::vector<std::pair<std::string, std::string>>{{"bed", ""},
+                                                                                   {"a b", "\""},
+                                                                                   {"h#h", "\""},
+                                                                                   {"d$x", "\""},
+                                                                                   {"it's", "\""},
+                                                                                   {"q\"q", "'"},
+                                                                                   {"b\\n", "\""}}) {
+    const Folder folder;
+    write_export(packing, output_of("liggghts"), folder / (name + ".data"));
+    const std::string script = text_of(folder / (name + ".in"));
+    EXPECT_NE(script.find("read_data " + mark + name + ".data" + mark + "\n"), std::string::npos) << script;
+    EXPECT_NE(script.find("mesh/surface file " + mark + name + ".stl" + mark + " type 1\n"),
+              std::string::npos)
+        << script;
+  }
+}
+
 TEST(Export, AllFilesAppearOrNone) {
   const Folder folder;
   fs::create_directory(folder / "b.py");  // where one that goes with it belongs
