@@ -8,6 +8,7 @@
 
 #include "bernal/core/text.hpp"
 #include "export/write_lammps.hpp"
+#include "io/seal.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {
@@ -149,9 +150,11 @@ void write_liggghts(const Exported& file, StagedFolder& staged) {
           plain_text(file_beside(file.output.file, script_ending)), "\n");
   write_atoms(out, file, file.output.density, "Atoms");
   out.close();
-  if (const auto* mesh = std::get_if<Mesh>(&file.domain)) write_walls(*mesh, staged.add(walls_file));
+  std::vector<std::filesystem::path> with;
+  if (const auto* mesh = std::get_if<Mesh>(&file.domain))
+    write_walls(*mesh, with.emplace_back(staged.add(walls_file)));
   staged.write(file_beside(file.output.file, script_ending),
-               script_of(file, walls_file));
+               sealed_script(script_of(file, walls_file), with));
 }
 
 /// Of what kind are the walls that the script has no line for; empty where it has.

@@ -2,6 +2,7 @@
 
 #include "export/format.hpp"
 #include "export/npy.hpp"
+#include "io/seal.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {
@@ -132,7 +133,8 @@ void write_openmc(const Exported& file, StagedFolder& staged) {
   write_npy(staged.add(file.output.file.string()), file.size(), 3,
             [&](std::size_t i, std::size_t k) { return file.spheres.x[k][i]; });
   write_npy(staged.add(radii), file.size(), 0, [&](std::size_t i, std::size_t) { return file.spheres.r[i]; });
-  staged.write(file_beside(file.output.file, script_ending_py), script_text(file, radii));
+  staged.write(file_beside(file.output.file, script_ending_py),
+               sealed_script(script_text(file, radii), {staged.written(radii)}));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "bernal/verify/certificate.hpp"
 #include "core/parallel.hpp"
 #include "export/format.hpp"
+#include "export/targets.hpp"
 
 namespace fs = std::filesystem;
 
@@ -111,20 +112,6 @@ std::string note_of(const Exported& file, const Format& format, const Monitor& m
   return note + "; " + words_on_rounding(file, format, monitor) + remark;
 }
 
-/// What the packing was made from, or is.
-std::vector<fs::path> inputs_of(const Packing& packing) {
-  std::vector<fs::path> files;
-  const Scene& scene = packing.scene;
-  if (!scene.file.empty())
-    for (const std::string_view name : names_of_result) files.push_back(scene.file.parent_path() / name);
-  if (const auto* mesh = std::get_if<MeshFile>(&scene.container)) {
-    files.push_back(mesh->file);
-    files.insert(files.end(), mesh->obstacles.begin(), mesh->obstacles.end());
-  }
-  if (scene.start.file) files.push_back(*scene.start.file);
-  return files;
-}
-
 }  // namespace
 
 std::string write_output(const Packing& packing, const Output& output, StagedFolder& staged,
@@ -139,17 +126,12 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
 
 WrittenExport write_export(const Packing& packing, const Output& asked, const fs::path& file,
                            const Monitor& monitor) {
+  const fs::path meant = file_meant_by(file);
   Output output = asked;
-  output.file = file.filename();
+  output.file = meant.filename();
   complete_output(output, packing.scene);
-  const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
-  std::error_code unknown;
-  for (const std::string& name : files_of(output))
-    for (const fs::path& input : inputs_of(packing))
-      if (fs::equivalent(folder / name, input, unknown))
-        throw Error(ErrorCode::cannot_write,
-                    "is what the packing is read from, or was made from; give another name with -o",
-                    {(folder / name).string()});
+  const fs::path folder = meant.parent_path().empty() ? "." : meant.parent_path();
+  require_free_places(packing, output, folder);
   StagedFolder staged(folder);
   const std::string note = write_output(packing, output, staged, monitor);
   WrittenExport written{staged.publish(), note};

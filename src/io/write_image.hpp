@@ -40,7 +40,8 @@ void write_tiff_directories(OutputFile&, const VoxelImage&);
 /// The voxels and nothing else.
 void write_raw(OutputFile&, const VoxelImage&, const Monitor& = {});
 /// What one has to know to read them, as a JSON object: "dtype" and "shape" in the words of NumPy, "sizes"
-/// along x, y, z, "spacing", "corner" of the first voxel, "origin" its centre, "unit", "values".
+/// along x, y, z, "spacing", "corner" of the first voxel, "origin" its centre, "unit", "values"; and a seal,
+/// see `is_sealed`.
 std::string raw_header(const VoxelImage&);
 
 }  // namespace bernal
