@@ -101,7 +101,11 @@ def with_images():
         high = c[:, axis] + r > upper[axis]
         c = np.concatenate([c, c[low] + edge, c[high] - edge])
         r = np.concatenate([r, r[low], r[high]])
-    return c, r
+    # Beyond an edge or a corner of the box an image may be near two faces and not reach in.
+    gap = np.maximum(np.maximum(lower - c, c - upper), 0)
+    reach_in = np.square(gap).sum(axis=1) < r**2
+    reach_in[: len(centers)] = True
+    return c[reach_in], r[reach_in]
 
 
 def region(wall="vacuum"):

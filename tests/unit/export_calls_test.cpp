@@ -286,6 +286,17 @@ TEST(Export, RefusesWhatAFormatCannotHoldOrBeTold) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+TEST(Export, RefusesARadiusThatSinglePrecisionCannotHold) {
+  const Folder folder;
+  for (const double radius : {1e300, 1e-60}) {
+    Packing packing = between_walls();
+    packing.spheres.r[7] = radius;
+    const Error error = error_of([&] { exported_to(folder, packing, "gsd"); });
+    EXPECT_NE(std::string(error.what()).find("sphere 7 has the radius"), std::string::npos) << error.what();
+    EXPECT_NO_THROW(exported_to(folder, packing, "npy"));
+  }
+}
+
 TEST(Export, EveryFormatSaysWhatItIs) {
   std::set<std::string> names, files;
   for (const ExportFormat& format : export_formats()) {
@@ -300,14 +311,3 @@ TEST(Export, EveryFormatSaysWhatItIs) {
 
 }  // namespace export_calls_test
 }  // namespace bernal
-TEST(Export, RefusesARadiusThatSinglePrecisionCannotHold) {
-  const Folder folder;
-  for (const double radius : {1e300, 1e-60}) {
-    Packing packing = between_walls();
-    packing.spheres.r[7] = radius;
-    const Error error = error_of([&] { exported_to(folder, packing, "gsd"); });
-    EXPECT_NE(std::string(error.what()).find("sphere 7 has the radius"), std::string::npos) << error.what();
-    EXPECT_NO_THROW(exported_to(folder, packing, "npy"));
-  }
-}
-
