@@ -31,9 +31,10 @@ int export_result(const ExportCall& call) try {
   if (call.file == "-")
     throw Error(ErrorCode::bad_argument, "a format may need several files; give -o the name of one");
   ProgressBar bar(call.quiet);
+  const Monitor monitor = bar.monitor();
   bar.now("read");
   const Packing packing = read_packing(call.folder);
-  const Monitor monitor = bar.monitor();
+  if (interrupted()) throw Cancelled();
   bar.now("write");
   const WrittenExport written = write_export(packing, output, call.file, monitor);
   bar.clear();

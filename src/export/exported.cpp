@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
 #include "export/format.hpp"
@@ -73,15 +75,24 @@ struct Conversion {
   }
 };
 
-/// Of a centred format: its box begins at minus a half edge, and what rounding put on the end of a period
-/// belongs to its beginning.
-void wrap_around_origin(Exported& made) {
+/// Into the half-open period, where programs look for centres: what rounding put on its end, and what a file
+/// of another hand has beyond.
+void wrap_into_periods(Exported& made, bool centred) {
+  const auto* box = std::get_if<Box>(&made.domain);
   const auto periods = made.periods();
-  const Vector<3> half = 0.5 * made.box().size();
-  for (std::size_t k = 0; k < made.spheres.x.size(); ++k)
-    if (periods[k])
-      for (double& x : made.spheres.x[k])
-        if (x >= half[static_cast<int>(k)]) x -= 2 * half[static_cast<int>(k)];
+  const Bounds<dynamic> bounds = bounds_of<dynamic>(made.domain);
+  for (std::size_t k = 0; k < made.spheres.x.size(); ++k) {
+    const auto axis = static_cast<int>(k);
+    if (!(box ? box->repeats(axis) : periods[k])) continue;
+    const double edge = bounds.size()[axis], lower = centred ? -0.5 * edge : bounds.lower[axis],
+                 upper = lower + edge;
+    for (double& x : made.spheres.x[k]) {
+      if (x >= lower && x < upper) continue;
+      made.wrapped = true;
+      x -= std::floor((x - lower) / edge) * edge;
+      if (!(x >= lower && x < upper)) x = lower;
+    }
+  }
 }
 
 }  // namespace
@@ -122,10 +133,17 @@ Exported exported(const Packing& packing, const Output& output) {
   }
   for (std::size_t k = 0; k < made.spheres.x.size(); ++k)
     for (double& x : made.spheres.x[k]) x = convert.coordinate(x, static_cast<int>(k));
-  for (double& r : made.spheres.r) r = convert.radius(r);
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    double& r = made.spheres.r[i];
+    r = convert.radius(r);
+    if (!(r > 0 && std::isfinite(r)))
+      throw Error(ErrorCode::bad_packing,
+                  fmt::format("sphere {} has the radius {} {}, which numbers of the format {} cannot hold", i,
+                              packing.spheres.r[i], name_of(packing.scene.unit), output.format));
+  }
   made.domain = std::visit(convert, packing.domain);
+  wrap_into_periods(made, format.centred);
   made.type_count = take_types(packing.spheres.r, output.types, made.types);
-  if (format.centred) wrap_around_origin(made);
   return made;
 }
 

@@ -24,7 +24,8 @@ struct Exported {
   Vector<3> middle = Vector<3>::Zero();  ///< of the domain, that became the origin; else zero
   std::vector<std::uint32_t> types;      ///< of each sphere, from 1
   std::uint32_t type_count = 1;
-  Monitor monitor = {};  ///< of what takes long to write
+  bool wrapped = false;                  ///< centres outside the period, which stand for their images
+  Monitor monitor = {};                  ///< of what takes long to write
 
   std::size_t size() const { return spheres.size(); }
   int dimension() const { return spheres.dimension(); }
@@ -67,6 +68,8 @@ struct Format {
   void (*write)(const Exported&, StagedFolder&) = nullptr;
   /// What a file holds that has no numbers of spheres, in words.
   std::string (*note)(const Exported&) = nullptr;
+  /// What its user has to know besides; nothing, or "; …".
+  std::string (*remark)(const Exported&) = nullptr;
 };
 
 std::span<const Format* const> formats();

@@ -17,8 +17,11 @@ VoxelImage image_of(const Exported& file) {
 
 template <void (*write)(OutputFile&, const VoxelImage&, const Monitor&)>
 void write_image(const Exported& file, StagedFolder& staged) {
+  const VoxelImage image = image_of(file);
+  staged.require_room(static_cast<std::uint64_t>(image.grid.voxels()) *
+                      static_cast<std::uint64_t>(bytes_per_voxel(image.values)));
   OutputFile out(staged.add(file.output.file.string()));
-  write(out, image_of(file), file.monitor);
+  write(out, image, file.monitor);
   out.close();
 }
 
@@ -38,6 +41,15 @@ std::string note_of_image(const Exported& file) {
   return fmt::format("{} voxels of {} {}, {}", counts,
                      grid.has_cubes() ? fmt::format("{:.6g}", grid.spacing[0]) : edges, name_of(file.unit()),
                      meaning_of(file.output.values));
+}
+
+std::string remark_on_scale(const Exported& file) {
+  return has_scale_in_tiff(image_of(file).grid)
+             ? ""
+             : fmt::format(
+                   "; a TIFF cannot hold their size in {}, which stands in its description alone: take "
+                   "another unit",
+                   name_of(file.unit()));
 }
 
 Format image_format(std::string_view name, std::string_view help, std::string_view file,
@@ -68,9 +80,12 @@ const Format& vti_format() {
 }
 
 const Format& tiff_format() {
-  static const Format format =
-      image_format("tiff", "stack of images for ImageJ, PoreSpy and lattice Boltzmann codes", "voxels.tiff",
-                   write_image<write_tiff>);
+  static const Format format = [] {
+    Format made = image_format("tiff", "stack of images for ImageJ, PoreSpy and lattice Boltzmann codes",
+                               "voxels.tiff", write_image<write_tiff>);
+    made.remark = remark_on_scale;
+    return made;
+  }();
   return format;
 }
 

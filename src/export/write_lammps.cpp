@@ -36,7 +36,8 @@ void write_lammps(const Exported& file, StagedFolder& staged) {
           "; of density ", file.output.density, " kg/m3\n");
   out.add("# for: units ", units.name, "; dimension ", file.dimension(), "; boundary ",
           file.dimension() == 2 ? file.periods_as("p", "f").substr(0, 4) + "p" : file.periods_as("p", "f"),
-          "; atom_style sphere; read_data ", file.name(), "\n");
+          "; atom_style sphere; neighbor ", 0.5 * file.largest_radius(), " bin; read_data ", file.name(),
+          "\n");
   write_atoms(out, file, file.output.density / units.density, "Atoms # sphere");
   out.close();
 }

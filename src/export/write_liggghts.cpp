@@ -1,10 +1,15 @@
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
 #include "export/write_lammps.hpp"
+#include "io/seal.hpp"
+#include "scene/toml_text.hpp"
 
 namespace bernal {
 namespace {
@@ -36,6 +41,23 @@ std::string plane_wall(int axis, std::string_view name, double position) {
   return fmt::format("fix {} {} primitive type 1 {}plane {}\n", name, wall, "xyz"[axis], position);
 }
 
+/// A word of a script: between quotation marks nothing but those means anything.
+std::string word_of_script(const std::string& name) {
+  const char mark = name.find('"') == name.npos ? '"' : '\'';
+  const bool is_plain = std::ranges::all_of(
+      name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("._-+", c); });
+  return is_plain ? name : mark + name + mark;
+}
+
+void require_script_word(const void* options, const schema::Section& section) {
+  const std::string name = static_cast<const Output*>(options)->file.filename().string();
+  if (name.find('"') != name.npos && name.find('\'') != name.npos)
+    section.fail("file",
+                 fmt::format("{} has both kinds of quotation marks, and a script for LIGGGHTS can hold "
+                             "one of them; give it another name",
+                             toml_string(name)));
+}
+
 /// The lines that make the walls of the domain, or say why there are none.
 struct WallLines {
   const Exported& file;
@@ -53,7 +75,7 @@ struct WallLines {
   std::string operator()(const Cylinder& cylinder) const {
     const int axis = cylinder.coordinate_axis();
     if (axis < 0) return "# LIGGGHTS has no cylinder of that axis; give its surface by fix mesh/surface\n";
-    const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;  // as they follow it in x, y, z, x
     std::string lines = fmt::format("fix side {} primitive type 1 {}cylinder {} {} {}\n", wall, "xyz"[axis],
                                     cylinder.radius, cylinder.base[u], cylinder.base[v]);
     if (cylinder.periodic) return lines;
@@ -68,7 +90,7 @@ struct WallLines {
     return fmt::format(
         "fix surface all mesh/surface file {} type 1\n"
         "fix walls {} mesh n_meshes 1 meshes surface\n",
-        walls_file, wall);
+        word_of_script(walls_file), wall);
   }
   std::string operator()(const Polygon&) const {
     return "# the walls are the edges of a polygon; give them by fix mesh/surface\n";
@@ -95,14 +117,16 @@ std::string script_of(const Exported& file, const std::string& walls_file) {
   const std::uint32_t n = file.type_count;
   std::string text = fmt::format(
       "# {}; lengths in {}: a first run of {}, ready to be changed\n"
+      "# Run it in the folder of that file: liggghts -in {}\n"
       "# Glass that is soft enough for long steps: give the material of yours below, then another timestep.\n"
       "units si\natom_style granular\natom_modify map array\ndimension {}\nboundary {}\nnewton off\n"
       "communicate single vel yes\n"
       "read_data {}\n"
       "neighbor {} bin\nneigh_modify delay 0\n\n",
-      file.title(), name_of(file.unit()), file.name(), file.dimension(),
+      file.title(), name_of(file.unit()), file.name(),
+      plain_text(word_of_script(file_beside(file.output.file, script_ending))), file.dimension(),
       file.dimension() == 2 ? file.periods_as("p", "f").substr(0, 4) + "p" : file.periods_as("p", "f"),
-      file.name_as_word(), 0.5 * file.largest_radius());
+      word_of_script(file.output.file.string()), 0.5 * file.largest_radius());
   text += fmt::format(
       "fix m1 all property/global youngsModulus peratomtype{}\n"
       "fix m2 all property/global poissonsRatio peratomtype{}\n"
@@ -126,24 +150,51 @@ void write_liggghts(const Exported& file, StagedFolder& staged) {
           plain_text(file_beside(file.output.file, script_ending)), "\n");
   write_atoms(out, file, file.output.density, "Atoms");
   out.close();
-  staged.write(file_beside(file.output.file, script_ending), script_of(file, walls_file));
-  if (const auto* mesh = std::get_if<Mesh>(&file.domain)) write_walls(*mesh, staged.add(walls_file));
+  std::vector<std::filesystem::path> with;
+  if (const auto* mesh = std::get_if<Mesh>(&file.domain))
+    write_walls(*mesh, with.emplace_back(staged.add(walls_file)));
+  staged.write(file_beside(file.output.file, script_ending),
+               sealed_script(script_of(file, walls_file), with));
+}
+
+/// Of what kind are the walls that the script has no line for; empty where it has.
+std::string missing_walls(const Domain& domain) {
+  const auto* cylinder = std::get_if<Cylinder>(&domain);
+  if (cylinder) return cylinder->coordinate_axis() < 0 ? "oblique cylinder" : "";
+  const bool known = std::holds_alternative<Box>(domain) || std::holds_alternative<Mesh>(domain);
+  return known ? "" : std::string(name_of(domain));
+}
+
+std::string remark_on_script(const Exported& file) {
+  if (file.size() == 0) return "; LIGGGHTS runs no script without spheres";
+  const std::string missing = missing_walls(file.domain);
+  if (missing.empty()) return {};
+  return fmt::format(
+      "; the script has no walls, for LIGGGHTS knows none of a {}: give them by fix mesh/surface, "
+      "or all fall",
+      missing);
 }
 
 }  // namespace
 
 const Format& liggghts_format() {
   static const Format format{
-      .table = {.keys = output_entry(
-                    "liggghts",
-                    "LIGGGHTS data file, atom_style granular, with a script that runs it and CAD walls",
-                    {"density", "types"}),
+      .table = {.keys =
+                    [] {
+                      schema::Entry keys = output_entry(
+                          "liggghts",
+                          "LIGGGHTS data file, atom_style granular, with a script that runs it and CAD walls",
+                          {"density", "types"});
+                      keys.rule = require_script_word;
+                      return keys;
+                    }(),
                 .file = "liggghts.data",
                 .endings = {script_ending, walls_ending},
                 .least_dimension = 2,
                 .unit = Unit::m,
                 .sizes = "diameter"},
-      .write = write_liggghts};
+      .write = write_liggghts,
+      .remark = remark_on_script};
   return format;
 }
 

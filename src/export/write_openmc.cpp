@@ -2,6 +2,7 @@
 
 #include "export/format.hpp"
 #include "export/npy.hpp"
+#include "io/seal.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {
@@ -100,7 +101,11 @@ def with_images():
         high = c[:, axis] + r > upper[axis]
         c = np.concatenate([c, c[low] + edge, c[high] - edge])
         r = np.concatenate([r, r[low], r[high]])
-    return c, r
+    # Beyond an edge or a corner of the box an image may be near two faces and not reach in.
+    gap = np.maximum(np.maximum(lower - c, c - upper), 0)
+    reach_in = np.square(gap).sum(axis=1) < r**2
+    reach_in[: len(centers)] = True
+    return c[reach_in], r[reach_in]
 
 
 def region(wall="vacuum"):
@@ -132,7 +137,8 @@ void write_openmc(const Exported& file, StagedFolder& staged) {
   write_npy(staged.add(file.output.file.string()), file.size(), 3,
             [&](std::size_t i, std::size_t k) { return file.spheres.x[k][i]; });
   write_npy(staged.add(radii), file.size(), 0, [&](std::size_t i, std::size_t) { return file.spheres.r[i]; });
-  staged.write(file_beside(file.output.file, script_ending_py), script_text(file, radii));
+  staged.write(file_beside(file.output.file, script_ending_py),
+               sealed_script(script_text(file, radii), {staged.written(radii)}));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "io/write_output.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include "bernal/verify/certificate.hpp"
 #include "core/parallel.hpp"
 #include "export/format.hpp"
+#include "export/targets.hpp"
 
 namespace fs = std::filesystem;
 
@@ -32,22 +34,59 @@ Domain without_walls(const Domain& domain) {
   return box;
 }
 
-/// What rounding did, in words.
+/// Of pairs, whatever the walls.
+double largest_overlap(const Spheres<dynamic>& spheres, const Domain& domain, const Monitor& monitor) {
+  const Certificate certificate = certify(spheres, without_walls(domain), {.monitor = monitor});
+  if (certificate.cancelled) throw Cancelled();
+  return certificate.max_overlap;
+}
+
+/// Of a packing that nobody certified, or whose scene allows it; else nothing.
+std::string words_on_overlap(const Packing& packing, const Monitor& monitor) {
+  const double overlap = largest_overlap(packing.spheres, packing.domain, monitor);
+  if (!(overlap > 0)) return {};
+  return fmt::format("the packing itself overlaps: largest {:.2g} of the sum of two radii, {}", overlap,
+                     overlap <= packing.scene.overlap
+                         ? fmt::format("of which its scene allows {:.2g}", packing.scene.overlap)
+                         : "and bernal verify says where");
+}
+
+/// Whether its numbers are others than those of the packing.
+bool is_rounded(const Exported& file, const Format& format) {
+  return format.precision == Precision::as_float || file.unit() != file.packing.scene.unit || file.wrapped;
+}
+
+/// Of touching spheres, the most that rounding makes: each coordinate is rounded up to three times, when it
+/// is converted, moved to the middle and put into the period, by half an epsilon of the farthest c there is,
+/// and so is the period: the distance of two loses up to 4 sqrt(3) epsilon c, of which the radii are at least
+/// 2 r.
+double most_by_rounding(const Packing& packing, const Format& format) {
+  const double epsilon = format.precision == Precision::as_float ? std::numeric_limits<float>::epsilon()
+                                                                 : std::numeric_limits<double>::epsilon();
+  if (packing.spheres.empty()) return 0;
+  const Bounds<dynamic> bounds = bounds_of<dynamic>(packing.domain);
+  const double farthest = std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff()),
+               smallest = *std::ranges::min_element(packing.spheres.r);
+  return epsilon * (4 * farthest / smallest + 1);
+}
+
+/// What rounding did, in words; what the packing overlaps itself is not put down to it.
 std::string words_on_rounding(const Exported& file, const Format& format, const Monitor& monitor) {
-  const Unit scene = file.packing.scene.unit;
-  if (format.precision == Precision::as_double && file.unit() == scene)
-    return "the numbers of spheres.csv, not rounded";
+  if (!is_rounded(file, format)) {
+    const std::string itself = words_on_overlap(file.packing, monitor);
+    return "the numbers of spheres.csv, not rounded" + (itself.empty() ? "" : "; " + itself);
+  }
   const std::string to =
       format.precision == Precision::as_float ? "single precision" : fmt::format("{}", name_of(file.unit()));
-  const Certificate certificate = certify(file.spheres, without_walls(file.domain), {.monitor = monitor});
-  if (certificate.cancelled) throw Cancelled();
-  const double overlap = certificate.max_overlap;
+  const double overlap = largest_overlap(file.spheres, file.domain, monitor);
   if (!(overlap > 0)) return fmt::format("no overlap after rounding to {}", to);
+  if (overlap > most_by_rounding(file.packing, format))
+    if (const std::string itself = words_on_overlap(file.packing, monitor); !itself.empty()) return itself;
   std::string remedy;
   if (format.precision == Precision::as_float)
     remedy = "; extxyz and npy round nothing";
   else if (format.table.keys.find("unit"))
-    remedy = fmt::format("; the unit {} rounds nothing", name_of(scene));
+    remedy = fmt::format("; the unit {} rounds nothing", name_of(file.packing.scene.unit));
   return fmt::format("largest overlap after rounding to {}: {:.2g} of the sum of two radii{}", to, overlap,
                      remedy);
 }
@@ -58,28 +97,19 @@ std::string spheres_in(const Exported& file) {
 }
 
 std::string note_of(const Exported& file, const Format& format, const Monitor& monitor) {
-  if (format.note) return fmt::format("{}, {}", spheres_in(file), format.note(file));
+  const std::string remark = format.remark ? format.remark(file) : "";
+  if (format.note) {
+    const std::string itself = words_on_overlap(file.packing, monitor);
+    return fmt::format("{}, {}{}{}", spheres_in(file), format.note(file), itself.empty() ? "" : "; " + itself,
+                       remark);
+  }
   const OutputTable& table = format.table;
   std::string note =
       fmt::format("{}, {}", spheres_in(file), table.sizes == "diameter" ? "diameters" : "radii");
   if (table.keys.find("density")) note += fmt::format(", density {} kg/m3", file.output.density);
   if (table.keys.find("types"))
     note += fmt::format(", {} {}", file.type_count, file.type_count == 1 ? "type" : "types");
-  return note + "; " + words_on_rounding(file, format, monitor);
-}
-
-/// What the packing was made from, or is.
-std::vector<fs::path> inputs_of(const Packing& packing) {
-  std::vector<fs::path> files;
-  const Scene& scene = packing.scene;
-  if (!scene.file.empty())
-    for (const std::string_view name : names_of_result) files.push_back(scene.file.parent_path() / name);
-  if (const auto* mesh = std::get_if<MeshFile>(&scene.container)) {
-    files.push_back(mesh->file);
-    files.insert(files.end(), mesh->obstacles.begin(), mesh->obstacles.end());
-  }
-  if (scene.start.file) files.push_back(*scene.start.file);
-  return files;
+  return note + "; " + words_on_rounding(file, format, monitor) + remark;
 }
 
 }  // namespace
@@ -96,17 +126,12 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
 
 WrittenExport write_export(const Packing& packing, const Output& asked, const fs::path& file,
                            const Monitor& monitor) {
+  const fs::path meant = file_meant_by(file);
   Output output = asked;
-  output.file = file.filename();
+  output.file = meant.filename();
   complete_output(output, packing.scene);
-  const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
-  std::error_code unknown;
-  for (const std::string& name : files_of(output))
-    for (const fs::path& input : inputs_of(packing))
-      if (fs::equivalent(folder / name, input, unknown))
-        throw Error(ErrorCode::cannot_write,
-                    "is what the packing is read from, or was made from; give another name with -o",
-                    {(folder / name).string()});
+  const fs::path folder = meant.parent_path().empty() ? "." : meant.parent_path();
+  require_free_places(packing, output, folder);
   StagedFolder staged(folder);
   const std::string note = write_output(packing, output, staged, monitor);
   WrittenExport written{staged.publish(), note};

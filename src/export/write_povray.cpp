@@ -17,6 +17,42 @@ std::string vector_of(const Vector<3>& v) { return fmt::format("<{}, {}, {}>", v
 
 constexpr std::string_view glass = "pigment { srgbt <0.62, 0.70, 0.80, 0.82> } no_shadow";
 
+/// POV-Ray takes what is smaller than some 1e-6 for a point, and sees no farther than 1e7: a picture of a
+/// domain of another size is made in lengths of its own, so many of the file's unit each. A power of ten.
+double length_in_picture(const Domain& domain) {
+  constexpr double smallest = 0.1, largest = 1e4;
+  const double diagonal = bounds_of(domain).diagonal();
+  if (!(diagonal > 0) || (diagonal >= smallest && diagonal <= largest)) return 1;
+  return std::pow(10, std::floor(std::log10(diagonal)));
+}
+
+/// In those lengths: divided, and from the middle of the domain.
+struct InPicture {
+  double length;
+  Vector<3> middle;
+
+  Vector<3> operator()(const Vector<3>& p) const { return (p - middle) / length; }
+  Domain operator()(Box box) const {
+    box.corner = (*this)(Vector<3>(box.corner));
+    box.size /= length;
+    return box;
+  }
+  Domain operator()(Cylinder cylinder) const {
+    cylinder.base = (*this)(cylinder.base);
+    cylinder.radius /= length;
+    cylinder.height /= length;
+    return cylinder;
+  }
+  Domain operator()(Sphere sphere) const {
+    return Sphere{.center = (*this)(sphere.center), .radius = sphere.radius / length};
+  }
+  Domain operator()(Mesh mesh) const {
+    for (Vector<3>& vertex : mesh.vertices) vertex = (*this)(vertex);
+    return mesh;
+  }
+  Domain operator()(const Polygon& polygon) const { return polygon; }
+};
+
 /// The lines that show the domain, for the spheres in it to be seen.
 struct OutlineLines {
   std::string edge(const Vector<3>& from, const Vector<3>& to) const {
@@ -74,10 +110,18 @@ std::string camera_of(const Exported& file) {
       0.002 * bounds.size().norm(), 0.5 / std::tan(half_angle));
 }
 
-void write_povray(const Exported& file, StagedFolder& staged) {
+std::string note_of_picture(const Exported& file) {
+  const double length = length_in_picture(file.domain);
+  if (length == 1) return "radii";
+  return fmt::format("radii; in the picture a length of 1 is {} {}", length, name_of(file.unit()));
+}
+
+void write_picture(const Exported& file, double length, StagedFolder& staged) {
   const SizeScale sizes(file.spheres.r);
   TextFile out(staged.add(file.output.file.string()));
-  out.add("// ", file.title(), "; lengths in ", name_of(file.unit()),
+  out.add("// ", file.title(), "; lengths in ");
+  if (length != 1) out.add(length, ' ');
+  out.add(name_of(file.unit()), length != 1 ? ", from the middle" : "",
           "; y and z have changed places.\n// povray +A +W1200 +H900 ", file.name(),
           "\n#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\nbackground { srgb <1, 1, 1> }\n",
           camera_of(file));
@@ -95,6 +139,19 @@ void write_povray(const Exported& file, StagedFolder& staged) {
   out.close();
 }
 
+void write_povray(const Exported& file, StagedFolder& staged) {
+  const double length = length_in_picture(file.domain);
+  if (length == 1) return write_picture(file, length, staged);
+  const Bounds<3> bounds = bounds_of(file.domain);
+  const InPicture in_picture{length, 0.5 * (bounds.lower + bounds.upper)};
+  Exported picture = file;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (double& x : picture.spheres.x[k]) x = (x - in_picture.middle[static_cast<int>(k)]) / length;
+  for (double& r : picture.spheres.r) r /= length;
+  picture.domain = std::visit(in_picture, file.domain);
+  write_picture(picture, length, staged);
+}
+
 }  // namespace
 
 const Format& povray_format() {
@@ -105,7 +162,8 @@ const Format& povray_format() {
                                  "of the domain",
                                  {"unit"}),
                 .file = "povray.pov"},
-      .write = write_povray};
+      .write = write_povray,
+      .note = note_of_picture};
   return format;
 }
 

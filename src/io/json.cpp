@@ -242,6 +242,15 @@ std::map<std::string, std::string> manifest_in(const std::string& report) {
   return files;
 }
 
+std::vector<std::string> sources_in(const std::string& report) {
+  const Json json = Json::parse(report, nullptr, false);
+  std::vector<std::string> files;
+  if (!json.is_object() || !json.contains("certificate") || !json.contains("made_from")) return files;
+  for (const Json& file : json.at("made_from"))
+    if (file.is_string()) files.push_back(file.get<std::string>());
+  return files;
+}
+
 std::string json_of(const Report& report) {
   const Packing& packing = report.packing;
   const Certificate& certificate = report.certificate;
@@ -277,6 +286,7 @@ std::string json_of(const Report& report) {
                {"history", packing.history},
                {"seconds", packing.seconds},
                {"peak_memory_bytes", peak_memory_bytes()}});
+  json["made_from"] = report.made_from;
   for (const auto& [name, sha256] : report.files)
     json["files"][name] = sha256.empty() ? Json() : Json(sha256);
   if (const auto* mesh = std::get_if<MeshFile>(&packing.scene.container))

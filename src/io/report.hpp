@@ -2,6 +2,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/packing.hpp"
@@ -17,10 +18,14 @@ struct Report {
   const SizeDistribution* asked;  ///< of radii; null where it cannot be made again
   std::string hash;
   std::map<std::string, std::string> files = {};  ///< of the result, see `Manifest`
+  std::vector<std::string> made_from = {};        ///< files that were read, relative to the result's folder
 };
 
 /// What report.json says of the files of its result; empty where the text is none of bernal's.
 std::map<std::string, std::string> manifest_in(const std::string& report);
+
+/// What it says of what the result was made from; the same.
+std::vector<std::string> sources_in(const std::string& report);
 
 /// report.json: the keys of the file format, in a fixed order, lengths in the scene's unit. Numbers that are
 /// not finite become null. Which keys there are does not depend on the packing, except that there is either

@@ -88,11 +88,19 @@ Manifest manifest_of(const fs::path& folder) {
   return is_regular(report) ? manifest_in(text_of(report)) : Manifest();
 }
 
+std::vector<std::string> sources_of_result(const fs::path& folder) {
+  const fs::path report = folder / "report.json";
+  return is_regular(report) ? sources_in(text_of(report)) : std::vector<std::string>();
+}
+
+std::vector<fs::path> files_of_part_beside(const fs::path& part) { return files_of_part(part); }
+
 std::vector<std::string> files_of_earlier_result(const fs::path& folder) {
   std::vector<std::string> files;
   for (const auto& [name, sha256] : manifest_of(folder)) {
-    const fs::path file = folder / fs::path(name).filename();
-    if (is_regular(file) && (sha256.empty() || sha256_of(file) == sha256)) files.push_back(name);
+    const fs::path file = folder / name;
+    if (is_name_in(folder, name) && is_regular(file) && (sha256.empty() || sha256_of(file) == sha256))
+      files.push_back(name);
   }
   return files;
 }

@@ -9,12 +9,20 @@
 
 namespace bernal {
 
-/// The files of a result by their names; the digests of those that a user may put others into the place of:
-/// scene.toml, copies of CAD files. What report.json says of them is what makes a file one of bernal's.
+/// The files of a result by their names; the digests of those that a user may put others into the place of,
+/// or change: scene.toml, copies of CAD files, what outputs write. What report.json says of them is what
+/// makes a file one of bernal's.
 using Manifest = std::map<std::string, std::string>;
 
 /// Of the result that stands in the folder; empty where none does.
 Manifest manifest_of(const std::filesystem::path& folder);
+
+/// What the result that stands in the folder was made from, as far as its scene does not name it: paths
+/// relative to the folder.
+std::vector<std::string> sources_of_result(const std::filesystem::path& folder);
+
+/// A CAD file and those that it names, see `files_of_part`.
+std::vector<std::filesystem::path> files_of_part_beside(const std::filesystem::path& part);
 
 /// Those of an earlier result that nobody has written into since.
 std::vector<std::string> files_of_earlier_result(const std::filesystem::path& folder);

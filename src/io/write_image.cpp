@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "io/seal.hpp"
 
 namespace bernal {
 namespace {
@@ -128,7 +129,7 @@ std::string raw_header(const VoxelImage& image) {
   const int dimension = grid.dimension;
   std::array<std::int64_t, 3> shape;
   std::reverse_copy(grid.count.begin(), grid.count.begin() + dimension, shape.begin());
-  return fmt::format(
+  std::string header = fmt::format(
       R"({{
   "dtype": "{}",
   "shape": [{}],
@@ -138,12 +139,12 @@ std::string raw_header(const VoxelImage& image) {
   "corner": [{}],
   "origin": [{}],
   "unit": "{}",
-  "values": "{}"
-}}
-)",
+  "values": "{}",
+  "written": ")",
       type_of(image.values).numpy, joined(shape, dimension, ", "), joined(grid.count, dimension, ", "),
       joined(grid.spacing, dimension, ", "), joined(grid.corner, dimension, ", "),
       joined(first_center(grid), dimension, ", "), image.unit, meaning_of(image.values));
+  return sealed(std::move(header), "", "\"\n}\n");
 }
 
 }  // namespace bernal

@@ -32,15 +32,18 @@ void write_vti(OutputFile&, const VoxelImage&, const Monitor& = {});
 
 /// TIFF 6.0, uncompressed, one page a layer of 8 or 32 bits, whose first row is that of the lowest y; with a
 /// description as ImageJ writes it, for the distance of layers and the unit. Of 4 GiB and more it is a
-/// BigTIFF. A TIFF has no place for the origin.
+/// BigTIFF. A TIFF has no place for the origin. The scale is right to 1e-9, or, where a quotient of 32 bits
+/// cannot hold it, left out, and the edges of a voxel stand in the description.
 void write_tiff(OutputFile&, const VoxelImage&, const Monitor& = {});
+bool has_scale_in_tiff(const VoxelGrid&);
 /// All of it but the voxels, which follow.
 void write_tiff_directories(OutputFile&, const VoxelImage&);
 
 /// The voxels and nothing else.
 void write_raw(OutputFile&, const VoxelImage&, const Monitor& = {});
 /// What one has to know to read them, as a JSON object: "dtype" and "shape" in the words of NumPy, "sizes"
-/// along x, y, z, "spacing", "corner" of the first voxel, "origin" its centre, "unit", "values".
+/// along x, y, z, "spacing", "corner" of the first voxel, "origin" its centre, "unit", "values"; and a seal,
+/// see `is_sealed`.
 std::string raw_header(const VoxelImage&);
 
 }  // namespace bernal

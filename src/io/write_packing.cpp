@@ -20,6 +20,7 @@
 #include "io/write_output.hpp"
 #include "io/write_svg.hpp"
 #include "io/write_vtp.hpp"
+#include "scene/scene_sources.hpp"
 
 namespace bernal {
 namespace {
@@ -39,6 +40,13 @@ Certificate certify_written(const std::filesystem::path& csv, const Packing& pac
                   .gap = packing.scene.gap,
                   .wall_gap = packing.scene.wall_gap,
                   .list = list});
+}
+
+/// Scripts are written to be changed, and then are their user's. What is larger nobody changes by hand, and
+/// it would take seconds to read.
+void add_changeable(const std::string& name, const std::filesystem::path& file, Manifest& manifest) {
+  constexpr std::uintmax_t largest = 64 << 20;
+  if (std::filesystem::file_size(file) <= largest) manifest[name] = sha256_of(file);
 }
 
 /// Empty in other dimensions than three, and where a container is too thin for a plane to have an area in it.
@@ -92,11 +100,18 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
     staged.write("container.off", as_off_file(*walls));
   std::vector<std::string> notes;
   const Monitor bar{options.monitor.on_progress, {}};  // what a cancelled run has is written whole
+  const std::size_t own = staged.names().size();
   for (const Output& output : packing.scene.outputs)
     notes.push_back(write_output(packing, output, staged, bar));
+  for (std::size_t k = own; k < staged.names().size(); ++k)
+    add_changeable(staged.names()[k], staged.written(staged.names()[k]), manifest);
   for (const std::string& name : staged.names()) manifest.try_emplace(name);
   for (const char* name : {"report.json", "report.html"}) manifest[name];
-  const Report report{packing, certificate, measured, radii.all.get(), hash_of(packing.spheres), manifest};
+  std::vector<std::string> sources;
+  for (const std::filesystem::path& source : sources_of_scene(packing.scene.file))
+    sources.push_back(std::filesystem::proximate(source, folder).string());
+  const Report report{packing,  certificate, measured, radii.all.get(), hash_of(packing.spheres),
+                      manifest, sources};
   staged.write("report.json", json_of(report));
   staged.write("report.html", html_of(report, {picture, section}, scene));
 

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -43,12 +46,39 @@ class TiffBytes {
   bool big_;
 };
 
-/// Numerator and denominator of about this, in the first and last 32 bits.
-std::uint64_t rational(double value) {
-  double denominator = 1;
-  while (denominator < 1e9 && 10 * denominator * value < 4e9) denominator *= 10;
-  const double numerator = std::clamp(std::round(value * denominator), 1.0, 4294967295.0);
-  return static_cast<std::uint64_t>(numerator) | static_cast<std::uint64_t>(denominator) << 32;
+/// The quotient of two numbers of 32 bits that is nearest to a value, numerator in the first of 64 bits: the
+/// last convergent of its continued fraction that fits, or what lies between that and the next. Nothing where
+/// it is more than 1e-9 of the value away: beyond 2^32, and below its inverse.
+std::optional<std::uint64_t> rational(double value) {
+  constexpr double most = 4294967295.0, enough = 1e-9;
+  if (!(value > 0) || !std::isfinite(value)) return std::nullopt;
+  double p0 = 0, q0 = 1, p = 1, q = 0, best_p = 0, best_q = 1, x = value;
+  const auto try_part = [&](double part) {
+    const double next_p = part * p + p0, next_q = part * q + q0;
+    if (next_q > 0 && std::abs(next_p / next_q - value) < std::abs(best_p / best_q - value)) {
+      best_p = next_p;
+      best_q = next_q;
+    }
+    return std::pair(next_p, next_q);
+  };
+  for (;;) {
+    double part = std::floor(x);
+    const bool fits = part * p + p0 <= most && part * q + q0 <= most;
+    if (!fits) part = std::floor(std::min(p > 0 ? (most - p0) / p : part, q > 0 ? (most - q0) / q : part));
+    const auto [next_p, next_q] = try_part(part);
+    if (!fits || x == part) break;
+    p0 = std::exchange(p, next_p);
+    q0 = std::exchange(q, next_q);
+    x = 1 / (x - part);
+  }
+  if (!(best_p > 0) || std::abs(best_p / best_q - value) > enough * value) return std::nullopt;
+  return static_cast<std::uint64_t>(best_p) | static_cast<std::uint64_t>(best_q) << 32;
+}
+
+/// Along x and y, voxels in a unit of length.
+using Resolutions = std::array<std::optional<std::uint64_t>, 2>;
+Resolutions resolutions_of(const VoxelGrid& grid) {
+  return {rational(1 / grid.spacing[0]), rational(1 / grid.spacing[1])};
 }
 
 constexpr std::uint64_t multiple_of_16(std::uint64_t value) { return (value + 15) / 16 * 16; }
@@ -58,13 +88,20 @@ std::string description_of(const VoxelImage& image) {
   const double white = image.values == VoxelValues::binary     ? 2
                        : image.values == VoxelValues::fraction ? 1
                                                                : static_cast<double>(image.spheres.size());
-  return fmt::format(
-      "ImageJ=1.53t\nimages={0}\nslices={0}\nunit={1}\nspacing={2}\nmin=0\nmax={3}\n{4}; {5}\n",
-      image.grid.count[2], image.unit, image.grid.spacing[2], white, plain_text(image.title),
-      meaning_of(image.values));
+  const std::string scale = has_scale_in_tiff(image.grid)
+                                ? fmt::format("unit={}\nspacing={}\n", image.unit, image.grid.spacing[2])
+                                : fmt::format("voxels of {} x {} x {} {}\n", image.grid.spacing[0],
+                                              image.grid.spacing[1], image.grid.spacing[2], image.unit);
+  return fmt::format("ImageJ=1.53t\nimages={0}\nslices={0}\n{1}min=0\nmax={2}\n{3}; {4}\n",
+                     image.grid.count[2], scale, white, plain_text(image.title), meaning_of(image.values));
 }
 
 }  // namespace
+
+bool has_scale_in_tiff(const VoxelGrid& grid) {
+  const Resolutions found = resolutions_of(grid);
+  return found[0] && found[1];
+}
 
 void write_tiff_directories(OutputFile& file, const VoxelImage& image) {
   const VoxelGrid& grid = image.grid;
@@ -73,7 +110,10 @@ void write_tiff_directories(OutputFile& file, const VoxelImage& image) {
              height = static_cast<std::uint64_t>(grid.count[1]);
   const auto sample = static_cast<std::uint64_t>(bytes_per_voxel(image.values));
   const std::uint64_t page_bytes = width * height * sample;
-  constexpr std::uint64_t tags = 15, room_for_text = 4096;
+  const Resolutions resolved = resolutions_of(grid);
+  const bool has_scale = resolved[0] && resolved[1];
+  const std::uint64_t tags = has_scale ? 15 : 13;
+  constexpr std::uint64_t room_for_text = 4096;
   const std::string description = description_of(image);
 
   const bool big =
@@ -84,7 +124,7 @@ void write_tiff_directories(OutputFile& file, const VoxelImage& image) {
   const std::uint64_t resolutions = head.out.size() + head.offset_bytes(), text = resolutions + 16,
                       directories = multiple_of_16(text + description.size() + 1),
                       voxels = multiple_of_16(directories + pages * head.directory_bytes(tags));
-  const std::uint64_t across[2] = {rational(1 / grid.spacing[0]), rational(1 / grid.spacing[1])};
+  const std::uint64_t across[2] = {resolved[0].value_or(0), resolved[1].value_or(0)};
   head.put_offset(directories);
   for (const std::uint64_t value : across) head.put(value, 8);
   head.out += description;
@@ -107,8 +147,10 @@ void write_tiff_directories(OutputFile& file, const VoxelImage& image) {
     directory.put_tag(277, word, 1, 1);  // one sample a pixel
     directory.put_tag(278, dword, 1, height);
     directory.put_tag(279, address, 1, page_bytes);
-    directory.put_tag(282, quotient, 1, big ? across[0] : resolutions);
-    directory.put_tag(283, quotient, 1, big ? across[1] : resolutions + 8);
+    if (has_scale) {
+      directory.put_tag(282, quotient, 1, big ? across[0] : resolutions);
+      directory.put_tag(283, quotient, 1, big ? across[1] : resolutions + 8);
+    }
     directory.put_tag(296, word, 1, 1);  // no unit that TIFF has a number for
     directory.put_tag(339, word, 1, image.values == VoxelValues::fraction ? 3 : 1);
     directory.put_offset(page + 1 < pages ? directories + (page + 1) * head.directory_bytes(tags) : 0);

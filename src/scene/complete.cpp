@@ -193,6 +193,21 @@ void require_names(const Scene& scene) {
   }
 }
 
+/// No writer has to fear the name that it writes into comments and scripts.
+void require_plain_name(const Output& output, const OutputTable& table, const Section& section) {
+  const std::string name = output.file.filename().string();
+  const auto fail = [&](std::string_view why) {
+    section.fail("file", fmt::format("{} {}; give it another name", toml_string(name), why));
+  };
+  if (with_escaped_controls(name) != name)
+    fail("has control characters, which no name of an output may have");
+  if (name.starts_with(".bernal-")) fail("is a name that bernal needs while it writes");
+  if (!table.endings.empty() && !is_utf8(name)) fail("is not UTF-8, which the files that name it have to be");
+  for (const std::string_view ending : table.endings)
+    if (file_beside(output.file, ending) == name)
+      fail(fmt::format("ends as the file does that {} writes beside it, \"{}\"", table.name(), ending));
+}
+
 }  // namespace
 
 void complete_output(Output& output, const Scene& scene) {
@@ -212,6 +227,7 @@ void complete_output(Output& output, const Scene& scene) {
   }
   constexpr int resolution_of_images = 256;
   if (output.file.empty()) output.file = table.file;
+  require_plain_name(output, table, section);
   if (table.keys.find("resolution") && !output.voxel && !output.resolution)
     output.resolution = resolution_of_images;
   if (!output.unit || !table.keys.find("unit")) output.unit = table.unit.value_or(scene.unit);

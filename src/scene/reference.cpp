@@ -15,6 +15,7 @@ using schema::Entry;
 struct Group {
   std::string_view title;
   std::vector<const Entry*> entries;
+  std::string_view name = {};  ///< of the table or key that its entries stand in, where no entry has it
 };
 
 std::vector<Group> groups() {
@@ -27,11 +28,12 @@ std::vector<Group> groups() {
   for (const StageTable* table : stage_tables()) stages.push_back(&table->keys);
   for (const OutputTable* table : output_tables()) outputs.push_back(&table->keys);
   const auto& own = schema::own_entries();
-  return {{"Tables of a scene", {own.begin(), own.end()}},
-          {"Containers: kind = \"…\" in [container]", addresses(schema::container_entries())},
-          {"Sizes: distribution = \"…\" in radius or diameter", addresses(schema::size_entries())},
-          {"Stages: do = \"…\" in [[stage]]", stages},
-          {"Files for other programs: format = \"…\" in [[output]]", outputs}};
+  return {
+      {"Tables of a scene", {own.begin(), own.end()}},
+      {"Containers: kind = \"…\" in [container]", addresses(schema::container_entries()), "container"},
+      {"Sizes: distribution = \"…\" in radius or diameter", addresses(schema::size_entries()), "diameter"},
+      {"Stages: do = \"…\" in [[stage]]", stages, "stage"},
+      {"Files for other programs: format = \"…\" in [[output]]", outputs, "output"}};
 }
 
 /// "alpha = 17" or "phi0", what it is, and what it must be.
@@ -52,7 +54,7 @@ std::string reference(std::string_view name) {
   std::string all;
   std::vector<std::string_view> names;
   for (const Group& group : groups()) {
-    all += fmt::format("{}{}:\n", all.empty() ? "" : "\n", group.title);
+    std::string lines = fmt::format("{}:\n", group.title);
     for (const Entry* entry : group.entries) {
       if (entry->name == name) {
         std::string text = fmt::format("{}: {}\n", entry->name, entry->help);
@@ -60,8 +62,13 @@ std::string reference(std::string_view name) {
         return text;
       }
       names.push_back(entry->name);
-      all += fmt::format("  {:<14}{}\n", entry->name, entry->help);
+      lines += fmt::format("  {:<14}{}\n", entry->name, entry->help);
     }
+    if (!group.name.empty()) {
+      if (name == group.name) return lines;
+      names.push_back(group.name);
+    }
+    all += (all.empty() ? "" : "\n") + lines;
   }
   if (name.empty()) return all;
   throw Error(ErrorCode::bad_argument,

@@ -237,6 +237,23 @@ class Image {
   std::optional<Inside> inside_;
 };
 
+/// Each stands there as often as its images reach into the grid: of a sphere in a packing at most eight
+/// times.
+void require_few_images(const Spheres<dynamic>& spheres, const Domain& domain) {
+  constexpr double most_periods = 10;
+  const Vector<3> periods = periods_of(domain);
+  for (const double period : periods) {
+    if (!(period > 0)) continue;
+    for (std::size_t i = 0; i < spheres.size(); ++i)
+      if (!(spheres.r[i] <= most_periods * period))
+        throw Error(
+            ErrorCode::bad_packing,
+            fmt::format("sphere {} has the radius {:.6g}, and repeats itself every {:.6g}: no image can "
+                        "show that",
+                        i, spheres.r[i], period));
+  }
+}
+
 template <class T>
 void take_slabs(const Image& image, const VoxelGrid& grid, const TakeLayers& take, const Monitor& monitor) {
   const auto layer = static_cast<std::size_t>(grid.count[0] * grid.count[1]);
@@ -263,6 +280,7 @@ void voxelise(const Spheres<dynamic>& spheres, const Domain& domain, const Voxel
               VoxelValues values, const TakeLayers& take, const Monitor& monitor) {
   if (spheres.size() >= 0xFFFFFFFF)
     throw Error(ErrorCode::bad_argument, "an image has labels for no more than 4,294,967,294 spheres");
+  require_few_images(spheres, domain);
   const Image image(spheres, domain, grid);
   switch (values) {
     case VoxelValues::binary:

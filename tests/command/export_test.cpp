@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <memory>
 #include <set>
 
 #include "bernal/export/export.hpp"
@@ -72,6 +75,99 @@ TEST(ExportCommand, RefusesInOneLine) {
     refused({"--to", "npy", "-o", own}, {name, "another name"});
     EXPECT_EQ(text_of(own), before);
   }
+}
+
+// As make -j does it.
+TEST(ExportCommand, SideBySideIntoOneFolderAllAreWritten) {
+  const Packed result;
+  constexpr int at_once = 4, rounds = 6;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<std::unique_ptr<Process>> running;
+    for (int k = 0; k < at_once; ++k)
+      running.push_back(std::make_unique<Process>(
+          std::vector<std::string>{BERNAL_COMMAND, "export", result.out(), "--to", "npy", "-o",
+                                   result.folder / ("made/q" + std::to_string(k) + ".npy")}));
+    for (const auto& process : running) {
+      const Ended ended = process->wait();
+      EXPECT_EQ(ended.status, 0) << ended.err;
+    }
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(result.folder / "made"), {}), at_once);
+}
+
+TEST(ExportCommand, KeysTellsOfEveryFormat) {
+  const Ended ended = bernal({"keys", "output"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  for (const ExportFormat& format : export_formats())
+    EXPECT_NE(ended.out.find("\n  " + format.name + " "), std::string::npos) << format.name;
+  EXPECT_EQ(ended.out.find("relax"), std::string::npos);
+  EXPECT_NE(bernal({"keys", "stage"}).out.find("relax"), std::string::npos);
+}
+
+TEST(ExportCommand, AnImageThatNoDiskHoldsIsRefusedBefore) {
+  const Packed result;
+  if (fs::space(result.folder.path()).available > 4'000'000'000'000u) GTEST_SKIP() << "there is room";
+  expect_refused_in_one_line(bernal({"export", result.out(), "--to", "nrrd", "--resolution", "10000",
+                                     "--values", "labels", "-o", result.folder / "v.nrrd"}),
+                             {"4e+03 GB are to be written", "free"});
+  EXPECT_FALSE(fs::exists(result.folder / "v.nrrd"));
+}
+
+// The module that goes with the centres: images are those that reach into the box, and no others.
+TEST(ExportCommand, TheModuleForOpenmcKnowsTheImages) {
+  if (Process({"python3", "-c", "import numpy"}).wait().status != 0) GTEST_SKIP() << "numpy is not installed";
+  const Folder folder;
+  const std::string scene =
+      folder.write("scene.toml",
+                   "[container]\nkind = \"periodic\"\nsize = [3, 4, 5]\n[spheres]\ncount = 40\nradius = 0.4\n"
+                   "[[stage]]\ndo = \"insert\"\n");
+  ASSERT_EQ(bernal({"pack", scene, "-o", folder / "out"}).status, 0);
+  ASSERT_EQ(bernal({"export", folder / "out", "--to", "openmc", "-o", folder / "m.npy"}).status, 0);
+  const Ended read =
+      Process(
+          {"python3", "-c",
+           "import sys, types, itertools\n"
+           "import numpy as np\n"
+           "for name in ('openmc', 'openmc.model'): sys.modules[name] = types.ModuleType(name)\n"
+           "sys.modules['openmc'].model = sys.modules['openmc.model']\n"
+           "sys.path.insert(0, sys.argv[1])\n"
+           "import m\n"
+           "c, r = m.with_images()\n"
+           "L = m.upper - m.lower\n"
+           "want = set()\n"
+           "for k in itertools.product((-1, 0, 1), repeat=3):\n"
+           "    for p, q in zip(m.centers + np.array(k) * L, m.radii):\n"
+           "        gap = np.maximum(np.maximum(m.lower - p, p - m.upper), 0)\n"
+           "        if (gap**2).sum() < q * q: want.add(tuple(np.round(p, 9)))\n"
+           "got = [tuple(np.round(p, 9)) for p in c]\n"
+           "print(len(got) == len(set(got)), set(got) == want, len(got) > len(m.centers), len(r) == len(c))",
+           folder.path().string()})
+          .wait();
+  EXPECT_EQ(read.out, "True True True True\n") << read.err;
+}
+
+// It is listened to before the packing is read, which may take long.
+TEST(ExportCommand, AnInterruptWhileReadingEndsInOrder) {
+  const Packed result;
+  const auto with_spheres = [&](const std::string& last) {
+    std::ofstream spheres(result.folder / "out/spheres.csv");
+    spheres << "# unit: mm\nx,y,z,r\n";
+    for (int i = 0; i < 300'000; ++i) spheres << "0.5,0.5,0.5,0.1\n";
+    spheres << last;
+  };
+  const std::vector<std::string> words = {BERNAL_COMMAND, "export", result.out(),           "--to",
+                                          "npy",          "-o",     result.folder / "a.npy"};
+  with_spheres("");
+  const Process stopped(words);
+  ASSERT_TRUE(stopped.listens_to(SIGINT));
+  stopped.signal(SIGINT);
+  const Ended ended = stopped.wait();
+  EXPECT_EQ(ended.status, 3) << ended.err;
+  EXPECT_FALSE(fs::exists(result.folder / "a.npy"));
+  with_spheres("broken\n");  // which ends the reading, and the run
+  const Process broken(words);
+  EXPECT_TRUE(broken.listens_to(SIGINT));
+  EXPECT_EQ(broken.wait().status, 2);
 }
 
 TEST(ExportCommand, APackWritesWhatTheSceneAsksFor) {

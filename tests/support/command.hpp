@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -42,6 +43,20 @@ class Process {
   std::string said() const { return text_of(err()); }
 
   void signal(int number) const { kill(pid_, number); }
+
+  /// Waits until it has a handler of its own for a signal; false where it ends before.
+  bool listens_to(int number) const {
+    for (;;) {
+      std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+      for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("State:\tZ")) return false;
+        if (line.starts_with("SigCgt:") &&
+            (std::stoull(line.substr(7), nullptr, 16) >> (number - 1) & 1) != 0)
+          return true;
+      }
+      usleep(1000);
+    }
+  }
 
   Ended wait() const {
     int status = 0;

@@ -131,6 +131,45 @@ TEST(Export, TextFormatsReadBack) {
   }
 }
 
+// POV-Ray sees nothing smaller than 1e-6 or farther than 1e7: what is of another size has a length of its
+// own.
+TEST(Export, PicturesAreOfASizeThatIsSeen) {
+  for (const double scale : {1e-12, 1e-5, 1e-3, 1.0, 1e3, 1e9}) {
+    Packing packing =
+        packing_in(Cylinder{.base = scale * Vector<3>(1, 2, -1), .radius = 2 * scale, .height = 5 * scale},
+                   "kind = \"cylinder\"\nradius = 2\nheight = 5");
+    for (double& r : packing.spheres.r) r *= scale;
+    const Folder folder;
+    const WrittenExport written = write_export(packing, output_of("povray"), folder / "a.pov");
+    const ReadBack read = read_povray(folder / "a.pov");
+    double length = 1;
+    if (const std::size_t at = written.note.find("a length of 1 is "); at != written.note.npos)
+      length = std::stod(written.note.substr(at + 17));
+    const std::string head = text_of(folder / "a.pov").substr(0, 200);
+    EXPECT_EQ(length == 1, scale == 1 || scale == 1e3) << written.note;
+    EXPECT_NE(head.find(length == 1 ? "lengths in mm;" : fmt::format("lengths in {} mm", length)),
+              std::string::npos)
+        << head;
+    ASSERT_EQ(read.radii.size(), packing.spheres.size());
+    for (std::size_t i = 0; i < read.radii.size(); ++i) {
+      EXPECT_GT(read.radii[i], 1e-4);
+      EXPECT_LT(read.radii[i], 1e4);
+      EXPECT_NEAR(read.radii[i] * length, packing.spheres.r[i], 1e-12 * packing.spheres.r[i]);
+      for (std::size_t k = 0; k < 3; ++k)  // one middle for all
+        EXPECT_NEAR((read.centers[i][k] - read.centers[0][k]) * length,
+                    packing.spheres.x[k == 0 ? 0 : 3 - k][i] - packing.spheres.x[k == 0 ? 0 : 3 - k][0],
+                    1e-12 * scale);
+    }
+  }
+}
+
+TEST(Export, LammpsIsToldHowFarNeighboursAre) {
+  const Folder folder;
+  EXPECT_NE(text_of(exported_to(folder, periodic(), "lammps")).find("; neighbor 5e-05 bin;"),
+            std::string::npos)
+      << text_of(folder / "a.lammps").substr(0, 300);
+}
+
 TEST(Export, ArraysReadBack) {
   const Packing packing = in_cylinder();
   const std::size_t n = packing.spheres.size();

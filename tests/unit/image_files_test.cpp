@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "bernal/core/error.hpp"
@@ -244,6 +245,39 @@ TEST(ImageFiles, RawHasItsHeader) {
   const auto json = nlohmann::json::parse(raw_header(flat.image(VoxelValues::binary)));
   EXPECT_EQ(json.at("sizes"), (std::vector{20, 18}));
   EXPECT_EQ(json.at("shape"), (std::vector{18, 20}));  // NumPy's axes begin with the slowest
+}
+
+// XResolution is a quotient of 32 bits.
+TEST(ImageFiles, ATiffHoldsTheEdgeOfAVoxelOrSaysSo) {
+  Example of;
+  for (const double edge :
+       {0.25, 5e-5, 1 / 3.0, 0.0327309403, 7.77e-8, 32730.9403, 1e9, 3.1e-10, 2.9e9, 4e9}) {
+    of.grid.spacing = Vector<3>(edge, 0.7 * edge, edge);
+    const std::string tiff =
+        text_that([&](OutputFile& file) { write_tiff_directories(file, of.image(VoxelValues::binary)); });
+    const auto directory = at<std::uint32_t>(tiff, 4);
+    ASSERT_EQ(at<std::uint16_t>(tiff, directory), 15) << edge;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::size_t tag = directory + 2 + 12 * (11 + k);
+      ASSERT_EQ(at<std::uint16_t>(tiff, tag), 282 + k);
+      const auto place = at<std::uint32_t>(tiff, tag + 8);
+      const double numerator = at<std::uint32_t>(tiff, place),
+                   denominator = at<std::uint32_t>(tiff, place + 4);
+      EXPECT_NEAR(denominator / numerator, of.grid.spacing[static_cast<int>(k)],
+                  1e-9 * of.grid.spacing[static_cast<int>(k)]);
+    }
+    EXPECT_TRUE(has_scale_in_tiff(of.grid));
+    EXPECT_NE(tiff.find("unit=mm\nspacing="), std::string::npos);
+  }
+  for (const double edge : {5e-11, 1e-300, 1e10, 1e300}) {
+    of.grid.spacing = Vector<3>(edge, 2 * edge, edge);
+    const std::string tiff =
+        text_that([&](OutputFile& file) { write_tiff_directories(file, of.image(VoxelValues::binary)); });
+    EXPECT_FALSE(has_scale_in_tiff(of.grid));
+    EXPECT_EQ(at<std::uint16_t>(tiff, at<std::uint32_t>(tiff, 4)), 13);
+    EXPECT_EQ(tiff.find("spacing="), std::string::npos);
+    EXPECT_NE(tiff.find(fmt::format("voxels of {} x {} x {} mm", edge, 2 * edge, edge)), std::string::npos);
+  }
 }
 
 }  // namespace image_files_test

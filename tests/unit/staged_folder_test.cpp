@@ -1,6 +1,7 @@
 #include "io/staged_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -181,6 +182,133 @@ TEST(StagedFolder, ALinkThatLeadsNowhereIsNamed) {
     EXPECT_EQ(error.code(), ErrorCode::cannot_write);
     EXPECT_TRUE(std::string(error.what()).starts_with(folder.path().string())) << error.what();
   }
+}
+
+/// Runs `act` in so many processes at once; how many of them failed, by their own words in a file a process.
+template <class Act>
+std::string failures_side_by_side(const fs::path& said, int processes, const Act& act) {
+  std::vector<pid_t> children;
+  for (int p = 0; p < processes; ++p) {
+    const pid_t child = fork();
+    if (child != 0) {
+      children.push_back(child);
+      continue;
+    }
+    try {
+      act(p);
+    } catch (const std::exception& error) {
+      std::ofstream(said / std::to_string(p)) << error.what();
+      _exit(1);
+    }
+    _exit(0);
+  }
+  for (const pid_t child : children) waitpid(child, nullptr, 0);
+  std::string all;
+  for (const auto& [name, text] : files_in(said)) all += text + "\n";
+  return all;
+}
+
+// As make -j does it: each run has its own file, and all have one in common.
+TEST(StagedFolder, RunsSideBySideAllPublish) {
+  constexpr int processes = 4, rounds = 20;
+  const Folder folder, said;
+  const fs::path into = folder / "made/by/the first";
+  EXPECT_EQ(failures_side_by_side(said.path(), processes,
+                                  [&](int p) {
+                                    for (int k = 0; k < rounds; ++k) {
+                                      StagedFolder staged(into);
+                                      staged.write(std::to_string(p), std::to_string(k));
+                                      staged.write("all", std::to_string(p));
+                                      staged.publish();
+                                    }
+                                  }),
+            "");
+  EXPECT_EQ(entries_in(into), processes + 1u);
+  for (int p = 0; p < processes; ++p)
+    EXPECT_EQ(text_of(into / std::to_string(p)), std::to_string(rounds - 1));
+}
+
+// Of one folder that each of them makes and leaves: whoever fails takes away only what nobody else is in.
+TEST(StagedFolder, RunsThatFailSideBySideTakeNobodysFolderAway) {
+  const Folder folder, said;
+  EXPECT_EQ(failures_side_by_side(said.path(), 4,
+                                  [&](int) {
+                                    for (int k = 0; k < 30; ++k)
+                                      StagedFolder(folder / "new").write("a", "1");  // never published
+                                  }),
+            "");
+  // The one that made it may have gone before the last.
+  if (fs::exists(folder / "new")) {
+    EXPECT_TRUE(fs::is_empty(folder / "new"));
+  }
+}
+
+TEST(StagedFolder, AListOfWhatIsReplacedHoldsAnyName) {
+  const std::vector<std::string> names = {"new\nline", "back\\nslash", "back\\\nboth", "end\\"};
+  for (const std::string& name : names) {
+    const Folder folder;
+    const std::vector<std::string> others = {"new", "line", "back", "back\nslash", "slash", "both", "end"};
+    for (const std::string& other : others) folder.write(other, "mine");
+    publish(folder.path(), {{name, "1"}}, {});
+    publish(folder.path(), {{"a", "2"}}, {{name, "1"}});
+    EXPECT_FALSE(fs::exists(folder / name));
+    for (const std::string& other : others) EXPECT_EQ(text_of(folder / other), "mine") << name;
+  }
+}
+
+// A list may come from a file of somebody else.
+TEST(StagedFolder, NothingOutsideIsReplaced) {
+  const Folder folder;
+  fs::create_directories(folder / "in/deep");
+  fs::create_directory_symlink("..", folder / "in/up");
+  folder.write("mine", "0");
+  folder.write("in/deep/own", "0");
+  publish(folder / "in", later,
+          {{"../mine", ""}, {"up/mine", ""}, {(folder / "mine").string(), ""}, {"deep", ""}});
+  EXPECT_EQ(text_of(folder / "mine"), "0");
+  EXPECT_EQ(text_of(folder / "in/deep/own"), "0");
+  for (const char* no : {"", ".", "..", "../a", "a/../b", "/a", "a/", "./a", "up/mine"})
+    EXPECT_FALSE(is_name_in(folder / "in", no)) << no;
+  for (const char* yes : {"a", "..a", "deep/own", "not/there/yet"})
+    EXPECT_TRUE(is_name_in(folder / "in", yes)) << yes;
+}
+
+// Whoever takes a link or a pipe for a file of an earlier result loses neither.
+TEST(StagedFolder, WhatIsNoRegularFileIsKept) {
+  const Folder folder;
+  folder.write("far", "mine");
+  fs::create_symlink("far", folder / "link");
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  for (const std::string name : {"link", "pipe"}) {
+    publish(folder.path(), {{name, "1"}}, {{name, ""}});
+    EXPECT_EQ(text_of(folder / name), "1");
+  }
+  EXPECT_TRUE(fs::is_symlink(folder / "link.kept"));
+  EXPECT_TRUE(fs::is_fifo(folder / "pipe.kept"));
+  EXPECT_EQ(text_of(folder / "far"), "mine");
+  // Those that have no successor stay where they are.
+  fs::rename(folder / "pipe.kept", folder / "b");
+  publish(folder.path(), {{"a", "1"}}, {{"b", ""}});
+  EXPECT_TRUE(fs::is_fifo(folder / "b"));
+}
+
+TEST(StagedFolder, NamesMayLeadIntoFoldersBelow) {
+  const Folder folder;
+  folder.write("case", "in the way");
+  error_of([&] { publish(folder.path(), {{"a", "1"}, {"case/system/dict", "1"}}, {}); });
+  EXPECT_EQ(entries_in(folder.path()), 1u) << "and nothing half written is left";
+  fs::remove(folder / "case");
+
+  const Files first = {{"case/system/dict", "1"}, {"case/walls/a.stl", "1"}, {"run", "1"}};
+  publish(folder.path(), first, {});
+  EXPECT_EQ(text_of(folder / "case/system/dict"), "1");
+  folder.write("case/mine", "0");
+  publish(folder.path(), {{"case/system/dict", "2"}}, first);
+  EXPECT_EQ(text_of(folder / "case/system/dict"), "2");
+  EXPECT_FALSE(stands(folder / "case/walls")) << "nothing is left in it";
+  EXPECT_FALSE(stands(folder / "run"));
+  EXPECT_EQ(text_of(folder / "case/mine"), "0");
+  EXPECT_EQ(entries_in(folder.path()), 1u);
 }
 
 }  // namespace staged_folder_test

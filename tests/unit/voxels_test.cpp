@@ -300,5 +300,23 @@ TEST(Voxels, EndWhenTheMonitorSaysStop) {
                Cancelled);
 }
 
+TEST(Voxels, ASphereOfManyPeriodsIsRefused) {
+  Spheres<3> spheres;
+  spheres.push_back({1, 1, 1}, 0.1);
+  spheres.push_back({1, 1, 1}, 1e300);
+  const Domain box = periodic_box(Vector<3>(2, 2, 2));
+  const auto draw = [&](const Domain& domain) {
+    voxelise(spheres, domain, voxel_grid(domain, 0.5), VoxelValues::binary, [](std::string_view) {});
+  };
+  try {
+    draw(box);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("sphere 1 has the radius 1e+300"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_NO_THROW(draw(Box{Vector<3>::Zero(), Vector<3>(2, 2, 2)}));  // which repeats nothing
+}
+
 }  // namespace voxels_test
 }  // namespace bernal
