@@ -43,7 +43,17 @@ const std::vector<schema::Key>& output_keys() {
       word(&Output::values, "values",
            "of voxels: binary (0 pore, 1 sphere, 2 outside the container), labels (0, i + 1 for sphere i, "
            "4294967295) or fraction (exact volume of spheres in the voxel over its own)",
-           {"binary", "labels", "fraction"})};
+           {"binary", "labels", "fraction"}),
+      word(&Output::contact, "contact",
+           "what becomes of spheres that touch or nearly do: none; gap (those shrink as far as it takes), "
+           "shrink (all do, by one factor), bridge (cylinders join them) or cap (caps are cut off)",
+           {"none", "gap", "shrink", "bridge", "cap"}),
+      number(&Output::contact_gap, "contact_gap",
+             "the gap that is meant there: between two spheres over the sum of their radii, to a wall over "
+             "the radius",
+             above(0, 0.5)),
+      number(&Output::bridge_radius, "bridge_radius",
+             "of the cylinders, over the smaller radius of the two spheres that they join", above(0, 0.9))};
   return all;
 }
 
