@@ -10,6 +10,7 @@
 #include "bernal/run/packing.hpp"
 #include "io/staged_folder.hpp"
 #include "scene/output_table.hpp"
+#include "solids/solids.hpp"
 
 namespace bernal {
 
@@ -25,6 +26,10 @@ struct Exported {
   std::vector<std::uint32_t> types;      ///< of each sphere, from 1
   std::uint32_t type_count = 1;
   Monitor monitor = {};  ///< of what takes long to write
+  /// What was done about contacts; `spheres` are those after it.
+  ContactReport contacts = {};
+  /// For formats of solids, see OutputTable; `spheres` and `domain` are theirs.
+  Solids solids{};
 
   std::size_t size() const { return spheres.size(); }
   int dimension() const { return spheres.dimension(); }
@@ -73,8 +78,9 @@ std::span<const Format* const> formats();
 /// Throws Error{bad_scene} where there is no such format.
 const Format& format_of(const Output&);
 
-/// The packing as a file of that output has it. Precondition: the output is complete.
-Exported exported(const Packing&, const Output&);
+/// The packing as a file of that output has it. Precondition: the output is complete. Throws
+/// Error{bad_argument} where contacts cannot be treated as asked, Cancelled.
+Exported exported(const Packing&, const Output&, const Monitor& monitor = {});
 
 /// The type of every radius, from 1, and how many there are: classes of equal width if `asked`; else one for
 /// every radius where at most ten occur, or one for all.

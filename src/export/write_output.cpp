@@ -36,7 +36,8 @@ Domain without_walls(const Domain& domain) {
 std::string words_on_rounding(const Exported& file, const Format& format, const Monitor& monitor) {
   const Unit scene = file.packing.scene.unit;
   if (format.precision == Precision::as_double && file.unit() == scene)
-    return "the numbers of spheres.csv, not rounded";
+    return file.contacts.changed == 0 ? "the numbers of spheres.csv, not rounded"
+                                      : "centres are the numbers of spheres.csv, not rounded";
   const std::string to =
       format.precision == Precision::as_float ? "single precision" : fmt::format("{}", name_of(file.unit()));
   const Certificate certificate = certify(file.spheres, without_walls(file.domain), {.monitor = monitor});
@@ -58,14 +59,16 @@ std::string spheres_in(const Exported& file) {
 }
 
 std::string note_of(const Exported& file, const Format& format, const Monitor& monitor) {
-  if (format.note) return fmt::format("{}, {}", spheres_in(file), format.note(file));
+  const std::string contacts =
+      file.contacts.treatment == ContactTreatment::none ? "" : "; " + words_on(file.contacts);
+  if (format.note) return fmt::format("{}, {}{}", spheres_in(file), format.note(file), contacts);
   const OutputTable& table = format.table;
   std::string note =
       fmt::format("{}, {}", spheres_in(file), table.sizes == "diameter" ? "diameters" : "radii");
   if (table.keys.find("density")) note += fmt::format(", density {} kg/m3", file.output.density);
   if (table.keys.find("types"))
     note += fmt::format(", {} {}", file.type_count, file.type_count == 1 ? "type" : "types");
-  return note + "; " + words_on_rounding(file, format, monitor);
+  return note + contacts + "; " + words_on_rounding(file, format, monitor);
 }
 
 /// What the packing was made from, or is.
@@ -88,8 +91,7 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
                          const Monitor& monitor) {
   const Interruptible interruptible(monitor);
   const Format& format = format_of(output);
-  Exported file = exported(packing, output);
-  file.monitor = monitor;
+  const Exported file = exported(packing, output, monitor);
   format.write(file, staged);
   return note_of(file, format, monitor);
 }

@@ -107,6 +107,9 @@ struct Output {
   /// below what it acts.
   double contact_gap = 0.01;
   double bridge_radius = 0.2;  ///< over the smaller radius of the two that are joined
+  double mesh_size = 0.3;      ///< edge of an element on a sphere, over its radius
+  double mesh_gap = 2.5;       ///< edge of an element in a narrow gap, over the gap's width
+  int mesh_order = 1;
   Locations locations = {};
 };
 
