@@ -72,6 +72,8 @@ struct Format {
   void (*write)(const Exported&, StagedFolder&) = nullptr;
   /// What a file holds that has no numbers of spheres, in words.
   std::string (*note)(const Exported&) = nullptr;
+  /// In place of both, where only whoever writes it knows.
+  std::string (*write_and_tell)(const Exported&, StagedFolder&) = nullptr;
 };
 
 std::span<const Format* const> formats();

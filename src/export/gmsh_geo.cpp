@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -186,7 +187,7 @@ std::string sizes_of(const GmshModel& model) {
   std::string text = fmt::format(
       "// Sizes: by curvature on spheres, in narrow gaps by what pyramids about them say.\n"
       "Mesh.MeshSizeMax = {};\nMesh.MeshSizeFromCurvature = {};\nMesh.MeshSizeFromPoints = 0;\n",
-      model.largest_size, std::lround(2 * M_PI / model.file.output.mesh_size));
+      model.largest_size, std::lround(2 * std::numbers::pi / model.file.output.mesh_size));
   std::array<std::string, NarrowPlace::most_layers> layers;
   for (const NarrowPlace& place : model.places)
     layers[static_cast<std::size_t>(place.layer)] += pyramids(place);
@@ -216,7 +217,7 @@ std::string gmsh_geo(const GmshModel& model) {
       "//   gmsh {2} -                         makes the mesh and writes it\n"
       "//   gmsh {2} -setnumber mesh 0        shows the solids\n"
       "SetFactory(\"OpenCASCADE\");\nDefineConstant[ mesh = 1 ];\n{3}{4}{5}{6}"
-      "Mesh.Algorithm3D = 10; // HXT\nMesh.ElementOrder = {7};\n"
+      "Mesh.Algorithm3D = 10; // HXT\nMesh.OptimizeThreshold = 0.5;\nMesh.ElementOrder = {7};\n"
       "If (mesh)\n  Mesh 3;\n  Save {8};\nEndIf\n",
       file.title(), name_of(file.unit()), file.name_as_word(), std::visit(GeoDomain{model}, file.domain),
       solids_of_geo(model), groups_of(model), sizes_of(model), file.output.mesh_order,

@@ -318,7 +318,7 @@ parser.add_argument("--show", action="store_true", help="open Gmsh's window at t
 args = parser.parse_args()
 
 gmsh.initialize(["gmsh"])
-gmsh.option.setNumber("General.Verbosity", 2)
+gmsh.option.setNumber("General.Verbosity", 1)
 gmsh.model.add(Path(__file__).stem)
 start = time.time()
 groups = geometry()
@@ -332,6 +332,7 @@ else:
     name_groups(groups)
     set_sizes()
     gmsh.option.setNumber("Mesh.Algorithm3D", 10)  # HXT
+    gmsh.option.setNumber("Mesh.OptimizeThreshold", 0.5)
     gmsh.option.setNumber("Mesh.MshFileVersion", args.msh)
     start = time.time()
     gmsh.model.mesh.generate(3)

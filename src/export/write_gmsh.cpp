@@ -19,14 +19,6 @@ Turn turn_to(const Seam& seam) {
   return {turn.axis(), turn.angle()};
 }
 
-std::vector<HalfSpace> planes_on(const Piece& piece) {
-  std::vector<HalfSpace> planes;
-  for (const Cut& cut : piece.cuts)
-    planes.push_back(
-        {cut.keeps.normal, (cut.keeps.offset - cut.keeps.normal.dot(piece.center)) / piece.radius});
-  return planes;
-}
-
 std::vector<CapTool> cap_tools(const Piece& piece) {
   std::vector<CapTool> tools;
   for (const Cut& cut : piece.cuts) {
@@ -67,12 +59,10 @@ GmshModel::GmshModel(const Exported& exported)
       solids(exported.solids),
       bounds(bounds_of(exported.domain)),
       periods(exported.periods()) {
-  std::vector<std::optional<Turn>> of_sphere(solids.spheres.size());
+  const std::vector<Seam> seams = seams_of(solids);
   for (std::size_t p = 0; p < solids.pieces.size(); ++p) {
     const Piece& piece = solids.pieces[p];
-    std::optional<Turn>& turn = of_sphere[piece.sphere];
-    if (!turn) turn = piece.cuts.empty() ? Turn() : turn_to(seam_clear_of(planes_on(piece)));
-    turns.push_back(*turn);
+    turns.push_back(piece.cuts.empty() ? Turn() : turn_to(seams[p]));
     caps.push_back(cap_tools(piece));
     if (has_end(piece.cuts)) cut_pieces.push_back(p);
   }

@@ -58,10 +58,13 @@ std::string spheres_in(const Exported& file) {
                      name_of(file.unit()));
 }
 
-std::string note_of(const Exported& file, const Format& format, const Monitor& monitor) {
+/// `told` by whoever wrote the file; or empty.
+std::string note_of(const Exported& file, const Format& format, const std::string& told,
+                    const Monitor& monitor) {
   const std::string contacts =
       file.contacts.treatment == ContactTreatment::none ? "" : "; " + words_on(file.contacts);
-  if (format.note) return fmt::format("{}, {}{}", spheres_in(file), format.note(file), contacts);
+  if (format.note || !told.empty())
+    return fmt::format("{}, {}{}", spheres_in(file), format.note ? format.note(file) : told, contacts);
   const OutputTable& table = format.table;
   std::string note =
       fmt::format("{}, {}", spheres_in(file), table.sizes == "diameter" ? "diameters" : "radii");
@@ -92,8 +95,12 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
   const Interruptible interruptible(monitor);
   const Format& format = format_of(output);
   const Exported file = exported(packing, output, monitor);
-  format.write(file, staged);
-  return note_of(file, format, monitor);
+  std::string told;
+  if (format.write_and_tell)
+    told = format.write_and_tell(file, staged);
+  else
+    format.write(file, staged);
+  return note_of(file, format, told, monitor);
 }
 
 WrittenExport write_export(const Packing& packing, const Output& asked, const fs::path& file,

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
 
 #include "bernal/core/random.hpp"
 #include "solids/solids.hpp"
@@ -21,14 +23,29 @@ double apart(double x, double y, double period) {
   return std::abs(d - period * std::nearbyint(d / period));
 }
 
+/// Something with an extent along an axis: `reach` beyond its middle on both sides. `scale` is its radius.
+struct Extent {
+  double middle, reach, scale;
+};
+
+std::vector<Extent> extents_along(int axis, const Spheres<dynamic>& spheres,
+                                  const std::vector<Bridge>& bridges) {
+  std::vector<Extent> extents;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    extents.push_back({spheres.x[static_cast<std::size_t>(axis)][i], spheres.r[i], spheres.r[i]});
+  for (const Bridge& bridge : bridges)
+    extents.push_back(
+        {0.5 * (bridge.rims[0] + bridge.rims[1])[axis], bridge.reach_along(axis), bridge.radius});
+  return extents;
+}
+
 /// The middles of the widest gaps between where spheres begin and end along an axis, the widest first.
-std::vector<Place> places_along(int axis, const Spheres<dynamic>& spheres, const Boundary<3>& boundary,
+std::vector<Place> places_along(int axis, const std::vector<Extent>& extents, const Boundary<3>& boundary,
                                 std::size_t most) {
   const double lower = boundary.origin[axis], period = boundary.edges[axis];
   std::vector<double> ends;
-  const std::vector<double>& x = spheres.x[static_cast<std::size_t>(axis)];
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    for (const double end : {x[i] - spheres.r[i], x[i] + spheres.r[i]})
+  for (const Extent& extent : extents)
+    for (const double end : {extent.middle - extent.reach, extent.middle + extent.reach})
       ends.push_back(end - lower - period * std::floor((end - lower) / period));
   std::ranges::sort(ends);
   std::vector<Place> gaps;
@@ -41,9 +58,9 @@ std::vector<Place> places_along(int axis, const Spheres<dynamic>& spheres, const
   gaps.resize(std::min(gaps.size(), most));
   for (Place& place : gaps) {
     place.distance = unlimited;
-    for (std::size_t i = 0; i < spheres.size(); ++i)
-      place.distance =
-          std::min(place.distance, std::abs(apart(x[i], place.at, period) - spheres.r[i]) / spheres.r[i]);
+    for (const Extent& extent : extents)
+      place.distance = std::min(
+          place.distance, std::abs(apart(extent.middle, place.at, period) - extent.reach) / extent.scale);
     if (place.at >= lower + period) place.at -= period;
   }
   return gaps;
@@ -103,7 +120,8 @@ Ends best_of(const std::array<std::vector<Place>, 3>& places, const Spheres<dyna
 
 }  // namespace
 
-ClearEnds with_clear_ends(const Spheres<dynamic>& spheres, const Domain& domain) {
+ClearEnds with_clear_ends(const Spheres<dynamic>& spheres, const Domain& domain,
+                          const std::vector<Bridge>& bridges) {
   const Boundary<3> boundary = boundary_of<3>(domain);
   if (!boundary.repeats() || spheres.empty()) return {domain, unlimited};
   // As many places as keep the work for edges at some million distances.
@@ -111,9 +129,9 @@ ClearEnds with_clear_ends(const Spheres<dynamic>& spheres, const Domain& domain)
   const auto most = static_cast<std::size_t>(std::clamp(std::sqrt(1e7 / n), 4.0, 40.0));
   std::array<std::vector<Place>, 3> places;
   for (int k = 0; k < 3; ++k)
-    places[static_cast<std::size_t>(k)] = boundary.repeats(k)
-                                              ? places_along(k, spheres, boundary, most)
-                                              : std::vector<Place>{{boundary.origin[k], unlimited}};
+    places[static_cast<std::size_t>(k)] =
+        boundary.repeats(k) ? places_along(k, extents_along(k, spheres, bridges), boundary, most)
+                            : std::vector<Place>{{boundary.origin[k], unlimited}};
   const Ends best = best_of(places, spheres, boundary);
   Domain moved = domain;
   if (auto* box = std::get_if<Box>(&moved)) {
@@ -124,6 +142,12 @@ ClearEnds with_clear_ends(const Spheres<dynamic>& spheres, const Domain& domain)
     cylinder->base[k] += best.origin[k] - boundary.origin[k];
   }
   return {moved, best.distance};
+}
+
+double Bridge::reach_along(int axis) const {
+  const Vector<3> span = rims[1] - rims[0];
+  const double along = span[axis] / span.norm();
+  return 0.5 * std::abs(span[axis]) + radius * std::sqrt(std::max(0.0, 1 - along * along));
 }
 
 Seam seam_clear_of(const std::vector<HalfSpace>& planes) {
@@ -145,7 +169,7 @@ Seam seam_clear_of(const std::vector<HalfSpace>& planes) {
     seam.meridian = (seam.pole.cross(direction())).normalized();
     double score = unlimited;
     for (int s = 0; s <= steps && score > best_score; ++s) {
-      const double angle = M_PI * s / steps;
+      const double angle = std::numbers::pi * s / steps;
       const Vector<3> p = std::cos(angle) * seam.pole + std::sin(angle) * seam.meridian;
       const Vector<3> along = -std::sin(angle) * seam.pole + std::cos(angle) * seam.meridian;
       for (std::size_t k = 0; k < planes.size(); ++k) {
@@ -162,6 +186,23 @@ Seam seam_clear_of(const std::vector<HalfSpace>& planes) {
     }
   }
   return best;
+}
+
+std::vector<Seam> seams_of(const Solids& solids) {
+  std::vector<std::optional<Seam>> of_sphere(solids.spheres.size());
+  std::vector<Seam> seams;
+  for (const Piece& piece : solids.pieces) {
+    std::optional<Seam>& seam = of_sphere[piece.sphere];
+    if (!seam) {
+      std::vector<HalfSpace> planes;
+      for (const Cut& cut : piece.cuts)
+        planes.push_back(
+            {cut.keeps.normal, (cut.keeps.offset - cut.keeps.normal.dot(piece.center)) / piece.radius});
+      seam = seam_clear_of(planes);
+    }
+    seams.push_back(*seam);
+  }
+  return seams;
 }
 
 }  // namespace bernal

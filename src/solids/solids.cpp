@@ -165,13 +165,6 @@ bool add_caps(const std::vector<std::vector<Cap>>& caps, const Spheres<dynamic>&
   return true;
 }
 
-/// How far a bridge reaches beyond its middle along an axis.
-double reach_along(const Bridge& bridge, int axis) {
-  const Vector<3> span = bridge.rims[1] - bridge.rims[0];
-  const double along = span[axis] / span.norm();
-  return 0.5 * std::abs(span[axis]) + bridge.radius * std::sqrt(std::max(0.0, 1 - along * along));
-}
-
 void add_images(const Bridge& bridge, const Boundary<3>& boundary, std::vector<Bridge>& out) {
   const Vector<3> middle = 0.5 * (bridge.rims[0] + bridge.rims[1]);
   for (int a = -1; a <= 1; ++a)
@@ -187,7 +180,7 @@ void add_images(const Bridge& bridge, const Boundary<3>& boundary, std::vector<B
             continue;
           }
           const double lower = boundary.origin[k], upper = lower + boundary.edges[k];
-          const double at = middle[k] + moved * boundary.edges[k], reach = reach_along(bridge, k);
+          const double at = middle[k] + moved * boundary.edges[k], reach = bridge.reach_along(k);
           is_inside = is_inside && at + reach > lower && at - reach < upper;
           for (Vector<3>& rim : image.rims) rim[k] += moved * boundary.edges[k];
           if (at - reach < lower) image.cuts.push_back({{-Vector<3>::Unit(k), -lower}, 2 * k});
@@ -282,7 +275,13 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
       options.contact == ContactTreatment::gap || options.contact == ContactTreatment::shrink;
   if (shrinks)
     made.contacts = shrink_contacts(made.spheres, domain, options.contact, options.gap, false, monitor);
-  const ClearEnds ends = with_clear_ends(made.spheres, domain);
+  std::vector<Bridge> bridges;
+  if (options.contact == ContactTreatment::bridge) {
+    ContactReport unused;
+    const std::vector<Bond> bonds = bonds_of(made.spheres, domain, options.gap);
+    bridges = bridges_of(made.spheres, domain, bonds, options.bridge_radius, unused);
+  }
+  const ClearEnds ends = with_clear_ends(made.spheres, domain, bridges);
   made.end_distance = ends.distance;
   if (options.move_ends) made.domain = ends.domain;
   wrap(made.spheres, made.domain);

@@ -14,6 +14,9 @@ struct Bridge {
   std::array<Vector<3>, 2> rims = {};  ///< the centres of the circles in which the cylinder meets the spheres
   double radius = 0;
   std::vector<Cut> cuts = {};  ///< at the ends of the periods
+
+  /// How far the cylinder reaches beyond its middle along an axis.
+  double reach_along(int axis) const;
 };
 
 /// What meshers are given: every solid once, cut at the ends of the periods.
@@ -49,14 +52,14 @@ struct SolidsOptions {
 Solids solids_of(const Spheres<dynamic>&, const Domain&, const SolidsOptions&, const Monitor& monitor = {});
 
 /// The domain with the ends of its periods where no sphere nearly touches them: no face of the box a sphere,
-/// no edge, no corner, over the radius. On each axis in the middle of one of the widest gaps between what
-/// begins and ends there; of those the best together. The spheres stay where they are; `wrap` moves their
-/// centres into the period. Deterministic. Cost: O(N log N) and some million distances.
+/// no edge, no corner, over the radius; no face a bridge. On each axis in the middle of one of the widest
+/// gaps between what begins and ends there; of those the best together. The spheres stay where they are;
+/// `wrap` moves their centres into the period. Deterministic. Cost: O(N log N) and some million distances.
 struct ClearEnds {
   Domain domain;
   double distance;  ///< least, over the radius; infinite where there is no period
 };
-ClearEnds with_clear_ends(const Spheres<dynamic>&, const Domain&);
+ClearEnds with_clear_ends(const Spheres<dynamic>&, const Domain&, const std::vector<Bridge>& bridges = {});
 
 /// Volume of a ball between its cuts at the ends of periods, to some roundoffs of the ball's volume; cuts of
 /// contacts are left out.
@@ -74,5 +77,7 @@ struct Seam {
 /// 200 random ones does. Planes are given in radii, from the centre: normal and distance. The same planes
 /// give the same seam.
 Seam seam_clear_of(const std::vector<HalfSpace>& planes);
+/// One a piece, the same for all pieces of a sphere, so that what opposite ends cut off is alike.
+std::vector<Seam> seams_of(const Solids&);
 
 }  // namespace bernal
