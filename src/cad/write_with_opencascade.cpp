@@ -8,7 +8,7 @@ namespace bernal::cad {
 WrittenShapes write_with_opencascade(const SolidShapes& shapes, SolidFormat format,
                                      const std::filesystem::path& file) {
   const std::uint64_t solids = shapes.balls.size() + shapes.necks.size() + shapes.faces.size();
-  const CageLimits limits{.memory = (std::uint64_t{2} << 30) + (solids << 20),
+  const CageLimits limits{.memory = (std::uint64_t{10} << 30) + (solids << 22),
                           .seconds = 60 + static_cast<double>(solids)};
   WrittenShapes made;
   const std::string befell = run_in_cage(

@@ -186,7 +186,8 @@ std::string pyramids(const NarrowPlace& place) {
 std::string sizes_of(const GmshModel& model) {
   std::string text = fmt::format(
       "// Sizes: by curvature on spheres, in narrow gaps by what pyramids about them say.\n"
-      "Mesh.MeshSizeMax = {};\nMesh.MeshSizeFromCurvature = {};\nMesh.MeshSizeFromPoints = 0;\n",
+      "Mesh.MeshSizeMax = {};\nMesh.MeshSizeFromCurvature = {};\nMesh.MeshSizeFromPoints = 0;\n"
+      "Mesh.LcIntegrationPrecision = 1e-4;\n",
       model.largest_size, std::lround(2 * std::numbers::pi / model.file.output.mesh_size));
   std::array<std::string, NarrowPlace::most_layers> layers;
   for (const NarrowPlace& place : model.places)

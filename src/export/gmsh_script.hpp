@@ -106,6 +106,7 @@ def set_sizes():
     set_option("Mesh.MeshSizeMax", args.size / MESH_SIZE * LARGEST_SIZE)
     set_option("Mesh.MeshSizeFromCurvature", round(2 * np.pi / args.size))
     set_option("Mesh.MeshSizeFromPoints", 0)
+    set_option("Mesh.LcIntegrationPrecision", 1e-4)  # of sizes along curves
     field = gmsh.model.mesh.field
     fields = []
     scale = args.size / MESH_SIZE

@@ -122,7 +122,13 @@ struct ContainerShape {
   }
   TopoDS_Shape operator()(const Mesh& mesh) const {
     if (shapes.faces.empty()) return {};
-    BRepBuilderAPI_Sewing sewing(1e-7 * bounds_of(Domain(mesh)).diagonal());
+    // The module links nothing of bernal's own.
+    Vector<3> lower = mesh.vertices.front(), upper = lower;
+    for (const Vector<3>& v : mesh.vertices) {
+      lower = lower.cwiseMin(v);
+      upper = upper.cwiseMax(v);
+    }
+    BRepBuilderAPI_Sewing sewing(1e-7 * (upper - lower).norm());
     for (const auto& loops : shapes.faces) {
       std::vector<TopoDS_Wire> wires;
       for (const auto& loop : loops) {
