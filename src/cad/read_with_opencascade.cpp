@@ -5,22 +5,10 @@
 #include "cad/caged_reader.hpp"
 #include "cad/known_formats.hpp"
 #include "cad/opencascade/read_shapes.hpp"
+#include "cad/opencascade_module.hpp"
 
 namespace bernal::cad {
 namespace {
-
-/// The module beside this library, where it was built or is installed; nullptr where there is none, or no
-/// OpenCASCADE on this machine. It is loaded by whom asks for it, here a child process: OpenCASCADE is
-/// seventy libraries, a quarter of a second.
-decltype(&bernal_read_shapes) shape_reader() {
-  std::error_code unknown;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  for (const char* module : std::initializer_list<const char*>{BERNAL_OPENCASCADE_MODULES})
-    if (void* loaded = dlopen((program.parent_path() / module).c_str(), RTLD_LAZY | RTLD_LOCAL))
-      if (void* symbol = dlsym(loaded, "bernal_read_shapes"))
-        return reinterpret_cast<decltype(&bernal_read_shapes)>(symbol);
-  return nullptr;
-}
 
 /// Surfaces take more than triangles, and a deflection that somebody chose for small spheres may take the
 /// mesher minutes; of its own choice it needs a second or two for the largest of our files, of 1.8 MB.
@@ -41,13 +29,24 @@ std::optional<ShapeFormat> shape_format(const std::filesystem::path& file) {
 
 }  // namespace
 
+/// Looks for the module beside this library, where it was built or is installed.
+void* opencascade_function(const char* name) {
+  std::error_code unknown;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  for (const char* module : std::initializer_list<const char*>{BERNAL_OPENCASCADE_MODULES})
+    if (void* loaded = dlopen((program.parent_path() / module).c_str(), RTLD_LAZY | RTLD_LOCAL))
+      if (void* symbol = dlsym(loaded, name)) return symbol;
+  return nullptr;
+}
+
 bool opencascade_reads(const std::filesystem::path& file) { return shape_format(file).has_value(); }
 
 ReadAttempt read_with_opencascade(const std::filesystem::path& file, double deflection) {
   return read_in_cage("OpenCASCADE", limits_for_shapes(std::filesystem::file_size(file), deflection > 0),
                       [&] {
                         ReadAttempt result;
-                        if (const auto reader = shape_reader()) {
+                        if (void* function = opencascade_function("bernal_read_shapes")) {
+                          const auto reader = reinterpret_cast<decltype(&bernal_read_shapes)>(function);
                           reader(file, shape_format(file).value(), deflection, result);
                         } else {
                           result.failure =

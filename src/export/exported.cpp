@@ -95,6 +95,23 @@ void wrap_into_periods(Exported& made, bool centred) {
   }
 }
 
+/// What the output asks for about contacts, of the numbers that the file will hold.
+void treat_contacts(Exported& made, const Format& format, const Monitor& monitor) {
+  const Output& output = made.output;
+  if (format.table.solids) {
+    made.solids = solids_of(
+        made.spheres, made.domain,
+        {.contact = output.contact, .gap = output.contact_gap, .bridge_radius = output.bridge_radius},
+        monitor);
+    made.spheres = made.solids.spheres;
+    made.domain = made.solids.domain;
+    made.contacts = made.solids.contacts;
+  } else if (output.contact != ContactTreatment::none) {
+    made.contacts = shrink_contacts(made.spheres, made.domain, output.contact, output.contact_gap,
+                                    format.precision == Precision::as_float, monitor);
+  }
+}
+
 }  // namespace
 
 std::uint32_t take_types(std::span<const double> radii, const std::optional<int>& asked,
@@ -120,11 +137,15 @@ std::uint32_t take_types(std::span<const double> radii, const std::optional<int>
   return static_cast<std::uint32_t>(sorted.size());
 }
 
-Exported exported(const Packing& packing, const Output& output) {
+Exported exported(const Packing& packing, const Output& output, const Monitor& monitor) {
   const Format& format = format_of(output);
   Conversion convert(packing.scene.unit, *output.unit, format.precision);
-  Exported made{
-      .packing = packing, .output = output, .spheres = packing.spheres, .domain = Domain(), .types = {}};
+  Exported made{.packing = packing,
+                .output = output,
+                .spheres = packing.spheres,
+                .domain = Domain(),
+                .types = {},
+                .monitor = monitor};
   if (format.centred) {
     const Bounds<3> bounds = bounds_of(packing.domain);
     for (int k = 0; k < 3; ++k)
@@ -144,6 +165,7 @@ Exported exported(const Packing& packing, const Output& output) {
   made.domain = std::visit(convert, packing.domain);
   wrap_into_periods(made, format.centred);
   made.type_count = take_types(packing.spheres.r, output.types, made.types);
+  treat_contacts(made, format, monitor);
   return made;
 }
 
@@ -192,7 +214,7 @@ std::string Exported::name_as_word() const {
 
 std::string Exported::title() const {
   return fmt::format("bernal {}: {} spheres in a {}, packing fraction {:.6g}", version(), grouped(size()),
-                     name_of(domain), packing.packing_fraction());
+                     name_of(domain), packing.packing_fraction() - contacts.change_of_porosity());
 }
 
 std::string row_of(const Vector<3>& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); }

@@ -10,6 +10,7 @@
 #include "bernal/run/packing.hpp"
 #include "io/staged_folder.hpp"
 #include "scene/output_table.hpp"
+#include "solids/solids.hpp"
 
 namespace bernal {
 
@@ -24,8 +25,12 @@ struct Exported {
   Vector<3> middle = Vector<3>::Zero();  ///< of the domain, that became the origin; else zero
   std::vector<std::uint32_t> types;      ///< of each sphere, from 1
   std::uint32_t type_count = 1;
-  bool wrapped = false;                  ///< centres outside the period, which stand for their images
-  Monitor monitor = {};                  ///< of what takes long to write
+  bool wrapped = false;  ///< centres outside the period, which stand for their images
+  Monitor monitor = {};  ///< of what takes long to write
+  /// What was done about contacts; `spheres` are those after it.
+  ContactReport contacts = {};
+  /// For formats of solids, see OutputTable; `spheres` and `domain` are theirs.
+  Solids solids{};
 
   std::size_t size() const { return spheres.size(); }
   int dimension() const { return spheres.dimension(); }
@@ -70,14 +75,17 @@ struct Format {
   std::string (*note)(const Exported&) = nullptr;
   /// What its user has to know besides; nothing, or "; …".
   std::string (*remark)(const Exported&) = nullptr;
+  /// In place of `write` and `note`, where only whoever writes it knows.
+  std::string (*write_and_tell)(const Exported&, StagedFolder&) = nullptr;
 };
 
 std::span<const Format* const> formats();
 /// Throws Error{bad_scene} where there is no such format.
 const Format& format_of(const Output&);
 
-/// The packing as a file of that output has it. Precondition: the output is complete.
-Exported exported(const Packing&, const Output&);
+/// The packing as a file of that output has it. Precondition: the output is complete. Throws
+/// Error{bad_argument} where contacts cannot be treated as asked, Cancelled.
+Exported exported(const Packing&, const Output&, const Monitor& monitor = {});
 
 /// The type of every radius, from 1, and how many there are: classes of equal width if `asked`; else one for
 /// every radius where at most ten occur, or one for all.

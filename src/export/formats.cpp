@@ -16,6 +16,11 @@ const Format& mfix_format();
 const Format& openmc_format();
 const Format& povray_format();
 const Format& npy_format();
+// Solids for meshers.
+const Format& gmsh_format();
+// Both in write_cad.cpp.
+const Format& step_format();
+const Format& brep_format();
 // Images, all in write_images.cpp.
 const Format& nrrd_format();
 const Format& vti_format();
@@ -25,7 +30,8 @@ const Format& raw_format();
 /// A line a format.
 constexpr std::array all_formats = {lammps_format, liggghts_format, yade_format, esys_format,   extxyz_format,
                                     gsd_format,    pfc_format,      mfix_format, openmc_format, povray_format,
-                                    npy_format,    nrrd_format,     vti_format,  tiff_format,   raw_format};
+                                    npy_format,    gmsh_format,     step_format, brep_format,   nrrd_format,
+                                    vti_format,    tiff_format,     raw_format};
 
 std::span<const Format* const> formats() {
   static const auto entries = [] {

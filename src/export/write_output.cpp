@@ -74,7 +74,10 @@ double most_by_rounding(const Packing& packing, const Format& format) {
 std::string words_on_rounding(const Exported& file, const Format& format, const Monitor& monitor) {
   if (!is_rounded(file, format)) {
     const std::string itself = words_on_overlap(file.packing, monitor);
-    return "the numbers of spheres.csv, not rounded" + (itself.empty() ? "" : "; " + itself);
+    const std::string kept = file.contacts.changed == 0
+                                 ? "the numbers of spheres.csv, not rounded"
+                                 : "centres are the numbers of spheres.csv, not rounded";
+    return kept + (itself.empty() ? "" : "; " + itself);
   }
   const std::string to =
       format.precision == Precision::as_float ? "single precision" : fmt::format("{}", name_of(file.unit()));
@@ -96,12 +99,16 @@ std::string spheres_in(const Exported& file) {
                      name_of(file.unit()));
 }
 
-std::string note_of(const Exported& file, const Format& format, const Monitor& monitor) {
+/// `told` by whoever wrote the file; or empty.
+std::string note_of(const Exported& file, const Format& format, const std::string& told,
+                    const Monitor& monitor) {
   const std::string remark = format.remark ? format.remark(file) : "";
-  if (format.note) {
+  const std::string contacts =
+      file.contacts.treatment == ContactTreatment::none ? "" : "; " + words_on(file.contacts);
+  if (format.note || !told.empty()) {
     const std::string itself = words_on_overlap(file.packing, monitor);
-    return fmt::format("{}, {}{}{}", spheres_in(file), format.note(file), itself.empty() ? "" : "; " + itself,
-                       remark);
+    return fmt::format("{}, {}{}{}{}", spheres_in(file), format.note ? format.note(file) : told, contacts,
+                       itself.empty() ? "" : "; " + itself, remark);
   }
   const OutputTable& table = format.table;
   std::string note =
@@ -109,7 +116,7 @@ std::string note_of(const Exported& file, const Format& format, const Monitor& m
   if (table.keys.find("density")) note += fmt::format(", density {} kg/m3", file.output.density);
   if (table.keys.find("types"))
     note += fmt::format(", {} {}", file.type_count, file.type_count == 1 ? "type" : "types");
-  return note + "; " + words_on_rounding(file, format, monitor) + remark;
+  return note + contacts + "; " + words_on_rounding(file, format, monitor) + remark;
 }
 
 }  // namespace
@@ -118,10 +125,13 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
                          const Monitor& monitor) {
   const Interruptible interruptible(monitor);
   const Format& format = format_of(output);
-  Exported file = exported(packing, output);
-  file.monitor = monitor;
-  format.write(file, staged);
-  return note_of(file, format, monitor);
+  const Exported file = exported(packing, output, monitor);
+  std::string told;
+  if (format.write_and_tell)
+    told = format.write_and_tell(file, staged);
+  else
+    format.write(file, staged);
+  return note_of(file, format, told, monitor);
 }
 
 WrittenExport write_export(const Packing& packing, const Output& asked, const fs::path& file,

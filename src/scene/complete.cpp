@@ -225,6 +225,16 @@ void complete_output(Output& output, const Scene& scene) {
         fmt::format("the format \"{}\" cannot hold a packing of {} dimension{}; \"{}\" can", table.name(),
                     dimension, dimension == 1 ? "" : "s", fmt::join(others, "\", \"")));
   }
+  const bool shrinks = output.contact == ContactTreatment::none || output.contact == ContactTreatment::gap ||
+                       output.contact == ContactTreatment::shrink;
+  if (!table.solids && !shrinks) {
+    std::vector<std::string_view> others;
+    for (const OutputTable* other : output_tables())
+      if (other->solids) others.push_back(other->name());
+    section.fail("contact", fmt::format("the format \"{}\" holds whole spheres: contact is gap or shrink; "
+                                        "bridges and caps are for {}",
+                                        table.name(), fmt::join(others, ", ")));
+  }
   constexpr int resolution_of_images = 256;
   if (output.file.empty()) output.file = table.file;
   require_plain_name(output, table, section);

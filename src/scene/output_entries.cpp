@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -43,15 +45,32 @@ const std::vector<schema::Key>& output_keys() {
       word(&Output::values, "values",
            "of voxels: binary (0 pore, 1 sphere, 2 outside the container), labels (0, i + 1 for sphere i, "
            "4294967295) or fraction (exact volume of spheres in the voxel over its own)",
-           {"binary", "labels", "fraction"})};
+           {"binary", "labels", "fraction"}),
+      word(&Output::contact, "contact",
+           "what becomes of spheres that touch or nearly do: none; gap (those shrink as far as it takes), "
+           "shrink (all do, by one factor), bridge (cylinders join them) or cap (caps are cut off)",
+           {"none", "gap", "shrink", "bridge", "cap"}),
+      number(&Output::contact_gap, "contact_gap",
+             "the gap that is meant there: between two spheres over the sum of their radii, to a wall over "
+             "the radius",
+             above(0, 0.5)),
+      number(&Output::bridge_radius, "bridge_radius",
+             "of the cylinders, over the smaller radius of the two spheres that they join", above(0, 0.9)),
+      number(&Output::mesh_size, "mesh_size", "edge of an element on a sphere, over its radius", above(0, 2)),
+      number(&Output::mesh_gap, "mesh_gap", "edge of an element in a narrow gap, over the gap's width",
+             above(0, 100)),
+      integer(&Output::mesh_order, "mesh_order", "of the elements: 2 follows round surfaces", {1, 4})};
   return all;
 }
 
 schema::Entry output_entry(std::string_view name, std::string_view help,
                            const std::vector<std::string_view>& keys) {
   schema::Entry made{.name = name, .help = help, .keys = {}};
+  constexpr std::array<std::string_view, 3> everywhere = {"file", "contact", "contact_gap"};
   for (const schema::Key& key : output_keys())
-    if (key.name == "file" || std::ranges::find(keys, key.name) != keys.end()) made.keys.push_back(key);
+    if (std::ranges::find(everywhere, key.name) != everywhere.end() ||
+        std::ranges::find(keys, key.name) != keys.end())
+      made.keys.push_back(key);
   return schema::entry<Output>(std::move(made));
 }
 

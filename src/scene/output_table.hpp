@@ -24,6 +24,9 @@ struct OutputTable {
   int least_dimension = 3, most_dimensions = 3;
   std::optional<Unit> unit = {};      ///< that the program expects; none: whatever the scene has
   std::string_view sizes = "radius";  ///< or "diameter": what the file holds
+  /// Whether it holds solids of any shape, so that bridges and caps are possible; else spheres or an image of
+  /// them, which can only shrink.
+  bool solids = false;
 
   std::string_view name() const { return keys.name; }
 };

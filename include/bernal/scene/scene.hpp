@@ -16,6 +16,7 @@
 #include "bernal/domain/mesh_file.hpp"
 #include "bernal/scene/sizes.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
+#include "bernal/solids/contact_treatment.hpp"
 #include "bernal/voxels/voxels.hpp"
 
 namespace bernal {
@@ -101,6 +102,14 @@ struct Output {
   std::optional<double> voxel = {};
   std::optional<int> resolution = {};
   VoxelValues values = VoxelValues::binary;
+  ContactTreatment contact = ContactTreatment::none;
+  /// Between two spheres over the sum of their radii, to a wall over the radius: what a treatment leaves, or
+  /// below what it acts.
+  double contact_gap = 0.01;
+  double bridge_radius = 0.2;  ///< over the smaller radius of the two that are joined
+  double mesh_size = 0.3;      ///< edge of an element on a sphere, over its radius
+  double mesh_gap = 2.5;       ///< edge of an element in a narrow gap, over the gap's width
+  int mesh_order = 1;
   Locations locations = {};
 };
 

@@ -1,0 +1,240 @@
+#include "cad/write_shapes.hpp"
+
+#include <fmt/format.h>
+
+#include <BRepAlgoAPI_Common.hxx>
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakePolygon.hxx>
+#include <BRepBuilderAPI_MakeSolid.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepGProp.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <GProp_GProps.hxx>
+#include <Interface_Static.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Writer.hxx>
+#include <Standard_Failure.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <algorithm>
+#include <cmath>
+
+namespace bernal::cad {
+
+namespace {
+
+gp_Pnt point_at(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
+gp_Dir direction_of(const Vector<3>& v) { return {v[0], v[1], v[2]}; }
+
+struct Failed {
+  std::string what;
+};
+
+/// The one solid of a result; a shape with more or none of them is nothing that was asked for.
+TopoDS_Shape only_solid(const TopoDS_Shape& shape, const char* what) {
+  TopExp_Explorer solid(shape, TopAbs_SOLID);
+  if (!solid.More()) throw Failed{fmt::format("OpenCASCADE makes nothing of {}", what)};
+  const TopoDS_Shape found = solid.Current();
+  solid.Next();
+  if (solid.More()) throw Failed{fmt::format("OpenCASCADE makes several solids of {}", what)};
+  return found;
+}
+
+/// What lies on the kept sides of the planes, of a shape about `center` that reaches less than `reach` from
+/// it: a box where they are perpendicular to axes, a cylinder to be cut off where they are not.
+TopoDS_Shape cut_by(const TopoDS_Shape& shape, const std::vector<BallShape::Plane>& cuts,
+                    const Vector<3>& center, double reach, const char* what) {
+  if (cuts.empty()) return shape;
+  Vector<3> lower = center - Vector<3>::Constant(2 * reach), upper = center + Vector<3>::Constant(2 * reach);
+  bool has_box = false;
+  TopoDS_Shape left = shape;
+  for (const BallShape::Plane& plane : cuts) {
+    const int axis = plane.normal.cwiseAbs().maxCoeff() == 1
+                         ? static_cast<int>(std::distance(
+                               plane.normal.data(), std::find_if(plane.normal.data(), plane.normal.data() + 3,
+                                                                 [](double x) { return std::abs(x) == 1; })))
+                         : -1;
+    if (axis >= 0) {
+      has_box = true;
+      (plane.normal[axis] > 0 ? upper : lower)[axis] = plane.normal[axis] * plane.offset;
+      continue;
+    }
+    const double depth = plane.offset - plane.normal.dot(center);
+    if (!(depth < reach)) continue;
+    const gp_Ax2 axes(point_at(center + depth * plane.normal), direction_of(plane.normal));
+    const double radius = 1.5 * std::sqrt(std::max(0.0, reach * reach - depth * depth));
+    BRepAlgoAPI_Cut cut(left, BRepPrimAPI_MakeCylinder(axes, radius, 2 * (reach - depth)).Solid());
+    left = only_solid(cut.Shape(), what);
+  }
+  if (!has_box) return left;
+  BRepAlgoAPI_Common common(left, BRepPrimAPI_MakeBox(point_at(lower), point_at(upper)).Solid());
+  return only_solid(common.Shape(), what);
+}
+
+TopoDS_Shape solid_of(const BallShape& ball) {
+  const gp_Ax2 axes(point_at(ball.center), direction_of(ball.pole), direction_of(ball.meridian));
+  return cut_by(BRepPrimAPI_MakeSphere(axes, ball.radius).Solid(), ball.cuts, ball.center, ball.radius,
+                "a sphere and the planes that cut it");
+}
+
+TopoDS_Shape solid_of(const NeckShape& neck) {
+  const Vector<3> along = (neck.rims[1] - neck.rims[0]).normalized();
+  const Vector<3> from = neck.rims[0] - neck.radius * along;
+  const double length = (neck.rims[1] - neck.rims[0]).norm() + 2 * neck.radius;
+  TopoDS_Shape left =
+      BRepPrimAPI_MakeCylinder(gp_Ax2(point_at(from), direction_of(along)), neck.radius, length).Solid();
+  for (std::size_t end = 0; end < 2; ++end) {
+    const double r = neck.radii[end], rim = std::sqrt(r * r - neck.radius * neck.radius);
+    const Vector<3> center = neck.rims[end] + (end == 0 ? -rim : rim) * along;
+    const gp_Ax2 axes(point_at(center), direction_of(along.unitOrthogonal()));
+    BRepAlgoAPI_Cut cut(left, BRepPrimAPI_MakeSphere(axes, r).Solid());
+    left = only_solid(cut.Shape(), "a bridge between two spheres");
+  }
+  const Vector<3> middle = 0.5 * (neck.rims[0] + neck.rims[1]);
+  return cut_by(left, neck.cuts, middle, length, "a bridge and the planes that cut it");
+}
+
+struct ContainerShape {
+  const SolidShapes& shapes;
+
+  TopoDS_Shape operator()(const Box& box) const {
+    const Vector<3> lower = box.corner, size = box.size;
+    return BRepPrimAPI_MakeBox(point_at(lower), point_at(lower + size)).Solid();
+  }
+  TopoDS_Shape operator()(const Cylinder& cylinder) const {
+    return BRepPrimAPI_MakeCylinder(gp_Ax2(point_at(cylinder.base), direction_of(cylinder.axis)),
+                                    cylinder.radius, cylinder.height)
+        .Solid();
+  }
+  TopoDS_Shape operator()(const Sphere& sphere) const {
+    return BRepPrimAPI_MakeSphere(point_at(sphere.center), sphere.radius).Solid();
+  }
+  TopoDS_Shape operator()(const Mesh& mesh) const {
+    if (shapes.faces.empty()) return {};
+    // The module links nothing of bernal's own.
+    Vector<3> lower = mesh.vertices.front(), upper = lower;
+    for (const Vector<3>& v : mesh.vertices) {
+      lower = lower.cwiseMin(v);
+      upper = upper.cwiseMax(v);
+    }
+    BRepBuilderAPI_Sewing sewing(1e-7 * (upper - lower).norm());
+    for (const auto& loops : shapes.faces) {
+      std::vector<TopoDS_Wire> wires;
+      for (const auto& loop : loops) {
+        BRepBuilderAPI_MakePolygon polygon;
+        for (const std::uint32_t corner : loop) polygon.Add(point_at(mesh.vertices[corner]));
+        polygon.Close();
+        wires.push_back(polygon.Wire());
+      }
+      BRepBuilderAPI_MakeFace face(wires.front(), true);
+      for (std::size_t k = 1; k < wires.size(); ++k) face.Add(wires[k]);
+      if (!face.IsDone()) throw Failed{"OpenCASCADE makes no face of a flat part of the container"};
+      sewing.Add(face.Face());
+    }
+    sewing.Perform();
+    TopExp_Explorer shell(sewing.SewedShape(), TopAbs_SHELL);
+    if (!shell.More() || sewing.NbFreeEdges() > 0)
+      throw Failed{"OpenCASCADE makes no closed surface of the container's triangles"};
+    BRepBuilderAPI_MakeSolid solid;
+    for (; shell.More(); shell.Next()) solid.Add(TopoDS::Shell(shell.Current()));
+    return solid.Solid();
+  }
+  TopoDS_Shape operator()(const Polygon&) const { return {}; }
+};
+
+/// To about a thousandth of a millionth: with few points on every face the sum is off by much more.
+double volume_of_shape(const TopoDS_Shape& shape) {
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(shape, properties, 1e-10);
+  return std::abs(properties.Mass());
+}
+
+struct Group {
+  std::string name;
+  TopoDS_Compound compound;
+};
+
+TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes) {
+  TopoDS_Compound all;
+  const BRep_Builder builder;
+  builder.MakeCompound(all);
+  for (const TopoDS_Shape& shape : shapes) builder.Add(all, shape);
+  return all;
+}
+
+bool write_step(const std::vector<Group>& groups, const std::filesystem::path& file) {
+  constexpr double colours[][3] = {{0.27, 0.47, 0.67}, {0.80, 0.40, 0.20}, {0.30, 0.60, 0.35},
+                                   {0.65, 0.55, 0.25}, {0.55, 0.35, 0.60}, {0.35, 0.65, 0.65},
+                                   {0.75, 0.30, 0.35}, {0.50, 0.50, 0.50}};
+  opencascade::handle<TDocStd_Document> document = new TDocStd_Document("BinXCAF");
+  XCAFDoc_DocumentTool::Set(document->Main(), false);
+  const auto shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  const auto painter = XCAFDoc_DocumentTool::ColorTool(document->Main());
+  std::size_t next = 0;
+  for (const Group& group : groups) {
+    const TDF_Label label = shapes->AddShape(group.compound, false);
+    TDataStd_Name::Set(label, TCollection_ExtendedString(group.name.c_str(), true));
+    const auto& [red, green, blue] = colours[next++ % std::size(colours)];
+    painter->SetColor(label, Quantity_Color(red, green, blue, Quantity_TOC_RGB), XCAFDoc_ColorGen);
+  }
+  STEPCAFControl_Writer writer;
+  Interface_Static::SetCVal("write.step.unit", "MM");
+  Interface_Static::SetIVal("write.surfacecurve.mode", 0);  // curves in the parameters of surfaces follow
+  return writer.Transfer(document, STEPControl_AsIs) && writer.Write(file.c_str()) == IFSelect_RetDone;
+}
+
+WrittenShapes write_solids(const SolidShapes& shapes, SolidFormat format, const std::filesystem::path& file) {
+  WrittenShapes result;
+  std::vector<std::vector<TopoDS_Shape>> types(shapes.type_names.size());
+  for (const BallShape& ball : shapes.balls) types[ball.type - 1].push_back(solid_of(ball));
+  std::vector<TopoDS_Shape> necks;
+  for (const NeckShape& neck : shapes.necks) necks.push_back(solid_of(neck));
+  std::vector<Group> groups;
+  for (std::size_t type = 0; type < types.size(); ++type)
+    if (!types[type].empty()) groups.push_back({shapes.type_names[type], compound_of(types[type])});
+  if (!necks.empty()) groups.push_back({"bridges", compound_of(necks)});
+  for (const auto& type : types)
+    for (const TopoDS_Shape& solid : type) result.volume += volume_of_shape(solid);
+  for (const TopoDS_Shape& solid : necks) result.volume += volume_of_shape(solid);
+  result.solids = shapes.balls.size() + shapes.necks.size();
+  const TopoDS_Shape container = std::visit(ContainerShape{shapes}, shapes.domain);
+  result.has_container = !container.IsNull();
+  if (result.has_container) groups.push_back({"container", compound_of({container})});
+
+  bool is_written = false;
+  if (format == SolidFormat::step) {
+    is_written = write_step(groups, file);
+  } else {
+    std::vector<TopoDS_Shape> all;
+    for (const Group& group : groups) all.push_back(group.compound);
+    is_written = BRepTools::Write(compound_of(all), file.c_str());
+  }
+  if (!is_written) result.failure = "OpenCASCADE cannot write it";
+  return result;
+}
+
+}  // namespace
+}  // namespace bernal::cad
+
+void bernal_write_shapes(const bernal::cad::SolidShapes& shapes, bernal::cad::SolidFormat format,
+                         const std::filesystem::path& file, bernal::cad::WrittenShapes& result) {
+  try {
+    result = bernal::cad::write_solids(shapes, format, file);
+  } catch (const bernal::cad::Failed& failed) {
+    result.failure = failed.what;
+  } catch (const Standard_Failure& failure) {
+    const std::string_view said = failure.GetMessageString();
+    result.failure = fmt::format("OpenCASCADE gives up: {}", said.empty() ? "no reason given" : said);
+  }
+}

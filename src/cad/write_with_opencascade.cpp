@@ -1,0 +1,40 @@
+#include "bernal/core/error.hpp"
+#include "cad/cage.hpp"
+#include "cad/opencascade_module.hpp"
+#include "cad/write_shapes.hpp"
+
+namespace bernal::cad {
+
+WrittenShapes write_with_opencascade(const SolidShapes& shapes, SolidFormat format,
+                                     const std::filesystem::path& file) {
+  const std::uint64_t solids = shapes.balls.size() + shapes.necks.size() + shapes.faces.size();
+  const CageLimits limits{.memory = (std::uint64_t{10} << 30) + (solids << 22),
+                          .seconds = 60 + static_cast<double>(solids)};
+  WrittenShapes made;
+  const std::string befell = run_in_cage(
+      "OpenCASCADE", limits,
+      [&](PlainWriter& out) {
+        WrittenShapes result;
+        if (void* function = opencascade_function("bernal_write_shapes"))
+          reinterpret_cast<decltype(&bernal_write_shapes)>(function)(shapes, format, file, result);
+        else
+          result.failure =
+              "this bernal runs without OpenCASCADE, which writes STEP and BREP; install it and build again, "
+              "or export gmsh";
+        out.text(result.failure);
+        out.number(result.solids);
+        out.real(result.volume);
+        out.number(result.has_container);
+      },
+      [&](PlainReader& in) {
+        made.failure = in.text();
+        made.solids = in.number();
+        made.volume = in.real();
+        made.has_container = in.number() != 0;
+      });
+  if (const std::string& failure = befell.empty() ? made.failure : befell; !failure.empty())
+    throw Error(ErrorCode::cannot_write, failure, {file.filename().string()});
+  return made;
+}
+
+}  // namespace bernal::cad

@@ -1,0 +1,98 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "export/gmsh_model.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr std::string_view python_ending = ".py";
+
+/// Spheres of Gmsh have their poles along z and their meridian towards x.
+Turn turn_to(const Seam& seam) {
+  Eigen::Matrix3d to;
+  to.col(0) = seam.meridian;
+  to.col(2) = seam.pole;
+  to.col(1) = seam.pole.cross(seam.meridian);
+  const Eigen::AngleAxisd turn(to);
+  return {turn.axis(), turn.angle()};
+}
+
+std::vector<CapTool> cap_tools(const Piece& piece) {
+  std::vector<CapTool> tools;
+  for (const Cut& cut : piece.cuts) {
+    if (cut.face != Cut::contact) continue;
+    const double depth = cut.keeps.offset - cut.keeps.normal.dot(piece.center), r = piece.radius;
+    if (!(depth < r)) continue;
+    tools.push_back({piece.center + depth * cut.keeps.normal, 2 * (r - depth) * cut.keeps.normal,
+                     1.5 * std::sqrt(r * r - depth * depth)});
+  }
+  return tools;
+}
+
+bool has_end(const std::vector<Cut>& cuts) {
+  for (const Cut& cut : cuts)
+    if (cut.face != Cut::contact) return true;
+  return false;
+}
+
+void write_gmsh(const Exported& file, StagedFolder& staged) {
+  const GmshModel model(file);
+  staged.write(file.output.file.string(), gmsh_geo(model));
+  staged.write(file_beside(file.output.file, python_ending), gmsh_python(model));
+}
+
+std::string note_of_gmsh(const Exported& file) {
+  std::string note = fmt::format("{} pieces", file.solids.pieces.size());
+  if (std::isfinite(file.solids.end_distance))
+    note += fmt::format(", ends of the periods at least {:.3g} radii from touching a sphere",
+                        file.solids.end_distance);
+  return note + fmt::format("; python3 {} makes the mesh, or gmsh {} -",
+                            file_beside(file.output.file, python_ending), file.name_as_word());
+}
+
+}  // namespace
+
+GmshModel::GmshModel(const Exported& exported)
+    : file(exported),
+      solids(exported.solids),
+      bounds(bounds_of(exported.domain)),
+      periods(exported.periods()) {
+  const std::vector<Seam> seams = seams_of(solids);
+  for (std::size_t p = 0; p < solids.pieces.size(); ++p) {
+    const Piece& piece = solids.pieces[p];
+    turns.push_back(piece.cuts.empty() ? Turn() : turn_to(seams[p]));
+    caps.push_back(cap_tools(piece));
+    if (has_end(piece.cuts)) cut_pieces.push_back(p);
+  }
+  for (std::size_t b = 0; b < solids.bridges.size(); ++b)
+    if (has_end(solids.bridges[b].cuts)) cut_bridges.push_back(b);
+  if (const auto* mesh = std::get_if<Mesh>(&file.domain))
+    faces = flat_faces_of(*mesh, 1e-9 * bounds.diagonal());
+  places = narrow_places_of(solids, file.output.mesh_size, file.output.mesh_gap);
+  largest_size = file.output.mesh_size * (file.size() ? file.largest_radius() : bounds.diagonal() / 10);
+}
+
+std::string GmshModel::name_of_type(std::uint32_t type) const {
+  return file.type_count == 1 ? "spheres" : fmt::format("spheres_{}", type);
+}
+
+const Format& gmsh_format() {
+  static const Format format{
+      .table =
+          {.keys = output_entry(
+               "gmsh",
+               "Gmsh 4.8 and later: a .geo and a Python script, either makes conforming tetrahedra of "
+               "matrix and spheres with equal nodes at opposite ends of periods. The walls of a CAD part "
+               "are its triangles, joined to polygons where they lie in one plane",
+               {"unit", "types", "bridge_radius", "mesh_size", "mesh_gap", "mesh_order"}),
+           .file = "gmsh.geo",
+           .endings = {python_ending},
+           .solids = true},
+      .write = write_gmsh,
+      .note = note_of_gmsh};
+  return format;
+}
+
+}  // namespace bernal

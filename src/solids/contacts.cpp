@@ -1,0 +1,146 @@
+#include "solids/contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/core/tolerance.hpp"
+#include "bernal/verify/certificate.hpp"
+#include "core/parallel.hpp"
+#include "measure/touching.hpp"
+
+namespace bernal {
+namespace {
+
+/// By how much each radius has to be multiplied, and what asks for it.
+struct Factors {
+  std::vector<double> of;
+  std::size_t pairs = 0, walls = 0;
+};
+
+Factors factors_of(const Spheres<dynamic>& spheres, const Domain& domain, double gap) {
+  Factors factors{.of = std::vector<double>(spheres.size(), 1.0)};
+  const auto lower = [&](std::uint32_t i, double factor) {
+    if (!(factor > 0))
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("sphere {} has its centre in another one or outside the walls: no shrinking "
+                              "makes room for a gap; bernal verify says more",
+                              i));
+    factors.of[i] = std::min(factors.of[i], factor);
+  };
+  for (const NearPair& pair : near_pairs(spheres, domain, gap)) {
+    ++factors.pairs;
+    lower(pair.first, (1 + pair.gap) / (1 + gap));
+    lower(pair.second, (1 + pair.gap) / (1 + gap));
+  }
+  for (const NearWall& wall : near_walls(spheres, domain, gap, nullptr)) {
+    ++factors.walls;
+    lower(wall.sphere, (1 + wall.gap) / (1 + gap));
+  }
+  return factors;
+}
+
+double at_most(double diameter, bool single) {
+  if (!single) return diameter;
+  const auto nearest = static_cast<float>(diameter);
+  return static_cast<double>(nearest) <= diameter ? nearest : std::nextafter(nearest, 0.0f);
+}
+
+}  // namespace
+
+double volume_of_balls(const Spheres<dynamic>& spheres) {
+  const double half = 0.5 * spheres.dimension();
+  const double unit = std::pow(std::numbers::pi, half) / std::tgamma(half + 1);
+  double sum = 0;
+  for (const double r : spheres.r) sum += std::pow(r, spheres.dimension());
+  return unit * sum;
+}
+
+bool has_gap(const Spheres<dynamic>& spheres, const Domain& domain, double gap, const Monitor& monitor) {
+  // Above the product: 1 + gap and the product are each off by one roundoff, the last factor by another.
+  constexpr double above = 1 + 8 * tolerance::roundoff;
+  Spheres<dynamic> grown = spheres;
+  for (double& r : grown.r) r = r * (1 + gap) * above;
+  const Certificate certificate = certify(grown, domain, {.monitor = monitor});
+  if (certificate.cancelled) throw Cancelled();
+  return certificate.certified;
+}
+
+ContactReport shrink_contacts(Spheres<dynamic>& spheres, const Domain& domain, ContactTreatment treatment,
+                              double gap, bool single, const Monitor& monitor) {
+  ContactReport report{.treatment = treatment, .gap = gap, .spheres = spheres.size()};
+  report.volume_before = volume_of_balls(spheres);
+  report.domain_volume = volume_of(domain);
+  Factors factors = factors_of(spheres, domain, gap);
+  report.pairs = factors.pairs;
+  report.walls = factors.walls;
+  if (treatment == ContactTreatment::shrink && !spheres.empty())
+    std::ranges::fill(factors.of, std::ranges::min(factors.of));
+
+  constexpr double first_margin = 16 * tolerance::roundoff, last_margin = 1e-6;
+  const std::vector<double> before = spheres.r;
+  double margin = first_margin;
+  do {
+    if (margin > last_margin)
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("a gap of {:g} cannot be proven for these spheres; bernal verify says what "
+                              "is wrong with them",
+                              gap));
+    for (std::size_t i = 0; i < before.size(); ++i)
+      if (factors.of[i] < 1)
+        spheres.r[i] = 0.5 * at_most(2 * before[i] * factors.of[i] * (1 - margin), single);
+    margin *= 16;
+    // Whoever stands at the gap to within rounding may turn out to be nearer.
+    if (margin > 1e3 * first_margin)
+      for (double& factor : factors.of) factor = std::min(factor, 1 - margin);
+  } while (!has_gap(spheres, domain, gap, monitor));
+
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    report.changed += spheres.r[i] < before[i];
+    report.largest_change = std::max(report.largest_change, 1 - spheres.r[i] / before[i]);
+  }
+  report.volume_after = volume_of_balls(spheres);
+  report.proven_gap = gap;
+  return report;
+}
+
+std::string words_on(const ContactReport& report) {
+  const std::string porosity = fmt::format("porosity {:+.3g}", report.change_of_porosity());
+  const auto number = [](std::size_t n) { return grouped(n); };
+  switch (report.treatment) {
+    case ContactTreatment::none:
+      return "contacts as they are";
+    case ContactTreatment::gap:
+    case ContactTreatment::shrink:
+      return fmt::format(
+          "{} of {} radii shrunk by up to {:.3g}, {}; proven: every distance of centres is at least {:g} "
+          "times the sum of radii, every clearance as many times the radius",
+          number(report.changed), number(report.spheres), report.largest_change, porosity, 1 + report.gap);
+    case ContactTreatment::bridge:
+      return fmt::format(
+          "{} bridges, cross-sections {:.6g} in all where only points touched, {}, {}; no "
+          "angle at their rims below {:.1f} degrees",
+          number(report.pairs), report.contact_area, porosity,
+          report.meetings == 0 ? std::string("none meets a third sphere or another bridge")
+                               : fmt::format("{} meet a third sphere or each other", number(report.meetings)),
+          report.smallest_angle);
+    case ContactTreatment::cap:
+      return fmt::format(
+          "caps cut off {} spheres at {} pairs and {} places of walls, flat faces {:.6g} in "
+          "all where only points touched, {}{}; proven: the planes of every pair are {:g} "
+          "times the sum of radii apart",
+          number(report.changed), number(report.pairs), number(report.walls), report.contact_area, porosity,
+          report.meetings == 0 ? std::string()
+                               : fmt::format(", {} pairs of caps on one sphere meet, which "
+                                             "volumes count twice",
+                                             number(report.meetings)),
+          report.proven_gap);
+  }
+  return {};
+}
+
+}  // namespace bernal

@@ -1,0 +1,116 @@
+#!/usr/bin/python3
+"""Meshes exports of bernal with Gmsh: tests/clients/gmsh.py [BERNAL] [--large]
+
+Small packings in a periodic box, a cylinder and a CAD part: fragments of the spheres as they are, touching; conforming
+tetrahedra with a gap of 1 %, their quality, volume fractions and nodes at opposite ends; the same by the .geo; STEP
+and BREP opened, their volumes. --large: 800 spheres in a periodic box and 300 in a CAD part, twenty minutes. Debian:
+gmsh python3-gmsh python3-numpy. Takes two minutes.
+"""
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+arguments = [a for a in sys.argv[1:] if a != "--large"]
+BERNAL = arguments[0] if arguments else "build/release/bernal"
+HERE = Path(__file__).resolve().parents[2]
+try:
+    import gmsh
+    import numpy  # noqa: F401: the exported script needs it
+except ImportError:
+    print("skipped: Gmsh (apt-get install python3-gmsh python3-numpy)")
+    sys.exit(77)
+
+PERIODIC = 'kind = "periodic"\n[spheres]\ncount = {}\nradius = {{ distribution = "uniform", min = 0.8, max = 1.2, basis = "number" }}\n'
+CYLINDER = 'kind = "cylinder"\nradius = 4\nheight = 6\naxis = [0.2, 0, 1]\n[spheres]\ncount = {}\nradius = 0.7\n'
+CAD = 'kind = "mesh"\nfile = "' + str(HERE / "data/meshes/block_fillets_bore.step") + '"\n[spheres]\ncount = {}\nradius = {}\n'
+SIZE = 0.3  # of elements, over the radius
+failures = 0
+
+
+def expect(holds, what):
+    global failures
+    failures += not holds
+    print("ok    " if holds else "FAILED", what, flush=True)
+
+
+def export(folder, to, file, **words):
+    call = [BERNAL, "export", str(folder / "out"), "--to", to, "-o", str(folder / file), "--quiet"]
+    for key, value in words.items():
+        call += ["--" + key.replace("_", "-"), str(value)]
+    subprocess.run(call, check=True)
+    return folder / file
+
+
+def run(script, *options):
+    result = script.with_suffix(".json")
+    subprocess.run([sys.executable, str(script), "-o", str(script.with_suffix(".msh")), "--json", str(result), *options],
+                   check=True, stdout=subprocess.DEVNULL)
+    return json.loads(result.read_text())
+
+
+def volumes_in(file):
+    """Of the solids in a CAD file, the largest last."""
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
+    gmsh.model.occ.importShapes(str(file))
+    made = sorted(gmsh.model.occ.getMass(3, tag) for _, tag in gmsh.model.occ.getEntities(3))
+    gmsh.finalize()
+    return made
+
+
+def check(name, scene, count, by_geo):
+    with tempfile.TemporaryDirectory() as made:
+        folder = Path(made)
+        (folder / "scene.toml").write_text('unit = "mm"\nseed = 1\n[container]\n' + scene)
+        subprocess.run([BERNAL, "pack", str(folder / "scene.toml"), "-o", str(folder / "out"), "--quiet"], check=True)
+        report = json.loads((folder / "out/report.json").read_text())
+        phi = report["phi"]
+
+        touching = run(export(folder, "gmsh", "none.geo").with_suffix(".py"), "--geometry")
+        total = sum(touching["volumes"].values())
+        solid = total - touching["volumes"]["matrix"]
+        expect(touching["solids"] >= count + 1 and abs(solid / total - phi) < 1e-4,
+               f"{name}: fragments of {count} spheres that touch, {touching['solids']} solids")
+
+        geo = export(folder, "gmsh", "gap.geo", contact="gap", mesh_size=SIZE)
+        exact = phi_after(geo)
+        mesh = run(geo.with_suffix(".py"))
+        fraction = 1 - mesh["groups"]["matrix"]["fraction"]
+        # Triangles of edges h r lie 3/8 h² of the volume below the sphere.
+        expect(0 < exact - fraction < 1.2 * 3 / 8 * SIZE**2 * exact, f"{name}: volume fraction {fraction:.4f} of the mesh, {exact:.4f} of spheres")
+        expect(mesh["smallest_sicn"] >= 0.1 and mesh["smallest_gamma"] >= 0.1,
+               f"{name}: {mesh['tetrahedra']} tetrahedra, smallest SICN {mesh['smallest_sicn']:.3f}, gamma {mesh['smallest_gamma']:.3f}")
+        if "periodic" in scene:
+            expect(mesh["ends_alike"] == [True] * 3 and mesh["periodic_error"] < 1e-9,
+                   f"{name}: the same corners at opposite ends, {mesh['periodic_pairs']} pairs")
+        if by_geo and shutil.which("gmsh"):
+            done = subprocess.run(["gmsh", str(geo), "-"], cwd=folder, capture_output=True, text=True)
+            lines = geo.with_suffix(".msh").read_text().splitlines()
+            names = {line.split()[2].strip('"') for line in lines[lines.index("$PhysicalNames") + 2:lines.index("$EndPhysicalNames")]}
+            expect(done.returncode == 0 and {"matrix", "interface"} <= names, f"{name}: the .geo gives groups {sorted(names)}")
+        for to in ("step", "brep"):
+            volumes = volumes_in(export(folder, to, f"a.{to}", contact="gap"))
+            # Gmsh's volumes of pieces that are cut are good to some millionths.
+            expect(abs(sum(volumes[:-1]) / volumes[-1] - exact) < 1e-4, f"{name}: {to} holds {len(volumes) - 1} solids and the container")
+
+
+def phi_after(geo):
+    """What the script says of the spheres after they shrank."""
+    for line in geo.with_suffix(".py").read_text().splitlines():
+        if line.startswith("EXACT = "):
+            return 1 - json.loads(line[len("EXACT = "):line.index("}") + 1])["matrix"]
+    raise ValueError("no exact fractions")
+
+
+if "--large" in sys.argv:
+    check("periodic", PERIODIC.format(800), 800, False)
+    check("CAD part", CAD.format(300, 2.7), 300, False)
+else:
+    check("periodic", PERIODIC.format(20), 20, True)
+    check("cylinder", CYLINDER.format(20), 20, True)
+    check("CAD part", CAD.format(10, 4), 10, True)
+sys.exit(1 if failures else 0)
