@@ -67,6 +67,8 @@ struct Format {
   void (*write)(const Exported&, StagedFolder&) = nullptr;
   /// What a file holds that has no numbers of spheres, in words.
   std::string (*note)(const Exported&) = nullptr;
+  /// Instead of both, where only writing tells what there is to say.
+  std::string (*write_noted)(const Exported&, StagedFolder&) = nullptr;
 };
 
 std::span<const Format* const> formats();

@@ -16,6 +16,13 @@ const Format& mfix_format();
 const Format& openmc_format();
 const Format& povray_format();
 const Format& npy_format();
+// Triangles.
+const Format& stl_format();
+const Format& obj_format();
+const Format& ply_format();
+const Format& threemf_format();
+const Format& gltf_format();
+const Format& snappy_format();
 // Images, all in write_images.cpp.
 const Format& nrrd_format();
 const Format& vti_format();
@@ -23,9 +30,10 @@ const Format& tiff_format();
 const Format& raw_format();
 
 /// A line a format.
-constexpr std::array all_formats = {lammps_format, liggghts_format, yade_format, esys_format,   extxyz_format,
-                                    gsd_format,    pfc_format,      mfix_format, openmc_format, povray_format,
-                                    npy_format,    nrrd_format,     vti_format,  tiff_format,   raw_format};
+constexpr std::array all_formats = {
+    lammps_format, liggghts_format, yade_format,   esys_format, extxyz_format,  gsd_format,  pfc_format,
+    mfix_format,   openmc_format,   povray_format, npy_format,  nrrd_format,    vti_format,  tiff_format,
+    raw_format,    stl_format,      obj_format,    ply_format,  threemf_format, gltf_format, snappy_format};
 
 std::span<const Format* const> formats() {
   static const auto entries = [] {

@@ -90,6 +90,7 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
   const Format& format = format_of(output);
   Exported file = exported(packing, output);
   file.monitor = monitor;
+  if (format.write_noted) return fmt::format("{}, {}", spheres_in(file), format.write_noted(file, staged));
   format.write(file, staged);
   return note_of(file, format, monitor);
 }

@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -178,8 +179,17 @@ void StagedFolder::stage() {
 }
 
 fs::path StagedFolder::add(const std::string& name) {
-  names_.push_back(name);
-  return staging_ / name;
+  const fs::path path(name);
+  const std::string first = path.begin()->string();
+  if (first == name) {
+    names_.push_back(name);
+  } else {
+    if (std::ranges::find(names_, first) == names_.end()) names_.push_back(first);
+    std::error_code problem;
+    fs::create_directories(staging_ / path.parent_path(), problem);
+    if (problem) fail("the folder cannot be made", problem.message(), folder_ / path.parent_path());
+  }
+  return staging_ / path;
 }
 
 void StagedFolder::write(const std::string& name, std::string_view text) {
@@ -193,7 +203,7 @@ std::vector<fs::path> StagedFolder::publish(const std::vector<std::string>& repl
   for (const std::string& name : names_) {
     std::error_code unknown;
     files.push_back(folder_ / name);
-    if (fs::is_directory(fs::symlink_status(files.back(), unknown)))
+    if (fs::is_directory(fs::symlink_status(files.back(), unknown)) && !fs::is_directory(staging_ / name))
       fail("cannot be replaced", "a folder of that name stands there", files.back());
   }
   std::error_code problem;

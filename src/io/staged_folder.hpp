@@ -25,7 +25,8 @@ class StagedFolder {
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
 
-  /// Where the file that will be called `name` is to be written.
+  /// Where the file that will be called `name` is to be written. "case/system/controlDict" stands in a folder
+  /// of its own, which appears as one; a folder that has that name already is kept under another one.
   std::filesystem::path add(const std::string& name);
   /// Writes all of that file.
   void write(const std::string& name, std::string_view text);

@@ -53,7 +53,14 @@ const std::vector<schema::Key>& output_keys() {
              "the radius",
              above(0, 0.5)),
       number(&Output::bridge_radius, "bridge_radius",
-             "of the cylinders, over the smaller radius of the two spheres that they join", above(0, 0.9))};
+             "of the cylinders, over the smaller radius of the two spheres that they join", above(0, 0.9)),
+      word(&Output::surface, "surface",
+           "what a file of triangles holds: spheres (cut and closed at the ends of periods), container, all "
+           "(both) or pores (the boundary of the pore space, closed)",
+           {"spheres", "container", "all", "pores"}),
+      number(&Output::deflection, "deflection",
+             "largest distance of a sphere from its triangles, over its radius; the triangles lie inside",
+             {1e-5, 0.2})};
   return all;
 }
 

@@ -17,6 +17,7 @@
 #include "bernal/scene/sizes.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/solids/contact_treatment.hpp"
+#include "bernal/surfaces/surface_choice.hpp"
 #include "bernal/voxels/voxels.hpp"
 
 namespace bernal {
@@ -107,6 +108,9 @@ struct Output {
   /// below what it acts.
   double contact_gap = 0.01;
   double bridge_radius = 0.2;  ///< over the smaller radius of the two that are joined
+  /// Of a file of triangles: what it holds, and how far a sphere may be from its triangles, over the radius.
+  SurfaceChoice surface = SurfaceChoice::spheres;
+  double deflection = 0.02;
   Locations locations = {};
 };
 
