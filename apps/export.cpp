@@ -63,9 +63,10 @@ std::string table_of_formats() {
     for (const std::string& key : format.keys) options += " --" + key;
     text += fmt::format("  {:<9} {}\n            lengths in {}{}, {}; {} dimensions;{}\n", format.name,
                         format.what, format.unit, format.unit == "the scene's" ? " unit" : "",
-                        format.sizes == "voxels"     ? "voxels"
-                        : format.sizes == "diameter" ? "diameters"
-                                                     : "radii",
+                        format.sizes == "voxels"      ? "voxels"
+                        : format.sizes == "triangles" ? "triangles"
+                        : format.sizes == "diameter"  ? "diameters"
+                                                      : "radii",
                         dimensions_in_words(format), options.empty() ? " no options" : options);
   }
   return text;

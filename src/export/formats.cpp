@@ -21,6 +21,13 @@ const Format& gmsh_format();
 // Both in write_cad.cpp.
 const Format& step_format();
 const Format& brep_format();
+// Triangles.
+const Format& stl_format();
+const Format& obj_format();
+const Format& ply_format();
+const Format& threemf_format();
+const Format& gltf_format();
+const Format& snappy_format();
 // Images, all in write_images.cpp.
 const Format& nrrd_format();
 const Format& vti_format();
@@ -28,10 +35,11 @@ const Format& tiff_format();
 const Format& raw_format();
 
 /// A line a format.
-constexpr std::array all_formats = {lammps_format, liggghts_format, yade_format, esys_format,   extxyz_format,
-                                    gsd_format,    pfc_format,      mfix_format, openmc_format, povray_format,
-                                    npy_format,    gmsh_format,     step_format, brep_format,   nrrd_format,
-                                    vti_format,    tiff_format,     raw_format};
+constexpr std::array all_formats = {
+    lammps_format, liggghts_format, yade_format,   esys_format,   extxyz_format, gsd_format,
+    pfc_format,    mfix_format,     openmc_format, povray_format, npy_format,    gmsh_format,
+    step_format,   brep_format,     stl_format,    obj_format,    ply_format,    threemf_format,
+    gltf_format,   snappy_format,   nrrd_format,   vti_format,    tiff_format,   raw_format};
 
 std::span<const Format* const> formats() {
   static const auto entries = [] {

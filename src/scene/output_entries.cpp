@@ -59,7 +59,14 @@ const std::vector<schema::Key>& output_keys() {
       number(&Output::mesh_size, "mesh_size", "edge of an element on a sphere, over its radius", above(0, 2)),
       number(&Output::mesh_gap, "mesh_gap", "edge of an element in a narrow gap, over the gap's width",
              above(0, 100)),
-      integer(&Output::mesh_order, "mesh_order", "of the elements: 2 follows round surfaces", {1, 4})};
+      integer(&Output::mesh_order, "mesh_order", "of the elements: 2 follows round surfaces", {1, 4}),
+      word(&Output::surface, "surface",
+           "what a file of triangles holds: spheres (cut and closed at the ends of periods), container, all "
+           "(both) or pores (the boundary of the pore space, closed)",
+           {"spheres", "container", "all", "pores"}),
+      number(&Output::deflection, "deflection",
+             "largest distance of a sphere from its triangles, over its radius; the triangles lie inside",
+             {1e-5, 0.2})};
   return all;
 }
 

@@ -17,6 +17,7 @@
 #include "bernal/scene/sizes.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/solids/contact_treatment.hpp"
+#include "bernal/surfaces/surface_choice.hpp"
 #include "bernal/voxels/voxels.hpp"
 
 namespace bernal {
@@ -110,6 +111,9 @@ struct Output {
   double mesh_size = 0.3;      ///< edge of an element on a sphere, over its radius
   double mesh_gap = 2.5;       ///< edge of an element in a narrow gap, over the gap's width
   int mesh_order = 1;
+  /// Of a file of triangles: what it holds, and how far a sphere may be from its triangles, over the radius.
+  SurfaceChoice surface = SurfaceChoice::spheres;
+  double deflection = 0.02;
   Locations locations = {};
 };
 

@@ -1,0 +1,258 @@
+#include "surfaces/cut_ball.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace bernal {
+namespace {
+
+/// Of the longest edge: nearer corners come to lie on the plane.
+constexpr double snap_distance = 0.2;
+/// Of the height that the largest triangle leaves.
+constexpr double least_cap_share = 1.25;
+
+bool comes_before(const Vector<3>& a, const Vector<3>& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+/// With one plane more, in order; nothing where there are three already.
+std::optional<CutBall::Corner> also_on(CutBall::Corner corner, int plane) {
+  const int n = corner.count();
+  if (n == 3) return std::nullopt;
+  corner.planes[static_cast<std::size_t>(n)] = plane;
+  std::sort(corner.planes.begin(), corner.planes.begin() + n + 1);
+  return corner;
+}
+
+bool lies_on(const CutBall::Corner& corner, int plane) {
+  return std::ranges::find(corner.planes, plane) != corner.planes.end();
+}
+
+}  // namespace
+
+int CutBall::Corner::count() const {
+  return static_cast<int>(std::ranges::find(planes, -1) - planes.begin());
+}
+
+CutBall::CutBall(int frequency, double radius, const std::vector<BallPlane>& planes)
+    : radius_(radius), planes_(planes) {
+  const Icosphere& whole = icosphere(frequency);
+  least_cap_ = least_cap_share * (1 - whole.inradius) * radius;
+  // A triangle whose corners are on the sphere and which leaves a cap of that height has edges of about
+  // sqrt(6 height) radii.
+  edge_ = std::sqrt(6 * (1 - whole.inradius)) * radius;
+  for (const Vector<3>& v : whole.vertices) corners_.push_back({radius * v});
+  for (const auto& [a, b, c] : whole.triangles) faces_.push_back({-1, {a, b, c}});
+}
+
+double CutBall::height(const Corner& corner, const BallPlane& plane) const {
+  return plane.normal.dot(corner.place) - plane.offset;
+}
+
+/// Where the corner comes to lie on all its planes and, if these leave it free, on the sphere. Nothing where
+/// the planes do not meet within the sphere.
+std::optional<Vector<3>> CutBall::placed(const Corner& corner) const {
+  const int n = corner.count();
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> normals(n, 3);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> offsets(n);
+  for (int k = 0; k < n; ++k) {
+    const BallPlane& plane = planes_[static_cast<std::size_t>(corner.planes[static_cast<std::size_t>(k)])];
+    normals.row(k) = plane.normal.transpose();
+    offsets[k] = plane.offset;
+  }
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> gram = normals * normals.transpose();
+  const auto solver = gram.fullPivLu();
+  if (std::abs(gram.determinant()) < 1e-6) return std::nullopt;
+  const Vector<3> foot = normals.transpose() * solver.solve(offsets);
+  Vector<3> place = foot;
+  const double left = radius_ * radius_ - foot.squaredNorm();
+  if (n == 3) {
+    if (left < 0) return std::nullopt;
+  } else {
+    const Vector<3> from_foot = corner.place - foot;
+    const Vector<3> within = from_foot - normals.transpose() * solver.solve(normals * from_foot);
+    const double length = within.norm();
+    if (!(left > 0) || !(length > 1e-9 * radius_)) return std::nullopt;
+    place += std::sqrt(left) / length * within;
+  }
+  for (int k = 0; k < n; ++k)  // planes across an axis have exactly one value of it
+    for (int axis = 0; axis < 3; ++axis)
+      if (normals.row(k) == Vector<3>::Unit(axis).transpose()) place[axis] = offsets[k];
+  return place;
+}
+
+/// All that stands beyond the plane, a tip, comes to lie a little below it.
+void CutBall::push_in(const BallPlane& plane, bool below) {
+  const double side = below ? 1 : -1, limit = -0.25 * least_cap_;
+  for (Corner& corner : corners_) {
+    const double over = side * height(corner, plane) - limit;
+    const bool stays_on = std::ranges::all_of(corner.planes, [&](int on) {
+      return on < 0 || planes_[static_cast<std::size_t>(on)].normal.dot(plane.normal) == 0;
+    });
+    if (over > 0 && stays_on) corner.place -= side * over * plane.normal;
+  }
+}
+
+/// Corners near the plane come to lie on it, as long as one is left beyond it of a ball that the plane cuts:
+/// the nearest to the pole stands no deeper than the largest triangle leaves. Where on one side nothing is
+/// left of a ball that other planes have cut, those that lie on no other plane go back, a little below it.
+void CutBall::snap(int number) {
+  const BallPlane& plane = planes_[static_cast<std::size_t>(number)];
+  const double cap = radius_ - std::abs(plane.offset), left = least_cap_ / least_cap_share;
+  const double near = std::min(snap_distance * edge_, 0.5 * (cap - left));
+  std::vector<std::pair<std::size_t, Vector<3>>> moved_alone;
+  bool any_above = false, any_below = false;
+  for (std::size_t v = 0; v < corners_.size(); ++v) {
+    Corner& corner = corners_[v];
+    const double above = height(corner, plane);
+    std::optional<Corner> moved = std::abs(above) < near ? also_on(corner, number) : std::nullopt;
+    const std::optional<Vector<3>> place = moved ? placed(*moved) : std::nullopt;
+    if (!place || !((*place - corner.place).norm() < 2 * snap_distance * edge_)) {
+      (above > 0 ? any_above : any_below) = true;
+      continue;
+    }
+    if (corner.count() == 0) moved_alone.emplace_back(v, corner.place);
+    moved->place = *place;
+    corner = *moved;
+  }
+  if (any_above && any_below) return;
+  const double side = any_above ? -1 : 1;
+  for (const auto& [v, before] : moved_alone) {
+    corners_[v] = {before};
+    const double over = side * height(corners_[v], plane) + 0.25 * near;
+    if (over > 0) corners_[v].place -= side * over * plane.normal;
+  }
+}
+
+std::uint32_t CutBall::crossing(std::uint32_t from, std::uint32_t to, int number) {
+  const BallPlane& plane = planes_[static_cast<std::size_t>(number)];
+  if (comes_before(corners_[to].place, corners_[from].place)) std::swap(from, to);
+  const Corner &a = corners_[from], &b = corners_[to];
+  const double above_a = height(a, plane), above_b = height(b, plane);
+  Corner made{a.place + above_a / (above_a - above_b) * (b.place - a.place)};
+  std::size_t n = 0;
+  for (const int common : a.planes)
+    if (common >= 0 && lies_on(b, common) && n < 2) made.planes[n++] = common;
+  made = *also_on(made, number);
+  if (const std::optional<Vector<3>> place = placed(made)) made.place = *place;
+  for (int axis = 0; axis < 3; ++axis)
+    if (plane.normal == Vector<3>::Unit(axis)) made.place[axis] = plane.offset;
+  corners_.push_back(made);
+  return static_cast<std::uint32_t>(corners_.size() - 1);
+}
+
+bool CutBall::cut(int number, bool below) {
+  const BallPlane& plane = planes_[static_cast<std::size_t>(number)];
+  if (empty()) return true;
+  if (radius_ - std::abs(plane.offset) < least_cap_) {
+    if ((plane.offset > 0) == below)
+      push_in(plane, below);
+    else
+      faces_.clear();
+    return true;
+  }
+  snap(number);
+  const double side = below ? 1 : -1;
+  std::vector<int> sides(corners_.size());
+  for (std::size_t v = 0; v < corners_.size(); ++v) {
+    const double above = lies_on(corners_[v], number) ? 0 : side * height(corners_[v], plane);
+    sides[v] = (above > 0) - (above < 0);
+  }
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> crossings;
+  std::vector<Face> kept;
+  for (const Face& face : faces_) {
+    Face part{face.plane, {}};
+    bool inside = false;
+    for (std::size_t k = 0; k < face.corners.size(); ++k) {
+      const std::uint32_t a = face.corners[k], b = face.corners[(k + 1) % face.corners.size()];
+      inside |= sides[a] < 0;
+      if (sides[a] <= 0) part.corners.push_back(a);
+      if (sides[a] * sides[b] >= 0) continue;
+      const auto [at, is_new] = crossings.try_emplace(std::minmax(a, b), 0);
+      if (is_new) at->second = crossing(a, b, number);
+      part.corners.push_back(at->second);
+    }
+    if (inside && part.corners.size() >= 3) kept.push_back(std::move(part));
+  }
+  faces_ = std::move(kept);
+  return empty() || close(number);
+}
+
+/// Adds the faces in the plane: their edges are those that a kept face has and no other one.
+bool CutBall::close(int number) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const Face& face : faces_)
+    for (std::size_t k = 0; k < face.corners.size(); ++k)
+      ++edges[{face.corners[k], face.corners[(k + 1) % face.corners.size()]}];
+  std::map<std::uint32_t, std::uint32_t> next;
+  for (const auto& [edge, times] : edges) {
+    if (times != 1) return false;
+    const auto& [a, b] = edge;
+    if (edges.contains({b, a})) continue;
+    if (!lies_on(corners_[a], number) || !lies_on(corners_[b], number)) return false;
+    if (!next.try_emplace(b, a).second) return false;
+  }
+  while (!next.empty()) {
+    Face cap{number, {}};
+    const std::uint32_t first = next.begin()->first;
+    for (std::uint32_t at = first;;) {
+      const auto found = next.find(at);
+      if (found == next.end()) return false;
+      cap.corners.push_back(at);
+      at = found->second;
+      next.erase(found);
+      if (at == first) break;
+    }
+    if (cap.corners.size() < 3) return false;
+    faces_.push_back(std::move(cap));
+  }
+  return true;
+}
+
+std::vector<std::array<std::uint32_t, 3>> CutBall::triangles_of(const Face& face) const {
+  std::vector<std::array<std::uint32_t, 3>> made;
+  std::vector<std::uint32_t> ring = face.corners;
+  const auto place = [&](std::uint32_t v) -> const Vector<3>& { return corners_[v].place; };
+  if (ring.size() == 3) return {{ring[0], ring[1], ring[2]}};
+  if (face.plane < 0) {  // that fan which leaves the least of the ball
+    std::size_t best = 0;
+    double most = -1;
+    const auto corner = [&](std::size_t k) { return ring[k % ring.size()]; };
+    for (std::size_t apex = 0; apex < ring.size(); ++apex) {
+      double volume = 0;
+      for (std::size_t k = 1; k + 1 < ring.size(); ++k)
+        volume += place(corner(apex)).dot(place(corner(apex + k)).cross(place(corner(apex + k + 1))));
+      if (volume > most) most = volume, best = apex;
+    }
+    for (std::size_t k = 1; k + 1 < ring.size(); ++k)
+      made.push_back({corner(best), corner(best + k), corner(best + k + 1)});
+    return made;
+  }
+  // A convex polygon: halved again and again, from a corner and in a sense that both halves of the ball agree
+  // on.
+  Vector<3> area = Vector<3>::Zero();
+  for (std::size_t k = 2; k < ring.size(); ++k)
+    area += (place(ring[k - 1]) - place(ring[0])).cross(place(ring[k]) - place(ring[0]));
+  const bool turned = area.dot(planes_[static_cast<std::size_t>(face.plane)].normal) < 0;
+  if (turned) std::ranges::reverse(ring);
+  const auto first = std::ranges::min_element(
+      ring, [&](std::uint32_t a, std::uint32_t b) { return comes_before(place(a), place(b)); });
+  std::ranges::rotate(ring, first);
+  const auto halve = [&](auto self, std::size_t from, std::size_t to) -> void {
+    if (to - from < 2) return;
+    const std::size_t middle = (from + to) / 2;
+    made.push_back({ring[from], ring[middle], ring[to]});
+    self(self, from, middle);
+    self(self, middle, to);
+  };
+  halve(halve, 0, ring.size() - 1);
+  if (turned)
+    for (auto& triangle : made) std::swap(triangle[1], triangle[2]);
+  return made;
+}
+
+}  // namespace bernal

@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <cmath>
+
+#include "bernal/verify/certificate.hpp"
+#include "core/parallel.hpp"
+#include "surfaces/surfaces.hpp"
+
+namespace bernal {
+namespace {
+
+/// The n-th of numbers that fill [0, 1) evenly in that base. Source: Halton, Numer. Math. 2 (1960) 84.
+double halton(std::uint32_t n, std::uint32_t base) {
+  double value = 0, share = 1;
+  for (; n > 0; n /= base) {
+    share /= base;
+    value += share * (n % base);
+  }
+  return value;
+}
+
+/// The nearest sphere's surface, and the direction from its nearest image.
+struct Nearest {
+  double gap;
+  Vector<3> away;
+};
+
+class Gaps {
+ public:
+  Gaps(const Spheres<dynamic>& spheres, const Domain& domain)
+      : spheres_(spheres), boundary_(boundary_of<3>(domain)) {}
+
+  Nearest at(const Vector<3>& p) const {
+    Nearest nearest{1e300, Vector<3>::Zero()};
+    for (std::size_t i = 0; i < spheres_.size(); ++i) {
+      const Vector<3> from =
+          boundary_.minimum_image(p - Vector<3>(spheres_.x[0][i], spheres_.x[1][i], spheres_.x[2][i]));
+      const double gap = from.norm() - spheres_.r[i];
+      if (gap < nearest.gap) nearest = {gap, from};
+    }
+    return nearest;
+  }
+
+ private:
+  const Spheres<dynamic>& spheres_;
+  Boundary<3> boundary_;
+};
+
+/// The domain with its walls out of reach.
+Box periods_of(const Domain& domain) {
+  const Boundary<3> boundary = boundary_of<3>(domain);
+  const Bounds<3> bounds = bounds_of(domain);
+  Box box{bounds.lower - bounds.size(), 3 * bounds.size(), {false, false, false}};
+  for (int k = 0; k < 3; ++k) {
+    if (!boundary.repeats(k)) continue;
+    box.periodic[static_cast<std::size_t>(k)] = true;
+    box.corner[k] = boundary.origin[k];
+    box.size[k] = boundary.edges[k];
+  }
+  return box;
+}
+
+/// Whether the ball meets no sphere, in no image.
+bool clears_spheres(const PorePoint& ball, const Spheres<dynamic>& spheres, const Domain& domain) {
+  const Boundary<3> boundary = boundary_of<3>(domain);
+  const Box box = periods_of(domain);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const Vector<3> c(spheres.x[0][i], spheres.x[1][i], spheres.x[2][i]);
+    // Nearest images only, and only what is near by far: the rest the certificate need not see.
+    if (boundary.minimum_image(ball.place - c).norm() > 2 * (ball.clearance + spheres.r[i])) continue;
+    Spheres<3> pair;
+    pair.push_back(ball.place, ball.clearance);
+    pair.push_back(c, spheres.r[i]);
+    if (certify(pair, box, {.threads = 1}).overlapping_pairs > 0) return false;
+  }
+  return true;
+}
+
+/// Of the balls those that lie inside the walls, in their order.
+std::vector<PorePoint> inside(const Mesh& walls, const std::vector<PorePoint>& balls) {
+  if (walls.triangles.empty() || balls.empty()) return balls;
+  Spheres<3> all;
+  for (const PorePoint& ball : balls) all.push_back(ball.place, ball.clearance);
+  std::vector<bool> protrudes(balls.size());
+  for (const auto& [sphere, gap] : certify(all, walls, {.list = CertifyOptions::all}).protrusions)
+    protrudes[sphere] = true;
+  std::vector<PorePoint> kept;
+  for (std::size_t n = 0; n < balls.size(); ++n)
+    if (!protrudes[n]) kept.push_back(balls[n]);
+  return kept;
+}
+
+}  // namespace
+
+std::optional<PorePoint> point_in_pores(const Spheres<dynamic>& spheres, const Domain& domain,
+                                        const WallSurface& walls) {
+  const Bounds<3> bounds = bounds_of(domain);
+  const Gaps gaps(spheres, domain);
+  const Mesh mesh = walls.extended(boundary_of<3>(domain));
+  const auto candidates =
+      static_cast<std::uint32_t>(std::clamp(4e7 / static_cast<double>(spheres.size() + 1), 64.0, 4096.0));
+  std::vector<PorePoint> found(candidates);
+  parallel_for(candidates, [&](std::size_t n) {
+    const auto k = static_cast<std::uint32_t>(n + 1);
+    const Vector<3> share(halton(k, 2), halton(k, 3), halton(k, 5));
+    Vector<3> p = bounds.lower + share.cwiseProduct(bounds.size());
+    Nearest nearest = gaps.at(p);
+    for (int step = 0; step < 8 && spheres.size() < 20'000; ++step) {
+      const double length = nearest.away.norm();
+      if (!(length > 0)) break;
+      const Vector<3> next = p + std::max(0.3 * std::abs(nearest.gap), 0.02 * length) / length * nearest.away;
+      const Nearest there = gaps.at(next);
+      const bool stays =
+          (next.array() > bounds.lower.array()).all() && (next.array() < bounds.upper.array()).all();
+      if (!stays || !(there.gap > nearest.gap)) break;
+      p = next;
+      nearest = there;
+    }
+    found[n] = {p, nearest.gap};
+  });
+  std::ranges::stable_sort(found, std::greater(), &PorePoint::clearance);
+  // Of walls the certificate is the only judge: first whether a point is inside, then how far.
+  std::erase_if(found, [](const PorePoint& point) { return !(point.clearance > 0); });
+  const double tiny = 1e-6 * bounds.size().minCoeff();
+  std::vector<PorePoint> small = found;
+  for (PorePoint& point : small) point.clearance = std::min(point.clearance, tiny);
+  small = inside(mesh, small);
+  std::erase_if(found, [&](const PorePoint& point) {
+    return std::ranges::none_of(small, [&](const PorePoint& kept) { return kept.place == point.place; });
+  });
+  constexpr std::size_t most_judged = 64;
+  if (found.size() > most_judged) found.resize(most_judged);
+  for (double share = 1 - 1e-9; share > 1e-3 && !found.empty(); share *= 0.9) {
+    std::vector<PorePoint> balls = found;
+    for (PorePoint& ball : balls) ball.clearance *= share;
+    for (const PorePoint& ball : inside(mesh, balls))  // the largest first
+      if (clears_spheres(ball, spheres, domain)) return ball;
+  }
+  return std::nullopt;
+}
+
+}  // namespace bernal

@@ -1,0 +1,226 @@
+#include "surfaces/surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/verify/certificate.hpp"
+
+namespace bernal {
+namespace {
+
+double largest_radius_of(const Spheres<dynamic>& spheres) {
+  return spheres.empty() ? 0 : *std::ranges::max_element(spheres.r);
+}
+
+/// Of circumscribed walls, in the domain's unit: the share of the largest sphere's radius that spheres have.
+double wall_deflection(const Spheres<dynamic>& spheres, const Domain& domain, double deflection) {
+  const double radius = largest_radius_of(spheres);
+  return deflection * (radius > 0 ? radius : 0.1 * bounds_of(domain).size().maxCoeff());
+}
+
+double largest_coordinate(const Spheres<dynamic>& spheres, const Domain& domain, const WallSurface& walls) {
+  const Bounds<3> bounds = bounds_of(domain);
+  double largest = std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    for (const auto& column : spheres.x) largest = std::max(largest, std::abs(column[i]) + spheres.r[i]);
+  for (const FloatPoint& p : walls.walls.vertices)
+    for (const float x : p) largest = std::max(largest, static_cast<double>(std::abs(x)));
+  return largest * (1 + 0x1p-20);
+}
+
+Spheres<dynamic> wrapped(Spheres<dynamic> spheres, const Domain& domain) {
+  wrap(spheres, domain);
+  return spheres;
+}
+
+/// The balls that hold what is written, and less.
+Spheres<dynamic> smaller_by(Spheres<dynamic> spheres, double inset) {
+  for (double& r : spheres.r) r -= inset;
+  return spheres;
+}
+
+bool may_be_covered(std::int8_t face) { return face >= 0; }
+
+}  // namespace
+
+Surfaces::Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double deflection,
+                   SurfaceChoice choice, const Monitor& monitor)
+    : choice_(choice),
+      deflection_(deflection),
+      walls_(choice == SurfaceChoice::spheres
+                 ? WallSurface()
+                 : wall_surface(domain, wall_deflection(spheres, domain, deflection))),
+      shift_(single_precision_shift(largest_coordinate(spheres, domain, walls_))),
+      spheres_(choice == SurfaceChoice::container ? std::vector<Piece>()
+                                                  : pieces_of(wrapped(spheres, domain), domain),
+               domain, deflection, shift_),
+      monitor_(monitor) {
+  if (has_spheres()) {
+    measures_ = spheres_.measure();
+    const Certificate pairs = certify(smaller_by(spheres, spheres_.inset()), domain, {.monitor = monitor});
+    if (pairs.cancelled) throw Cancelled();
+    proof_ = pairs.overlapping_pairs == 0
+                 ? "inside the true spheres, no two of them touch"
+                 : fmt::format(
+                       "inside the true spheres, of which {} overlap, up to {:.2g} of the sum of two radii",
+                       fmt::format("{} pairs", grouped(pairs.overlapping_pairs)), pairs.max_overlap);
+  }
+  if (choice != SurfaceChoice::spheres) make_container(domain);
+  if (has_spheres() && choice != SurfaceChoice::spheres && !walls_.walls.triangles.empty()) {
+    // A thousandth more than the walls were moved by, for what conversion to another unit rounded.
+    const Certificate in = certify(smaller_by(spheres, 1.001 * shift_),
+                                   walls_.extended(boundary_of<3>(domain)), {.monitor = monitor});
+    if (in.cancelled) throw Cancelled();
+    proof_ += in.protruding_spheres == 0
+                  ? " each other or the walls"
+                  : fmt::format(" each other, {} across the walls", grouped(in.protruding_spheres));
+  } else if (has_spheres() && proof_.ends_with("touch")) {
+    proof_ += " each other";
+  }
+  count();
+}
+
+void Surfaces::make_container(const Domain&) {
+  if (choice_ != SurfaceChoice::pores || walls_.ends.empty()) {
+    container_ = walls_.closed();
+    return;
+  }
+  std::array<std::vector<std::array<FloatPoint, 3>>, 6> covered;
+  for (std::size_t i = 0; i < spheres_.spheres(); ++i) {
+    if (spheres_.is_whole(i)) continue;
+    spheres_.visit(i, [&](const FloatSurface& surface) {
+      for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        if (surface.faces[t] < 0) continue;
+        const auto& [a, b, c] = surface.triangles[t];
+        covered[static_cast<std::size_t>(surface.faces[t])].push_back(
+            {surface.vertices[a], surface.vertices[b], surface.vertices[c]});
+      }
+    });
+  }
+  container_ = walls_.walls;
+  std::map<FloatPoint, std::uint32_t> known;
+  for (std::uint32_t v = 0; v < container_.vertices.size(); ++v) known.emplace(container_.vertices[v], v);
+  const auto add = [&](const FloatSurface& end) {
+    for (std::size_t t = 0; t < end.triangles.size(); ++t) {
+      Triangle triangle = end.triangles[t];
+      for (std::uint32_t& v : triangle) {
+        const FloatPoint& p = end.vertices[v];
+        const auto [at, is_new] =
+            known.try_emplace(p, static_cast<std::uint32_t>(container_.vertices.size()));
+        if (is_new) container_.vertices.push_back(p);
+        rim_.emplace(p, at->second);
+        v = at->second;
+      }
+      container_.triangles.push_back(triangle);
+      container_.faces.push_back(end.faces[t]);
+    }
+  };
+  for (const WallSurface::End& end : walls_.ends) {
+    if (end.is_upper()) continue;
+    const auto opposite = std::ranges::find(walls_.ends, end.face + 1, &WallSurface::End::face);
+    const FloatSurface lower = end_between(end, covered[static_cast<std::size_t>(end.face)]);
+    add(lower);
+    add(moved_to(*opposite, lower));
+  }
+}
+
+void Surfaces::visit_spheres(const std::vector<std::uint32_t>* order, const Visit& visit) const {
+  std::uint32_t next = 0;
+  if (!container_.triangles.empty()) {
+    visit({.sphere = {},
+           .first_vertex = 0,
+           .vertices = container_.vertices,
+           .triangles = container_.triangles});
+    next = static_cast<std::uint32_t>(container_.vertices.size());
+  }
+  if (!has_spheres()) return;
+  const bool inward = choice_ == SurfaceChoice::pores;
+  std::vector<FloatPoint> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> number;
+  const std::size_t count = order ? order->size() : spheres_.spheres();
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t i = order ? (*order)[n] : n;
+    if (n % 1024 == 0) {
+      if (monitor_.stop()) throw Cancelled();
+      monitor_.report({"triangles", static_cast<double>(n) / static_cast<double>(count), {}});
+    }
+    spheres_.visit(i, [&](const FloatSurface& surface) {
+      vertices.clear();
+      triangles.clear();
+      number.assign(surface.vertices.size(), ~0U);
+      for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        if (inward && may_be_covered(surface.faces[t])) continue;
+        Triangle triangle = surface.triangles[t];
+        if (inward) std::swap(triangle[1], triangle[2]);
+        for (std::uint32_t& v : triangle) {
+          if (number[v] == ~0U) {
+            const auto rim = rim_.empty() ? rim_.end() : rim_.find(surface.vertices[v]);
+            if (rim != rim_.end()) {
+              number[v] = rim->second;
+            } else {
+              number[v] = next + static_cast<std::uint32_t>(vertices.size());
+              vertices.push_back(surface.vertices[v]);
+            }
+          }
+          v = number[v];
+        }
+        triangles.push_back(triangle);
+      }
+      visit({static_cast<std::uint32_t>(i), next, vertices, triangles});
+      next += static_cast<std::uint32_t>(vertices.size());
+    });
+  }
+}
+
+void Surfaces::count() {
+  const auto include = [&](const FloatPoint& p) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      lower_[k] = std::min(lower_[k], p[k]);
+      upper_[k] = std::max(upper_[k], p[k]);
+    }
+  };
+  if (choice_ == SurfaceChoice::spheres) {
+    vertices_ = measures_.vertices;
+    triangles_ = measures_.triangles;
+    lower_ = measures_.lower;
+    upper_ = measures_.upper;
+  } else {
+    if (!container_.vertices.empty()) lower_ = upper_ = container_.vertices.front();
+    for (const FloatPoint& p : container_.vertices) include(p);
+    if (choice_ == SurfaceChoice::all && measures_.vertices > 0) {
+      include(measures_.lower);
+      include(measures_.upper);
+    }
+    if (rim_.empty()) {
+      vertices_ = container_.vertices.size() + measures_.vertices;
+      triangles_ = container_.triangles.size() + measures_.triangles;
+    } else {
+      visit([&](const SurfacePart& part) {
+        vertices_ += part.vertices.size();
+        triangles_ += part.triangles.size();
+      });
+    }
+  }
+  if (vertices_ > 0xffff'fffeU)
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("{} vertices are more than a file of triangles can number; allow a larger deflection",
+                    grouped(vertices_)));
+}
+
+std::string Surfaces::note() const {
+  if (!has_spheres())
+    return fmt::format("{} triangles of the container in single precision", grouped(triangles_));
+  return fmt::format(
+      "{} triangles in single precision, {} (proven); at most {:.3g} of a radius below the sphere, "
+      "{:.4g} of its volume",
+      grouped(triangles_), proof_, measures_.deflection, measures_.volume_share);
+}
+
+}  // namespace bernal

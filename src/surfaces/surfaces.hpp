@@ -1,0 +1,87 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "bernal/core/monitor.hpp"
+#include "bernal/surfaces/surface_choice.hpp"
+#include "surfaces/sphere_surfaces.hpp"
+#include "surfaces/wall_surface.hpp"
+
+namespace bernal {
+
+/// A part of a file: the container, or one piece of a sphere. Its triangles number the vertices of the whole
+/// file; in a pore space's boundary it may use those of the container at the ends of periods.
+struct SurfacePart {
+  std::optional<std::uint32_t> sphere;  ///< none: the container
+  std::uint32_t first_vertex = 0;       ///< the number of the first of its own
+  std::span<const FloatPoint> vertices;
+  std::span<const Triangle> triangles;
+};
+
+/// What a file of triangles is to hold of a packing, part by part: nothing but the part in hand, the walls
+/// and the pieces are in memory.
+class Surfaces {
+ public:
+  /// Lengths in the file's unit. Throws Error{bad_argument} as SphereSurfaces and `wall_surface` do.
+  Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double deflection, SurfaceChoice choice,
+           const Monitor& monitor);
+
+  using Visit = std::function<void(const SurfacePart&)>;
+  /// Calls visit for the container, where it is asked for, and then for the spheres, all or those in that
+  /// order. The same parts whenever it is called with the same order.
+  void visit(const Visit& visit) const { visit_spheres(nullptr, visit); }
+  void visit(const std::vector<std::uint32_t>& order, const Visit& visit) const {
+    visit_spheres(&order, visit);
+  }
+
+  std::uint64_t vertices() const { return vertices_; }
+  std::uint64_t triangles() const { return triangles_; }
+  const FloatPoint& lower() const { return lower_; }
+  const FloatPoint& upper() const { return upper_; }
+  bool has_spheres() const { return choice_ != SurfaceChoice::container; }
+  const SphereSurfaces& spheres() const { return spheres_; }
+  const SurfaceMeasures& measures() const { return measures_; }
+  /// What rounding to single precision moves points by at most.
+  double shift() const { return shift_; }
+  /// The walls with what lies at the ends of periods, as they are written; empty for spheres alone.
+  const FloatSurface& container() const { return container_; }
+  const WallSurface& walls() const { return walls_; }
+
+  /// "1,000 surfaces of 320,000 triangles …": how many, how far from the spheres, what was proven.
+  std::string note() const;
+
+ private:
+  void make_container(const Domain& domain);
+  void count();
+  void visit_spheres(const std::vector<std::uint32_t>* order, const Visit& visit) const;
+
+  SurfaceChoice choice_;
+  double deflection_;
+  WallSurface walls_;
+  double shift_ = 0;
+  SphereSurfaces spheres_;
+  const Monitor& monitor_;
+  FloatSurface container_;
+  std::map<FloatPoint, std::uint32_t> rim_;  ///< vertices of the container at the ends of periods
+  SurfaceMeasures measures_;
+  std::uint64_t vertices_ = 0, triangles_ = 0;
+  FloatPoint lower_{}, upper_{};
+  std::string proof_;
+};
+
+/// A point of the pore space and a lower bound of how far it is from spheres and walls.
+struct PorePoint {
+  Vector<3> place;
+  double clearance;
+};
+
+/// The point with the largest clearance among some thousand candidates, the best of which have climbed away
+/// from what is nearest. That the ball of the clearance around it meets no sphere, in no image, and lies
+/// inside the walls as they are written is proven as certificates are. Nothing where no candidate lies in
+/// the pores. Cost: O(N) a candidate.
+std::optional<PorePoint> point_in_pores(const Spheres<dynamic>& spheres, const Domain& domain,
+                                        const WallSurface& walls);
+
+}  // namespace bernal
