@@ -1,5 +1,6 @@
 #include "bernal/export/export.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -48,6 +49,12 @@ int export_result(const ExportCall& call) try {
   return exit_code::not_reached;
 }
 
+/// "--contact-gap" of the key contact_gap.
+std::string option_of(std::string key) {
+  std::ranges::replace(key, '_', '-');
+  return "--" + key;
+}
+
 std::string dimensions_in_words(const ExportFormat& format) {
   if (format.least_dimension == format.most_dimensions) return fmt::format("{}", format.least_dimension);
   return fmt::format("{} {} {}", format.least_dimension,
@@ -60,7 +67,7 @@ std::string table_of_formats() {
   std::string text = "Formats:\n";
   for (const ExportFormat& format : export_formats()) {
     std::string options;
-    for (const std::string& key : format.keys) options += " --" + key;
+    for (const std::string& key : format.keys) options += " " + option_of(key);
     text += fmt::format("  {:<9} {}\n            lengths in {}{}, {}; {} dimensions;{}\n", format.name,
                         format.what, format.unit, format.unit == "the scene's" ? " unit" : "",
                         format.sizes == "voxels"      ? "voxels"
@@ -72,12 +79,14 @@ std::string table_of_formats() {
   return text;
 }
 
+/// "gmsh, step", or "all but yade" where that is shorter.
 std::string formats_with(const std::string& key) {
-  std::vector<std::string> names;
+  std::vector<std::string> with, without;
   for (const ExportFormat& format : export_formats())
-    for (const std::string& of : format.keys)
-      if (of == key) names.push_back(format.name);
-  return fmt::format("{}", fmt::join(names, ", "));
+    (std::ranges::find(format.keys, key) != format.keys.end() ? with : without).push_back(format.name);
+  return without.empty()                ? "all"
+         : without.size() < with.size() ? fmt::format("all but {}", fmt::join(without, ", "))
+                                        : fmt::format("{}", fmt::join(with, ", "));
 }
 
 }  // namespace
@@ -100,6 +109,7 @@ Command export_command() {
           "Examples:\n"
           "  bernal export out --to lammps -o bed.data --density 2650 --types 3\n"
           "  bernal export out --to nrrd -o bed.nrrd --resolution 512 --values labels\n"
+          "  bernal export out --to gmsh -o rve.geo --contact gap && python3 rve.py\n"
           "  bernal export out --to povray -o bed.pov && povray +A +W1200 +H900 bed.pov\n"
           "Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.",
       [call] { return export_result(*call); }};
@@ -107,7 +117,7 @@ Command export_command() {
     std::string placeholder = key.name;
     for (char& c : placeholder) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     command.options.push_back(
-        {"--" + key.name,
+        {option_of(key.name),
          [call = call.get(), name = key.name](const std::string& word) { call->words[name] = word; },
          fmt::format("{} ({})", key.what, formats_with(key.name)), placeholder});
   }

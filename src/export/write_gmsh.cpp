@@ -87,7 +87,7 @@ const Format& gmsh_format() {
                "matrix and spheres with equal nodes at opposite ends of periods. The walls of a CAD part "
                "are its triangles, joined to polygons where they lie in one plane",
                {"unit", "types", "bridge_radius", "mesh_size", "mesh_gap", "mesh_order"}),
-           .file = "gmsh.geo",
+           .file = "packing.geo",
            .endings = {python_ending},
            .solids = true},
       .write = write_gmsh,

@@ -52,7 +52,10 @@ TEST(ExportCommand, HelpListsEveryFormatWithItsUnitAndSizes) {
     EXPECT_NE(about.find("lengths in " + format.unit), std::string::npos) << about;
     EXPECT_NE(about.find(sizes_in_words(format)), std::string::npos) << about;
   }
-  for (const ExportKey& key : export_keys()) EXPECT_NE(help.find("--" + key.name), std::string::npos);
+  for (ExportKey key : export_keys()) {
+    std::ranges::replace(key.name, '_', '-');
+    EXPECT_NE(help.find("--" + key.name), std::string::npos) << key.name;
+  }
 }
 
 TEST(ExportCommand, RefusesInOneLine) {
