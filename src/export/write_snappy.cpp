@@ -180,7 +180,7 @@ addLayersControls
 meshQualityControls
 {
     maxNonOrtho          65;
-    maxBoundarySkewness  20;
+    maxBoundarySkewness  4;
     maxInternalSkewness  4;
     maxConcave           80;
     minVol               1e-30;

@@ -195,6 +195,6 @@ with tempfile.TemporaryDirectory() as made:
     if snappy:  # spheres that do not touch: where they do no mesh is good
         few = pack(place / "few", CYLINDER.format(height=8, count=50, radius=0.9, stage="insert"))
         check_snappy(few, "cylinder")
-        few = pack(place / "few_box", BOX.format(count=50, stage="insert", size="size = [6.0, 6.0, 6.0]"))
+        few = pack(place / "few_box", BOX.format(count=50, stage="fly", size="size = [6.0, 6.0, 6.0]"))
         check_snappy(few, "box")
 sys.exit(1 if failures else 0)
