@@ -12,8 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Cells across the largest sphere's radius far from all surfaces, and how much finer they are on it: two
-/// levels make eight cells across every radius.
-constexpr double cells_per_radius = 2;
+/// levels make four cells across every radius.
+constexpr double cells_per_radius = 1;
 constexpr int level_on_spheres = 2, levels_in_gaps = 1, most_levels = 8;
 
 /// Spheres whose radii need the same level: those above half the largest, above a quarter, and so on.
@@ -44,6 +44,12 @@ std::vector<Octave> octaves_of(const Exported& file) {
   return all;
 }
 
+/// That cells are measured by: the largest radius, or where there is none a tenth of the domain.
+double length_of(const Exported& file) {
+  const double radius = file.largest_radius();
+  return radius > 0 ? radius : 0.1 * bounds_of(file.domain).size().maxCoeff();
+}
+
 std::string head(std::string_view of_class, std::string_view object) {
   return fmt::format(
       "FoamFile\n{{\n    version     2.0;\n    format      ascii;\n    class       {};\n    object      "
@@ -63,7 +69,7 @@ struct Block {
 
 Block block_of(const Exported& file, const WallSurface& walls) {
   Block block{bounds_of(file.domain), file.periods(), std::holds_alternative<Box>(file.domain), {}};
-  const double edge = file.largest_radius() / cells_per_radius;
+  const double edge = length_of(file) / cells_per_radius;
   if (!block.is_container)
     for (const FloatPoint& p : walls.walls.vertices)
       for (int k = 0; k < 3; ++k) {
@@ -174,7 +180,7 @@ addLayersControls
 meshQualityControls
 {
     maxNonOrtho          65;
-    maxBoundarySkewness  20;
+    maxBoundarySkewness  4;
     maxInternalSkewness  4;
     maxConcave           80;
     minVol               1e-30;
@@ -218,7 +224,10 @@ std::string schemes_dict() {
 std::string script(const Exported& file, bool has_container) {
   return fmt::format(
       "#!/bin/sh\n# {}; lengths in m. A mesh of the pores, by OpenFOAM 1912 or later of openfoam.com.\n"
-      "cd \"${{0%/*}}\" || exit 1\nset -e\n{}blockMesh\nsnappyHexMesh -overwrite\ncheckMesh\n",
+      "cd \"${{0%/*}}\" || exit 1\nset -e\n"
+      "# Debian's package leaves it to its users to say where it is.\n"
+      "[ -n \"$WM_PROJECT_DIR\" ] || [ ! -d /usr/share/openfoam/etc ] || export "
+      "WM_PROJECT_DIR=/usr/share/openfoam\n{}blockMesh\nsnappyHexMesh -overwrite\ncheckMesh\n",
       file.title(), has_container ? "surfaceFeatureExtract\n" : "");
 }
 
@@ -246,11 +255,8 @@ void write_container(const Exported& file, const WallSurface& walls, const fs::p
 }
 
 std::string write_case(const Exported& file, StagedFolder& staged) {
-  if (file.size() == 0)
-    throw Error(ErrorCode::bad_argument, "without spheres there are no pores to mesh",
-                file.output.locations.whole);
   const std::string name = file.output.file.string();
-  const WallSurface walls = wall_surface(file.domain, file.output.deflection * file.largest_radius());
+  const WallSurface walls = wall_surface(file.domain, file.output.deflection * length_of(file));
   const std::optional<PorePoint> inside = point_in_pores(file.spheres, file.domain, walls);
   if (!inside)
     throw Error(ErrorCode::bad_argument, "no point was found that lies in the pores; is everything filled?",

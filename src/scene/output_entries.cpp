@@ -66,7 +66,7 @@ const std::vector<schema::Key>& output_keys() {
            {"spheres", "container", "all", "pores"}),
       number(&Output::deflection, "deflection",
              "largest distance of a sphere from its triangles, over its radius; the triangles lie inside",
-             {1e-5, 0.2})};
+             {1e-5, 0.5})};
   return all;
 }
 

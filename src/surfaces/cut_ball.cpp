@@ -77,7 +77,12 @@ std::optional<Vector<3>> CutBall::placed(const Corner& corner) const {
     const Vector<3> within = from_foot - normals.transpose() * solver.solve(normals * from_foot);
     const double length = within.norm();
     if (!(left > 0) || !(length > 1e-9 * radius_)) return std::nullopt;
-    place += std::sqrt(left) / length * within;
+    if (n == 1) {
+      place += std::sqrt(left) / length * within;
+    } else {  // one of two points, whichever corner comes there
+      const Vector<3> along = normals.row(0).cross(normals.row(1)).normalized();
+      place += (within.dot(along) < 0 ? -1 : 1) * std::sqrt(left) * along;
+    }
   }
   for (int k = 0; k < n; ++k)  // planes across an axis have exactly one value of it
     for (int axis = 0; axis < 3; ++axis)
@@ -217,7 +222,6 @@ std::vector<std::array<std::uint32_t, 3>> CutBall::triangles_of(const Face& face
   std::vector<std::array<std::uint32_t, 3>> made;
   std::vector<std::uint32_t> ring = face.corners;
   const auto place = [&](std::uint32_t v) -> const Vector<3>& { return corners_[v].place; };
-  if (ring.size() == 3) return {{ring[0], ring[1], ring[2]}};
   if (face.plane < 0) {  // that fan which leaves the least of the ball
     std::size_t best = 0;
     double most = -1;
@@ -232,6 +236,11 @@ std::vector<std::array<std::uint32_t, 3>> CutBall::triangles_of(const Face& face
       made.push_back({corner(best), corner(best + k), corner(best + k + 1)});
     return made;
   }
+  // Where two corners have come to the same place one of them is left.
+  const auto same = [&](std::uint32_t a, std::uint32_t b) { return place(a) == place(b); };
+  ring.erase(std::unique(ring.begin(), ring.end(), same), ring.end());
+  while (ring.size() > 1 && same(ring.front(), ring.back())) ring.pop_back();
+  if (ring.size() < 3) return {};
   // A convex polygon: halved again and again, from a corner and in a sense that both halves of the ball agree
   // on.
   Vector<3> area = Vector<3>::Zero();

@@ -27,10 +27,10 @@ struct Nearest {
 class Gaps {
  public:
   Gaps(const Spheres<dynamic>& spheres, const Domain& domain)
-      : spheres_(spheres), boundary_(boundary_of<3>(domain)) {}
+      : spheres_(spheres), boundary_(boundary_of<3>(domain)), farthest_(bounds_of(domain).size().norm()) {}
 
   Nearest at(const Vector<3>& p) const {
-    Nearest nearest{1e300, Vector<3>::Zero()};
+    Nearest nearest{farthest_, Vector<3>::Zero()};
     for (std::size_t i = 0; i < spheres_.size(); ++i) {
       const Vector<3> from =
           boundary_.minimum_image(p - Vector<3>(spheres_.x[0][i], spheres_.x[1][i], spheres_.x[2][i]));
@@ -43,6 +43,7 @@ class Gaps {
  private:
   const Spheres<dynamic>& spheres_;
   Boundary<3> boundary_;
+  double farthest_;  ///< where there are no spheres
 };
 
 /// The domain with its walls out of reach.

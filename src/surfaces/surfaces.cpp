@@ -70,7 +70,7 @@ Surfaces::Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double
                        "inside the true spheres, of which {} overlap, up to {:.2g} of the sum of two radii",
                        fmt::format("{} pairs", grouped(pairs.overlapping_pairs)), pairs.max_overlap);
   }
-  if (choice != SurfaceChoice::spheres) make_container(domain);
+  if (choice != SurfaceChoice::spheres) make_container();
   if (has_spheres() && choice != SurfaceChoice::spheres && !walls_.walls.triangles.empty()) {
     // A thousandth more than the walls were moved by, for what conversion to another unit rounded.
     const Certificate in = certify(smaller_by(spheres, 1.001 * shift_),
@@ -85,7 +85,7 @@ Surfaces::Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double
   count();
 }
 
-void Surfaces::make_container(const Domain&) {
+void Surfaces::make_container() {
   if (choice_ != SurfaceChoice::pores || walls_.ends.empty()) {
     container_ = walls_.closed();
     return;

@@ -53,7 +53,7 @@ class Surfaces {
   std::string note() const;
 
  private:
-  void make_container(const Domain& domain);
+  void make_container();
   void count();
   void visit_spheres(const std::vector<std::uint32_t>* order, const Visit& visit) const;
 

@@ -172,8 +172,11 @@ TEST(Surfaces, TheSameTestFindsTrianglesThatMeet) {  // as those would that no r
 }
 
 TEST(Surfaces, OppositeEndsCarryTheSameTriangles) {
-  for (const Case& of : periodic_cases()) {
-    const Spheres<dynamic> spheres = touching_in(of.domain, 80, 0.6, 5);
+  std::vector<std::pair<Case, std::uint64_t>> cases;
+  for (const Case& of : periodic_cases())
+    for (std::uint64_t seed = 5; seed < 13; ++seed) cases.emplace_back(of, seed);
+  for (const auto& [of, seed] : cases) {
+    const Spheres<dynamic> spheres = touching_in(of.domain, 80, 0.6, seed);
     const Boundary<3> boundary = boundary_of<3>(of.domain);
     const SphereSurfaces surfaces(pieces_of(spheres, of.domain), of.domain, 0.05, single_precision_shift(10));
     std::array<std::set<std::set<FloatPoint>>, 6> ends;
@@ -199,7 +202,8 @@ TEST(Surfaces, OppositeEndsCarryTheSameTriangles) {
       EXPECT_EQ(ends[2 * k].empty(), !boundary.repeats(static_cast<int>(k)));
       std::vector<std::set<FloatPoint>> differ;
       std::ranges::set_symmetric_difference(ends[2 * k], ends[2 * k + 1], std::back_inserter(differ));
-      EXPECT_TRUE(differ.empty()) << of.name << " axis " << k << ": " << ::testing::PrintToString(differ);
+      EXPECT_TRUE(differ.empty()) << of.name << ' ' << seed << " axis " << k << ": "
+                                  << ::testing::PrintToString(differ);
     }
   }
 }
