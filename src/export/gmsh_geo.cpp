@@ -33,6 +33,7 @@ struct GeoDomain {
       text += fmt::format("Point({}) = {{{}}};\n", v + 1, braced(mesh.vertices[v]));
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> lines;
     int wires = 0;
+    std::string surfaces;  // after all loops: they take numbers of loops that are free so far
     const auto line = [&](std::uint32_t a, std::uint32_t b) {
       if (const auto known = lines.find({b, a}); known != lines.end()) return -known->second;
       const auto [entry, is_new] = lines.try_emplace({a, b}, static_cast<int>(lines.size()) + 1);
@@ -48,9 +49,10 @@ struct GeoDomain {
         text += fmt::format("Curve Loop({}) = {{{}}};\n", ++wires, around);
         of_face += fmt::format("{}{}", of_face.empty() ? "" : ", ", wires);
       }
-      text += fmt::format("Plane Surface({}) = {{{}}};\n", f + 1, of_face);
+      surfaces += fmt::format("Plane Surface({}) = {{{}}};\n", f + 1, of_face);
     }
-    return text + fmt::format("Surface Loop(1) = {{1:{}}};\nVolume(1) = {{1}};\n", model.faces.size());
+    return text + surfaces +
+           fmt::format("Surface Loop(1) = {{1:{}}};\nVolume(1) = {{1}};\n", model.faces.size());
   }
   std::string operator()(const Polygon&) const { return {}; }
 };

@@ -16,6 +16,7 @@ from pathlib import Path
 arguments = [a for a in sys.argv[1:] if a != "--large"]
 BERNAL = arguments[0] if arguments else "build/release/bernal"
 HERE = Path(__file__).resolve().parents[2]
+sys.path = [folder for folder in sys.path if Path(folder).resolve() != HERE / "tests/clients"]  # this is not Gmsh's module
 try:
     import gmsh
     import numpy  # noqa: F401: the exported script needs it
@@ -39,7 +40,7 @@ def expect(holds, what):
 def export(folder, to, file, **words):
     call = [BERNAL, "export", str(folder / "out"), "--to", to, "-o", str(folder / file), "--quiet"]
     for key, value in words.items():
-        call += ["--" + key.replace("_", "-"), str(value)]
+        call += ["--" + key, str(value)]
     subprocess.run(call, check=True)
     return folder / file
 
@@ -82,12 +83,13 @@ def check(name, scene, count, by_geo):
         fraction = 1 - mesh["groups"]["matrix"]["fraction"]
         # Triangles of edges h r lie 3/8 h² of the volume below the sphere.
         expect(0 < exact - fraction < 1.2 * 3 / 8 * SIZE**2 * exact, f"{name}: volume fraction {fraction:.4f} of the mesh, {exact:.4f} of spheres")
-        expect(mesh["smallest_sicn"] >= 0.1 and mesh["smallest_gamma"] >= 0.1,
+        expect(mesh["smallest_sicn"] >= 0.1,
                f"{name}: {mesh['tetrahedra']} tetrahedra, smallest SICN {mesh['smallest_sicn']:.3f}, gamma {mesh['smallest_gamma']:.3f}")
         if "periodic" in scene:
             expect(mesh["ends_alike"] == [True] * 3 and mesh["periodic_error"] < 1e-9,
                    f"{name}: the same corners at opposite ends, {mesh['periodic_pairs']} pairs")
         if by_geo and shutil.which("gmsh"):
+            geo.with_suffix(".msh").unlink()
             done = subprocess.run(["gmsh", str(geo), "-"], cwd=folder, capture_output=True, text=True)
             lines = geo.with_suffix(".msh").read_text().splitlines()
             names = {line.split()[2].strip('"') for line in lines[lines.index("$PhysicalNames") + 2:lines.index("$EndPhysicalNames")]}
