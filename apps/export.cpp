@@ -70,10 +70,9 @@ std::string table_of_formats() {
     for (const std::string& key : format.keys) options += " " + option_of(key);
     text += fmt::format("  {:<9} {}\n            lengths in {}{}, {}; {} dimensions;{}\n", format.name,
                         format.what, format.unit, format.unit == "the scene's" ? " unit" : "",
-                        format.sizes == "voxels"      ? "voxels"
-                        : format.sizes == "triangles" ? "triangles"
-                        : format.sizes == "diameter"  ? "diameters"
-                                                      : "radii",
+                        format.sizes == "radius"     ? "radii"
+                        : format.sizes == "diameter" ? "diameters"
+                                                     : format.sizes,
                         dimensions_in_words(format), options.empty() ? " no options" : options);
   }
   return text;

@@ -65,6 +65,7 @@ const Format& step_format() {
                                  {"types", "bridge_radius"}),
                 .file = "spheres.step",
                 .unit = Unit::mm,
+                .sizes = "solids",
                 .solids = true},
       .write_and_tell = write_cad<cad::SolidFormat::step>};
   return format;
@@ -75,6 +76,7 @@ const Format& brep_format() {
       .table = {.keys = output_entry("brep", "BREP of OpenCASCADE, the same as STEP without names and units",
                                      {"unit", "types", "bridge_radius"}),
                 .file = "spheres.brep",
+                .sizes = "solids",
                 .solids = true},
       .write_and_tell = write_cad<cad::SolidFormat::brep>};
   return format;

@@ -44,7 +44,7 @@ void write_gmsh(const Exported& file, StagedFolder& staged) {
 }
 
 std::string note_of_gmsh(const Exported& file) {
-  std::string note = fmt::format("{} pieces", file.solids.pieces.size());
+  std::string note = fmt::format("{} solids", file.solids.pieces.size() + file.solids.bridges.size());
   if (std::isfinite(file.solids.end_distance))
     note += fmt::format(", ends of the periods at least {:.3g} radii from touching a sphere",
                         file.solids.end_distance);
@@ -89,6 +89,7 @@ const Format& gmsh_format() {
                {"unit", "types", "bridge_radius", "mesh_size", "mesh_gap", "mesh_order"}),
            .file = "packing.geo",
            .endings = {python_ending},
+           .sizes = "solids",
            .solids = true},
       .write = write_gmsh,
       .note = note_of_gmsh};

@@ -293,7 +293,7 @@ const Format& snappy_format() {
   static const Format format = {
       .table = {.keys = output_entry("snappy",
                                      "folder with a case for snappyHexMesh of OpenFOAM: a mesh of the pores",
-                                     {"deflection"}),
+                                     {"deflection", "contact", "contact_gap"}),
                 .file = "snappy",
                 .unit = Unit::m,
                 .sizes = "triangles"},

@@ -37,7 +37,7 @@ Surfaces surfaces_of(const Exported& file) {
 Format surface_format(std::string_view name, std::string_view help, std::string_view file,
                       std::string (*write)(const Exported&, StagedFolder&),
                       const std::vector<std::string_view>& keys) {
-  std::vector<std::string_view> all = {"unit", "surface", "deflection"};
+  std::vector<std::string_view> all = {"unit", "surface", "deflection", "contact", "contact_gap"};
   all.insert(all.end(), keys.begin(), keys.end());
   return {.table = {.keys = output_entry(name, help, all), .file = file, .sizes = "triangles"},
           .write_and_tell = write};
