@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Meshes exports of bernal with Gmsh: tests/clients/gmsh.py [BERNAL] [--large]
+"""Meshes exports of bernal with Gmsh: tests/clients/with_gmsh.py [BERNAL] [--large]
 
 Small packings in a periodic box, a cylinder and a CAD part: fragments of the spheres as they are, touching; conforming
 tetrahedra with a gap of 1 %, their quality, volume fractions and nodes at opposite ends; the same by the .geo; STEP

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Reads files of triangles with the programs they are for: tests/clients/surfaces.py [BERNAL]
+"""Reads files of triangles with the programs they are for: tests/clients/with_surfaces.py [BERNAL]
 
 Packs 1,000 spheres in a cylinder and 60 in a periodic box, exports them in every format of triangles, and compares what
 numpy, meshio, VTK, admesh, gmsh and bernal itself (assimp) read: closed, oriented, the same volume; no triangles of different
