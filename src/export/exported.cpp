@@ -163,7 +163,7 @@ Exported exported(const Packing& packing, const Output& output, const Monitor& m
                               packing.spheres.r[i], name_of(packing.scene.unit), output.format));
   }
   made.domain = std::visit(convert, packing.domain);
-  wrap_into_periods(made, format.centred);
+  if (format.wraps) wrap_into_periods(made, format.centred);
   made.type_count = take_types(packing.spheres.r, output.types, made.types);
   treat_contacts(made, format, monitor);
   return made;

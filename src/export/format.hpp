@@ -69,6 +69,7 @@ struct Format {
   OutputTable table;
   Precision precision = Precision::as_double;
   bool centred = false;  ///< the origin is in the middle of the domain
+  bool wraps = true;     ///< centres of another hand outside the period are put into it
   /// Writes the file of the output's name and those beside it.
   void (*write)(const Exported&, StagedFolder&) = nullptr;
   /// What a file holds that has no numbers of spheres, in words.

@@ -1,5 +1,6 @@
 #include "export/targets.hpp"
 
+#include <algorithm>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -67,7 +68,7 @@ void require_free_places(const Packing& packing, const Output& output, const fs:
   const std::vector<std::string> names = files_of(output);
   const std::vector<fs::path> sources = sources_of(packing);
   const Manifest of_result = manifest_of(folder);
-  std::vector<fs::path> files;
+  std::vector<fs::path> files, of_others;
   for (const std::string& name : names) files.push_back(folder / name);
   for (std::size_t k = 0; k < names.size(); ++k) {
     const fs::path& file = files[k];
@@ -79,10 +80,15 @@ void require_free_places(const Packing& packing, const Output& output, const fs:
     if (of_result.contains(names[k]))
       refuse_target(file, "belongs to the result in that folder; give another name with -o");
     if (k > 0 && !(fs::is_regular_file(fs::symlink_status(file, unknown)) && is_as_bernal_wrote(file, files)))
-      refuse_target(file, fmt::format("goes with {}, and what stands there bernal did not write, or somebody "
-                                      "has changed it; give another name with -o, or move it away",
-                                      names[0]));
+      of_others.push_back(file);
   }
+  if (of_others.empty()) return;
+  // A script that was changed no longer answers for those that go with it.
+  std::ranges::stable_partition(of_others, [](const fs::path& file) { return has_seal(file); });
+  refuse_target(of_others[0],
+                fmt::format("goes with {}, and what stands there bernal did not write, or somebody "
+                            "has changed it; give another name with -o, or move it away",
+                            names[0]));
 }
 
 }  // namespace bernal

@@ -54,6 +54,7 @@ const Format& npy_format() {
                 .file = "npy.npy",
                 .least_dimension = 1,
                 .most_dimensions = max_dimension},
+      .wraps = false,
       .write = write_columns};
   return format;
 }

@@ -120,7 +120,7 @@ void write_picture(const Exported& file, double length, StagedFolder& staged) {
   const SizeScale sizes(file.spheres.r);
   TextFile out(staged.add(file.output.file.string()));
   out.add("// ", file.title(), "; lengths in ");
-  if (length != 1) out.add(length, ' ');
+  if (length != 1) out.add(fmt::format("{} ", length));
   out.add(name_of(file.unit()), length != 1 ? ", from the middle" : "",
           "; y and z have changed places.\n// povray +A +W1200 +H900 ", file.name(),
           "\n#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\nbackground { srgb <1, 1, 1> }\n",

@@ -27,19 +27,22 @@ std::string answer_for(const fs::path& file) {
   return "with " + file.filename().string() + ", " + sha256_of(file).substr(0, seal_digits);
 }
 
-/// Empty where there is none, or it cannot be read.
-std::string sealed_text_of(const fs::path& file) {
+/// The end of a file, where the seal stands: most large files have none, and need not be read.
+std::string end_of(const fs::path& file) {
+  constexpr std::uintmax_t end_with_seal = 1024;
   std::error_code unknown;
+  if (!fs::is_regular_file(file, unknown)) return {};  // a pipe would be waited for
   const std::uintmax_t size = fs::file_size(file, unknown);
   std::ifstream in(file, std::ios::binary);
   if (unknown || !in) return {};
-  // The seal stands at the end; most large files have none, and need not be read.
-  constexpr std::uintmax_t end_with_seal = 1024;
   if (size > end_with_seal) in.seekg(-static_cast<std::streamoff>(end_with_seal), std::ios::end);
-  const std::string end{std::istreambuf_iterator<char>(in), {}};
-  if (end.find(seal_begins) == end.npos) return {};
-  in.clear();
-  in.seekg(0);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Empty where it has no seal that is whole.
+std::string sealed_text_of(const fs::path& file) {
+  if (!has_seal(file)) return {};
+  std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   return is_sealed(text) ? text : std::string();
 }
@@ -65,6 +68,8 @@ bool is_sealed(std::string_view text) {
          seal.substr(0, seal_digits) ==
              seal_of(text.substr(0, at), seal.substr(seal_digits + seal_ends.size()));
 }
+
+bool has_seal(const fs::path& file) { return end_of(file).find(seal_begins) != std::string::npos; }
 
 bool is_as_bernal_wrote(const fs::path& file, const std::vector<fs::path>& others) {
   if (!sealed_text_of(file).empty()) return true;

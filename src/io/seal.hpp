@@ -16,6 +16,9 @@ std::string sealed_script(std::string text, const std::vector<std::filesystem::p
 /// Whether the text has a seal that is whole.
 bool is_sealed(std::string_view text);
 
+/// Whether it has a seal, whole or broken.
+bool has_seal(const std::filesystem::path& file);
+
 /// Whether bernal wrote a file that goes with others, and nobody has changed it: it is sealed, or a file
 /// among the others that is answers for it. False where it cannot be read.
 bool is_as_bernal_wrote(const std::filesystem::path& file, const std::vector<std::filesystem::path>& others);

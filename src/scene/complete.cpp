@@ -197,7 +197,7 @@ void require_names(const Scene& scene) {
 void require_plain_name(const Output& output, const OutputTable& table, const Section& section) {
   const std::string name = output.file.filename().string();
   const auto fail = [&](std::string_view why) {
-    section.fail("file", fmt::format("{} {}; give it another name", toml_string(name), why));
+    section.fail("file", fmt::format("the \"file\" {} {}; give it another name", toml_string(name), why));
   };
   if (with_escaped_controls(name) != name)
     fail("has control characters, which no name of an output may have");

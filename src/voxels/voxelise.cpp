@@ -237,20 +237,20 @@ class Image {
   std::optional<Inside> inside_;
 };
 
-/// Each stands there as often as its images reach into the grid: of a sphere in a packing at most eight
-/// times.
+/// Each is drawn as often as its images reach into the grid: a sphere of a packing at most eight times.
 void require_few_images(const Spheres<dynamic>& spheres, const Domain& domain) {
-  constexpr double most_periods = 10;
+  constexpr double most_images = 1e6;
   const Vector<3> periods = periods_of(domain);
-  for (const double period : periods) {
-    if (!(period > 0)) continue;
-    for (std::size_t i = 0; i < spheres.size(); ++i)
-      if (!(spheres.r[i] <= most_periods * period))
-        throw Error(
-            ErrorCode::bad_packing,
-            fmt::format("sphere {} has the radius {:.6g}, and repeats itself every {:.6g}: no image can "
-                        "show that",
-                        i, spheres.r[i], period));
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    double images = 1;
+    for (const double period : periods)
+      if (period > 0) images *= 2 + 2 * spheres.r[i] / period;
+    if (!(images <= most_images))
+      throw Error(
+          ErrorCode::bad_packing,
+          fmt::format("sphere {} has the radius {:.6g} in periods of {:.6g}, {:.6g} and {:.6g}: no image "
+                      "can show that",
+                      i, spheres.r[i], periods[0], periods[1], periods[2]));
   }
 }
 

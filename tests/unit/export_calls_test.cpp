@@ -131,8 +131,10 @@ TEST(Export, CentresOutsideThePeriodAreWrapped) {
     EXPECT_GE(positions[i], -0.5F * box[i % 3]);
     EXPECT_LT(positions[i], 0.5F * box[i % 3]);
   }
-  const std::string note = write_export(outside, output_of("npy"), folder / "a.npy").note;
+  const std::string note = write_export(outside, output_of("extxyz"), folder / "a.xyz").note;
   EXPECT_EQ(note.find("not rounded"), std::string::npos) << note;
+  EXPECT_EQ(read_npy(exported_to(folder, outside, "npy")).values[5], outside.spheres.x[1][1])
+      << "as they are";
   // Nothing of what is inside moves.
   EXPECT_EQ(read_extxyz(exported_to(folder, inside, "extxyz")).centers[7][1], inside.spheres.x[1][7]);
 }

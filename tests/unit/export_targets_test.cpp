@@ -69,7 +69,7 @@ TEST(ExportTargets, NamesAreThoseThatFilesCanHold) {
   const Folder folder;
   const Packing packing = periodic();
   for (const char* name : {"new", "line.npy"}) folder.write(name, "mine");
-  expect_refused(packing, "npy", folder / "new\nline.npy", {"control characters", "new\\nline.npy"});
+  expect_refused(packing, "npy", folder / "new\nline.npy", {"control characters", "new\\u000Aline.npy"});
   expect_refused(packing, "npy", folder / ".bernal-complete", {"bernal needs"});
   expect_refused(packing, "openmc", folder / "foo.py", {"\"foo.py\" ends as the file does"});
   expect_refused(packing, "raw", folder / "v.json", {"\"v.json\" ends as"});

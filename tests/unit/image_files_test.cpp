@@ -251,7 +251,7 @@ TEST(ImageFiles, RawHasItsHeader) {
 TEST(ImageFiles, ATiffHoldsTheEdgeOfAVoxelOrSaysSo) {
   Example of;
   for (const double edge :
-       {0.25, 5e-5, 1 / 3.0, 0.0327309403, 7.77e-8, 32730.9403, 1e9, 3.1e-10, 2.9e9, 4e9}) {
+       {0.25, 5e-5, 1 / 3.0, 0.0327309403, 7.77e-8, 32730.9403, 1e9, 3.4e-10, 2.9e9, 4e9}) {
     of.grid.spacing = Vector<3>(edge, 0.7 * edge, edge);
     const std::string tiff =
         text_that([&](OutputFile& file) { write_tiff_directories(file, of.image(VoxelValues::binary)); });
