@@ -118,17 +118,17 @@ TEST(ExportCommand, AnImageThatNoDiskHoldsIsRefusedBefore) {
 
 // The module that goes with the centres: images are those that reach into the box, and no others.
 TEST(ExportCommand, TheModuleForOpenmcKnowsTheImages) {
-  if (Process({"python3", "-c", "import numpy"}).wait().status != 0) GTEST_SKIP() << "numpy is not installed";
+  if (Process({debian_python, "-c", "import numpy"}).wait().status != 0)
+    GTEST_SKIP() << "numpy is not installed";
   const Folder folder;
-  const std::string scene =
-      folder.write("scene.toml",
-                   "[container]\nkind = \"periodic\"\nsize = [3, 4, 5]\n[spheres]\ncount = 40\nradius = 0.4\n"
-                   "[[stage]]\ndo = \"insert\"\n");
+  const std::string scene = folder.write(
+      "scene.toml",
+      "[container]\nkind = \"periodic\"\nsize = [3, 4, 5]\n[spheres]\ncount = 40\nradius = 0.4\n");
   ASSERT_EQ(bernal({"pack", scene, "-o", folder / "out"}).status, 0);
   ASSERT_EQ(bernal({"export", folder / "out", "--to", "openmc", "-o", folder / "m.npy"}).status, 0);
   const Ended read =
       Process(
-          {"python3", "-c",
+          {debian_python, "-c",
            "import sys, types, itertools\n"
            "import numpy as np\n"
            "for name in ('openmc', 'openmc.model'): sys.modules[name] = types.ModuleType(name)\n"
