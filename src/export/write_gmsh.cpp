@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "export/gmsh_model.hpp"
+#include "io/seal.hpp"
 
 namespace bernal {
 namespace {
@@ -40,7 +41,7 @@ bool has_end(const std::vector<Cut>& cuts) {
 void write_gmsh(const Exported& file, StagedFolder& staged) {
   const GmshModel model(file);
   staged.write(file.output.file.string(), gmsh_geo(model));
-  staged.write(file_beside(file.output.file, python_ending), gmsh_python(model));
+  staged.write(file_beside(file.output.file, python_ending), sealed_script(gmsh_python(model)));
 }
 
 std::string note_of_gmsh(const Exported& file) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include "export/write_lammps.hpp"
 #include "io/seal.hpp"
 #include "scene/toml_text.hpp"
+#include "surfaces/wall_surface.hpp"
 
 namespace bernal {
 namespace {
@@ -58,6 +60,23 @@ void require_script_word(const void* options, const schema::Section& section) {
                              toml_string(name)));
 }
 
+/// How far triangles stand off a round wall, over the largest radius.
+constexpr double wall_deflection_of_spheres = 0.01;
+
+/// The walls as triangles, where LIGGGHTS has no primitive for them: those of a part, or of a polyhedron
+/// around a sphere or an oblique cylinder.
+std::optional<Mesh> walls_as_triangles(const Exported& file) {
+  if (const auto* mesh = std::get_if<Mesh>(&file.domain)) return *mesh;
+  const auto* cylinder = std::get_if<Cylinder>(&file.domain);
+  const bool is_oblique = cylinder && cylinder->coordinate_axis() < 0;
+  if (!is_oblique && !std::holds_alternative<Sphere>(file.domain)) return std::nullopt;
+  const FloatSurface surface =
+      wall_surface(file.domain, wall_deflection_of_spheres * file.largest_radius()).closed();
+  Mesh walls{.vertices = {}, .triangles = surface.triangles};
+  for (const FloatPoint& p : surface.vertices) walls.vertices.emplace_back(p[0], p[1], p[2]);
+  return walls;
+}
+
 /// The lines that make the walls of the domain, or say why there are none.
 struct WallLines {
   const Exported& file;
@@ -74,7 +93,7 @@ struct WallLines {
   }
   std::string operator()(const Cylinder& cylinder) const {
     const int axis = cylinder.coordinate_axis();
-    if (axis < 0) return "# LIGGGHTS has no cylinder of that axis; give its surface by fix mesh/surface\n";
+    if (axis < 0) return surface();
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;  // as they follow it in x, y, z, x
     std::string lines = fmt::format("fix side {} primitive type 1 {}cylinder {} {} {}\n", wall, "xyz"[axis],
                                     cylinder.radius, cylinder.base[u], cylinder.base[v]);
@@ -83,10 +102,9 @@ struct WallLines {
     lines += plane_wall(axis, "base", bounds.lower[axis]);
     return lines + plane_wall(axis, "top", bounds.upper[axis]);
   }
-  std::string operator()(const Sphere&) const {
-    return "# LIGGGHTS has no sphere for a wall; give its surface by fix mesh/surface\n";
-  }
-  std::string operator()(const Mesh&) const {
+  std::string operator()(const Sphere&) const { return surface(); }
+  std::string operator()(const Mesh&) const { return surface(); }
+  std::string surface() const {
     return fmt::format(
         "fix surface all mesh/surface file {} type 1\n"
         "fix walls {} mesh n_meshes 1 meshes surface\n",
@@ -151,28 +169,18 @@ void write_liggghts(const Exported& file, StagedFolder& staged) {
   write_atoms(out, file, file.output.density, "Atoms");
   out.close();
   std::vector<std::filesystem::path> with;
-  if (const auto* mesh = std::get_if<Mesh>(&file.domain))
-    write_walls(*mesh, with.emplace_back(staged.add(walls_file)));
+  if (file.size() > 0)
+    if (const std::optional<Mesh> walls = walls_as_triangles(file))
+      write_walls(*walls, with.emplace_back(staged.add(walls_file)));
   staged.write(file_beside(file.output.file, script_ending),
                sealed_script(script_of(file, walls_file), with));
 }
 
-/// Of what kind are the walls that the script has no line for; empty where it has.
-std::string missing_walls(const Domain& domain) {
-  const auto* cylinder = std::get_if<Cylinder>(&domain);
-  if (cylinder) return cylinder->coordinate_axis() < 0 ? "oblique cylinder" : "";
-  const bool known = std::holds_alternative<Box>(domain) || std::holds_alternative<Mesh>(domain);
-  return known ? "" : std::string(name_of(domain));
-}
-
 std::string remark_on_script(const Exported& file) {
   if (file.size() == 0) return "; LIGGGHTS runs no script without spheres";
-  const std::string missing = missing_walls(file.domain);
-  if (missing.empty()) return {};
-  return fmt::format(
-      "; the script has no walls, for LIGGGHTS knows none of a {}: give them by fix mesh/surface, "
-      "or all fall",
-      missing);
+  if (!std::holds_alternative<Polygon>(file.domain)) return {};
+  return "; the script has no walls, for LIGGGHTS knows none of a polygon: give them by fix mesh/surface, or "
+         "all fall";
 }
 
 }  // namespace

@@ -136,6 +136,9 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
 
 WrittenExport write_export(const Packing& packing, const Output& asked, const fs::path& file,
                            const Monitor& monitor) {
+  if (table_of(asked).is_folder && stands(file))
+    throw Error(ErrorCode::cannot_write, "stands there already; give another name with -o, or move it away",
+                {file.string()});
   const fs::path meant = file_meant_by(file);
   Output output = asked;
   output.file = meant.filename();

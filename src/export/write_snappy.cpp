@@ -296,7 +296,8 @@ const Format& snappy_format() {
                                      {"deflection", "contact", "contact_gap"}),
                 .file = "snappy",
                 .unit = Unit::m,
-                .sizes = "triangles"},
+                .sizes = "triangles",
+                .is_folder = true},
       .write_and_tell = write_case};
   return format;
 }

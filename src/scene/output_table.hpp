@@ -27,6 +27,7 @@ struct OutputTable {
   /// Whether it holds solids of any shape, so that bridges and caps are possible; else spheres or an image of
   /// them, which can only shrink.
   bool solids = false;
+  bool is_folder = false;  ///< what its name is given to
 
   std::string_view name() const { return keys.name; }
 };
