@@ -80,12 +80,12 @@ int main(int argc, char** argv) {
         examples,
         {},
         {pack_command(), verify_command(), inspect_command(), explain_command(), keys_command(),
-         cost_command(), measure_command(), export_command(), import_command(), predict_command(), design_command(),
-         map_command(), reproduce_command(), bench_command()}};
+         cost_command(), measure_command(), export_command(), import_command(), predict_command(),
+         design_command(), map_command(), reproduce_command(), bench_command()}};
     status = run_command_line(argc, argv, command, "bernal " + std::string(bernal::version()));
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::broken_pipe && reader_has_left()) return status;
-    return complain(error.what());
+    return complain(std::ferror(stdout) != 0 ? "standard output cannot be written" : error.what());
   } catch (const std::bad_alloc&) {
     return complain("out of memory");
   } catch (const std::exception& error) {

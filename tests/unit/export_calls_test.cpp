@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <set>
+#include <sstream>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
@@ -180,20 +181,44 @@ TEST(Export, LiggghtsGetsTheMiddleOfACylinderInItsOwnOrder) {
   }
 }
 
-TEST(Export, LiggghtsSaysWhatWallsItLacks) {
-  const auto note_of = [](const Domain& domain) {
-    const Folder folder;
-    return write_export(packing_in(domain, "kind = \"box\"\nsize = [9, 9, 9]"), output_of("liggghts"),
-                        folder / "c.data")
-        .note;
+// Triangles around a sphere or an oblique cylinder, where it has no primitive: all corners outside, none far.
+TEST(Export, LiggghtsGetsRoundWallsAsTriangles) {
+  const auto clearance_of = [](const Domain& domain, const Vector<3>& p) {
+    return make_analytic_container(domain, WallArithmetic::plain, 0)->clearance(p);
   };
   for (const Domain& domain :
        std::vector<Domain>{Sphere{.center = {1, 2, 3}, .radius = 4},
-                           Cylinder{.base = {1, 2, -1}, .axis = {0, 1, 1}, .radius = 2, .height = 5}})
-    EXPECT_NE(note_of(domain).find("has no walls"), std::string::npos) << note_of(domain);
-  for (const Domain& domain :
-       std::vector<Domain>{Cylinder{.base = {1, 2, -1}, .radius = 2, .height = 5}, testing::example_box})
-    EXPECT_EQ(note_of(domain).find("has no walls"), std::string::npos) << note_of(domain);
+                           Cylinder{.base = {1, 2, -1}, .axis = {0, 1, 1}, .radius = 2, .height = 5}}) {
+    const Folder folder;
+    const Packing packing = packing_in(domain, "kind = \"box\"\nsize = [9, 9, 9]");
+    const WrittenExport written = write_export(packing, output_of("liggghts"), folder / "c.data");
+    EXPECT_EQ(written.note.find("has no walls"), std::string::npos) << written.note;
+    EXPECT_NE(text_of(folder / "c.in").find("mesh/surface file c.stl"), std::string::npos);
+    std::istringstream walls(text_of(folder / "c.stl"));
+    int corners = 0;
+    for (std::string word; walls >> word;) {
+      if (word != "vertex") continue;
+      Vector<3> p;
+      walls >> p[0] >> p[1] >> p[2];
+      p *= 1000;  // the scene is in mm
+      const double outside = -clearance_of(domain, p);
+      EXPECT_GE(outside, -1e-6);
+      EXPECT_LE(outside, 0.1);
+      ++corners;
+    }
+    EXPECT_GT(corners, 50);
+  }
+}
+
+TEST(Export, LiggghtsSaysWhatWallsItLacks) {
+  const Polygon polygon{.loops = {{{0, 0}, {9, 0}, {0, 9}}}};
+  const Folder folder;
+  Packing packing = packing_in(polygon, "kind = \"polygon\"\nvertices = [[0, 0], [9, 0], [0, 9]]");
+  packing.spheres = Spheres<dynamic>(2);
+  packing.spheres.x = {{2}, {2}};
+  packing.spheres.r = {0.5};
+  const std::string note = write_export(packing, output_of("liggghts"), folder / "c.data").note;
+  EXPECT_NE(note.find("has no walls"), std::string::npos) << note;
 }
 
 // Its words are quoted by either mark, and nothing else means anything between those.
