@@ -315,6 +315,12 @@ void require_images(const Plan& plan) {
   }
 }
 
+void expect_with_room(Plan& plan) {
+  Plan with_room = plan_with_room(plan);
+  expect(with_room);
+  take_expectations(plan, with_room);
+}
+
 }  // namespace
 
 FillTask fill_task_of(const Plan& plan) {
@@ -346,9 +352,12 @@ Plan build(const Scene& stated) {
   if (scene.asks_for_gaps()) {
     require_gaps(plan);
     if (is_faceted(plan.domain)) plan.container = container_of(plan);
-    Plan with_room = plan_with_room(plan);
-    expect(with_room);
-    take_expectations(plan, with_room);
+    expect_with_room(plan);
+    if (plan.scene.target.predicted) {  // again from the number that this is, as whoever reads it will have it
+      plan.scene.target.predicted = false;
+      expect_with_room(plan);
+      plan.scene.target.predicted = true;
+    }
     if (scene.walls == WallArithmetic::exact) plan.container = nullptr;
   } else {
     expect(plan);

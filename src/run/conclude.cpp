@@ -1,6 +1,7 @@
 #include "run/conclude.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -104,9 +105,10 @@ Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, const 
   if (target.count)
     return {Outcome::full,
             fmt::format("{}; {}", some_placed(n, static_cast<std::size_t>(*target.count)), why_no_more(end))};
-  return {Outcome::full,
-          fmt::format("packing fraction {:.4f} of {} is reached with {}; {}", packing.packing_fraction(),
-                      *packing.scene.target.packing_fraction, counted(n), why_no_more(end))};
+  const double as_drawn =  // sizes that grew until they jam fill more than was asked of them
+      packing.packing_fraction() / std::pow(packing.size_scale, packing.scene.dimension());
+  return {Outcome::full, fmt::format("packing fraction {:.4f} of {} is reached with {}; {}", as_drawn,
+                                     *packing.scene.target.packing_fraction, counted(n), why_no_more(end))};
 }
 
 std::string resized(double size_scale) {

@@ -40,7 +40,7 @@ def expect(holds, what):
 def export(folder, to, file, **words):
     call = [BERNAL, "export", str(folder / "out"), "--to", to, "-o", str(folder / file), "--quiet"]
     for key, value in words.items():
-        call += ["--" + key, str(value)]
+        call += ["--" + key.replace("_", "-"), str(value)]
     subprocess.run(call, check=True)
     return folder / file
 

@@ -269,6 +269,17 @@ TEST(RoomForGaps, LeavesABoxThatFollowsItsProportionsAndItsPackingFraction) {
   EXPECT_GT(followed.packing_fraction(), 0.35);
 }
 
+// A prediction becomes a number of four digits, which scene.toml holds: the packing is that of the number.
+TEST(RoomForGaps, PacksAPredictionAsTheNumberThatIsWritten) {
+  const std::string toml =
+      "[container]\nkind = \"periodic\"\n[spheres]\ncount = 200\nradius = 0.5\ngap = 0.1\npacking_fraction "
+      "= ";
+  const Plan predicted = plan_of(toml + "\"predicted\"\n");
+  const Plan written = plan_of(toml + fmt::format("{}\n", predicted.scene.target.packing_fraction.value()));
+  EXPECT_EQ(bounds_of<dynamic>(predicted.domain).size(), bounds_of<dynamic>(written.domain).size());
+  EXPECT_EQ(hash_of(testing::run_with(predicted).spheres), hash_of(testing::run_with(written).spheres));
+}
+
 TEST(RoomForGaps, HoldsContactsAtTheGap) {
   const std::string toml =
       "[container]\nkind = \"periodic\"\n[spheres]\ncount = 300\nradius = 1\ngap = 0.1\n[[stage]]\n"
