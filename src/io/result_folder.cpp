@@ -81,6 +81,18 @@ std::vector<NamedFile> files_named_in(Scene& scene) {
   throw Error(ErrorCode::cannot_write, why, {file.string()});
 }
 
+/// Whether all files below are those of an earlier result in the folder, and there are any.
+bool holds_only(const fs::path& below, const fs::path& folder, const std::vector<std::string>& earlier) {
+  std::size_t found = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(below)) {
+    if (!entry.is_symlink() && entry.is_directory()) continue;
+    const std::string name = entry.path().lexically_relative(folder).generic_string();
+    if (std::ranges::find(earlier, name) == earlier.end()) return false;
+    ++found;
+  }
+  return found > 0;
+}
+
 }  // namespace
 
 Manifest manifest_of(const fs::path& folder) {
@@ -174,7 +186,12 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
     const fs::path there = folder / name;
     std::error_code unknown;
     if (!stands(there) || std::ranges::find(earlier, name) != earlier.end()) continue;
-    if (fs::is_directory(there, unknown)) refuse(there, "is a folder, and a file is to be written there");
+    if (fs::is_directory(there, unknown)) {
+      if (holds_only(there, folder, earlier)) continue;
+      refuse(there,
+             "is a folder with more in it than bernal wrote, or changed since, and the result would take its "
+             "place; give another folder with -o, or move it away");
+    }
     if (name == "scene.toml" && is_as_written(there)) continue;
     refuse(there,
            "is no result of bernal's, or was changed since, and the result would take its place; give "

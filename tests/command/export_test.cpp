@@ -213,5 +213,23 @@ TEST(ExportCommand, TheGsdIsOneForItsOwnLibrary) {
   EXPECT_EQ(read.out, "1 300 3 ['1'] 1.0 1.0 (300, 3) 0.0\n") << read.err;
 }
 
+TEST(ExportCommand, ACaseOfASceneIsReplacedUnlessSomebodyWorkedInIt) {
+  const Folder folder;
+  const std::string scene = folder.write("scene.toml",
+                                         std::string(small_scene) + "[[output]]\nformat = \"snappy\"\n"),
+                    out = folder / "out";
+  const auto pack = [&] { return bernal({"pack", scene, "-o", out, "--quiet"}); };
+  for (int k = 0; k < 2; ++k) {
+    const Ended packed = pack();
+    EXPECT_EQ(packed.status, 0) << packed.err;
+  }
+  std::ofstream(out + "/snappy/notes.txt") << "mine\n";
+  expect_refused_in_one_line(pack(), {"snappy", "more in it than bernal wrote"});
+  fs::remove(out + "/snappy/notes.txt");
+  std::ofstream(out + "/snappy/system/controlDict", std::ios::app) << "// mine\n";
+  expect_refused_in_one_line(pack(), {"snappy", "changed since"});
+  EXPECT_TRUE(fs::exists(out + "/snappy/Allmesh"));
+}
+
 }  // namespace export_command_test
 }  // namespace bernal::testing
