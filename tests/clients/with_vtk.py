@@ -3,7 +3,7 @@
 
 Packs a cylinder, exports it in every format of images and every kind of values, and compares what VTK (the readers of
 ParaView), teem and tifffile read with the raw voxels, value by value, and their spacing, origin and unit. A program that
-is not installed is left out with a word. Debian: python3-vtk9 teem-apps python3-tifffile. Takes three seconds.
+is not installed is left out with a word. Debian: python3-vtk9 (or python3-paraview) teem-apps python3-tifffile. Takes three seconds.
 """
 import json
 import shutil
