@@ -130,6 +130,7 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
   const Reading reading{file, options, monitor};
   const PackingReader& reader = reader_of(file, options);
   FileContents contents = reader.read(reading);
+  if (monitor.stop()) throw Cancelled();
   if (contents.size() == 0) refuse_file(file, "there are no spheres in it");
   flatten(contents, reading);
   take_sizes(contents, reading);
@@ -155,6 +156,7 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
                   packing.spheres.size() == 1 ? "1 sphere" : grouped(packing.spheres.size()) + " spheres",
                   plain_text(file.filename().string()), reader.about.name);
   require_sensible(packing, file);
+  if (monitor.stop()) throw Cancelled();
   made.notes.push_back({"format", contents.note.empty()
                                       ? reader.about.name
                                       : fmt::format("{}: {}", reader.about.name, contents.note)});
@@ -184,7 +186,8 @@ void check_importable(const std::filesystem::path& file, const std::filesystem::
 }
 
 WrittenPacking write_imported(Packing packing, const std::filesystem::path& file,
-                              const std::filesystem::path& folder, const WriteOptions& options) {
+                              const std::filesystem::path& folder, WriteOptions options) {
+  options.all_or_nothing = true;
   packing.scene.start.file = file;
   check_writable(folder, packing.scene, options);
   packing.scene.start.file = folder / "spheres.csv";

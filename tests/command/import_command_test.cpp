@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <chrono>
+#include <thread>
+
 #include "bernal/import/import.hpp"
 #include "check.hpp"
 #include "support/packings.hpp"
@@ -149,6 +152,27 @@ TEST(ImportCommand, ASceneSaysTheContainer) {
   EXPECT_EQ(report_of(folder / "out")["unit"], "mm");
   EXPECT_EQ(report_of(folder / "out")["container"]["volume"], 1000);
   EXPECT_NE(imported.err.find("protrudes  1, gap -0.8"), std::string::npos) << imported.err;
+}
+
+// Reading takes a blink: the interrupt comes while the spheres are certified or measured.
+TEST(ImportCommand, AnInterruptLeavesTheEarlierResult) {
+  const Folder folder;
+  const std::string out = folder / "out";
+  ASSERT_EQ(bernal({"import", folder.write("a.csv", "# unit: mm\nx,y,z,r\n1,1,1,1\n"), "-o", out}).status, 0);
+  const std::string before = text_of(folder / "out/report.json");
+  std::string grid = "# unit: mm\nx,y,z,r\n";
+  for (int i = 0; i < 64000; ++i) grid += fmt::format("{},{},{},0.5\n", i % 40, i / 40 % 40, i / 1600);
+  const std::string file = folder.write("b.csv", grid);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const Process stopped = start_bernal({"import", file, "-o", out});
+    ASSERT_TRUE(stopped.listens_to(signal));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    stopped.signal(signal);
+    const Ended ended = stopped.wait();
+    EXPECT_EQ(ended.status, 3) << ended.err;
+    EXPECT_NE(ended.err.find("nothing is written"), std::string::npos) << ended.err;
+    EXPECT_EQ(text_of(folder / "out/report.json"), before);
+  }
 }
 
 }  // namespace import_command_test

@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+
 #include "bernal/core/error.hpp"
 #include "bernal/import/import.hpp"
 #include "support/folder.hpp"
@@ -69,6 +73,46 @@ TEST(ImportMistakes, NoRowIsLeftOver) {
   expect_refusal({"a.geo", geometry(1, both), m}, {"a.geo:9"});
   EXPECT_EQ(imported({"a.geo", geometry(2, both + end), m}).packing.spheres.size(), 2U);
   EXPECT_EQ(imported({"a.geo", geometry(2, both), m}).packing.spheres.size(), 2U);
+}
+
+// Whenever it is stopped, an earlier result stays as it was: what was to be imported is there still.
+TEST(ImportMistakes, AStoppedImportWritesNothing) {
+  const Folder folder;
+  std::string table = "# unit: mm\nx,y,z,r\n";
+  for (int i = 0; i < 64; ++i) table += fmt::format("{},{},{},0.6\n", i % 4, i / 4 % 4, i / 16);
+  const auto file = folder.write("a.csv", table),
+             old = folder.write("old.csv", "# unit: mm\nx,y,z,r\n1,1,1,1\n");
+  const auto import_into_out = [&](const std::filesystem::path& from, const Monitor& monitor) {
+    write_imported(import_packing(from, {}, monitor).packing, from, folder / "out", {.monitor = monitor});
+  };
+  import_into_out(old, {});
+  const auto state = [&] {
+    std::vector<std::pair<std::string, std::string>> all;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "out"))
+      all.emplace_back(entry.path().filename().string(), testing::text_of(entry.path()));
+    std::ranges::sort(all);
+    return all;
+  };
+  std::atomic<int> asked = 0;
+  import_into_out(file, {{}, [&] { return ++asked < 0; }});
+  const int questions = asked;  // about; threads part their work as they come
+  EXPECT_GT(questions, 5);
+  int stopped = 0;
+  for (int last = 0; last < questions; last += last < 8 || last > questions - 8 ? 1 : 7) {
+    import_into_out(old, {});
+    const auto before = state();
+    asked = 0;
+    bool thrown = false;
+    try {
+      import_into_out(file, {{}, [&] { return ++asked > last; }});
+    } catch (const Cancelled&) {
+      thrown = true;
+    }
+    EXPECT_EQ(thrown, asked > last) << last;
+    EXPECT_EQ(thrown, state() == before) << last;
+    stopped += thrown;
+  }
+  EXPECT_GT(stopped, 5);
 }
 
 }  // namespace import_mistakes_test
