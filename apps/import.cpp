@@ -129,7 +129,13 @@ Command import_command() {
         "Edges of the box that the spheres lie in, whose corner is at zero: periodic, unless --periodic says "
         "another",
         "a,b,c"},
-       {"--periodic", &options.periodic,
+       {"--periodic",
+        [&options](const std::string& word) {
+          if (word.empty())
+            throw Error(ErrorCode::bad_argument,
+                        "--periodic names no axis; write xyz or xy, or none for walls all around");
+          options.periodic = word;
+        },
         "The axes along which the box repeats itself, such as xyz or xy, and along the others has walls; "
         "none: "
         "walls all around",

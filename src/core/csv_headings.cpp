@@ -8,6 +8,10 @@ std::string_view stripped(std::string_view text, std::string_view of) {
   return text.substr(first, text.find_last_not_of(of) - first + 1);
 }
 
+std::string_view unit_in_letters(std::string_view unit) {
+  return unit == "\xC2\xB5m" || unit == "\xCE\xBCm" ? "um" : unit;
+}
+
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
   if (separator == ' ') {
@@ -40,7 +44,7 @@ std::string_view without_unit(std::string_view name, std::string& unit) {
   for (const std::string_view marks : {"[]", "()"}) {
     const std::size_t begin = name.find(marks[0]);
     if (begin == name.npos || !name.ends_with(marks[1])) continue;
-    unit = stripped(name.substr(begin + 1, name.size() - begin - 2), " ");
+    unit = unit_in_letters(stripped(name.substr(begin + 1, name.size() - begin - 2), " "));
     return stripped(name.substr(0, begin), " ");
   }
   return name;

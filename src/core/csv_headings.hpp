@@ -25,6 +25,9 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
 /// Text without these characters at its ends.
 std::string_view stripped(std::string_view text, std::string_view of);
 
+/// "um" for "µm", with the micro sign or the Greek letter in UTF-8; any other text as it is.
+std::string_view unit_in_letters(std::string_view unit);
+
 /// What stands in quotation marks, without them.
 inline std::string_view unquoted(std::string_view field) { return stripped(field, " \"'"); }
 

@@ -12,6 +12,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/unit.hpp"
+#include "core/csv_headings.hpp"
 #include "core/file_kind.hpp"
 #include "core/next_line.hpp"
 
@@ -108,6 +109,7 @@ bool CsvLines::says_unit(std::string& unit) const {
 }
 
 void CsvLines::take_unit(std::string_view name, std::string& unit) const {
+  name = unit_in_letters(name);
   if (const std::string complaint = complaint_of_unit(name); !complaint.empty()) fail(complaint);
   if (!unit.empty() && unit != name)
     fail(fmt::format("this line says that the unit is {}, and one before it says {}", name, unit));

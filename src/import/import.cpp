@@ -17,6 +17,7 @@
 #include "import/import_domain.hpp"
 #include "import/reader.hpp"
 #include "import/sphere_size.hpp"
+#include "io/result_folder.hpp"
 
 namespace bernal {
 namespace {
@@ -27,12 +28,19 @@ namespace {
   throw Error(ErrorCode::bad_packing, why, {file.string()});
 }
 
+bool is_link(const std::filesystem::path& file) {
+  std::error_code unknown;
+  return std::filesystem::is_symlink(std::filesystem::symlink_status(file, unknown));
+}
+
 void require_file(const std::filesystem::path& file) {
   switch (kind_of_file(file)) {
     case FileKind::regular:
       return;
     case FileKind::missing:
-      return refuse_file(file, "there is no such file");
+      return refuse_file(file, is_link(file)
+                                   ? "is a link that leads nowhere; give the file that it should lead to"
+                                   : "there is no such file");
     case FileKind::folder:
       return refuse_file(file, "is a folder; give a file, such as the spheres.csv in it");
     case FileKind::other:
@@ -58,6 +66,12 @@ void check_options(const ImportOptions& options) {
 void flatten(FileContents& contents, const Reading& reading) {
   const bool wanted = reading.options.dimension ? *reading.options.dimension == 2 : contents.is_flat;
   std::vector<std::vector<double>>& x = contents.spheres.x;
+  if (const auto& asked = reading.options.dimension;
+      asked && x.size() != 3 && x.size() != static_cast<std::size_t>(*asked))
+    refuse_file(reading.file,
+                fmt::format("has {} coordinates of each sphere, and --dimension says {}; leave it out, or "
+                            "name the other columns",
+                            x.size(), *asked));
   if (!wanted || x.size() != 3) return;
   const auto other = std::ranges::find_if(x[2], [&](double z) { return z != x[2].front(); });
   if (other != x[2].end())
@@ -115,6 +129,14 @@ void require_sensible(const Packing& packing, const std::filesystem::path& file)
                             phi, name_of(packing.domain)));
 }
 
+void require_elsewhere(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  if (is_in_place_of_result(file, folder))
+    throw Error(
+        ErrorCode::cannot_write,
+        "is the file being imported, and the result would take its place; give another folder with -o",
+        {file.string()});
+}
+
 std::string range_of_sizes(const std::vector<double>& radii) {
   const auto [least, most] = std::ranges::minmax(radii);
   return least == most ? fmt::format("diameter {:.6g}", 2 * least)
@@ -130,6 +152,7 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
   const Reading reading{file, options, monitor};
   const PackingReader& reader = reader_of(file, options);
   FileContents contents = reader.read(reading);
+  if (monitor.stop()) throw Cancelled();
   if (contents.size() == 0) refuse_file(file, "there are no spheres in it");
   flatten(contents, reading);
   take_sizes(contents, reading);
@@ -155,6 +178,7 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
                   packing.spheres.size() == 1 ? "1 sphere" : grouped(packing.spheres.size()) + " spheres",
                   plain_text(file.filename().string()), reader.about.name);
   require_sensible(packing, file);
+  if (monitor.stop()) throw Cancelled();
   made.notes.push_back({"format", contents.note.empty()
                                       ? reader.about.name
                                       : fmt::format("{}: {}", reader.about.name, contents.note)});
@@ -178,13 +202,17 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
 }
 
 void check_importable(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  require_file(file);
+  require_elsewhere(file, folder);
   Scene scene;
   scene.start.file = file;
   check_writable(folder, scene);
 }
 
 WrittenPacking write_imported(Packing packing, const std::filesystem::path& file,
-                              const std::filesystem::path& folder, const WriteOptions& options) {
+                              const std::filesystem::path& folder, WriteOptions options) {
+  options.all_or_nothing = true;
+  require_elsewhere(file, folder);
   packing.scene.start.file = file;
   check_writable(folder, packing.scene, options);
   packing.scene.start.file = folder / "spheres.csv";

@@ -36,6 +36,9 @@ std::vector<AxisEnd> ends_of_word(const std::string& word, std::size_t dimension
           fmt::format("--periodic takes the axes that repeat themselves, such as xyz or xy, or none, "
                       "for {} dimensions",
                       dimension));
+    if (ends[axis] == AxisEnd::period)
+      refuse_words(
+          fmt::format("--periodic names the axis {} twice; it takes each once, such as xyz or xy", letter));
     ends[axis] = AxisEnd::period;
   }
   return ends;
@@ -143,7 +146,7 @@ ImportDomain domain_of_box(const FileBox& box, Unit unit, const std::string& why
         PeriodicBox{.dimension = static_cast<int>(dimension), .size = edges, .walls = walls};
     made.domain = packed_domain_of(made.scene);
     if (std::ranges::any_of(box.lower, [](double x) { return x != 0; }))
-      for (const double x : box.lower) made.shift.push_back(-x);
+      for (const double x : box.lower) made.shift.push_back(0 - x);  // of 0 no -0, which would be printed
   }
   made.words = fmt::format("{}, {}, {}", name_of(made.domain), edges_in_words(edges, unit), why);
   return made;

@@ -123,6 +123,9 @@ NumpyArray read_numpy_array(const std::filesystem::path& path) {
   if (!file.holds(begin, array.rows, in_row))
     file.fail(
         fmt::format("ends after {} of {} rows; was it cut off?", (file.size() - begin) / in_row, array.rows));
+  if (const std::uint64_t left = file.size() - begin - array.rows * in_row; left > 0)
+    file.fail(
+        fmt::format("has {} bytes behind its {} rows; save one array alone, with np.save", left, array.rows));
   const std::vector<double> values = numbers_in(file, begin, array.rows * array.columns, header);
   if (!header.is_fortran || array.is_list) {
     array.values = values;

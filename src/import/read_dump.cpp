@@ -14,10 +14,35 @@ constexpr std::string_view item = "ITEM: ", step_item = "ITEM: TIMESTEP", atoms_
                            box_item = "ITEM: BOX BOUNDS", count_item = "ITEM: NUMBER OF ATOMS",
                            units_item = "ITEM: UNITS";
 
+/// The number below "ITEM: NUMBER OF ATOMS".
+std::uint64_t read_claimed(ForeignLines& lines) {
+  lines.require_next("the number of atoms");
+  const auto words = lines.words();
+  return lines.whole(words.empty() ? std::string_view() : words[0], "the number of atoms");
+}
+
+/// Throws for a row more than its frame claims, whichever frame is wanted: rows of two frames may have been
+/// mixed.
 int count_frames(const Reading& reading) {
   ForeignLines lines(reading);
   int frames = 0;
-  while (lines.next()) frames += lines.line().starts_with(step_item);
+  std::optional<std::uint64_t> claimed;
+  bool in_atoms = false;
+  for (std::uint64_t rows = 0; lines.next();) {
+    const std::string_view line = lines.line();
+    if (line.starts_with(item)) {
+      in_atoms = line.starts_with(atoms_item);
+      rows = 0;
+      frames += line.starts_with(step_item);
+      if (line.starts_with(step_item)) claimed.reset();
+      if (line.starts_with(count_item)) claimed = read_claimed(lines);
+    } else if (in_atoms && claimed && !line.empty() && ++rows > *claimed && !lines.words().empty()) {
+      lines.fail(
+          fmt::format("frame {} says that it has {} spheres, and here is more; if it is a sphere, "
+                      "correct the number below \"{}\", else take the line out",
+                      frames, *claimed, count_item));
+    }
+  }
   if (frames == 0) lines.fail(fmt::format("there is no line \"{}\"", step_item));
   return frames;
 }
@@ -127,9 +152,7 @@ FileContents read_dump(const Reading& reading) {
       const auto words = lines.words();
       if (!words.empty()) contents.unit = unit_of_style(words[0]);
     } else if (here && lines.line().starts_with(count_item)) {
-      lines.require_next("the number of atoms");
-      const auto words = lines.words();
-      claimed = lines.whole(words.empty() ? std::string_view() : words[0], "the number of atoms");
+      claimed = read_claimed(lines);
     } else if (here && lines.line().starts_with(box_item)) {
       contents.box = read_bounds(reading, lines);
     } else if (here && lines.line().starts_with(atoms_item)) {

@@ -63,6 +63,15 @@ FileContents read_esys(const Reading& reading) {
     if (!row.empty() && row[0] == "EndParticles") lines.expect_rows(claimed, i);
     add_row(lines, columns, row, contents.spheres);
   }
+  while (lines.next()) {
+    const auto row = lines.words();
+    if (row.empty()) continue;
+    if (row[0] == "EndParticles") break;
+    lines.fail(
+        fmt::format("the file says that it has {} spheres, and here is more; if it is a sphere, correct "
+                    "the number below \"Simple\", else take the line out",
+                    claimed));
+  }
   contents.box = std::move(box);
   return contents;
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -50,6 +51,9 @@ std::vector<double> numbers_of(const Keys& keys, std::string_view key, const For
   return numbers;
 }
 
+/// Cells that were turned or made from lengths and angles have such parts of an edge where 0 is meant.
+constexpr double rounding_of_edge = 1e-12;
+
 /// Of Lattice, Origin and pbc.
 std::optional<FileBox> lattice_box(const Keys& keys, const Reading& reading, const ForeignLines& lines) {
   const std::vector<double> lattice = numbers_of(keys, "lattice", lines);
@@ -61,7 +65,9 @@ std::optional<FileBox> lattice_box(const Keys& keys, const Reading& reading, con
   FileBox box{origin, origin, std::vector<AxisEnd>(3, AxisEnd::period)};  // as ASE has it, if nothing is said
   for (std::size_t k = 0; k < 9; ++k) {
     if (k % 4 == 0) box.upper[k / 4] += lattice[k];
-    if (k % 4 != 0 && lattice[k] != 0) refuse_skewed(reading.file, lines.number());
+    const double edge = lattice[k / 3 * 4];
+    if (k % 4 != 0 && std::abs(lattice[k]) > rounding_of_edge * std::abs(edge))
+      refuse_skewed(reading.file, lines.number());
   }
   if (const auto pbc = keys.find("pbc"); pbc != keys.end()) {
     std::vector<std::string_view> words;
@@ -134,8 +140,9 @@ FileContents read_extxyz(const Reading& reading) {
   lines.require_next("the line that says what the columns are");
   FileContents contents;
   const Keys keys = keys_in(lines.line());
-  if (const auto said = keys.find("unit"); said != keys.end() && complaint_of_unit(said->second).empty())
-    contents.unit = unit_named(said->second);
+  if (const auto said = keys.find("unit"); said != keys.end())
+    if (const std::string_view unit = unit_in_letters(said->second); complaint_of_unit(unit).empty())
+      contents.unit = unit_named(unit);
   contents.box = lattice_box(keys, reading, lines);
   const std::vector<std::string> names = property_columns(keys, lines);
   const SphereColumns columns = sphere_columns({}, names, lines);

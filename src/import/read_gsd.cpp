@@ -28,6 +28,7 @@ struct GsdEntry {
 };
 static_assert(sizeof(GsdEntry) == entry_bytes);
 
+constexpr double default_diameter = 1;  // of the schema
 constexpr std::uint8_t as_uint8 = 1, as_uint32 = 3, as_float = 9, as_double = 10;
 
 class GsdFile {
@@ -154,7 +155,13 @@ FileContents read_gsd(const Reading& reading) {
     }
   contents.note = fmt::format("frame {} of {}", wanted, gsd.frames());
   const GsdEntry* diameter = gsd.chunk("particles/diameter", frame);
-  if (!diameter) return contents;
+  if (!diameter) {  // writers leave out what equals the schema's default
+    if (reading.options.diameter || reading.options.radius) return contents;
+    contents.spheres.r.assign(count, 0.5 * default_diameter);
+    contents.note += fmt::format(
+        "; no diameters, which the schema takes for {} each: --diameter says another", default_diameter);
+    return contents;
+  }
   for (const double d : gsd.numbers(*diameter, 1, "particles/diameter")) {
     if (!is_size(d))
       gsd.file().fail(fmt::format("particle {}: {}", contents.spheres.r.size(), complaint_of_size(d, true)));

@@ -24,7 +24,7 @@ std::filesystem::path radii_beside(const std::filesystem::path& file) {
 void add_length(const std::filesystem::path& file, std::uint64_t row, double length, bool is_diameter,
                 Spheres<dynamic>& spheres) {
   if (!is_size(length))
-    refuse_array(file, fmt::format("row {}: {}", row, complaint_of_size(length, is_diameter)));
+    refuse_array(file, fmt::format("row {}: {}", row + 1, complaint_of_size(length, is_diameter)));
   spheres.r.push_back(is_diameter ? 0.5 * length : length);
 }
 
@@ -65,7 +65,7 @@ FileContents read_npy(const Reading& reading) {
     for (std::size_t k = 0; k < columns.x.size(); ++k) {
       const double x = array.at(i, columns.x[k]);
       if (!(std::abs(x) <= farthest_place))
-        refuse_array(reading.file, fmt::format("row {}: {} = {} is not finite or beyond {}", i,
+        refuse_array(reading.file, fmt::format("row {}: {} = {} is not finite or beyond {}", i + 1,
                                                columns.names[k], x, farthest_place));
       contents.spheres.x[k].push_back(x);
     }

@@ -77,6 +77,10 @@ TableHead read_head(ForeignLines& lines, std::string& unit) {
   lines.fail("there are no spheres in it");
 }
 
+std::string unit_of_heading(const TableHead& head, std::size_t place) {
+  return head.units[place].empty() ? "no unit" : bernal::quoted(head.units[place]);
+}
+
 /// Of the columns that are read, where the header says one.
 void take_units_of(const SphereColumns& columns, const TableHead& head, const CsvLines& lines,
                    std::string& unit) {
@@ -85,9 +89,11 @@ void take_units_of(const SphereColumns& columns, const TableHead& head, const Cs
   if (columns.size) places.push_back(*columns.size);
   for (const std::size_t place : places)
     if (head.units[place] != head.units[places.front()])
-      lines.fail(fmt::format("the header says {} of {} and {} of {}; say one unit for all of them",
-                             bernal::quoted(head.units[places.front()]), head.names[places.front()],
-                             bernal::quoted(head.units[place]), head.names[place]));
+      lines.fail(
+          fmt::format("the header says {} of {} and {} of {}; say one unit for all of them, or none and give "
+                      "--unit",
+                      unit_of_heading(head, places.front()), head.names[places.front()],
+                      unit_of_heading(head, place), head.names[place]));
   if (const std::string& said = head.units[places.front()]; !said.empty()) lines.take_unit(said, unit);
 }
 

@@ -58,6 +58,51 @@ FileBeginning beginning_of(const std::filesystem::path& file) {
   return beginning;
 }
 
+constexpr std::string_view zero_byte("\0", 1);
+
+/// What other programs pack or write letters into, by its first bytes.
+struct Wrapping {
+  std::string_view bytes, words;
+};
+constexpr Wrapping wrappings[] = {
+    {"\x1F\x8B", "is compressed by gzip; unpack it first, with gunzip -k"},
+    {"\xFD"
+     "7zXZ",
+     "is compressed by xz; unpack it first, with unxz -k"},
+    {"\x28\xB5\x2F\xFD", "is compressed by zstd; unpack it first, with unzstd"},
+    {"PK\x03\x04", "is a zip archive or an office document; unpack it, or save the sheet as CSV"},
+    {"\xFF\xFE", "is text in UTF-16; save it in UTF-8, with iconv -f UTF-16 -t UTF-8"},
+    {"\xFE\xFF", "is text in UTF-16; save it in UTF-8, with iconv -f UTF-16 -t UTF-8"},
+};
+
+/// LAMMPS begins a binary dump with the length of this word, which is negative, or with a step.
+bool is_binary_dump(std::string_view bytes) {
+  std::string start;
+  for (const char c : bytes.substr(0, 64))
+    start += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return start.find("dumpcustom") != start.npos || start.find("dumpatom") != start.npos;
+}
+
+void require_readable(const FileBeginning& file) {
+  const auto refuse = [&](std::string_view words) {
+    throw Error(ErrorCode::bad_packing, std::string(words), {file.file.string()});
+  };
+  for (const Wrapping& wrapping : wrappings)
+    if (file.begins(wrapping.bytes)) refuse(wrapping.words);
+  if (file.has(zero_byte)) {
+    if (is_binary_dump(file.bytes))
+      refuse(
+          "is a binary dump of LAMMPS; dump it as text, under a name that does not end in .bin, or turn it "
+          "into text with LAMMPS's binary2txt");
+    return;
+  }
+  const std::size_t turn = file.bytes.find('\r');
+  if (turn < file.bytes.size() - 1 && !file.has("\n"))
+    refuse(
+        "ends its lines in CR alone, as text of old Macs does; write it with line feeds, with tr '\\r' "
+        "'\\n'");
+}
+
 const PackingReader& reader_named(const std::string& name) {
   std::vector<std::string_view> names;
   for (const PackingReader* reader : packing_readers()) {
@@ -84,13 +129,20 @@ void require_option(const PackingReader& reader, const std::string& option) {
 }  // namespace
 
 const PackingReader& reader_of(const std::filesystem::path& file, const ImportOptions& options) {
+  const FileBeginning beginning = beginning_of(file);
+  require_readable(beginning);
   const PackingReader* reader = nullptr;
   if (!options.format.empty()) {
     reader = &reader_named(options.format);
   } else {
-    const FileBeginning beginning = beginning_of(file);
     reader = *std::ranges::find_if(packing_readers(),
                                    [&](const PackingReader* one) { return one->recognises(beginning); });
+    if (reader == packing_readers().back() && beginning.has(zero_byte))
+      throw Error(
+          ErrorCode::bad_packing,
+          "holds bytes that are no text, and is of no binary format that is known; write it as text, such as "
+          "a CSV or a text dump",
+          {file.string()});
   }
   if (!options.columns.empty()) require_option(*reader, "columns");
   if (options.frame) require_option(*reader, "frame");

@@ -143,6 +143,12 @@ Scene scene_as_run(const Packing& packing, StagedFolder& staged, const fs::path&
   return scene;
 }
 
+bool is_in_place_of_result(const fs::path& file, const fs::path& folder) {
+  std::error_code unknown;
+  const std::string name = fs::weakly_canonical(fs::absolute(file), unknown).filename().string();
+  return std::ranges::find(names_of_result, name) != std::end(names_of_result) && stands_in(file, folder);
+}
+
 void finish_writing(const fs::path& folder) { finish_publishing(folder); }
 
 void check_writable(const fs::path& folder) {
@@ -171,8 +177,8 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
   }
   for (const auto& [named, sha256] : files) {
     const bool is_start = packed.start.file && &named == &*packed.start.file;
-    const fs::path file = fs::is_directory(named) ? named / "spheres.csv" : named;
-    std::error_code unknown;
+    std::error_code unknown;  // of a link that leads to itself
+    const fs::path file = fs::is_directory(named, unknown) ? named / "spheres.csv" : named;
     const fs::path meant = fs::weakly_canonical(fs::absolute(file), unknown);
     if (std::ranges::find(names, meant.filename().string()) == names.end() || !stands_in(meant, folder))
       continue;

@@ -27,6 +27,9 @@ std::vector<std::filesystem::path> files_of_part_beside(const std::filesystem::p
 /// Those of an earlier result that nobody has written into since.
 std::vector<std::string> files_of_earlier_result(const std::filesystem::path& folder);
 
+/// Whether a file, or what it leads to by a link, stands where a result in the folder writes one.
+bool is_in_place_of_result(const std::filesystem::path& file, const std::filesystem::path& folder);
+
 /// The scene with the seed that was used, which the caller may have given instead of the scene. `with_mesh`:
 /// the files that it names are copied into the folder and named there; throws Error{cannot_write} where one
 /// is no longer what was packed into. What stands in the folder anyway stays as it is. Adds to the manifest

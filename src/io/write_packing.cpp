@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "cad/file_digest.hpp"
+#include "core/parallel.hpp"
 #include "io/output_file.hpp"
 #include "io/report.hpp"
 #include "io/result_folder.hpp"
@@ -64,6 +66,12 @@ std::string middle_section(const Packing& packing) {
 
 WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
                              const WriteOptions& options) {
+  const auto go_on = [&] {
+    if (options.all_or_nothing && options.monitor.stop()) throw Cancelled();
+  };
+  std::optional<Interruptible> interruptible;
+  if (options.all_or_nothing) interruptible.emplace(options.monitor);
+  go_on();
   StagedFolder staged(folder);
   const std::filesystem::path csv = staged.add("spheres.csv");
   {
@@ -78,6 +86,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   }
   Certificate certificate = certify_written(csv, packing, options.list);
   certificate.statement += certified_walls(packing.scene);
+  go_on();
   const SceneRadii radii = asked_radii_of(packing);
   const Measurements measured = measure(packing.spheres, packing.domain, radii.asked,
                                         {.gap = packing.scene.gap,
@@ -87,6 +96,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
                                          .walls = {.work = wall_distances_for_a_report},
                                          .container = packing.container,
                                          .monitor = options.monitor});
+  go_on();
   Manifest manifest;
   const std::string scene =
       scene_as_toml(scene_as_run(packing, staged, folder, options.with_mesh, manifest), folder);
@@ -120,6 +130,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   std::erase_if(replaced, [&](const std::string& name) {
     return manifest.contains(name) && std::ranges::find(staged.names(), name) == staged.names().end();
   });
+  go_on();
   return {staged.publish(replaced), certificate, notes};
 }
 

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <chrono>
+#include <thread>
+
 #include "bernal/import/import.hpp"
 #include "check.hpp"
 #include "support/packings.hpp"
@@ -122,6 +125,7 @@ TEST(ImportCommand, RefusesInOneLine) {
   refused({file, "--unit", "mm", "--box", "0.1,0.1,0.1"}, {"times the volume", "--unit"});
   refused({file, "--unit", "mm", "--periodic", "xyz"}, {"--periodic needs a box", "--box"});
   refused({file, "--unit", "mm", "--box", "9,9,9", "--periodic", "xw"}, {"--periodic", "xyz"});
+  refused({file, "--unit", "mm", "--box", "9,9,9", "--periodic", ""}, {"--periodic", "none"});
   refused({file, "--unit", "mm", "--shift", "1"}, {"--shift", "3 dimensions"});
   refused({file, "--unit", "mm", "--container", folder / "none.toml"}, {"none.toml"});
   refused({file, "--unit", "mm", "--from", "gsd"}, {"a.csv"});
@@ -136,7 +140,7 @@ TEST(ImportCommand, RefusesInOneLine) {
   fs::create_directory(own);
   const std::string spheres = folder.write("own/spheres.csv", "x,y,z,r\n1,1,1,1\n");
   expect_refused_in_one_line(bernal({"import", spheres, "--unit", "mm", "-o", own}),
-                             {"spheres.csv", "another folder"});
+                             {"spheres.csv", "is the file being imported", "another folder"});
   EXPECT_EQ(text_of(spheres), "x,y,z,r\n1,1,1,1\n");
 }
 
@@ -149,6 +153,27 @@ TEST(ImportCommand, ASceneSaysTheContainer) {
   EXPECT_EQ(report_of(folder / "out")["unit"], "mm");
   EXPECT_EQ(report_of(folder / "out")["container"]["volume"], 1000);
   EXPECT_NE(imported.err.find("protrudes  1, gap -0.8"), std::string::npos) << imported.err;
+}
+
+// Reading takes a blink: the interrupt comes while the spheres are certified or measured.
+TEST(ImportCommand, AnInterruptLeavesTheEarlierResult) {
+  const Folder folder;
+  const std::string out = folder / "out";
+  ASSERT_EQ(bernal({"import", folder.write("a.csv", "# unit: mm\nx,y,z,r\n1,1,1,1\n"), "-o", out}).status, 0);
+  const std::string before = text_of(folder / "out/report.json");
+  std::string grid = "# unit: mm\nx,y,z,r\n";
+  for (int i = 0; i < 512000; ++i) grid += fmt::format("{},{},{},0.5\n", i % 80, i / 80 % 80, i / 6400);
+  const std::string file = folder.write("b.csv", grid);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const Process stopped = start_bernal({"import", file, "-o", out});
+    ASSERT_TRUE(stopped.listens_to(signal));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    stopped.signal(signal);
+    const Ended ended = stopped.wait();
+    EXPECT_EQ(ended.status, 3) << ended.err;
+    EXPECT_NE(ended.err.find("nothing is written"), std::string::npos) << ended.err;
+    EXPECT_EQ(text_of(folder / "out/report.json"), before);
+  }
 }
 
 }  // namespace import_command_test

@@ -280,7 +280,7 @@ TEST(ImportNpy, EveryKindOfNumbersAndOrders) {
   expect_refusal({"a.npy", npy("<f8", "False", "(0, 4)", std::vector<double>{}), mm}, {"no spheres"});
   expect_refusal({"a.npy", npy("<f8", "False", "(2, 3)", centers), mm}, {"--diameter or --radius"});
   expect_refusal({"a.npy", npy("<f8", "False", "(2, 4)", std::vector<double>{1, 2, 3, -1, 4, 5, 6, 1}), mm},
-                 {"row 0", "radius -1"});
+                 {"row 1", "radius -1"});
   expect_refusal({"a.npy", std::string("\x93NUMPY\x01\0", 8), mm}, {"a.npy", "cut off"});
 }
 

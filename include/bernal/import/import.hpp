@@ -65,9 +65,10 @@ inline constexpr double most_filled = 20;
 
 /// `write_packing` of what was imported: its scene names the spheres that are written as its start, so that
 /// `bernal pack` goes on from there. Throws as that does, and where `file`, which it came from, would be
-/// overwritten.
+/// overwritten; Cancelled, with nothing written, once the monitor says stop, since the file it came from is
+/// there still.
 WrittenPacking write_imported(Packing packing, const std::filesystem::path& file,
-                              const std::filesystem::path& folder, const WriteOptions& options = {});
+                              const std::filesystem::path& folder, WriteOptions options = {});
 /// Throws what that would throw for the folder, before a large file is read.
 void check_importable(const std::filesystem::path& file, const std::filesystem::path& folder);
 

@@ -21,6 +21,7 @@ struct WriteOptions {
   bool with_mesh = false;
   std::size_t list = 0;  ///< so many overlapping pairs and protruding spheres are listed: the worst
   Monitor monitor = {};
+  bool all_or_nothing = false;  ///< once the monitor says stop, Cancelled is thrown and nothing is written
 };
 
 /// Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html, in two and three dimensions
@@ -30,7 +31,7 @@ struct WriteOptions {
 /// Everything is written whole under temporary names, spheres.csv is read back and certified against the
 /// packing's container, and only then do they take the place of all files of an earlier result: a failure
 /// throws Error{cannot_write} and leaves earlier output untouched. Once the monitor says stop, measurements
-/// that may be absent are left out.
+/// that may be absent are left out, unless `all_or_nothing` says that all is.
 WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
                              const WriteOptions& options = {});
 
