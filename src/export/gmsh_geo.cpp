@@ -221,10 +221,11 @@ std::string gmsh_geo(const GmshModel& model) {
       "//   gmsh {2} -setnumber mesh 0        shows the solids\n"
       "SetFactory(\"OpenCASCADE\");\nDefineConstant[ mesh = 1 ];\n{3}{4}{5}{6}"
       "Mesh.Algorithm3D = 10; // HXT\nMesh.OptimizeThreshold = 0.4;\nMesh.ElementOrder = {7};\n"
+      "Mesh.ScalingFactor = {9}; // of what is written\n"
       "If (mesh)\n  Mesh 3;\n  Save {8};\nEndIf\n",
-      file.title(), name_of(file.unit()), file.name_as_word(), std::visit(GeoDomain{model}, file.domain),
+      file.title(), model.unit_in_words(), file.name_as_word(), std::visit(GeoDomain{model}, file.domain),
       solids_of_geo(model), groups_of(model), sizes_of(model), file.output.mesh_order,
-      toml_string(file_beside(file.output.file, ".msh")));
+      toml_string(file_beside(file.output.file, ".msh")), model.length());
 }
 
 }  // namespace bernal

@@ -145,13 +145,14 @@ EXACT = {{{exact}}}  # volume fractions
 LOWER, UPPER = np.array([{lower}]), np.array([{upper}])  # of the domain
 PERIODIC = ({p0}, {p1}, {p2})
 IS_BOX = {box}
+LENGTH = {length}  # of the model, in the mesh's unit
 MESH_SIZE, LARGEST_SIZE, MESH_ORDER = {size}, {largest}, {order}  # over the radius; of any element
 )",
-      fmt::arg("title", file.title()), fmt::arg("unit", name_of(file.unit())),
-      fmt::arg("names", names_of_types(model)), fmt::arg("exact", exact_fractions(model)),
-      fmt::arg("lower", numbers(model.bounds.lower)), fmt::arg("upper", numbers(model.bounds.upper)),
-      fmt::arg("p0", word(0)), fmt::arg("p1", word(1)), fmt::arg("p2", word(2)),
-      fmt::arg("box", std::holds_alternative<Box>(file.domain) ? "True" : "False"),
+      fmt::arg("title", file.title()), fmt::arg("unit", model.unit_in_words()),
+      fmt::arg("length", model.length()), fmt::arg("names", names_of_types(model)),
+      fmt::arg("exact", exact_fractions(model)), fmt::arg("lower", numbers(model.bounds.lower)),
+      fmt::arg("upper", numbers(model.bounds.upper)), fmt::arg("p0", word(0)), fmt::arg("p1", word(1)),
+      fmt::arg("p2", word(2)), fmt::arg("box", std::holds_alternative<Box>(file.domain) ? "True" : "False"),
       fmt::arg("size", file.output.mesh_size), fmt::arg("largest", model.largest_size),
       fmt::arg("order", file.output.mesh_order));
   return text + data_of(model) +

@@ -39,7 +39,9 @@ bool has_end(const std::vector<Cut>& cuts) {
 }
 
 void write_gmsh(const Exported& file, StagedFolder& staged) {
-  const GmshModel model(file);
+  const int exponent = exponent_of_model(file.domain);
+  const Exported scaled = in_length_of_model(file, exponent);
+  const GmshModel model(scaled, exponent);
   staged.write(file.output.file.string(), gmsh_geo(model));
   staged.write(file_beside(file.output.file, python_ending), sealed_script(gmsh_python(model)));
 }
@@ -55,8 +57,9 @@ std::string note_of_gmsh(const Exported& file) {
 
 }  // namespace
 
-GmshModel::GmshModel(const Exported& exported)
+GmshModel::GmshModel(const Exported& exported, int exponent_of_length)
     : file(exported),
+      exponent(exponent_of_length),
       solids(exported.solids),
       bounds(bounds_of(exported.domain)),
       periods(exported.periods()) {
@@ -73,6 +76,11 @@ GmshModel::GmshModel(const Exported& exported)
     faces = flat_faces_of(*mesh, 1e-9 * bounds.diagonal());
   places = narrow_places_of(solids, file.output.mesh_size, file.output.mesh_gap);
   largest_size = file.output.mesh_size * (file.size() ? file.largest_radius() : bounds.diagonal() / 10);
+}
+
+std::string GmshModel::unit_in_words() const {
+  const std::string_view unit = name_of(file.unit());
+  return exponent == 0 ? std::string(unit) : fmt::format("{0} (built in lengths of {1} {0})", unit, length());
 }
 
 std::string GmshModel::name_of_type(std::uint32_t type) const {
