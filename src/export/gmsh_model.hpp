@@ -48,6 +48,8 @@ struct GmshModel {
   std::array<bool, 3> periods;
   double largest_size = 0;  ///< of elements
 
+  /// "spheres overlap" or "spheres cross the walls", of which no solids are made one by one; or empty.
+  std::string trouble() const;
   /// "1" or "1e-6": of the file's unit.
   std::string length() const { return exponent == 0 ? "1" : "1e" + std::to_string(exponent); }
   /// "m", or "m (built in lengths of 1e-6 m)".

@@ -224,7 +224,7 @@ def curved_volume(tag):
 
 def expect(holds, what):
     if not holds:
-        sys.exit(f"expected that {what}: please report this with the script")
+        sys.exit(f"expected that {what}: {TROUBLE or 'please report this with the script'}")
 
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
