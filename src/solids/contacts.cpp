@@ -49,9 +49,13 @@ std::string number_of(std::size_t n, std::string_view one, std::string_view more
   return fmt::format("{} {}", grouped(n), n == 1 ? one : more);
 }
 
-constexpr std::string_view words_on_necks =
-    "; contacts with walls stay as they are, and elements in the sharp corners at the rims are of poor "
-    "quality";
+/// What a mesher makes of the sharp corners at the rims does not get better with smaller elements.
+std::string words_on_necks(const ContactReport& report) {
+  return (report.walls == 0 ? std::string()
+                            : fmt::format("; {} as near stay as they are",
+                                          number_of(report.walls, "place of walls", "places of walls"))) +
+         "; elements at the rims are poor whatever their size: smallest SICN below 0.1";
+}
 
 double at_most(double diameter, bool single) {
   if (!single) return diameter;
@@ -139,7 +143,7 @@ std::string words_on(const ContactReport& report) {
           report.meetings == 0
               ? std::string("none meets a third sphere or another bridge")
               : fmt::format("{} a third sphere or each other", number_of(report.meetings, "meets", "meet")),
-          report.smallest_angle, words_on_necks);
+          report.smallest_angle, words_on_necks(report));
     case ContactTreatment::cap:
       return fmt::format(
           "caps cut off {} at {} and {}, flat faces {:.6g} in all where only points touched, {}{}; {}",

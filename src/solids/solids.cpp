@@ -314,6 +314,7 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
   report.pairs = bonds.size();
   if (options.contact == ContactTreatment::bridge) {
     made.bridges = bridges_of(made.spheres, made.domain, bonds, options.bridge_radius, report);
+    report.walls = near_walls(made.spheres, made.domain, options.gap, nullptr).size();
   } else {
     const auto caps = caps_of(made.spheres, made.domain, bonds, report);
     if (add_caps(caps, made.spheres, bonds, options.gap, made.pieces)) report.proven_gap = options.gap;
