@@ -93,6 +93,9 @@ Output output_of(std::string_view format, const std::map<std::string, std::strin
           fmt::format("{} must be {}, not \"{}\"", name, schema::expectation(*key, value), plain_text(word)));
     key->member.set(&output, *value);
   }
+  for (const auto& [name, word] : words)
+    if (const auto users = contacts_that_use(*table->keys.find(name), output); !users.empty())
+      fail(fmt::format("{} acts where contact is {} only; say so or leave it out", name, users));
   return output;
 }
 

@@ -204,8 +204,9 @@ Bounds<3> Exported::box() const {
 
 std::string Exported::name() const { return plain_text(output.file.string()); }
 
-std::string Exported::name_as_word() const {
-  const std::string word = output.file.string();
+std::string Exported::name_as_word() const { return as_word(output.file.string()); }
+
+std::string as_word(const std::string& word) {
   const auto is_plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("._-+", c);
   };

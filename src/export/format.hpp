@@ -29,6 +29,12 @@ struct Exported {
   Monitor monitor = {};  ///< of what takes long to write
   /// What was done about contacts; `spheres` are those after it.
   ContactReport contacts = {};
+  /// Of the packing itself, where whoever writes solids, triangles or images has to know: the largest overlap
+  /// of a pair, over the sum of radii; how many spheres cross walls or are outside, and the most by which one
+  /// does, over its radius.
+  double overlap = 0;
+  std::uint64_t protruding = 0;
+  double protrusion = 0;
   /// For formats of solids, see OutputTable; `spheres` and `domain` are theirs.
   Solids solids{};
 
@@ -58,6 +64,8 @@ struct Exported {
   std::string title() const;
 };
 
+/// As a word of a script, between quotation marks where it needs them.
+std::string as_word(const std::string&);
 /// Three axes as a row of numbers: "0 0 0.5".
 std::string row_of(const Vector<3>&);
 

@@ -103,13 +103,14 @@ std::string solids_of_geo(const GmshModel& model) {
         fmt::format("BooleanIntersection{{ Volume{{\n  {}}}; Delete; }}{{ Volume{{1}}; }}\n", list_of(cut));
   const std::size_t last = model.first_bridge() + bridges.size() - 1;
   if (last < 2) return text + "v() = {1};\nmatrix() = {1};\n";
+  const std::string trouble = model.trouble();
   // Deleted objects come back under their own numbers, as long as one of each does.
   return text + fmt::format(
                     "v() = BooleanFragments{{ Volume{{1}}; Delete; }}{{ Volume{{2:{0}}}; Delete; }};\n"
                     "matrix() = v();\nmatrix() -= {{2:{0}}};\n"
-                    "If (#v() - #matrix() != {1})\n  Error(\"%g solids where {1} were made\", #v() - "
+                    "If (#v() - #matrix() != {1})\n  Error(\"%g solids where {1} were made{2}\", #v() - "
                     "#matrix());\n  Exit;\nEndIf\n",
-                    last, last - 1);
+                    last, last - 1, trouble.empty() ? trouble : ": " + trouble);
 }
 
 std::string groups_of(const GmshModel& model) {
@@ -221,10 +222,11 @@ std::string gmsh_geo(const GmshModel& model) {
       "//   gmsh {2} -setnumber mesh 0        shows the solids\n"
       "SetFactory(\"OpenCASCADE\");\nDefineConstant[ mesh = 1 ];\n{3}{4}{5}{6}"
       "Mesh.Algorithm3D = 10; // HXT\nMesh.OptimizeThreshold = 0.4;\nMesh.ElementOrder = {7};\n"
+      "Mesh.ScalingFactor = {9}; // of what is written\n"
       "If (mesh)\n  Mesh 3;\n  Save {8};\nEndIf\n",
-      file.title(), name_of(file.unit()), file.name_as_word(), std::visit(GeoDomain{model}, file.domain),
+      file.title(), model.unit_in_words(), file.name_as_word(), std::visit(GeoDomain{model}, file.domain),
       solids_of_geo(model), groups_of(model), sizes_of(model), file.output.mesh_order,
-      toml_string(file_beside(file.output.file, ".msh")));
+      toml_string(file_beside(file.output.file, ".msh")), model.length());
 }
 
 }  // namespace bernal

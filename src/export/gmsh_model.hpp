@@ -22,12 +22,21 @@ struct CapTool {
   double radius;
 };
 
+/// OpenCASCADE takes what is nearer than 1e-7 for one point, in whatever unit, and loses digits in large
+/// numbers: a domain whose diagonal is not between 1 and 1000 is built in lengths of its own, ten to this
+/// power of the file's unit, in which it is between 10 and 100; its mesh is written in the unit.
+int exponent_of_model(const Domain&);
+/// The same in those lengths; whatever has no length stays.
+Exported in_length_of_model(const Exported&, int exponent);
+
 /// A packing as Gmsh's scripts build it. Volumes are numbered: 1 is the domain, then the pieces and the
 /// bridges in their order.
 struct GmshModel {
-  explicit GmshModel(const Exported&);
+  /// In lengths of ten to the power of `exponent`, see `exponent_of_model`.
+  GmshModel(const Exported&, int exponent);
 
   const Exported& file;
+  int exponent;
   const Solids& solids;
   std::vector<Turn> turns;                 ///< one a piece
   std::vector<std::vector<CapTool>> caps;  ///< one list a piece
@@ -39,6 +48,12 @@ struct GmshModel {
   std::array<bool, 3> periods;
   double largest_size = 0;  ///< of elements
 
+  /// "spheres overlap" or "spheres cross the walls", of which no solids are made one by one; or empty.
+  std::string trouble() const;
+  /// "1" or "1e-6": of the file's unit.
+  std::string length() const { return exponent == 0 ? "1" : "1e" + std::to_string(exponent); }
+  /// "m", or "m (built in lengths of 1e-6 m)".
+  std::string unit_in_words() const;
   std::size_t first_bridge() const { return 2 + solids.pieces.size(); }
   std::uint32_t type_of(std::size_t piece) const { return file.types[solids.pieces[piece].sphere]; }
   /// "spheres", or "spheres_3" where there are more types than one.

@@ -102,8 +102,10 @@ std::string names_of_types(const GmshModel& model) {
   return names;
 }
 
-/// Exact volume fractions: of whole balls, each type once, and of the rest.
+/// Exact volume fractions: of whole balls, each type once, and of the rest. None where solids meet that no
+/// formula tells of.
 std::string exact_fractions(const GmshModel& model) {
+  if (model.file.contacts.meetings > 0 || !model.trouble().empty()) return {};
   const double total = volume_of(model.file.domain);
   std::vector<double> of_type(model.file.type_count, 0.0);
   const auto& radii = model.solids.spheres.r;
@@ -142,12 +144,15 @@ import numpy as np
 
 NAMES = [{names}]  # of the types
 EXACT = {{{exact}}}  # volume fractions
+TROUBLE = {trouble}
 LOWER, UPPER = np.array([{lower}]), np.array([{upper}])  # of the domain
 PERIODIC = ({p0}, {p1}, {p2})
 IS_BOX = {box}
+LENGTH = {length}  # of the model, in the mesh's unit
 MESH_SIZE, LARGEST_SIZE, MESH_ORDER = {size}, {largest}, {order}  # over the radius; of any element
 )",
-      fmt::arg("title", file.title()), fmt::arg("unit", name_of(file.unit())),
+      fmt::arg("title", file.title()), fmt::arg("unit", model.unit_in_words()),
+      fmt::arg("length", model.length()), fmt::arg("trouble", toml_string(model.trouble())),
       fmt::arg("names", names_of_types(model)), fmt::arg("exact", exact_fractions(model)),
       fmt::arg("lower", numbers(model.bounds.lower)), fmt::arg("upper", numbers(model.bounds.upper)),
       fmt::arg("p0", word(0)), fmt::arg("p1", word(1)), fmt::arg("p2", word(2)),

@@ -175,7 +175,7 @@ def report(groups):
         volume = sum(float(v.sum()) for v, _, _ in made)
         if args.order > 1:  # the elements are curved
             volume = sum(curved_volume(tag) for tag in tags)
-        group = {"volume": volume, "tetrahedra": sum(len(v) for v, _, _ in made)}
+        group = {"volume": volume * LENGTH**3, "tetrahedra": sum(len(v) for v, _, _ in made)}
         group["smallest_sicn"] = min((float(q.min()) for _, q, _ in made if len(q)), default=1.0)
         group["smallest_gamma"] = min((float(q.min()) for _, _, q in made if len(q)), default=1.0)
         said["groups"][name] = group
@@ -184,7 +184,7 @@ def report(groups):
             said[measure] = min(said[measure], group[measure])
         total += volume
     for name, group in said["groups"].items():
-        group["fraction"] = group["volume"] / total
+        group["fraction"] = group["volume"] / (total * LENGTH**3)
         exact = f", exactly {EXACT[name]:.6f}" if name in EXACT else ""
         print(f"{name}: {group['tetrahedra']} tetrahedra, volume fraction {group['fraction']:.6f}{exact}, smallest SICN {group['smallest_sicn']:.3f}, gamma {group['smallest_gamma']:.3f}")
     worst, pairs, on_ends = 0.0, 0, [0, 0]
@@ -196,7 +196,7 @@ def report(groups):
         image = POINTS[np.array(theirs, dtype=np.int64)] @ a[:3, :3].T + a[:3, 3]
         worst = max(worst, float(np.abs(POINTS[np.array(mine, dtype=np.int64)] - image).max()))
         pairs += len(mine)
-    said["periodic_pairs"], said["periodic_error"] = pairs, worst
+    said["periodic_pairs"], said["periodic_error"] = pairs, worst * LENGTH
     for axis in range(3):
         if PERIODIC[axis]:
             close = 1e-9 * (UPPER - LOWER).max()
@@ -224,7 +224,7 @@ def curved_volume(tag):
 
 def expect(holds, what):
     if not holds:
-        sys.exit(f"expected that {what}: please report this with the script")
+        sys.exit(f"expected that {what}: {TROUBLE or 'please report this with the script'}")
 
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -232,7 +232,7 @@ parser.add_argument("-o", "--output", default=Path(__file__).stem + ".msh", help
 parser.add_argument("--size", type=float, default=MESH_SIZE, help="edge of an element on a sphere, over its radius")
 parser.add_argument("--order", type=int, default=MESH_ORDER, help="of the elements")
 parser.add_argument("--msh", type=float, default=4.1, help="version of the format msh: 2.2 for older solvers")
-parser.add_argument("--geometry", action="store_true", help="make the solids and no mesh; -o then writes .brep or .step")
+parser.add_argument("--geometry", action="store_true", help="make the solids and no mesh; -o then writes .brep or .step, in lengths of the model")
 parser.add_argument("--json", help="write the numbers of the report to this file")
 parser.add_argument("--show", action="store_true", help="open Gmsh's window at the end")
 args = parser.parse_args()
@@ -244,7 +244,7 @@ start = time.time()
 groups = geometry()
 count = sum(map(len, groups.values()))
 print(f"{count} solids in {time.time() - start:.1f} s", flush=True)
-said = {"solids": count, "volumes": {name: sum(gmsh.model.occ.getMass(3, t) for t in tags) for name, tags in groups.items()}}
+said = {"solids": count, "volumes": {name: sum(gmsh.model.occ.getMass(3, t) for t in tags) * LENGTH**3 for name, tags in groups.items()}}
 if args.geometry:
     if args.output.endswith((".brep", ".step")):
         gmsh.write(args.output)
@@ -254,6 +254,7 @@ else:
     gmsh.option.setNumber("Mesh.Algorithm3D", 10)  # HXT
     gmsh.option.setNumber("Mesh.OptimizeThreshold", 0.4)
     gmsh.option.setNumber("Mesh.MshFileVersion", args.msh)
+    gmsh.option.setNumber("Mesh.ScalingFactor", LENGTH)  # of what is written
     start = time.time()
     gmsh.model.mesh.generate(3)
     if args.order > 1:

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "bernal/core/error.hpp"
 #include "cad/write_shapes.hpp"
 #include "export/format.hpp"
 #include "solids/flat_faces.hpp"
@@ -41,8 +43,31 @@ cad::SolidShapes shapes_of(const Exported& file) {
   return shapes;
 }
 
+/// OpenCASCADE takes points nearer than 1e-7 for one, in any unit. Where a cut is off by so much, the wedge
+/// between is so wide and so high: of a ball's volume the square of 1e-7 over its radius.
+constexpr double confusion = 1e-7, least_error = 1e-9;
+
+void require_size(const Exported& file) {
+  if (file.spheres.empty()) return;
+  const double smallest = *std::ranges::min_element(file.spheres.r),
+               least = confusion / std::sqrt(least_error);
+  if (smallest >= least) return;
+  std::string remedy = "scale the packing up";
+  for (const Unit unit : {Unit::mm, Unit::um, Unit::nm}) {
+    if (smallest * conversion_factor(file.unit(), unit) < least) continue;
+    remedy = fmt::format("the format brep takes the unit {}", name_of(unit));
+    break;
+  }
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("spheres down to a radius of {:.3g} {} are too small for OpenCASCADE, whose "
+                          "volumes are exact from {:.2g} on; {}",
+                          smallest, name_of(file.unit()), least, remedy),
+              {file.name()});
+}
+
 template <cad::SolidFormat format>
 std::string write_cad(const Exported& file, StagedFolder& staged) {
+  require_size(file);
   const cad::WrittenShapes written =
       cad::write_with_opencascade(shapes_of(file), format, staged.add(file.output.file.string()));
   const double exact = file.contacts.volume_after;

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include "bernal/core/error.hpp"
 #include "export/gmsh_model.hpp"
 #include "io/seal.hpp"
+#include "measure/touching.hpp"
 
 namespace bernal {
 namespace {
 
 constexpr std::string_view python_ending = ".py";
+constexpr double near_gap = 1e-3;  // below what meshes of the usual sizes can fail
 
 /// Spheres of Gmsh have their poles along z and their meridian towards x.
 Turn turn_to(const Seam& seam) {
@@ -38,8 +41,32 @@ bool has_end(const std::vector<Cut>& cuts) {
   return false;
 }
 
+/// Spheres that are as they were and overlap or cross the walls; or empty.
+std::string trouble_of(const Exported& file) {
+  const ContactTreatment treatment = file.contacts.treatment;
+  if (treatment != ContactTreatment::none && treatment != ContactTreatment::bridge) return {};
+  if (file.overlap > 0) return "spheres overlap, and contact gap, shrink or cap makes room";
+  if (file.protruding > 0) return "spheres cross the walls, and contact gap, shrink or cap makes room";
+  return {};
+}
+
+/// Whether spheres that nobody treated come so near each other or the walls that meshing is doubtful.
+bool comes_near(const Exported& file) {
+  return file.contacts.treatment == ContactTreatment::none &&
+         (!near_pairs(file.spheres, file.domain, near_gap).empty() ||
+          !near_walls(file.spheres, file.domain, near_gap, nullptr).empty());
+}
+
 void write_gmsh(const Exported& file, StagedFolder& staged) {
-  const GmshModel model(file);
+  if (file.output.file.string().find_first_of("\"\\") != std::string::npos)
+    throw Error(
+        ErrorCode::bad_argument,
+        "has a quotation mark or a backslash in its name, which scripts of Gmsh cannot write; give it "
+        "another name",
+        {file.name()});
+  const int exponent = exponent_of_model(file.domain);
+  const Exported scaled = in_length_of_model(file, exponent);
+  const GmshModel model(scaled, exponent);
   staged.write(file.output.file.string(), gmsh_geo(model));
   staged.write(file_beside(file.output.file, python_ending), sealed_script(gmsh_python(model)));
 }
@@ -49,14 +76,24 @@ std::string note_of_gmsh(const Exported& file) {
   if (std::isfinite(file.solids.end_distance))
     note += fmt::format(", ends of the periods at least {:.3g} radii from touching a sphere",
                         file.solids.end_distance);
-  return note + fmt::format("; python3 {} makes the mesh, or gmsh {} -",
-                            file_beside(file.output.file, python_ending), file.name_as_word());
+  const std::string python = file_beside(file.output.file, python_ending);
+  if (const std::string trouble = trouble_of(file); !trouble.empty())
+    return note + fmt::format("; no mesh is to be expected of {} and {}: {}", as_word(python),
+                              file.name_as_word(), trouble);
+  note += fmt::format("; python3 {} makes the mesh, or gmsh {} -", as_word(python), file.name_as_word());
+  if (comes_near(file))
+    note += fmt::format(
+        "; nothing has been done about gaps below {} radii, where elements become poor or none are made: "
+        "contact gap",
+        near_gap);
+  return note;
 }
 
 }  // namespace
 
-GmshModel::GmshModel(const Exported& exported)
+GmshModel::GmshModel(const Exported& exported, int exponent_of_length)
     : file(exported),
+      exponent(exponent_of_length),
       solids(exported.solids),
       bounds(bounds_of(exported.domain)),
       periods(exported.periods()) {
@@ -73,6 +110,13 @@ GmshModel::GmshModel(const Exported& exported)
     faces = flat_faces_of(*mesh, 1e-9 * bounds.diagonal());
   places = narrow_places_of(solids, file.output.mesh_size, file.output.mesh_gap);
   largest_size = file.output.mesh_size * (file.size() ? file.largest_radius() : bounds.diagonal() / 10);
+}
+
+std::string GmshModel::trouble() const { return trouble_of(file); }
+
+std::string GmshModel::unit_in_words() const {
+  const std::string_view unit = name_of(file.unit());
+  return exponent == 0 ? std::string(unit) : fmt::format("{0} (built in lengths of {1} {0})", unit, length());
 }
 
 std::string GmshModel::name_of_type(std::uint32_t type) const {

@@ -42,13 +42,41 @@ double largest_overlap(const Spheres<dynamic>& spheres, const Domain& domain, co
 }
 
 /// Of a packing that nobody certified, or whose scene allows it; else nothing.
-std::string words_on_overlap(const Packing& packing, const Monitor& monitor) {
-  const double overlap = largest_overlap(packing.spheres, packing.domain, monitor);
+std::string words_on_overlap(const Packing& packing, double overlap) {
   if (!(overlap > 0)) return {};
   return fmt::format("the packing itself overlaps: largest {:.2g} of the sum of two radii, {}", overlap,
                      overlap <= packing.scene.overlap
                          ? fmt::format("of which its scene allows {:.2g}", packing.scene.overlap)
                          : "and bernal verify says where");
+}
+
+std::string words_on_overlap(const Packing& packing, const Monitor& monitor) {
+  return words_on_overlap(packing, largest_overlap(packing.spheres, packing.domain, monitor));
+}
+
+/// What solids and surfaces cannot be right with. Walls matter where they are made too.
+void take_faults(Exported& file, const Format& format, const Monitor& monitor) {
+  const Packing& packing = file.packing;
+  const bool with_walls = format.table.sizes == "solids" || format.table.sizes == "triangles";
+  const Certificate certificate = certify(
+      packing.spheres, with_walls ? packing.domain : without_walls(packing.domain), {.monitor = monitor});
+  if (certificate.cancelled) throw Cancelled();
+  file.overlap = certificate.max_overlap;
+  if (!with_walls) return;
+  file.protruding = certificate.protruding_spheres;
+  file.protrusion = -certificate.min_wall_gap;
+}
+
+std::string words_on_faults(const Exported& file) {
+  std::string words;
+  if (const std::string itself = words_on_overlap(file.packing, file.overlap); !itself.empty())
+    words += "; " + itself;
+  if (file.protruding > 0)
+    words += fmt::format(
+        "; {} through the walls or {} outside, by up to {:.2g} of the radius: bernal verify says where",
+        file.protruding == 1 ? "1 sphere goes" : grouped(file.protruding) + " spheres go",
+        file.protruding == 1 ? "lies" : "lie", file.protrusion);
+  return words;
 }
 
 /// Whether its numbers are others than those of the packing.
@@ -105,11 +133,9 @@ std::string note_of(const Exported& file, const Format& format, const std::strin
   const std::string remark = format.remark ? format.remark(file) : "";
   const std::string contacts =
       file.contacts.treatment == ContactTreatment::none ? "" : "; " + words_on(file.contacts);
-  if (format.note || !told.empty()) {
-    const std::string itself = words_on_overlap(file.packing, monitor);
+  if (format.note || !told.empty())
     return fmt::format("{}, {}{}{}{}", spheres_in(file), format.note ? format.note(file) : told, contacts,
-                       itself.empty() ? "" : "; " + itself, remark);
-  }
+                       words_on_faults(file), remark);
   const OutputTable& table = format.table;
   std::string note =
       fmt::format("{}, {}", spheres_in(file), table.sizes == "diameter" ? "diameters" : "radii");
@@ -125,7 +151,8 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
                          const Monitor& monitor) {
   const Interruptible interruptible(monitor);
   const Format& format = format_of(output);
-  const Exported file = exported(packing, output, monitor);
+  Exported file = exported(packing, output, monitor);
+  if (format.note || format.write_and_tell) take_faults(file, format, monitor);
   std::string told;
   if (format.write_and_tell)
     told = format.write_and_tell(file, staged);

@@ -112,7 +112,8 @@ std::string block_mesh(const Exported& file, const Block& block) {
   return text + ");\n";
 }
 
-std::string snappy_dict(const std::vector<Octave>& octaves, bool has_container, const PorePoint& inside) {
+std::string snappy_dict(const std::vector<Octave>& octaves, bool has_container, const PorePoint& inside,
+                        bool is_proven) {
   std::string text = head("dictionary", "snappyHexMeshDict");
   text += "castellatedMesh true;\nsnap            true;\naddLayers       false;\n\ngeometry\n{\n";
   const auto surface = [&](const std::string& name) {
@@ -142,8 +143,8 @@ std::string snappy_dict(const std::vector<Octave>& octaves, bool has_container, 
   text += fmt::format(
       "    }}\n    refinementRegions {{}}\n\n    // In the pores: no sphere and no wall is nearer than "
       "{:.6g} "
-      "m (proven).\n    locationInMesh {};\n}}\n",
-      inside.clearance, point(inside.place));
+      "m{}.\n    locationInMesh {};\n}}\n",
+      inside.clearance, is_proven ? " (proven)" : "", point(inside.place));
   return text + R"(
 snapControls
 {
@@ -264,6 +265,7 @@ std::string write_case(const Exported& file, StagedFolder& staged) {
   const Block block = block_of(file, walls);
   const bool has_container = !block.is_container;
   const std::vector<Octave> octaves = octaves_of(file);
+  const bool is_proven = file.protruding == 0;  // else what lies outside of the walls is no pore
   std::string notes;
   for (const Octave& octave : octaves)
     notes += fmt::format(
@@ -274,7 +276,7 @@ std::string write_case(const Exported& file, StagedFolder& staged) {
     staged.write(name + "/system/surfaceFeatureExtractDict", features_dict());
   }
   staged.write(name + "/system/blockMeshDict", block_mesh(file, block));
-  staged.write(name + "/system/snappyHexMeshDict", snappy_dict(octaves, has_container, *inside));
+  staged.write(name + "/system/snappyHexMeshDict", snappy_dict(octaves, has_container, *inside, is_proven));
   staged.write(name + "/system/controlDict", control_dict());
   staged.write(name + "/system/fvSchemes", schemes_dict());
   staged.write(name + "/system/fvSolution", head("dictionary", "fvSolution") + "solvers {}\n");
@@ -282,9 +284,9 @@ std::string write_case(const Exported& file, StagedFolder& staged) {
   std::error_code ignored;  // a file system may know no permissions
   fs::permissions(staged.written(name + "/Allmesh"), fs::perms::owner_exec | fs::perms::group_exec,
                   fs::perm_options::add, ignored);
-  return fmt::format(
-      "{}; locationInMesh {} m, no sphere and no wall nearer than {:.4g} m (proven); run {}/Allmesh", notes,
-      point(inside->place), inside->clearance, file.name());
+  return fmt::format("{}; locationInMesh {} m, no sphere and no wall nearer than {:.4g} m{}; run {}/Allmesh",
+                     notes, point(inside->place), inside->clearance, is_proven ? " (proven)" : "",
+                     file.name());
 }
 
 }  // namespace

@@ -235,6 +235,11 @@ void complete_output(Output& output, const Scene& scene) {
                                         "bridges and caps are for {}",
                                         table.name(), fmt::join(others, ", ")));
   }
+  for (const Key& key : table.keys.keys)
+    if (const auto users = contacts_that_use(key, output);
+        !users.empty() && section.locations.keys.contains(key.name))
+      section.fail(key.name, fmt::format("\"{}\" in {} acts where contact is {} only; say so or leave it out",
+                                         key.name, section.name, users));
   constexpr int resolution_of_images = 256;
   if (output.file.empty()) output.file = table.file;
   require_plain_name(output, table, section);

@@ -58,7 +58,7 @@ const std::vector<schema::Key>& output_keys() {
              "of the cylinders, over the smaller radius of the two spheres that they join", above(0, 0.9)),
       number(&Output::mesh_size, "mesh_size", "edge of an element on a sphere, over its radius", above(0, 2)),
       number(&Output::mesh_gap, "mesh_gap", "edge of an element in a narrow gap, over the gap's width",
-             above(0, 100)),
+             {0.05, 100}),
       integer(&Output::mesh_order, "mesh_order", "of the elements: 2 follows round surfaces", {1, 4}),
       word(&Output::surface, "surface",
            "what a file of triangles holds: spheres (cut and closed at the ends of periods), container, all "
@@ -79,6 +79,13 @@ schema::Entry output_entry(std::string_view name, std::string_view help,
         std::ranges::find(keys, key.name) != keys.end())
       made.keys.push_back(key);
   return schema::entry<Output>(std::move(made));
+}
+
+std::string_view contacts_that_use(const schema::Key& key, const Output& output) {
+  if (key.name == "contact_gap" && output.contact == ContactTreatment::none)
+    return "gap, shrink, bridge or cap";
+  if (key.name == "bridge_radius" && output.contact != ContactTreatment::bridge) return "bridge";
+  return {};
 }
 
 const OutputTable& table_of(const Output& output) {

@@ -35,6 +35,9 @@ struct OutputTable {
 /// All of them, in the order in which people are told of them; export/ holds the list.
 std::span<const OutputTable* const> output_tables();
 
+/// Of a key that acts with other treatments of contacts than the output's: which; else empty.
+std::string_view contacts_that_use(const schema::Key&, const Output&);
+
 /// Throws Error{bad_scene} where there is no such format.
 const OutputTable& table_of(const Output& output);
 

@@ -131,9 +131,12 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
                   container_as_toml(scene.container, folder), lines(schema::spheres_entry(), &named),
                   lines(schema::accuracy_entry(), &scene));
   if (!scene.stages.empty()) out.append("\n").append(stages_as_toml(scene));
-  for (const Output& output : scene.outputs)
-    out += fmt::format("\n[[output]]\nformat = {}\n{}", toml_string(output.format),
-                       lines(table_of(output).keys, &output));
+  for (const Output& output : scene.outputs) {
+    schema::Entry entry = table_of(output).keys;
+    std::erase_if(entry.keys,
+                  [&](const schema::Key& key) { return !contacts_that_use(key, output).empty(); });
+    out += fmt::format("\n[[output]]\nformat = {}\n{}", toml_string(output.format), lines(entry, &output));
+  }
   return out;
 }
 

@@ -44,6 +44,19 @@ Factors factors_of(const Spheres<dynamic>& spheres, const Domain& domain, double
   return factors;
 }
 
+/// "1 pair", "1,200 pairs".
+std::string number_of(std::size_t n, std::string_view one, std::string_view more) {
+  return fmt::format("{} {}", grouped(n), n == 1 ? one : more);
+}
+
+/// What a mesher makes of the sharp corners at the rims does not get better with smaller elements.
+std::string words_on_necks(const ContactReport& report) {
+  return (report.walls == 0 ? std::string()
+                            : fmt::format("; {} as near stay as they are",
+                                          number_of(report.walls, "place of walls", "places of walls"))) +
+         "; elements at the rims are poor whatever their size: smallest SICN below 0.1";
+}
+
 double at_most(double diameter, bool single) {
   if (!single) return diameter;
   const auto nearest = static_cast<float>(diameter);
@@ -109,36 +122,41 @@ ContactReport shrink_contacts(Spheres<dynamic>& spheres, const Domain& domain, C
 }
 
 std::string words_on(const ContactReport& report) {
-  const std::string porosity = fmt::format("porosity {:+.3g}", report.change_of_porosity());
-  const auto number = [](std::size_t n) { return grouped(n); };
+  const std::string porosity =
+      fmt::format("porosity {}{:+.3g}", report.meetings == 0 ? "" : "about ", report.change_of_porosity());
   switch (report.treatment) {
     case ContactTreatment::none:
       return "contacts as they are";
     case ContactTreatment::gap:
     case ContactTreatment::shrink:
       return fmt::format(
-          "{} of {} radii shrunk by up to {:.3g}, {}; proven: every distance of centres is at least {:g} "
+          "{} of {} shrunk by up to {:.3g}, {}; proven: every distance of centres is at least {} "
           "times the sum of radii, every clearance as many times the radius",
-          number(report.changed), number(report.spheres), report.largest_change, porosity, 1 + report.gap);
+          grouped(report.changed), number_of(report.spheres, "radius", "radii"), report.largest_change,
+          porosity, 1 + report.gap);
     case ContactTreatment::bridge:
       return fmt::format(
-          "{} bridges, cross-sections {:.6g} in all where only points touched, {}, {}; no "
-          "angle at their rims below {:.1f} degrees",
-          number(report.pairs), report.contact_area, porosity,
-          report.meetings == 0 ? std::string("none meets a third sphere or another bridge")
-                               : fmt::format("{} meet a third sphere or each other", number(report.meetings)),
-          report.smallest_angle);
+          "{}, {} {:.6g} in all where only points touched, {}, {}; no angle at their rims below {:.1f} "
+          "degrees{}",
+          number_of(report.pairs, "bridge", "bridges"),
+          report.pairs == 1 ? "its cross-section" : "cross-sections", report.contact_area, porosity,
+          report.meetings == 0
+              ? std::string("none meets a third sphere or another bridge")
+              : fmt::format("{} a third sphere or each other", number_of(report.meetings, "meets", "meet")),
+          report.smallest_angle, words_on_necks(report));
     case ContactTreatment::cap:
       return fmt::format(
-          "caps cut off {} spheres at {} pairs and {} places of walls, flat faces {:.6g} in "
-          "all where only points touched, {}{}; proven: the planes of every pair are {:g} "
-          "times the sum of radii apart",
-          number(report.changed), number(report.pairs), number(report.walls), report.contact_area, porosity,
-          report.meetings == 0 ? std::string()
-                               : fmt::format(", {} pairs of caps on one sphere meet, which "
-                                             "volumes count twice",
-                                             number(report.meetings)),
-          report.proven_gap);
+          "caps cut off {} at {} and {}, flat faces {:.6g} in all where only points touched, {}{}; {}",
+          number_of(report.changed, "sphere", "spheres"), number_of(report.pairs, "pair", "pairs"),
+          number_of(report.walls, "place of walls", "places of walls"), report.contact_area, porosity,
+          report.meetings == 0
+              ? std::string()
+              : fmt::format(", {} on one sphere, which volumes count twice",
+                            number_of(report.meetings, "pair of caps meets", "pairs of caps meet")),
+          report.proven_gap > 0
+              ? fmt::format("proven: the planes of every pair are {} times the sum of radii apart",
+                            report.proven_gap)
+              : std::string("that their planes are apart is not proven"));
   }
   return {};
 }

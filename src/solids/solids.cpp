@@ -5,7 +5,10 @@
 #include <limits>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "measure/touching.hpp"
 #include "neighbors/point_grid.hpp"
@@ -228,7 +231,13 @@ std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& doma
   std::vector<Bridge> bridges;
   std::vector<std::vector<Circle>> circles(spheres.size());
   report.smallest_angle = 180;
+  constexpr double rounding = 1e-9;  // far above that of coordinates, far below what CAD tells apart
   for (const Bond& bond : bonds) {
+    if (bond.gap < -rounding)
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("spheres {} and {} overlap by {:.2g} of the sum of their radii, which bridges "
+                              "cannot join; contact gap or cap makes room",
+                              bond.first, bond.second, -bond.gap));
     const double ri = spheres.r[bond.first], rj = spheres.r[bond.second];
     const double a = relative_radius * std::min(ri, rj);
     const double rim_i = std::sqrt(ri * ri - a * a), rim_j = std::sqrt(rj * rj - a * a);
@@ -305,6 +314,7 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
   report.pairs = bonds.size();
   if (options.contact == ContactTreatment::bridge) {
     made.bridges = bridges_of(made.spheres, made.domain, bonds, options.bridge_radius, report);
+    report.walls = near_walls(made.spheres, made.domain, options.gap, nullptr).size();
   } else {
     const auto caps = caps_of(made.spheres, made.domain, bonds, report);
     if (add_caps(caps, made.spheres, bonds, options.gap, made.pieces)) report.proven_gap = options.gap;

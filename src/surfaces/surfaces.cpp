@@ -64,11 +64,13 @@ Surfaces::Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double
     measures_ = spheres_.measure();
     const Certificate pairs = certify(smaller_by(spheres, spheres_.inset()), domain, {.monitor = monitor});
     if (pairs.cancelled) throw Cancelled();
-    proof_ = pairs.overlapping_pairs == 0
-                 ? "inside the true spheres, no two of them touch"
-                 : fmt::format(
-                       "inside the true spheres, of which {} overlap, up to {:.2g} of the sum of two radii",
-                       fmt::format("{} pairs", grouped(pairs.overlapping_pairs)), pairs.max_overlap);
+    proof_ =
+        pairs.overlapping_pairs == 0
+            ? "inside the true spheres, no two of them touch"
+            : fmt::format("inside the true spheres, of which {}, up to {:.2g} of the sum of two radii",
+                          pairs.overlapping_pairs == 1 ? std::string("1 pair overlaps")
+                                                       : grouped(pairs.overlapping_pairs) + " pairs overlap",
+                          pairs.max_overlap);
   }
   if (choice != SurfaceChoice::spheres) make_container();
   if (has_spheres() && choice != SurfaceChoice::spheres && !walls_.walls.triangles.empty()) {

@@ -1,4 +1,6 @@
 // Scripts for Gmsh and CAD files of packings in domains of every kind.
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "bernal/cad/read_mesh.hpp"
@@ -56,8 +58,9 @@ TEST(ExportSolids, CadFilesHoldTheVolume) {
     for (const Packing& packing : {periodic(), in_cylinder(), in_mesh()}) {
       if (contact != "none" && !is_periodic(packing.domain)) continue;
       const Folder folder;
-      const WrittenExport made =
-          written(folder, packing, "brep", "a.brep", {{"contact", contact}, {"contact_gap", "0.02"}});
+      std::map<std::string, std::string> words = {{"contact", contact}};
+      if (contact != "none") words["contact_gap"] = "0.02";
+      const WrittenExport made = written(folder, packing, "brep", "a.brep", words);
       const std::string before = "volumes in OpenCASCADE within ";
       const std::size_t at = made.note.find(before);
       ASSERT_NE(at, made.note.npos) << made.note;
@@ -97,6 +100,106 @@ TEST(ExportSolids, GapsAreForAllFormatsAndCapsForSolids) {
       EXPECT_NE(std::string(error.what()).find("gmsh"), std::string::npos);
     }
   }
+}
+
+/// What an Error says, or nothing.
+std::string refusal_of(const Packing& packing, const std::string& format,
+                       const std::map<std::string, std::string>& words) {
+  const Folder folder;
+  try {
+    written(folder, packing, format, "a." + format, words);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+Packing of_two(double distance, double radius = 0.5) {
+  Packing packing = between_walls();
+  Spheres<3> spheres;
+  spheres.push_back({1, 1, 1}, radius);
+  spheres.push_back({1 + distance, 1, 1}, radius);
+  packing.spheres = spheres;
+  return packing;
+}
+
+TEST(ExportSolids, ScriptsOfAnyUnitBuildTheSameModel) {
+  const Packing packing = periodic();
+  const Folder folder;
+  for (const std::string unit : {"m", "mm", "nm"}) {
+    written(folder, packing, "gmsh", unit + ".geo", {{"contact", "gap"}, {"unit", unit}});
+    const std::string geo = text_of(folder / (unit + ".geo"));
+    const double factor = unit == "m" ? 1e-3 : unit == "nm" ? 1e6 : 1;
+    const auto after = [&](const std::string& what) {
+      const std::size_t at = geo.find(what);
+      EXPECT_NE(at, geo.npos) << what;
+      return geo.substr(at + what.size());
+    };
+    const double length = std::stod(after("Mesh.ScalingFactor = "));
+    std::string corner_and_size = after("Box(1) = {");
+    for (int k = 0; k < 3; ++k) corner_and_size = corner_and_size.substr(corner_and_size.find(',') + 1);
+    const double edge = std::stod(corner_and_size);
+    EXPECT_NEAR(edge * length, 3 * factor, 1e-12 * factor) << unit;
+    EXPECT_GE(edge, 1);
+    EXPECT_LE(edge, 100);
+  }
+}
+
+TEST(ExportSolids, WhatIsTooSmallForOpenCascadeIsRefusedWithTheUnitThatHelps) {
+  Packing packing = of_two(1.1);
+  packing.scene.unit = Unit::um;  // 0.5 um are 5e-4 mm
+  EXPECT_NE(refusal_of(packing, "step", {}).find("too small"), std::string::npos);
+  EXPECT_NE(refusal_of(packing, "step", {}).find("brep takes the unit um"), std::string::npos);
+  EXPECT_NE(refusal_of(packing, "brep", {{"unit", "m"}}).find("the unit um"), std::string::npos);
+  EXPECT_EQ(refusal_of(packing, "brep", {}), "");
+}
+
+TEST(ExportSolids, NothingIsPromisedOfSpheresThatOverlapOrCrossWalls) {
+  const Folder folder;
+  EXPECT_NE(written(folder, of_two(1.1), "gmsh", "a.geo").note.find("makes the mesh"), std::string::npos);
+  const WrittenExport near = written(folder, of_two(1.0001), "gmsh", "b.geo");
+  EXPECT_NE(near.note.find("contact gap"), std::string::npos) << near.note;
+  const WrittenExport overlap = written(folder, of_two(0.9), "gmsh", "c.geo");
+  EXPECT_EQ(overlap.note.find("makes the mesh"), std::string::npos) << overlap.note;
+  const std::string python = text_of(folder / "c.py");
+  EXPECT_NE(python.find("TROUBLE = \"spheres overlap"), python.npos);
+  EXPECT_NE(python.find("EXACT = {}"), python.npos);
+  Packing outside = of_two(1.1);
+  outside.spheres.x[2] = {0.4, 0.4};  // of radius 0.5 at the wall z = 0
+  for (const std::string format : {"gmsh", "brep", "stl", "ply"}) {
+    const WrittenExport made = written(folder, outside, format, "d." + format);
+    EXPECT_NE(made.note.find("2 spheres go through the walls"), std::string::npos) << made.note;
+  }
+  EXPECT_NE(refusal_of(of_two(0.9), "gmsh", {{"contact", "bridge"}}).find("overlap"), std::string::npos);
+}
+
+TEST(ExportSolids, CapsThatMeetHaveNoExactVolume) {
+  Packing packing = of_two(1);
+  packing.spheres.push_back(Vector<dynamic>(Vector<3>(1.5, 1 + std::sqrt(0.75), 1)), 0.5);
+  const Folder folder;
+  const auto fraction = [&](const std::string& gap) {
+    const WrittenExport made =
+        written(folder, packing, "gmsh", "a" + gap + ".geo", {{"contact", "cap"}, {"contact_gap", gap}});
+    const bool is_about = made.note.find("porosity about") != std::string::npos;
+    EXPECT_EQ(text_of(folder / ("a" + gap + ".py")).find("EXACT = {}") != std::string::npos, is_about);
+    return is_about;
+  };
+  EXPECT_FALSE(fraction("0.01"));
+  EXPECT_TRUE(fraction("0.3"));  // caps of angles acos(0.7) beside each other at 60 degrees
+}
+
+TEST(ExportSolids, KeysThatDoNotActAreRefused) {
+  for (const std::string key : {"contact_gap", "bridge_radius"}) {
+    EXPECT_THROW(output_of("gmsh", {{key, "0.1"}}), Error);
+    EXPECT_NO_THROW(output_of("gmsh", {{key, "0.1"}, {"contact", "bridge"}}));
+    EXPECT_THROW(parse_scene("[container]\nkind = \"box\"\nsize = [4, 4, 4]\n[spheres]\ncount = 2\nradius = "
+                             "1\n[[output]]\nformat = \"gmsh\"\n" +
+                                 key + " = 0.1\n",
+                             "s.toml"),
+                 Error);
+  }
+  EXPECT_THROW(output_of("gmsh", {{"bridge_radius", "0.1"}, {"contact", "cap"}}), Error);
+  EXPECT_THROW(output_of("gmsh", {{"mesh_gap", "1e-6"}}), Error);
 }
 
 }  // namespace export_solids_test

@@ -95,6 +95,10 @@ std::string sample_of(const Entry& entry, const Key& key, int choice) {
   for (const OutputTable* format : output_tables())
     if (&format->keys == &entry && key.type == Type::file)
       return choice == 0 ? "\"mine.x\"" : "'a \"b\" \\c'";
+  // With which every other key acts.
+  for (const OutputTable* format : output_tables())
+    if (&format->keys == &entry && key.name == "contact")
+      return format->solids ? "\"bridge\"" : choice == 0 ? "\"gap\"" : "\"shrink\"";
   return key.type == Type::file && !entry.columns.empty() ? file_of_columns() : sample(key, choice);
 }
 
