@@ -353,7 +353,8 @@ Plan build(const Scene& stated) {
     require_gaps(plan);
     if (is_faceted(plan.domain)) plan.container = container_of(plan);
     expect_with_room(plan);
-    if (plan.scene.target.predicted) {  // again from the number that this is, as whoever reads it will have it
+    if (plan.scene.target
+            .predicted) {  // again from the number that this is, as whoever reads it will have it
       plan.scene.target.predicted = false;
       expect_with_room(plan);
       plan.scene.target.predicted = true;

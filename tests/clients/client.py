@@ -126,6 +126,20 @@ def same_spheres(read, known, tolerance=1e-12, periods=None):
     return True
 
 
+def thermo_rows(log):
+    """(step, atoms, kinetic energy) of every line below "Step Atoms KinEng …", as LAMMPS and LIGGGHTS print them."""
+    rows, width = [], 0
+    for line in log.splitlines():
+        words = line.split()
+        if words[:2] == ["Step", "Atoms"]:
+            width = len(words)
+        elif width and len(words) == width and words[0].isdigit():
+            rows.append((int(words[0]), int(words[1]), float(words[2])))
+        elif rows:
+            width = 0
+    return rows
+
+
 def in_folder(work):
     """Calls work(folder) with one that goes afterwards, then ends the script."""
     with tempfile.TemporaryDirectory() as folder:

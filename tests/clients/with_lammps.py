@@ -27,25 +27,12 @@ run 1000
 """
 
 
-def table(log):
-    rows, inside = [], False
-    for line in log.splitlines():
-        words = line.split()
-        if words[:2] == ["Step", "Atoms"]:
-            inside = True
-        elif inside and len(words) == 3 and words[0].isdigit():
-            rows.append((int(words[0]), int(words[1]), float(words[2])))
-        elif rows and words and not words[0].isdigit():
-            inside = False
-    return rows
-
-
 def check(name, result, boundary, walls):
     result.export("lammps", "packing.data")
     script = SCRIPT.format(data="packing.data", boundary=boundary, walls=walls, temperature=1e10)
     (result.folder / "in.run").write_text(script)
     log = run(LMP, "-in", "in.run", folder=result.folder)
-    rows = table(log)
+    rows = thermo_rows(log)
     count = len(result.spheres)
     expect(rows and rows[-1][0] == 1000 and all(row[1] == count for row in rows),
            f"{name}: {count} spheres, 1,000 steps, none lost")

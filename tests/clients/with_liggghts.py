@@ -9,22 +9,9 @@ LIGGGHTS = need_program("liggghts", "liggghts")
 GRAVITY, DENSITY = 9.81, 2500
 
 
-def table(log):
-    rows, inside = [], False
-    for line in log.splitlines():
-        words = line.split()
-        if words[:2] == ["Step", "Atoms"]:
-            inside = True
-        elif inside and len(words) == 4 and words[0].isdigit():
-            rows.append((int(words[0]), int(words[1]), float(words[2])))
-        elif rows:
-            inside = False
-    return rows
-
-
 def check(name, result, fall):
     result.export("liggghts", "packing.data")
-    rows = table(run(LIGGGHTS, "-in", "packing.in", folder=result.folder))
+    rows = thermo_rows(run(LIGGGHTS, "-in", "packing.in", folder=result.folder))
     count = len(result.spheres)
     expect(rows and rows[-1][0] == 1000 and all(row[1] == count for row in rows),
            f"{name}: {count} spheres, 1,000 steps, none lost")
@@ -35,12 +22,26 @@ def check(name, result, fall):
     return rows
 
 
+ROUND = """unit = "mm"
+[container]
+{container}
+[spheres]
+packing_fraction = 0.4
+diameter = 1
+"""
+WALLS = {"sphere, as triangles": 'kind = "sphere"\nradius = 5\ncenter = [1, 2, 3]',
+         "oblique cylinder, as triangles": 'kind = "cylinder"\nradius = 4\nheight = 10\naxis = [0.3, 0, 1]',
+         "cylinder along y": 'kind = "cylinder"\nradius = 4\nheight = 10\naxis = [0, 1, 0]\nbase = [5, 1, -2]'}
+
+
 def work(folder):
     hopper = Result(folder / "hopper", HOPPER)
     bounds = hopper.report["container"]["bounds"]
     rows = check("CAD part", hopper, bounds["upper"][2] - bounds["lower"][2])
     expect(rows[-1][2] > 0, "CAD part: the spheres move")
     check("periodic box", Result(folder / "periodic", PERIODIC), 0)
+    for name, container in WALLS.items():
+        check(name, Result(folder / name, ROUND.format(container=container)), 10)
 
 
 in_folder(work)

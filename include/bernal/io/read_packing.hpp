@@ -30,9 +30,9 @@ Spheres<dynamic> read_columns_of(const Scene& scene, const std::filesystem::path
 void finish_writing(const std::filesystem::path& folder);
 
 /// What stands in scene.toml and spheres.csv of a folder that `write_packing` made, or that has files of that
-/// form. How the run went is not among it: effects, history, seconds and version are empty; the outcome says whether another program
-/// made it. Throws as
-/// `finish_writing`, `read_scene`, `packed_domain_of` and `read_csv_of` do.
+/// form. How the run went is not among it: effects, history, seconds and version are empty; the outcome says
+/// whether another program made it. Throws as `finish_writing`, `read_scene`, `packed_domain_of` and
+/// `read_csv_of` do.
 Packing read_packing(const std::filesystem::path& folder);
 
 }  // namespace bernal

@@ -74,7 +74,8 @@ using TakeLayers = std::function<void(std::string_view)>;
 /// most 64 MiB of layers are in memory, or one layer (of fractions eight, up to 512 MiB), and 48 bytes for
 /// each image of a sphere there. Cost: for labels and binary images about 50 ns for every row of voxels in a
 /// ball and 1 ns a triangle and layer; for fractions some µs a ball, and some ns a voxel of its bounds.
-/// Throws Error{bad_packing} where a sphere meets a million of its images, Cancelled once the monitor says stop.
+/// Throws Error{bad_packing} where a sphere meets a million of its images, Cancelled once the monitor says
+/// stop.
 void voxelise(const Spheres<dynamic>&, const Domain&, const VoxelGrid&, VoxelValues, const TakeLayers&,
               const Monitor& monitor = {});
 
