@@ -10,7 +10,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-BERNAL = str(Path(sys.argv[1] if len(sys.argv) > 1 else "build/release/bernal").resolve())
+ARGUMENTS = [word for word in sys.argv[1:] if not word.startswith("--")]
+BERNAL = str(Path(ARGUMENTS[0] if ARGUMENTS else "build/release/bernal").resolve())
 DATA = Path(__file__).resolve().parents[2] / "data"
 SKIPPED = 77
 
@@ -46,23 +47,29 @@ METRES = {"m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}
 failures = 0
 
 
-def skip(what, package):
-    print(f"skipped: {what} is not installed (apt-get install {package})")
-    sys.exit(SKIPPED)
-
-
-def need_program(name, package):
+def find_program(name, package):
+    """Where it is; None, with a word on how to install it, where it is not."""
     found = shutil.which(name)
     if not found:
-        skip(name, package)
+        print(f"skipped: {name} is not installed (apt-get install {package})", flush=True)
     return found
 
 
-def need_module(name, package):
+def find_module(name, package):
+    """The same of a module of Python's."""
     try:
         return __import__(name, fromlist=["any"])
     except ImportError:
-        skip(f"Python's {name}", package)
+        print(f"skipped: Python's {name} is not installed (apt-get install {package})", flush=True)
+        return None
+
+
+def need_program(name, package):
+    return find_program(name, package) or sys.exit(SKIPPED)
+
+
+def need_module(name, package):
+    return find_module(name, package) or sys.exit(SKIPPED)
 
 
 def expect(holds, what):

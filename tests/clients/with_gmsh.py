@@ -6,35 +6,15 @@ tetrahedra with a gap of 1 %, their quality, volume fractions and nodes at oppos
 and BREP opened, their volumes. --large: 800 spheres in a periodic box and 300 in a CAD part, twenty minutes. Debian:
 gmsh python3-gmsh python3-numpy. Takes two minutes.
 """
-import json
-import shutil
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
+from client import *
 
-arguments = [a for a in sys.argv[1:] if a != "--large"]
-BERNAL = arguments[0] if arguments else "build/release/bernal"
-HERE = Path(__file__).resolve().parents[2]
-sys.path = [folder for folder in sys.path if Path(folder).resolve() != HERE / "tests/clients"]  # this is not Gmsh's module
-try:
-    import gmsh
-    import numpy  # noqa: F401: the exported script needs it
-except ImportError:
-    print("skipped: Gmsh (apt-get install python3-gmsh python3-numpy)")
-    sys.exit(77)
+gmsh = need_module("gmsh", "python3-gmsh")
+need_module("numpy", "python3-numpy")  # which the exported script takes
 
 PERIODIC = 'kind = "periodic"\n[spheres]\ncount = {}\nradius = {{ distribution = "uniform", min = 0.8, max = 1.2, basis = "number" }}\n'
 CYLINDER = 'kind = "cylinder"\nradius = 4\nheight = 6\naxis = [0.2, 0, 1]\n[spheres]\ncount = {}\nradius = 0.7\n'
-CAD = 'kind = "mesh"\nfile = "' + str(HERE / "data/meshes/block_fillets_bore.step") + '"\n[spheres]\ncount = {}\nradius = {}\n'
+CAD = 'kind = "mesh"\nfile = "' + str(DATA / "meshes/block_fillets_bore.step") + '"\n[spheres]\ncount = {}\nradius = {}\n'
 SIZE = 0.3  # of elements, over the radius
-failures = 0
-
-
-def expect(holds, what):
-    global failures
-    failures += not holds
-    print("ok    " if holds else "FAILED", what, flush=True)
 
 
 def export(folder, to, file, **words):
@@ -115,4 +95,4 @@ else:
     check("periodic", PERIODIC.format(20), 20, True)
     check("cylinder", CYLINDER.format(20), 20, True)
     check("CAD part", CAD.format(10, 4), 10, True)
-sys.exit(1 if failures else 0)
+finish()

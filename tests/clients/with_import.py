@@ -6,38 +6,10 @@ scene, certified. LIGGGHTS, LAMMPS, ASE, gsd and NumPy write packings of known n
 not installed is left out with a word. Debian: lammps liggghts yade python3-ase python3-gsd python3-numpy. Takes 15 seconds.
 """
 import csv
-import json
-import os
-import shutil
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
-BERNAL = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else "build/release/bernal")
+from client import *
+
 HERE = Path(__file__).resolve().parent / "import"
-failures = 0
-
-
-def expect(holds, what):
-    global failures
-    failures += not holds
-    print("ok    " if holds else "FAILED", what)
-
-
-def installed(program, package):
-    if shutil.which(program):
-        return True
-    print(f"skipped: {program} (apt-get install {package})")
-    return False
-
-
-def module(name, package):
-    try:
-        return __import__(name, fromlist=["x"])
-    except ImportError:
-        print(f"skipped: {name} (apt-get install {package})")
-        return None
 
 
 def bernal(*words):
@@ -115,21 +87,21 @@ def with_liggghts(place):
 
 
 def with_modules(place):
-    numpy = module("numpy", "python3-numpy")
+    numpy = find_module("numpy", "python3-numpy")
     if numpy is None:
         return
     rows = numpy.random.default_rng(1).random((50, 4)) * [8, 8, 8, 0.5] + [1, 1, 1, 0.1]
     numpy.save(place / "a.npy", numpy.asfortranarray(rows.astype(">f4")))
     imported(place, place / "a.npy", "--unit", "mm")
     expect(close(spheres_of(place), rows, 1e-6), "NumPy: Fortran order, big-endian, single precision")
-    if (ase := module("ase", "python3-ase")) is not None:
+    if (ase := find_module("ase", "python3-ase")) is not None:
         from ase.io import write
         atoms = ase.Atoms("X50", positions=rows[:, :3], cell=[10, 10, 10], pbc=[1, 1, 0])
         atoms.set_array("radius", rows[:, 3].copy())
         write(place / "a.extxyz", [atoms[:7], atoms])
         said = imported(place, place / "a.extxyz", "--unit", "mm")
         expect(close(spheres_of(place), rows, 1e-7) and "periodic but along axis 2" in said, "ASE: extended XYZ")
-    if module("gsd", "python3-gsd") is not None:
+    if find_module("gsd", "python3-gsd") is not None:
         import gsd.hoomd
         make = getattr(gsd.hoomd, "Frame", None) or gsd.hoomd.Snapshot
         with gsd.hoomd.open(str(place / "a.gsd"), "wb") as trajectory:
@@ -145,13 +117,14 @@ def with_modules(place):
         expect(close(spheres_of(place), rows, 2e-6) and "frame 40 of 40" in said, "gsd: the last of 40 frames")
 
 
-with tempfile.TemporaryDirectory() as made:
-    place = Path(made)
-    if installed("lmp", "lammps"):
+def work(place):
+    if find_program("lmp", "lammps"):
         with_lammps(place)
-    if installed("yade", "yade"):
+    if find_program("yade", "yade"):
         with_yade(place)
-    if installed("liggghts", "liggghts"):
+    if find_program("liggghts", "liggghts"):
         with_liggghts(place)
     with_modules(place)
-sys.exit(1 if failures else 0)
+
+
+in_folder(work)

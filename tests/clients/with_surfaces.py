@@ -5,16 +5,10 @@ Packs 1,000 spheres in a cylinder and 60 in a periodic box, exports them in ever
 numpy, meshio, VTK, admesh, gmsh and bernal itself (assimp) read: closed, oriented, the same volume; no triangles of different
 spheres that meet; opposite ends of a period that match node by node. With OpenFOAM a case of snappyHexMesh is meshed and
 checked, in a cylinder and in a periodic box. A program that is not installed is left out with a word. Debian:
-python3-numpy python3-meshio python3-vtk9 admesh gmsh python3-gmsh openfoam. Takes half a minute, with OpenFOAM some minutes.
+python3-numpy python3-meshio python3-vtk9 (or python3-paraview) admesh gmsh python3-gmsh openfoam. Takes half a minute, with OpenFOAM some minutes.
 """
-import json
-import shutil
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
+from client import *
 
-BERNAL = sys.argv[1] if len(sys.argv) > 1 else "build/release/bernal"
 CYLINDER = """unit = "mm"
 [container]
 kind = "cylinder"
@@ -40,37 +34,12 @@ do = "{stage}"
 """
 
 
-def try_import(what, package):
-    try:
-        return __import__(what, fromlist=["x"])
-    except ImportError:
-        print(f"skipped: {what} (apt-get install {package})")
-        return None
-
-
-def find(what, package):
-    found = shutil.which(what)
-    if found is None:
-        print(f"skipped: {what} (apt-get install {package})")
-    return found
-
-
-numpy = try_import("numpy", "python3-numpy")
-if numpy is None:
-    sys.exit(77)
-meshio = try_import("meshio", "python3-meshio")
-gmsh = try_import("gmsh", "python3-gmsh")
-vtk = try_import("vtk", "python3-vtk9")
-admesh = find("admesh", "admesh")
-snappy = find("snappyHexMesh", "openfoam")
-
-failures = 0
-
-
-def expect(holds, what):
-    global failures
-    failures += not holds
-    print("ok    " if holds else "FAILED", what, flush=True)
+numpy = need_module("numpy", "python3-numpy")
+meshio = find_module("meshio", "python3-meshio")
+gmsh = find_module("gmsh", "python3-gmsh")
+vtk = find_module("vtk", "python3-vtk9")
+admesh = find_program("admesh", "admesh")
+snappy = find_program("snappyHexMesh", "openfoam")
 
 
 def pack(folder, scene):
@@ -184,8 +153,7 @@ def check_snappy(folder, name):
     expect(run.returncode == 0 and "Mesh OK" in said, f"snappyHexMesh {name}: checkMesh finds the mesh good")
 
 
-with tempfile.TemporaryDirectory() as made:
-    place = Path(made)
+def work(place):
     bed = pack(place / "bed", CYLINDER.format(height=12, count=1000, radius=0.5, stage="relax"))
     for kind in ("spheres", "all", "pores"):
         check_formats(bed, kind, 1000)
@@ -197,4 +165,6 @@ with tempfile.TemporaryDirectory() as made:
         check_snappy(few, "cylinder")
         few = pack(place / "few_box", BOX.format(count=50, stage="fly", size="size = [6.0, 6.0, 6.0]"))
         check_snappy(few, "box")
-sys.exit(1 if failures else 0)
+
+
+in_folder(work)

@@ -5,14 +5,8 @@ Packs a cylinder, exports it in every format of images and every kind of values,
 ParaView), teem and tifffile read with the raw voxels, value by value, and their spacing, origin and unit. A program that
 is not installed is left out with a word. Debian: python3-vtk9 (or python3-paraview) teem-apps python3-tifffile. Takes three seconds.
 """
-import json
-import shutil
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
+from client import *
 
-BERNAL = sys.argv[1] if len(sys.argv) > 1 else "build/release/bernal"
 SCENE = """unit = "mm"
 [container]
 kind = "cylinder"
@@ -26,30 +20,10 @@ radius = 0.1
 """
 
 
-def try_import(what, package):
-    try:
-        return __import__(what, fromlist=["x"])
-    except ImportError:
-        print(f"skipped: {what} (apt-get install {package})")
-        return None
-
-
-numpy = try_import("numpy", "python3-numpy")
-if numpy is None:
-    sys.exit(77)
-vtk = try_import("vtk", "python3-vtk9")
-tifffile = try_import("tifffile", "python3-tifffile")
-unu = shutil.which("teem-unu") or shutil.which("unu")
-if unu is None:
-    print("skipped: unu (apt-get install teem-apps)")
-
-failures = 0
-
-
-def expect(holds, what):
-    global failures
-    failures += not holds
-    print("ok    " if holds else "FAILED", what)
+numpy = need_module("numpy", "python3-numpy")
+vtk = find_module("vtk", "python3-vtk9")
+tifffile = find_module("tifffile", "python3-tifffile")
+unu = shutil.which("unu") or find_program("teem-unu", "teem-apps")
 
 
 def near(a, b):
@@ -105,10 +79,11 @@ def check(folder, values):
             expect(about["unit"] == "mm" and near(about["spacing"], header["spacing"][2]), f"tiff {values}: unit and spacing")
 
 
-with tempfile.TemporaryDirectory() as made:
-    place = Path(made)
+def work(place):
     (place / "scene.toml").write_text(SCENE)
     subprocess.run([BERNAL, "pack", str(place / "scene.toml"), "-o", str(place / "out"), "--quiet"], check=True)
     for kind in ("binary", "labels", "fraction"):
         check(place, kind)
-sys.exit(1 if failures else 0)
+
+
+in_folder(work)
