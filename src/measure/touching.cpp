@@ -60,8 +60,8 @@ template <int D>
 void append(std::vector<NearPair>& out, std::uint32_t i, std::uint32_t j, double gap, const Vector<D>&) {
   out.push_back({i, j, gap});
 }
-void append(std::vector<NearBond>& out, std::uint32_t i, std::uint32_t j, double, const Vector<3>& d) {
-  out.push_back({i, j, d});
+void append(std::vector<NearBond>& out, std::uint32_t i, std::uint32_t j, double gap, const Vector<3>& d) {
+  out.push_back({i, j, d, gap});
 }
 
 /// The pairs of sphere i, at `c`, with spheres of its own level and of larger ones: each pair is met from its

@@ -19,6 +19,7 @@ struct NearPair {
 struct NearBond {
   std::uint32_t first, second;
   Vector<3> displacement;
+  double gap;  ///< as NearPair::gap
 };
 
 /// A sphere and a facet, edge or corner of the wall.

@@ -60,19 +60,17 @@ class Places {
 
 void add_between_spheres(const Solids& solids, Places& places) {
   const Spheres<dynamic>& spheres = solids.spheres;
-  const auto pairs = near_pairs(spheres, solids.domain, places.widest());
-  const auto bonds = near_bonds(spheres, solids.domain, places.widest());
   const ContactReport& treated = solids.contacts;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const double ri = spheres.r[pairs[k].first], rj = spheres.r[pairs[k].second];
+  for (const NearBond& near : near_bonds(spheres, solids.domain, places.widest())) {
+    const double ri = spheres.r[near.first], rj = spheres.r[near.second];
     const double smaller = std::min(ri, rj);
-    const Vector<3> normal = bonds[k].displacement.normalized();
-    double gap = pairs[k].gap * (ri + rj), flat = 0;
-    const Vector<3> point = Vector<3>(spheres.center(pairs[k].first)) + (ri + 0.5 * gap) * normal;
-    const bool is_treated = pairs[k].gap < treated.gap;
+    const Vector<3> normal = near.displacement.normalized();
+    double gap = near.gap * (ri + rj), flat = 0;
+    const Vector<3> point = Vector<3>(spheres.center(near.first)) + (ri + 0.5 * gap) * normal;
+    const bool is_treated = near.gap < treated.gap;
     if (is_treated && treated.treatment == ContactTreatment::bridge) continue;
     if (is_treated && treated.treatment == ContactTreatment::cap) {
-      flat = smaller * std::sqrt(2 * (treated.gap - pairs[k].gap));
+      flat = smaller * std::sqrt(2 * (treated.gap - near.gap));
       gap = treated.gap * (ri + rj);
     }
     places.add(point, normal, gap, 0.5 * (1 / ri + 1 / rj), smaller, flat);

@@ -33,14 +33,10 @@ struct Bond {
 };
 
 std::vector<Bond> bonds_of(const Spheres<dynamic>& spheres, const Domain& domain, double gap) {
-  const std::vector<NearPair> pairs = near_pairs(spheres, domain, gap);
-  const std::vector<NearBond> places = near_bonds(spheres, domain, gap);
   std::vector<Bond> bonds;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const NearPair& pair = pairs[k];
-    bonds.push_back({pair.first, pair.second, places[k].displacement.normalized(),
-                     (1 + pair.gap) * (spheres.r[pair.first] + spheres.r[pair.second]), pair.gap});
-  }
+  for (const NearBond& near : near_bonds(spheres, domain, gap))
+    bonds.push_back({near.first, near.second, near.displacement.normalized(),
+                     (1 + near.gap) * (spheres.r[near.first] + spheres.r[near.second]), near.gap});
   return bonds;
 }
 
