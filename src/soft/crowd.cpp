@@ -53,6 +53,11 @@ void Crowd<Ground>::measure() {
 }
 
 template <class Ground>
+bool Crowd<Ground>::is_free() const {
+  return largest_overlap_ < share_of_margin * ground_.margin();
+}
+
+template <class Ground>
 StageEnd Crowd<Ground>::settle(const Monitor& monitor, const std::function<void()>& milestone,
                                double most_sweeps) {
   StageEnd end = StageEnd::full;
@@ -68,7 +73,7 @@ StageEnd Crowd<Ground>::settle(const Monitor& monitor, const std::function<void(
     if (end == StageEnd::cancelled) break;
     measure();
     if (milestone) milestone();
-    if (largest_overlap_ < share_of_margin * ground_.margin())
+    if (is_free())
       end = StageEnd::converged;
     else if (sweeps_ > most_sweeps)
       end = StageEnd::hit_limit;
@@ -79,6 +84,15 @@ StageEnd Crowd<Ground>::settle(const Monitor& monitor, const std::function<void(
   }
   ground_.read_places(spheres_);
   return end;
+}
+
+template <class Ground>
+double Crowd<Ground>::exchange(SizeExchange& sizes, double step) {
+  ground_.engine().exchange(sizes.deal(ground_.engine().forces(), step));
+  for (int k = 1; k < sweeps_an_exchange; ++k) ground_.engine().sweep(pace_for(0).omega * D / 3);
+  sweeps_ += sweeps_an_exchange - 1;
+  measure();
+  return energy_of(squeeze_);
 }
 
 template <class Ground>

@@ -10,6 +10,7 @@
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
 #include "soft/ground.hpp"
+#include "soft/size_exchange.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
@@ -55,6 +56,9 @@ class Crowd {
   /// it is over.
   StageEnd relax(const Stirring& how, const Monitor& monitor, Random& random);
 
+  /// Exchanges sizes once, by steps of that length, and sweeps. Returns `energy_of` the spheres.
+  double exchange(SizeExchange& sizes, double step);
+
   /// Sweeps with larger radii for a while and then goes back, which shakes what is stuck out of its place.
   void burst();
 
@@ -74,6 +78,7 @@ class Crowd {
 
   /// Of the spheres as they are relaxed, which are a little larger than asked for.
   double largest_overlap() const { return largest_overlap_; }
+  bool is_free() const;
   /// How far that is from 1 to where the spheres are free.
   double done() const { return std::log(largest_overlap_) / std::log(ground_.margin()); }
   /// Mean over the spheres of the root of the sum of their squared overlap ratios.

@@ -41,7 +41,8 @@ NeighborRelaxation<D>::NeighborRelaxation(const Spheres<D>& spheres, const Vecto
       places_(spheres.size() + block, Place{}),
       radii_(spheres.size() + block, std::numeric_limits<float>::quiet_NaN()),
       ids_(spheres.size()),
-      squeeze_(spheres.size(), 0.0f) {
+      squeeze_(spheres.size(), 0.0f),
+      force_(spheres.size(), 0.0f) {
   for (std::size_t i = 0; i < count_; ++i) {
     for (int k = 0; k < D; ++k)
       places_[i].x[k] = to_fixed(spheres.x[static_cast<std::size_t>(k)][i], edges[k]);
@@ -123,10 +124,11 @@ double NeighborRelaxation<D>::sweep_and_measure(float omega) {
   float largest = 0;
   for (Id i = 0; i < count_; ++i) {
     const Id* end = find_overlapping(i);
-    squeeze_[i] = 0;
+    squeeze_[i] = force_[i] = 0;
     if (end == hits_.data()) continue;
     const Push push = in_images ? push_from_images(i, end) : push_from_nearest(i, end);
     squeeze_[i] = push.squeeze;
+    force_[i] = radii_[i] * push.depth;
     largest = std::max(largest, push.largest);
     const Floats step = push.sum * std::min(omega / push.contacts, 1.0f) * inverse_scale_;
     const Floats limit = Floats{} + longest_move;
@@ -172,6 +174,7 @@ inline void NeighborRelaxation<D>::add_to(Push& push, Id i, Id j, Floats d, floa
   }
   push.sum += d * (weight * (reach / distance - 1));
   push.contacts += weight;
+  push.depth += weight * ratio * reach;
 }
 
 template <int D>
@@ -225,7 +228,8 @@ typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::any_direction(Id i
 
 template <int D>
 bool NeighborRelaxation<D>::moved_too_far() const {
-  const auto limit = static_cast<float>(0.25 * wear_ * wear_ * skin_ * skin_);
+  const double way = std::max(0.0, 0.5 * wear_ * skin_ - grown_);
+  const auto limit = static_cast<float>(way * way);
   __m128 largest = _mm_setzero_ps();
   for (std::size_t i = 0; i < count_; i += block) {
     const auto squares = [&](std::size_t k) {
@@ -249,6 +253,7 @@ void NeighborRelaxation<D>::keep_lists_valid() {
   build_lists();
   built_at_ = places_;
   stale_ = false;
+  grown_ = 0;
   age_ = 0;
 }
 
@@ -303,10 +308,23 @@ void NeighborRelaxation<D>::build_lists() {
 }
 
 template <int D>
-std::vector<float> NeighborRelaxation<D>::squeeze() const {
+std::vector<float> NeighborRelaxation<D>::by_id(const std::vector<float>& in_order) const {
   std::vector<float> of_sphere(count_);
-  for (std::size_t i = 0; i < count_; ++i) of_sphere[ids_[i]] = squeeze_[i];
+  for (std::size_t i = 0; i < count_; ++i) of_sphere[ids_[i]] = in_order[i];
   return of_sphere;
+}
+
+template <int D>
+void NeighborRelaxation<D>::exchange(const std::vector<Id>& to) {
+  const std::vector<float> radii = by_id(radii_);
+  float most = 0;
+  for (Id i = 0; i < count_; ++i) {
+    ids_[i] = to[ids_[i]];
+    most = std::max(most, radii[ids_[i]] - radii_[i]);
+    radii_[i] = radii[ids_[i]];
+    if (!walled_.empty()) stop_at_walls(i);
+  }
+  grown_ += most;
 }
 
 template <int D>

@@ -37,7 +37,11 @@ class NeighborRelaxation {
   /// The same; returns the largest overlap ratio that was met.
   double sweep_and_measure(float omega);
   /// Of each sphere the sum of its squared overlap ratios, as the last measuring sweep met them.
-  std::vector<float> squeeze() const;
+  std::vector<float> squeeze() const { return by_id(squeeze_); }
+  /// Of each sphere the sum of the forces on it, as `SoftPacking::forces`.
+  std::vector<float> forces() const { return by_id(force_); }
+  /// Sphere to[i] takes the place of sphere i: `to` is a permutation. Cost: O(N).
+  void exchange(const std::vector<std::uint32_t>& to);
 
   /// The box and the distances grow, or shrink; the radii do not.
   void grow(double factor);
@@ -57,7 +61,7 @@ class NeighborRelaxation {
   /// What the overlaps of a sphere do to it.
   struct Push {
     Floats sum{};
-    float contacts = 0, squeeze = 0, largest = 0;
+    float contacts = 0, squeeze = 0, largest = 0, depth = 0;
   };
 
   const Id* find_overlapping(Id i);
@@ -67,6 +71,7 @@ class NeighborRelaxation {
   Floats any_direction(Id i, Id j) const;
   void keep_lists_valid();
   bool moved_too_far() const;
+  std::vector<float> by_id(const std::vector<float>& in_order) const;
   void build_lists();
   void sort_into_cells(double reach);
   void set_scale();
@@ -86,7 +91,7 @@ class NeighborRelaxation {
   std::vector<Place> places_;    // sorted by cell; behind them some that touch nothing
   std::vector<float> radii_;
   std::vector<Id> ids_;
-  std::vector<float> squeeze_;
+  std::vector<float> squeeze_, force_;
 
   FixedPointGrid<D> grid_;
   std::vector<Id> neighbors_;      // four by four; padded with count_
@@ -95,7 +100,8 @@ class NeighborRelaxation {
   std::vector<Id> hits_;
   bool stale_ = true;
   double wear_ = 0.9;
-  int age_ = 0;  // of the lists, in sweeps
+  int age_ = 0;       // of the lists, in sweeps
+  double grown_ = 0;  // radii, at most, by exchanges since they were built
   Effect lists_built_{"neighbour lists", 0, 0};
 };
 

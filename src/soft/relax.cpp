@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "core/close_packing.hpp"
 #include "jam/polish.hpp"
+#include "soft/exchange_in_box.hpp"
 #include "soft/ground.hpp"
 #include "soft/soft_engine.hpp"
 #include "work/free_of_overlap.hpp"
@@ -141,16 +144,18 @@ bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const Wo
 ///  - It ends with overlaps far below `options.stop`.
 /// From four dimensions on, and between walls, spheres are swept one after the other, on lists for one size
 /// (NeighborRelaxation).
+/// `overlap` is the largest overlap ratio to begin with, if that is known.
 /// Preconditions and results are those of `relax_by_the_book`. Cost: about 13 ns a sphere and sweep, lists
 /// included; 0.07 µs in four dimensions and 0.13 µs in eight, lists not included.
 template <int D>
-StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
+StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options,
+                    double overlap = 1) {
   SoftEngine<D> packing(spheres, edges, 1, work.walls);
   const int sweeps = sweeps_a_cycle(options, std::min(spheres.size(), enough));
   const double stop =
       std::max({share_of_stop * options.stop, std::min(work.allowed_overlap, options.stop), least_overlap});
   StageEnd end = StageEnd::converged;
-  for (double molr = 1, last_molr = 0, growth = 0;;) {
+  for (double molr = overlap, last_molr = 0, growth = 0;;) {
     const Pace pace = pace_for(molr);
     packing.wear_lists(pace.wear);
     const float omega = pace.omega * D / 3;
@@ -182,11 +187,42 @@ StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
              : relax_by_the_book<D>(spheres, edges, work, options);
 }
 
+/// Takes spheres that just do not overlap to a denser packing of the same sizes, if that is found.
+template <int D>
+StageEnd exchange_sizes(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
+  EffectTimer timer(work.effects["exchange"]);
+  const Spheres<D> ordinary = spheres;
+  const Vector<D> ordinary_edges = edges;
+  const std::optional<double> overlap = exchange_in_box<D>(spheres, edges, work);
+  if (!overlap) {
+    work.account = "without an exchange of sizes: they are equal or too far apart";
+    return StageEnd::converged;
+  }
+  const StageEnd end = relax_fast<D>(spheres, edges, work, options, *overlap);
+  free_of_overlap<D>(spheres, edges, work);
+  if (edges.prod() < ordinary_edges.prod()) {
+    const double volume = work.volume_of_spheres();
+    work.account =
+        fmt::format("after an exchange of sizes that took the packing fraction from {:.4f} to {:.4f}",
+                    volume / ordinary_edges.prod(), volume / edges.prod());
+  } else {
+    spheres = ordinary;
+    edges = ordinary_edges;
+  }
+  return end;
+}
+
+void refuse_what_the_reference_lacks(const Work& work, const Relax& options) {
+  if (options.method == RelaxMethod::fast) return;
+  const char* what = !work.walls.empty() ? "no walls" : options.exchange ? "no exchange of sizes" : nullptr;
+  if (what)
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("the reference method of relax knows {}; leave \"method\" out", what));
+}
+
 template <int D>
 StageEnd relax_in(Work& work, const Relax& options) {
-  const bool by_the_book = options.method != RelaxMethod::fast;
-  if (!work.walls.empty() && by_the_book)
-    throw Error(ErrorCode::bad_scene, "the reference method of relax knows no walls; leave \"method\" out");
+  refuse_what_the_reference_lacks(work, options);
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
   const auto finish = [&](StageEnd end) {
@@ -194,24 +230,25 @@ StageEnd relax_in(Work& work, const Relax& options) {
                                      work);
   };
   if (is_done<D>(spheres, edges, work, options)) return finish(StageEnd::converged);
+  StageEnd end = StageEnd::converged;
   if (begins_in_its_box(work, options) && hardly_overlaps<D>(spheres, edges, work, options)) {
     free_of_overlap<D>(spheres, edges, work);
-    return finish(StageEnd::converged);
+  } else {
+    const Vector<D> start = edges_to_start_from(work, options);
+    place<D>(spheres, edges, start, work);
+    const int most_starts = is_loose(work) ? most_starts_in_a_loose_box : 1;
+    for (int starts = 1;; ++starts) {
+      work.edges = edges;
+      end = push_apart<D>(spheres, edges, work, options);
+      free_of_overlap<D>(spheres, edges, work);
+      if (end != StageEnd::converged || starts == most_starts ||
+          lies_within<D>(spheres, edges, *work.target_edges))
+        break;
+      resize_box<D>(spheres, edges, start);
+    }
   }
-  const Vector<D> start = edges_to_start_from(work, options);
-  place<D>(spheres, edges, start, work);
-
-  const int most_starts = is_loose(work) ? most_starts_in_a_loose_box : 1;
-  StageEnd end = StageEnd::converged;
-  for (int starts = 1;; ++starts) {
-    work.edges = edges;
-    end = push_apart<D>(spheres, edges, work, options);
-    free_of_overlap<D>(spheres, edges, work);
-    if (end != StageEnd::converged || starts == most_starts ||
-        lies_within<D>(spheres, edges, *work.target_edges))
-      break;
-    resize_box<D>(spheres, edges, start);
-  }
+  if (options.exchange && end == StageEnd::converged && !is_loose(work))
+    end = exchange_sizes<D>(spheres, edges, work, options);
   return finish(end);
 }
 
@@ -286,20 +323,24 @@ const StageEntry& entry_of<Relax>() {
                             &Relax::seconds, "seconds",
                             "after which it stops, and then one seed need not give one packing; 0: any time",
                             {0, 1e9})})),
-               {buys_accuracy(
-                   {0, 1e-6, 1e-10},
-                   number(
-                       &Relax::polish, "polish",
-                       "close the gaps and overlaps of all contacts to this ratio, and no more contacts than "
-                       "hold the spheres; in a container all sizes grow for that by one factor, which the "
-                       "report states; 0: do not",
-                       {0, 0.5}))}),
+               {flag(&Relax::exchange, "exchange",
+                     "spheres exchange their sizes on the way: some 7 % denser, disordered but optimised, "
+                     "not what pouring makes"),
+                buys_accuracy(
+                    {0, 1e-6, 1e-10},
+                    number(
+                        &Relax::polish, "polish",
+                        "close the gaps and overlaps of all contacts to this ratio, and no more contacts "
+                        "than "
+                        "hold the spheres; in a container all sizes grow for that by one factor, which the "
+                        "report states; 0: do not",
+                        {0, 0.5}))}),
            .choices = {{{"alpha"}, {"period"}}},
            .complete = completion(complete_relax)},
           traits),
       .act_in_bed = act(relax_in_container),
       .act_in_box = act(relax),
-      .may_bring = {"insertion", "neighbour lists", "relaxation", "polish"},
+      .may_bring = {"insertion", "neighbour lists", "relaxation", "exchange", "polish"},
       .effects = of_options(effects_of_relaxation),
       .require =
           [](const void*, const Domain& container, double smallest_radius, const FillTask& task) {

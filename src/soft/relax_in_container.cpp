@@ -22,6 +22,7 @@ constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
 /// More than what is likely to fit, in shares of it, is not tried at once.
 constexpr double most_of_attainable = 1.1;
 constexpr int most_hand_overs = 20;
+
 /// Of the radii: a skin up to this is lost in the margin.
 constexpr double thin_skin = 1e-7;
 /// Tries to find a place where a sphere clears the wall.
@@ -42,6 +43,10 @@ class Relaxation {
 
   StageEnd run() {
     bool free = relax(options_.patience);
+    if (options_.exchange && !over_ && (!free || crowd_.size() < target_count_)) {
+      exchange();
+      free = !cancelled_ && relax(options_.patience);
+    }
     for (double share = taken_out, patience = options_.patience; !free && !cancelled_ && crowd_.size() > 1;) {
       const double count = share * crowd_.mean_squeeze() * static_cast<double>(crowd_.size());
       crowd_.drop_last(count, random_);
@@ -107,7 +112,8 @@ class Relaxation {
   /// Settles and stirs. Returns whether the spheres came free of overlap.
   bool relax(double patience) {
     const auto is_over = [this] {
-      return crowd_.sweeps() > options_.sweeps || (options_.seconds > 0 && seconds() > options_.seconds);
+      return crowd_.sweeps() > options_.sweeps + sweeps_of_exchange_ ||
+             (options_.seconds > 0 && seconds() > options_.seconds);
     };
     const StageEnd end = crowd_.relax({.patience = patience,
                                        .hopeless_patience = hopeless_patience,
@@ -120,24 +126,55 @@ class Relaxation {
     return end == StageEnd::converged;
   }
 
+  /// How many of the sequence, up to the target, this share of those that are there is.
+  std::size_t count_of_more(double share) const {
+    const std::size_t n = crowd_.size();
+    return std::min(target_count_ - n, static_cast<std::size_t>(std::ceil(share * static_cast<double>(n))));
+  }
+
+  /// The next of the sequence, in holes. Returns false, with nothing changed, if there are not so many.
+  bool add(std::size_t count) {
+    const auto next = std::span(work_.supply->radii()).subspan(crowd_.size(), count);
+    std::vector<double> radii(next.begin(), next.end());
+    for (double& r : radii) r += skin_;
+    return crowd_.add(radii, random_);
+  }
+
   /// More and more of the sequence, until even a few find no room.
   void push_in() {
     for (double share = pushed_in; share >= least_pushed_in && !over_;) {
       const Spheres<3> before = crowd_.spheres();
-      const std::size_t n = before.size();
-      const auto more =
-          std::min(target_count_ - n, static_cast<std::size_t>(std::ceil(share * static_cast<double>(n))));
-      if (more == 0) return;
-      const auto next = std::span(work_.supply->radii()).subspan(n, more);
-      std::vector<double> radii(next.begin(), next.end());
-      for (double& r : radii) r += skin_;
-      if (!crowd_.add(radii, random_)) return;
+      const std::size_t more = count_of_more(share);
+      if (more == 0 || !add(more)) return;
       crowd_.burst();
       if (relax(options_.patience)) continue;
       crowd_.restore(before);
       if (more == 1) return;
       share /= 2;
     }
+  }
+
+  /// Spheres exchange their sizes, and where more of them are asked for these come in as that makes room: in
+  /// the end they are a little too crowded, unless all are there.
+  void exchange() {
+    const EffectTimer timer(work_.effects["exchange"]);
+    SizeExchange sizes(crowd_.spheres().r, work_.dimension());
+    if (!sizes.is_of_use()) return;
+    const double sweeps_before = crowd_.sweeps();
+    for (int k = 0; k < exchanges && !(crowd_.is_free() && crowd_.size() == target_count_); ++k) {
+      cancelled_ = work_.monitor.stop();
+      if (cancelled_ || (options_.seconds > 0 && seconds() > options_.seconds)) break;
+      const double energy = crowd_.exchange(sizes, exchange_step(static_cast<double>(k) / exchanges));
+      if (energy < crowding && crowd_.size() < target_count_) {
+        if (!add(count_of_more(compression - 1))) break;
+        sizes = SizeExchange(crowd_.spheres().r, work_.dimension());
+      }
+      if (k % exchanges_a_milestone == 0)
+        work_.crowd_milestone("exchange", crowd_.size(), volume_of(crowd_.spheres()),
+                              crowd_.largest_overlap(), static_cast<double>(k) / exchanges);
+    }
+    over_ = over_ || cancelled_;
+    sweeps_of_exchange_ += crowd_.sweeps() - sweeps_before;
   }
 
   /// Those that the walls leave less room than the margin, which never come free of overlap.
@@ -162,6 +199,7 @@ class Relaxation {
   const double skin_;  // that the radii are relaxed with, where it is not thin: far from the origin
   CrowdInContainer crowd_;
   const std::size_t target_count_;
+  double sweeps_of_exchange_ = 0;
   bool over_ = false;  // there is no more time, or no more patience of the user
   bool cancelled_ = false;
 };

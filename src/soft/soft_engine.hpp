@@ -38,6 +38,12 @@ class SoftEngine {
   std::vector<float> squeeze() const {
     return std::visit([](const auto& engine) { return engine.squeeze(); }, engine_);
   }
+  std::vector<float> forces() const {
+    return std::visit([](const auto& engine) { return engine.forces(); }, engine_);
+  }
+  void exchange(const std::vector<std::uint32_t>& to) {
+    std::visit([&](auto& engine) { engine.exchange(to); }, engine_);
+  }
   void grow(double factor) {
     std::visit([&](auto& engine) { engine.grow(factor); }, engine_);
   }

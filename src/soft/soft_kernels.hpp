@@ -46,6 +46,7 @@ struct SweepTask {
   float omega;       ///< over-relaxation: the step is min(omega / contacts, 1) times the sum of overlaps
   SoftWalls* walls;  ///< of a container; null in a periodic box
   float* squeeze;    ///< receives, of each sphere, the sum of its squared overlap ratios; null: not measured
+  float* force;      ///< receives, with `squeeze`, r Σ w (ri + rj - d) of each sphere
 };
 
 /// One level of the background grid: spheres with radii in (largest / 2, largest], sorted by cell.

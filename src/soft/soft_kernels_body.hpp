@@ -157,7 +157,7 @@ float sweep_groups(const SweepTask& task, std::size_t begin, std::size_t end) {
     for (std::size_t first = 0; first < lanes; first += width) {
       SoftSphere* const mine = task.spheres + lanes * g + first;
       const Columns me = load([&](int k) BERNAL_INLINE_LAMBDA { return mine + k; });
-      Floats sum_x{}, sum_y{}, sum_z{}, contacts{}, squares{};
+      Floats sum_x{}, sum_y{}, sum_z{}, contacts{}, squares{}, force{};
       if (near_wall) {
         sum_x = numbers_at(at_wall.x, first);
         sum_y = numbers_at(at_wall.y, first);
@@ -165,6 +165,7 @@ float sweep_groups(const SweepTask& task, std::size_t begin, std::size_t end) {
         contacts = numbers_at(at_wall.contacts, first);
         if constexpr (measure) {
           squares = numbers_at(at_wall.squares, first);
+          force = numbers_at(at_wall.depth, first);
           const Floats ratio = numbers_at(at_wall.worst, first);
           worst = ratio > worst ? ratio : worst;
         }
@@ -187,6 +188,7 @@ float sweep_groups(const SweepTask& task, std::size_t begin, std::size_t end) {
           const Floats ratio = where(overlap, (reach - d) / reach);
           worst = ratio > worst ? ratio : worst;
           squares += ratio * ratio;
+          force += where(overlap, weight * (reach - d));
         }
       }
       Floats step = task.omega / contacts;
@@ -194,7 +196,10 @@ float sweep_groups(const SweepTask& task, std::size_t begin, std::size_t end) {
       store(mine, {wrapped_sum(me.x, to_ints(sum_x * step * inverse_x)),
                    wrapped_sum(me.y, to_ints(sum_y * step * inverse_y)),
                    wrapped_sum(me.z, to_ints(sum_z * step * inverse_z)), me.r});
-      if constexpr (measure) *reinterpret_cast<UnalignedFloats*>(task.squeeze + lanes * g + first) = squares;
+      if constexpr (measure) {
+        *reinterpret_cast<UnalignedFloats*>(task.squeeze + lanes * g + first) = squares;
+        *reinterpret_cast<UnalignedFloats*>(task.force + lanes * g + first) = force * me.r;
+      }
     }
     if (near_wall) task.walls->guard(g, at_wall, task.spheres + lanes * g);
   }

@@ -51,10 +51,12 @@ SoftPacking::SoftPacking(const std::vector<double>& radii, double most, int dime
       lists_(as_floats(radii, most), static_cast<float>(skin_for(radii)), kernels),
       thickest_skin_(lists_.skin()),
       spheres_(radii.size(), SoftSphere{}),
-      ids_(radii.size()),
+      sites_(radii.size()),
+      id_of_site_(radii.size()),
       radii_(as_floats(radii)) {
   edges_.fill(smallest_edge(radii));  // of axes that are not there: all coordinates are 0
-  std::iota(ids_.begin(), ids_.end(), 0u);
+  std::iota(sites_.begin(), sites_.end(), 0u);
+  id_of_site_ = sites_;
   for (std::size_t i = 0; i < count_; ++i) spheres_[i].r = radii_[i];
 }
 
@@ -94,9 +96,17 @@ double SoftPacking::smallest_edge(const std::vector<double>& radii) {
 double SoftPacking::move_all(float omega, bool measure) {
   if (measure) patience_ = 0;  // what is measured is measured on lists that are known to be good
   keep_lists_valid();
-  if (measure) squeeze_.assign(spheres_.size(), 0);
-  const SweepTask task{spheres_.data(), lists_.groups(), scale_of(edges_),
-                       omega,           walls_.get(),    measure ? squeeze_.data() : nullptr};
+  if (measure) {
+    squeeze_.assign(spheres_.size(), 0);
+    force_.assign(spheres_.size(), 0);
+  }
+  const SweepTask task{spheres_.data(),
+                       lists_.groups(),
+                       scale_of(edges_),
+                       omega,
+                       walls_.get(),
+                       measure ? squeeze_.data() : nullptr,
+                       measure ? force_.data() : nullptr};
   const bool in_one_thread = count_ < worth_threads;
   if (walls_ && in_one_thread) walls_->push_ahead(spheres_);
   std::vector<float> largest(spheres_.size() / lanes + 1, 0.0f);
@@ -120,20 +130,21 @@ void SoftPacking::grow(double factor) {
 }
 
 void SoftPacking::swell(double factor) {
+  swelling_ = static_cast<float>(factor);
   for (std::size_t p = 0; p < spheres_.size(); ++p)
-    if (spheres_[p].r > 0) spheres_[p].r = static_cast<float>(factor) * radii_[ids_[p]];
+    if (spheres_[p].r > 0) spheres_[p].r = swelling_ * radii_[id_at(p)];
   stale_ = true;
 }
 
 void SoftPacking::put(const std::vector<Move>& moves) {
   std::vector<std::size_t> place_of(count_);
   for (std::size_t p = 0; p < spheres_.size(); ++p)
-    if (spheres_[p].r > 0) place_of[ids_[p]] = p;
+    if (spheres_[p].r > 0) place_of[id_at(p)] = p;
   for (const Move& move : moves) {
     const std::size_t p = place_of[move.id];
     set_place(spheres_[p], move.to);
     if (lists_built_.calls > 0) built_at_[p] = spheres_[p];
-    walls_->forget(move.id);
+    walls_->forget(sites_[p]);
   }
   stale_ = true;
 }
@@ -146,11 +157,24 @@ void SoftPacking::set_place(SoftSphere& sphere, const Vector<D>& center) const {
   }
 }
 
-std::vector<float> SoftPacking::squeeze() const {
+std::vector<float> SoftPacking::by_id(const std::vector<float>& in_sweep_order) const {
   std::vector<float> of_sphere(count_);
-  for (std::size_t p = 0; p < squeeze_.size(); ++p)
-    if (spheres_[p].r > 0) of_sphere[ids_[p]] = squeeze_[p];
+  for (std::size_t p = 0; p < in_sweep_order.size(); ++p)
+    if (spheres_[p].r > 0) of_sphere[id_at(p)] = in_sweep_order[p];
   return of_sphere;
+}
+
+void SoftPacking::exchange(const std::vector<std::uint32_t>& to) {
+  for (std::uint32_t& id : id_of_site_) id = to[id];
+  float most = 0;
+  for (std::size_t p = 0; p < spheres_.size(); ++p) {
+    if (!(spheres_[p].r > 0)) continue;
+    const float r = swelling_ * radii_[id_at(p)];
+    most = std::max(most, r - spheres_[p].r);
+    spheres_[p].r = r;
+  }
+  grown_ += most;
+  patience_ = 0;  // what radii grew is looked at before the next sweep
 }
 
 double SoftPacking::largest_move() const {
@@ -186,16 +210,17 @@ void SoftPacking::keep_lists_valid() {
   if (!stale_ && sweeps_ < patience_) return;
   const double limit = wear_ * lists_.skin();
   double moved = 0;
-  if (lists_built_.calls > 0) moved = largest_move();
+  if (lists_built_.calls > 0) moved = largest_move() + grown_;
   // Nothing is known before the first sweep, when the spheres are at their fastest.
   const double speed = stale_ ? limit : std::max((moved - moved_) / std::max(1, sweeps_), 1e-9);
   if (stale_ || moved > limit) {
-    if (walls_ && lists_built_.calls > 0) walls_->stop_strays(spheres_, built_at_, ids_);
+    if (walls_ && lists_built_.calls > 0) walls_->stop_strays(spheres_, built_at_, sites_);
     const EffectTimer timer(lists_built_);
     choose_skin();
-    lists_.build(spheres_, ids_, edges_);
-    if (walls_) walls_->build(spheres_, ids_, lists_.skin());
+    lists_.build(spheres_, sites_, edges_);
+    if (walls_) walls_->build(spheres_, sites_, lists_.skin());
     built_at_ = spheres_;
+    grown_ = 0;
     age_ = 0;
     stale_ = false;
     moved = 0;
@@ -215,11 +240,11 @@ void SoftPacking::write_to(Spheres<D>& spheres, Vector<D>& edges) const {
 template <int D>
 void SoftPacking::write_to(Spheres<D>& spheres) const {
   std::vector<SoftSphere> stopped = spheres_;
-  if (walls_ && lists_built_.calls > 0) walls_->stop_strays(stopped, built_at_, ids_);
+  if (walls_ && lists_built_.calls > 0) walls_->stop_strays(stopped, built_at_, sites_);
   for (std::size_t p = 0; p < stopped.size(); ++p) {
     if (!(stopped[p].r > 0)) continue;
     for (std::size_t k = 0; k < D; ++k)
-      spheres.x[k][ids_[p]] =
+      spheres.x[k][id_at(p)] =
           corner_[static_cast<int>(k)] + static_cast<std::uint32_t>(stopped[p].x[k]) * (edges_[k] * 0x1p-32);
   }
 }

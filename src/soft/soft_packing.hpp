@@ -60,7 +60,13 @@ class SoftPacking {
   /// The same; returns the largest overlap ratio that was met.
   double sweep_and_measure(float omega) { return move_all(omega, true); }
   /// Of each sphere the sum of its squared overlap ratios, as the last measuring sweep met them.
-  std::vector<float> squeeze() const;
+  std::vector<float> squeeze() const { return by_id(squeeze_); }
+  /// Of each sphere the sum of the forces on it, 2 ri rj / (ri + rj) times the overlap of each contact, as
+  /// the last measuring sweep met them: the derivative of the energy, whose half that of a pair is times the
+  /// overlap, by its own radius.
+  std::vector<float> forces() const { return by_id(force_); }
+  /// Sphere to[i] takes the place of sphere i, and becomes i's there: `to` is a permutation. Cost: O(N).
+  void exchange(const std::vector<std::uint32_t>& to);
 
   /// The box and the distances grow; the radii do not.
   void grow(double factor);
@@ -96,6 +102,8 @@ class SoftPacking {
   void choose_skin();
   void keep_lists_valid();
   double largest_move() const;
+  std::uint32_t id_at(std::size_t p) const { return id_of_site_[sites_[p]]; }
+  std::vector<float> by_id(const std::vector<float>& in_sweep_order) const;
 
   const SoftKernels& kernels_;
   std::size_t count_;
@@ -104,14 +112,17 @@ class SoftPacking {
   Vector<3> corner_ = Vector<3>::Zero();
   SoftLists lists_;
   float thickest_skin_;
-  std::unique_ptr<SoftWalls> walls_;  // null in a periodic box
-  std::vector<SoftSphere> spheres_;   // in sweep order
-  std::vector<std::uint32_t> ids_;
-  std::vector<float> squeeze_;
+  std::unique_ptr<SoftWalls> walls_;       // null in a periodic box
+  std::vector<SoftSphere> spheres_;        // in sweep order
+  std::vector<std::uint32_t> sites_;       // in sweep order: what the walls know of a place goes with it
+  std::vector<std::uint32_t> id_of_site_;  // of the sphere that stands there
+  std::vector<float> squeeze_, force_;
   std::vector<float> radii_;          // as given, by id
+  float swelling_ = 1;                // of these
   bool stale_ = true;                 // the lists
   std::vector<SoftSphere> built_at_;  // where they were when the lists were built
   Effect lists_built_{"neighbour lists", 0, 0};
+  double grown_ = 0;  // at most, by exchanges since then
   double moved_ = 0;  // largest move since then, when it was last looked at
   double wear_ = 0.9;
   int age_ = 0;       // of the lists, in sweeps, when it was last looked at

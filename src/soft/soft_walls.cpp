@@ -241,6 +241,7 @@ void SoftWalls::work_out(std::size_t group, const SoftSphere* spheres, WallPush&
       const double depth = r - contact.distance, ratio = depth / r;
       sum += depth * contact.normal;
       out.squares[l] += static_cast<float>(ratio * ratio);
+      out.depth[l] += static_cast<float>(depth);
       out.worst[l] = std::max(out.worst[l], static_cast<float>(ratio));
     }
     out.x[l] = static_cast<float>(sum[0]);

@@ -12,10 +12,10 @@
 namespace bernal {
 
 /// What the walls do to the spheres of a group, one entry a lane, in the terms in which neighbours act: sums
-/// of overlaps over the wall contacts, how many these are, and their overlap ratios (r - d) / r squared and
-/// at most.
+/// of overlaps over the wall contacts, how many these are, their overlap ratios (r - d) / r squared and at
+/// most, and how deep they are together.
 struct alignas(64) WallPush {
-  std::array<float, lanes> x{}, y{}, z{}, contacts{}, squares{}, worst{};
+  std::array<float, lanes> x{}, y{}, z{}, contacts{}, squares{}, worst{}, depth{};
   std::array<SoftSphere, lanes> before{};  // the group as it was
   std::array<double, lanes> free{};        // no wall is nearer than this to the centre
 };

@@ -16,13 +16,17 @@ struct Relax {
   double alpha = 17;  ///< sweeps between two growths of the box, in units of (log10 N)²
   /// Sweeps between two growths of the box, whatever N is, in place of those that alpha gives.
   std::optional<int> period = {};
-  double beta = 30;   ///< the box grows by the largest overlap ratio divided by this
+  double beta = 30;  ///< the box grows by the largest overlap ratio divided by this
   /// Packing fraction at the start; without it 0.86, or what suits the dimension.
   std::optional<double> phi0 = {};
   double stop = 2e-4;  ///< largest overlap ratio that counts as none
   RelaxMethod method = RelaxMethod::fast;
   bool settle = false;  ///< reference: what touches nothing moves to touch its nearest neighbour
   // in both
+  /// Spheres exchange their sizes while they push each other, which makes disordered packings of the same
+  /// sizes denser by 0.04 to 0.1 where sizes come close to each other: lognormal with sigma 0.3 0.717 in
+  /// place of 0.672. Such packings are optimised; nothing that is poured or shaken comes to be one.
+  bool exchange = false;
   /// Gap and overlap ratio to which contacts, those with walls among them, are closed in the end; 0: not at
   /// all. A periodic box follows; in a container all sizes grow by one factor until the spheres jam.
   double polish = 0;

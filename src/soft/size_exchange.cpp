@@ -1,0 +1,82 @@
+#include "soft/size_exchange.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+namespace bernal {
+namespace {
+
+/// Pressures count up to so many times their mean: those of a few spheres in a tight corner are far beyond.
+constexpr float most_excess = 3;
+constexpr double longest_step = 0.012, shortest_step = 0.1 * longest_step, share_of_long_steps = 0.3;
+constexpr int bits_a_pass = 11, passes = 3;
+
+/// Unsigned numbers in the order of these.
+std::uint32_t ordered(float value) {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+
+}  // namespace
+
+SizeExchange::SizeExchange(const std::vector<double>& radii, int dimension) : ascending_(radii.size()) {
+  for (const double r : radii) {
+    log_radii_.push_back(static_cast<float>(std::log(r)));
+    inverse_areas_.push_back(static_cast<float>(std::pow(r, 1 - dimension)));
+  }
+  std::iota(ascending_.begin(), ascending_.end(), 0u);
+  std::ranges::stable_sort(ascending_, {}, [&](std::uint32_t i) { return radii[i]; });
+  for (std::size_t k = 1; k < radii.size() && !is_of_use_; ++k) {
+    const double way = std::log(radii[ascending_[k]] / radii[ascending_[k - 1]]);
+    is_of_use_ = way > 0 && way < longest_way;
+  }
+}
+
+/// By the first, in the order of the spheres where these are equal: a radix sort.
+void SizeExchange::sort_wishes() {
+  constexpr std::uint32_t mask = (1u << bits_a_pass) - 1;
+  sorted_.resize(wishes_.size());
+  for (int pass = 0; pass < passes; ++pass) {
+    const auto digit = [&](const Wish& w) { return ordered(w.first) >> (bits_a_pass * pass) & mask; };
+    std::array<std::uint32_t, mask + 1> next{};
+    for (const Wish& w : wishes_) ++next[digit(w)];
+    std::exclusive_scan(next.begin(), next.end(), next.begin(), 0u);
+    for (const Wish& w : wishes_) sorted_[next[digit(w)]++] = w;
+    wishes_.swap(sorted_);
+  }
+}
+
+const std::vector<std::uint32_t>& SizeExchange::deal(const std::vector<float>& forces, double step) {
+  const std::size_t n = forces.size();
+  to_.resize(n);
+  pressures_.resize(n);
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) sum += pressures_[i] = forces[i] * inverse_areas_[i];
+  if (!(sum > 0)) {  // nothing is squeezed
+    std::iota(to_.begin(), to_.end(), 0u);
+    return to_;
+  }
+  const auto inverse_mean = static_cast<float>(static_cast<double>(n) / sum);
+  const auto way = static_cast<float>(step);
+  wishes_.resize(n);
+  for (std::uint32_t i = 0; i < n; ++i)
+    wishes_[i] = {log_radii_[i] - way * std::min(pressures_[i] * inverse_mean - 1, most_excess), i};
+  sort_wishes();
+  for (std::size_t k = 0; k < n; ++k) to_[wishes_[k].second] = ascending_[k];
+  return to_;
+}
+
+double exchange_step(double done) {
+  if (done < share_of_long_steps) return longest_step;
+  return longest_step *
+         std::pow(shortest_step / longest_step, (done - share_of_long_steps) / (1 - share_of_long_steps));
+}
+
+double energy_of(const std::vector<float>& squeeze) {
+  return 0.5 * std::accumulate(squeeze.begin(), squeeze.end(), 0.0) / static_cast<double>(squeeze.size());
+}
+
+}  // namespace bernal
