@@ -213,7 +213,8 @@ double attainable_in_box(const Plan& plan, const SizeDistribution& radii) {
   const Scene& scene = plan.scene;
   const bool between_walls = has_walls(plan.domain) && scene.dimension() == 3 &&
                              any_stage(scene, &StageTraits::reaches, Reaches::close_packing);
-  if (!any_in_bed(scene) && !between_walls) return close_packing_at_hand(plan, radii);
+  if (!any_in_bed(scene) && !between_walls)
+    return gain_of_stages(scene, radii) * close_packing_at_hand(plan, radii);
   if (!plan.box_follows) return expected_packing_fraction(scene, plan.domain, radii);
   Box box = std::get<Box>(plan.domain);
   double attainable = close_packing_fraction(radii, 3);

@@ -134,6 +134,15 @@ double close_packing_fraction(const SizeDistribution& radii, int dimension) {
   return dimension == 3 ? predict_packing_fraction(radii).phi : random_close_packing[dimension - 1];
 }
 
+double gain_of_stages(const Scene& scene, const SizeDistribution& radii) {
+  double gain = 1;
+  for (const Stage& stage : scene.stages)
+    if (const StageEntry& entry = entry_of(stage); entry.gain)
+      gain = std::max(gain, entry.gain(entry.table.options(stage), radii, scene.dimension(),
+                                       entry.table.traits.stands_in_bed(scene)));
+  return gain;
+}
+
 double error_of_expectation(const Scene& scene) {
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   if (!any_in_bed(scene) && (!box || box->walls.empty())) return 0.01;
@@ -145,7 +154,8 @@ double error_of_expectation(const Scene& scene) {
 /// only two spheres thick), all of them met within 0.03.
 double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii,
                                  const std::shared_ptr<const Container>& made) {
-  if (reaches(scene, Reaches::close_packing)) return reached_by_relaxation(shape, radii, made);
+  if (reaches(scene, Reaches::close_packing))
+    return gain_of_stages(scene, radii) * reached_by_relaxation(shape, radii, made);
   if (!reaches(scene, Reaches::settled)) {
     const int dimension = dimension_of(shape);
     const double largest = radii.quantile(quantile_of_largest);

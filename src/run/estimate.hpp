@@ -30,4 +30,7 @@ double error_of_expectation(const Scene& scene);
 /// in others the packing fractions of equal spheres, which are not much lower than those of others.
 double close_packing_fraction(const SizeDistribution& radii, int dimension);
 
+/// What the stages of a scene that densify make of that, as a factor: 1 where there is none.
+double gain_of_stages(const Scene& scene, const SizeDistribution& radii);
+
 }  // namespace bernal

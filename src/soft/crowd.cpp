@@ -156,6 +156,25 @@ void Crowd<Ground>::drop_last(double most, Random& random) {
 }
 
 template <class Ground>
+void Crowd<Ground>::drop_last_dealing(double most) {
+  const std::size_t count = std::min(std::max<std::size_t>(1, static_cast<std::size_t>(most)), size() - 1);
+  ground_.read_places(spheres_);
+  std::vector<bool> emptied(size(), false);
+  for (const std::uint32_t i : most_squeezed(count)) emptied[i] = true;
+  std::vector<std::uint32_t> ascending(size());
+  std::iota(ascending.begin(), ascending.end(), 0u);
+  std::ranges::stable_sort(ascending, {}, [&](std::uint32_t i) { return spheres_.r[i]; });
+  Spheres<D> left = spheres_;
+  left.resize(size() - count);
+  for (auto place = ascending.begin(); const std::uint32_t i : ascending) {
+    if (i >= left.size()) continue;
+    while (emptied[*place]) ++place;
+    left.set_center(i, spheres_.center(*place++));
+  }
+  restore(std::move(left));
+}
+
+template <class Ground>
 bool Crowd<Ground>::add(std::span<const double> radii, Random& random) {
   ground_.read_places(spheres_);
   std::vector<std::size_t> order(radii.size());

@@ -70,6 +70,11 @@ class Crowd {
   /// into holes: so the places that become empty are those where there is least room.
   void drop_last(double count, Random& random);
 
+  /// Takes away the last `count` spheres, at least one and never all, and empties as many places, those that
+  /// are squeezed most: the others are dealt out to the places that are left in the order of the radii, so
+  /// that hardly any becomes another by more than a trifle.
+  void drop_last_dealing(double count);
+
   /// Adds spheres in the largest holes, if there are holes for all.
   bool add(std::span<const double> radii, Random& random);
 

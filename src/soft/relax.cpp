@@ -12,6 +12,7 @@
 #include "jam/polish.hpp"
 #include "soft/exchange_in_box.hpp"
 #include "soft/ground.hpp"
+#include "soft/size_exchange.hpp"
 #include "soft/soft_engine.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/random_insertion.hpp"
@@ -61,6 +62,15 @@ constexpr StageTraits traits = {.in_bed = true,
 void complete_relax(Relax& relax, Scene& scene, const schema::Section&) {
   if (scene.start.file && scene.stages.front().as<Relax>() == &relax) return;
   if (!relax.phi0 && !traits.stands_in_bed(scene)) relax.phi0 = dense_start[scene.dimension() - 1];
+}
+
+/// By exchange, of a thousand of the sizes.
+double gain_of_relaxation(const Relax& options, const SizeDistribution& radii, int dimension, bool in_bed) {
+  if (!options.exchange || dimension == 1) return 1;
+  constexpr int sizes = 1000;
+  std::vector<double> some;
+  for (int k = 0; k < sizes; ++k) some.push_back(radii.quantile((k + 0.5) / sizes));
+  return gain_by_exchange(SizeExchange(some, dimension).spread(), in_bed);
 }
 
 bool is_loose(const Work& work) {
@@ -349,8 +359,9 @@ const StageEntry& entry_of<Relax>() {
             if (!is_dilute)
               require_resolution(0x1p-32 * bounds_of<3>(container).size().maxCoeff() / smallest_radius);
           },
-      .reached = of_options(
-          +[](const Relax& options) { return options.polish > 0 ? 1 : options.phi0.value_or(1); })};
+      .reached =
+          of_options(+[](const Relax& options) { return options.polish > 0 ? 1 : options.phi0.value_or(1); }),
+      .gain = of_options(gain_of_relaxation)};
   return entry;
 }
 

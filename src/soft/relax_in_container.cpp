@@ -22,6 +22,9 @@ constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
 /// More than what is likely to fit, in shares of it, is not tried at once.
 constexpr double most_of_attainable = 1.1;
 constexpr int most_hand_overs = 20;
+/// After sizes are exchanged: as `taken_out`, and exchanges each time.
+constexpr double taken_out_dealing = 0.3;
+constexpr int exchanges_to_settle = 50;
 
 /// Of the radii: a skin up to this is lost in the margin.
 constexpr double thin_skin = 1e-7;
@@ -39,14 +42,12 @@ class Relaxation {
         random_(work.random(Stream::relax)),
         skin_(work.bed().skin() > thin_skin * work.supply->smallest() ? work.bed().skin() : 0),
         crowd_(ContainerGround(work.bed().container(), work.bed().places()), spheres_to_start_from()),
-        target_count_(std::max(crowd_.size(), work.target_count())) {}
+        target_count_(std::max(crowd_.size(), work.target_count())),
+        exchanges_(options.exchange && SizeExchange(crowd_.spheres().r, work.dimension()).is_of_use()) {}
 
   StageEnd run() {
     bool free = relax(options_.patience);
-    if (options_.exchange && !over_ && (!free || crowd_.size() < target_count_)) {
-      exchange();
-      free = !cancelled_ && relax(options_.patience);
-    }
+    if (exchanges_ && !over_ && (!free || crowd_.size() < target_count_)) free = exchange();
     for (double share = taken_out, patience = options_.patience; !free && !cancelled_ && crowd_.size() > 1;) {
       const double count = share * crowd_.mean_squeeze() * static_cast<double>(crowd_.size());
       crowd_.drop_last(count, random_);
@@ -146,35 +147,69 @@ class Relaxation {
       const Spheres<3> before = crowd_.spheres();
       const std::size_t more = count_of_more(share);
       if (more == 0 || !add(more)) return;
-      crowd_.burst();
-      if (relax(options_.patience)) continue;
+      if (exchanges_) {
+        if (settle_by_exchange()) continue;
+      } else {
+        crowd_.burst();
+        if (relax(options_.patience)) continue;
+      }
       crowd_.restore(before);
       if (more == 1) return;
       share /= 2;
     }
   }
 
-  /// Spheres exchange their sizes, and where more of them are asked for these come in as that makes room: in
-  /// the end they are a little too crowded, unless all are there.
-  void exchange() {
+  /// Spheres exchange their sizes, and where more of them are asked for these come in as that makes room.
+  /// Returns whether they are free of overlap.
+  bool exchange() {
     const EffectTimer timer(work_.effects["exchange"]);
-    SizeExchange sizes(crowd_.spheres().r, work_.dimension());
-    if (!sizes.is_of_use()) return;
     const double sweeps_before = crowd_.sweeps();
+    crowd_by_exchange();
+    bool free = settle_by_exchange();
+    while (!free && !over_ && crowd_.size() > 1) {
+      crowd_.drop_last_dealing(taken_out_dealing * crowd_.mean_squeeze() *
+                               static_cast<double>(crowd_.size()));
+      free = settle_by_exchange();
+    }
+    sweeps_of_exchange_ += crowd_.sweeps() - sweeps_before;
+    return free;
+  }
+
+  /// Up to a little more than there is room for, unless all are there before.
+  void crowd_by_exchange() {
+    SizeExchange sizes(crowd_.spheres().r, work_.dimension());
     for (int k = 0; k < exchanges && !(crowd_.is_free() && crowd_.size() == target_count_); ++k) {
-      cancelled_ = work_.monitor.stop();
-      if (cancelled_ || (options_.seconds > 0 && seconds() > options_.seconds)) break;
-      const double energy = crowd_.exchange(sizes, exchange_step(static_cast<double>(k) / exchanges));
+      if (exchange_is_over()) return;
+      const double done = static_cast<double>(k) / exchanges;
+      const double energy = crowd_.exchange(sizes, exchange_step(done));
       if (energy < crowding && crowd_.size() < target_count_) {
-        if (!add(count_of_more(compression - 1))) break;
+        if (!add(count_of_more(compression - 1))) return;
         sizes = SizeExchange(crowd_.spheres().r, work_.dimension());
       }
       if (k % exchanges_a_milestone == 0)
         work_.crowd_milestone("exchange", crowd_.size(), volume_of(crowd_.spheres()),
-                              crowd_.largest_overlap(), static_cast<double>(k) / exchanges);
+                              crowd_.largest_overlap(), done);
     }
+  }
+
+  /// Returns whether the spheres came free of overlap. Nothing is stirred: that would undo what exchange has
+  /// done.
+  bool settle_by_exchange() {
+    SizeExchange sizes(crowd_.spheres().r, work_.dimension());
+    for (int k = 0; k < exchanges_to_settle && !crowd_.is_free(); ++k) {
+      if (exchange_is_over()) return false;
+      crowd_.exchange(sizes, exchange_step(1));
+    }
+    const StageEnd end = crowd_.settle(work_.monitor, [this] { report(); });
+    cancelled_ = end == StageEnd::cancelled;
     over_ = over_ || cancelled_;
-    sweeps_of_exchange_ += crowd_.sweeps() - sweeps_before;
+    return end == StageEnd::converged;
+  }
+
+  bool exchange_is_over() {
+    cancelled_ = work_.monitor.stop();
+    over_ = over_ || cancelled_ || (options_.seconds > 0 && seconds() > options_.seconds);
+    return over_;
   }
 
   /// Those that the walls leave less room than the margin, which never come free of overlap.
@@ -199,6 +234,7 @@ class Relaxation {
   const double skin_;  // that the radii are relaxed with, where it is not thin: far from the origin
   CrowdInContainer crowd_;
   const std::size_t target_count_;
+  const bool exchanges_;  // sizes: it is asked for, and there are some to exchange
   double sweeps_of_exchange_ = 0;
   bool over_ = false;  // there is no more time, or no more patience of the user
   bool cancelled_ = false;

@@ -13,6 +13,23 @@ namespace {
 constexpr float most_excess = 3;
 constexpr double longest_step = 0.012, shortest_step = 0.1 * longest_step, share_of_long_steps = 0.3;
 constexpr int bits_a_pass = 11, passes = 3;
+constexpr double most_gain = 0.07, most_gain_in_bed = 0.105, spread_of_gain = 0.045;
+
+/// Mean square of ln r from its mean in a group, each ending where the next size is out of reach.
+double variance_of_groups(const std::vector<double>& radii, const std::vector<std::uint32_t>& ascending) {
+  double sum = 0, mean = 0, squares = 0, members = 0;  // of the present group: Welford
+  for (std::size_t k = 0; k < ascending.size(); ++k) {
+    const double x = std::log(radii[ascending[k]]);
+    if (k > 0 && x - std::log(radii[ascending[k - 1]]) >= SizeExchange::longest_way) {
+      sum += squares;
+      mean = squares = members = 0;
+    }
+    const double away = x - mean;
+    mean += away / ++members;
+    squares += away * (x - mean);
+  }
+  return radii.empty() ? 0 : (sum + squares) / static_cast<double>(radii.size());
+}
 
 /// Unsigned numbers in the order of these.
 std::uint32_t ordered(float value) {
@@ -29,10 +46,7 @@ SizeExchange::SizeExchange(const std::vector<double>& radii, int dimension) : as
   }
   std::iota(ascending_.begin(), ascending_.end(), 0u);
   std::ranges::stable_sort(ascending_, {}, [&](std::uint32_t i) { return radii[i]; });
-  for (std::size_t k = 1; k < radii.size() && !is_of_use_; ++k) {
-    const double way = std::log(radii[ascending_[k]] / radii[ascending_[k - 1]]);
-    is_of_use_ = way > 0 && way < longest_way;
-  }
+  spread_ = std::sqrt(variance_of_groups(radii, ascending_));
 }
 
 /// By the first, in the order of the spheres where these are equal: a radix sort.
@@ -67,6 +81,10 @@ const std::vector<std::uint32_t>& SizeExchange::deal(const std::vector<float>& f
   sort_wishes();
   for (std::size_t k = 0; k < n; ++k) to_[wishes_[k].second] = ascending_[k];
   return to_;
+}
+
+double gain_by_exchange(double spread, bool in_bed) {
+  return 1 + (in_bed ? most_gain_in_bed : most_gain) * (1 - std::exp(-spread / spread_of_gain));
 }
 
 double exchange_step(double done) {

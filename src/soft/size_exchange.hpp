@@ -24,8 +24,10 @@ class SizeExchange {
 
   SizeExchange(const std::vector<double>& radii, int dimension);
 
-  /// Whether there are sizes that differ, and some so little that they can be exchanged.
-  bool is_of_use() const { return is_of_use_; }
+  /// Standard deviation of ln r among sizes that can be reached from each other, in steps of up to
+  /// `longest_way`; 0 where nothing can be exchanged.
+  double spread() const { return spread_; }
+  bool is_of_use() const { return spread_ > 0; }
 
   /// From P_i of each sphere the permutation `to`: sphere to[i] takes the place of sphere i. Valid until the
   /// next call. Cost: O(N), some 20 ns a sphere. Precondition: is_of_use().
@@ -37,11 +39,16 @@ class SizeExchange {
 
   std::vector<float> log_radii_, inverse_areas_;  // by sphere
   std::vector<std::uint32_t> ascending_;          // spheres by radius
-  bool is_of_use_ = false;
+  double spread_ = 0;
   std::vector<float> pressures_;
   std::vector<Wish> wishes_, sorted_;
   std::vector<std::uint32_t> to_;
 };
+
+/// What exchange makes of the packing fraction that such sizes reach without, as a factor. Fitted to boxes of
+/// 3,000 and 10,000 lognormal spheres, sigma from 0.01 to 0.7, which met it within 0.01, and to four
+/// containers of 700 to 9,000 with sigma 0.3, within 0.015: at walls, too, more is gained.
+double gain_by_exchange(double spread, bool in_bed);
 
 /// So many exchanges, each after so many sweeps, anneal a packing: packing fractions grow by 0.001 to 0.002
 /// with three times as many.

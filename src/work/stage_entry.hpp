@@ -50,6 +50,9 @@ struct StageEntry {
   std::function<bool(const void*, const FillTask&)> leaves_overlap = {};
   /// Of a stage that reaches what its options say and no more: that packing fraction.
   std::function<double(const void*)> reached = {};
+  /// Of one that makes denser packings of these sizes than they reach by themselves, in a bed or a box of so
+  /// many dimensions: by which factor.
+  std::function<double(const void*, const SizeDistribution& radii, int dimension, bool in_bed)> gain = {};
   /// Of one that places spheres which then stay: the packing fraction at which no more find room.
   std::function<double(const void*, const EmptyBed&)> full = {};
 };

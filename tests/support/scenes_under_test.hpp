@@ -47,7 +47,16 @@ inline std::vector<SceneUnderTest> own_scenes() {
                           "[spheres]\npacking_fraction = 0.4\nradius = 0.07\n[[stage]]\ndo = \"insert\"\n"
                           "[[stage]]\ndo = \"compress\"\ndirection = [1.0, 1.0, 3.0]\n"
                           "[[stage]]\ndo = \"refill\"\ndirection = [1.0, 1.0, 3.0]\n");
+  add("ExchangedInABox",
+      box +
+          "[spheres]\nfill = true\n"
+          "radius = { distribution = \"lognormal\", median = 0.09, sigma = 0.3, max = 0.2 }\n"
+          "[[stage]]\ndo = \"relax\"\nexchange = true\n");
   const std::string periodic = "[container]\nkind = \"periodic\"\n";
+  add("Exchanged", periodic +
+                       "[spheres]\ncount = 100\n"
+                       "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n"
+                       "[[stage]]\ndo = \"relax\"\nalpha = 1\nexchange = true\n");
   add("PeriodicBox", periodic +
                          "[spheres]\ncount = 120\n"
                          "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n" +

@@ -11,30 +11,32 @@
 namespace bernal {
 namespace neighbor_relaxation_test {
 
-/// With omega = 0 nothing moves: a measuring sweep finds what a look at all images of all pairs finds, with
-/// the grid or without it.
+/// With omega = 0 nothing moves: a measuring sweep finds the overlaps and forces that a look at all images of
+/// all pairs finds, with the grid or without it.
 template <int D>
 void expect_same_overlaps(std::size_t n, const Vector<D>& edges, double r_max) {
   const Spheres<D> spheres = testing::ideal_gas<D>(n, 0.5 * r_max, r_max, edges, 5);
   NeighborRelaxation<D> relaxation(spheres, edges);
   const double largest = relaxation.sweep_and_measure(0);
-  const std::vector<float> squeeze = relaxation.squeeze();
+  const std::vector<float> squeeze = relaxation.squeeze(), forces = relaxation.forces();
 
   const Boundary<D> boundary{edges};
   double largest_expected = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    double expected = 0;
+    double expected = 0, force = 0;
     for (std::size_t j = 0; j < n; ++j) {
       if (j == i) continue;
       const double reach = spheres.r[i] + spheres.r[j];
       boundary.for_each_image(spheres.center(i) - spheres.center(j), reach, [&](const Vector<D>& d) {
         const double ratio = std::max(0.0, 1 - d.norm() / reach);
         expected += ratio * ratio;
+        force += 2 * spheres.r[i] * spheres.r[j] * ratio;
         largest_expected = std::max(largest_expected, ratio);
       });
     }
     // Single precision: each ratio is good to 1e-6.
     EXPECT_NEAR(squeeze[i], expected, 1e-5 * std::max(1.0, expected)) << i;
+    EXPECT_NEAR(forces[i], force, 1e-5 * std::max(r_max * r_max, force)) << i;
   }
   EXPECT_NEAR(largest, largest_expected, 1e-6);
 }
