@@ -268,6 +268,7 @@ std::string json_of(const Report& report) {
                {"unit", name_of(packing.scene.unit)},
                {"phi", packing.packing_fraction()},
                {"expected_phi", packing.expected_packing_fraction},
+               {"expected_phi_of_sizes", packing.expected_of_sizes},
                {"size_scale", packing.size_scale}};
   json.update(contacts_json(report.measured, report.measured.contacts));
   json.update({{"held_from_gap", report.measured.held_from},
