@@ -131,6 +131,7 @@ nlohmann::ordered_json as_json(const Plan& plan) {
             {"packing_fraction", plan.expected_packing_fraction},
             {"seconds", plan.expected_seconds},
             {"memory_bytes", plan.expected_memory_bytes}}},
+          {"caution", plan.caution.empty() ? ordered_json() : ordered_json(plan.caution)},
           {"outputs", outputs},
           {"items", items},
           {"absent", plan.absent},

@@ -147,6 +147,8 @@ Command pack_command() {
           "dimensions, packing.svg, and what the scene's [[output]] tables ask for: all or none.\n"
           "For a mesh, prints the scene that the flags stand for, ready to be kept and changed.\n"
           "Ctrl-C ends the run at the next safe point and writes what is there, certified.\n"
-          "Exit codes: 0 done; 2 bad input, nothing written; 3 ended without reaching what the scene asks.",
+          "Exit codes: 0 done; 2 bad input, nothing written; 3 ended without reaching what the scene asks:\n"
+          "the outcome is full, hit_limit, cancelled, or loose: all spheres are there, but jammed more than\n"
+          "0.05 below random close packing of their sizes; its reason says by how much, and the likely why.",
           [call] { return pack(*call); }};
 }

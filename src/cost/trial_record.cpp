@@ -92,7 +92,8 @@ class Cells {
   }
   Outcome outcome() {
     const std::string cell = text();
-    for (const Outcome o : {Outcome::converged, Outcome::full, Outcome::hit_limit, Outcome::cancelled})
+    for (const Outcome o :
+         {Outcome::converged, Outcome::loose, Outcome::full, Outcome::hit_limit, Outcome::cancelled})
       if (name_of(o) == cell) return o;
     refuse();
   }

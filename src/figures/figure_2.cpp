@@ -88,7 +88,7 @@ Files figure_2(const FigureOptions& options) {
     if (!done) return {};
     for (std::size_t k = 0; k < done->size(); ++k) {
       const DonePacking& each = (*done)[k];
-      if (each.packing.outcome != Outcome::converged)
+      if (!is_packed(each.packing.outcome))
         throw Error(ErrorCode::bad_argument, "a packing for figure 2 did not jam");
       csv += fmt::format("grow,{:.1f},{:.6f},,{},{:.6f}\n", grown[k].sigma, each.phi,
                          each.packing.spheres.size(), predicted_for(each.packing.spheres.r));

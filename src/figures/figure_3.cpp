@@ -26,7 +26,7 @@ Files figure_3(const FigureOptions& options) {
   for (std::size_t k = 0; k < done->size(); ++k) {
     const PublishedMixture& row = published_mixtures[k];
     const DonePacking& each = (*done)[k];
-    if (each.packing.outcome != Outcome::converged)
+    if (!is_packed(each.packing.outcome))
       throw Error(ErrorCode::bad_argument, "a packing for figure 3 did not jam");
     csv += fmt::format("{},{},{},{},{},{},{:.6f},{:.3f},{:.2f},{},{}\n", k + 1, row.mix.ratio,
                        row.mix.sigma_a, row.mix.sigma_b, row.mix.share, each.packing.spheres.size(), each.phi,

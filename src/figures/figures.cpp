@@ -93,7 +93,7 @@ std::optional<PredictionCheck> figures::packed_for_a_figure(const Scene& scene, 
   };
   const PredictionCheck packed = check_prediction(scene, check);
   if (packed.outcome == Outcome::cancelled) return std::nullopt;
-  if (!packed.certified || packed.outcome != Outcome::converged)
+  if (!packed.certified || !is_packed(packed.outcome))
     throw Error(ErrorCode::bad_argument, "a packing for the figure did not converge, or is not certified");
   return packed;
 }

@@ -155,7 +155,7 @@ Files zhao_2007(const FigureOptions& options) {
   if (!done) return {};
   results.done = std::move(*done);
   for (const DonePacking& each : results.done)
-    if (each.packing.outcome != Outcome::converged)
+    if (!is_packed(each.packing.outcome))
       throw Error(ErrorCode::bad_argument, "a relaxation for zhao2007 did not converge");
 
   DrawnSizes drawn = zhao_drawn_sizes(options.seed);

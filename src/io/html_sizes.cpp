@@ -66,14 +66,19 @@ void write_quantiles(Page& page, const Sizes& sizes, const SizeDistribution* ask
   page.raw("</table>\n");
 }
 
+std::string head_of_asked(const SizeDistribution* asked) { return asked ? "<th class=\"n\">asked</th>" : ""; }
+std::string asked_cell(const SizeDistribution* asked, double share) {
+  return asked ? fmt::format("<td class=\"n dim\">{:.2f}</td>", 100 * share) : "";
+}
+
 void write_classes(Page& page, const Sizes& sizes, const std::map<double, std::uint64_t>& classes,
                    const SizeDistribution* asked) {
   double volume = 0;
   for (const auto& [size, count] : classes) volume += sizes.volume(size) * static_cast<double>(count);
   page.add(
       "<table><tr><th>{}</th><th class=\"n\">spheres</th><th class=\"n\">% of the number</th>{}"
-      "<th class=\"n\">% of the {}</th></tr>\n",
-      sizes.word, asked ? "<th class=\"n\">asked</th>" : "", sizes.volume_word());
+      "<th class=\"n\">% of the {}</th>{}</tr>\n",
+      sizes.word, head_of_asked(asked), sizes.volume_word(), head_of_asked(asked));
   for (const auto& [size, count] : classes) {
     const auto n = static_cast<double>(count);
     constexpr double same = 1e-12;
@@ -82,11 +87,27 @@ void write_classes(Page& page, const Sizes& sizes, const std::map<double, std::u
         asked ? asked->cumulative(radius * (1 + same)) - asked->cumulative(radius * (1 - same)) : 0;
     page.add(
         "<tr><td>{:.6g}</td><td class=\"n\">{}</td><td class=\"n\">{:.2f}</td>{}<td "
-        "class=\"n\">{:.2f}</td></tr>\n",
-        size, grouped(count), 100 * n / static_cast<double>(sizes.values.size()),
-        asked ? fmt::format("<td class=\"n dim\">{:.2f}</td>", 100 * share) : "",
-        100 * sizes.volume(size) * n / volume);
+        "class=\"n\">{:.2f}</td>{}</tr>\n",
+        size, grouped(count), 100 * n / static_cast<double>(sizes.values.size()), asked_cell(asked, share),
+        100 * sizes.volume(size) * n / volume,
+        asked_cell(asked,
+                   asked ? share * std::pow(radius, sizes.dimension) / asked->moment(sizes.dimension) : 0));
   }
+  page.raw("</table>\n");
+}
+
+/// Of tenths of the volume: what came of the shares that were asked for.
+void write_shares(Page& page, const Sizes& sizes, const std::vector<SizeComparison::Share>& shares) {
+  page.add(
+      "<table><tr><th>{} up to</th><th class=\"n\">spheres</th><th class=\"n\">% of the number</th>"
+      "<th class=\"n\">asked</th><th class=\"n\">% of the {}</th><th class=\"n\">asked</th></tr>\n",
+      sizes.word, sizes.volume_word());
+  for (const SizeComparison::Share& share : shares)
+    page.add(
+        "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{:.3g}</td><td class=\"n dim\">{:.3g}</td>"
+        "<td class=\"n\">{:.2f}</td><td class=\"n dim\">{:.2f}</td></tr>\n",
+        asked_text(sizes.factor * share.up_to), grouped(share.count), 100 * share.number,
+        100 * share.asked_number, 100 * share.volume, 100 * share.asked_volume);
   page.raw("</table>\n");
 }
 
@@ -160,6 +181,8 @@ void write_sizes(Page& page, const Report& report) {
         report.asked ? "<i class=\"dashed\"></i>asked by number" : "");
     write_quantiles(page, sizes, report.asked);
     page.raw("</div></div>\n");
+    if (report.measured.sizes && !report.measured.sizes->shares.empty())
+      write_shares(page, sizes, report.measured.sizes->shares);
   }
   if (report.measured.sizes) write_comparison(page, *report.measured.sizes, sizes);
 }

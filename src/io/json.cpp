@@ -38,6 +38,7 @@ BERNAL_KEYS(Chambers::Uncovered, radius, share, error)
 BERNAL_KEYS(DrawnComparison, missing, scale, largest_deviation, above_largest)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
 BERNAL_KEYS(SizeComparison::Class, radius, asked_share, count)
+BERNAL_KEYS(SizeComparison::Share, above, up_to, asked_number, asked_volume, count, number, volume)
 BERNAL_KEYS(SizeComparison::Quantile, share, realised, asked)
 BERNAL_KEYS(WallProfile::Layer, from, to, share, porosity, error)
 #undef BERNAL_KEYS
@@ -133,6 +134,7 @@ static void to_json(Json& json, const SizeComparison& sizes) {
           {"mean_volume_ratio", sizes.volume_ratio},
           {"mean_volume_ratio_error", sizes.volume_ratio_error},
           {"drawn", sizes.drawn},
+          {"shares", sizes.shares},
           {"quantiles", sizes.quantiles},
           {"classes", sizes.classes}};
 }
@@ -188,6 +190,7 @@ Json figures_of(const std::optional<SizeComparison>& sizes) {
           {"ks_p_value", sizes->ks_p_value},
           {"chi_squared_p_value", sizes->chi_squared_p_value},
           {"mean_volume_ratio", sizes->volume_ratio},
+          {"shares", sizes->shares},
           {"drawn", sizes->drawn}};
 }
 
@@ -265,6 +268,7 @@ std::string json_of(const Report& report) {
                {"unit", name_of(packing.scene.unit)},
                {"phi", packing.packing_fraction()},
                {"expected_phi", packing.expected_packing_fraction},
+               {"expected_phi_of_sizes", packing.expected_of_sizes},
                {"size_scale", packing.size_scale}};
   json.update(contacts_json(report.measured, report.measured.contacts));
   json.update({{"held_from_gap", report.measured.held_from},

@@ -39,7 +39,11 @@ std::string seconds_text(double seconds) {
 /// A packing that was read back from its files has no plan.
 std::string expected_text(const Packing& packing) {
   if (!(packing.expected_packing_fraction > 0)) return {};
-  return fmt::format("; {:.3f} was expected", packing.expected_packing_fraction);
+  std::string text = fmt::format("; {:.3f} was expected", packing.expected_packing_fraction);
+  if (packing.expected_of_sizes)
+    text += fmt::format(", and the sizes that are there pack to {:.3f} at random by the rod model",
+                        *packing.expected_of_sizes);
+  return text;
 }
 
 void write_headline(Page& page, const Report& report) {

@@ -7,6 +7,8 @@
 
 #include <boost/math/special_functions/gamma.hpp>
 
+#include "sizes/volume_carriers.hpp"
+
 namespace bernal {
 namespace {
 
@@ -18,6 +20,11 @@ constexpr double same = 1e-12;
 constexpr double atom = 1e-6;
 constexpr double fewest_expected = 5;
 constexpr std::size_t most_classes = 1000;
+/// Sizes whose shares are told one by one; of more those of tenths of the volume are. Limits nearer than this
+/// are one.
+constexpr std::size_t most_sizes_told = 20;
+constexpr int tenths = 10;
+constexpr double same_limit = 1e-6;
 /// A factor of all radii that is farther from 1 is none.
 constexpr double most_scaled = 0.05;
 
@@ -100,6 +107,52 @@ void compare_means(const std::vector<double>& sorted, const SizeDistribution& as
   result.volume_ratio_error = std::sqrt(std::max(0.0, variance) / n);
 }
 
+/// Limits of tenths of the volume, ascending; one where several would be the same size.
+std::vector<double> limits_by_volume(const SizeDistribution& asked, int dimension) {
+  std::vector<double> limits;
+  for (int k = tenths - 1; k > 0; --k) {
+    const double limit = radius_holding(asked, static_cast<double>(k) / tenths, dimension);
+    if (limits.empty() || limit > limits.back() * (1 + same_limit)) limits.push_back(limit);
+  }
+  if (limits.back() < asked.max()) limits.push_back(asked.max());
+  return limits;
+}
+
+void compare_shares(const std::vector<double>& sorted, const SizeDistribution& asked, int dimension,
+                    SizeComparison& result) {
+  if (asked.min() == asked.max()) return;
+  const auto n = static_cast<double>(sorted.size());
+  const double asked_volume = asked.moment(dimension);
+  double volume = 0;
+  for (const double r : sorted) volume += std::pow(r / sorted.back(), dimension);
+  // Of those from `first` up to that radius; returns the first that is larger.
+  const auto add = [&](std::size_t first, SizeComparison::Share share) {
+    std::size_t last = first;
+    for (; last < sorted.size() && sorted[last] <= share.up_to * (1 + same); ++last)
+      share.volume += std::pow(sorted[last] / sorted.back(), dimension) / volume;
+    share.count = last - first;
+    share.number = static_cast<double>(share.count) / n;
+    result.shares.push_back(share);
+    return last;
+  };
+  std::size_t next = 0;
+  if (!result.classes.empty() && result.classes.size() <= most_sizes_told) {
+    for (const SizeComparison::Class& c : result.classes)
+      next = add(next, {c.radius, c.radius, c.asked_share,
+                        c.asked_share * std::pow(c.radius, dimension) / asked_volume, 0, 0, 0});
+    return;
+  }
+  double above = asked.min(), number_above = 1, volume_above = 1;
+  for (const double limit : limits_by_volume(asked, dimension)) {
+    const double number = asked.moment_above(0, limit * (1 + same));
+    const double share = asked.moment_above(dimension, limit * (1 + same)) / asked_volume;
+    next = add(next, {above, limit, number_above - number, volume_above - share, 0, 0, 0});
+    above = limit;
+    number_above = number;
+    volume_above = share;
+  }
+}
+
 /// The smallest radius at or below which the share of the spheres lies.
 double quantile(const std::vector<double>& sorted, double share) {
   const double rank = std::ceil(share * static_cast<double>(sorted.size()));
@@ -114,6 +167,7 @@ SizeComparison compare_sizes(std::span<const double> radii, const SizeDistributi
   SizeComparison result;
   compare_cumulative(sorted, asked, result);
   compare_classes(sorted, asked, result);
+  compare_shares(sorted, asked, dimension, result);
   compare_means(sorted, asked, dimension, result);
   for (const double share : {0.0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 1.0})
     result.quantiles.push_back({share, quantile(sorted, share), asked.quantile(share)});

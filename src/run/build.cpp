@@ -9,6 +9,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/voxels/voxels.hpp"
 #include "run/estimate.hpp"
+#include "run/few_large.hpp"
 #include "run/fitting.hpp"
 #include "run/price_effects.hpp"
 #include "run/room_for_gaps.hpp"
@@ -17,6 +18,7 @@
 #include "run/start.hpp"
 #include "scene/output_table.hpp"
 #include "sizes/cut_above.hpp"
+#include "sizes/volume_carriers.hpp"
 #include "work/bed.hpp"
 
 namespace bernal {
@@ -82,6 +84,14 @@ std::shared_ptr<const Container> container_of(const Plan& plan) {
   });
 }
 
+/// How the radii are taken from their distribution, where the scene does not say. It is the plan's count and
+/// no seed that decides.
+void choose_draw(Plan& plan, const SizeDistribution& radii) {
+  if (plan.scene.draw) return;
+  const double drawn = plan.expected_count - static_cast<double>(plan.start.spheres.size());
+  plan.scene.draw = usual_draw(radii, drawn, plan.scene.dimension());
+}
+
 void expect_in_container(Plan& plan) {
   const Scene& scene = plan.scene;
   const Domain& container = plan.domain;
@@ -116,6 +126,7 @@ void expect_in_container(Plan& plan) {
     plan.expected_count = std::min(plan.expected_count, static_cast<double>(*scene.target.count));
   plan.expected_packing_fraction = plan.expected_count * mean_volume / volume;
   if (!scene.target.packing_fraction) plan.expected_count = std::max(1.0, plan.expected_count);  // one fits
+  choose_draw(plan, radii);
 }
 
 void require_stage_that_places(const Scene& scene) {
@@ -229,15 +240,6 @@ double attainable_in_box(const Plan& plan, const SizeDistribution& radii) {
   return attainable;
 }
 
-/// What the stage that decides how dense the packing is says of itself.
-double reached_by_last(const Scene& scene) {
-  double reached = 1;
-  for (const Stage& stage : scene.stages)
-    if (const StageEntry& entry = entry_of(stage); !entry.table.traits.only_moves)
-      reached = entry.reached ? entry.reached(entry.table.options(stage)) : 1;
-  return reached;
-}
-
 void expect_in_periodic_box(Plan& plan) {
   const Scene& scene = plan.scene;
   const int dimension = scene.dimension();
@@ -268,6 +270,7 @@ void expect_in_periodic_box(Plan& plan) {
     if (scene.target.count) plan.expected_count = static_cast<double>(*scene.target.count);
   }
   plan.expected_packing_fraction = plan.expected_count * mean_volume / volume_of(plan.domain);
+  choose_draw(plan, radii);
 }
 
 /// What is there from the start is what can be expected at least.
@@ -296,6 +299,7 @@ void expect(Plan& plan) {
     expect_in_container(plan);
   }
   expect_start(plan);
+  plan.caution = caution_of(plan);
   require_overlap(plan);
   price_effects(plan);
   require_drawable_count(plan);

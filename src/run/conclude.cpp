@@ -7,6 +7,7 @@
 
 #include "bernal/core/text.hpp"
 #include "run/room_for_gaps.hpp"
+#include "run/shortfall.hpp"
 
 namespace bernal {
 namespace {
@@ -93,6 +94,15 @@ Conclusion of_box(const Packing& packing, const Work& work, StageEnd end, const 
   return {Outcome::converged, all_placed(n) + account};
 }
 
+/// What is less dense than was to be expected says so.
+void admit_shortfall(Conclusion& conclusion, const Packing& packing, const Plan& plan) {
+  if (conclusion.outcome != Outcome::converged && conclusion.outcome != Outcome::full) return;
+  const std::optional<Shortfall> shortfall = shortfall_of(packing, plan);
+  if (!shortfall) return;
+  conclusion.reason += "; " + shortfall->reason;
+  if (shortfall->is_loose && conclusion.outcome == Outcome::converged) conclusion.outcome = Outcome::loose;
+}
+
 /// In a bed they come one after the other, until the target is reached or no place is left.
 Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
   const Target& target = work.target;
@@ -154,6 +164,7 @@ std::string left_out(const Packing& packing, const Work& work, double unit) {
 void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
   const bool in_bed = work.stands_in_bed();
   Conclusion conclusion = in_bed ? of_bed(packing, work, end, ending) : of_box(packing, work, end, ending);
+  if (!in_bed && end != StageEnd::cancelled) admit_shortfall(conclusion, packing, ending.plan);
   if (end == StageEnd::cancelled) {
     const bool short_of = !in_bed && packing.spheres.size() < work.supply->wanted();
     conclusion = {Outcome::cancelled,

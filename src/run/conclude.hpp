@@ -4,7 +4,10 @@
 
 namespace bernal {
 
+struct Plan;
+
 struct Ending {
+  const Plan& plan;      ///< as the scene states it
   bool places_expected;  ///< the last stage places as many as are expected to fit, if nothing is asked
   double unit;           ///< the packer's, in that of the scene
   double attainable;     ///< the packing fraction that the stages are likely to reach

@@ -143,6 +143,14 @@ double gain_of_stages(const Scene& scene, const SizeDistribution& radii) {
   return gain;
 }
 
+double reached_by_last(const Scene& scene) {
+  double reached = 1;
+  for (const Stage& stage : scene.stages)
+    if (const StageEntry& entry = entry_of(stage); !entry.table.traits.only_moves)
+      reached = entry.reached ? entry.reached(entry.table.options(stage)) : 1;
+  return reached;
+}
+
 double error_of_expectation(const Scene& scene) {
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   if (!any_in_bed(scene) && (!box || box->walls.empty())) return 0.01;

@@ -26,6 +26,10 @@ double expected_packing_fraction(const Scene& scene, const Domain& shape, const 
 /// were measured.
 double error_of_expectation(const Scene& scene);
 
+/// What the last stage that places spheres says that it reaches of itself, whatever the sizes: 1 where it
+/// says nothing.
+double reached_by_last(const Scene& scene);
+
 /// What relaxation reaches of spheres of these sizes in a periodic box: the prediction in three dimensions;
 /// in others the packing fractions of equal spheres, which are not much lower than those of others.
 double close_packing_fraction(const SizeDistribution& radii, int dimension);

@@ -5,7 +5,7 @@
 namespace bernal {
 
 std::string_view name_of(Outcome outcome) {
-  constexpr std::string_view names[] = {"converged", "full", "hit_limit", "cancelled", "imported"};
+  constexpr std::string_view names[] = {"converged", "loose", "full", "hit_limit", "cancelled", "imported"};
   return names[static_cast<std::size_t>(outcome)];
 }
 

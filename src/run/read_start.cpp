@@ -13,6 +13,7 @@
 #include "run/start.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/stage_table.hpp"
+#include "sizes/volume_carriers.hpp"
 
 namespace bernal {
 namespace {
@@ -169,7 +170,10 @@ SceneRadii asked_radii_of(const Scene& scene, std::size_t count) {
   } else {
     made.all = radii_there(made.first);
   }
-  made.asked = {made.all.get(), scene.seed, scene.draw.value_or(Draw::random), made.drawn.get(), made.first};
+  const SizeDistribution& drawn = made.drawn ? *made.drawn : *made.all;
+  const Draw draw = scene.draw.value_or(usual_draw(
+      drawn, static_cast<double>(count) - static_cast<double>(made.first.size()), scene.dimension()));
+  made.asked = {made.all.get(), scene.seed, draw, made.drawn.get(), made.first};
   return made;
 }
 

@@ -17,6 +17,7 @@
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
 #include "run/room_for_gaps.hpp"
+#include "run/shortfall.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
 #include "run/take_coats_off.hpp"
@@ -89,6 +90,7 @@ class Run {
         continue;
       }
       hand_over(work);
+      packing_.expected_of_sizes = expected_of_sizes(packing_);
       conclude(packing_, work, end, ending());
       return;
     }
@@ -97,7 +99,8 @@ class Run {
   Ending ending() const {
     const bool packs = any_stage(scene_, &StageTraits::reaches, Reaches::close_packing) ||
                        any_stage(scene_, &StageTraits::reaches, Reaches::settled);
-    return {.places_expected = table_of(scene_.stages.back()).traits.places_expected,
+    return {.plan = stated_,
+            .places_expected = table_of(scene_.stages.back()).traits.places_expected,
             .unit = frame_.scale,
             .attainable = plan_.attainable_packing_fraction,
             .close_packing =

@@ -170,7 +170,7 @@ void complete_stages(Scene& scene) {
     keeps_sizes = keeps_sizes || (table.traits.keeps_sizes && table.traits.stands_in_bed(scene));
   }
   require_end(scene);
-  if (!scene.draw) scene.draw = keeps_sizes ? Draw::quantiles : Draw::random;
+  if (!scene.draw && keeps_sizes) scene.draw = Draw::quantiles;
 }
 
 /// Every output has a name of its own, and none of the result's.

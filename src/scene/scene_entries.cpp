@@ -232,7 +232,8 @@ const Entry& spheres_entry() {
                         {0}),
                  word(&Scene::draw, "draw",
                       "sizes at random, or quantiles: evenly over the distribution; if absent quantiles "
-                      "where relax or grow packs a container, else random",
+                      "where relax or grow packs a container, and wherever few spheres carry much of the "
+                      "volume; else random",
                       words(draw_words)),
                  key(Type::file, of_start(&Start::file), "start",
                      "spheres to begin from: a CSV file whose header names x, y, z and r or d, or a "

@@ -172,7 +172,8 @@ TEST(PublishedLoop, PacksASceneTheSameCancelledOrNot) {
   for (const int questions : {0, 1, 25, 1000000}) {
     const std::string linked = packed("reference", questions);
     EXPECT_EQ(packed("reference-sorted", questions), linked);
-    EXPECT_NE(linked.find(questions < 1000 ? " cancelled " : " converged "), std::string::npos) << linked;
+    // With so few sweeps it ends 0.086 below random close packing of these sizes.
+    EXPECT_NE(linked.find(questions < 1000 ? " cancelled " : " loose "), std::string::npos) << linked;
   }
 }
 

@@ -44,6 +44,15 @@ struct SizeComparison {
   /// Absent for one class only and where fewer than 5 spheres of some class were to be expected.
   std::optional<double> chi_squared_p_value;
 
+  /// What came of the shares that were asked for: of each of these sizes, or of tenths of the volume.
+  struct Share {
+    double above, up_to;  ///< radii; equal of one size, infinite where the largest have no end
+    double asked_number, asked_volume;
+    std::uint64_t count;
+    double number, volume;  ///< shares of the spheres that are there
+  };
+  std::vector<Share> shares;  ///< ascending; empty for one size only
+
   double mean_radius = 0;
   double asked_mean_radius = 0;
   double volume_ratio = 1;        ///< <r^D> realised over asked

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,12 +16,15 @@ namespace bernal {
 /// How a run ended.
 enum class Outcome {
   converged,  ///< what the scene asked for is there
+  loose,      ///< all spheres are there, but jammed well below random close packing of their sizes
   full,       ///< a count or packing fraction was asked that the stages could not reach: no place is left
   hit_limit,  ///< a limit on iterations ended it
   cancelled,  ///< the user did
   imported,   ///< another program made it: nothing was asked of it
 };
 std::string_view name_of(Outcome);
+/// Whether the stages came to their own end with all spheres that were asked for.
+inline bool is_packed(Outcome outcome) { return outcome == Outcome::converged || outcome == Outcome::loose; }
 
 /// One line of `bernal explain`: something that would run, and what it costs.
 struct PlanItem {
@@ -62,6 +66,9 @@ struct Packing {
   std::shared_ptr<const Container> container = {};
   double volume = 0;                     ///< of the domain
   double expected_packing_fraction = 0;  ///< by the plan, before the run
+  /// Random close packing of the very sizes that are there, by the rod model, see `predict_packing_fraction`;
+  /// nothing where that says nothing: between walls, in other than three dimensions.
+  std::optional<double> expected_of_sizes = {};
   /// All sizes are so many times those that were drawn: in a container `polish` lets them grow until they
   /// jam.
   double size_scale = 1;

@@ -41,6 +41,9 @@ struct Plan {
   double expected_count = 0;
   /// Of the run alone, on one thread; the most that it holds at a time, and what the process takes anyway.
   double expected_seconds = 0, expected_memory_bytes = 0;
+  /// Where a periodic box that is to be packed closely holds too few of its largest spheres for that: how
+  /// many, and how many would do; a sentence, or empty.
+  std::string caution;
   bool places_expected = false;     ///< some stage ends with as many spheres as are expected to fit
   std::vector<PlanItem> items;      ///< what would run, in order
   std::vector<std::string> absent;  ///< effects that the scene does not call for and that are not built

@@ -126,8 +126,9 @@ struct Scene {
   SceneContainer container;  ///< the unit cube, if nothing else is said
   SceneSizes sizes;          ///< left at a Constant of 0 where those of the start are all there are
   bool sizes_are_diameters = false;
-  std::optional<Draw> draw =
-      {};  ///< without it quantiles where a stage keeps them in a container, else random
+  /// Without it quantiles where a stage keeps the sizes in a container, and wherever few spheres carry much
+  /// of the volume, see `few_carry_volume`; else random.
+  std::optional<Draw> draw = {};
   Target target;
   Start start = {};
   double gap = 0;       ///< least distance between the surfaces of two spheres, or of one and its own image

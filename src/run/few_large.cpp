@@ -1,0 +1,68 @@
+#include "run/few_large.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bernal/core/text.hpp"
+#include "run/stages.hpp"
+#include "sizes/volume_carriers.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr double enough_carriers = 30, enough_across = 3;
+/// Of what is attainable: a box that is filled to less has room to spare, whatever is in it.
+constexpr double closely = 0.9;
+
+/// Up to two digits.
+double rounded_up(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  return std::ceil(x / unit - 1e-6) * unit;
+}
+
+}  // namespace
+
+std::optional<FewLarge> few_large(const SizeDistribution& radii, double count, const Vector<dynamic>& edges) {
+  const auto dimension = static_cast<int>(edges.size());
+  if (dimension != 2 && dimension != 3) return {};
+  const VolumeCarriers largest = volume_carriers(radii, dimension);
+  FewLarge few{
+      .carriers = count * largest.share, .across = edges.minCoeff() / (2 * largest.radius), .factor = 1};
+  if (few.carriers >= enough_carriers && few.across >= enough_across) return {};
+  few.factor = std::max(enough_carriers / few.carriers, std::pow(enough_across / few.across, dimension));
+  return few;
+}
+
+std::string in_words(const FewLarge& few) {
+  const double n = std::max(1.0, std::round(few.carriers));
+  const std::string across = fmt::format("the box is {:.1f} of the largest diameters across", few.across);
+  if (n >= enough_carriers) return across;
+  return fmt::format("half of the volume is in {} and {}",
+                     n == 1 ? "1 sphere" : grouped(static_cast<std::uint64_t>(n)) + " spheres", across);
+}
+
+std::string remedy_of(const FewLarge& few, double count, const Scene& scene, const Vector<dynamic>& edges) {
+  if (std::get<PeriodicBox>(scene.container).scalable) {
+    const double enough = rounded_up(few.factor * count);
+    return fmt::format("{} would be enough",
+                       enough < 1e15 ? grouped(static_cast<std::uint64_t>(enough)) + " spheres" : "no count");
+  }
+  const double wider = std::pow(few.factor, 1.0 / static_cast<double>(edges.size()));
+  return fmt::format("a shortest edge of {:.3g} {} would be enough", rounded_up(wider * edges.minCoeff()),
+                     name_of(scene.unit));
+}
+
+std::string caution_of(const Plan& plan) {
+  const Box* box = std::get_if<Box>(&plan.domain);
+  const bool packs_closely = plan.expected_packing_fraction > closely * plan.attainable_packing_fraction;
+  if (!box || box->has_walls() || any_in_bed(plan.scene) || !packs_closely) return {};
+  const Vector<dynamic> edges = box->size;
+  const std::optional<FewLarge> few = few_large(*plan.radii, plan.expected_count, edges);
+  if (!few) return {};
+  return fmt::format("{}: too few to pack at random; {}", in_words(*few),
+                     remedy_of(*few, plan.expected_count, plan.scene, edges));
+}
+
+}  // namespace bernal
