@@ -9,6 +9,7 @@
 #include "core/close_packing.hpp"
 #include "jam/polish.hpp"
 #include "soft/ground.hpp"
+#include "soft/relax_wide.hpp"
 #include "soft/soft_engine.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/random_insertion.hpp"
@@ -84,11 +85,19 @@ bool is_done(const Spheres<D>& spheres, const Vector<D>& edges, const Work& work
          is_free_of_overlap<D>(spheres, edges, work.walls);
 }
 
+/// Whether sizes are wide and spheres are to be as dense as they can.
+bool begins_from_largest(const Work& work, const Relax& options) {
+  const bool there = work.placed || work.begun > 0;
+  return is_for_wide_sizes(work.fill_task, options) && !there && !is_loose(work) &&
+         options.phi0.value_or(1) >= std::min(dense_start[work.dimension() - 1], work.fill_task.attainable);
+}
+
 /// Those they begin in, or of phi0, or about those that are asked for; never so small that a sphere overlaps
 /// its own image.
 Vector<dynamic> edges_to_start_from(const Work& work, const Relax& options) {
-  const double phi0 = options.phi0.value_or(dense_start[work.dimension() - 1]);
   const int dimension = work.dimension();
+  const double phi0 = begins_from_largest(work, options) ? wide_start(work.fill_task)
+                                                         : options.phi0.value_or(dense_start[dimension - 1]);
   const auto with_volume = [&](double volume) -> Vector<dynamic> {
     return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
   };
@@ -106,7 +115,13 @@ Vector<dynamic> edges_to_start_from(const Work& work, const Relax& options) {
 /// Places for spheres that have none. Those of others are moved by nothing that matters, so that a lattice or
 /// a line of spheres does not last for ever.
 template <int D>
-void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& work) {
+StageEnd place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& work,
+               const Relax& options) {
+  if constexpr (D == 2 || D == 3)
+    if (begins_from_largest(work, options)) {
+      work.edges = edges = start;
+      return place_from_largest<D>(spheres, edges, work, options);
+    }
   Random random = work.random(Stream::relax);
   const std::size_t there = work.placed ? spheres.size() : work.begun;
   if (there == 0) {
@@ -116,6 +131,7 @@ void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& 
     displace_at_random<D>(spheres, edges, work.walls, first_jitter * std::ranges::max(spheres.r), random);
   }
   place_at_random<D>(spheres, edges, random, there);
+  return StageEnd::converged;
 }
 
 /// Whether growing the box by the overlap that counts as none is all that there is to do.
@@ -176,6 +192,8 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
 
 template <int D>
 StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
+  if constexpr (D == 2 || D == 3)
+    if (is_for_wide_sizes(work.fill_task, options)) return relax_wide<D>(spheres, edges, work, options);
   const bool engine_works = D > 3 || !work.walls.empty() || SoftEngine<D>::is_wide(spheres, edges);
   return options.method == RelaxMethod::fast && engine_works
              ? relax_fast<D>(spheres, edges, work, options)
@@ -199,13 +217,12 @@ StageEnd relax_in(Work& work, const Relax& options) {
     return finish(StageEnd::converged);
   }
   const Vector<D> start = edges_to_start_from(work, options);
-  place<D>(spheres, edges, start, work);
+  StageEnd end = place<D>(spheres, edges, start, work, options);
 
   const int most_starts = is_loose(work) ? most_starts_in_a_loose_box : 1;
-  StageEnd end = StageEnd::converged;
   for (int starts = 1;; ++starts) {
     work.edges = edges;
-    end = push_apart<D>(spheres, edges, work, options);
+    if (end == StageEnd::converged) end = push_apart<D>(spheres, edges, work, options);
     free_of_overlap<D>(spheres, edges, work);
     if (end != StageEnd::converged || starts == most_starts ||
         lies_within<D>(spheres, edges, *work.target_edges))
