@@ -96,8 +96,9 @@ bool begins_from_largest(const Work& work, const Relax& options) {
 /// its own image.
 Vector<dynamic> edges_to_start_from(const Work& work, const Relax& options) {
   const int dimension = work.dimension();
-  const double phi0 = begins_from_largest(work, options) ? wide_start(work.fill_task)
-                                                         : options.phi0.value_or(dense_start[dimension - 1]);
+  const double usual = dense_start[dimension - 1];
+  double phi0 = options.phi0.value_or(usual);
+  if (phi0 == usual && begins_from_largest(work, options)) phi0 = wide_start(work.fill_task);
   const auto with_volume = [&](double volume) -> Vector<dynamic> {
     return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
   };
@@ -275,8 +276,9 @@ const StageEntry& entry_of<Relax>() {
                                              {0.01, 1e6})),
                         number(&Relax::phi0, "phi0",
                                "packing fraction of the overlapping spheres at the start; if absent 0.86, in "
-                               "other than three dimensions 1.34 of random close packing; of spheres that "
-                               "come dense from a file what they have there",
+                               "other than three dimensions 1.34 of random close packing, of wide sizes 1.06 "
+                               "of what is expected; of spheres that come dense from a file what they have "
+                               "there",
                                above(0, 10)),
                         buys_accuracy(
                             {1e-2, 1e-3, 2e-4, 1e-5, 1e-6},

@@ -74,13 +74,13 @@ double seconds_in_growing_box(const Relax& options, const Outlook& outlook) {
       outlook.task.packing_fraction > 0 && outlook.task.packing_fraction < loose_box * outlook.task.attainable
           ? share_in_a_loose_box
           : 1;
+  const bool wide = is_for_wide_sizes(outlook.task, options);
   const double h = options.phi0.value_or(0) / outlook.task.attainable;
-  const double start = options.phi0
+  const double start = options.phi0 && !wide
                            ? std::clamp(from_loose + cost_of_overlap * (h - loose_start), from_loose, 1.0) *
                                  std::max(1.0, std::pow(h / default_start, power_of_start))
                            : 1;
   const double method = options.method == RelaxMethod::fast ? 1 : reference_factor;
-  const bool wide = is_for_wide_sizes(outlook.task, options);
   return method * std::pow(options.beta / default_beta, power_of_beta) *
          (start > 1 ? loose * start : std::min(loose, start)) * outlook.spheres * decades * decades * cycles *
          dimension_factor(outlook, wide) *
