@@ -335,6 +335,8 @@ FillTask fill_task_of(const Plan& plan) {
   FillTask task{.dimension = dimension,
                 .attainable = plan.attainable_packing_fraction,
                 .size_ratio = plan.radii->quantile(1 - rare) / plan.radii->quantile(rare),
+                .width_of_sizes = plan.radii->moment(dimension + 1) /
+                                  (plan.radii->moment(dimension) * plan.radii->moment(1)),
                 .has_walls = has_walls(plan.domain),
                 .may_overlap = plan.scene.overlap > 0};
   if (target.packing_fraction)

@@ -18,12 +18,12 @@ constexpr double most_shrinking = 1.1;
 }  // namespace
 
 template <int D>
-std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, Work& work) {
+std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, bool wide, Work& work) {
   SizeExchange sizes(spheres.r, D);
   if (D == 1 || !sizes.is_of_use()) return std::nullopt;
   const double least_edge =
       std::max(edges.minCoeff() / most_shrinking, 2 * most_shrinking * std::ranges::max(spheres.r));
-  SoftEngine<D> engine(spheres, edges, most_shrinking, work.walls);
+  SoftEngine<D> engine(spheres, edges, most_shrinking, work.walls, 1, wide);
   double edge = edges.minCoeff(), overlap = 0;
   const float omega = pace_for(0).omega * D / 3;
   const auto compress = [&](double factor) {
@@ -58,7 +58,7 @@ std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, Wor
 }
 
 #define BERNAL_INSTANTIATE(D) \
-  template std::optional<double> exchange_in_box<D>(Spheres<D>&, Vector<D>&, Work&);
+  template std::optional<double> exchange_in_box<D>(Spheres<D>&, Vector<D>&, bool, Work&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

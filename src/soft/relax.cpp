@@ -12,6 +12,7 @@
 #include "jam/polish.hpp"
 #include "soft/exchange_in_box.hpp"
 #include "soft/ground.hpp"
+#include "soft/relax_wide.hpp"
 #include "soft/size_exchange.hpp"
 #include "soft/soft_engine.hpp"
 #include "work/free_of_overlap.hpp"
@@ -97,11 +98,20 @@ bool is_done(const Spheres<D>& spheres, const Vector<D>& edges, const Work& work
          is_free_of_overlap<D>(spheres, edges, work.walls);
 }
 
+/// Whether sizes are wide and spheres are to be as dense as they can.
+bool begins_from_largest(const Work& work, const Relax& options) {
+  const bool there = work.placed || work.begun > 0;
+  return is_for_wide_sizes(work.fill_task, options) && !there && !is_loose(work) &&
+         options.phi0.value_or(1) >= std::min(dense_start[work.dimension() - 1], work.fill_task.attainable);
+}
+
 /// Those they begin in, or of phi0, or about those that are asked for; never so small that a sphere overlaps
 /// its own image.
 Vector<dynamic> edges_to_start_from(const Work& work, const Relax& options) {
-  const double phi0 = options.phi0.value_or(dense_start[work.dimension() - 1]);
   const int dimension = work.dimension();
+  const double usual = dense_start[dimension - 1];
+  double phi0 = options.phi0.value_or(usual);
+  if (phi0 == usual && begins_from_largest(work, options)) phi0 = wide_start(work.fill_task);
   const auto with_volume = [&](double volume) -> Vector<dynamic> {
     return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
   };
@@ -119,7 +129,13 @@ Vector<dynamic> edges_to_start_from(const Work& work, const Relax& options) {
 /// Places for spheres that have none. Those of others are moved by nothing that matters, so that a lattice or
 /// a line of spheres does not last for ever.
 template <int D>
-void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& work) {
+StageEnd place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& work,
+               const Relax& options) {
+  if constexpr (D == 2 || D == 3)
+    if (begins_from_largest(work, options)) {
+      work.edges = edges = start;
+      return place_from_largest<D>(spheres, edges, work, options);
+    }
   Random random = work.random(Stream::relax);
   const std::size_t there = work.placed ? spheres.size() : work.begun;
   if (there == 0) {
@@ -129,6 +145,7 @@ void place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& 
     displace_at_random<D>(spheres, edges, work.walls, first_jitter * std::ranges::max(spheres.r), random);
   }
   place_at_random<D>(spheres, edges, random, there);
+  return StageEnd::converged;
 }
 
 /// Whether growing the box by the overlap that counts as none is all that there is to do.
@@ -191,10 +208,21 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
 
 template <int D>
 StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
+  if constexpr (D == 2 || D == 3)
+    if (is_for_wide_sizes(work.fill_task, options)) return relax_wide<D>(spheres, edges, work, options);
   const bool engine_works = D > 3 || !work.walls.empty() || SoftEngine<D>::is_wide(spheres, edges);
   return options.method == RelaxMethod::fast && engine_works
              ? relax_fast<D>(spheres, edges, work, options)
              : relax_by_the_book<D>(spheres, edges, work, options);
+}
+
+template <int D>
+StageEnd push_exchanged_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options,
+                              double overlap) {
+  if constexpr (D == 2 || D == 3)
+    if (is_for_wide_sizes(work.fill_task, options))
+      return relax_wide<D>(spheres, edges, work, options, overlap);
+  return relax_fast<D>(spheres, edges, work, options, overlap);
 }
 
 /// Takes spheres that just do not overlap to a denser packing of the same sizes, if that is found.
@@ -203,12 +231,13 @@ StageEnd exchange_sizes(Spheres<D>& spheres, Vector<D>& edges, Work& work, const
   EffectTimer timer(work.effects["exchange"]);
   const Spheres<D> ordinary = spheres;
   const Vector<D> ordinary_edges = edges;
-  const std::optional<double> overlap = exchange_in_box<D>(spheres, edges, work);
+  const bool wide = is_for_wide_sizes(work.fill_task, options);
+  const std::optional<double> overlap = exchange_in_box<D>(spheres, edges, wide, work);
   if (!overlap) {
     work.account = "without an exchange of sizes: they are equal or too far apart";
     return StageEnd::converged;
   }
-  const StageEnd end = relax_fast<D>(spheres, edges, work, options, *overlap);
+  const StageEnd end = push_exchanged_apart<D>(spheres, edges, work, options, *overlap);
   free_of_overlap<D>(spheres, edges, work);
   if (edges.prod() < ordinary_edges.prod()) {
     const double volume = work.volume_of_spheres();
@@ -245,11 +274,11 @@ StageEnd relax_in(Work& work, const Relax& options) {
     free_of_overlap<D>(spheres, edges, work);
   } else {
     const Vector<D> start = edges_to_start_from(work, options);
-    place<D>(spheres, edges, start, work);
+    end = place<D>(spheres, edges, start, work, options);
     const int most_starts = is_loose(work) ? most_starts_in_a_loose_box : 1;
     for (int starts = 1;; ++starts) {
       work.edges = edges;
-      end = push_apart<D>(spheres, edges, work, options);
+      if (end == StageEnd::converged) end = push_apart<D>(spheres, edges, work, options);
       free_of_overlap<D>(spheres, edges, work);
       if (end != StageEnd::converged || starts == most_starts ||
           lies_within<D>(spheres, edges, *work.target_edges))
@@ -305,8 +334,9 @@ const StageEntry& entry_of<Relax>() {
                                              {0.01, 1e6})),
                         number(&Relax::phi0, "phi0",
                                "packing fraction of the overlapping spheres at the start; if absent 0.86, in "
-                               "other than three dimensions 1.34 of random close packing; of spheres that "
-                               "come dense from a file what they have there",
+                               "other than three dimensions 1.34 of random close packing, of wide sizes 1.06 "
+                               "of what is expected; of spheres that come dense from a file what they have "
+                               "there",
                                above(0, 10)),
                         buys_accuracy(
                             {1e-2, 1e-3, 2e-4, 1e-5, 1e-6},

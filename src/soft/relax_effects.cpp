@@ -5,6 +5,7 @@
 
 #include "jam/polish.hpp"
 #include "soft/relax.hpp"
+#include "soft/relax_wide.hpp"
 
 namespace bernal {
 namespace {
@@ -21,6 +22,8 @@ constexpr double one_by_one = 3.5, narrow = 4;
 constexpr double surely_wide = 2.5;
 /// Sizes that differ make longer lists: the power of their spread that a sphere costs more.
 constexpr double cost_of_spread = 1, cost_of_spread_in_bed = 1.5;
+/// The same in boxes where they are wide: of what equal spheres take, and the power of their spread.
+constexpr double share_of_wide = 0.75, cost_of_wide_spread = 0.75;
 /// From so many spheres on the memory has to be waited for.
 constexpr double many = 1e5, cost_of_many = 0.4;
 /// A box that grows, for each sphere and (log10 N)²: at the start and the end, and for each unit of alpha.
@@ -57,10 +60,10 @@ constexpr double exchange_in_box = 1000 * microsecond, exchange_in_bed = 3000 * 
 constexpr double questions = 6;
 constexpr double bytes_a_sphere = 130, bytes_of_lists = 130;
 
-double dimension_factor(const Outlook& outlook) {
+double dimension_factor(const Outlook& outlook, bool in_any_width = false) {
   const int dimension = outlook.task.dimension;
-  const bool sorted =
-      dimension != 2 && dimension != 3 ? true : !outlook.task.has_walls && outlook.width > narrow;
+  const bool sorted = (dimension != 2 && dimension != 3) || in_any_width ||
+                      (!outlook.task.has_walls && outlook.width > narrow);
   return by_dimension[static_cast<std::size_t>(dimension - 1)] * (sorted ? 1 : one_by_one) *
          std::pow(std::max(1.0, outlook.spheres / many), cost_of_many);
 }
@@ -73,15 +76,18 @@ double seconds_in_growing_box(const Relax& options, const Outlook& outlook) {
       outlook.task.packing_fraction > 0 && outlook.task.packing_fraction < loose_box * outlook.task.attainable
           ? share_in_a_loose_box
           : 1;
+  const bool wide = is_for_wide_sizes(outlook.task, options);
   const double h = options.phi0.value_or(0) / outlook.task.attainable;
-  const double start = options.phi0
+  const double start = options.phi0 && !wide
                            ? std::clamp(from_loose + cost_of_overlap * (h - loose_start), from_loose, 1.0) *
                                  std::max(1.0, std::pow(h / default_start, power_of_start))
                            : 1;
   const double method = options.method == RelaxMethod::fast ? 1 : reference_factor;
   return method * std::pow(options.beta / default_beta, power_of_beta) *
          (start > 1 ? loose * start : std::min(loose, start)) * outlook.spheres * decades * decades * cycles *
-         dimension_factor(outlook) * std::pow(outlook.spread, cost_of_spread);
+         dimension_factor(outlook, wide) *
+         (wide ? share_of_wide * std::pow(outlook.spread, cost_of_wide_spread)
+               : std::pow(outlook.spread, cost_of_spread));
 }
 
 double seconds_in_bed(const Relax& options, const Outlook& outlook) {
@@ -127,17 +133,21 @@ std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook&
     for (PlanItem& item : items)
       if (item.name != "insertion" && item.name != "walls" && is_dilute) item.if_needed = true;
   } else {
-    items = effects_of_pushing(seconds_in_growing_box(options, outlook), outlook,
-                               options.method == RelaxMethod::fast
-                                   ? "spheres push each other apart while the box grows"
-                               : options.method == RelaxMethod::reference
-                                   ? "the published loop while the box grows, on linked lists in cells"
-                                   : "the published loop while the box grows, on arrays sorted by cells");
+    const bool wide = is_for_wide_sizes(outlook.task, options);
+    items = effects_of_pushing(
+        seconds_in_growing_box(options, outlook), outlook,
+        wide && !outlook.placed ? "sizes are wide: the largest are relaxed first, the others come into what "
+                                  "they leave; then all push while the box grows by the mean overlap"
+        : wide                  ? "sizes are wide: the box grows by the mean overlap while they push"
+        : options.method == RelaxMethod::fast ? "spheres push each other apart while the box grows"
+        : options.method == RelaxMethod::reference
+            ? "the published loop while the box grows, on linked lists in cells"
+            : "the published loop while the box grows, on arrays sorted by cells");
     if (options.method != RelaxMethod::fast)
       items.erase(items.begin());  // it looks into cells
     else if (outlook.placed)
       items.front().if_needed = true;  // what hardly overlaps is only let grow
-    else if (outlook.task.dimension <= 3 && !outlook.task.has_walls && outlook.width < surely_wide)
+    else if (!wide && outlook.task.dimension <= 3 && !outlook.task.has_walls && outlook.width < surely_wide)
       items.front().if_needed = true;  // as the published loop does, which may take the place of the fast one
   }
   if (options.exchange) {

@@ -14,10 +14,12 @@ template <int D>
 class SoftEngine {
  public:
   /// Centres in [0, edge). The box may become smaller than it is by the factor `room` later on. Axes with
-  /// `walls` (empty: none) keep centres `share` times their radius away from both ends.
+  /// `walls` (empty: none) keep centres `share` times their radius away from both ends. `by_octaves`: it is
+  /// `SoftPacking` that way, in two or three dimensions without walls.
   SoftEngine(const Spheres<D>& spheres, const Vector<D>& edges, double room = 1,
-             const std::vector<bool>& walls = {}, double share = 1)
-      : engine_(make(spheres, edges, walls.empty() && is_wide(spheres, edges, room))) {
+             const std::vector<bool>& walls = {}, double share = 1, bool by_octaves = false)
+      : engine_(make(spheres, edges, by_octaves || (walls.empty() && is_wide(spheres, edges, room)),
+                     by_octaves)) {
     if (!walls.empty()) std::get<NeighborRelaxation<D>>(engine_).keep_between_walls(walls, share);
   }
 
@@ -59,9 +61,10 @@ class SoftEngine {
   using Engine = std::conditional_t<D <= 3, std::variant<NeighborRelaxation<D>, SoftPacking>,
                                     std::variant<NeighborRelaxation<D>>>;
 
-  static Engine make(const Spheres<D>& spheres, const Vector<D>& edges, bool wide) {
+  static Engine make(const Spheres<D>& spheres, const Vector<D>& edges, bool sorted, bool by_octaves) {
     if constexpr (D <= 3) {
-      if (wide) return Engine(std::in_place_type<SoftPacking>, spheres, edges, soft_kernels().front());
+      if (sorted)
+        return Engine(std::in_place_type<SoftPacking>, spheres, edges, soft_kernels().front(), by_octaves);
     }
     return Engine(std::in_place_type<NeighborRelaxation<D>>, spheres, edges);
   }

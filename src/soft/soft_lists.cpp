@@ -61,8 +61,8 @@ using FoundNeighbors = std::array<std::unique_ptr<std::uint32_t[]>, lanes>;
 
 }  // namespace
 
-SoftLists::SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels)
-    : kernels_(kernels), skin_(skin) {
+SoftLists::SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels, bool by_octaves)
+    : kernels_(kernels), skin_(skin), by_octaves_(by_octaves) {
   std::vector<float> ascending = radii;
   const auto nth = ascending.begin() + static_cast<std::ptrdiff_t>((1 - share_of_large) *
                                                                    static_cast<double>(ascending.size() - 1));
@@ -123,17 +123,7 @@ void SoftLists::sort_into_cells(const std::vector<SoftSphere>& compact, const st
 /// For every place which of the spheres has it, or nobody.
 std::vector<SoftLists::Place> SoftLists::sweep_order(const std::vector<SoftSphere>& compact,
                                                      const std::array<double, 3>& edges) {
-  const double width = 2.0 * (large_ + skin_);
-  // Few spheres in much room do not need more pencils than there are spheres.
-  const int most_across = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(compact.size()))));
-  const auto pencils_across = [&](double edge) {
-    const int count = std::min(most_across, count_of_cells(edge, width));
-    return count > 1 ? count & ~1 : 1;
-  };
-  const int across_y = pencils_across(edges[1]), across_z = pencils_across(edges[2]);
   const int along = std::min(static_cast<int>(compact.size()) + 1, count_of_cells(edges[0], 2.0 * large_));
-  const auto pencils = static_cast<std::size_t>(across_y) * static_cast<std::size_t>(across_z);
-
   std::vector<std::uint32_t> order(compact.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
   sort_by(order, static_cast<std::size_t>(along),
@@ -143,15 +133,48 @@ std::vector<SoftLists::Place> SoftLists::sweep_order(const std::vector<SoftSpher
       const double octaves = std::log2(largest_ / compact[i].r);
       return std::min(most_classes - 1, static_cast<std::size_t>(classes_per_octave * octaves));
     });
-  const std::vector<std::uint32_t> start = sort_by(order, pencils + 1, [&](std::uint32_t i) {
-    if (compact[i].r > large_) return pencils;
-    return static_cast<std::size_t>(cell_of(compact[i].x[2], across_z)) * static_cast<std::size_t>(across_y) +
-           static_cast<std::size_t>(cell_of(compact[i].x[1], across_y));
-  });
 
   phases_.clear();
   std::vector<Place> sphere_at;
   sphere_at.reserve(compact.size() + compact.size() / 8);
+  if (!by_octaves_) {
+    add_pencils(std::move(order), large_, compact, edges, sphere_at);
+    return sphere_at;
+  }
+  // The large ones come last: they are moved by what has given way to them.
+  std::array<std::vector<std::uint32_t>, most_levels> octaves;
+  for (const std::uint32_t i : order) {
+    std::size_t k = 0;
+    for (float r = largest_ / 2; compact[i].r <= r && k + 1 < octaves.size(); r /= 2) ++k;
+    octaves[k].push_back(i);
+  }
+  for (std::size_t k = octaves.size(); k-- > 0;)
+    if (!octaves[k].empty())
+      add_pencils(std::move(octaves[k]), std::ldexp(largest_, -static_cast<int>(k)), compact, edges,
+                  sphere_at);
+  return sphere_at;
+}
+
+/// Places for the spheres of `order` behind those that there are: in pencils, but for those larger than
+/// `largest`, which come alone.
+void SoftLists::add_pencils(std::vector<std::uint32_t> order, float largest,
+                            const std::vector<SoftSphere>& compact, const std::array<double, 3>& edges,
+                            std::vector<Place>& sphere_at) {
+  const double width = 2.0 * (largest + skin_);
+  // Few spheres in much room do not need more pencils than there are spheres.
+  const int most_across = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(order.size()))));
+  const auto pencils_across = [&](double edge) {
+    const int count = std::min(most_across, count_of_cells(edge, width));
+    return count > 1 ? count & ~1 : 1;
+  };
+  const int across_y = pencils_across(edges[1]), across_z = pencils_across(edges[2]);
+  const auto pencils = static_cast<std::size_t>(across_y) * static_cast<std::size_t>(across_z);
+  const std::vector<std::uint32_t> start = sort_by(order, pencils + 1, [&](std::uint32_t i) {
+    if (compact[i].r > largest) return pencils;
+    return static_cast<std::size_t>(cell_of(compact[i].x[2], across_z)) * static_cast<std::size_t>(across_y) +
+           static_cast<std::size_t>(cell_of(compact[i].x[1], across_y));
+  });
+
   const auto fill_group = [&] { sphere_at.resize((sphere_at.size() + lanes - 1) / lanes * lanes, nobody); };
   const auto add_chain = [&](std::vector<Pencil> live) {
     const std::size_t first = sphere_at.size() / lanes;
@@ -187,7 +210,6 @@ std::vector<SoftLists::Place> SoftLists::sweep_order(const std::vector<SoftSpher
   phases_.emplace_back();
   add_chain({{start[pencils], start[pencils + 1]}});
   std::erase_if(phases_, [](const auto& chains) { return chains.empty(); });
-  return sphere_at;
 }
 
 void SoftLists::find_neighbors(const std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges) {

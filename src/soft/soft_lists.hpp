@@ -27,13 +27,15 @@ struct Chain {
 /// All this is a function of the places and radii alone, the same for any number of threads.
 class SoftLists {
  public:
-  /// `radii` are all that there will be; `skin` is in the same unit.
-  SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels);
+  /// `radii` are all that there will be; `skin` is in the same unit. `by_octaves`: spheres whose radii differ
+  /// by more than an octave are swept one kind after the other, each in pencils as wide as it needs, the
+  /// largest last.
+  SoftLists(const std::vector<float>& radii, float skin, const SoftKernels& kernels, bool by_octaves = false);
 
   /// Sorts the spheres anew and finds their neighbours. `spheres` and `ids` are in sweep order, with gaps
-  /// where the radius is NaN, before and after; the sphere behind the last group is such a gap. Precondition:
-  /// every edge is at least 4 (largest radius + skin), so that no two images of a sphere are neighbours of
-  /// one. Parallel. Cost: about 0.2 µs a sphere on one core.
+  /// where the radius is NaN, before and after; the sphere behind the last group is such a gap. Of several
+  /// images of a sphere that are neighbours of one, as there may be where an edge is less than 4 (largest
+  /// radius + skin), the nearest counts. Parallel. Cost: about 0.2 µs a sphere on one core.
   void build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& ids,
              const std::array<double, 3>& edges);
 
@@ -49,6 +51,8 @@ class SoftLists {
 
   void sort_into_cells(const std::vector<SoftSphere>& compact, const std::array<double, 3>& edges);
   std::vector<Place> sweep_order(const std::vector<SoftSphere>& compact, const std::array<double, 3>& edges);
+  void add_pencils(std::vector<std::uint32_t> order, float largest, const std::vector<SoftSphere>& compact,
+                   const std::array<double, 3>& edges, std::vector<Place>& sphere_at);
   void find_neighbors(const std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges);
 
   Made made_{"relaxation"}, lists_made_{"neighbour lists"};
@@ -57,6 +61,7 @@ class SoftLists {
   float largest_;  // radius
   float large_;    // spheres with larger radii are swept alone
   bool equal_;     // radii
+  bool by_octaves_;
   std::size_t level_count_;
 
   std::vector<SoftLevel> levels_;

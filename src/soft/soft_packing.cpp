@@ -44,11 +44,11 @@ Pace pace_for(double largest_overlap) {
 }
 
 SoftPacking::SoftPacking(const std::vector<double>& radii, double most, int dimension,
-                         const SoftKernels& kernels)
+                         const SoftKernels& kernels, bool by_octaves)
     : kernels_(kernels),
       count_(radii.size()),
       dimension_(dimension),
-      lists_(as_floats(radii, most), static_cast<float>(skin_for(radii)), kernels),
+      lists_(as_floats(radii, most), static_cast<float>(skin_for(radii)), kernels, by_octaves),
       thickest_skin_(lists_.skin()),
       spheres_(radii.size(), SoftSphere{}),
       sites_(radii.size()),
@@ -61,14 +61,15 @@ SoftPacking::SoftPacking(const std::vector<double>& radii, double most, int dime
 }
 
 template <int D>
-SoftPacking::SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels)
-    : SoftPacking(spheres.r, 1, D, kernels) {
+SoftPacking::SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels,
+                         bool by_octaves)
+    : SoftPacking(spheres.r, 1, D, kernels, by_octaves) {
   for (std::size_t k = 0; k < D; ++k) edges_[k] = edges[static_cast<int>(k)];
   for (std::size_t i = 0; i < count_; ++i) set_place(spheres_[i], spheres.center(i));
 }
 
 SoftPacking::SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels)
-    : SoftPacking(spheres.r, most_swelling, 3, kernels) {
+    : SoftPacking(spheres.r, most_swelling, 3, kernels, false) {
   // Centres stay inside the bounds, so that images are a margin of this width apart; but for those along an
   // axis that repeats itself, which are meant.
   const double margin = most_swelling * smallest_edge(spheres.r);
@@ -121,7 +122,9 @@ double SoftPacking::move_all(float omega, bool measure) {
     }
   }
   ++sweeps_;
-  return *std::ranges::max_element(largest);
+  const float near = *std::ranges::max_element(largest);
+  if (far_images_.empty()) return near;
+  return std::max(near, far_images_.push(spheres_, edges_, omega, task.squeeze, task.force));
 }
 
 void SoftPacking::grow(double factor) {
@@ -218,7 +221,10 @@ void SoftPacking::keep_lists_valid() {
     const EffectTimer timer(lists_built_);
     choose_skin();
     lists_.build(spheres_, sites_, edges_);
-    if (walls_) walls_->build(spheres_, sites_, lists_.skin());
+    if (walls_)
+      walls_->build(spheres_, sites_, lists_.skin());
+    else
+      far_images_.build(spheres_, edges_, dimension_, wear_ * lists_.skin());
     built_at_ = spheres_;
     grown_ = 0;
     age_ = 0;
@@ -249,9 +255,9 @@ void SoftPacking::write_to(Spheres<D>& spheres) const {
   }
 }
 
-#define BERNAL_INSTANTIATE(D)                                                                 \
-  template SoftPacking::SoftPacking(const Spheres<D>&, const Vector<D>&, const SoftKernels&); \
-  template void SoftPacking::write_to(Spheres<D>&) const;                                     \
+#define BERNAL_INSTANTIATE(D)                                                                       \
+  template SoftPacking::SoftPacking(const Spheres<D>&, const Vector<D>&, const SoftKernels&, bool); \
+  template void SoftPacking::write_to(Spheres<D>&) const;                                           \
   template void SoftPacking::write_to(Spheres<D>&, Vector<D>&) const;
 BERNAL_INSTANTIATE(1)
 BERNAL_INSTANTIATE(2)

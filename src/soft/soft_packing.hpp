@@ -7,6 +7,7 @@
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/container.hpp"
+#include "soft/far_images.hpp"
 #include "soft/soft_lists.hpp"
 #include "soft/soft_walls.hpp"
 #include "work/effect_log.hpp"
@@ -39,15 +40,18 @@ class SoftPacking {
   /// How much larger than given the radii may become in a container.
   static constexpr double most_swelling = 1.05;
 
-  /// Centres in [0, edge). Precondition: every edge is at least `smallest_edge` of the radii, and will be.
+  /// Centres in [0, edge). `by_octaves` as of `SoftLists`. Precondition: every edge is at least the largest
+  /// diameter, and will be. Below `smallest_edge` of the radii a box costs O(N) more for each sphere larger
+  /// than a quarter of it: fast only where these are few.
   template <int D>
-  SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels);
+  SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels,
+              bool by_octaves = false);
 
   /// Precondition: all centres are inside the container, which outlives this; its periods are at least
   /// `most_swelling` times the `smallest_edge` of the radii.
   SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels);
 
-  /// The least edge that this way of finding neighbours allows.
+  /// The least edge in which no two images of a sphere are neighbours of one.
   static double smallest_edge(const std::vector<double>& radii);
 
   /// Lists are built anew when a sphere has moved by `wear` skins. Above 1, neighbours may be missed until
@@ -94,7 +98,8 @@ class SoftPacking {
 
  private:
   /// Radii become up to `most` times these; places are still to be set.
-  SoftPacking(const std::vector<double>& radii, double most, int dimension, const SoftKernels& kernels);
+  SoftPacking(const std::vector<double>& radii, double most, int dimension, const SoftKernels& kernels,
+              bool by_octaves);
 
   double move_all(float omega, bool measure);
   template <int D>
@@ -112,7 +117,8 @@ class SoftPacking {
   Vector<3> corner_ = Vector<3>::Zero();
   SoftLists lists_;
   float thickest_skin_;
-  std::unique_ptr<SoftWalls> walls_;       // null in a periodic box
+  std::unique_ptr<SoftWalls> walls_;  // null in a periodic box
+  FarImages far_images_;
   std::vector<SoftSphere> spheres_;        // in sweep order
   std::vector<std::uint32_t> sites_;       // in sweep order: what the walls know of a place goes with it
   std::vector<std::uint32_t> id_of_site_;  // of the sphere that stands there

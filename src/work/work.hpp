@@ -33,6 +33,8 @@ struct FillTask {
   double packing_fraction = 0;  ///< that is asked for
   double attainable = 1;        ///< random close packing of these sizes
   double size_ratio = 1;        ///< of the largest radius to the smallest, but for one in 10,000 of each
+  /// Mean radius by volume over the mean by number: 1 for equal spheres, exp(3.5 sigma²) for lognormal ones.
+  double width_of_sizes = 1;
   bool has_walls = false;
   bool may_overlap = false;  ///< some overlap is allowed to stay
 };

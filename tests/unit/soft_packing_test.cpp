@@ -121,7 +121,8 @@ TEST(SoftPacking, KeepsItsPlacesWhenTheBoxGrows) {
 
 /// Builds lists from scratch and reads them back as pairs of the original numbers.
 std::multiset<std::pair<std::uint32_t, std::uint32_t>> listed_pairs(const Crowd<3>& crowd, float skin,
-                                                                    const SoftKernels& kernels) {
+                                                                    const SoftKernels& kernels,
+                                                                    bool by_octaves) {
   std::vector<SoftSphere> spheres;
   std::vector<std::uint32_t> ids;
   std::vector<float> radii;
@@ -137,7 +138,7 @@ std::multiset<std::pair<std::uint32_t, std::uint32_t>> listed_pairs(const Crowd<
     ids.push_back(static_cast<std::uint32_t>(i));
     radii.push_back(s.r);
   }
-  SoftLists lists(radii, skin, kernels);
+  SoftLists lists(radii, skin, kernels, by_octaves);
   lists.build(spheres, ids, edges);
   std::multiset<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (std::size_t g = 0; g + 1 < spheres.size() / lanes + 1; ++g) {
@@ -158,9 +159,12 @@ TEST(SoftLists, HoldEveryNeighbourOnce) {
   for (const Crowd<3>& crowd : {equal_crowd(600), mixed_crowd(600), mixed_crowd(80)}) {
     const double skin = 0.3;
     const Boundary<3> boundary{crowd.edges};
-    for (const SoftKernels& kernels : soft_kernels()) {
+    for (std::size_t n = 0; n < 2 * soft_kernels().size(); ++n) {
+      const SoftKernels& kernels = soft_kernels()[n / 2];
+      const bool by_octaves = n % 2 == 1;
       SCOPED_TRACE(kernels.name);
-      const auto listed = listed_pairs(crowd, static_cast<float>(skin), kernels);
+      SCOPED_TRACE(by_octaves ? "by octaves" : "together");
+      const auto listed = listed_pairs(crowd, static_cast<float>(skin), kernels, by_octaves);
       std::size_t surely = 0;
       for (std::uint32_t i = 0; i < crowd.spheres.size(); ++i) {
         for (std::uint32_t j = 0; j < crowd.spheres.size(); ++j) {

@@ -1,0 +1,91 @@
+#include "soft/far_images.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bernal {
+namespace {
+
+/// Calls visit(displacement, distance) for the images of `other` but the nearest whose centres are less than
+/// `reach` from `me`, as displacements from them.
+template <class Visit>
+void for_each_far_image(const SoftSphere& me, const SoftSphere& other, const std::array<double, 3>& edges,
+                        int dimension, double reach, Visit&& visit) {
+  std::array<double, 3> nearest{};
+  for (std::size_t k = 0; k < 3; ++k) nearest[k] = steps_between(other, me, k) * (edges[k] * 0x1p-32);
+  for (unsigned sides = 1; sides < 1u << dimension; ++sides) {
+    std::array<double, 3> d = nearest;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (sides >> k & 1) d[k] -= std::copysign(edges[k], d[k]);
+    const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    if (distance < reach) visit(d, distance);
+  }
+}
+
+}  // namespace
+
+void FarImages::build(const std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges,
+                      int dimension, double skin) {
+  spheres_.clear();
+  dimension_ = dimension;
+  const double half = 0.5 * *std::min_element(edges.begin(), edges.begin() + dimension);
+  float largest = 0;
+  for (const SoftSphere& sphere : spheres) largest = sphere.r > largest ? sphere.r : largest;
+  if (2 * (largest + skin) < half) return;
+  std::vector<std::vector<std::uint32_t>> others(spheres.size());
+  const auto is_near = [&](std::uint32_t a, std::uint32_t b) {
+    const double reach = double{spheres[a].r} + spheres[b].r + 2 * skin;
+    bool near = false;
+    if (reach > half)
+      for_each_far_image(spheres[a], spheres[b], edges, dimension, reach,
+                         [&](const auto&, double) { near = true; });
+    return near;
+  };
+  for (std::uint32_t a = 0; a < spheres.size(); ++a) {
+    if (!(2 * (spheres[a].r + skin) > half)) continue;
+    for (std::uint32_t b = 0; b < spheres.size(); ++b) {
+      const bool both_large = 2 * (spheres[b].r + skin) > half;
+      if (a == b || (both_large && b < a) || !is_near(a, b)) continue;
+      others[a].push_back(b);
+      others[b].push_back(a);
+    }
+  }
+  for (std::uint32_t a = 0; a < spheres.size(); ++a)
+    if (!others[a].empty()) spheres_.push_back({a, std::move(others[a])});
+}
+
+float FarImages::push(std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges, float omega,
+                      float* squeeze, float* force) const {
+  double worst = 0;
+  for (const Large& large : spheres_) {
+    SoftSphere& me = spheres[large.place];
+    std::array<double, 3> sum{};
+    double contacts = 0, squares = 0, depth = 0;
+    for (const std::uint32_t p : large.others) {
+      const SoftSphere& other = spheres[p];
+      const double reach = double{me.r} + other.r, weight = 2 * other.r / reach;
+      for_each_far_image(me, other, edges, dimension_, reach, [&](const auto& d, double distance) {
+        const double ratio = 1 - distance / reach;
+        worst = std::max(worst, ratio);
+        squares += ratio * ratio;
+        contacts += weight;
+        depth += weight * ratio * reach;
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * (reach / distance - 1) * d[k];
+      });
+    }
+    if (squeeze) {
+      squeeze[large.place] += static_cast<float>(squares);
+      force[large.place] += static_cast<float>(me.r * depth);
+    }
+    if (!(contacts > 0)) continue;
+    const double step = std::min(omega / contacts, 1.0);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(dimension_); ++k) {
+      const auto steps = static_cast<std::int64_t>(std::llround(step * sum[k] / edges[k] * 0x1p32));
+      me.x[k] =
+          static_cast<std::int32_t>(static_cast<std::uint32_t>(me.x[k]) + static_cast<std::uint32_t>(steps));
+    }
+  }
+  return static_cast<float>(worst);
+}
+
+}  // namespace bernal

@@ -1,0 +1,230 @@
+#include "soft/relax_wide.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "neighbors/cell_grid.hpp"
+#include "soft/relax.hpp"
+#include "soft/soft_packing.hpp"
+#include "work/free_of_overlap.hpp"
+#include "work/holes.hpp"
+#include "work/random_insertion.hpp"
+
+namespace bernal {
+namespace {
+
+/// A last kind of no more than this share of the spheres comes with the one before it.
+constexpr double least_of_kind = 0.02;
+/// Random places that are tried for one sphere.
+constexpr int trials_a_sphere = 30;
+/// Cycles of sweeps after each kind, at most; and by what the mean overlap falls as long as they help.
+constexpr int most_cycles_of_kind = 20;
+constexpr double helps = 0.97;
+/// Of the largest kind alone, so many starts are made to jam as make this many spheres, and the densest is
+/// kept: where few carry the volume, one start is denser than another by 0.02.
+constexpr std::size_t spheres_in_starts = 1000, most_starts_of_few = 20;
+/// Packing fraction that they start from.
+constexpr double start_of_few = 0.75;
+/// Few spheres have the sweeps of so many: they cost nothing.
+constexpr std::size_t sweeps_grow_from = 1000;
+/// Of that many cycles the largest overlap ratio decides; with a power of it before.
+constexpr double cycles_of_means = 200, power_of_cycles = 4;
+/// As of the fast path for equal spheres, see there.
+constexpr double linear_below = 3e-3, trusted = 0.9, longest_step = 1.0 / 6;
+constexpr double left_of_stop = 0.05, float_limit = 4e-6;
+constexpr std::size_t sweeps_grow_to = 10000;
+
+int sweeps_of_wide(const Relax& options, std::size_t spheres) {
+  const int sweeps = sweeps_a_cycle(options, std::clamp(spheres, sweeps_grow_from, sweeps_grow_to));
+  return std::max(1, static_cast<int>(std::lround(share_of_cycle * sweeps)));
+}
+
+/// The mean over the spheres, or over their volume if that is larger, of the root of the sum of squared
+/// overlap ratios.
+template <int D>
+double mean_overlap(const SoftPacking& packing, const std::vector<double>& radii) {
+  double sum = 0, weighted = 0, volume = 0;
+  const std::vector<float> squeeze = packing.squeeze();
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const double overlap = std::sqrt(squeeze[i]), weight = std::pow(radii[i], D);
+    sum += overlap;
+    weighted += weight * overlap;
+    volume += weight;
+  }
+  return std::max(sum / static_cast<double>(radii.size()), weighted / volume);
+}
+
+/// Sweeps of a cycle. Returns the largest overlap ratio that the last of them met, or nothing where
+/// cancelled.
+template <int D>
+std::optional<double> sweep_cycle(SoftPacking& packing, int sweeps, double last_molr,
+                                  const Monitor& monitor) {
+  const Pace pace = pace_for(last_molr);
+  packing.wear_lists(pace.wear);
+  const float omega = pace.omega * D / 3;
+  for (int k = 1; k < sweeps; ++k) {
+    packing.sweep(omega);
+    if (monitor.stop()) return std::nullopt;
+  }
+  return packing.sweep_and_measure(omega);
+}
+
+/// Places for the spheres from `first` on between those before them.
+template <int D>
+void place_between(Spheres<D>& spheres, std::size_t first, const Vector<D>& edges, Random& random) {
+  const Boundary<D> boundary{edges};
+  const Bounds<D> box{Vector<D>::Zero(), edges};
+  if (first == 0) {
+    for (std::size_t i = 0; i < spheres.size(); ++i) spheres.set_center(i, uniform_point(random, box));
+    return;
+  }
+  CellGrid<D> grid(boundary, spheres.r[first - 1], spheres.r[0], first);
+  for (std::uint32_t i = 0; i < first; ++i) grid.insert(i, spheres.center(i), spheres.r[i]);
+  for (std::size_t i = first; i < spheres.size(); ++i) {
+    const double r = spheres.r[i];
+    double best = -std::numeric_limits<double>::infinity();
+    for (int trial = 0; trial < trials_a_sphere && best < r; ++trial) {
+      const Vector<D> p = uniform_point(random, box);
+      const double room =
+          room_between_spheres(grid, p, std::max(best, -spheres.r[0]), r, 0, [&](std::uint32_t j) {
+            return Nearby{boundary.minimum_image(spheres.center(j) - p).squaredNorm(), spheres.r[j]};
+          });
+      if (room <= best) continue;
+      best = room;
+      spheres.set_center(i, p);
+    }
+  }
+}
+
+/// Sweeps in a box of fixed size until that no longer helps.
+template <int D>
+StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, const Relax& options) {
+  SoftPacking packing(spheres, edges, soft_kernels().front(), true);
+  const int sweeps = sweeps_of_wide(options, spheres.size());
+  StageEnd end = StageEnd::converged;
+  double largest = 1, mean = std::numeric_limits<double>::infinity();
+  for (int cycle = 0; cycle < most_cycles_of_kind; ++cycle) {
+    const std::optional<double> met = sweep_cycle<D>(packing, sweeps, largest, work.monitor);
+    if (!met) end = StageEnd::cancelled;
+    if (!met) break;
+    largest = *met;
+    const double before = mean;
+    mean = mean_overlap<D>(packing, spheres.r);
+    work.milestone("relax", 0, largest);
+    if (mean > helps * before || largest < linear_below) break;
+  }
+  work.effects["neighbour lists"] += packing.lists_built();
+  packing.write_to(spheres);
+  return end;
+}
+
+/// The spheres, of a largest overlap ratio of about `molr`, push each other apart while the box grows, by a
+/// factor that `on_growth` is told, with that ratio.
+template <int D, class OnGrowth>
+StageEnd grow_apart(SoftPacking& packing, const std::vector<double>& radii, double molr, double stop,
+                    const Relax& options, const Monitor& monitor, OnGrowth&& on_growth) {
+  const int sweeps = sweeps_of_wide(options, radii.size());
+  double last_molr = 0, growth = 0;
+  for (int cycle = 1;; ++cycle) {
+    const std::optional<double> met = sweep_cycle<D>(packing, sweeps, molr, monitor);
+    if (!met) return StageEnd::cancelled;
+    molr = *met;
+    if (molr < stop) return StageEnd::converged;
+    const double share = std::min(1.0, std::pow(cycle / cycles_of_means, power_of_cycles));
+    const double predicted = growth * molr / (last_molr - molr);
+    growth = std::min(molr, std::max(mean_overlap<D>(packing, radii), share * molr)) / options.beta;
+    if (molr < linear_below && molr < last_molr)
+      growth = std::max(growth, std::min(trusted * predicted, longest_step * molr));
+    last_molr = molr;
+    packing.grow(1 + growth);
+    on_growth(1 + growth, molr);
+  }
+}
+
+/// Few spheres, in the densest of some packings of them, spread out or squeezed into the box.
+template <int D>
+StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, const Relax& options,
+                   Random& random) {
+  double factor = std::pow(volume_of(spheres) / (start_of_few * edges.prod()), 1.0 / D);
+  factor = std::max(factor, 2.0001 * std::ranges::max(spheres.r) / edges.minCoeff());
+  const std::size_t starts =
+      std::clamp<std::size_t>(spheres_in_starts / spheres.size(), 1, most_starts_of_few);
+  Spheres<D> start = spheres;
+  double least = std::numeric_limits<double>::infinity();
+  StageEnd end = StageEnd::converged;
+  for (std::size_t n = 0; n < starts && end == StageEnd::converged; ++n) {
+    Vector<D> box = factor * edges;
+    place_between(start, 0, box, random);
+    SoftPacking packing(start, box, soft_kernels().front(), true);
+    end = grow_apart<D>(packing, start.r, 1, options.stop, options, work.monitor, [](double, double) {});
+    work.effects["neighbour lists"] += packing.lists_built();
+    packing.write_to(start, box);
+    if (!(box.prod() < least)) continue;
+    least = box.prod();
+    resize_box<D>(start, box, edges);
+    spheres = start;
+  }
+  return end;
+}
+
+}  // namespace
+
+bool is_for_wide_sizes(const FillTask& task, const Relax& options) {
+  return (task.dimension == 2 || task.dimension == 3) && !task.has_walls &&
+         options.method == RelaxMethod::fast && !(task.width_of_sizes < wide_sizes_from);
+}
+
+template <int D>
+StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& work, const Relax& options) {
+  Random random = work.random(Stream::relax);
+  const std::size_t count = spheres.size();
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return spheres.r[i]; });
+  Spheres<D> descending;
+  for (const std::size_t i : order) descending.push_back(Vector<D>::Zero(), spheres.r[i]);
+
+  StageEnd end = StageEnd::converged;
+  for (std::size_t first = 0, last = 0; first < count; first = last) {
+    while (last < count && descending.r[last] > 0.5 * descending.r[first]) ++last;
+    if (static_cast<double>(count - last) <= least_of_kind * static_cast<double>(count)) last = count;
+    Spheres<D> there = descending;
+    there.resize(last);
+    const bool are_few = first == 0 && last < spheres_in_starts;
+    if (are_few)
+      end = place_few(there, edges, work, options, random);
+    else
+      place_between(there, first, edges, random);
+    if (end == StageEnd::converged) end = settle_kind<D>(there, edges, work, options);
+    for (std::size_t i = 0; i < last; ++i) descending.set_center(i, there.center(i));
+  }
+  for (std::size_t i = 0; i < count; ++i) spheres.set_center(order[i], descending.center(i));
+  return end;
+}
+
+template <int D>
+StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
+  SoftPacking packing(spheres, edges, soft_kernels().front(), true);
+  const double stop =
+      std::max({left_of_stop * options.stop, std::min(work.allowed_overlap, options.stop), float_limit});
+  const StageEnd end = grow_apart<D>(
+      packing, spheres.r, overlap, stop, options, work.monitor, [&](double factor, double molr) {
+        work.edges *= factor;
+        work.milestone("relax", std::min(0.99, std::log(molr) / std::log(stop)), molr);
+      });
+  work.effects["neighbour lists"] += packing.lists_built();
+  packing.write_to(spheres, edges);
+  return end;
+}
+
+#define BERNAL_INSTANTIATE(D)                                                               \
+  template StageEnd place_from_largest(Spheres<D>&, const Vector<D>&, Work&, const Relax&); \
+  template StageEnd relax_wide(Spheres<D>&, Vector<D>&, Work&, const Relax&, double);
+BERNAL_INSTANTIATE(2)
+BERNAL_INSTANTIATE(3)
+#undef BERNAL_INSTANTIATE
+
+}  // namespace bernal
