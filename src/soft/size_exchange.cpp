@@ -11,7 +11,7 @@ namespace {
 
 /// Pressures count up to so many times their mean: those of a few spheres in a tight corner are far beyond.
 constexpr float most_excess = 3;
-constexpr double longest_step = 0.012, shortest_step = 0.1 * longest_step, share_of_long_steps = 0.3;
+constexpr double first_step = 0.012, last_step = 0.1 * first_step, share_of_long_steps = 0.3;
 constexpr int bits_a_pass = 11, passes = 3;
 constexpr double most_gain = 0.07, most_gain_in_bed = 0.105, spread_of_gain = 0.045;
 
@@ -88,9 +88,9 @@ double gain_by_exchange(double spread, bool in_bed) {
 }
 
 double exchange_step(double done) {
-  if (done < share_of_long_steps) return longest_step;
-  return longest_step *
-         std::pow(shortest_step / longest_step, (done - share_of_long_steps) / (1 - share_of_long_steps));
+  if (done < share_of_long_steps) return first_step;
+  return first_step *
+         std::pow(last_step / first_step, (done - share_of_long_steps) / (1 - share_of_long_steps));
 }
 
 double energy_of(const std::vector<float>& squeeze) {
