@@ -127,6 +127,17 @@ void print_radial(const Packing& packing, const std::optional<RadialDistribution
                peak.r / radial->mean_diameter, peak.error, 0.5 * radial->bin_width / radial->mean_diameter);
 }
 
+void print_size_correlation(const SizeCorrelation& correlation) {
+  fmt::print("\nsize correlation  of two spheres, 0 where their sizes know nothing of each other\n");
+  if (correlation.neighbours)
+    fmt::print("  neighbours      {:.4f} ± {:.4f}, nearer than {:g} times the sum of their radii\n",
+               correlation.neighbours->correlation, correlation.neighbours->error, 1 + BondOrder::widest_gap);
+  for (const auto& [from, to] : size_correlation_ranges)
+    if (const auto mean = correlation.mean_between(from, to))
+      fmt::print("  {:<15} {:.4f} ± {:.4f}, mean diameters apart\n", fmt::format("{:g} to {:g}", from, to),
+                 mean->c, mean->error);
+}
+
 void print_chambers(const Packing& packing, const Chambers& found) {
   constexpr std::size_t most_rows = 20;
   const std::size_t n = found.chambers.size(), rows = std::min(n, most_rows);
@@ -156,7 +167,8 @@ void print_order(const BondOrder& order) {
                ? std::string("no spheres")
                : fmt::format("{:.2f} % of {} spheres", 100 * count.fraction(), grouped(count.spheres));
   };
-  fmt::print("\ncrystalline       {}, by the order of their bonds\n", percent(order.all));
+  fmt::print("\ncrystalline       {}, by the order of their bonds; mean q6 {:.4f} ± {:.4f}\n",
+             percent(order.all), order.mean_q6, order.q6_error);
   if (order.near_wall) fmt::print("  near the wall   {}\n", percent(*order.near_wall));
   if (order.core) fmt::print("  in the core     {}\n", percent(*order.core));
 }
@@ -202,6 +214,14 @@ void print_walls(const Packing& packing, const WallProfile& profile) {
              profile.core_packing_fraction, profile.core_packing_error,
              profile.core_from / profile.mean_diameter,
              profile.has_core ? "" : ", the deeper half: too narrow for a core");
+  constexpr std::size_t rows_of_sizes = 10;
+  if (profile.segregation && profile.segregation->error > 0) {
+    fmt::print("\nmean volume of the spheres whose surface is so far from the wall, of that of all\n");
+    for (std::size_t k = 0; k < std::min(profile.layers.size(), rows_of_sizes); ++k)
+      if (const auto& there = profile.layers[k].segregation)
+        fmt::print("{:>9.2f} {:>8.4f} ± {:.4f}, {} spheres\n", profile.layers[k].from / profile.mean_diameter,
+                   there->volume_ratio, there->error, grouped(there->spheres));
+  }
   if (profile.segregation)
     fmt::print("segregation       mean volume near the wall {:.4f} ± {:.4f} of that of all spheres\n",
                profile.segregation->volume_ratio, profile.segregation->error);
@@ -262,6 +282,7 @@ void print(const Packing& packing, const Measurements& measured) {
   if (measured.chambers) print_chambers(packing, *measured.chambers);
   print_contacts(packing, measured);
   print_radial(packing, measured.radial);
+  if (measured.size_correlation) print_size_correlation(*measured.size_correlation);
   if (measured.walls) print_walls(packing, *measured.walls);
   if (measured.order && !packing.spheres.empty()) print_order(*measured.order);
   if (measured.sizes) print_sizes(packing, *measured.sizes);

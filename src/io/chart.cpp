@@ -72,11 +72,11 @@ struct Uncertain {
   double x, y, below, above;
 };
 
-/// A line, and the band of its error; what is higher than the axis is cut.
-void add_band(Chart& chart, const std::vector<Uncertain>& points, double highest) {
+/// A line, and the band of its error; what is beyond the axis is cut.
+void add_band(Chart& chart, const std::vector<Uncertain>& points, double highest, double lowest = 0) {
   const auto append = [&](std::string& path, double x, double y) {
     path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', chart.x(x),
-                        chart.y(std::clamp(y, 0.0, highest)));
+                        chart.y(std::clamp(y, lowest, highest)));
   };
   std::string line, band;
   for (const Uncertain& p : points) {
@@ -147,6 +147,23 @@ std::string radial_chart(const RadialDistribution& radial) {
   return std::move(chart).finish();
 }
 
+std::string size_correlation_chart(const SizeCorrelation& correlation) {
+  // Where two of the smallest sizes touch, C is far larger than what there is to see.
+  constexpr double highest = 0.3;
+  std::vector<Uncertain> points;
+  for (std::size_t k = 0; k < correlation.d.size(); ++k)
+    if (correlation.error[k] < highest)
+      points.push_back({correlation.d[k] / correlation.mean_diameter, correlation.c[k], correlation.error[k],
+                        correlation.error[k]});
+  if (points.size() < 2) return {};
+  const double reach =
+      correlation.bin_width * static_cast<double>(correlation.d.size()) / correlation.mean_diameter;
+  Chart chart({0, reach, "distance of the centres (mean diameters)"}, {-highest, highest, "C(d)"});
+  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left, chart.y(0), width - right);
+  add_band(chart, points, highest, -highest);
+  return std::move(chart).finish();
+}
+
 std::string wall_chart(const WallProfile& profile) {
   const std::size_t even = profile.layers.size() - 1;  // the last layer holds all that is deeper
   if (even < 2) return {};
@@ -163,6 +180,26 @@ std::string wall_chart(const WallProfile& profile) {
       {0, highest, "porosity"});
   chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left, chart.y(profile.mean_porosity),
             width - right);
+  add_band(chart, points, highest);
+  return std::move(chart).finish();
+}
+
+std::string wall_size_chart(const WallProfile& profile) {
+  constexpr double highest = 2;
+  std::vector<Uncertain> points;
+  bool differ = false;
+  for (std::size_t k = 0; k + 1 < profile.layers.size(); ++k) {
+    const auto& layer = profile.layers[k];
+    if (!layer.segregation || layer.segregation->spheres < 2) continue;
+    const double ratio = layer.segregation->volume_ratio, error = layer.segregation->error;
+    differ = differ || error > 0;
+    points.push_back({0.5 * (layer.from + layer.to) / profile.mean_diameter, ratio, error, error});
+  }
+  if (points.size() < 2 || !differ) return {};
+  Chart chart({0, profile.layers.back().from / profile.mean_diameter,
+               "from the wall to the surface of the sphere (mean diameters)"},
+              {0, highest, "mean volume, of that of all"});
+  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left, chart.y(1), width - right);
   add_band(chart, points, highest);
   return std::move(chart).finish();
 }

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "bernal/measure/radial_distribution.hpp"
+#include "bernal/measure/size_correlation.hpp"
 #include "bernal/measure/wall_profile.hpp"
 #include "bernal/run/packing.hpp"
 
@@ -24,9 +25,17 @@ std::string size_histogram(const SizeHistogram&);
 /// g over r in mean diameters, with the band of its error; what is higher than the axis is cut.
 std::string radial_chart(const RadialDistribution&);
 
+/// C over d in mean diameters, from the first distance at which there are pairs on, with the band of its
+/// error.
+std::string size_correlation_chart(const SizeCorrelation&);
+
 /// Porosity over the distance from the wall in mean diameters, with the band of its error and the mean as a
 /// dashed line; empty where there are fewer than two layers of equal thickness.
 std::string wall_chart(const WallProfile&);
+
+/// Mean volume over that of all spheres, over the distance of their surfaces from the wall; empty where the
+/// sizes are equal or fewer than two layers have spheres.
+std::string wall_size_chart(const WallProfile&);
 
 /// A line over the seconds of the run, one point a milestone, as inline SVG. Where a stage begins
 /// its name stands, if there is room for it. Precondition: at least two milestones.

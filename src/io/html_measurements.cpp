@@ -54,6 +54,29 @@ void write_radial(Page& page, const RadialDistribution& radial) {
   page.raw("</div></div>\n");
 }
 
+void write_size_correlation(Page& page, const SizeCorrelation& correlation) {
+  page.add("<h2>Whether like sizes lie together</h2>\n<div class=\"pair\"><div>{}</div><div>\n",
+           size_correlation_chart(correlation));
+  page.raw(
+      "<p>The correlation C(d) of the sizes of two spheres whose centres are the distance d apart: 0 where "
+      "they "
+      "know nothing of each other, positive far out where like sizes gather. Near by it swings by itself, "
+      "for "
+      "what touches is as far apart as its sizes say; the means over all pairs at such distances tell more. "
+      "The "
+      "band, and errors, are those of sizes put on the places by chance.</p>\n<div class=\"wide\"><table>\n");
+  const auto row = [&](const std::string& of, double c, double error) {
+    page.row(of, fmt::format("{:+.4f} ± {:.4f}", c, error), "");
+  };
+  if (correlation.neighbours)
+    row(fmt::format("neighbours, nearer than {:g} times the sum of the radii", 1 + BondOrder::widest_gap),
+        correlation.neighbours->correlation, correlation.neighbours->error);
+  for (const auto& [from, to] : size_correlation_ranges)
+    if (const auto mean = correlation.mean_between(from, to))
+      row(fmt::format("{:g} to {:g} mean diameters apart", from, to), mean->c, mean->error);
+  page.raw("</table></div></div></div>\n");
+}
+
 constexpr std::size_t most_rows = 20;  ///< of chambers
 
 void write_chamber_table(Page& page, const Chambers& found, const std::string& unit) {
@@ -104,6 +127,9 @@ void write_order(Page& page, const BondOrder& order) {
       page.row(name, fmt::format("{:.2f} %", 100 * count.fraction()),
                fmt::format("of the {} spheres{}", grouped(count.spheres), what));
   };
+  if (order.all.spheres > 0)
+    page.row("mean q<sub>6</sub>", fmt::format("{:.4f} ± {:.4f}", order.mean_q6, order.q6_error),
+             "the bond order of a sphere by itself: 0.574 in fcc, 0.485 in hcp");
   row("crystalline", order.all,
       "; up to about one per cent of a random packing of equal spheres looks so by chance");
   if (order.near_wall) row("near the wall", *order.near_wall, " that a mean diameter or less parts from it");
@@ -155,6 +181,7 @@ void write_contacts(Page& page, const Report& report) {
   write_by_gap(page, report.measured);
   page.raw("</div>\n");
   if (report.measured.radial) write_radial(page, *report.measured.radial);
+  if (report.measured.size_correlation) write_size_correlation(page, *report.measured.size_correlation);
 }
 
 void write_chambers(Page& page, const Report& report) {
@@ -197,7 +224,8 @@ void write_walls(Page& page, const Report& report) {
         "the share that no sphere fills{}. Lengths are in mean diameters, of {:.4g} {}.</p>\n",
         chart.empty() ? "" : ". The band is its standard error", walls->mean_diameter,
         escaped(name_of(report.packing.scene.unit)));
-    page.add("<div class=\"pair\"><div>{}</div><div class=\"wide\"><table>\n", chart);
+    page.add("<div class=\"pair\"><div>{}{}</div><div class=\"wide\"><table>\n", chart,
+             wall_size_chart(*walls));
     write_profile(page, *walls, escaped(name_of(report.packing.scene.unit)));
     page.raw("</table></div></div>\n");
   }

@@ -25,23 +25,44 @@ static void to_json(Json& json, const BondOrder::Count& count) {
   json = {{"spheres", count.spheres}, {"crystalline", count.crystalline}, {"fraction", count.fraction()}};
 }
 
+static void to_json(Json& json, const WallProfile::Segregation& segregation) {
+  json = {{"spheres", segregation.spheres},
+          {"mean_volume_ratio", segregation.volume_ratio},
+          {"error", segregation.error}};
+}
+
 /// Makes members of a struct keys of their own names. (Those of nlohmann know no ordered_json.)
 #define BERNAL_KEYS(Type, ...)                                               \
   static void to_json(Json& nlohmann_json_j, const Type& nlohmann_json_t) {  \
     NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(NLOHMANN_JSON_TO, __VA_ARGS__)) \
   }
 BERNAL_KEYS(Bounds<3>, lower, upper)
-BERNAL_KEYS(BondOrder, all, near_wall, core)
+BERNAL_KEYS(BondOrder, all, mean_q6, q6_error, near_wall, core)
 BERNAL_KEYS(Certificate::Overlap, pair, ratio)
 BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
 BERNAL_KEYS(Chambers::Uncovered, radius, share, error)
 BERNAL_KEYS(DrawnComparison, missing, scale, largest_deviation, above_largest)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
+BERNAL_KEYS(SizeCorrelation::Neighbours, correlation, error, pairs)
 BERNAL_KEYS(SizeComparison::Class, radius, asked_share, count)
 BERNAL_KEYS(SizeComparison::Share, above, up_to, asked_number, asked_volume, count, number, volume)
 BERNAL_KEYS(SizeComparison::Quantile, share, realised, asked)
-BERNAL_KEYS(WallProfile::Layer, from, to, share, porosity, error)
+BERNAL_KEYS(WallProfile::Layer, from, to, share, porosity, error, segregation)
 #undef BERNAL_KEYS
+
+static void to_json(Json& json, const SizeCorrelation& sizes) {
+  json = {{"mean_diameter", sizes.mean_diameter},
+          {"bin_width", sizes.bin_width},
+          {"references", sizes.references},
+          {"neighbours", sizes.neighbours},
+          {"means", Json::array()},
+          {"d", sizes.d},
+          {"c", sizes.c},
+          {"error", sizes.error}};
+  for (const auto& [from, to] : size_correlation_ranges)
+    if (const auto mean = sizes.mean_between(from, to))
+      json["means"].push_back({{"from", from}, {"to", to}, {"c", mean->c}, {"error", mean->error}});
+}
 
 /// What is only counted took a part of another effect's time.
 static void to_json(Json& json, const Effect& effect) {
@@ -224,6 +245,7 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
   for (const Contacts& contacts : measured.by_gap)
     json["by_gap"].push_back(contacts_json(measured, contacts));
   json["g_r"] = measured.radial;
+  json["size_correlation"] = measured.size_correlation;
   json["crystalline"] = measured.order;
   json["chambers"] = measured.chambers;
   json["walls"] = measured.walls;
@@ -273,6 +295,7 @@ std::string json_of(const Report& report) {
   json.update(contacts_json(report.measured, report.measured.contacts));
   json.update({{"held_from_gap", report.measured.held_from},
                {"crystalline", report.measured.order},
+               {"size_correlation", report.measured.size_correlation},
                {"chambers", report.measured.chambers},
                {"walls", report.measured.walls},
                {"sizes", figures_of(report.measured.sizes)},

@@ -92,6 +92,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
                                         {.gap = packing.scene.gap,
                                          .wall_gap = packing.scene.wall_gap,
                                          .radial = {.work = distances_for_a_report},
+                                         .size_correlation = {.work = distances_for_a_report},
                                          .chambers = {.points = points_for_a_report},
                                          .walls = {.work = wall_distances_for_a_report},
                                          .container = packing.container,

@@ -1,22 +1,46 @@
 #include "bernal/measure/bond_order.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "measure/harmonics.hpp"
 #include "measure/touching.hpp"
 
 namespace bernal {
 namespace {
 
-/// q of every sphere: the sum over its bonds at unit length, zero without bonds.
-std::vector<Harmonics6> orders_of(std::size_t spheres, const std::vector<NearBond>& bonds) {
-  std::vector<Harmonics6> orders(spheres, Harmonics6::Zero());
-  for (const NearBond& bond : bonds) {
-    if (bond.displacement.isZero(0)) continue;  // centres that coincide show no direction
-    const Harmonics6 h = harmonics6(bond.displacement.normalized());
-    orders[bond.first] += h;
-    orders[bond.second] += h;
+/// Of every sphere the sum over its bonds, zero without bonds, and how many these are.
+struct Sums {
+  std::vector<Harmonics6> orders;
+  std::vector<double> bonds;
+
+  Sums(std::size_t spheres, const std::vector<NearBond>& all)
+      : orders(spheres, Harmonics6::Zero()), bonds(spheres, 0) {
+    for (const NearBond& bond : all) {
+      if (bond.displacement.isZero(0)) continue;  // centres that coincide show no direction
+      const Harmonics6 h = harmonics6(bond.displacement.normalized());
+      for (const std::uint32_t i : {bond.first, bond.second}) {
+        orders[i] += h;
+        ++bonds[i];
+      }
+    }
   }
-  for (Harmonics6& q : orders) q.normalize();
-  return orders;
+};
+
+/// Mean of q6 and its standard error.
+void write_mean_q6(const Sums& sums, BondOrder& out) {
+  double n = 0, sum = 0, squares = 0;
+  for (std::size_t i = 0; i < sums.bonds.size(); ++i) {
+    if (sums.bonds[i] == 0) continue;
+    const double q6 = sums.orders[i].norm() / sums.bonds[i];
+    ++n;
+    sum += q6;
+    squares += q6 * q6;
+  }
+  if (n == 0) return;
+  out.mean_q6 = sum / n;
+  out.q6_error = n > 1 ? std::sqrt(std::max(0.0, squares / n - out.mean_q6 * out.mean_q6) / (n - 1)) : 0;
 }
 
 struct Bonds {
@@ -31,10 +55,9 @@ struct Bonds {
   }
 };
 
-std::vector<Bonds> solid_bonds(const Spheres<dynamic>& spheres, const Domain& domain) {
-  const std::vector<NearBond> bonds = near_bonds(spheres, domain, BondOrder::widest_gap);
-  const std::vector<Harmonics6> orders = orders_of(spheres.size(), bonds);
-  std::vector<Bonds> found(spheres.size());
+std::vector<Bonds> solid_bonds(const std::vector<NearBond>& bonds, std::vector<Harmonics6> orders) {
+  for (Harmonics6& q : orders) q.normalize();
+  std::vector<Bonds> found(orders.size());
   for (const NearBond& bond : bonds) {
     const bool solid = orders[bond.first].dot(orders[bond.second]) > BondOrder::solid_bond;
     found[bond.first].add(solid);
@@ -48,8 +71,11 @@ std::vector<Bonds> solid_bonds(const Spheres<dynamic>& spheres, const Domain& do
 std::optional<BondOrder> bond_order(const Spheres<dynamic>& spheres, const Domain& domain,
                                     std::span<const Region> regions) {
   if (spheres.dimension() != 3) return {};
-  const std::vector<Bonds> bonds = solid_bonds(spheres, domain);
+  const std::vector<NearBond> near = near_bonds(spheres, domain, BondOrder::widest_gap);
+  Sums sums(spheres.size(), near);
   BondOrder order;
+  write_mean_q6(sums, order);
+  const std::vector<Bonds> bonds = solid_bonds(near, std::move(sums.orders));
   if (!regions.empty()) order.near_wall = order.core = BondOrder::Count{};
   for (std::size_t i = 0; i < bonds.size(); ++i) {
     const auto count = [&](BondOrder::Count& where) {

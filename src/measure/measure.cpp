@@ -78,6 +78,7 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
   try {
     const Interruptible listening(options.monitor);
     measured.radial = radial_distribution(spheres, domain, options.radial);
+    measured.size_correlation = size_correlation(spheres, domain, options.size_correlation);
     measured.chambers = chambers(spheres, domain, options.chambers, container);
     measured.walls = wall_profile(spheres, domain, options.walls, container);
     measured.order =

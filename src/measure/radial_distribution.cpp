@@ -5,16 +5,13 @@
 #include <numeric>
 
 #include "bernal/core/dimension.hpp"
-#include "core/parallel.hpp"
-#include "neighbors/point_grid.hpp"
+#include "measure/pair_distances.hpp"
 
 namespace bernal {
 namespace {
 
 /// How far below a bin a distance may lie and still count in it, in bins: a contact that was rounded.
 constexpr double slack = 1e-6;
-constexpr std::size_t fewest_references = 100;
-constexpr std::size_t references_a_part = 256;
 
 /// The bins out to a distance, and what is found in them.
 class Histogram {
@@ -22,7 +19,7 @@ class Histogram {
   Histogram(std::size_t bins, double width) : counts_(bins, 0), width_(width) {}
 
   double reach() const { return width_ * static_cast<double>(counts_.size()); }
-  void add(double squared_distance) {
+  void add(std::uint32_t, std::uint32_t, double squared_distance) {
     const auto bin = static_cast<std::size_t>(std::sqrt(squared_distance) / width_ + slack);
     if (bin < counts_.size()) ++counts_[bin];
   }
@@ -36,78 +33,6 @@ class Histogram {
   double width_;
 };
 
-/// The centres, and for each of them those within reach, which is at most half of every edge, so that a point
-/// is met once at most.
-template <int D>
-class Surroundings {
- public:
-  Surroundings(const Spheres<D>& spheres, const Boundary<D>& boundary, double reach)
-      : boundary_(boundary),
-        reach_(reach),
-        grid_(spheres, all(spheres.size()), boundary, cell_edge(spheres.size())) {
-    auto in_cells = static_cast<double>(spheres.size());
-    for (int k = 0; k < D; ++k) in_cells *= (2 * reach + 2 * cell_edge(spheres.size())) / boundary.edges[k];
-    by_cells_ = in_cells < static_cast<double>(spheres.size());
-    cost_ = std::min(in_cells, static_cast<double>(spheres.size()));
-  }
-
-  /// Distances that have to be computed for one centre, about.
-  double cost() const { return cost_; }
-
-  void count(std::size_t place, Histogram& out) const {
-    const double squared_reach = reach_ * reach_;
-    const Vector<D> c = grid_.point(place);
-    const std::uint32_t self = grid_.ids()[place];
-    const auto visit = [&](std::uint32_t id, const Vector<D>& d) {
-      const double squared = d.squaredNorm();
-      if (squared < squared_reach && id != self) out.add(squared);
-    };
-    if (by_cells_) {
-      grid_.for_each_near(c, reach_, visit);
-    } else {
-      for (std::size_t p = 0; p < grid_.ids().size(); ++p)
-        visit(grid_.ids()[p], boundary_.minimum_image(grid_.point(p) - c));
-    }
-  }
-
- private:
-  static std::vector<std::uint32_t> all(std::size_t n) {
-    std::vector<std::uint32_t> ids(n);
-    std::iota(ids.begin(), ids.end(), 0u);
-    return ids;
-  }
-  /// A quarter of the reach, but not so small that cells stand empty.
-  double cell_edge(std::size_t n) const {
-    return std::max(reach_ / 4, std::pow(boundary_.edges.prod() / static_cast<double>(n), 1.0 / D));
-  }
-
-  Boundary<D> boundary_;
-  double reach_;
-  PointGrid<D> grid_;
-  bool by_cells_ = false;
-  double cost_ = 0;
-};
-
-/// Looks from as many centres as the work allows, evenly spread over the grid's order and so over the box.
-template <int D>
-Histogram count_distances(const Spheres<D>& spheres, const Boundary<D>& boundary, const Histogram& empty,
-                          double work, std::uint64_t& references) {
-  const std::size_t n = spheres.size();
-  const Surroundings<D> surroundings(spheres, boundary, empty.reach());
-  const double affordable = std::max(work / surroundings.cost(), 1.0 * fewest_references);
-  const auto looked_from = static_cast<std::size_t>(std::min(affordable, static_cast<double>(n)));
-  std::vector<Histogram> parts((looked_from + references_a_part - 1) / references_a_part, empty);
-  parallel_for(parts.size(), [&](std::size_t part) {
-    for (std::size_t k = part * references_a_part; k < std::min(looked_from, (part + 1) * references_a_part);
-         ++k)
-      surroundings.count((2 * k + 1) * n / (2 * looked_from), parts[part]);
-  });
-  Histogram sum = empty;
-  for (const Histogram& part : parts) sum.add(part);
-  references = looked_from;
-  return sum;
-}
-
 double shell_volume(int dimension, double from, double to) {
   return ball_volume(dimension, to) - ball_volume(dimension, from);
 }
@@ -118,7 +43,7 @@ void normalise(const std::vector<std::uint64_t>& counts, const Spheres<dynamic>&
   const auto n = static_cast<double>(spheres.size());
   const auto references = static_cast<double>(radial.references);
   const double density = (n - 1) / volume;
-  const double distinct = 1 - 0.5 * references / n;
+  const double distinct = share_of_distinct(radial.references, spheres.size());
   for (std::size_t k = 0; k < counts.size(); ++k) {
     const double from = static_cast<double>(k) * radial.bin_width, to = from + radial.bin_width;
     const double expected = references * density * shell_volume(spheres.dimension(), from, to);
@@ -171,7 +96,7 @@ std::optional<RadialDistribution> radial_distribution(const Spheres<dynamic>& sp
   with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
     found =
-        count_distances<D>(spheres.in<D>(), boundary_of<D>(domain), empty, options.work, radial.references);
+        tally_of_pairs<D>(spheres.in<D>(), boundary_of<D>(domain), empty, options.work, radial.references);
   });
   normalise(found.counts(), spheres, volume_of(domain), radial);
   find_peaks(radial);

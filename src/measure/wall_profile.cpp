@@ -148,24 +148,37 @@ std::optional<WallProfile::Minimum> first_minimum(const WallProfile& profile, do
                               least - 0.25 * (before - after) * shift};
 }
 
-std::optional<WallProfile::Segregation> segregation_of(const std::vector<double>& radii, double mean,
-                                                       const std::vector<Region>& regions) {
-  double sum = 0, squares = 0, near_sum = 0, near = 0;
-  for (std::size_t i = 0; i < radii.size(); ++i) {
-    const double cube = std::pow(radii[i] / mean, 3);
-    sum += cube;
-    if (regions[i] != Region::near_wall) continue;
-    near_sum += cube;
-    ++near;
+/// The volumes of the spheres, in cubes of a mean radius, and what of them is in some place.
+class Volumes {
+ public:
+  Volumes(const std::vector<double>& radii, double mean_radius) {
+    for (const double r : radii) cubes_.push_back(std::pow(r / mean_radius, 3));
+    mean_ = std::accumulate(cubes_.begin(), cubes_.end(), 0.0) / count();
+    for (const double cube : cubes_) squares_ += std::pow(cube - mean_, 2);
   }
-  if (near == 0) return {};
-  const auto n = static_cast<double>(radii.size());
-  const double all = sum / n;
-  for (const double r : radii) squares += std::pow(std::pow(r / mean, 3) - all, 2);
-  // Drawn from n without putting back.
-  const double error = n > 1 ? std::sqrt(squares / (n - 1) / near * (1 - near / n)) / all : 0;
-  return WallProfile::Segregation{static_cast<std::uint64_t>(near), near_sum / near / all, error};
-}
+
+  /// Of the spheres i with is_there(i).
+  template <class IsThere>
+  std::optional<WallProfile::Segregation> of(IsThere&& is_there) const {
+    double sum = 0, there = 0;
+    for (std::size_t i = 0; i < cubes_.size(); ++i) {
+      if (!is_there(i)) continue;
+      sum += cubes_[i];
+      ++there;
+    }
+    if (there == 0) return {};
+    const double n = count();
+    // Drawn from n without putting back.
+    const double error = n > 1 ? std::sqrt(squares_ / (n - 1) / there * (1 - there / n)) / mean_ : 0;
+    return WallProfile::Segregation{static_cast<std::uint64_t>(there), sum / there / mean_, error};
+  }
+
+ private:
+  double count() const { return static_cast<double>(cubes_.size()); }
+
+  std::vector<double> cubes_;
+  double mean_ = 0, squares_ = 0;
+};
 
 Region region_of(double clearance, double r, const Zones& zones) {
   if (clearance - r < zones.near) return Region::near_wall;
@@ -224,7 +237,11 @@ std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Do
   profile.first_minimum = first_minimum(profile, in_scene(thickness));
   for (std::size_t i = 0; i < spheres.size(); ++i)
     profile.regions.push_back(region_of(clearance[i], spheres.r[i], zones));
-  profile.segregation = segregation_of(spheres.r, 0.5 * diameter, profile.regions);
+  const Volumes volumes(spheres.r, 0.5 * diameter);
+  profile.segregation = volumes.of([&](std::size_t i) { return profile.regions[i] == Region::near_wall; });
+  for (std::size_t k = 0; k < profile.layers.size(); ++k)
+    profile.layers[k].segregation = volumes.of(
+        [&](std::size_t i) { return zones.layer_of(std::max(0.0, clearance[i] - spheres.r[i])) == k; });
   return profile;
 }
 

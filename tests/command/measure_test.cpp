@@ -56,6 +56,7 @@ TEST_F(Measure, JsonIsOneObjectAndNothingElse) {
   EXPECT_EQ(measured["by_gap"].size(), 9u);
   EXPECT_EQ(measured["g_r"]["mean_diameter"], 2);
   EXPECT_EQ(measured["g_r"]["g"].size(), measured["g_r"]["error"].size());
+  EXPECT_TRUE(measured["size_correlation"].is_null());  // of equal sizes
   EXPECT_TRUE(measured["walls"].is_null());
   EXPECT_TRUE(measured["chambers"].is_null());
   EXPECT_TRUE(measured["crystalline"].is_null());  // in two dimensions
@@ -95,6 +96,34 @@ TEST_F(Measure, AnEmptyPlaneIsNone) {
   EXPECT_EQ(ended.status, 2);
   EXPECT_EQ(ended.out, "");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.svg"));
+}
+
+TEST_F(Measure, SaysWhetherLikeSizesLieTogether) {
+  const std::string sized =
+      folder
+          .write(
+              "sizes.toml",
+              "[container]\nkind = \"cylinder\"\nradius = 4\nheight = 8\n[spheres]\ncount = 250\ndiameter = "
+              "{ distribution = \"uniform\", min = 0.8, max = 1.2 }\n[[stage]]\ndo = \"relax\"\n")
+          .string();
+  const std::string out = (folder / "out").string();
+  ASSERT_EQ(bernal({"pack", sized, "-o", out, "--quiet"}).status, 0);
+  const Ended text = bernal({"measure", out});
+  for (const std::string part :
+       {"size correlation", "neighbours      ", "1 to 2 ", "mean volume of the spheres", "mean q6"})
+    EXPECT_NE(text.out.find(part), std::string::npos) << part << "\nis not in\n" << text.out;
+  const auto measured = nlohmann::json::parse(bernal({"measure", out, "--json"}).out);
+  const auto& sizes = measured.at("size_correlation");
+  EXPECT_EQ(sizes, report_of(out).at("size_correlation"));
+  EXPECT_EQ(sizes.at("c").size(), sizes.at("d").size());
+  EXPECT_EQ(sizes.at("references"), 250);
+  EXPECT_LT(std::abs(sizes.at("neighbours").at("correlation").get<double>()), 1);
+  EXPECT_EQ(sizes.at("means").at(0).at("to"), 2);
+  const auto& wall = measured.at("walls").at("layers").at(0).at("segregation");
+  EXPECT_GT(wall.at("spheres").get<int>(), 0);
+  EXPECT_GT(wall.at("mean_volume_ratio").get<double>(), 0.5);
+  EXPECT_NE(testing::text_of(folder / "out" / "report.html").find("Whether like sizes lie together"),
+            std::string::npos);
 }
 
 TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {

@@ -55,6 +55,43 @@ TEST(BondOrder, CrystalsAreCrystalline) {
   }
 }
 
+TEST(BondOrder, MeanQ6IsThatOfSteinhardt) {
+  // Steinhardt, Nelson & Ronchetti (1983), table I: fcc and hcp, twelve neighbours each.
+  const BondOrder fcc = bond_order(face_centred(4)).value();
+  EXPECT_NEAR(fcc.mean_q6, 0.57452, 1e-5);
+  EXPECT_NEAR(fcc.q6_error, 0, 1e-6);
+  // By the definition with P6 of the angles between bonds, all pairs of spheres.
+  const Packing& packing = random_packing();
+  const Spheres<3> spheres = packing.spheres.in<3>();
+  const Boundary<3> box = boundary_of<3>(packing.domain);
+  double sum = 0;
+  constexpr std::size_t looked_from = 40;
+  std::vector<double> all;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    if (i == looked_from) break;
+    std::vector<Vector<3>> bonds;
+    for (std::size_t j = 0; j < spheres.size(); ++j) {
+      const Vector<3> d = box.minimum_image(spheres.center(j) - spheres.center(i));
+      if (j != i && d.norm() < (1 + BondOrder::widest_gap) * (spheres.r[i] + spheres.r[j]))
+        bonds.push_back(d.normalized());
+    }
+    double squared = 0;
+    for (const Vector<3>& a : bonds)
+      for (const Vector<3>& b : bonds) {
+        const double t = a.dot(b), t2 = t * t;
+        squared += (231 * t2 * t2 * t2 - 315 * t2 * t2 + 105 * t2 - 5) / 16;
+      }
+    all.push_back(std::sqrt(squared) / static_cast<double>(bonds.size()));
+    sum += all.back();
+  }
+  // So few of the spheres have a mean within its own error, of which the standard deviation is known.
+  const BondOrder order = bond_order(packing).value();
+  const double deviation = order.q6_error * std::sqrt(static_cast<double>(spheres.size()));
+  EXPECT_NEAR(sum / looked_from, order.mean_q6, 4 * deviation / std::sqrt(1.0 * looked_from));
+  EXPECT_LT(order.mean_q6, 0.45);
+  EXPECT_GT(order.mean_q6, 0.3);
+}
+
 TEST(BondOrder, RandomPackingsAreNot) {
   // Some surroundings look ordered by chance: about 0.5 % here.
   EXPECT_LT(bond_order(random_packing())->all.fraction(), 0.02);

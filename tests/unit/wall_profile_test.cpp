@@ -220,6 +220,37 @@ TEST(WallProfile, SegregationComparesTheSpheresNearTheWall) {
   EXPECT_EQ(profile.regions.back(), Region::core);
 }
 
+TEST(WallProfile, LayersTellTheSizesOfTheSpheresWhoseSurfaceIsThere) {
+  const Bounds<3> room{Vector<3>::Zero(), Vector<3>::Constant(10)};
+  const Packing packing =
+      packing_of(testing::scattered(400, 0.3, 0.7, room, 5, true), {Vector<3>::Zero(), room.upper});
+  const WallProfile profile = profile_of(packing);
+  const Spheres<3> spheres = packing.spheres.in<3>();
+  double all = 0;
+  for (const double r : spheres.r) all += r * r * r / static_cast<double>(spheres.size());
+  std::uint64_t found = 0;
+  double volume = 0;
+  for (const WallProfile::Layer& layer : profile.layers) {
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const Vector<3> c = spheres.center(i);
+      const double gap = std::min(c.minCoeff(), (room.upper - c).minCoeff()) - spheres.r[i];
+      if (std::max(gap, 0.0) < layer.from || gap >= layer.to) continue;
+      sum += std::pow(spheres.r[i], 3);
+      ++count;
+    }
+    ASSERT_EQ(layer.segregation.has_value(), count > 0) << layer.from;
+    if (count == 0) continue;
+    EXPECT_EQ(static_cast<double>(layer.segregation->spheres), count) << layer.from;
+    EXPECT_NEAR(layer.segregation->volume_ratio, sum / count / all, 1e-9) << layer.from;
+    found += layer.segregation->spheres;
+    volume += count * layer.segregation->volume_ratio;
+  }
+  EXPECT_EQ(found, spheres.size());
+  EXPECT_NEAR(volume, static_cast<double>(spheres.size()), 1e-9 * volume);
+  EXPECT_GT(profile.layers.front().segregation->spheres, 10u);  // those that touch
+}
+
 TEST(WallProfile, IsAbsentWithoutSpheresOrWalls) {
   EXPECT_FALSE(wall_profile(packing_of({}, {Vector<3>::Zero(), Vector<3>::Ones()})));
   Spheres<3> spheres;

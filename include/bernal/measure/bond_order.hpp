@@ -29,6 +29,10 @@ struct BondOrder {
     }
   };
   Count all;
+  /// Mean over the spheres that have neighbours of Steinhardt's q6, the length of the sum above divided by
+  /// the number of bonds: 0.5745 in fcc, 0.4848 in hcp, the smaller the more bonds point in all directions.
+  double mean_q6 = 0;
+  double q6_error = 0;             ///< standard error of that mean, as if spheres were independent
   std::optional<Count> near_wall;  ///< by Region, where there are walls
   std::optional<Count> core;
 

@@ -12,6 +12,7 @@
 #include "bernal/measure/contacts.hpp"
 #include "bernal/measure/radial_distribution.hpp"
 #include "bernal/measure/size_comparison.hpp"
+#include "bernal/measure/size_correlation.hpp"
 #include "bernal/measure/wall_profile.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/sizes/size_distribution.hpp"
@@ -30,6 +31,7 @@ struct Measurements {
   /// Whether a count of rattlers at the gap of these contacts says something.
   bool holds(const Contacts& c) const { return held_from && c.contact_gap >= *held_from; }
   std::optional<RadialDistribution> radial;
+  std::optional<SizeCorrelation> size_correlation;
   std::optional<Chambers> chambers;
   std::optional<WallProfile> walls;
   std::optional<BondOrder> order;
@@ -42,6 +44,7 @@ struct MeasureOptions {
   double contact_gap = 0.002;
   std::vector<double> gaps = {1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
   RadialOptions radial;
+  SizeCorrelationOptions size_correlation;
   ChamberOptions chambers;
   WallOptions walls;
   /// Of the domain in its own frame, see `local_container`; made where it is null and needed.

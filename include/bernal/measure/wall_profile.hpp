@@ -28,6 +28,13 @@ enum class Region : std::uint8_t {
 /// Every sphere's volume is spread over the layers that it meets, and the volumes of the layers add up to the
 /// container's; so the mean of the porosities, weighted with `share`, is that of the packing, to rounding.
 struct WallProfile {
+  /// The mean of r³ of some spheres over that of all: below 1 where small ones gather there. The error is the
+  /// standard error for spheres that were put there by chance.
+  struct Segregation {
+    std::uint64_t spheres;
+    double volume_ratio, error;
+  };
+
   struct Layer {
     /// z; the last layer holds all that is deeper, a hundredth of the container or more; in a mesh that is
     /// deeper than was looked at it ends at infinity.
@@ -35,6 +42,9 @@ struct WallProfile {
     double share;  ///< of the container's volume; all add up to 1
     double porosity;
     double error;  ///< its standard error from sampling, as if points were independent; they do better
+    /// Of the spheres whose surface, not whose centre, is so far from the wall; absent where there are none.
+    /// So those that touch the wall are all in the first layer.
+    std::optional<Segregation> segregation = {};
   };
   std::vector<Layer> layers;
   double mean_diameter = 0;
@@ -55,14 +65,7 @@ struct WallProfile {
   };
   std::optional<Minimum> first_minimum;
 
-  /// The mean of r³ of the spheres near the wall over that of all spheres: below 1 where small ones gather
-  /// there. The error is the standard error for spheres that were put there by chance. Absent where no sphere
-  /// is near the wall.
-  struct Segregation {
-    std::uint64_t spheres;
-    double volume_ratio, error;
-  };
-  std::optional<Segregation> segregation;
+  std::optional<Segregation> segregation;  ///< of the spheres near the wall; absent where there are none
 
   std::vector<Region> regions;  ///< of each sphere
 };
