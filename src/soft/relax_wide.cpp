@@ -20,6 +20,8 @@ namespace {
 constexpr double least_of_kind = 0.02;
 /// Random places that are tried for one sphere.
 constexpr int trials_a_sphere = 30;
+/// Of these the monitor is asked once.
+constexpr std::size_t spheres_a_question = 4096;
 /// Cycles of sweeps after each kind, at most; and by what the mean overlap falls as long as they help.
 constexpr int most_cycles_of_kind = 20;
 constexpr double helps = 0.97;
@@ -74,7 +76,8 @@ std::optional<double> sweep_cycle(SoftPacking& packing, int sweeps, double last_
 
 /// Places for the spheres from `first` on between those before them.
 template <int D>
-void place_between(Spheres<D>& spheres, std::size_t first, const Vector<D>& edges, Random& random) {
+void place_between(Spheres<D>& spheres, std::size_t first, const Vector<D>& edges, Random& random,
+                   const Monitor& monitor) {
   const Boundary<D> boundary{edges};
   const Bounds<D> box{Vector<D>::Zero(), edges};
   if (first == 0) {
@@ -83,10 +86,12 @@ void place_between(Spheres<D>& spheres, std::size_t first, const Vector<D>& edge
   }
   CellGrid<D> grid(boundary, spheres.r[first - 1], spheres.r[0], first);
   for (std::uint32_t i = 0; i < first; ++i) grid.insert(i, spheres.center(i), spheres.r[i]);
+  int trials = trials_a_sphere;
   for (std::size_t i = first; i < spheres.size(); ++i) {
+    if (i % spheres_a_question == 0 && monitor.stop()) trials = 1;  // they have places at least
     const double r = spheres.r[i];
     double best = -std::numeric_limits<double>::infinity();
-    for (int trial = 0; trial < trials_a_sphere && best < r; ++trial) {
+    for (int trial = 0; trial < trials && best < r; ++trial) {
       const Vector<D> p = uniform_point(random, box);
       const double room =
           room_between_spheres(grid, p, std::max(best, -spheres.r[0]), r, 0, [&](std::uint32_t j) {
@@ -157,7 +162,7 @@ StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, cons
   StageEnd end = StageEnd::converged;
   for (std::size_t n = 0; n < starts && end == StageEnd::converged; ++n) {
     Vector<D> box = factor * edges;
-    place_between(start, 0, box, random);
+    place_between(start, 0, box, random, work.monitor);
     SoftPacking packing(start, box, soft_kernels().front(), true);
     end = grow_apart<D>(packing, start.r, 1, options.stop, options, work.monitor, [](double, double) {});
     work.effects["neighbour lists"] += packing.lists_built();
@@ -197,7 +202,7 @@ StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& w
     if (are_few)
       end = place_few(there, edges, work, options, random);
     else
-      place_between(there, first, edges, random);
+      place_between(there, first, edges, random, work.monitor);
     if (end == StageEnd::converged) end = settle_kind<D>(there, edges, work, options);
     for (std::size_t i = 0; i < last; ++i) descending.set_center(i, there.center(i));
   }
