@@ -12,6 +12,7 @@
 #include "jam/polish.hpp"
 #include "soft/exchange_in_box.hpp"
 #include "soft/ground.hpp"
+#include "soft/growing_box.hpp"
 #include "soft/relax_wide.hpp"
 #include "soft/size_exchange.hpp"
 #include "soft/soft_engine.hpp"
@@ -30,18 +31,6 @@ constexpr double room_to_grow = 0.03;
 constexpr int most_starts_in_a_loose_box = 20;
 /// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
 constexpr double first_jitter = 1e-6;
-
-/// Where the overlap falls linearly with the growth of the box. Earlier, prediction costs contacts.
-constexpr double predictable = 3e-3;
-constexpr double share_of_prediction = 0.9;
-constexpr double longest_predicted = 1.0 / 6;
-/// From so many spheres on more sweeps a growth are not needed for the packing fraction to stay what it is.
-constexpr std::size_t enough = 10000;
-/// What is left of `stop`: a few more growths are cheap, and the packing fraction that the exact growth of
-/// the box at the end takes away is three times the overlap that is left.
-constexpr double share_of_stop = 0.05;
-/// Single precision shows no less.
-constexpr double least_overlap = 4e-6;
 
 /// The paper's phi0, and in other than three dimensions what is as far above random close packing.
 constexpr double dense_start[] = {1.34, 1.13, 0.86, 0.62, 0.42, 0.27, 0.16, 0.093};
@@ -164,8 +153,7 @@ bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const Wo
 ///  - Of a pair the larger sphere gives way less, in proportion to the radii (SoftKernels::sweep): the mean
 ///    over all contacts would leave it where its many small neighbours hold it.
 ///  - Spheres are swept in an order in which many can be moved at once.
-///  - Where molr < 0.003, when it falls in proportion with the growth of the box, the next growth is 0.9 of
-///    what the last two predict, at most molr / 6.
+///  - Near the end growths of the box are predicted (`grow_apart`).
 ///  - Beyond 10,000 spheres the number of sweeps between two growths stays what it is there: the packing
 ///    fraction does so too.
 ///  - It ends with overlaps far below `options.stop`.
@@ -178,29 +166,13 @@ template <int D>
 StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options,
                     double overlap = 1) {
   SoftEngine<D> packing(spheres, edges, 1, work.walls);
-  const int sweeps = sweeps_a_cycle(options, std::min(spheres.size(), enough));
-  const double stop =
-      std::max({share_of_stop * options.stop, std::min(work.allowed_overlap, options.stop), least_overlap});
-  StageEnd end = StageEnd::converged;
-  for (double molr = overlap, last_molr = 0, growth = 0;;) {
-    const Pace pace = pace_for(molr);
-    packing.wear_lists(pace.wear);
-    const float omega = pace.omega * D / 3;
-    for (int k = 1; k < sweeps && end == StageEnd::converged; ++k) {
-      packing.sweep(omega);
-      if (work.monitor.stop()) end = StageEnd::cancelled;
-    }
-    molr = packing.sweep_and_measure(omega);
-    if (end == StageEnd::cancelled || molr < stop) break;
-    const double predicted = growth * molr / (last_molr - molr);
-    growth = molr / options.beta;
-    if (molr < predictable && molr < last_molr)
-      growth = std::max(growth, std::min(share_of_prediction * predicted, longest_predicted * molr));
-    last_molr = molr;
-    packing.grow(1 + growth);
-    work.edges *= 1 + growth;
-    work.milestone("relax", std::min(0.99, std::log(molr) / std::log(stop)), molr);
-  }
+  const GrowingBox box{.molr = overlap,
+                       .stop = least_overlap(options, work.allowed_overlap),
+                       .sweeps = sweeps_a_cycle(options, std::min(spheres.size(), enough_for_sweeps)),
+                       .beta = options.beta};
+  const StageEnd end = grow_apart<D>(
+      packing, box, work.monitor, [](int, double molr) { return molr; },
+      [&](double factor, double molr) { tell_growth(work, factor, molr, box.stop); });
   work.effects["neighbour lists"] += packing.lists_built();
   packing.write_to(spheres, edges);
   return end;

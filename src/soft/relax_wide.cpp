@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "neighbors/cell_grid.hpp"
+#include "soft/growing_box.hpp"
 #include "soft/relax.hpp"
 #include "soft/soft_packing.hpp"
 #include "work/free_of_overlap.hpp"
@@ -25,6 +26,8 @@ constexpr std::size_t spheres_a_question = 4096;
 /// Cycles of sweeps after each kind, at most; and by what the mean overlap falls as long as they help.
 constexpr int most_cycles_of_kind = 20;
 constexpr double helps = 0.97;
+/// Largest overlap ratio at which a kind counts as settled.
+constexpr double settled = 3e-3;
 /// Of the largest kind alone, so many starts are made to jam as make this many spheres, and the densest is
 /// kept: where few carry the volume, one start is denser than another by 0.02.
 constexpr std::size_t spheres_in_starts = 1000, most_starts_of_few = 20;
@@ -34,13 +37,9 @@ constexpr double start_of_few = 0.75;
 constexpr std::size_t sweeps_grow_from = 1000;
 /// Of that many cycles the largest overlap ratio decides; with a power of it before.
 constexpr double cycles_of_means = 200, power_of_cycles = 4;
-/// As of the fast path for equal spheres, see there.
-constexpr double linear_below = 3e-3, trusted = 0.9, longest_step = 1.0 / 6;
-constexpr double left_of_stop = 0.05, float_limit = 4e-6;
-constexpr std::size_t sweeps_grow_to = 10000;
 
 int sweeps_of_wide(const Relax& options, std::size_t spheres) {
-  const int sweeps = sweeps_a_cycle(options, std::clamp(spheres, sweeps_grow_from, sweeps_grow_to));
+  const int sweeps = sweeps_a_cycle(options, std::clamp(spheres, sweeps_grow_from, enough_for_sweeps));
   return std::max(1, static_cast<int>(std::lround(share_of_cycle * sweeps)));
 }
 
@@ -57,21 +56,6 @@ double mean_overlap(const SoftPacking& packing, const std::vector<double>& radii
     volume += weight;
   }
   return std::max(sum / static_cast<double>(radii.size()), weighted / volume);
-}
-
-/// Sweeps of a cycle. Returns the largest overlap ratio that the last of them met, or nothing where
-/// cancelled.
-template <int D>
-std::optional<double> sweep_cycle(SoftPacking& packing, int sweeps, double last_molr,
-                                  const Monitor& monitor) {
-  const Pace pace = pace_for(last_molr);
-  packing.wear_lists(pace.wear);
-  const float omega = pace.omega * D / 3;
-  for (int k = 1; k < sweeps; ++k) {
-    packing.sweep(omega);
-    if (monitor.stop()) return std::nullopt;
-  }
-  return packing.sweep_and_measure(omega);
 }
 
 /// Places for the spheres from `first` on between those before them.
@@ -119,34 +103,24 @@ StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, co
     const double before = mean;
     mean = mean_overlap<D>(packing, spheres.r);
     work.milestone("relax", 0, largest);
-    if (mean > helps * before || largest < linear_below) break;
+    if (mean > helps * before || largest < settled) break;
   }
   work.effects["neighbour lists"] += packing.lists_built();
   packing.write_to(spheres);
   return end;
 }
 
-/// The spheres, of a largest overlap ratio of about `molr`, push each other apart while the box grows, by a
-/// factor that `on_growth` is told, with that ratio.
+/// The spheres, of a largest overlap ratio of about `molr`, push each other apart while the box grows.
 template <int D, class OnGrowth>
-StageEnd grow_apart(SoftPacking& packing, const std::vector<double>& radii, double molr, double stop,
-                    const Relax& options, const Monitor& monitor, OnGrowth&& on_growth) {
-  const int sweeps = sweeps_of_wide(options, radii.size());
-  double last_molr = 0, growth = 0;
-  for (int cycle = 1;; ++cycle) {
-    const std::optional<double> met = sweep_cycle<D>(packing, sweeps, molr, monitor);
-    if (!met) return StageEnd::cancelled;
-    molr = *met;
-    if (molr < stop) return StageEnd::converged;
+StageEnd grow_by_means(SoftPacking& packing, const std::vector<double>& radii, double molr, double stop,
+                       const Relax& options, const Monitor& monitor, OnGrowth&& on_growth) {
+  const auto overlap_of = [&](int cycle, double largest) {
     const double share = std::min(1.0, std::pow(cycle / cycles_of_means, power_of_cycles));
-    const double predicted = growth * molr / (last_molr - molr);
-    growth = std::min(molr, std::max(mean_overlap<D>(packing, radii), share * molr)) / options.beta;
-    if (molr < linear_below && molr < last_molr)
-      growth = std::max(growth, std::min(trusted * predicted, longest_step * molr));
-    last_molr = molr;
-    packing.grow(1 + growth);
-    on_growth(1 + growth, molr);
-  }
+    return std::min(largest, std::max(mean_overlap<D>(packing, radii), share * largest));
+  };
+  const GrowingBox box{
+      .molr = molr, .stop = stop, .sweeps = sweeps_of_wide(options, radii.size()), .beta = options.beta};
+  return grow_apart<D>(packing, box, monitor, overlap_of, on_growth);
 }
 
 /// Few spheres, in the densest of some packings of them, spread out or squeezed into the box.
@@ -164,7 +138,7 @@ StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, cons
     Vector<D> box = factor * edges;
     place_between(start, 0, box, random, work.monitor);
     SoftPacking packing(start, box, soft_kernels().front(), true);
-    end = grow_apart<D>(packing, start.r, 1, options.stop, options, work.monitor, [](double, double) {});
+    end = grow_by_means<D>(packing, start.r, 1, options.stop, options, work.monitor, [](double, double) {});
     work.effects["neighbour lists"] += packing.lists_built();
     packing.write_to(start, box);
     if (!(box.prod() < least)) continue;
@@ -213,13 +187,10 @@ StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& w
 template <int D>
 StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
   SoftPacking packing(spheres, edges, soft_kernels().front(), true);
-  const double stop =
-      std::max({left_of_stop * options.stop, std::min(work.allowed_overlap, options.stop), float_limit});
-  const StageEnd end = grow_apart<D>(
-      packing, spheres.r, overlap, stop, options, work.monitor, [&](double factor, double molr) {
-        work.edges *= factor;
-        work.milestone("relax", std::min(0.99, std::log(molr) / std::log(stop)), molr);
-      });
+  const double stop = least_overlap(options, work.allowed_overlap);
+  const StageEnd end =
+      grow_by_means<D>(packing, spheres.r, overlap, stop, options, work.monitor,
+                       [&](double factor, double molr) { tell_growth(work, factor, molr, stop); });
   work.effects["neighbour lists"] += packing.lists_built();
   packing.write_to(spheres, edges);
   return end;

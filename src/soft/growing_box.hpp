@@ -1,0 +1,75 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "bernal/core/monitor.hpp"
+#include "bernal/soft/relax.hpp"
+#include "soft/soft_packing.hpp"
+#include "work/work.hpp"
+
+namespace bernal {
+
+/// From so many spheres on more sweeps a growth are not needed for the packing fraction to stay what it is.
+inline constexpr std::size_t enough_for_sweeps = 10000;
+
+/// The largest overlap ratio at which spheres in a growing box count as relaxed. Far below `options.stop`: a
+/// few more growths are cheap, and the packing fraction that the exact growth of the box at the end takes
+/// away is three times the overlap that is left. Single precision shows no less than 4e-6.
+inline double least_overlap(const Relax& options, double allowed) {
+  return std::max({0.05 * options.stop, std::min(allowed, options.stop), 4e-6});
+}
+
+/// Sweeps of a cycle, at the pace for spheres of that largest overlap ratio. Returns what the last of them
+/// met, or nothing where cancelled.
+template <int D, class Engine>
+std::optional<double> sweep_cycle(Engine& packing, int sweeps, double molr, const Monitor& monitor) {
+  const Pace pace = pace_for(molr);
+  packing.wear_lists(pace.wear);
+  const float omega = pace.omega * D / 3;
+  for (int k = 1; k < sweeps; ++k) {
+    packing.sweep(omega);
+    if (monitor.stop()) return std::nullopt;
+  }
+  return packing.sweep_and_measure(omega);
+}
+
+struct GrowingBox {
+  double molr = 1;  ///< the largest overlap ratio to begin with
+  double stop;      ///< and to end with
+  int sweeps;       ///< between two growths
+  double beta;
+};
+
+/// Spheres push each other apart while their box grows, each time by `overlap_of(cycle, molr)` / beta. Where
+/// molr < 0.003, when it falls in proportion with the growth of the box, the next growth is 0.9 of what the
+/// last two predict, at most molr / 6; earlier, prediction costs contacts. `on_growth` is told the factor of
+/// each growth, and molr.
+template <int D, class Engine, class OverlapOf, class OnGrowth>
+StageEnd grow_apart(Engine& packing, const GrowingBox& box, const Monitor& monitor, OverlapOf&& overlap_of,
+                    OnGrowth&& on_growth) {
+  constexpr double predictable = 3e-3, share_of_prediction = 0.9, longest_predicted = 1.0 / 6;
+  double molr = box.molr, last_molr = 0, growth = 0;
+  for (int cycle = 1;; ++cycle) {
+    const std::optional<double> met = sweep_cycle<D>(packing, box.sweeps, molr, monitor);
+    if (!met) return StageEnd::cancelled;
+    molr = *met;
+    if (molr < box.stop) return StageEnd::converged;
+    const double predicted = growth * molr / (last_molr - molr);
+    growth = overlap_of(cycle, molr) / box.beta;
+    if (molr < predictable && molr < last_molr)
+      growth = std::max(growth, std::min(share_of_prediction * predicted, longest_predicted * molr));
+    last_molr = molr;
+    packing.grow(1 + growth);
+    on_growth(1 + growth, molr);
+  }
+}
+
+/// To be called on growth: tells the run how large the box is, and how far things are.
+inline void tell_growth(Work& work, double factor, double molr, double stop) {
+  work.edges *= factor;
+  work.milestone("relax", std::min(0.99, std::log(molr) / std::log(stop)), molr);
+}
+
+}  // namespace bernal
