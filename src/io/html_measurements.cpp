@@ -59,12 +59,10 @@ void write_size_correlation(Page& page, const SizeCorrelation& correlation) {
            size_correlation_chart(correlation));
   page.raw(
       "<p>The correlation C(d) of the sizes of two spheres whose centres are the distance d apart: 0 where "
-      "they "
-      "know nothing of each other, positive far out where like sizes gather. Near by it swings by itself, "
-      "for "
-      "what touches is as far apart as its sizes say; the means over all pairs at such distances tell more. "
-      "The "
-      "band, and errors, are those of sizes put on the places by chance.</p>\n<div class=\"wide\"><table>\n");
+      "they know nothing of each other, positive far out where like sizes gather. Near by it swings by "
+      "itself, for what touches is as far apart as its sizes say, and that of neighbours is somewhat below "
+      "0: hold these against another packing of the same sizes. The band, and errors, are those of sizes put "
+      "on the places by chance.</p>\n<div class=\"wide\"><table>\n");
   const auto row = [&](const std::string& of, double c, double error) {
     page.row(of, fmt::format("{:+.4f} ± {:.4f}", c, error), "");
   };
