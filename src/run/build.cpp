@@ -333,7 +333,7 @@ FillTask fill_task_of(const Plan& plan) {
   const int dimension = plan.scene.dimension();
   const Target& target = plan.scene.target;
   FillTask task{.dimension = dimension,
-                .attainable = plan.attainable_packing_fraction,
+                .attainable = plan.attainable_packing_fraction / gain_of_stages(plan.scene, *plan.radii),
                 .size_ratio = plan.radii->quantile(1 - rare) / plan.radii->quantile(rare),
                 .width_of_sizes = plan.radii->moment(dimension + 1) /
                                   (plan.radii->moment(dimension) * plan.radii->moment(1)),

@@ -175,7 +175,7 @@ void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& en
   }
   packing.outcome = conclusion.outcome;
   packing.reason =
-      conclusion.reason +
+      conclusion.reason + (in_bed && !work.account.empty() ? "; " + work.account : std::string()) +
       (in_bed ? resized(packing.size_scale) + left_out(packing, work, ending.unit) : std::string());
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
+#include "run/estimate.hpp"
 #include "run/stages.hpp"
 #include "work/bed.hpp"
 
@@ -85,6 +86,7 @@ void price_effects(Plan& plan) {
       .task = fill_task_of(plan),
       .spheres = plan.expected_count,
       .aim = plan.expected_packing_fraction,
+      .gain = gain_of_stages(scene, *plan.radii),
       .spread = spread_of(plan),
       .width = bounds_of<dynamic>(plan.domain).size().minCoeff() / (2 * plan.radii->quantile(1 - 1e-4)),
       .is_filled = scene.target.fill};

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/dimension.hpp"
+#include "core/close_packing.hpp"
 #include "run/estimate.hpp"
 #include "run/few_large.hpp"
 #include "run/room_for_gaps.hpp"
@@ -22,6 +23,8 @@ constexpr double loose_below = 0.05;
 /// how much they missed the model: 5 equal spheres by 0.163, 1 by 0.120, 30 by up to 0.033; relaxed as
 /// quickly as can be, 120 lognormal ones by 0.072 and 200 by 0.062.
 constexpr double chance_of_few = 3;
+/// Packing fraction from which on a start is as dense as relaxation leaves it.
+constexpr double dense_start_from = 0.9 * random_close_packing[2];
 /// Radii nearer than this are one size for the model.
 constexpr double one_size = 1e-3;
 /// Standard deviation of ln r by volume up to which the model was held against simulations: lognormal sizes
@@ -75,14 +78,19 @@ double asked_of(const Packing& packing, const Plan& plan) {
   if (scene.target.count && !plan.box_follows)
     asked = std::min(asked, sum_of_volumes(packing.spheres.r) / volume_of(plan.domain));
   asked = std::min(asked, reached_by_last(scene));
-  if (!plan.start.spheres.empty())
-    asked = std::min(asked, sum_of_volumes(plan.start.spheres.r) / plan.start.edges.prod());
+  if (!plan.start.spheres.empty()) {  // a dense one is relaxed from there, a loose one is packed anew
+    const double there = sum_of_volumes(plan.start.spheres.r) / plan.start.edges.prod();
+    if (there >= dense_start_from) asked = std::min(asked, there);
+  }
   return asked;
 }
 
-/// Without what stages gain beyond random close packing: a packing is held against that alone.
+/// What the sizes that were asked for pack to, however many of them are drawn; without what stages gain
+/// beyond random close packing: a packing is held against that alone.
 double ordinarily_attainable(const Plan& plan) {
-  return plan.attainable_packing_fraction / gain_of_stages(plan.scene, *plan.radii);
+  const double at_hand = plan.attainable_packing_fraction / gain_of_stages(plan.scene, *plan.radii);
+  const bool all_drawn = plan.scene.draws() && plan.start.spheres.empty() && coat_of(plan.scene) == 0;
+  return all_drawn ? std::max(at_hand, close_packing_fraction(*plan.radii, 3)) : at_hand;
 }
 
 /// What of the sizes makes it less dense: others than were asked for, or too few of the largest.
@@ -146,6 +154,7 @@ std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan) 
   const double drawn = std::min(attainable, asked_of(packing, plan)) - phi;
   if (drawn <= error || attainable - of_sizes <= error) return {};
   shortfall.below = drawn;
+  shortfall.is_loose = drawn > loose_below + chance_of_few / static_cast<double>(packing.spheres.size());
   shortfall.reason = fmt::format("the packing fraction, {:.4f}, is {:.3f} below what was expected: {}", phi,
                                  drawn, fmt::join(causes_in_sizes(packing, plan), "; "));
   return shortfall;

@@ -29,6 +29,8 @@ namespace {
 constexpr double loose = 0.9;
 constexpr double room_to_grow = 0.03;
 constexpr int most_starts_in_a_loose_box = 20;
+/// Share of the volume that an exchange of sizes has to save to be worth its name.
+constexpr double least_saved = 5e-4;
 /// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
 constexpr double first_jitter = 1e-6;
 
@@ -55,12 +57,13 @@ void complete_relax(Relax& relax, Scene& scene, const schema::Section&) {
 }
 
 /// By exchange, of a thousand of the sizes.
-double gain_of_relaxation(const Relax& options, const SizeDistribution& radii, int dimension, bool in_bed) {
+double gain_of_relaxation(const Relax& options, const SizeDistribution& radii, int dimension,
+                          bool has_walls) {
   if (!options.exchange || dimension == 1) return 1;
   constexpr int sizes = 1000;
   std::vector<double> some;
   for (int k = 0; k < sizes; ++k) some.push_back(radii.quantile((k + 0.5) / sizes));
-  return gain_by_exchange(SizeExchange(some, dimension).spread(), in_bed);
+  return gain_by_exchange(SizeExchange(some, dimension).spread(), has_walls);
 }
 
 bool is_loose(const Work& work) {
@@ -211,12 +214,13 @@ StageEnd exchange_sizes(Spheres<D>& spheres, Vector<D>& edges, Work& work, const
   }
   const StageEnd end = push_exchanged_apart<D>(spheres, edges, work, options, *overlap);
   free_of_overlap<D>(spheres, edges, work);
-  if (edges.prod() < ordinary_edges.prod()) {
-    const double volume = work.volume_of_spheres();
-    work.account =
-        fmt::format("after an exchange of sizes that took the packing fraction from {:.4f} to {:.4f}",
-                    volume / ordinary_edges.prod(), volume / edges.prod());
+  const double saved = 1 - edges.prod() / ordinary_edges.prod();
+  if (saved > least_saved) {
+    work.account = fmt::format("after an exchange of sizes that took {:.1f} % off the {} that they need",
+                               100 * saved, D == 2 ? "area" : "volume");
   } else {
+    work.account = end == StageEnd::cancelled ? "without the exchange of sizes, which was not finished"
+                                              : "without an exchange of sizes, which found nothing denser";
     spheres = ordinary;
     edges = ordinary_edges;
   }
@@ -307,8 +311,8 @@ const StageEntry& entry_of<Relax>() {
                         number(&Relax::phi0, "phi0",
                                "packing fraction of the overlapping spheres at the start; if absent 0.86, in "
                                "other than three dimensions 1.34 of random close packing, of wide sizes 1.06 "
-                               "of what is expected; of spheres that come dense from a file what they have "
-                               "there",
+                               "of what is expected, also if it is 0.86; of spheres that come dense from a "
+                               "file what they have there",
                                above(0, 10)),
                         buys_accuracy(
                             {1e-2, 1e-3, 2e-4, 1e-5, 1e-6},
@@ -361,8 +365,9 @@ const StageEntry& entry_of<Relax>() {
             if (!is_dilute)
               require_resolution(0x1p-32 * bounds_of<3>(container).size().maxCoeff() / smallest_radius);
           },
-      .reached =
-          of_options(+[](const Relax& options) { return options.polish > 0 ? 1 : options.phi0.value_or(1); }),
+      .reached = of_options(+[](const Relax& options) {
+        return options.polish > 0 || options.exchange ? 1 : options.phi0.value_or(1);
+      }),
       .gain = of_options(gain_of_relaxation)};
   return entry;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bernal/core/error.hpp"
 #include "jam/polish.hpp"
 #include "soft/relax.hpp"
 #include "soft/relax_wide.hpp"
@@ -54,8 +55,9 @@ constexpr double factor_of_filling = 8;
 constexpr double cost_of_walls = 2;
 /// Lists, of the whole.
 constexpr double share_of_lists = 0.2;
-/// Sizes that are exchanged, each sphere.
-constexpr double exchange_in_box = 1000 * microsecond, exchange_in_bed = 3000 * microsecond;
+/// Sizes that are exchanged: each sphere; at least, from so many on; and the power of their spread.
+constexpr double exchange_in_box = 680 * microsecond, exchange_in_bed = 3000 * microsecond;
+constexpr double least_of_exchange = 1.5, spheres_of_least = 300, power_of_exchange = 0.6;
 /// To walls, of a sphere.
 constexpr double questions = 6;
 constexpr double bytes_a_sphere = 130, bytes_of_lists = 130;
@@ -88,6 +90,12 @@ double seconds_in_growing_box(const Relax& options, const Outlook& outlook) {
          dimension_factor(outlook, wide) *
          (wide ? share_of_wide * std::pow(outlook.spread, cost_of_wide_spread)
                : std::pow(outlook.spread, cost_of_spread));
+}
+
+double seconds_of_exchange(const Outlook& outlook) {
+  return by_dimension[static_cast<std::size_t>(outlook.task.dimension - 1)] *
+         (least_of_exchange * std::min(1.0, outlook.spheres / spheres_of_least) +
+          exchange_in_box * outlook.spheres * std::pow(outlook.spread, power_of_exchange));
 }
 
 double seconds_in_bed(const Relax& options, const Outlook& outlook) {
@@ -150,9 +158,11 @@ std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook&
     else if (!wide && outlook.task.dimension <= 3 && !outlook.task.has_walls && outlook.width < surely_wide)
       items.front().if_needed = true;  // as the published loop does, which may take the place of the fast one
   }
-  if (options.exchange) {
-    const double seconds =
-        outlook.spheres * (outlook.in_bed ? exchange_in_bed : exchange_in_box * dimension_factor(outlook));
+  if (options.exchange && options.method != RelaxMethod::fast)
+    throw Error(ErrorCode::bad_argument,
+                "the reference method of relax knows no exchange of sizes; leave \"method\" out");
+  if (options.exchange && outlook.gain > 1) {
+    const double seconds = outlook.in_bed ? exchange_in_bed * outlook.spheres : seconds_of_exchange(outlook);
     items.push_back({.name = "exchange",
                      .what = "sizes are dealt anew again and again: disordered but optimised, not poured",
                      .cost = "6,000 deals and 30,000 sweeps, O(N) each",

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "jam/polish.hpp"
 #include "settle/insert.hpp"
 #include "soft/crowd.hpp"
@@ -41,21 +43,14 @@ class Relaxation {
         options_(options),
         random_(work.random(Stream::relax)),
         skin_(work.bed().skin() > thin_skin * work.supply->smallest() ? work.bed().skin() : 0),
+        gain_(options.exchange ? gain_by_exchange(SizeExchange(work.supply->radii(), 3).spread(), true) : 1),
         crowd_(ContainerGround(work.bed().container(), work.bed().places()), spheres_to_start_from()),
-        target_count_(std::max(crowd_.size(), work.target_count())),
-        exchanges_(options.exchange && SizeExchange(crowd_.spheres().r, work.dimension()).is_of_use()) {}
+        target_count_(std::max(crowd_.size(), work.target_count())) {}
 
   StageEnd run() {
-    bool free = relax(options_.patience);
-    if (exchanges_ && !over_ && (!free || crowd_.size() < target_count_)) free = exchange();
-    for (double share = taken_out, patience = options_.patience; !free && !cancelled_ && crowd_.size() > 1;) {
-      const double count = share * crowd_.mean_squeeze() * static_cast<double>(crowd_.size());
-      crowd_.drop_last(count, random_);
-      share *= taken_out_faster;
-      patience = over_ ? 0 : less_patience * patience;
-      free = relax(patience);
-    }
+    const bool free = free_by_dropping();
     const bool limited = over_;  // what is added after that is as much as there is time for
+    if (free && !over_ && gain_ > 1 && crowd_.size() < target_count_) exchange();
     if (free && !over_) push_in();
     // Single precision saw them free of overlap in motion; a few more sweeps bring all of them there.
     bool all_there = put_in_bed();
@@ -74,7 +69,7 @@ class Relaxation {
   /// The first of the drawn sequence, those in the bed or of the start where they are and the others at
   /// random: as many as are asked for, or a few more than are likely to fit.
   Spheres<3> spheres_to_start_from() {
-    const double most = work_.target.fill ? 1 : most_of_attainable;
+    const double most = (work_.target.fill ? 1 : most_of_attainable) / gain_;
     const std::size_t count = std::min(work_.target_count(), work_.count_filling(most * work_.attainable));
     auto [spheres, placed] = work_.drawn(std::max<std::size_t>(1, count));
     const Spheres<3>& begun = work_.crowded_start;
@@ -147,7 +142,7 @@ class Relaxation {
       const Spheres<3> before = crowd_.spheres();
       const std::size_t more = count_of_more(share);
       if (more == 0 || !add(more)) return;
-      if (exchanges_) {
+      if (gain_ > 1) {
         if (settle_by_exchange()) continue;
       } else {
         crowd_.burst();
@@ -159,20 +154,41 @@ class Relaxation {
     }
   }
 
-  /// Spheres exchange their sizes, and where more of them are asked for these come in as that makes room.
-  /// Returns whether they are free of overlap.
-  bool exchange() {
+  /// Relaxes and stirs, and takes out what does not come free. Returns whether the others are.
+  bool free_by_dropping() {
+    bool free = relax(options_.patience);
+    for (double share = taken_out, patience = options_.patience; !free && !cancelled_ && crowd_.size() > 1;) {
+      const double count = share * crowd_.mean_squeeze() * static_cast<double>(crowd_.size());
+      crowd_.drop_last(count, random_);
+      share *= taken_out_faster;
+      patience = over_ ? 0 : less_patience * patience;
+      free = relax(patience);
+    }
+    return free;
+  }
+
+  /// Spheres that are free of overlap exchange their sizes, and more of the sequence come in as that makes
+  /// room. Where that comes to no good end, all is as it was.
+  void exchange() {
     const EffectTimer timer(work_.effects["exchange"]);
+    const Spheres<3> ordinary = crowd_.spheres();
     const double sweeps_before = crowd_.sweeps();
     crowd_by_exchange();
     bool free = settle_by_exchange();
-    while (!free && !over_ && crowd_.size() > 1) {
+    while (!free && !over_ && crowd_.size() > ordinary.size()) {
       crowd_.drop_last_dealing(taken_out_dealing * crowd_.mean_squeeze() *
                                static_cast<double>(crowd_.size()));
       free = settle_by_exchange();
     }
     sweeps_of_exchange_ += crowd_.sweeps() - sweeps_before;
-    return free;
+    if (free && crowd_.size() > ordinary.size()) {
+      work_.account = fmt::format("an exchange of sizes has made room for {:.1f} % more",
+                                  100 * (volume_of(crowd_.spheres()) / volume_of(ordinary) - 1));
+      return;
+    }
+    work_.account = cancelled_ ? "the exchange of sizes was not finished, and left no trace"
+                               : "an exchange of sizes has made no room";
+    crowd_.restore(ordinary);
   }
 
   /// Up to a little more than there is room for, unless all are there before.
@@ -232,9 +248,9 @@ class Relaxation {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   Random random_;
   const double skin_;  // that the radii are relaxed with, where it is not thin: far from the origin
+  const double gain_;  // by exchange: 1 where there is none
   CrowdInContainer crowd_;
   const std::size_t target_count_;
-  const bool exchanges_;  // sizes: it is asked for, and there are some to exchange
   double sweeps_of_exchange_ = 0;
   bool over_ = false;  // there is no more time, or no more patience of the user
   bool cancelled_ = false;

@@ -13,7 +13,7 @@ namespace {
 constexpr float most_excess = 3;
 constexpr double first_step = 0.012, last_step = 0.1 * first_step, share_of_long_steps = 0.3;
 constexpr int bits_a_pass = 11, passes = 3;
-constexpr double most_gain = 0.07, most_gain_in_bed = 0.105, spread_of_gain = 0.045;
+constexpr double most_gain = 0.07, most_gain_at_walls = 0.105, spread_of_gain = 0.045;
 
 /// Mean square of ln r from its mean in a group, each ending where the next size is out of reach.
 double variance_of_groups(const std::vector<double>& radii, const std::vector<std::uint32_t>& ascending) {
@@ -83,8 +83,8 @@ const std::vector<std::uint32_t>& SizeExchange::deal(const std::vector<float>& f
   return to_;
 }
 
-double gain_by_exchange(double spread, bool in_bed) {
-  return 1 + (in_bed ? most_gain_in_bed : most_gain) * (1 - std::exp(-spread / spread_of_gain));
+double gain_by_exchange(double spread, bool has_walls) {
+  return 1 + (has_walls ? most_gain_at_walls : most_gain) * (1 - std::exp(-spread / spread_of_gain));
 }
 
 double exchange_step(double done) {

@@ -20,7 +20,7 @@ namespace bernal {
 class SizeExchange {
  public:
   /// How far, in logarithms of the radius, a size may be from the next one to be reached at all.
-  static constexpr double longest_way = 0.05;
+  static constexpr double longest_way = 0.03;
 
   SizeExchange(const std::vector<double>& radii, int dimension);
 
@@ -48,7 +48,7 @@ class SizeExchange {
 /// What exchange makes of the packing fraction that such sizes reach without, as a factor. Fitted to boxes of
 /// 3,000 and 10,000 lognormal spheres, sigma from 0.01 to 0.7, which met it within 0.01, and to four
 /// containers of 700 to 9,000 with sigma 0.3, within 0.015: at walls, too, more is gained.
-double gain_by_exchange(double spread, bool in_bed);
+double gain_by_exchange(double spread, bool has_walls);
 
 /// So many exchanges, each after so many sweeps, anneal a packing: packing fractions grow by 0.001 to 0.002
 /// with three times as many.

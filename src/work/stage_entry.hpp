@@ -18,6 +18,7 @@ struct Outlook {
   double filled = 0;       ///< packing fraction in the bed that stages before it are likely to leave
   double spheres = 0;      ///< expected in the end
   double aim = 0;          ///< packing fraction, expected in the end
+  double gain = 1;         ///< of that, by stages that make denser packings than sizes reach by themselves
   double spread = 1;       ///< mean of r³ over that of r, cubed: 1 for equal spheres
   double width = 0;        ///< shortest edge in largest diameters, but for one in 10,000
   double at_walls = 0;     ///< share of the spheres that touch or nearly touch a wall
@@ -50,9 +51,9 @@ struct StageEntry {
   std::function<bool(const void*, const FillTask&)> leaves_overlap = {};
   /// Of a stage that reaches what its options say and no more: that packing fraction.
   std::function<double(const void*)> reached = {};
-  /// Of one that makes denser packings of these sizes than they reach by themselves, in a bed or a box of so
-  /// many dimensions: by which factor.
-  std::function<double(const void*, const SizeDistribution& radii, int dimension, bool in_bed)> gain = {};
+  /// Of one that makes denser packings of these sizes than they reach by themselves, with walls or without:
+  /// by which factor.
+  std::function<double(const void*, const SizeDistribution& radii, int dimension, bool has_walls)> gain = {};
   /// Of one that places spheres which then stay: the packing fraction at which no more find room.
   std::function<double(const void*, const EmptyBed&)> full = {};
 };
