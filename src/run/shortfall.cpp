@@ -23,6 +23,8 @@ constexpr double loose_below = 0.05;
 /// how much they missed the model: 5 equal spheres by 0.163, 1 by 0.120, 30 by up to 0.033; relaxed as
 /// quickly as can be, 120 lognormal ones by 0.072 and 200 by 0.062.
 constexpr double chance_of_few = 3;
+/// Share of the volume asked for that may be in spheres of which none is there, because so few were drawn.
+constexpr double most_missing = 0.05;
 /// Packing fraction from which on a start is as dense as relaxation leaves it.
 constexpr double dense_start_from = 0.9 * random_close_packing[2];
 /// Radii nearer than this are one size for the model.
@@ -93,6 +95,12 @@ double ordinarily_attainable(const Plan& plan) {
   return all_drawn ? std::max(at_hand, close_packing_fraction(*plan.radii, 3)) : at_hand;
 }
 
+/// Of the volume that was asked for, what is in spheres larger than all that are there.
+double share_above(const SizeDistribution& radii, double largest) {
+  constexpr double rounding = 1 + 1e-9;
+  return radii.moment_above(3, rounding * largest) / radii.moment(3);
+}
+
 /// What of the sizes makes it less dense: others than were asked for, or too few of the largest.
 std::vector<std::string> causes_in_sizes(const Packing& packing, const Plan& plan) {
   std::vector<std::string> causes;
@@ -154,7 +162,8 @@ std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan) 
   const double drawn = std::min(attainable, asked_of(packing, plan)) - phi;
   if (drawn <= error || attainable - of_sizes <= error) return {};
   shortfall.below = drawn;
-  shortfall.is_loose = drawn > loose_below + chance_of_few / static_cast<double>(packing.spheres.size());
+  shortfall.is_loose = drawn > loose_below + chance_of_few / static_cast<double>(packing.spheres.size()) &&
+                       share_above(*plan.radii, std::ranges::max(packing.spheres.r)) > most_missing;
   shortfall.reason = fmt::format("the packing fraction, {:.4f}, is {:.3f} below what was expected: {}", phi,
                                  drawn, fmt::join(causes_in_sizes(packing, plan), "; "));
   return shortfall;
