@@ -16,6 +16,9 @@ constexpr double enough_carriers = 30, enough_across = 3;
 /// Of what is attainable: a box that is filled to less has room to spare, whatever is in it.
 constexpr double closely = 0.9;
 
+/// In one packing.
+constexpr double most_spheres = 0x1p31;
+
 /// Up to two digits.
 double rounded_up(double x) {
   const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
@@ -37,17 +40,21 @@ std::optional<FewLarge> few_large(const SizeDistribution& radii, double count, c
 
 std::string in_words(const FewLarge& few) {
   const double n = std::max(1.0, std::round(few.carriers));
-  const std::string across = fmt::format("the box is {:.1f} of the largest diameters across", few.across);
+  const std::string across =
+      few.across < 1 ? fmt::format("the box is {:.1g} of the largest diameter across", few.across)
+                     : fmt::format("the box is {:.1f} of the largest diameters across", few.across);
   if (n >= enough_carriers) return across;
-  return fmt::format("half of the volume is in {} and {}",
-                     n == 1 ? "1 sphere" : grouped(static_cast<std::uint64_t>(n)) + " spheres", across);
+  const std::string carriers = few.carriers < 0.5 ? "less than one sphere"
+                               : n == 1           ? "1 sphere"
+                                                  : grouped(static_cast<std::uint64_t>(n)) + " spheres";
+  return fmt::format("half of the volume is in {} and {}", carriers, across);
 }
 
 std::string remedy_of(const FewLarge& few, double count, const Scene& scene, const Vector<dynamic>& edges) {
   if (std::get<PeriodicBox>(scene.container).scalable) {
     const double enough = rounded_up(few.factor * count);
-    return fmt::format("{} would be enough",
-                       enough < 1e15 ? grouped(static_cast<std::uint64_t>(enough)) + " spheres" : "no count");
+    if (enough > most_spheres) return "more spheres than there can be would have to come";
+    return fmt::format("{} spheres would be enough", grouped(static_cast<std::uint64_t>(enough)));
   }
   const double wider = std::pow(few.factor, 1.0 / static_cast<double>(edges.size()));
   return fmt::format("a shortest edge of {:.3g} {} would be enough", rounded_up(wider * edges.minCoeff()),
