@@ -262,15 +262,7 @@ const StageEntry& entry_of<Grow>() {
                       "differ "
                       "several times, if the rate is low",
                       {"equal", "volume"}),
-                 buys_accuracy(
-                     {0, 1e-6, 1e-10},
-                     number(
-                         &Grow::polish, "polish",
-                         "close the gaps and overlaps of all contacts to this ratio, and no more contacts "
-                         "than "
-                         "hold the spheres; in a container all sizes grow for that by one factor, which the "
-                         "report states; 0: do not",
-                         {0, 0.5}))},
+                 polish_key<Grow>()},
             .complete = completion(complete_grow)},
            {.in_bed = true,
             .in_box = true,

@@ -39,6 +39,18 @@ namespace bernal {
 template <int D>
 StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work);
 
+/// The key of a stage that ends with it.
+template <class Options>
+schema::Key polish_key() {
+  return schema::buys_accuracy(
+      {0, 1e-6, 1e-10},
+      schema::number(&Options::polish, "polish",
+                     "close the gaps and overlaps of all contacts to this ratio, and no more contacts than "
+                     "hold the spheres; in a container all sizes grow for that by one factor, which the "
+                     "report states; 0: do not",
+                     {0, 0.5}));
+}
+
 /// Appends what it is expected to cost, which in a box the last of the items holds, too.
 void add_polishing(std::vector<PlanItem>& items, const Outlook& outlook);
 

@@ -162,12 +162,11 @@ bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const Wo
 ///  - It ends with overlaps far below `options.stop`.
 /// From four dimensions on, and between walls, spheres are swept one after the other, on lists for one size
 /// (NeighborRelaxation).
-/// `overlap` is the largest overlap ratio to begin with, if that is known.
+/// `overlap` is the largest overlap ratio to begin with; 1 where it is not known.
 /// Preconditions and results are those of `relax_by_the_book`. Cost: about 13 ns a sphere and sweep, lists
 /// included; 0.07 µs in four dimensions and 0.13 µs in eight, lists not included.
 template <int D>
-StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options,
-                    double overlap = 1) {
+StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
   SoftEngine<D> packing(spheres, edges, 1, work.walls);
   const GrowingBox box{.molr = overlap,
                        .stop = least_overlap(options, work.allowed_overlap),
@@ -181,23 +180,17 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
   return end;
 }
 
+/// `overlap` is the largest overlap ratio to begin with, where the fast engine has brought them to it.
 template <int D>
-StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
-  if constexpr (D == 2 || D == 3)
-    if (is_for_wide_sizes(work.fill_task, options)) return relax_wide<D>(spheres, edges, work, options);
-  const bool engine_works = D > 3 || !work.walls.empty() || SoftEngine<D>::is_wide(spheres, edges);
-  return options.method == RelaxMethod::fast && engine_works
-             ? relax_fast<D>(spheres, edges, work, options)
-             : relax_by_the_book<D>(spheres, edges, work, options);
-}
-
-template <int D>
-StageEnd push_exchanged_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options,
-                              double overlap) {
+StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options,
+                    std::optional<double> overlap = {}) {
   if constexpr (D == 2 || D == 3)
     if (is_for_wide_sizes(work.fill_task, options))
-      return relax_wide<D>(spheres, edges, work, options, overlap);
-  return relax_fast<D>(spheres, edges, work, options, overlap);
+      return relax_wide<D>(spheres, edges, work, options, overlap.value_or(1));
+  const bool engine_works = overlap || D > 3 || !work.walls.empty() || SoftEngine<D>::is_wide(spheres, edges);
+  return options.method == RelaxMethod::fast && engine_works
+             ? relax_fast<D>(spheres, edges, work, options, overlap.value_or(1))
+             : relax_by_the_book<D>(spheres, edges, work, options);
 }
 
 /// Takes spheres that just do not overlap to a denser packing of the same sizes, if that is found.
@@ -212,7 +205,7 @@ StageEnd exchange_sizes(Spheres<D>& spheres, Vector<D>& edges, Work& work, const
     work.account = "without an exchange of sizes: they are equal or too far apart";
     return StageEnd::converged;
   }
-  const StageEnd end = push_exchanged_apart<D>(spheres, edges, work, options, *overlap);
+  const StageEnd end = push_apart<D>(spheres, edges, work, options, overlap);
   free_of_overlap<D>(spheres, edges, work);
   const double saved = 1 - edges.prod() / ordinary_edges.prod();
   if (saved > least_saved) {
@@ -227,17 +220,11 @@ StageEnd exchange_sizes(Spheres<D>& spheres, Vector<D>& edges, Work& work, const
   return end;
 }
 
-void refuse_what_the_reference_lacks(const Work& work, const Relax& options) {
-  if (options.method == RelaxMethod::fast) return;
-  const char* what = !work.walls.empty() ? "no walls" : options.exchange ? "no exchange of sizes" : nullptr;
-  if (what)
-    throw Error(ErrorCode::bad_scene,
-                fmt::format("the reference method of relax knows {}; leave \"method\" out", what));
-}
-
 template <int D>
 StageEnd relax_in(Work& work, const Relax& options) {
-  refuse_what_the_reference_lacks(work, options);
+  const bool by_the_book = options.method != RelaxMethod::fast;
+  if (!work.walls.empty() && by_the_book)
+    throw Error(ErrorCode::bad_scene, "the reference method of relax knows no walls; leave \"method\" out");
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
   const auto finish = [&](StageEnd end) {
@@ -342,15 +329,7 @@ const StageEntry& entry_of<Relax>() {
                {flag(&Relax::exchange, "exchange",
                      "spheres exchange their sizes on the way: some 7 % denser, disordered but optimised, "
                      "not what pouring makes"),
-                buys_accuracy(
-                    {0, 1e-6, 1e-10},
-                    number(
-                        &Relax::polish, "polish",
-                        "close the gaps and overlaps of all contacts to this ratio, and no more contacts "
-                        "than "
-                        "hold the spheres; in a container all sizes grow for that by one factor, which the "
-                        "report states; 0: do not",
-                        {0, 0.5}))}),
+                polish_key<Relax>()}),
            .choices = {{{"alpha"}, {"period"}}},
            .complete = completion(complete_relax)},
           traits),

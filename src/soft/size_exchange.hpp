@@ -46,8 +46,8 @@ class SizeExchange {
 };
 
 /// What exchange makes of the packing fraction that such sizes reach without, as a factor. Fitted to boxes of
-/// 3,000 and 10,000 lognormal spheres, sigma from 0.01 to 0.7, which met it within 0.01, and to four
-/// containers of 700 to 9,000 with sigma 0.3, within 0.015: at walls, too, more is gained.
+/// 3,000 and 10,000 lognormal spheres, sigma from 0.01 to 0.7, which met it within 0.01, and to containers
+/// of 250 to 9,000 with sigma 0.2 and 0.3, within 0.02: at walls, too, more is gained.
 double gain_by_exchange(double spread, bool has_walls);
 
 /// So many exchanges, each after so many sweeps, anneal a packing: packing fractions grow by 0.001 to 0.002

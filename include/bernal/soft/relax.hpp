@@ -24,7 +24,7 @@ struct Relax {
   bool settle = false;  ///< reference: what touches nothing moves to touch its nearest neighbour
   // in both
   /// Spheres exchange their sizes while they push each other, which makes disordered packings of the same
-  /// sizes denser by 0.04 to 0.1 where sizes come close to each other: lognormal with sigma 0.3 0.717 in
+  /// sizes denser by 0.03 to 0.07 where sizes come close to each other: lognormal with sigma 0.3 0.717 in
   /// place of 0.672. Such packings are optimised; nothing that is poured or shaken comes to be one.
   bool exchange = false;
   /// Gap and overlap ratio to which contacts, those with walls among them, are closed in the end; 0: not at
