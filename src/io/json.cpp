@@ -1,4 +1,4 @@
-// report.json and what --json prints; the only file of the library that sees nlohmann's JSON.
+// report.json and what --json prints.
 #include "bernal/io/json.hpp"
 
 #include <sys/resource.h>

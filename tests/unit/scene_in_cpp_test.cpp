@@ -1,16 +1,25 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
+#include <map>
 
+#include <nlohmann/json.hpp>
+
+#include "bernal/export/export.hpp"
 #include "bernal/fly/fly.hpp"
 #include "bernal/hard/grow.hpp"
+#include "bernal/io/json.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "bernal/scene/scene_reference.hpp"
 #include "bernal/settle/insert.hpp"
 #include "bernal/settle/refill.hpp"
 #include "bernal/soft/relax.hpp"
 #include "bernal/verify/certificate.hpp"
+#include "scene/scene_entries.hpp"
+#include "scene/stage_table.hpp"
 
 // Scenes that stand in no file.
 namespace bernal {
@@ -165,6 +174,47 @@ TEST(Reference, NamesEveryKeyWithItsDefault) {
   EXPECT_NE(relax.find("method = \"fast\""), std::string::npos) << relax;
   EXPECT_NE(reference("cylinder").find("radius\n"), std::string::npos);  // which has no default
   EXPECT_THROW(reference("cylindre"), Error);
+}
+
+TEST(Reference, AsDataSaysTheSame) {
+  const auto json = nlohmann::json::parse(scene_reference_as_json());
+  std::map<std::string, std::size_t> tables;
+  for (const auto& group : json.at("groups")) {
+    tables[group.at("name")] = group.at("tables").size();
+    for (const auto& table : group.at("tables")) {
+      const std::string text = reference(std::string(table.at("name")));
+      for (const auto& key : table.at("keys")) {
+        const std::string name = key.at("name");
+        EXPECT_NE(text.find("\n  " + name), std::string::npos) << name;
+        EXPECT_NE(text.find("      " + key.at("expectation").get<std::string>()), std::string::npos) << name;
+        EXPECT_FALSE(key.at("required") && !key.at("default").is_null()) << name;
+      }
+      for (const auto& choice : table.at("choices"))
+        for (const auto& set : choice)
+          for (const auto& key : set)
+            EXPECT_NE(text.find("\n  " + key.get<std::string>()), std::string::npos);
+    }
+  }
+  EXPECT_EQ(tables, (std::map<std::string, std::size_t>{{"scene", 3},
+                                                        {"container", schema::container_entries().size()},
+                                                        {"diameter", schema::size_entries().size()},
+                                                        {"stage", stage_tables().size()},
+                                                        {"output", export_formats().size()}}));
+}
+
+TEST(Reference, DefaultsAndLimitsAreThoseOfTheStructs) {
+  const auto groups = scene_reference();
+  const auto& stages = groups[3].tables;
+  const auto relax = std::ranges::find(stages, "relax", &ReferenceTable::name);
+  ASSERT_NE(relax, stages.end());
+  const auto alpha = std::ranges::find(relax->keys, "alpha", &ReferenceKey::name);
+  ASSERT_NE(alpha, relax->keys.end());
+  EXPECT_EQ(alpha->type, "number");
+  EXPECT_EQ(alpha->acts, "in_box");
+  EXPECT_EQ(std::stod(alpha->otherwise.value()), Relax().alpha);
+  const auto method = std::ranges::find(relax->keys, "method", &ReferenceKey::name);
+  EXPECT_EQ(method->otherwise, "\"fast\"");
+  EXPECT_EQ(method->words.front(), "fast");
 }
 
 }  // namespace scene_in_cpp_test

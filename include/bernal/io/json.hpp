@@ -19,4 +19,10 @@ std::string certificate_as_json(const Certificate&);
 /// there are none, p-values that would mean nothing.
 std::string measurements_as_json(const Packing&, const Measurements&);
 
+/// Everything that a scene may say, see `scene_reference`, as one JSON object {"groups": [{name, selector,
+/// title, tables: [{name, help, keys, choices}]}]}: what `bernal keys --json` prints. A key has name, help,
+/// type, expectation, `default` as JSON or null, `min` and `max` (null where there is no limit), `above_min`,
+/// `below_max`, words, required, `is_diameter` and `acts`.
+std::string scene_reference_as_json();
+
 }  // namespace bernal
