@@ -83,6 +83,7 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
     measured.walls = wall_profile(spheres, domain, options.walls, container);
     measured.order =
         bond_order(spheres, domain, measured.walls ? measured.walls->regions : std::vector<Region>{});
+    measured.local = local_packing(spheres, domain, options.local, container);
   } catch (const Cancelled&) {
   }
   if (asked.sizes && !spheres.empty()) measured.sizes = compare_sizes_of(spheres, domain, asked);

@@ -10,6 +10,7 @@
 #include "bernal/measure/bond_order.hpp"
 #include "bernal/measure/chambers.hpp"
 #include "bernal/measure/contacts.hpp"
+#include "bernal/measure/local_packing.hpp"
 #include "bernal/measure/radial_distribution.hpp"
 #include "bernal/measure/size_comparison.hpp"
 #include "bernal/measure/size_correlation.hpp"
@@ -35,6 +36,7 @@ struct Measurements {
   std::optional<Chambers> chambers;
   std::optional<WallProfile> walls;
   std::optional<BondOrder> order;
+  std::optional<LocalPacking> local;
   std::optional<SizeComparison> sizes;
 };
 
@@ -47,6 +49,7 @@ struct MeasureOptions {
   SizeCorrelationOptions size_correlation;
   ChamberOptions chambers;
   WallOptions walls;
+  LocalPackingOptions local = {};
   /// Of the domain in its own frame, see `local_container`; made where it is null and needed.
   std::shared_ptr<const Container> container = {};
   Monitor monitor = {};  ///< once it says stop, what may be absent is

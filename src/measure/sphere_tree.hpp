@@ -1,0 +1,193 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/boundary.hpp"
+
+namespace bernal {
+
+/// The spheres in a tree of boxes, each halved at the median of its centres across its longest edge, for
+/// questions that depend on radii: which sphere has the least power at a point, which surface is nearest.
+/// Open and periodic axes together. Cost: building O(N log N), about 0.5 µs a sphere; memory about 30 bytes
+/// more a sphere.
+template <int D>
+class SphereTree {
+ public:
+  /// The squared distance of a point from a centre, and the radius, as a number: the less, the nearer.
+  struct Power {
+    static double of(double squared_distance, double r) { return squared_distance - r * r; }
+  };
+  struct Gap {
+    static double of(double squared_distance, double r) { return std::sqrt(squared_distance) - r; }
+  };
+
+  struct Node {
+    Bounds<D> bounds;  ///< of the centres
+    double largest;    ///< radius
+    std::uint32_t first, last;
+    std::uint32_t children = 0;  ///< the first of two, next to each other; 0: none
+    std::size_t size() const { return last - first; }
+  };
+
+  /// A sphere, and where its image lies that is meant.
+  struct Found {
+    std::uint32_t place = 0;  ///< in the order of the tree
+    Vector<D> center = Vector<D>::Zero();
+    double value = std::numeric_limits<double>::infinity();
+  };
+
+  SphereTree(const Spheres<D>& spheres, const Boundary<D>& boundary) : boundary_(boundary) {
+    const auto n = static_cast<std::uint32_t>(spheres.size());
+    std::vector<Vector<D>> wrapped;
+    wrapped.reserve(n);
+    for (std::uint32_t i = 0; i < n; ++i) wrapped.push_back(boundary.wrap(spheres.center(i)));
+    ids_.resize(n);
+    std::iota(ids_.begin(), ids_.end(), 0u);
+    if (n > 0) nodes_.push_back(node(wrapped, spheres.r, 0, n));
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      if (nodes_[k].size() <= leaf) continue;
+      const Node parent = nodes_[k];
+      int axis = 0;
+      parent.bounds.size().maxCoeff(&axis);
+      const auto begin = ids_.begin();
+      const std::uint32_t middle = parent.first + (parent.last - parent.first) / 2;
+      std::nth_element(begin + parent.first, begin + middle, begin + parent.last, [&](auto a, auto b) {
+        return std::pair(wrapped[a][axis], a) < std::pair(wrapped[b][axis], b);
+      });
+      nodes_[k].children = static_cast<std::uint32_t>(nodes_.size());
+      nodes_.push_back(node(wrapped, spheres.r, parent.first, middle));
+      nodes_.push_back(node(wrapped, spheres.r, middle, parent.last));
+    }
+    for (const std::uint32_t id : ids_) {
+      centers_.push_back(wrapped[id]);
+      radii_.push_back(spheres.r[id]);
+    }
+  }
+
+  std::size_t size() const { return ids_.size(); }
+  const std::vector<Node>& nodes() const { return nodes_; }
+  // By place in the order of the tree; those of a node stand together.
+  std::uint32_t id(std::uint32_t place) const { return ids_[place]; }
+  const Vector<D>& center(std::uint32_t place) const { return centers_[place]; }
+  double radius(std::uint32_t place) const { return radii_[place]; }
+
+  /// The sphere with the least Measure at p, if that is below `limit`; else Found::value is `limit`. Of an
+  /// axis with a period the images next to the one that p is in are enough. Precondition: p anywhere.
+  template <class Measure>
+  Found nearest(const Vector<D>& p, double limit = std::numeric_limits<double>::infinity()) const {
+    Found found;
+    found.value = limit;
+    if (nodes_.empty()) return found;
+    const Vector<D> in_period = boundary_.wrap(p);
+    for_each_shift([&](const Vector<D>& shift) { search<Measure>(in_period - shift, found, shift); });
+    found.center += p - in_period;
+    return found;
+  }
+
+  /// Calls visit(place, shift) for every image of a centre, moved by `shift`, inside of the bounds. Along
+  /// axes with a period these are at most one period longer than the period itself, on either side.
+  template <class Visit>
+  void for_each_in(const Bounds<D>& bounds, Visit&& visit) const {
+    if (nodes_.empty()) return;
+    for_each_shift([&](const Vector<D>& shift) { collect(bounds, shift, 0, visit); });
+  }
+
+ private:
+  static constexpr std::size_t leaf = 8;
+
+  Node node(const std::vector<Vector<D>>& centers, const std::vector<double>& radii, std::uint32_t first,
+            std::uint32_t last) const {
+    Node made{{centers[ids_[first]], centers[ids_[first]]}, 0, first, last};
+    for (std::uint32_t k = first; k < last; ++k) {
+      made.bounds.lower = made.bounds.lower.cwiseMin(centers[ids_[k]]);
+      made.bounds.upper = made.bounds.upper.cwiseMax(centers[ids_[k]]);
+      made.largest = std::max(made.largest, radii[ids_[k]]);
+    }
+    return made;
+  }
+
+  /// None first, as that is where most is found.
+  template <class Visit>
+  void for_each_shift(Visit&& visit) const {
+    visit(Vector<D>(Vector<D>::Zero()));
+    std::array<int, D> at;
+    for (int k = 0; k < D; ++k) at[k] = boundary_.repeats(k) ? -1 : 0;
+    const std::array<int, D> lowest = at;
+    for (int k = 0; k < D;) {
+      Vector<D> shift;
+      for (int axis = 0; axis < D; ++axis) shift[axis] = at[axis] * boundary_.edges[axis];
+      if (!shift.isZero(0)) visit(shift);
+      for (k = 0; k < D && (!boundary_.repeats(k) || ++at[k] > 1); ++k) at[k] = lowest[k];
+    }
+  }
+
+  static double squared_distance(const Bounds<D>& bounds, const Vector<D>& p) {
+    return (p - p.cwiseMax(bounds.lower).cwiseMin(bounds.upper)).squaredNorm();
+  }
+
+  template <class Measure>
+  double least(const Node& node, const Vector<D>& p) const {
+    return Measure::of(squared_distance(node.bounds, p), node.largest);
+  }
+
+  template <class Measure>
+  void search(const Vector<D>& p, Found& found, const Vector<D>& shift) const {
+    struct Waiting {
+      std::uint32_t node;
+      double least;
+    };
+    std::array<Waiting, 80> stack;  // one a level
+    std::size_t waiting = 0;
+    stack[waiting++] = {0, least<Measure>(nodes_[0], p)};
+    while (waiting > 0) {
+      const Waiting next = stack[--waiting];
+      if (!(next.least < found.value)) continue;
+      const Node& node = nodes_[next.node];
+      if (node.children == 0) {
+        for (std::uint32_t k = node.first; k < node.last; ++k) {
+          const double value = Measure::of((p - centers_[k]).squaredNorm(), radii_[k]);
+          if (value < found.value) found = {k, centers_[k] + shift, value};
+        }
+        continue;
+      }
+      Waiting near{node.children, least<Measure>(nodes_[node.children], p)};
+      Waiting far{node.children + 1, least<Measure>(nodes_[node.children + 1], p)};
+      if (far.least < near.least) std::swap(near, far);
+      stack[waiting++] = far;
+      stack[waiting++] = near;
+    }
+  }
+
+  template <class Visit>
+  void collect(const Bounds<D>& bounds, const Vector<D>& shift, std::uint32_t at, Visit&& visit) const {
+    const Node& node = nodes_[at];
+    if (((node.bounds.upper + shift).array() < bounds.lower.array()).any() ||
+        ((node.bounds.lower + shift).array() > bounds.upper.array()).any())
+      return;
+    if (node.children != 0) {
+      collect(bounds, shift, node.children, visit);
+      collect(bounds, shift, node.children + 1, visit);
+      return;
+    }
+    for (std::uint32_t k = node.first; k < node.last; ++k) {
+      const Vector<D> center = centers_[k] + shift;
+      if ((center.array() >= bounds.lower.array()).all() && (center.array() <= bounds.upper.array()).all())
+        visit(k, shift);
+    }
+  }
+
+  Boundary<D> boundary_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<Node> nodes_;
+  std::vector<Vector<D>> centers_;
+  std::vector<double> radii_;
+};
+
+}  // namespace bernal
