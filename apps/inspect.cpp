@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/core/unit.hpp"
+#include "bernal/io/json.hpp"
 #include "bernal/measure/chambers.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
@@ -143,63 +143,6 @@ void print(const InspectCall& call, const MeshReport& report, const std::optiona
   for (const auto& [name, value] : rows) say(stdout, "{:<{}}  {}\n", name, width, value);
 }
 
-nlohmann::ordered_json as_json(const std::optional<Chambers>& found) {
-  using nlohmann::ordered_json;
-  if (!found) return nullptr;
-  ordered_json list = ordered_json::array();
-  for (const Chambers::Chamber& chamber : found->chambers)
-    list.push_back({{"share", chamber.share},
-                    {"share_error", chamber.share_error},
-                    {"position", chamber.position},
-                    {"clearance", chamber.clearance}});
-  return {{"radius", found->radius},
-          {"resolution", found->resolution},
-          {"uncovered", {{"share", found->by_smallest.share}, {"error", found->by_smallest.error}}},
-          {"list", list}};
-}
-
-nlohmann::ordered_json as_json(const InspectCall& call, const MeshReport& report,
-                               const std::optional<Chambers>& chambers,
-                               const std::vector<std::string>& lines) {
-  using nlohmann::ordered_json;
-  const auto known = [](const std::string& text) {
-    return text.empty() ? ordered_json(nullptr) : ordered_json(text);
-  };
-  ordered_json defects = ordered_json::array();
-  for (const Defect& defect : report.defects)
-    defects.push_back({{"what", defect.what}, {"at", defect.at}, {"across", defect.across}});
-  return {{"file", plain_text(call.mesh.string())},
-          {"unit", known(call.unit)},
-          {"unit_of_file", known(report.unit)},
-          {"metres_per_unit", report.metres > 0 ? ordered_json(report.metres) : ordered_json(nullptr)},
-          {"up_of_file", report.up == 0 ? ordered_json(nullptr) : ordered_json(std::string(1, report.up))},
-          {"solids", report.solids},
-          {"notes", report.notes},
-          {"usable", report.usable()},
-          {"reader", report.reader},
-          {"faces", report.faces},
-          {"vertices", report.vertices},
-          {"components", report.components},
-          {"closed", report.closed},
-          {"genus", report.usable() ? ordered_json(report.genus) : ordered_json(nullptr)},
-          {"orientation", report.orientation},
-          {"volume", report.usable() ? ordered_json(report.volume) : ordered_json(nullptr)},
-          {"area", report.area},
-          {"bounds", {{"lower", report.bounds.lower}, {"upper", report.bounds.upper}}},
-          {"open_edges", report.open_edges},
-          {"non_manifold_edges", report.non_manifold_edges},
-          {"non_manifold_vertices", report.non_manifold_vertices},
-          {"misoriented_edges", report.misoriented_edges},
-          {"degenerate_faces", report.degenerate_faces},
-          {"duplicate_faces", report.duplicate_faces},
-          {"self_intersections", report.self_intersections},
-          {"chambers", as_json(chambers)},
-          {"repairs", report.repairs},
-          {"problems", report.problems},
-          {"defects", defects},
-          {"container_lines", lines}};
-}
-
 int inspect(const InspectCall& call) {
   if (!call.unit.empty()) unit_named(call.unit);  // refuses an unknown one before the file is read
   ProgressBar bar(call.json);
@@ -214,7 +157,7 @@ int inspect(const InspectCall& call) {
   if (call.radius && report.usable()) chambers = chambers_for(imported.mesh, *call.radius);
   bar.clear();
   if (call.json)
-    say(stdout, "{}\n", as_json(call, report, chambers, lines).dump(2));
+    say(stdout, "{}", inspection_as_json(call.mesh, call.unit, report, chambers, lines));
   else
     print(call, report, chambers, lines);
   return report.usable() ? exit_code::done : exit_code::no;

@@ -13,11 +13,11 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/io/describe.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "commands.hpp"
-#include "describe.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
 

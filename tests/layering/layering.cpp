@@ -124,7 +124,9 @@ std::string objection(const Include& include, const Place& place, const fs::path
   const std::vector<std::string> parts = split(include.path.substr(of_public ? 7 : 0), '/');
   if (parts.size() < 2 || !rules.contains(parts[0])) return include.path + ": names no room";
   const std::string &room = parts[0], &header = parts.back();
-  if (room == place.room || rule.public_headers_only || rule.rooms.contains(room)) return "";
+  if (room == place.room || rule.rooms.contains(room)) return "";
+  if (rule.public_headers_only)
+    return of_public ? "" : include.path + ": " + place.room + " sees public headers only";
   const auto some = rule.files.find(room);
   if (some != rule.files.end() && some->second.contains(header)) return "";
   return include.path + ": " + place.room + " must not see it";

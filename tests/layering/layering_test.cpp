@@ -62,6 +62,7 @@ TEST(Layering, PlantedViolationsAreFound) {
       {"src/run/a.cpp", "#include \"cad/tree_traversals.hpp\""},
       {"include/bernal/run/a.hpp", "#include \"work/bed.hpp\""},
       {"apps/a.cpp", "#include \"core/philox.hpp\""},
+      {"src/python/a.cpp", "#include \"core/philox.hpp\""},
       {"src/domain/a.cpp", "#include \"box.hpp\""},
       {"src/domain/a.cpp", "#include \"../core/philox.hpp\""},
       {"src/attic/a.cpp", ""},
@@ -84,6 +85,8 @@ TEST(Layering, AllowedIncludesAreNotFound) {
       {"src/work/a.cpp", "#include \"bernal/run/packing.hpp\""},
       {"src/verify/a.cpp", "#include \"bernal/domain/domain.hpp\""},
       {"src/run/a.cpp", "#include \"work/bed.hpp\"\n#include \"bernal/cad/read_mesh.hpp\""},
+      {"src/python/a.cpp",
+       "#include <pybind11/pybind11.h>\n#include \"bernal/run/run.hpp\"\n#include \"python/b.hpp\""},
       {"apps/a.cpp",
        "#include <CLI/CLI.hpp>\n#include \"bernal/verify/certificate.hpp\"\n#include \"a.cpp\""},
   };

@@ -1,8 +1,14 @@
 #pragma once
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "bernal/cad/mesh_report.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/packing.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 
 namespace bernal {
@@ -18,6 +24,16 @@ std::string certificate_as_json(const Certificate&);
 /// radii are radii. What there is not is null: `g_r` where there are walls, `chambers` and `walls` where
 /// there are none, p-values that would mean nothing.
 std::string measurements_as_json(const Packing&, const Measurements&);
+
+/// A plan as one JSON object: what `bernal explain --json` prints. `stages` is TOML.
+std::string plan_as_json(const Plan&);
+
+/// What a CAD file is as one JSON object: what `bernal inspect --json` prints. `unit` is what its lengths are
+/// taken for, "" where nobody said; `chambers` those for a radius, where one was given; `container_lines`
+/// are `lines_that_help`. What is not known is null.
+std::string inspection_as_json(const std::filesystem::path& file, std::string_view unit, const MeshReport&,
+                               const std::optional<Chambers>& chambers,
+                               const std::vector<std::string>& container_lines);
 
 /// Everything that a scene may say, see `scene_reference`, as one JSON object {"groups": [{name, selector,
 /// title, tables: [{name, help, keys, choices}]}]}: what `bernal keys --json` prints. A key has name, help,

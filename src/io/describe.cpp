@@ -1,13 +1,13 @@
-#include "describe.hpp"
+#include "bernal/io/describe.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "io/describe.hpp"
 
-using namespace bernal;
-
+namespace bernal {
 namespace {
 
 /// "cylinder of 2 x 2 x 2 m, volume 6.28319 m³".
@@ -22,6 +22,12 @@ std::string describe_container(const Plan& plan) {
   return fmt::format("{}{} {:.6g} {}, {} {:.6g} {}^{}", text, plan.box_follows ? ": about" : ",",
                      fmt::join(size, " x "), unit, size.size() == 2 ? "area" : "volume",
                      volume_of(plan.domain), unit, size.size());
+}
+
+/// "lammps.data, for lammps, in m"; precondition: it is complete.
+std::string describe_output(const Output& output) {
+  return fmt::format("{}, for {}, in {}", plain_text(output.file.string()), output.format,
+                     name_of(output.unit.value_or(Unit::m)));
 }
 
 }  // namespace
@@ -42,11 +48,6 @@ std::string describe(const Plan& plan) {
   for (const Output& output : plan.scene.outputs)
     text += fmt::format("output     {}\n", describe_output(output));
   return text;
-}
-
-std::string describe_output(const Output& output) {
-  return fmt::format("{}, for {}, in {}", plain_text(output.file.string()), output.format,
-                     name_of(output.unit.value_or(Unit::m)));
 }
 
 std::string describe_sizes(const Scene& scene) {
@@ -70,3 +71,5 @@ std::string describe_target(const Plan& plan) {
   if (scene.target.fill) return "as many as can be made to fit";
   return plan.places_expected ? "as many as are expected to fit" : "as many as fit";
 }
+
+}  // namespace bernal

@@ -1,0 +1,35 @@
+"""bernal packs spheres into real shapes and proves that nothing overlaps.
+
+    import bernal
+
+    scene = bernal.Scene(bernal.Mesh("part.stl", unit="mm"), diameters=bernal.Lognormal(2, 0.3), unit="mm")
+    packing = bernal.pack(scene)
+    assert bernal.verify(packing)
+    packing.x, packing.radii        # NumPy arrays, without a copy
+    packing.write("part")           # spheres.csv, report.html, …
+    bernal.export(packing, "lammps", "part.data", unit="m")
+
+Bad input raises `bernal.Error`, with one line that names the remedy. Lengths are in the scene's unit.
+"""
+
+from __future__ import annotations
+
+from . import _core, design
+from ._classes import CLASSES, Container, Output, Sizes, Stage
+from ._errors import Error, InputError, KeywordError, WriteError
+from ._jobs import Stopped
+from ._packing import Packing, Picture
+from ._records import Certificate, Inspection, Measurements, Plan, Prediction, Record, Written
+from ._scene import Scene
+from ._work import explain, export, from_arrays, import_, inspect, measure, pack, predict, read, verify
+
+__version__ = str(_core.version)
+
+__all__ = [
+    "Scene", "pack", "explain", "verify", "measure", "export", "read", "import_", "from_arrays", "inspect", "predict",
+    "design", "Packing", "Picture", "Container", "Sizes", "Stage", "Output", *CLASSES,
+    "Record", "Plan", "Certificate", "Measurements", "Inspection", "Prediction", "Written",
+    "Error", "InputError", "KeywordError", "WriteError", "Stopped",
+]  # fmt: skip
+
+globals().update(CLASSES)

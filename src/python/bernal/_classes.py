@@ -1,0 +1,221 @@
+"""The containers, size distributions, stages and outputs of scenes, as classes.
+
+They are made of the table by which scenes are read: a stage that the library has is here, too. What values they
+take is checked where a `Scene` is made of them.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+import textwrap
+from typing import Any, ClassVar
+
+from . import _core, _errors, _surfaces, _toml
+
+REFERENCE: list[dict[str, Any]] = json.loads(_core.reference())["groups"]
+
+
+def group(name: str) -> dict[str, Any]:
+    return next(each for each in REFERENCE if each["name"] == name)
+
+
+def otherwise(key: dict[str, Any]) -> str:
+    """What goes for the key if it is not given, for people; "" where that is nothing."""
+    return "" if key["default"] is None else f", default {_toml.text_of(key['default'])}"
+
+
+def described(keys: list[dict[str, Any]]) -> str:
+    """The parameters of a docstring."""
+    text = ""
+    for key in keys:
+        acts = {"in_bed": " In containers.", "in_box": " In periodic boxes."}.get(key["acts"], "")
+        text += f"{key['name']} : {key['expectation']}{otherwise(key)}\n"
+        text += textwrap.fill(key["help"] + "." + acts, 96, initial_indent="    ", subsequent_indent="    ") + "\n"
+    return text
+
+
+def positional(table: dict[str, Any]) -> list[str]:
+    """The keys that may be given without their names: those that every table needs, in their order."""
+    left_out = {
+        name for choice in table["choices"] for names in choice[1:] for name in names if name not in choice[0]
+    }
+    return [key["name"] for key in table["keys"] if key["required"] and key["name"] not in left_out]
+
+
+def signature_of(table: dict[str, Any]) -> inspect.Signature:
+    first = positional(table)
+    keys = {key["name"]: key for key in table["keys"]}
+    kinds = inspect.Parameter
+    parameters = [kinds(name, kinds.POSITIONAL_OR_KEYWORD, default=None) for name in first]
+    parameters += [kinds(name, kinds.KEYWORD_ONLY, default=None) for name in keys if name not in first]
+    return inspect.Signature(parameters)
+
+
+class Said:
+    """What a scene says in one of its tables: plain data that does not change. See `replace`."""
+
+    _table: ClassVar[dict[str, Any]]
+    _selector: ClassVar[str]
+    _said: dict[str, Any]
+
+    def __init__(self, *values: Any, **keys: Any) -> None:
+        first = positional(self._table)
+        if len(values) > len(first):
+            raise TypeError(
+                f"{type(self).__name__} takes {', '.join(first) or 'nothing'} by position; name the others, as in "
+                f"{self._table['keys'][-1]['name']}=…"
+            )
+        said = dict(zip(first, values))
+        known = [key["name"] for key in self._table["keys"]]
+        for name, value in keys.items():
+            if name in said:
+                raise TypeError(f'{type(self).__name__} got "{name}" twice, by position and by name')
+            if name not in known:
+                raise _errors.unknown(name, self._called(), known)
+            said[name] = value
+        self.__dict__["_said"] = {name: self._taken(name, v) for name, v in said.items() if v is not None}
+
+    def _called(self) -> str:
+        return type(self).__name__
+
+    def _key(self, name: str) -> dict[str, Any]:
+        return next(key for key in self._table["keys"] if key["name"] == name)
+
+    def _taken(self, name: str, value: Any) -> Any:
+        kind = self._key(name)["type"]
+        if kind == "file" or name == "obstacles":
+            value = _surfaces.files_of(value)
+        value = _toml.plain(value)
+        if kind == "integer" and isinstance(value, float) and value.is_integer():
+            return int(value)
+        return value
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        known = [key["name"] for key in self._table["keys"]]
+        if name not in known:
+            raise AttributeError(str(_errors.unknown(name, self._called(), known)))
+        return self._said.get(name, self._key(name)["default"])
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"{type(self).__name__} does not change; take .replace({name}=…)")
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *(key["name"] for key in self._table["keys"])]
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and vars(self) == vars(other)
+
+    def __hash__(self) -> int:
+        return hash(self._lines())
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self._said.items())})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (made, (self._selector, self._table["name"], self._said))
+
+    def replace(self, **keys: Any) -> Any:
+        """The same with other values of some keys; None takes a key away."""
+        return type(self)(**{**self._said, **keys})
+
+    def _assignments(self) -> list[tuple[str, Any]]:
+        return [(self._selector, self._table["name"]), *self._said.items()]
+
+    def _lines(self) -> str:
+        return "".join(_toml.line(key, value) for key, value in self._assignments())
+
+    def _as_toml(self) -> str:
+        return "{ " + ", ".join(_toml.line(key, value).rstrip() for key, value in self._assignments()) + " }"
+
+
+class Container(Said):
+    """What spheres are packed into. Lengths are in the scene's unit."""
+
+
+class Sizes(Said):
+    """How large the spheres are: lengths in the scene's unit, diameters or radii as the scene says.
+
+    `basis` "number": every sphere counts the same; "volume": as on a balance.
+    """
+
+
+class Stage(Said):
+    """An act of the protocol by which a scene is packed."""
+
+
+class Output(Said):
+    """One more file of a result, as another program reads it: `bernal.Output("lammps", unit="mm")`."""
+
+    _selector = "format"
+    _tables: ClassVar[dict[str, dict[str, Any]]] = {table["name"]: table for table in group("output")["tables"]}
+
+    def __init__(self, format: str, **keys: Any) -> None:
+        if format not in self._tables:
+            raise _errors.InputError(
+                "bad_argument", f'no format is called "{format}"{_core.remedy(str(format), list(self._tables))}'
+            )
+        self.__dict__["_table"] = self._tables[format]
+        super().__init__(**keys)
+
+    @property
+    def format(self) -> str:
+        """ "lammps", …"""
+        return str(self._table["name"])
+
+    def _called(self) -> str:
+        return f'Output("{self.format}")'
+
+    def __repr__(self) -> str:
+        return "Output(" + ", ".join([repr(self.format), *(f"{k}={v!r}" for k, v in self._said.items())]) + ")"
+
+    def replace(self, **keys: Any) -> Any:
+        """The same with other values of some keys; None takes a key away."""
+        return Output(self.format, **{**self._said, **keys})
+
+
+def _class_of(base: type[Said], table: dict[str, Any], selector: str) -> type[Said]:
+    name = "".join(part.capitalize() for part in table["name"].split("_"))
+    choices = "".join(
+        "\nGive " + (" or ".join(" and ".join(names) or "none of them" for names in choice)) + ".\n"
+        for choice in table["choices"]
+    )
+    more = _surfaces.MESHES if any(key["type"] == "file" for key in table["keys"]) and base is Container else ""
+    doc = f"{table['help'][0].upper()}{table['help'][1:]}.\n{choices}{more}\nParameters\n----------\n"
+    members = {
+        "__doc__": doc + described(table["keys"]),
+        "__module__": "bernal",
+        "__signature__": signature_of(table),
+        "_table": table,
+        "_selector": selector,
+    }
+    return type(base)(name, (base,), members)
+
+
+def _made_classes() -> dict[str, type[Said]]:
+    classes: dict[str, type[Said]] = {}
+    for base, name in ((Container, "container"), (Sizes, "diameter"), (Stage, "stage")):
+        of = group(name)
+        for table in of["tables"]:
+            each = _class_of(base, table, of["selector"])
+            if each.__name__ in classes:
+                raise AssertionError(f"two tables are called {each.__name__}")
+            classes[each.__name__] = each
+    return classes
+
+
+CLASSES = _made_classes()
+Output.__doc__ = f"{Output.__doc__}\n\nFormats, each with what it can be told:\n\n" + "".join(
+    textwrap.fill(f"{name}: {table['help']}; {', '.join(key['name'] for key in table['keys'])}", 96) + "\n"
+    for name, table in Output._tables.items()
+)
+
+
+def made(selector: str, name: str, said: dict[str, Any]) -> Said:
+    """What a file says: the class that the word chooses."""
+    if selector == "format":
+        return Output(name, **said)
+    kind = next(each for each in CLASSES.values() if each._selector == selector and each._table["name"] == name)
+    return kind(**said)

@@ -1,0 +1,70 @@
+"""What bad input raises."""
+
+from __future__ import annotations
+
+from . import _core
+
+
+class Error(Exception):
+    """Bad input, in one line that names the remedy. Its subclasses are what is raised.
+
+    Not reaching what a scene asks for is no error: see `Packing.outcome`.
+    """
+
+    code: str
+    """"bad_scene", "bad_mesh", "bad_packing", "bad_argument" or "cannot_write"."""
+    message: str
+    """What is wrong and what to do, without the place."""
+    file: str | None
+    """The user's file that it stands in; None where there is none."""
+    line: int | None
+    """Its line there, from 1; None where that is not known."""
+    column: int | None
+    """And the column."""
+
+    def __init__(
+        self,
+        code: str,
+        message: str,
+        file: str | None = None,
+        line: int | None = None,
+        column: int | None = None,
+    ) -> None:
+        Exception.__init__(self, code, message, file, line, column)
+        self.code, self.message = code, message
+        self.file, self.line, self.column = file, line, column
+
+    def __str__(self) -> str:
+        place = [str(part) for part in (self.file, self.line) if part is not None]
+        return ": ".join([":".join(place), self.message] if place else [self.message])
+
+
+class InputError(Error, ValueError):
+    """A scene, a CAD file, spheres or an argument that cannot be used."""
+
+
+class KeywordError(InputError, TypeError):
+    """A keyword that there is not; the message names the nearest that there is."""
+
+
+class WriteError(Error, OSError):
+    """A file or folder that cannot be written, or whose content is not to be replaced."""
+
+
+def unknown(name: str, where: str, known: list[str]) -> KeywordError:
+    """The error that names what was meant."""
+    return KeywordError("bad_argument", f'{where} has no "{name}"{_core.remedy(name, known)}')
+
+
+# What a scene that Python made is called where the library asks for a file: nobody knows its lines.
+MADE_HERE = "a scene made in Python"
+
+
+def _made(code: str, message: str, file: str, line: int, column: int) -> Error:
+    kind = WriteError if code == "cannot_write" else InputError
+    if not file or file.endswith(MADE_HERE):
+        return kind(code, message)
+    return kind(code, message, file, line or None, column or None)
+
+
+_core.raise_errors_as(_made)

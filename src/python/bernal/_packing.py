@@ -1,0 +1,280 @@
+"""A packing: spheres in their domain, with what is known of how they came there."""
+
+from __future__ import annotations
+
+import base64
+import html
+import os
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core, _records, _surfaces
+from ._jobs import finish
+from ._progress import Progress
+from ._records import Record, Written
+from ._scene import Scene
+
+Array = NDArray[np.float64]
+
+
+class Picture:
+    """An SVG picture, which notebooks show; as text it is the SVG itself."""
+
+    def __init__(self, svg: str) -> None:
+        self.svg = svg
+
+    def __str__(self) -> str:
+        return self.svg
+
+    def __repr__(self) -> str:
+        return f"<Picture, {len(self.svg) / 1000:.0f} kB of SVG>"
+
+    def write(self, file: str | os.PathLike[str]) -> Path:
+        """Writes it into a file."""
+        path = Path(file)
+        path.write_text(self.svg, "utf-8")
+        return path
+
+    def _repr_html_(self) -> str:  # as an image: the names of its gradients are its own
+        data = base64.b64encode(self.svg.encode()).decode()
+        return f'<img alt="" style="max-width:100%;max-height:32em" src="data:image/svg+xml;base64,{data}">'
+
+
+class Packing:
+    """Spheres that were packed, read or imported; N of them in D dimensions, lengths in the scene's `unit`.
+
+    `x`, `y`, `z`, `radii` and `columns` are read-only arrays that look at the library's own memory, without a copy,
+    and keep it alive by themselves.
+    """
+
+    _core: Any
+
+    def __init__(self) -> None:
+        raise TypeError("packings come from bernal.pack, bernal.read, bernal.import_ and bernal.from_arrays")
+
+    @classmethod
+    def _of(cls, core: Any, scene: Scene | None = None, **more: Any) -> Packing:
+        packing = object.__new__(cls)
+        packing.__dict__.update(_core=core, _given_scene=scene, notes=Record(), _imported_from=None, **more)
+        return packing
+
+    notes: Record
+    """Of an imported packing, what was understood of its file."""
+    _given_scene: Scene | None
+    _imported_from: str | None
+
+    # The spheres
+
+    @cached_property
+    def _columns(self) -> tuple[Array, ...]:
+        columns: tuple[Array, ...] = self._core.columns()
+        return columns
+
+    @property
+    def columns(self) -> tuple[Array, ...]:
+        """The coordinates, one array of shape (N,) for each of the D axes. No copies; read-only."""
+        return self._columns[:-1]
+
+    @property
+    def radii(self) -> Array:
+        """Shape (N,). No copy; read-only."""
+        return self._columns[-1]
+
+    def _axis(self, axis: int, name: str) -> Array:
+        if axis >= self.dimension:
+            raise AttributeError(f"a packing of {self.dimension} dimensions has no {name}; see .columns")
+        return self._columns[axis]
+
+    @property
+    def x(self) -> Array:
+        """The first coordinates, shape (N,). No copy; read-only."""
+        return self._axis(0, "x")
+
+    @property
+    def y(self) -> Array:
+        """The second ones, from two dimensions on, shape (N,). No copy; read-only."""
+        return self._axis(1, "y")
+
+    @property
+    def z(self) -> Array:
+        """The third ones, from three dimensions on, shape (N,). No copy; read-only."""
+        return self._axis(2, "z")
+
+    @cached_property
+    def centers(self) -> Array:
+        """Shape (N, D). A copy, made when it is first asked for and then kept; read-only."""
+        centers = np.stack(self.columns, axis=1)
+        centers.setflags(write=False)
+        return centers
+
+    @property
+    def diameters(self) -> Array:
+        """Shape (N,). A copy each time."""
+        return 2 * self.radii
+
+    def __len__(self) -> int:
+        return len(self.radii)
+
+    # What they lie in
+
+    @property
+    def scene(self) -> Scene:
+        """The problem that it is an answer to."""
+        if self._given_scene is None:
+            core = self._core.scene()
+            self._given_scene = Scene._of(core, core.toml(""))
+        return self._given_scene
+
+    @property
+    def unit(self) -> str:
+        """Of all lengths."""
+        return self.scene.unit
+
+    @property
+    def dimension(self) -> int:
+        """D, of space."""
+        return int(self._core.dimension)
+
+    @property
+    def bounds(self) -> Array:
+        """The lowest and the highest corner of the domain, shape (2, D); of a periodic box one period."""
+        return np.array(self._core.bounds())
+
+    @property
+    def volume(self) -> float:
+        """Of the domain, or of one period, in unit^D."""
+        return float(self._core.volume)
+
+    @property
+    def walls(self) -> tuple[Array, NDArray[np.uint32]] | None:
+        """Vertices of shape (V, 3) and triangles of shape (T, 3) of a container that is a mesh, else None. Copies."""
+        walls: tuple[Array, NDArray[np.uint32]] | None = self._core.walls()
+        return walls
+
+    # How it came out
+
+    @property
+    def packing_fraction(self) -> float:
+        """Volume of the spheres over that of the domain."""
+        return float(self._core.packing_fraction)
+
+    @property
+    def expected_packing_fraction(self) -> float:
+        """By the plan, before the run; 0 or NaN where nothing was run."""
+        return float(self._core.expected_packing_fraction)
+
+    @property
+    def outcome(self) -> str:
+        """How the run ended: "converged", "loose", "full", "hit_limit", "cancelled", or "imported"."""
+        return str(self._core.outcome)
+
+    @property
+    def reason(self) -> str:
+        """One sentence behind the outcome."""
+        return str(self._core.reason)
+
+    @property
+    def seed(self) -> int:
+        """One seed gives one packing, bit for bit, for any number of threads."""
+        return int(self._core.seed)
+
+    @property
+    def seconds(self) -> float:
+        """That the run took."""
+        return float(self._core.seconds)
+
+    @property
+    def size_scale(self) -> float:
+        """All sizes are so many times those that were drawn: other than 1 only where `polish` let them grow."""
+        return float(self._core.size_scale)
+
+    @property
+    def hash(self) -> str:
+        """Of the bits of all spheres in their order, 16 hexadecimal digits."""
+        return str(self._core.hash())
+
+    @property
+    def history(self) -> list[Record]:
+        """The state after each stage or round of one: stage, spheres, packing_fraction, potential (mean height),
+        max_overlap (ratio), seconds."""
+        return [Record(each) for each in self._core.history()]
+
+    @property
+    def effects(self) -> list[Record]:
+        """What the run did: name, calls, seconds."""
+        return [Record(each) for each in self._core.effects()]
+
+    # Files and pictures
+
+    def write(
+        self,
+        folder: str | os.PathLike[str],
+        *,
+        with_mesh: bool | None = None,
+        list: int = 0,
+        progress: Progress = None,
+    ) -> Written:
+        """Writes what `bernal pack` does into a folder: spheres, scene, report, pictures, the scene's outputs; proven
+        from the file that was written. All or nothing.
+
+        with_mesh : copies the CAD files, and the file of a start, beside the spheres, so that the folder stands for
+            itself; if None where they come from arrays.
+        list : so many overlapping pairs and protruding spheres are listed in the certificate, the worst.
+        Returns files, certificate and notes. Raises WriteError.
+        """
+        passing = bool(self._given_scene and self._given_scene._passing())
+        job = _core.write(
+            self._core, os.fspath(folder), passing if with_mesh is None else with_mesh, list, self._imported_from
+        )
+        files, certificate, notes = finish(job, progress)
+        proof = _records.record(_records.Certificate, certificate)
+        return Written(files=[Path(file) for file in files], certificate=proof, notes=notes)
+
+    def _as_start(self) -> str:
+        """A folder that a scene can begin from."""
+        folder = os.path.join(_surfaces.folder(), f"start-{self.hash}")
+        if not os.path.isdir(folder):
+            self.write(folder, with_mesh=True, progress=False)
+        return folder
+
+    @property
+    def picture(self) -> Picture:
+        """In two and three dimensions: what `packing.svg` shows, in others an empty picture."""
+        return Picture(self._core.picture())
+
+    def section(self, plane: str | None = None) -> Picture:
+        """What a plane cuts of a packing of three dimensions, "z = 1.5" or "0.6 x + 0.8 z = 2"; if None that through
+        the middle. Circles are exact."""
+        return Picture(self._core.section(plane))
+
+    def __repr__(self) -> str:
+        n = len(self)
+        return (
+            f"<Packing of {n:,} {'sphere' if n == 1 else 'spheres'} in a {self._core.domain()}, "
+            f"packing fraction {self.packing_fraction:.4f}, {self.outcome}>"
+        )
+
+    def _repr_html_(self) -> str:
+        expected = f" ({self.expected_packing_fraction:.3f} was expected)" if self.expected_packing_fraction > 0 else ""
+        size = " × ".join(f"{edge:.4g}" for edge in self.bounds[1] - self.bounds[0])
+        rows = {
+            "spheres": f"{len(self):,} in a {self._core.domain()} of {size} {self.unit}",
+            "packing fraction": f"{self.packing_fraction:.4f}{expected}",
+            "outcome": f"{self.outcome}: {self.reason}" if self.reason else self.outcome,
+        }
+        if len(self):
+            low, high = self.diameters.min(), self.diameters.max()
+            range_of = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
+            rows["diameters"] = f"{range_of} {self.unit}"
+        cells = "".join(
+            f'<div style="opacity:.65">{name}</div><div>{html.escape(text)}</div>' for name, text in rows.items()
+        )
+        picture = self.picture._repr_html_() if self.dimension in (2, 3) else ""
+        return (
+            f'<div style="display:grid;grid-template-columns:max-content 1fr;gap:.2em 1.2em;max-width:44em">{cells}</div>'
+            + picture
+        )

@@ -1,0 +1,101 @@
+"""Answers: dictionaries whose keys are attributes, too."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+
+from . import _errors
+
+
+class Record(dict[str, Any]):
+    """An answer as a dictionary whose keys are attributes: `answer["phi"]` is `answer.phi`."""
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(str(_errors.unknown(name, type(self).__name__, list(self)))) from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{key}={_short(value)}' for key, value in self.items())})"
+
+    def __copy__(self) -> Record:
+        return type(self)(self)
+
+
+class Plan(Record):
+    """What a scene would run, and what that would cost: see `explain`. As text what `bernal explain` prints."""
+
+    words: str
+
+    def __str__(self) -> str:
+        return self.words
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{_escaped(self.words)}</pre>"
+
+
+class Certificate(Record):
+    """What was proven of a packing: see `verify`. True where it is certified."""
+
+    def __bool__(self) -> bool:
+        return bool(self["certified"])
+
+    def __str__(self) -> str:
+        return str(self["statement"])
+
+
+class Measurements(Record):
+    """What can be said of spheres in their domain: see `measure`."""
+
+
+class Inspection(Record):
+    """What a CAD file is: see `inspect`. True where it can be a container."""
+
+    def __bool__(self) -> bool:
+        return bool(self["usable"])
+
+
+class Prediction(Record):
+    """How densely sizes pack by the rod model: see `predict` and `design`."""
+
+    def __float__(self) -> float:
+        return float(self["phi"])
+
+
+class Written(Record):
+    """Files that were written: see `Packing.write` and `export`."""
+
+
+def record(kind: type[Record], answer: Any, arrays: bool = False) -> Any:
+    """Of JSON or of dictionaries; lists of numbers become arrays, if wanted, and what is null in them NaN."""
+    if isinstance(answer, str):
+        answer = json.loads(answer)
+    return kind({key: _inside(value, arrays) for key, value in answer.items()})
+
+
+def _inside(value: Any, arrays: bool) -> Any:
+    if isinstance(value, dict):
+        return record(Record, value, arrays)
+    if not isinstance(value, list):
+        return value
+    if arrays and value and all(type(each) in (int, float, type(None)) for each in value):
+        return np.array([np.nan if each is None else each for each in value], dtype=float)
+    return [_inside(each, arrays) for each in value]
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        return f"array of shape {value.shape}" if value.size > 4 else repr(value.tolist())
+    text = repr(value)
+    return text if len(text) <= 100 else text[:99] + "…"
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

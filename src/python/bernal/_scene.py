@@ -1,0 +1,243 @@
+"""A packing problem as the user states it."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import shutil
+import tomllib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from . import _classes, _core, _errors, _surfaces, _toml
+from ._classes import Container, Output, Said, Sizes, Stage
+
+# Keys that stand in tables of their own in a file and are keywords here; sizes and tables are parameters.
+_OWN = {table["name"]: [k for k in table["keys"] if k["name"] not in ("radius", "diameter")]
+        for table in _classes.group("scene")["tables"]}  # fmt: skip
+_KEYS = {key["name"]: key for keys in _OWN.values() for key in keys}
+
+
+class Scene:
+    """What is to be packed into what: a container, sizes of spheres, and what else a scene file may say.
+
+    A scene does not change, see `replace`. It is checked when it is made: what is wrong raises `InputError`.
+
+    Parameters
+    ----------
+    container : Container
+        `Mesh("part.stl", unit="mm")`, `Cylinder(5, 20)`, `Box([4, 5, 6])`, `Periodic(edge=10)`, …
+    diameters, radii : length or Sizes
+        exactly one of them, so that nobody has to guess: `diameters=2` or `diameters=Lognormal(2, 0.3)`.
+    stages : Stage, or several
+        in their order; none: the one that suits any container, or any periodic box.
+    outputs : Output or name of a format, or several
+        files for other programs, which `Packing.write` writes beside the others.
+    """
+
+    def __init__(
+        self,
+        container: Container,
+        *,
+        diameters: float | Sizes | None = None,
+        radii: float | Sizes | None = None,
+        stages: Stage | Iterable[Stage] = (),
+        outputs: Output | str | Iterable[Output | str] = (),
+        **keys: Any,
+    ) -> None:
+        known = ["container", "diameters", "radii", "stages", "outputs", *_KEYS]
+        for name in keys:
+            if name not in _KEYS:
+                raise _errors.unknown(name, "Scene", known)
+        if not isinstance(container, Container):
+            raise _errors.InputError(
+                "bad_scene", f"a scene needs a container, such as Mesh(…) or Cylinder(…), not {container!r:.100}"
+            )
+        said = {name: _taken(name, value) for name, value in keys.items() if value is not None}
+        self._parts: dict[str, Any] = {
+            "container": container,
+            "diameters": _toml.plain(diameters),
+            "radii": _toml.plain(radii),
+            "stages": _several(stages, Stage, "stages"),
+            "outputs": tuple(
+                Output(each) if isinstance(each, str) else each for each in _several(outputs, (Output, str), "outputs")
+            ),
+            **said,
+        }
+        self._folder = os.getcwd()
+        self._file: Path | None = None
+        self._core = _core.scene(self._text(), os.path.join(self._folder, _errors.MADE_HERE))
+
+    @classmethod
+    def read(cls, file: str | os.PathLike[str]) -> Scene:
+        """The scene of a TOML file. Errors name its lines."""
+        name = os.path.abspath(os.fspath(file))
+        return cls._of(_core.read_scene(name), Path(name).read_text("utf-8"), Path(name))
+
+    @classmethod
+    def _of(cls, core: Any, text: str, file: Path | None = None) -> Scene:
+        """Of what the library has read, and the text of that."""
+        scene = object.__new__(cls)
+        scene._core, scene._file = core, file
+        scene._folder = str(file.parent) if file else os.getcwd()
+        scene._parts = _parts_of(tomllib.loads(text))
+        return scene
+
+    def _text(self) -> str:
+        parts = self._parts
+        tables = {
+            table: "".join(_toml.line(k["name"], parts[k["name"]]) for k in keys if k["name"] in parts)
+            for table, keys in _OWN.items()
+        }
+        for name, key in (("diameters", "diameter"), ("radii", "radius")):
+            if parts[name] is not None:
+                tables["spheres"] += _toml.line(key, parts[name])
+        text = f"{tables.pop('scene')}\n[container]\n{parts['container']._lines()}"
+        text += "".join(f"\n[{table}]\n{lines}" for table, lines in tables.items())
+        for name in ("stage", "output"):
+            text += "".join(f"\n[[{name}]]\n{each._lines()}" for each in parts[name + "s"])
+        return text
+
+    @property
+    def toml(self) -> str:
+        """The scene as a file would have it, every default explicit."""
+        return str(self._core.toml(""))
+
+    @property
+    def file(self) -> Path | None:
+        """Where it was read from."""
+        return self._file
+
+    @property
+    def unit(self) -> str:
+        """Of every length in it: "nm", "um", "mm", "cm", "m", "in" or "ft"."""
+        return str(self._core.unit)
+
+    @property
+    def dimension(self) -> int:
+        """Of space: 2 for discs."""
+        return int(self._core.dimension)
+
+    def write(self, file: str | os.PathLike[str]) -> Path:
+        """Writes it as TOML. Surfaces that stand in no file of the user are copied beside it."""
+        path = Path(os.path.abspath(os.fspath(file)))
+        text = str(self._core.toml(str(path.parent)))
+        for passing in self._passing():
+            copy = path.parent / Path(passing).name
+            (shutil.copytree if os.path.isdir(passing) else shutil.copyfile)(passing, copy)
+            for name in (os.path.relpath(passing, os.path.realpath(path.parent)), os.path.relpath(passing, path.parent), passing):
+                text = text.replace(name, copy.name)
+        try:
+            path.write_text(text, "utf-8")
+        except OSError as error:
+            raise _errors.WriteError("cannot_write", f"cannot be written: {error.strerror}", str(path)) from error
+        return path
+
+    def _passing(self) -> list[str]:
+        """Its files that end with this process."""
+        files: list[Any] = [self._parts.get("start")]
+        for name, value in self._parts["container"]._said.items():
+            if name in ("file", "obstacles"):
+                files += value if isinstance(value, list) else [value]
+        return [file for file in files if isinstance(file, str) and _surfaces.is_passing(file)]
+
+    def replace(self, **keys: Any) -> Scene:
+        """The same with other values of some parameters; None takes one away."""
+        here = os.getcwd()
+        try:  # names of files go on meaning the same
+            os.chdir(self._folder)
+            parts = {name: value for name, value in {**self._parts, **keys}.items() if value is not None}
+            return Scene(**parts)
+        finally:
+            os.chdir(here)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name in self._parts:
+            return self._parts[name]
+        if name in _KEYS:
+            return _KEYS[name]["default"]
+        raise AttributeError(str(_errors.unknown(name, "Scene", [*self._parts, *_KEYS])))
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._parts, *_KEYS]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Scene) and self.toml == other.toml
+
+    def __hash__(self) -> int:
+        return hash(self.toml)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_unpickled, ({k: v for k, v in self._parts.items() if v is not None}, self._folder))
+
+    def __repr__(self) -> str:
+        parts = {name: value for name, value in self._parts.items() if value is not None and value != ()}
+        container = parts.pop("container")
+        return f"Scene({', '.join([repr(container), *(f'{name}={value!r}' for name, value in parts.items())])})"
+
+
+Scene.__doc__ = f"{inspect.cleandoc(Scene.__doc__ or '')}\n" + _classes.described(list(_KEYS.values()))
+_given = list(inspect.signature(Scene.__init__).parameters.values())[:-1]
+Scene.__init__.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+    [*_given, *(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None) for name in _KEYS)]
+)
+
+
+def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
+    return scene if isinstance(scene, Scene) else Scene.read(scene)
+
+
+def _unpickled(parts: dict[str, Any], folder: str) -> Scene:
+    scene = object.__new__(Scene)
+    scene._folder = folder
+    scene._parts = {"diameters": None, "radii": None, **parts}
+    scene._file = None
+    scene._core = _core.scene(scene._text(), os.path.join(folder, _errors.MADE_HERE))
+    return scene
+
+
+def _taken(name: str, value: Any) -> Any:
+    key = _KEYS[name]
+    value = _toml.plain(_surfaces.files_of(value) if key["type"] == "file" else value)
+    if key["type"] == "integer" and isinstance(value, float) and value.is_integer():
+        return int(value)
+    return value
+
+
+def _several(given: Any, kinds: Any, name: str) -> tuple[Any, ...]:
+    all_of = (given,) if isinstance(given, kinds) else tuple(given)
+    for each in all_of:
+        if not isinstance(each, kinds):
+            raise _errors.InputError("bad_scene", f"{name} of a scene are instances, such as Relax(), not {each!r:.100}")
+    return all_of
+
+
+def _parts_of(table: Mapping[str, Any]) -> dict[str, Any]:
+    """What a file says, as the parameters of `Scene`."""
+    own = dict(table)
+    container = _chosen("kind", own.pop("container"))
+    parts: dict[str, Any] = {"container": container, "diameters": None, "radii": None}
+    parts["stages"] = tuple(_chosen("do", each) for each in own.pop("stage", ()))
+    parts["outputs"] = tuple(_chosen("format", each) for each in own.pop("output", ()))
+    for name in _OWN:
+        own.update(own.pop(name, {}))
+    for name, key in (("diameters", "diameter"), ("radii", "radius")):
+        if key in own:
+            parts[name] = _sizes(own.pop(key))
+    return {**parts, **own}
+
+
+def _chosen(selector: str, table: Mapping[str, Any]) -> Said:
+    said = {name: _sizes(value) for name, value in table.items() if name != selector}
+    return _classes.made(selector, table[selector], said)
+
+
+def _sizes(value: Any) -> Any:
+    if isinstance(value, dict):
+        return _chosen("distribution", value)
+    if isinstance(value, list):
+        return [_sizes(each) for each in value]
+    return value

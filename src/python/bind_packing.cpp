@@ -1,0 +1,107 @@
+// A packing: its columns as arrays that look into it, and what is said of it beside the spheres.
+#include <string>
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include "bernal/io/picture.hpp"
+#include "bernal/io/section.hpp"
+#include "bernal/measure/measure.hpp"
+#include "python/bindings.hpp"
+
+namespace py = pybind11;
+
+namespace bernal::python {
+namespace {
+
+/// An array that looks at `column`, cannot be written to, and keeps `owner` alive.
+py::array view_of(const std::vector<double>& column, const py::object& owner) {
+  py::array_t<double> view(static_cast<py::ssize_t>(column.size()), column.data(), owner);
+  view.attr("setflags")(py::arg("write") = false);
+  return view;
+}
+
+py::tuple columns_of(const py::object& self) {
+  const auto& packing = self.cast<const Packing&>();
+  py::list views;
+  for (const auto& column : packing.spheres.x) views.append(view_of(column, self));
+  views.append(view_of(packing.spheres.r, self));
+  return py::tuple(views);
+}
+
+py::list history_of(const Packing& packing) {
+  py::list all;
+  for (const Milestone& m : packing.history)
+    all.append(py::dict(py::arg("stage") = m.stage, py::arg("spheres") = m.spheres,
+                        py::arg("packing_fraction") = m.packing_fraction, py::arg("potential") = m.potential,
+                        py::arg("max_overlap") = m.max_overlap, py::arg("seconds") = m.seconds));
+  return all;
+}
+
+py::list effects_of(const Packing& packing) {
+  py::list all;
+  for (const Effect& e : packing.effects)
+    all.append(
+        py::dict(py::arg("name") = e.name, py::arg("calls") = e.calls, py::arg("seconds") = e.seconds));
+  return all;
+}
+
+py::tuple bounds_of_domain(const Packing& packing) {
+  const Bounds<dynamic> bounds = bounds_of<dynamic>(packing.domain);
+  return py::make_tuple(std::vector<double>(bounds.lower.begin(), bounds.lower.end()),
+                        std::vector<double>(bounds.upper.begin(), bounds.upper.end()));
+}
+
+/// Vertices and triangles as flat copies; none where the domain is no mesh.
+py::object walls_of(const Packing& packing) {
+  const auto* mesh = std::get_if<Mesh>(&packing.domain);
+  if (!mesh) return py::none();
+  const auto rows = [](std::size_t n) { return std::vector<py::ssize_t>{static_cast<py::ssize_t>(n), 3}; };
+  py::array_t<double> vertices(rows(mesh->vertices.size()));
+  py::array_t<std::uint32_t> triangles(rows(mesh->triangles.size()));
+  double* x = vertices.mutable_data();
+  for (const Vector<3>& v : mesh->vertices) x = std::copy(v.begin(), v.end(), x);
+  std::uint32_t* t = triangles.mutable_data();
+  for (const auto& triangle : mesh->triangles) t = std::copy(triangle.begin(), triangle.end(), t);
+  return py::make_tuple(vertices, triangles);
+}
+
+std::string section_of_packing(const Packing& packing, const std::optional<std::string>& plane) {
+  if (packing.spheres.dimension() != 3)
+    throw Error(ErrorCode::bad_argument, "sections are for packings of three dimensions");
+  const SectionPlane at = plane ? section_plane(*plane) : middle_plane(packing.domain);
+  return section_svg(section_of(packing.spheres, packing.domain, at), packing.spheres,
+                     name_of(packing.scene.unit));
+}
+
+}  // namespace
+
+void bind_packing(py::module_& module) {
+  using Unlocked = py::call_guard<py::gil_scoped_release>;
+  py::class_<Packing, PackingPointer>(module, "Packing")
+      .def("columns", &columns_of)
+      .def("history", &history_of)
+      .def("effects", &effects_of)
+      .def("bounds", &bounds_of_domain)
+      .def("walls", &walls_of)
+      .def("scene", [](const Packing& packing) { return packing.scene; })
+      .def("picture", &picture_of, Unlocked())
+      .def("section", &section_of_packing, Unlocked())
+      .def(
+          "hash", [](const Packing& packing) { return hash_of(packing.spheres); }, Unlocked())
+      .def("domain", [](const Packing& packing) { return name_of(packing.domain); })
+      .def_property_readonly("dimension", [](const Packing& p) { return p.spheres.dimension(); })
+      .def_property_readonly("packing_fraction", &Packing::packing_fraction)
+      .def_property_readonly("outcome", [](const Packing& p) { return name_of(p.outcome); })
+      .def_readonly("expected_packing_fraction", &Packing::expected_packing_fraction)
+      .def_readonly("expected_of_sizes", &Packing::expected_of_sizes)
+      .def_readonly("volume", &Packing::volume)
+      .def_readonly("size_scale", &Packing::size_scale)
+      .def_readonly("reason", &Packing::reason)
+      .def_readonly("seed", &Packing::seed)
+      .def_readonly("threads", &Packing::threads)
+      .def_readonly("seconds", &Packing::seconds)
+      .def_readonly("version", &Packing::version);
+}
+
+}  // namespace bernal::python

@@ -1,0 +1,191 @@
+// What takes time, each as a Job whose result is an object of Python.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "bernal/cad/read_mesh.hpp"
+#include "bernal/export/export.hpp"
+#include "bernal/import/import.hpp"
+#include "bernal/io/describe.hpp"
+#include "bernal/io/json.hpp"
+#include "bernal/io/read_packing.hpp"
+#include "bernal/io/write_packing.hpp"
+#include "bernal/measure/chambers.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/verify/certificate.hpp"
+#include "python/bindings.hpp"
+#include "python/job.hpp"
+
+namespace py = pybind11;
+
+namespace bernal::python {
+namespace {
+
+using Path = std::filesystem::path;
+using Text = std::optional<std::string>;
+using JobPointer = std::unique_ptr<Job>;
+
+JobPointer job(Job::Work work) { return std::make_unique<Job>(std::move(work)); }
+Job::Finish text(std::string made) {
+  return [made = std::move(made)]() -> py::object { return py::str(made); };
+}
+Job::Finish packing(Packing made) {
+  auto shared = std::make_shared<Packing>(std::move(made));
+  return [shared]() -> py::object { return py::cast(shared); };
+}
+
+JobPointer explain_job(const Scene& scene) {
+  return job([scene](const Monitor& monitor) -> Job::Finish {
+    monitor.report({"estimate", -1, {}});
+    const Plan plan = build(scene);
+    return [json = plan_as_json(plan), words = explain(plan)]() -> py::object {
+      return py::make_tuple(json, words);
+    };
+  });
+}
+
+/// `estimate` is what it does while there is nothing yet that an interrupt could leave.
+JobPointer pack_job(const Scene& scene, std::optional<std::uint64_t> seed, int threads) {
+  return job([=](const Monitor& monitor) {
+    monitor.report({"estimate", -1, {}});
+    const Plan plan = build(scene);
+    if (monitor.stop()) throw Cancelled();
+    monitor.report({"prepare", -1, {}});
+    return packing(run(plan, {seed, threads, monitor}));
+  });
+}
+
+JobPointer verify_job(const PackingPointer& of, std::optional<std::size_t> list, int threads, bool exact) {
+  return job([=](const Monitor& monitor) {
+    const Scene& scene = of->scene;
+    Certificate certificate = certify(of->spheres, of->domain,
+                                      {.allowed_overlap = scene.overlap,
+                                       .gap = scene.gap,
+                                       .wall_gap = scene.wall_gap,
+                                       .arithmetic = exact ? Arithmetic::exact : Arithmetic::filtered,
+                                       .list = list.value_or(CertifyOptions::all),
+                                       .threads = threads,
+                                       .monitor = monitor});
+    if (certificate.cancelled) throw Cancelled();
+    certificate.statement += certified_walls(scene);
+    return text(certificate_as_json(certificate));
+  });
+}
+
+JobPointer measure_job(const PackingPointer& of, double contact_gap) {
+  return job([=](const Monitor& monitor) {
+    const SceneRadii radii = asked_radii_of(*of);
+    MeasureOptions options;
+    options.gap = of->scene.gap;
+    options.wall_gap = of->scene.wall_gap;
+    options.contact_gap = contact_gap;
+    options.container = of->container;
+    options.monitor = monitor;
+    const Measurements measured = measure(of->spheres, of->domain, radii.asked, options);
+    if (monitor.stop()) throw Cancelled();
+    return text(measurements_as_json(*of, measured));
+  });
+}
+
+JobPointer write_job(const PackingPointer& of, const Path& folder, bool with_mesh, std::size_t list,
+                     const std::optional<Path>& imported_from) {
+  return job([=](const Monitor& monitor) -> Job::Finish {
+    const WriteOptions options{
+        .with_mesh = with_mesh, .list = list, .monitor = monitor, .all_or_nothing = true};
+    if (!imported_from) check_writable(folder, of->scene, options);
+    WrittenPacking written = imported_from ? write_imported(*of, *imported_from, folder, options)
+                                           : write_packing(*of, folder, options);
+    return [written = std::move(written)]() -> py::object {
+      return py::make_tuple(written.files, certificate_as_json(written.certificate), written.notes);
+    };
+  });
+}
+
+JobPointer read_job(const Path& folder) {
+  return job([=](const Monitor&) { return packing(read_packing(folder)); });
+}
+
+JobPointer export_job(const PackingPointer& of, const std::string& format,
+                      const std::map<std::string, std::string>& words, const Path& file) {
+  const Output output = output_of(format, words);
+  return job([=](const Monitor& monitor) -> Job::Finish {
+    WrittenExport written = write_export(*of, output, file, monitor);
+    return [written = std::move(written)]() -> py::object {
+      return py::make_tuple(written.files, written.note);
+    };
+  });
+}
+
+/// `options` is a scene whose container is the mesh; else the file stands for itself.
+JobPointer inspect_job(const Path& name, const Scene* options, std::optional<double> radius,
+                       const std::optional<Path>& places) {
+  MeshFile file{.file = name};
+  if (options) file = std::get<MeshFile>(options->container);
+  if (radius && !(*radius > 0)) throw Error(ErrorCode::bad_argument, "radius must be a length above 0");
+  return job([=](const Monitor& monitor) {
+    monitor.report({"diagnose", -1, {}});
+    const ImportedMesh imported = read_mesh(file);
+    const bool usable = imported.report.usable();
+    std::vector<std::string> lines;
+    if (!usable) lines = lines_that_help(file, {}, imported, Effort::thorough);
+    if (places) write_places(imported, *places);
+    std::optional<Chambers> chambers;
+    if (radius && usable) chambers = chambers_for(imported.mesh, *radius);
+    return text(inspection_as_json(name, file.unit ? name_of(*file.unit) : std::string_view(),
+                                   imported.report, chambers, lines));
+  });
+}
+
+std::optional<Unit> unit_of(const Text& name) {
+  return name ? std::optional<Unit>(unit_named(*name)) : std::nullopt;
+}
+
+JobPointer import_job(const Path& file, const std::string& format, const std::string& columns,
+                      std::optional<double> diameter, std::optional<double> radius,
+                      const std::optional<Path>& radii, const Text& unit, const std::vector<double>& box,
+                      const std::string& periodic, const std::optional<Path>& container,
+                      const std::vector<double>& shift, std::optional<int> frame,
+                      std::optional<int> dimension) {
+  const ImportOptions options{.format = format,
+                              .columns = columns,
+                              .diameter = diameter,
+                              .radius = radius,
+                              .radii = radii,
+                              .unit = unit_of(unit),
+                              .box = box,
+                              .periodic = periodic,
+                              .container = container,
+                              .shift = shift,
+                              .frame = frame,
+                              .dimension = dimension};
+  return job([=](const Monitor& monitor) -> Job::Finish {
+    ImportedPacking made = import_packing(file, options, monitor);
+    auto shared = std::make_shared<Packing>(std::move(made.packing));
+    return [shared, notes = std::move(made.notes)]() -> py::object {
+      py::dict all;
+      for (const auto& [about, words] : notes) all[py::str(about)] = words;
+      return py::make_tuple(shared, all);
+    };
+  });
+}
+
+}  // namespace
+
+void bind_work(py::module_& module) {
+  py::class_<Job>(module, "Job")
+      .def("wait", &Job::wait)
+      .def("progress", &Job::progress)
+      .def("cancel", &Job::cancel)
+      .def("result", &Job::result);
+  module.def("stop_all_jobs", &stop_all_jobs);
+  module.def("explain", &explain_job);
+  module.def("pack", &pack_job);
+  module.def("verify", &verify_job);
+  module.def("measure", &measure_job);
+  module.def("write", &write_job);
+  module.def("read", &read_job);
+  module.def("export", &export_job);
+  module.def("inspect", &inspect_job);
+  module.def("import_", &import_job);
+}
+
+}  // namespace bernal::python

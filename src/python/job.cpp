@@ -1,0 +1,120 @@
+#include "python/job.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+namespace bernal::python {
+
+struct Job::State {
+  std::atomic<bool> cancelled = false;
+  std::mutex mutex;  // of all below
+  std::condition_variable end;
+  bool ended = false;
+  std::exception_ptr error;
+  Finish finish;
+  std::string activity, detail;
+  double fraction = -1;
+
+  Monitor monitor() {
+    return {[this](const Progress& progress) {
+              const std::lock_guard lock(mutex);
+              activity = progress.activity;
+              detail = progress.detail;
+              fraction = progress.fraction;
+            },
+            [this] { return cancelled.load(); }};
+  }
+
+  void run(const Work& work) {
+    Finish made;
+    std::exception_ptr failed;
+    try {
+      made = work(monitor());
+    } catch (...) {
+      failed = std::current_exception();
+    }
+    const std::lock_guard lock(mutex);
+    finish = std::move(made);
+    error = failed;
+    ended = true;
+    end.notify_all();
+  }
+};
+
+namespace {
+
+/// What runs, for the end of the program.
+struct Running {
+  std::mutex mutex;
+  std::condition_variable none;
+  std::set<std::atomic<bool>*> cancelled;  // of each job whose thread still asks for it
+  std::size_t threads = 0;                 // that have not let go of everything yet
+};
+Running& running() {
+  static auto* const all = new Running;  // outlives every thread
+  return *all;
+}
+
+}  // namespace
+
+Job::Job(Work work) : state_(std::make_shared<State>()) {
+  Running& all = running();
+  const std::lock_guard begin(all.mutex);
+  std::thread([state = state_, work = std::move(work), &all]() mutable {
+    state->run(work);
+    {
+      const std::lock_guard lock(all.mutex);
+      all.cancelled.erase(&state->cancelled);
+    }
+    work = {};
+    state.reset();
+    const std::lock_guard lock(all.mutex);
+    --all.threads;
+    all.none.notify_all();
+  }).detach();
+  all.cancelled.insert(&state_->cancelled);
+  ++all.threads;
+}
+
+Job::~Job() { cancel(); }
+
+void Job::cancel() { state_->cancelled = true; }
+
+bool Job::wait(double seconds) const {
+  const pybind11::gil_scoped_release others_run;
+  std::unique_lock lock(state_->mutex);
+  return state_->end.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return state_->ended; });
+}
+
+std::tuple<std::string, double, std::string> Job::progress() const {
+  const std::lock_guard lock(state_->mutex);
+  return {state_->activity, state_->fraction, state_->detail};
+}
+
+pybind11::object Job::result() {
+  Finish finish;
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->error) std::rethrow_exception(state_->error);
+    finish = std::move(state_->finish);
+  }
+  if (!finish) throw std::logic_error("a job has one result, once it has ended");
+  return finish();
+}
+
+void stop_all_jobs() {
+  const pybind11::gil_scoped_release others_run;
+  Running& all = running();
+  std::unique_lock lock(all.mutex);
+  for (std::atomic<bool>* const cancelled : all.cancelled) *cancelled = true;
+  all.none.wait(lock, [&] { return all.threads == 0; });
+}
+
+}  // namespace bernal::python

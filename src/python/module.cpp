@@ -1,0 +1,70 @@
+// bernal._core: what the package around it stands on. Scenes come as TOML and answers go as JSON, so that
+// checks, messages and names are the library's own.
+#include <system_error>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/monitor.hpp"
+#include "bernal/version.hpp"
+#include "python/bindings.hpp"
+
+namespace py = pybind11;
+
+namespace bernal::python {
+namespace {
+
+std::string_view name_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::bad_scene:
+      return "bad_scene";
+    case ErrorCode::bad_mesh:
+      return "bad_mesh";
+    case ErrorCode::bad_packing:
+      return "bad_packing";
+    case ErrorCode::bad_argument:
+      return "bad_argument";
+    case ErrorCode::cannot_write:
+      return "cannot_write";
+  }
+  return "";
+}
+
+/// Makes the exception of an Error from code, message without the place, file, line and column.
+py::object& exception_of_error() {
+  static auto* const made = new py::object;  // outlives the interpreter
+  return *made;
+}
+
+void raise(const Error& error) {
+  const Location& where = error.location();
+  std::string message = error.what();
+  if (const std::string place = where.text(); !place.empty()) message.erase(0, place.size() + 2);
+  const py::object raised =
+      exception_of_error()(name_of(error.code()), message, where.file, where.line, where.column);
+  PyErr_SetObject(py::type::of(raised).ptr(), raised.ptr());
+}
+
+void translate(std::exception_ptr thrown) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const Error& error) {
+    raise(error);
+  } catch (const Cancelled&) {
+    PyErr_SetNone(PyExc_KeyboardInterrupt);
+  } catch (const std::system_error& error) {
+    PyErr_SetString(PyExc_OSError, error.what());
+  }
+}
+
+}  // namespace
+}  // namespace bernal::python
+
+PYBIND11_MODULE(_core, module) {
+  using namespace bernal::python;
+  py::register_exception_translator(&translate);
+  module.attr("version") = bernal::version();
+  module.def("raise_errors_as", [](const py::object& make) { exception_of_error() = make; });
+  bind_scene(module);
+  bind_packing(module);
+  bind_work(module);
+  bind_design(module);
+}
