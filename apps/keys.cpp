@@ -10,25 +10,35 @@
 Command keys_command() {
   const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  return {"keys",
-          "Say what a scene may hold: every key with its default",
-          {{"NAME", name.get(),
-            "A container, a distribution of sizes, a stage or a format of [[output]]; a line each of all if "
-            "absent"},
-           json_option(*json)},
-          "Examples:\n"
-          "  bernal keys              all containers, distributions and stages, a line each\n"
-          "  bernal keys relax        the keys of a stage, their defaults and ranges\n"
-          "  bernal keys output       the formats of [[output]]; likewise stage, container, diameter\n"
-          "  bernal keys --json       all of it, for programs\n"
-          "Exit codes: 0 done; 2 bad input.",
-          [name, json] {
-            if (*json && !name->empty()) {
-              // one object that holds all: whoever reads it looks a name up there
-              throw bernal::Error(bernal::ErrorCode::bad_argument,
-                                  "--json prints everything that a scene may say; leave NAME out");
-            }
-            fmt::print("{}", *json ? bernal::scene_reference_as_json() : bernal::reference(*name));
-            return exit_code::done;
-          }};
+  const auto schema = std::make_shared<bool>(false);
+  return {
+      "keys",
+      "Say what a scene may hold: every key with its default",
+      {{"NAME", name.get(),
+        "A container, a distribution of sizes, a stage or a format of [[output]]; a line each of all if "
+        "absent"},
+       json_option(*json),
+       {"--schema", schema.get(), "Print a JSON Schema of scenes, for editors and programs"}},
+      "Examples:\n"
+      "  bernal keys              all containers, distributions and stages, a line each\n"
+      "  bernal keys relax        the keys of a stage, their defaults and ranges\n"
+      "  bernal keys output       the formats of [[output]]; likewise stage, container, diameter\n"
+      "  bernal keys --json       all of it, for programs\n"
+      "  bernal keys --schema > scene.schema.json\n"
+      "                           an editor that knows TOML checks and completes a scene whose first line\n"
+      "                           is #:schema ./scene.schema.json\n"
+      "Exit codes: 0 done; 2 bad input.",
+      [name, json, schema] {
+        if ((*json || *schema) && !name->empty()) {
+          // one object that holds all: whoever reads it looks a name up there
+          throw bernal::Error(bernal::ErrorCode::bad_argument,
+                              "--json and --schema print everything that a scene may say; leave NAME out");
+        }
+        if (*json && *schema)
+          throw bernal::Error(bernal::ErrorCode::bad_argument, "give --json or --schema, not both");
+        fmt::print("{}", *json     ? bernal::scene_reference_as_json()
+                         : *schema ? bernal::scene_schema_as_json()
+                                   : bernal::reference(*name));
+        return exit_code::done;
+      }};
 }

@@ -41,4 +41,11 @@ std::string inspection_as_json(const std::filesystem::path& file, std::string_vi
 /// `below_max`, words, required, `is_diameter` and `acts`.
 std::string scene_reference_as_json();
 
+/// The same as a JSON Schema (2020-12) of a scene, read as TOML: types, ranges, words, what must be given and
+/// what excludes each other, with help and defaults; keys that it does not name are refused. What `bernal
+/// keys
+/// --schema` prints and data/schemas/scene.schema.json holds. What depends on two values at a time (min below
+/// max, as many shares as sizes, which stage works where) it does not say; `read_scene` and `build` do.
+std::string scene_schema_as_json();
+
 }  // namespace bernal
