@@ -29,7 +29,7 @@ struct ImportCall {
   ImportOptions options;
   std::string unit;
   int frame = 0, dimension = 0;
-  bool with_mesh = false, quiet = false;
+  bool with_mesh = false, no_view = false, quiet = false;
 };
 
 /// "1,2,3"; of as many axes as the packing has.
@@ -80,9 +80,9 @@ int import_file(const ImportCall& call) try {
   const Monitor monitor = bar.monitor();
   const ImportedPacking imported = import_packing(call.file, options, monitor);
   bar.now("certify and measure");
-  const WrittenPacking written =
-      write_imported(imported.packing, call.file, call.folder,
-                     {.with_mesh = call.with_mesh, .list = listed_at_most, .monitor = monitor});
+  const WrittenPacking written = write_imported(
+      imported.packing, call.file, call.folder,
+      {.with_mesh = call.with_mesh, .view = !call.no_view, .list = listed_at_most, .monitor = monitor});
   bar.clear();
   if (!call.quiet) print_imported(imported, written);
   return exit_code::done;
@@ -148,6 +148,7 @@ Command import_command() {
               2, 3),
        {"--with-mesh", &call->with_mesh,
         "Copy the CAD files of the container beside the spheres too, so that the folder stands for itself"},
+       {"--no-view", &call->no_view, "Leave the view to turn out of report.html, which is then smaller"},
        quiet_option(call->quiet, "Print nothing but errors")},
       table_of_import_formats() +
           "\nThe spheres lie in the container of --container, else in --box, else in the file's own box, "

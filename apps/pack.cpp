@@ -34,6 +34,7 @@ struct PackCall {
   std::optional<std::uint64_t> seed;
   int threads = 0;
   bool with_mesh = false;
+  bool no_view = false;
   bool quiet = false;
 };
 
@@ -101,8 +102,10 @@ int pack(const PackCall& call) {
   const auto at_once = [end = std::chrono::steady_clock::now() + std::chrono::milliseconds(300)] {
     return std::chrono::steady_clock::now() > end;
   };
-  const WrittenPacking written = write_packing(
-      packing, folder, {.with_mesh = call.with_mesh, .monitor = stopped ? Monitor{{}, at_once} : monitor});
+  const WrittenPacking written = write_packing(packing, folder,
+                                               {.with_mesh = call.with_mesh,
+                                                .view = !call.no_view,
+                                                .monitor = stopped ? Monitor{{}, at_once} : monitor});
   bar.clear();
   if (!stopped && interrupted())
     say(stderr, "bernal: measuring was stopped; bernal measure {} makes up for it\n",
@@ -135,6 +138,8 @@ Command pack_command() {
            {"--with-mesh", &call->with_mesh,
             "Copy the CAD files, and what the scene starts from, beside the spheres too, so that the folder "
             "stands for itself"},
+           {"--no-view", &call->no_view,
+            "Leave the view to turn out of report.html, which is then smaller: a picture and plots"},
            seed_option("Instead of the scene's; one seed gives one packing, bit for bit",
                        [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
            threads_option(call->threads, "the result"),

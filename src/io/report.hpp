@@ -32,12 +32,13 @@ std::vector<std::string> sources_in(const std::string& report);
 /// `container` or `box`, see `domain_json`; `min_wall_gap` is null where no sphere is near a wall.
 std::string json_of(const Report& report);
 
-/// SVG, or empty where there is none.
+/// SVG, and what `view_data` makes; empty where there is none.
 struct Pictures {
-  std::string_view packing, section;
+  std::string_view packing, section, view = {};
 };
 
-/// report.html: one page without scripts or outside files; `scene` is the scene as TOML.
+/// report.html: one page without outside files, and without scripts where there is no view; `scene` is the
+/// scene as TOML.
 std::string html_of(const Report& report, const Pictures& pictures, std::string_view scene);
 
 }  // namespace bernal

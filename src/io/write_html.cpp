@@ -11,6 +11,8 @@
 #include "io/page.hpp"
 #include "io/report.hpp"
 #include "io/report_style.hpp"
+#include "io/viewer_files.hpp"
+#include "io/viewer_parts.hpp"
 
 namespace bernal {
 namespace {
@@ -204,10 +206,11 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
     title += ", " + plain_text(mesh->file.filename().string());
   Page page;
   page.add(
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n{}"
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>{}</title>\n<style>",
-      escaped(title));
+      offline_policy, escaped(title));
   page.raw(report_style);
+  if (!pictures.view.empty()) page.raw(viewer_style);
   page.add("</style></head>\n<body><main>\n<h1>{}</h1>\n<span class=\"dim\">packed by bernal {}</span>\n",
            escaped(title), escaped(packing.version));
   write_headline(page, report);
@@ -215,6 +218,7 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
     page.add("<p class=\"dim\">There is no picture of {} dimension{}.</p>\n", packing.spheres.dimension(),
              packing.spheres.dimension() == 1 ? "" : "s");
   } else {
+    if (!pictures.view.empty()) write_view_frame(page);
     page.raw("<div class=\"pair\">\n");
     for (const std::string_view picture : {pictures.packing, pictures.section})
       if (!picture.empty()) page.add("<div class=\"picture\">\n{}</div>\n", picture);
@@ -231,8 +235,10 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
   page.add(
       "<p class=\"dim\">bernal {} · seed {} · hash of the spheres <code>{}</code>: the same scene, seed and "
       "version give the same hash, whatever the number of threads, where C library and kind of processor are "
-      "the same.</p>\n</main></body></html>\n",
+      "the same.</p>\n</main>\n",
       escaped(packing.version), packing.seed, report.hash);
+  if (!pictures.view.empty()) write_view_program(page, pictures.view);
+  page.raw("</body></html>\n");
   return std::move(page).finish();
 }
 

@@ -17,6 +17,7 @@
 #include "io/output_file.hpp"
 #include "io/report.hpp"
 #include "io/result_folder.hpp"
+#include "io/viewer_data.hpp"
 #include "io/write_csv.hpp"
 #include "io/write_off.hpp"
 #include "io/write_output.hpp"
@@ -124,7 +125,9 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   const Report report{packing,  certificate, measured, radii.all.get(), hash_of(packing.spheres),
                       manifest, sources};
   staged.write("report.json", json_of(report));
-  staged.write("report.html", html_of(report, {picture, section}, scene));
+  const std::string view =
+      options.view && has_view(packing.spheres.dimension()) ? view_data(packing, &measured) : std::string();
+  staged.write("report.html", html_of(report, {picture, section, view}, scene));
 
   // What the scene names stays where it is.
   std::vector<std::string> replaced = files_of_earlier_result(folder);

@@ -14,38 +14,10 @@
 #include "bernal/domain/container.hpp"
 #include "core/parallel.hpp"
 #include "measure/localised.hpp"
-#include "neighbors/point_grid.hpp"
+#include "measure/size_levels.hpp"
 
 namespace bernal {
 namespace {
-
-/// Spheres whose radii differ by at most a factor of two, so that one grid serves them all.
-template <int D>
-struct Level {
-  double largest = 0;
-  std::vector<std::uint32_t> members;
-  std::unique_ptr<PointGrid<D>> grid;
-};
-
-/// By size, largest first; levels without spheres are left out.
-template <int D>
-std::vector<Level<D>> levels_of(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
-  constexpr std::size_t most_levels = 1100;  // from the largest double to the smallest
-  const double largest = std::ranges::max(spheres.r);
-  std::vector<Level<D>> by_octave(most_levels);
-  for (std::uint32_t i = 0; i < spheres.size(); ++i) {
-    const double octave = std::floor(std::log2(largest / spheres.r[i]));
-    Level<D>& level = by_octave[std::min(most_levels - 1, static_cast<std::size_t>(octave))];
-    level.largest = std::max(level.largest, spheres.r[i]);
-    level.members.push_back(i);
-  }
-  std::erase_if(by_octave, [](const Level<D>& level) { return level.members.empty(); });
-  for (Level<D>& level : by_octave) {
-    level.grid = std::make_unique<PointGrid<D>>(spheres, level.members, boundary,
-                                                2 * (1 + widest_gap) * level.largest);
-  }
-  return by_octave;
-}
 
 /// Of a pair and its mirror image, seen from the other end, exactly one is counted.
 template <int D>

@@ -156,7 +156,7 @@ TEST(ReportHtml, IsOnePageThatAsksForNothingElse) {
   packing.effects = {{"a < b", 1, 1}};
   packing.history = {{"insert", 1, 0.1, 5, 0.1}, {"compress", 1, 0.2, 4, 0.2}, {"compress", 1, 0.2, 4, 0.2}};
   const Folder folder;
-  write_packing(packing, folder.path());
+  write_packing(packing, folder.path(), {.view = false});
   const std::string html = text_of(folder / "report.html");
   for (const char* outside : {"<script", "<link", "<img", "<iframe", "src=", "href=", "@import", "https:"}) {
     EXPECT_EQ(html.find(outside), std::string::npos) << outside;
@@ -174,7 +174,7 @@ TEST(ReportHtml, ManagesWithoutSpheresWithOneAndWithClasses) {
   two.push_back({7, 7, 7}, 2);
   for (const Spheres<3>& spheres : {Spheres<3>{}, one, two}) {
     const Folder folder;
-    write_packing(packing_of(spheres, example_box), folder.path());
+    write_packing(packing_of(spheres, example_box), folder.path(), {.view = false});
     const std::string html = text_of(folder / "report.html");
     EXPECT_NE(html.find("</html>"), std::string::npos);
     EXPECT_EQ(html.find("nan"), std::string::npos);
@@ -191,7 +191,7 @@ TEST(ReportHtml, DrawsWhatHardlyVaries) {
                      {"insert", 1, std::nextafter(0.3, 1), 1e9, 0},
                      {"refill", 1, 0.3, std::nextafter(1e9, 0), 0}};
   const Folder folder;
-  write_packing(packing, folder.path());
+  write_packing(packing, folder.path(), {.view = false});
   const std::string html = text_of(folder / "report.html");
   EXPECT_EQ(html.find("nan"), std::string::npos);
   EXPECT_LT(html.size(), 1'000'000u);

@@ -19,6 +19,7 @@ struct WriteOptions {
   /// Copies the CAD files, and the file of the start, beside the spheres, under names that end in the
   /// beginning of their SHA-256, and lets scene.toml name the copies.
   bool with_mesh = false;
+  bool view = true;  ///< report.html has the spheres and a view to turn, see `view_page`; else a picture only
   std::size_t list = 0;  ///< so many overlapping pairs and protruding spheres are listed: the worst
   Monitor monitor = {};
   bool all_or_nothing = false;  ///< once the monitor says stop, Cancelled is thrown and nothing is written

@@ -1,0 +1,69 @@
+// What a page has of a packing, as typed arrays. Lengths are local: scene = origin + scale * local.
+
+function bytesOf(base64) {
+  const text = atob(base64), bytes = new Uint8Array(text.length);
+  for (let k = 0; k < bytes.length; ++k) bytes[k] = text.charCodeAt(k);
+  return bytes;
+}
+const floats = (base64) => new Float32Array(bytesOf(base64).buffer);
+const words = (base64) => new Uint32Array(bytesOf(base64).buffer);
+const counts = (base64) => new Uint16Array(bytesOf(base64).buffer);
+
+// How far each sphere is from what hides the inside: the walls, or the ends of the periods.
+function depthsOf(spheres, domain, wall, scale) {
+  const depths = new Float32Array(spheres.length / 4);
+  for (let k = 0; k < depths.length; ++k) {
+    let depth = wall ? wall.values[k] / scale : Infinity;
+    for (let axis = 0; axis < 3; ++axis) {
+      if (!(domain.periods[axis] > 0)) continue;
+      const x = spheres[4 * k + axis], r = spheres[4 * k + 3];
+      depth = Math.min(depth, x - r - domain.lower[axis], domain.upper[axis] - x - r);
+    }
+    depths[k] = depth;
+  }
+  return depths;
+}
+
+function reordered(values, order, width) {
+  const out = new values.constructor(values.length);
+  for (let k = 0; k < order.length; ++k)
+    for (let w = 0; w < width; ++w) out[width * k + w] = values[width * order[k] + w];
+  return out;
+}
+
+// Spheres come outermost first: what hides the others is drawn before them.
+export function decode(json) {
+  const flat = json.dimension === 2, n = json.shown;
+  const centers = floats(json.spheres.centers), radii = json.spheres.radii;
+  const each = typeof radii === "string" ? floats(radii) : null;
+  let spheres = new Float32Array(4 * n);
+  for (let k = 0; k < n; ++k) {
+    for (let axis = 0; axis < json.dimension; ++axis)
+      spheres[4 * k + axis] = centers[json.dimension * k + axis];
+    spheres[4 * k + 3] = each ? each[k] : radii;
+  }
+  const columns = json.columns.map((column) => ({
+    key: column.key, title: column.title, kind: column.kind,
+    values: column.kind === "count" || column.kind === "category" ? counts(column.values) : floats(column.values),
+  }));
+  const size = new Float32Array(n);
+  for (let k = 0; k < n; ++k) size[k] = spheres[4 * k + 3] * json.scale;
+  columns.unshift({ key: "radius", title: "radius", kind: "length", values: size });
+
+  const depths = depthsOf(spheres, json.domain, columns.find((c) => c.key === "wall"), json.scale);
+  const order = Uint32Array.from(depths.keys()).sort((a, b) => depths[a] - depths[b]);
+  spheres = reordered(spheres, order, 4);
+  for (const column of columns) column.values = reordered(column.values, order, 1);
+  const indices = json.spheres.indices ? reordered(words(json.spheres.indices), order, 1) : order;
+
+  const domain = { ...json.domain };
+  for (const [key, read] of [["vertices", floats], ["triangles", words], ["edges", floats]])
+    if (domain[key] !== undefined) domain[key] = read(domain[key]);
+  let sum = 0;
+  for (let k = 0; k < n; ++k) sum += spheres[4 * k + 3];
+  return {
+    flat, count: json.count, shown: n, unit: json.unit, origin: json.origin, scale: json.scale, eye: json.eye,
+    palette: json.palette, domain, spheres, columns, indices, depths: reordered(depths, order, 1),
+    shellDepth: json.spheres.depth || 0, meanRadius: n > 0 ? sum / n : 0,
+  };
+}

@@ -1,0 +1,9 @@
+#pragma once
+#include <string_view>
+
+namespace bernal {
+
+/// The files of src/io/viewer, as the build found them; see cmake/embed_viewer.cmake.
+extern const std::string_view viewer_style, viewer_script;
+
+}  // namespace bernal

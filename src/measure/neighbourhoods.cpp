@@ -1,0 +1,124 @@
+#include "measure/neighbourhoods.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/dimension.hpp"
+#include "core/parallel.hpp"
+#include "measure/localised.hpp"
+#include "measure/size_levels.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr std::size_t spheres_a_piece = 1024;
+
+/// Looks around one sphere after the other, each time as far as it takes to meet another one.
+template <int D>
+class Lookout {
+ public:
+  Lookout(const Spheres<D>& spheres, const Boundary<D>& boundary, double gap, double contact_gap)
+      : spheres_(spheres),
+        boundary_(boundary),
+        levels_(levels_of(spheres, boundary, contact_gap)),
+        gap_(gap),
+        contact_gap_(contact_gap) {
+    Vector<D> lower = spheres.center(0), upper = lower;
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      lower = lower.cwiseMin(spheres.center(i));
+      upper = upper.cwiseMax(spheres.center(i));
+    }
+    farthest_ = 2 * ((upper - lower).norm() + boundary.edges.norm());
+  }
+
+  void look(std::uint32_t i, std::uint32_t& contacts, double& gap) const {
+    const Vector<D> c = boundary_.wrap(spheres_.center(i));
+    const double r = spheres_.r[i];
+    contacts = 0;
+    for (const Level<D>& level : levels_)
+      visit(level, i, c, reach_of_contact(r + level.largest),
+            [&](double distance, double radii) { contacts += distance < reach_of_contact(radii) ? 1 : 0; });
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double first = 0.25, wider = 3;  // of a radius; of what was looked at before
+    for (double reach = first * r;;) {
+      gap = infinity;
+      for (const Level<D>& level : levels_)
+        visit(level, i, c, r + level.largest + reach,
+              [&](double distance, double radii) { gap = std::min(gap, distance - radii); });
+      if (gap <= reach || (gap == infinity && reach > farthest_)) return;
+      reach = gap < infinity ? gap : wider * reach;  // what is nearer than that, if anything, is within it
+    }
+  }
+
+ private:
+  /// Below it the centres of spheres with these radii together are in contact: with half the gap around each,
+  /// (d - s) / s < contact_gap for the sum s of those.
+  double reach_of_contact(double radii) const { return (1 + contact_gap_) * (radii + gap_); }
+
+  template <class Visit>
+  void visit(const Level<D>& level, std::uint32_t i, const Vector<D>& c, double reach,
+             const Visit& found) const {
+    level.grid->for_each_near(c, reach, [&](std::uint32_t j, const Vector<D>& d) {
+      const double squared = d.squaredNorm();
+      if (j == i && squared == 0) return;
+      found(std::sqrt(squared), spheres_.r[i] + spheres_.r[j]);
+    });
+  }
+
+  const Spheres<D>& spheres_;
+  const Boundary<D> boundary_;
+  const std::vector<Level<D>> levels_;
+  double gap_, contact_gap_, farthest_;
+};
+
+template <int D>
+Neighbourhoods look_around(const Spheres<D>& spheres, const Boundary<D>& boundary,
+                           std::span<const std::uint32_t> of, double gap, double contact_gap, double scale) {
+  Neighbourhoods found{std::vector<std::uint32_t>(of.size()), std::vector<double>(of.size())};
+  const Lookout<D> lookout(spheres, boundary, gap / scale, contact_gap);
+  parallel_ranges(of.size(), spheres_a_piece, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      lookout.look(of[k], found.contacts[k], found.gaps[k]);
+      found.gaps[k] *= scale;
+    }
+  });
+  return found;
+}
+
+}  // namespace
+
+Neighbourhoods neighbourhoods(const Spheres<dynamic>& spheres, const Domain& domain,
+                              std::span<const std::uint32_t> of, double gap, double contact_gap) {
+  if (of.empty()) return {};
+  if (spheres.dimension() == 3 && has_walls(domain)) {
+    const Frame frame = frame_of(domain);
+    return look_around<3>(localised(spheres, frame), localised(boundary_of<3>(domain), frame), of, gap,
+                          contact_gap, frame.scale);
+  }
+  return with_dimension(spheres.dimension(), std::integer_sequence<int, 2, 3>{}, [&](auto dimension) {
+    constexpr int D = dimension;
+    return look_around<D>(spheres.in<D>(), boundary_of<D>(domain), of, gap, contact_gap, 1);
+  });
+}
+
+std::vector<double> wall_gaps(const Spheres<dynamic>& spheres, const Domain& domain,
+                              std::span<const std::uint32_t> of,
+                              const std::shared_ptr<const Container>& made) {
+  std::vector<double> gaps(of.size());
+  if (of.empty()) return gaps;
+  const Frame frame = frame_of(domain);
+  const auto container = local_container(domain, made);
+  parallel_ranges(of.size(), spheres_a_piece, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      Vector<3> center = Vector<3>::Zero();
+      center.head(spheres.dimension()) = spheres.center(of[k]);
+      gaps[k] = frame.scale * container->clearance(frame.to_local(center)) - spheres.r[of[k]];
+    }
+  });
+  return gaps;
+}
+
+}  // namespace bernal
