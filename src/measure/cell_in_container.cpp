@@ -10,7 +10,7 @@ namespace {
 /// Of the length of a cell: what the clearance half-way between two corners may be off the mean of theirs,
 /// and the longest edge of what is halved no further. A wall that bends away from its chords by e over a cell
 /// of edge s takes e s² of its s³; a crease of it that is met only by parts of edge h takes h² s.
-constexpr double bend = 3e-4, small = 0.02;
+constexpr double bend = 3e-4, large = 0.5, small = 0.02;
 
 template <int N>
 struct Simplex {
@@ -55,8 +55,12 @@ double inside_share(std::array<double, N + 1> f) {
 template <int N>
 class Division {
  public:
-  Division(const Container& container, double tolerance, double smallest)
-      : container_(container), tolerance_(tolerance), smallest_(smallest) {}
+  /// See `CellInContainer` for `length`.
+  Division(const Container& container, double length)
+      : container_(container),
+        tolerance_(bend * length),
+        largest_(large * length),
+        smallest_(small * length) {}
 
   /// `calm`: how many halvings in a row have found the clearance linear; as many as there are dimensions have
   /// looked along all of them.
@@ -80,11 +84,12 @@ class Division {
       if (s.clearance[i] >= farthest[i]) return size;
       if (s.clearance[i] <= -farthest[i]) return 0;
     }
-    if (calm >= N || longest <= smallest_) return size * inside_share<N>(s.clearance);
+    if (longest <= smallest_ || (calm >= N && longest <= largest_ && is_linear(s, longest)))
+      return size * inside_share<N>(s.clearance);
     const Vector<3> middle = 0.5 * (s.corner[a] + s.corner[b]);
     const double clearance = container_.clearance_within(middle, longest);
     const double off = std::abs(clearance - 0.5 * (s.clearance[a] + s.clearance[b]));
-    calm = off <= tolerance_ ? calm + 1 : 0;
+    calm = longest <= largest_ && off <= tolerance_ ? calm + 1 : 0;
     double sum = 0;
     for (const std::size_t replaced : {a, b}) {
       Simplex<N> half = s;
@@ -96,8 +101,19 @@ class Division {
   }
 
  private:
+  /// Also in the middle.
+  bool is_linear(const Simplex<N>& s, double longest) const {
+    Vector<3> middle = Vector<3>::Zero();
+    double mean = 0;
+    for (std::size_t k = 0; k < s.corner.size(); ++k) {
+      middle += s.corner[k] / (N + 1);
+      mean += s.clearance[k] / (N + 1);
+    }
+    return std::abs(container_.clearance_within(middle, longest) - mean) <= tolerance_;
+  }
+
   const Container& container_;
-  double tolerance_, smallest_;
+  double tolerance_, largest_, smallest_;
 };
 
 }  // namespace
@@ -105,7 +121,7 @@ class Division {
 template <int N>
 double CellInContainer::volume_of_parts(const ConvexCell& cell, const Vector<3>& center,
                                         double length) const {
-  const Division<N> division(container_, bend * length, small * length);
+  const Division<N> division(container_, length);
   const auto corners = cell.corners();
   const auto place = [&](Vector<3> p) {
     p += center;
@@ -123,6 +139,7 @@ double CellInContainer::volume_of_parts(const ConvexCell& cell, const Vector<3>&
   const double at_apex = clearance(apex);
   if (at_apex >= farthest) return cell.volume();
   if (at_apex <= -farthest) return 0;
+  if (polygons_) return polygons_->volume_inside(cell, center);
   std::vector<double> at_corner;
   for (const ConvexCell::Corner& corner : corners) at_corner.push_back(clearance(place(corner.point)));
 
@@ -151,6 +168,11 @@ double CellInContainer::volume_of_parts(const ConvexCell& cell, const Vector<3>&
     sum += division.inside(part, size_of(part), 0);
   }
   return sum;
+}
+
+CellInContainer::CellInContainer(const Domain& domain, const Container& container)
+    : container_(container), length_(container.dimension() * container.volume() / area_of(domain)) {
+  if (is_faceted(domain) && container.inset() == 0) polygons_.emplace(domain, container);
 }
 
 double CellInContainer::volume(const ConvexCell& cell, const Vector<3>& center) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace bernal {
 
@@ -116,16 +117,35 @@ double ConvexCell::squared_reach() const {
   return farthest;
 }
 
-std::uint32_t ConvexCell::faces(double least) const {
+/// Twice the area of every face, along its normal outwards.
+void ConvexCell::find_areas() const {
   areas_.assign(labels_.size(), Vector<3>::Zero());
   for (const Edge& edge : edges_)
     areas_[edge.face] += corners_[edge.from].point.cross(corners_[edge.to].point);
+}
+
+std::uint32_t ConvexCell::faces(double least) const {
+  find_areas();
   double surface = 0;
   for (const Vector<3>& area : areas_) surface += area.norm();
   std::uint32_t count = 0;
   for (std::size_t face = 0; face < labels_.size(); ++face)
     count += labels_[face] >= 0 && areas_[face].norm() > least * surface;
   return count;
+}
+
+std::vector<ConvexCell::Plane> ConvexCell::planes() const {
+  find_areas();
+  std::vector<Plane> found;
+  for (Vector<3>& area : areas_) {
+    area.stableNormalize();
+    found.push_back({area, -std::numeric_limits<double>::infinity()});
+  }
+  for (const Edge& edge : edges_)
+    found[edge.face].offset =
+        std::max(found[edge.face].offset, found[edge.face].normal.dot(corners_[edge.from].point));
+  std::erase_if(found, [](const Plane& plane) { return plane.normal.isZero(0); });
+  return found;
 }
 
 }  // namespace bernal

@@ -42,12 +42,19 @@ class ConvexCell {
   std::span<const Edge> edges() const { return edges_; }
 
   double volume() const;
+  /// Of the faces that have an area: the cell is where p·normal <= offset.
+  struct Plane {
+    Vector<3> normal;  ///< of length 1, outwards
+    double offset;
+  };
+  std::vector<Plane> planes() const;
   /// The largest distance of a corner from the origin, squared.
   double squared_reach() const;
   /// How many faces of neighbours have more than `least` of the surface.
   std::uint32_t faces(double least) const;
 
  private:
+  void find_areas() const;
   std::uint32_t crossing(std::uint32_t a, std::uint32_t b);
   void drop_unused_corners();
 

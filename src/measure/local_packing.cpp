@@ -67,7 +67,7 @@ std::optional<LocalPacking> local_packing(const Spheres<dynamic>& packed, const 
   const CellBox box{dimension, bounds_of(local_domain), localised(boundary_in_space(domain), frame)};
   const std::shared_ptr<const Container> container = is_box(domain) ? nullptr : local_container(domain, made);
   std::optional<CellInContainer> within;
-  if (container) within.emplace(*container, dimension * container->volume() / area_of(local_domain));
+  if (container) within.emplace(local_domain, *container);
 
   const double unit = std::pow(frame.scale, dimension);
   LocalPacking local;
