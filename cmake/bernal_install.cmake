@@ -10,4 +10,4 @@ write_basic_package_version_file(
 install(FILES
   ${PROJECT_BINARY_DIR}/bernal-config.cmake ${PROJECT_BINARY_DIR}/bernal-config-version.cmake
   ${PROJECT_SOURCE_DIR}/cmake/bernal_components.cmake
-  DESTINATION ${config})
+  DESTINATION ${config} COMPONENT development)
