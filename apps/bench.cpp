@@ -47,19 +47,23 @@ int bench(BenchCall& call) {
 
 Command bench_command() {
   const auto call = std::make_shared<BenchCall>();
-  std::string footer = "Scenes, lines of one table; all of them where no NAME is given:\n";
-  for (const Bench& bench : all_benches())
-    if (!bench.has_own_table()) footer += fmt::format("  {:<18}{}\n", bench.name, bench.what);
-
-  for (const Bench& bench : all_benches())
-    if (bench.has_own_table()) footer += fmt::format("  {:<18}{}; {}\n", bench.name, bench.what, bench.takes);
+  std::vector<Entry> scenes, tables;
+  std::vector<std::string> names;
+  for (const Bench& bench : all_benches()) {
+    names.emplace_back(bench.name);
+    if (bench.has_own_table())
+      tables.push_back({std::string(bench.name), fmt::format("{}; {}", bench.what, bench.takes)});
+    else
+      scenes.push_back({std::string(bench.name), std::string(bench.what)});
+  }
   return {
       "bench",
       "Measure what bernal's own work costs",
-      {{"NAME", &call->names, "Which of those below"},
-       {"-o,--output", &call->folder,
-        "Folder for the tables, their numbers and pictures; without it the tables go to standard output",
-        "DIR"},
+      {offering({"NAME", &call->names, "Which of those below"}, names),
+       folder(
+           {"-o,--output", &call->folder,
+            "Folder for the tables, their numbers and pictures; without it the tables go to standard output",
+            "DIR"}),
        within({"--spheres", &call->options.spheres, "Of every packing; as many as each needs if absent", "N"},
               100, 10'000'000),
        within({"--decisions", &call->options.decisions,
@@ -69,13 +73,14 @@ Command bench_command() {
        seed_option("The first; 1 if absent",
                    [call = call.get()](std::uint64_t seed) { call->options.seed = seed; }),
        quiet_option(call->quiet)},
-      footer + R"(
-Times are of the processor, one thread. What is packed is certified.
-
-Examples:
-  bernal bench                   all scenes, in half a minute
-  bernal bench relax certify     two of them
-  bernal bench methods -o out    every method on the same spheres, with pictures
-Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.)",
+      {.text = "Times are of the processor, one thread. What is packed is certified.",
+       .lists = {{.title = "Scenes",
+                  .text = "lines of one table; all of them where no NAME is given.",
+                  .entries = scenes},
+                 {.title = "Tables", .text = "of their own, where named.", .entries = tables}},
+       .examples = {{"bernal bench", "all scenes, in half a minute"},
+                    {"bernal bench relax certify", "two of them"},
+                    {"bernal bench methods -o out", "every method on the same spheres, with pictures"}},
+       .exit_codes = {{"0", "done"}, {"2", "bad input"}, {"3", "stopped by Ctrl-C, nothing written"}}},
       [call] { return bench(*call); }};
 }

@@ -25,25 +25,39 @@ constexpr const char* description =
     "bernal packs spheres into real shapes and proves that nothing overlaps.\n"
     "A scene, a short TOML file, says which container, which sizes and how many.";
 
-constexpr const char* examples = R"(Examples:
-  bernal pack data/scenes/cylinder_han.toml -o out   fill a cylinder; results in out/
-  bernal pack bracket.stl --unit mm --diameter 2     fill a CAD part, without a scene; results in bracket/
-  bernal verify out                                  certify what stands in the files, from scratch
-  bernal measure out                                 contacts, rattlers, g(r), sizes against those asked for
-  bernal export out --to lammps -o out.data          for LAMMPS, YADE, OVITO, OpenMC, POV-Ray, …
-  bernal import dump.lammpstrj --unit mm -o out      another program's packing, to be certified and packed on
-  bernal inspect part.stl --unit mm                  can this CAD file be a container?
-  bernal explain data/scenes/hopper.toml             what would run, and what it would cost
-  bernal cost data/scenes/relax_equal.toml -o out    what accuracy costs in time there, and what to take
-  bernal keys relax                                  what a scene may say of a stage
-  bernal predict --lognormal 0.5                     how densely spheres of these sizes pack
-  bernal design maximise --diameters 1,3,9           how much of each size packs densest
-  bernal map 0.3 0.6 -o out                          how densely all their mixtures do
-  bernal reproduce fig6 -o out                       a figure of the paper behind that
-  bernal bench                                       what its own work costs here
-
-Exit codes: 0 done; 1 not certified, or not usable; 2 bad input; 3 ended without reaching what the scene asks.
-Messages go to standard error, results to files or standard output.)";
+Explanation explanation() {
+  return {
+      .text =
+          "Messages go to standard error, results to files or standard output. Ctrl-C ends a run at the next "
+          "safe point, with a valid result of what is there.",
+      .lists = {{.title = "Files",
+                 .text = {},
+                 .entries = {{"/usr/share/doc/bernal/examples",
+                              "scenes and CAD parts to begin with, where the Debian package is installed"}}}},
+      .examples = {{"bernal pack data/scenes/cylinder_han.toml -o out", "fill a cylinder; results in out/"},
+                   {"bernal pack bracket.stl --unit mm --diameter 2",
+                    "fill a CAD part, without a scene; results in bracket/"},
+                   {"bernal verify out", "certify what stands in the files, from scratch"},
+                   {"bernal measure out", "contacts, rattlers, g(r), sizes against those asked for"},
+                   {"bernal export out --to lammps -o out.data",
+                    "for LAMMPS, YADE, OVITO, OpenMC, POV-Ray, …"},
+                   {"bernal import dump.lammpstrj --unit mm -o out",
+                    "another program's packing, to be certified and packed on"},
+                   {"bernal inspect part.stl --unit mm", "can this CAD file be a container?"},
+                   {"bernal explain data/scenes/hopper.toml", "what would run, and what it would cost"},
+                   {"bernal cost data/scenes/relax_equal.toml -o out",
+                    "what accuracy costs in time there, and what to take"},
+                   {"bernal keys relax", "what a scene may say of a stage"},
+                   {"bernal predict --lognormal 0.5", "how densely spheres of these sizes pack"},
+                   {"bernal design maximise --diameters 1,3,9", "how much of each size packs densest"},
+                   {"bernal map 0.3 0.6 -o out", "how densely all their mixtures do"},
+                   {"bernal reproduce fig6 -o out", "a figure of the paper behind that"},
+                   {"bernal bench", "what its own work costs here"}},
+      .exit_codes = {{"0", "done"},
+                     {"1", "not certified, or not usable"},
+                     {"2", "bad input"},
+                     {"3", "ended without reaching what the scene asks"}}};
+}
 
 /// In one line, whatever the input had in it.
 int complain(std::string_view what) {
@@ -73,15 +87,17 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a run is not lost because nobody reads what it says
   int status = exit_code::done;
   try {
-    const Command command = {
+    Command command = {
         "bernal",
         description,
         {},
-        examples,
+        explanation(),
         {},
         {pack_command(), verify_command(), inspect_command(), explain_command(), keys_command(),
          cost_command(), measure_command(), export_command(), import_command(), predict_command(),
          design_command(), map_command(), reproduce_command(), bench_command()}};
+    command.commands.push_back(completion_command(command));
+    command.commands.push_back(manual_command(command));
     status = run_command_line(argc, argv, command, "bernal " + std::string(bernal::version()));
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::broken_pipe && reader_has_left()) return status;

@@ -12,6 +12,8 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/core/unit.hpp"
+#include "explanation_text.hpp"
 
 namespace {
 
@@ -58,7 +60,7 @@ void add_option(CLI::App& app, const Option& option) {
 
 void add(CLI::App& app, const Command& command, int& status) {
   for (const Option& option : command.options) add_option(app, option);
-  app.footer(command.footer);
+  app.footer(explanation_as_text(command.explanation));
   if (!command.commands.empty()) app.require_subcommand(1);
   for (const Command& of : command.commands) add(*app.add_subcommand(of.name, of.what), of, status);
   if (command.act) app.callback([&act = command.act, &status] { status = act(); });
@@ -104,17 +106,37 @@ int run_command_line(int argc, char** argv, const Command& bernal, const std::st
   return status;
 }
 
+std::vector<std::string> Option::all_names() const {
+  std::vector<std::string> all;
+  std::string_view rest = std::string_view(names).substr(0, names.find('{'));
+  for (std::size_t comma = 0; comma != std::string_view::npos; rest.remove_prefix(comma + 1)) {
+    comma = rest.find(',');
+    all.emplace_back(rest.substr(0, comma));
+    if (comma == std::string_view::npos) break;
+  }
+  return all;
+}
+
+std::string Option::placeholder() const {
+  if (is_flag()) return "";
+  if (!type_name.empty()) return type_name;
+  return is_positional() ? names : "VALUE";
+}
+
 Option required(Option option) {
+  option.required = true;
   return demanding(std::move(option), [](CLI::App&, CLI::Option& it) { it.required(); });
 }
 Option within(Option option, int least, int most) {
+  option.range = fmt::format("{} to {}", least, most);
   return demanding(std::move(option), CLI::Range(least, most));
 }
 Option within(Option option, double least, double most) {
+  option.range = fmt::format("{} to {}", least, most);
   return demanding(std::move(option), CLI::Range(least, most));
 }
 Option one_of(Option option, const std::vector<std::string>& words) {
-  return demanding(std::move(option), CLI::IsMember(words));
+  return demanding(offering(std::move(option), words), CLI::IsMember(words));
 }
 Option checked(Option option, const std::function<std::string(const std::string& word)>& complaint) {
   return demanding(std::move(option), [=](CLI::App&, CLI::Option& it) { it.check(complaint); });
@@ -124,17 +146,37 @@ Option list_of(int count, Option option) {
                    [=](CLI::App&, CLI::Option& it) { it.delimiter(',')->expected(count); });
 }
 Option repeated(Option option) {
+  option.repeated = true;
   return demanding(std::move(option), [](CLI::App&, CLI::Option& it) {
     it.expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   });
 }
 Option needs(Option option, const std::string& other) {
+  option.needs.push_back(other);
   return demanding(std::move(option),
                    [=](CLI::App& app, CLI::Option& it) { it.needs(app.get_option(other)); });
 }
 Option excludes(Option option, const std::string& other) {
+  option.excludes.push_back(other);
   return demanding(std::move(option),
                    [=](CLI::App& app, CLI::Option& it) { it.excludes(app.get_option(other)); });
+}
+
+Option offering(Option option, const std::vector<std::string>& words) {
+  option.words = words;
+  return option;
+}
+Option folder(Option option) {
+  option.files = Files{.folders_only = true};
+  return option;
+}
+Option file(Option option, const std::vector<std::string>& endings) {
+  option.files = Files{.endings = endings};
+  return option;
+}
+Option with_units(Option option) {
+  const auto names = bernal::unit_names();
+  return offering(std::move(option), {names.begin(), names.end()});
 }
 
 Option json_option(bool& json) { return {"--json", &json, "One JSON object on standard output"}; }

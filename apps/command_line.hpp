@@ -12,6 +12,12 @@ class App;
 class Option;
 }  // namespace CLI
 
+/// The files and folders that a shell offers for the value of an option.
+struct Files {
+  bool folders_only = false;
+  std::vector<std::string> endings = {};  ///< {".toml"}, beside folders; none: any file
+};
+
 /// A word of the command line with a value, or a flag, whose variable outlives it; a function is told the
 /// word.
 struct Option {
@@ -24,8 +30,22 @@ struct Option {
       to;
   std::string what;
   std::string type_name = {};  ///< what stands for its value in the help: "DIR"
-  /// What is asked of it, see below.
+
+  // What is asked of it, as the functions below say it; for the help, the pages and the completion.
+  bool required = false, repeated = false;
+  std::vector<std::string> words = {};                 ///< that it takes, or that are offered
+  std::optional<Files> files = {};                     ///< that are offered
+  std::string range = {};                              ///< "1 to 1024"
+  std::vector<std::string> needs = {}, excludes = {};  ///< names of other options
+  /// The same for the parser.
   std::vector<std::function<void(CLI::App&, CLI::Option&)>> demands = {};
+
+  bool is_flag() const { return std::holds_alternative<bool*>(to) || names.ends_with('}'); }
+  bool is_positional() const { return !names.starts_with('-'); }
+  /// {"-o", "--output"}, without what stands in braces; the one name of what is told from where it stands.
+  std::vector<std::string> all_names() const;
+  /// What stands for its value: "DIR"; "" of a flag.
+  std::string placeholder() const;
 };
 
 // What is asked of an option, and told by the help.
@@ -43,11 +63,35 @@ Option repeated(Option);
 Option needs(Option, const std::string& other);
 Option excludes(Option, const std::string& other);
 
+// What shells offer for its value; nothing is refused for that.
+Option offering(Option, const std::vector<std::string>& words);
+Option folder(Option);
+Option file(Option, const std::vector<std::string>& endings = {});
+
+/// A line of a list: what it is called, and what it is.
+struct Entry {
+  std::string name, what;
+};
+
+/// What the help of a command and its page say besides the options. Texts are paragraphs, an empty line
+/// between two, whose lines are broken where they are shown.
+struct Explanation {
+  struct List {
+    std::string title;  ///< "Formats"
+    std::string text = {};
+    std::vector<Entry> entries = {};
+  };
+  std::string text = {};
+  std::vector<List> lists = {};
+  std::vector<Entry> examples = {};    ///< a call and what comes of it
+  std::vector<Entry> exit_codes = {};  ///< "0", "done"
+};
+
 /// One of the commands of bernal, or of those of its commands that have some.
 struct Command {
   std::string name, what;
   std::vector<Option> options;
-  std::string footer;        ///< the end of its help
+  Explanation explanation;
   std::function<int()> act;  ///< once all options have their values; returns the exit code of the process
   std::vector<Command> commands = {};  ///< one of them must be called
 };
@@ -66,3 +110,5 @@ Option rods_option(int& rods, int least, int most);
 Option seed_option(const std::string& what, const std::function<void(std::uint64_t)>& take);
 /// With 0 for as many as the machine has; `what` is the same for any number: "the answer".
 Option threads_option(int& threads, const std::string& what);
+/// The units of length that a scene may name.
+Option with_units(Option);

@@ -16,6 +16,9 @@ Command reproduce_command();
 Command bench_command();
 Command export_command();
 Command import_command();
+// These write about all commands, so that `bernal` has to outlive them.
+Command completion_command(const Command& bernal);
+Command manual_command(const Command& bernal);
 
 /// Exit codes, the same for every subcommand.
 namespace exit_code {

@@ -143,8 +143,9 @@ Command cost_command() {
   return {
       "cost",
       "Run a scene at several accuracies: what each costs in time, what it buys, what to take",
-      {required({"SCENE", &call->scene, "The scene, a TOML file"}),
-       required({"-o,--output", &call->folder, "Folder for the results; made if it does not exist", "DIR"}),
+      {file(required({"SCENE", &call->scene, "The scene, a TOML file"}), {".toml"}),
+       folder(required(
+           {"-o,--output", &call->folder, "Folder for the results; made if it does not exist", "DIR"})),
        checked({"--time", &call->time, "For all of it on the wall; 10m if absent", "TIME"}, complaint),
        within(
            {"--seeds", &call->seeds, "Runs of every setting, each with a seed of its own; 2 if absent", "N"},
@@ -153,20 +154,27 @@ Command cost_command() {
        {"--fresh", &call->fresh, "Forget what an earlier call measured in this folder"},
        json_option(call->json),
        quiet_option(call->quiet)},
-      "Examples:\n"
-      "  bernal cost data/scenes/relax_equal.toml -o out              ten minutes\n"
-      "  bernal cost data/scenes/hopper.toml -o out --time 1h         an hour\n"
-      "  bernal pack out/recommended.toml                             what is advised\n\n"
-      "Runs the scene as it is, then with other values of the keys that buy accuracy in its stages\n"
-      "(alpha, stop, patience, polish, rate, …), in [accuracy] and in its container, one at a time and\n"
-      "combined, every setting with several seeds, in an order that a machine that slows down hurts all\n"
-      "alike. Seconds are those of the processor, all threads together.\n"
-      "Writes cost.csv, cost.md, cost.html, cost.svg and recommended.toml, and keeps every run in\n"
-      "trials.csv: the same call again goes on where the last one ended. Files of these names that it did\n"
-      "not write, or that were changed since, are refused before anything runs. On a machine with nothing "
-      "else to\n"
-      "do the times are better.\n"
-      "Exit codes: 0 done, also when the time is over; 2 bad input, or not one run ends in the time;\n"
-      "3 stopped by Ctrl-C: what was measured is written.",
+      {.text =
+           "Runs the scene as it is, then with other values of the keys that buy accuracy in its stages "
+           "(alpha, "
+           "stop, patience, polish, rate, …), in [accuracy] and in its container, one at a time and "
+           "combined, "
+           "every setting with several seeds, in an order that a machine that slows down hurts all alike. "
+           "Seconds are those of the processor, all threads together. On a machine with nothing else to do "
+           "the "
+           "times are better.\n\nFiles of the names below that it did not write, or that were changed since, "
+           "are refused before anything runs.",
+       .lists = {{.title = "Files",
+                  .text = "what is written into DIR.",
+                  .entries = {{"cost.csv, cost.md, cost.html, cost.svg", "what was measured"},
+                              {"recommended.toml", "the scene as is advised"},
+                              {"trials.csv",
+                               "every run: the same call again goes on where the last one ended"}}}},
+       .examples = {{"bernal cost data/scenes/relax_equal.toml -o out", "ten minutes"},
+                    {"bernal cost data/scenes/hopper.toml -o out --time 1h", "an hour"},
+                    {"bernal pack out/recommended.toml", "what is advised"}},
+       .exit_codes = {{"0", "done, also when the time is over"},
+                      {"2", "bad input, or not one run ends in the time"},
+                      {"3", "stopped by Ctrl-C: what was measured is written"}}},
       [call] { return cost(*call); }};
 }

@@ -144,17 +144,28 @@ int best(const BestCall& call) {
   return cancelled ? exit_code::not_reached : exit_code::done;
 }
 
-constexpr const char* best_footer = R"(Two answers, each with a table to paste into a scene:
-  a density by volume, constant in bins that are evenly spaced on a logarithmic axis (a sieve analysis);
-  two to five sizes, the limits among them: as many as gain at least 0.002 each.
-There is no densest density. With more bins the best one is denser and gathers into narrow peaks, whose
-limit is a few sizes; what it gained with each doubling of the bins is told, and what the best power
-law (Fuller's is of exponent 0.5) reaches. Real fractions have a width: choose bins as wide as yours.
-
-Examples:
-  bernal design best --min 1 --max 10             0.8313 in 16 bins, 0.8407 with three sizes
-  bernal design best --min 0.063 --max 2 --bins 8 --json
-Exit codes: 0 done; 2 bad input; 3 stopped early, the answer is the best so far.)";
+Explanation best_explanation() {
+  return {
+      .text =
+          "There is no densest density. With more bins the best one is denser and gathers into narrow peaks, "
+          "whose limit is a few sizes; what it gained with each doubling of the bins is told, and what the "
+          "best "
+          "power law (Fuller's is of exponent 0.5) reaches. Real fractions have a width: choose bins as wide "
+          "as "
+          "yours.",
+      .lists = {{.title = "Answers",
+                 .text = "two, each with a table to paste into a scene.",
+                 .entries = {{"density",
+                              "by volume, constant in bins that are evenly spaced on a logarithmic "
+                              "axis (a sieve analysis)"},
+                             {"sizes",
+                              "two to five, the limits among them: as many as gain at least 0.002 "
+                              "each"}}}},
+      .examples = {{"bernal design best --min 1 --max 10", "0.8313 in 16 bins, 0.8407 with three sizes"},
+                   {"bernal design best --min 0.063 --max 2 --bins 8 --json", "of a sand, for programs"}},
+      .exit_codes = {
+          {"0", "done"}, {"2", "bad input"}, {"3", "stopped early, the answer is the best so far"}}};
+}
 
 }  // namespace
 
@@ -167,6 +178,6 @@ Command best_command() {
            one_of({"--bins", &call->bins, "Of the density: 2, 4, 8, 16, 32 or 64; 16 if absent", "N"},
                   {"2", "4", "8", "16", "32", "64"}),
            rods_option(call->rods, 100, 10'000'000), json_option(call->json)},
-          best_footer,
+          best_explanation(),
           [call] { return best(*call); }};
 }

@@ -139,15 +139,20 @@ int maximise(const MaximiseCall& call) {
   return answer.optimum.cancelled ? exit_code::not_reached : exit_code::done;
 }
 
-constexpr const char* maximise_footer = R"(Examples:
-  bernal design maximise --diameters 1,5                          20.8 % of the volume small: 0.7878
-  bernal design maximise --diameters 1,3,9 --json
-  bernal design maximise --lognormal 10,9 --lognormal 60,55 --diameters 300
-
-The composition, by volume (or mass, of one material), is searched for from many starts; how many
-of them agree says how certain it is. A size that gets in the way of the others is left out. Where
-sizes are near each other many compositions are as good to the model's error, 0.01, and cheaper.
-Exit codes: 0 done; 2 bad input; 3 stopped early, the answer is the best so far.)";
+Explanation maximise_explanation() {
+  return {
+      .text =
+          "The composition, by volume (or mass, of one material), is searched for from many starts; how many "
+          "of "
+          "them agree says how certain it is. A size that gets in the way of the others is left out. Where "
+          "sizes are near each other many compositions are as good to the model's error, 0.01, and cheaper.",
+      .examples = {{"bernal design maximise --diameters 1,5", "20.8 % of the volume small: 0.7878"},
+                   {"bernal design maximise --diameters 1,3,9 --json", "three sizes, for programs"},
+                   {"bernal design maximise --lognormal 10,9 --lognormal 60,55 --diameters 300",
+                    "two wide populations and a size"}},
+      .exit_codes = {
+          {"0", "done"}, {"2", "bad input"}, {"3", "stopped early, the answer is the best so far"}}};
+}
 
 }  // namespace
 
@@ -162,6 +167,6 @@ Command maximise_command() {
                      "D43,D32"}),
            rods_option(call->rods, 100, 10'000'000),
            json_option(call->json)},
-          maximise_footer,
+          maximise_explanation(),
           [call] { return maximise(*call); }};
 }

@@ -114,24 +114,33 @@ int target(const TargetCall& call) {
   return exit_code::not_reached;
 }
 
-constexpr const char* target_footer =
-    R"(Families, each by volume and from narrow to wide by one number; the narrowest that will do is taken:
-  lognormal      sigma, about the middle of the limits (on a logarithmic axis), cut off at both
-  rosin_rammler  the slope n, with d63 at that middle, cut off at both limits
-  uniform        max/min
-  fuller         max/min, of the exponent given
-  two_sizes      max/min, each ratio with the composition that packs densest
-
-Limits: no sphere is smaller or larger. --max-ratio R alone is from 1 to R; with --min or --max from or
-to there; --min and --max say both. Without any, lognormal sizes are not cut off and have a median of
-1, the others have 1 : 100. Sizes that need less than the limits allow begin at the smallest, or, where
---max is given, end at the largest.
-
-Examples:
-  bernal design target --phi 0.7 --family lognormal                   sigma = 0.4619
-  bernal design target --phi 0.7 --family lognormal --max-ratio 10
-  bernal design target --phi 0.75 --family fuller --max 16 --max-ratio 30 --json
-Exit codes: 0 done; 2 bad input; 3 no member of the family packs so, and what the family reaches.)";
+Explanation target_explanation() {
+  return {
+      .text =
+          "Limits: no sphere is smaller or larger. --max-ratio R alone is from 1 to R; with --min or --max "
+          "from "
+          "or to there; --min and --max say both. Without any, lognormal sizes are not cut off and have a "
+          "median of 1, the others have 1 : 100. Sizes that need less than the limits allow begin at the "
+          "smallest, or, where --max is given, end at the largest.",
+      .lists =
+          {{.title = "Families",
+            .text = "each by volume and from narrow to wide by one number; the narrowest that will do is "
+                    "taken.",
+            .entries = {{"lognormal",
+                         "sigma, about the middle of the limits (on a logarithmic axis), cut off at both"},
+                        {"rosin_rammler", "the slope n, with d63 at that middle, cut off at both limits"},
+                        {"uniform", "max/min"},
+                        {"fuller", "max/min, of the exponent given"},
+                        {"two_sizes", "max/min, each ratio with the composition that packs densest"}}}},
+      .examples = {{"bernal design target --phi 0.7 --family lognormal", "sigma = 0.4619"},
+                   {"bernal design target --phi 0.7 --family lognormal --max-ratio 10",
+                    "cut off at both ends"},
+                   {"bernal design target --phi 0.75 --family fuller --max 16 --max-ratio 30 --json",
+                    "a grading, for programs"}},
+      .exit_codes = {{"0", "done"},
+                     {"2", "bad input"},
+                     {"3", "no member of the family packs so, and what the family reaches"}}};
+}
 
 }  // namespace
 
@@ -147,6 +156,6 @@ Command target_command() {
            {"--exponent", &call->exponent, "Of fuller; 0.5 if absent", "Q"},
            rods_option(call->rods, 100, 10'000'000),
            json_option(call->json)},
-          target_footer,
+          target_explanation(),
           [call] { return target(*call); }};
 }

@@ -32,14 +32,16 @@ int explain(const ExplainCall& call) {
 
 Command explain_command() {
   const auto call = std::make_shared<ExplainCall>();
-  return {"explain",
-          "Say what a scene would run and cost; run nothing",
-          {required({"SCENE", &call->scene, "The scene, a TOML file"}), json_option(call->json)},
-          "Prints what was understood, what would run, how many spheres to expect and, where the scene "
-          "names\n"
-          "no stages, those that run, with all their defaults. Times are those of packing on one core; with\n"
-          "the memory they are estimates by each stage's own model: of the 32 scenes that were measured 27\n"
-          "took between half and twice the time expected, the worst a fourth of it or five times as long.\n"
-          "Exit codes: 0 done; 2 bad input.",
-          [call] { return explain(*call); }};
+  return {
+      "explain",
+      "Say what a scene would run and cost; run nothing",
+      {file(required({"SCENE", &call->scene, "The scene, a TOML file"}), {".toml"}), json_option(call->json)},
+      {.text = "Prints what was understood, what would run, how many spheres to expect and, where the scene "
+               "names no stages, those that run, with all their defaults. Times are those of packing on "
+               "one core; with the memory they are estimates by each stage's own model: of the 32 scenes "
+               "that were measured 27 took between half and twice the time expected, the worst a fourth of "
+               "it or five times as long.",
+       .examples = {{"bernal explain data/scenes/hopper.toml", "what would run, and what it would cost"}},
+       .exit_codes = {{"0", "done"}, {"2", "bad input"}}},
+      [call] { return explain(*call); }};
 }

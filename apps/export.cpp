@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/io/read_packing.hpp"
+#include "bernal/scene/scene_reference.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
@@ -62,20 +64,38 @@ std::string dimensions_in_words(const ExportFormat& format) {
                      format.most_dimensions);
 }
 
+std::vector<std::string> names_of_formats() {
+  std::vector<std::string> names;
+  for (const ExportFormat& format : export_formats()) names.push_back(format.name);
+  return names;
+}
+
 /// Two lines a format, from the list of formats.
-std::string table_of_formats() {
-  std::string text = "Formats:\n";
+std::vector<Entry> entries_of_formats() {
+  std::vector<Entry> entries;
   for (const ExportFormat& format : export_formats()) {
     std::string options;
     for (const std::string& key : format.keys) options += " " + option_of(key);
-    text += fmt::format("  {:<9} {}\n            lengths in {}{}, {}; {} dimensions;{}\n", format.name,
-                        format.what, format.unit, format.unit == "the scene's" ? " unit" : "",
-                        format.sizes == "radius"     ? "radii"
-                        : format.sizes == "diameter" ? "diameters"
-                                                     : format.sizes,
-                        dimensions_in_words(format), options.empty() ? " no options" : options);
+    entries.push_back(
+        {format.name, fmt::format("{}\nlengths in {}{}, {}; {} dimensions;{}", format.what, format.unit,
+                                  format.unit == "the scene's" ? " unit" : "",
+                                  format.sizes == "radius"     ? "radii"
+                                  : format.sizes == "diameter" ? "diameters"
+                                                               : format.sizes,
+                                  dimensions_in_words(format), options.empty() ? " no options" : options)});
   }
-  return text;
+  return entries;
+}
+
+/// The words that a key takes in some format.
+std::vector<std::string> words_of(const std::string& key) {
+  std::set<std::string> words;
+  for (const ReferenceGroup& group : scene_reference())
+    if (group.name == "output")
+      for (const ReferenceTable& table : group.tables)
+        for (const ReferenceKey& known : table.keys)
+          if (known.name == key) words.insert(known.words.begin(), known.words.end());
+  return {words.begin(), words.end()};
 }
 
 /// "gmsh, step", or "all but yade" where that is shorter.
@@ -95,30 +115,35 @@ Command export_command() {
   Command command{
       "export",
       "Write a result as other programs read it",
-      {required({"RESULT", &call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read",
-                 "DIR"}),
-       required({"--to", &call->format, "The format, one of those below", "FORMAT"}),
+      {folder(required({"RESULT", &call->folder,
+                        "What bernal pack wrote: its spheres.csv and scene.toml are read", "DIR"})),
+       offering(required({"--to", &call->format, "The format, one of those below", "FORMAT"}),
+                names_of_formats()),
        required({"-o,--output", &call->file, "The file; those that go with it stand beside it", "FILE"})},
-      table_of_formats() +
-          "\nThe line that is printed says unit, sizes, density, types and the largest overlap that rounding "
-          "to\n"
-          "another unit or to single precision made. A scene writes the same with its result:\n"
-          "  [[output]]\n"
-          "  format = \"lammps\"\n"
-          "Examples:\n"
-          "  bernal export out --to lammps -o bed.data --density 2650 --types 3\n"
-          "  bernal export out --to nrrd -o bed.nrrd --resolution 512 --values labels\n"
-          "  bernal export out --to gmsh -o rve.geo --contact gap && python3 rve.py\n"
-          "  bernal export out --to povray -o bed.pov && povray +A +W1200 +H900 bed.pov\n"
-          "Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.",
+      {.text =
+           "The line that is printed says unit, sizes, density, types and the largest overlap that "
+           "rounding to another unit or to single precision made. A scene writes the same with its result, "
+           "if it has a table [[output]] with a line format = \"lammps\" and the options below as keys. "
+           "bernal import goes the other way.",
+       .lists = {{.title = "Formats", .entries = entries_of_formats()}},
+       .examples = {{"bernal export out --to lammps -o bed.data --density 2650 --types 3",
+                     "in metres, kilograms and seconds, atoms of three types by size"},
+                    {"bernal export out --to nrrd -o bed.nrrd --resolution 512 --values labels",
+                     "an image: which sphere is where"},
+                    {"bernal export out --to gmsh -o rve.geo --contact gap && python3 rve.py",
+                     "a mesh of tetrahedra"},
+                    {"bernal export out --to povray -o bed.pov && povray +A +W1200 +H900 bed.pov",
+                     "a picture"}},
+       .exit_codes = {{"0", "done"}, {"2", "bad input"}, {"3", "stopped by Ctrl-C, nothing written"}}},
       [call] { return export_result(*call); }};
   for (const ExportKey& key : export_keys()) {
     std::string placeholder = key.name;
     for (char& c : placeholder) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     command.options.push_back(
-        {option_of(key.name),
-         [call = call.get(), name = key.name](const std::string& word) { call->words[name] = word; },
-         fmt::format("{} ({})", key.what, formats_with(key.name)), placeholder});
+        offering({option_of(key.name),
+                  [call = call.get(), name = key.name](const std::string& word) { call->words[name] = word; },
+                  fmt::format("{} ({})", key.what, formats_with(key.name)), placeholder},
+                 words_of(key.name)));
   }
   command.options.push_back(quiet_option(call->quiet, "Print nothing but errors"));
   return command;

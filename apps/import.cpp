@@ -91,16 +91,22 @@ int import_file(const ImportCall& call) try {
   return exit_code::not_reached;
 }
 
+std::vector<std::string> names_of_import_formats() {
+  std::vector<std::string> names;
+  for (const ImportFormat& format : import_formats()) names.push_back(format.name);
+  return names;
+}
+
 /// Two lines a format, from the list of formats.
-std::string table_of_import_formats() {
-  std::string text = "Formats, told by the file's name and its first bytes:\n";
+std::vector<Entry> entries_of_import_formats() {
+  std::vector<Entry> entries;
   for (const ImportFormat& format : import_formats()) {
     std::string of;
     for (const std::string& option : format.options) of += " --" + option;
-    text += fmt::format("  {:<9} {}\n            unit: {}{}{}\n", format.name, format.what, format.unit,
-                        of.empty() ? "" : ";", of);
+    entries.push_back(
+        {format.name, fmt::format("{}\nunit: {}{}{}", format.what, format.unit, of.empty() ? "" : ";", of)});
   }
-  return text;
+  return entries;
 }
 
 }  // namespace
@@ -112,9 +118,11 @@ Command import_command() {
       "import",
       "Take over another program's packing, as a result that verify, measure, export and start read",
       {required({"FILE", &call->file, "What the other program wrote", "CSV|DUMP|GSD|…"}),
-       required({"-o,--output", &call->folder, "Folder for the result; made if it does not exist", "DIR"}),
-       {"--from", &options.format, "The format, one of those below; if absent it is told by the file",
-        "FORMAT"},
+       folder(required(
+           {"-o,--output", &call->folder, "Folder for the result; made if it does not exist", "DIR"})),
+       offering({"--from", &options.format,
+                 "The format, one of those below; if absent it is told by the file", "FORMAT"},
+                names_of_import_formats()),
        {"--columns", &options.columns,
         "Of a table, in its order: coordinates, r for the radius or d for the diameter, - for another "
         "column; or "
@@ -122,25 +130,28 @@ Command import_command() {
         "x,y,z,r"},
        {"--diameter", &options.diameter, "Of every sphere, where the file has no sizes", "D"},
        excludes({"--radius", &options.radius, "The same", "R"}, "--diameter"),
-       {"--radii", &call->radii, "A .npy with the radius of every centre", "FILE.npy"},
-       {"--unit", &call->unit, "Of the file's lengths, where it does not say it: nm, um, mm, cm, m, in, ft",
-        "UNIT"},
+       file({"--radii", &call->radii, "A .npy with the radius of every centre", "FILE.npy"}, {".npy"}),
+       with_units({"--unit", &call->unit,
+                   "Of the file's lengths, where it does not say it: nm, um, mm, cm, m, in, ft", "UNIT"}),
        {"--box", [&options](const std::string& word) { options.box = lengths_in(word, "--box"); },
         "Edges of the box that the spheres lie in, whose corner is at zero: periodic, unless --periodic says "
         "another",
         "a,b,c"},
-       {"--periodic",
-        [&options](const std::string& word) {
-          if (word.empty())
-            throw Error(ErrorCode::bad_argument,
-                        "--periodic names no axis; write xyz or xy, or none for walls all around");
-          options.periodic = word;
-        },
-        "The axes along which the box repeats itself, such as xyz or xy, and along the others has walls; "
-        "none: "
-        "walls all around",
-        "AXES"},
-       {"--container", &call->container, "A scene, whose container the spheres lie in", "SCENE.toml"},
+       offering(
+           {"--periodic",
+            [&options](const std::string& word) {
+              if (word.empty())
+                throw Error(ErrorCode::bad_argument,
+                            "--periodic names no axis; write xyz or xy, or none for walls all around");
+              options.periodic = word;
+            },
+            "The axes along which the box repeats itself, such as xyz or xy, and along the others has walls; "
+            "none: "
+            "walls all around",
+            "AXES"},
+           {"xyz", "xy", "none"}),
+       file({"--container", &call->container, "A scene, whose container the spheres lie in", "SCENE.toml"},
+            {".toml"}),
        {"--shift", [&options](const std::string& word) { options.shift = lengths_in(word, "--shift"); },
         "Added to every centre first", "x,y,z"},
        within({"--frame", &call->frame, "Of a trajectory, from 1; the last if absent", "N"}, 1, 1 << 30),
@@ -150,21 +161,24 @@ Command import_command() {
         "Copy the CAD files of the container beside the spheres too, so that the folder stands for itself"},
        {"--no-view", &call->no_view, "Leave the view to turn out of report.html, which is then smaller"},
        quiet_option(call->quiet, "Print nothing but errors")},
-      table_of_import_formats() +
-          "\nThe spheres lie in the container of --container, else in --box, else in the file's own box, "
-          "else in "
-          "the\nbounds of the spheres as walls; the printed lines say which. They come in the order of their "
-          "numbers where\nthey have some; indices count from 0. Overlaps are no reason to refuse: the result "
-          "is "
-          "certified, or not, and\nthe ten worst overlaps and protrusions are listed, here and in "
-          "report.json. "
-          "Then:\n"
-          "  bernal verify DIR                       exits 1 where spheres overlap\n"
-          "  bernal pack DIR/scene.toml -o OTHER     begins from them, pushes them apart\n"
-          "Examples:\n"
-          "  bernal import bed.csv --columns x,y,z,d --unit mm --box 10,10,20 -o bed\n"
-          "  bernal import dump.lammpstrj --unit m --frame 7 -o bed\n"
-          "  bernal import centers.npy --from openmc --radius 0.0425 --container vessel.toml -o bed\n"
-          "Exit codes: 0 imported, certified or not; 2 bad input; 3 stopped by Ctrl-C, nothing written.",
+      {.text =
+           "The spheres lie in the container of --container, else in --box, else in the file's own box, "
+           "else in the bounds of the spheres as walls; the printed lines say which. They come in the order "
+           "of their numbers where they have some; indices count from 0.\n\nOverlaps are no reason to "
+           "refuse: the result is certified, or not, and the ten worst overlaps and protrusions are "
+           "listed, here and in report.json.",
+       .lists = {{.title = "Formats",
+                  .text = "told by the file's name and its first bytes.",
+                  .entries = entries_of_import_formats()}},
+       .examples = {{"bernal import bed.csv --columns x,y,z,d --unit mm --box 10,10,20 -o bed",
+                     "a table of diameters, in a periodic box"},
+                    {"bernal import dump.lammpstrj --unit m --frame 7 -o bed", "one frame of a trajectory"},
+                    {"bernal import centers.npy --from openmc --radius 0.0425 --container vessel.toml -o bed",
+                     "equal spheres in the container of a scene"},
+                    {"bernal verify bed", "exits 1 where spheres overlap"},
+                    {"bernal pack bed/scene.toml -o other", "begins from them, pushes them apart"}},
+       .exit_codes = {{"0", "imported, certified or not"},
+                      {"2", "bad input"},
+                      {"3", "stopped by Ctrl-C, nothing written"}}},
       [call] { return import_file(*call); }};
 }

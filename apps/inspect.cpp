@@ -169,10 +169,11 @@ Command inspect_command() {
   const auto call = std::make_shared<InspectCall>();
   return {"inspect",
           "Say what a CAD file is and whether it can be a container",
-          {required({"MESH", &call->mesh,
-                     "The file: STL, OBJ, OFF, PLY, 3MF, AMF, glTF, Collada, FBX, STEP, IGES, BREP"}),
-           {"--unit", &call->unit, "Unit of the file's lengths: nm, um, mm, cm, m, in, ft; unknown if absent",
-            "UNIT"},
+          {file(required({"MESH", &call->mesh,
+                          "The file: STL, OBJ, OFF, PLY, 3MF, AMF, glTF, Collada, FBX, STEP, IGES, BREP"}),
+                {mesh_file_endings().begin(), mesh_file_endings().end()}),
+           with_units({"--unit", &call->unit,
+                       "Unit of the file's lengths: nm, um, mm, cm, m, in, ft; unknown if absent", "UNIT"}),
            checked({"--radius", &call->radius,
                     "Count the chambers that spheres of this radius, in the file's lengths, cannot leave",
                     "LENGTH"},
@@ -187,12 +188,13 @@ Command inspect_command() {
             "others grey, as a PLY file to look at",
             "FILE.ply"},
            json_option(call->json)},
-          "A container is closed, does not cross itself, and hangs together in more than edges and corners.\n"
-          "\nExamples:\n"
-          "  bernal inspect part.stl --unit mm                can this CAD file be a container?\n"
-          "  bernal inspect part.stl --places bad.ply         where does it fail? to look at in ParaView or "
-          "MeshLab\n"
-          "  bernal inspect part.stl --radius 0.5 --json      and into how many chambers does it fall?\n"
-          "Exit codes: 0 usable; 1 not usable; 2 bad input.",
+          {.text = "A container is closed, does not cross itself, and hangs together in more than edges and "
+                   "corners.",
+           .examples = {{"bernal inspect part.stl --unit mm", "can this CAD file be a container?"},
+                        {"bernal inspect part.stl --places bad.ply",
+                         "where does it fail? to look at in ParaView or MeshLab"},
+                        {"bernal inspect part.stl --radius 0.5 --json",
+                         "and into how many chambers does it fall?"}},
+           .exit_codes = {{"0", "usable"}, {"1", "not usable"}, {"2", "bad input"}}},
           [call] { return inspect(*call); }};
 }

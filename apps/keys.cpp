@@ -1,11 +1,29 @@
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "bernal/io/json.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "bernal/scene/scene_reference.hpp"
 #include "commands.hpp"
+
+namespace {
+
+std::vector<std::string> names_in_scenes() {
+  std::vector<std::string> names;
+  for (const bernal::ReferenceGroup& group : bernal::scene_reference()) {
+    names.push_back(group.name);
+    for (const bernal::ReferenceTable& table : group.tables) names.push_back(table.name);
+  }
+  std::ranges::sort(names);
+  names.erase(std::ranges::unique(names).begin(), names.end());
+  return names;
+}
+
+}  // namespace
 
 Command keys_command() {
   const auto name = std::make_shared<std::string>();
@@ -14,20 +32,20 @@ Command keys_command() {
   return {
       "keys",
       "Say what a scene may hold: every key with its default",
-      {{"NAME", name.get(),
-        "A container, a distribution of sizes, a stage or a format of [[output]]; a line each of all if "
-        "absent"},
+      {offering({"NAME", name.get(),
+                 "A container, a distribution of sizes, a stage or a format of [[output]]; a line each of "
+                 "all if absent"},
+                names_in_scenes()),
        json_option(*json),
        {"--schema", schema.get(), "Print a JSON Schema of scenes, for editors and programs"}},
-      "Examples:\n"
-      "  bernal keys              all containers, distributions and stages, a line each\n"
-      "  bernal keys relax        the keys of a stage, their defaults and ranges\n"
-      "  bernal keys output       the formats of [[output]]; likewise stage, container, diameter\n"
-      "  bernal keys --json       all of it, for programs\n"
-      "  bernal keys --schema > scene.schema.json\n"
-      "                           an editor that knows TOML checks and completes a scene whose first line\n"
-      "                           is #:schema ./scene.schema.json\n"
-      "Exit codes: 0 done; 2 bad input.",
+      {.examples = {{"bernal keys", "all containers, distributions and stages, a line each"},
+                    {"bernal keys relax", "the keys of a stage, their defaults and ranges"},
+                    {"bernal keys output", "the formats of [[output]]; likewise stage, container, diameter"},
+                    {"bernal keys --json", "all of it, for programs"},
+                    {"bernal keys --schema > scene.schema.json",
+                     "an editor that knows TOML checks and completes a scene whose first line is #:schema "
+                     "./scene.schema.json"}},
+       .exit_codes = {{"0", "done"}, {"2", "bad input"}}},
       [name, json, schema] {
         if ((*json || *schema) && !name->empty()) {
           // one object that holds all: whoever reads it looks a name up there

@@ -47,25 +47,25 @@ int map(MapCall& call) {
 
 Command map_command() {
   const auto call = std::make_shared<MapCall>();
-  return {"map",
-          "Map how densely all mixtures of two lognormal populations pack",
-          {within(required({"SIGMA_A", &call->options.sigma_a,
-                            "Width of ln(diameter) of population a, 0: equal spheres"}),
-                  0.0, 3.0),
-           within(required({"SIGMA_B", &call->options.sigma_b, "That of b"}), 0.0, 3.0),
-           required({"-o,--output", &call->folder,
-                     "Folder for map.csv and map.svg; made if it does not exist", "DIR"}),
-           list_of(2, {"--ratios", &call->ratios,
-                       "From which ratio of the mean diameters, b over a, to which; 1,10 if absent", "R,R"}),
-           within({"--points", &call->options.points, "Along each axis; 1,000 if absent", "N"}, 2, 20'000),
-           rods_option(call->options.rods, 2, 1'000'000), quiet_option(call->quiet)},
-          R"(The axes: w, the share of b in the volume of the spheres, from 0 to 1, and R, the ratio of the
-volume-weighted mean diameters, on a logarithmic axis. map.csv has a line ratio,share,phi a point.
-The rod model is that of bernal predict; its error too.
-
-Examples:
-  bernal map 0 0 -o out                         two sizes: where is the optimum?
-  bernal map 0.3 0.6 --ratios 0.1,10 -o out     a million mixtures, in the time it takes to fetch coffee
-Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.)",
-          [call] { return map(*call); }};
+  return {
+      "map",
+      "Map how densely all mixtures of two lognormal populations pack",
+      {within(required({"SIGMA_A", &call->options.sigma_a,
+                        "Width of ln(diameter) of population a, 0: equal spheres"}),
+              0.0, 3.0),
+       within(required({"SIGMA_B", &call->options.sigma_b, "That of b"}), 0.0, 3.0),
+       folder(required({"-o,--output", &call->folder,
+                        "Folder for map.csv and map.svg; made if it does not exist", "DIR"})),
+       list_of(2, {"--ratios", &call->ratios,
+                   "From which ratio of the mean diameters, b over a, to which; 1,10 if absent", "R,R"}),
+       within({"--points", &call->options.points, "Along each axis; 1,000 if absent", "N"}, 2, 20'000),
+       rods_option(call->options.rods, 2, 1'000'000), quiet_option(call->quiet)},
+      {.text = "The axes: w, the share of b in the volume of the spheres, from 0 to 1, and R, the ratio of "
+               "the volume-weighted mean diameters, on a logarithmic axis. map.csv has a line "
+               "ratio,share,phi a point. The rod model is that of bernal predict; its error too.",
+       .examples = {{"bernal map 0 0 -o out", "two sizes: where is the optimum?"},
+                    {"bernal map 0.3 0.6 --ratios 0.1,10 -o out",
+                     "a million mixtures, in the time it takes to fetch coffee"}},
+       .exit_codes = {{"0", "done"}, {"2", "bad input"}, {"3", "stopped by Ctrl-C, nothing written"}}},
+      [call] { return map(*call); }};
 }

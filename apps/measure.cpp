@@ -324,7 +324,8 @@ Command measure_command() {
   return {
       "measure",
       "Contacts, rattlers, g(r), chambers, porosity near walls, order, sizes against those asked for",
-      {required({"DIR", &call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read"}),
+      {folder(required(
+           {"DIR", &call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read"})),
        within({"--gap", &call->options.contact_gap,
                "Spheres touch below this gap over the sum of their radii; 0.002 if absent", "RATIO"},
               0.0, 1.0),
@@ -335,14 +336,15 @@ Command measure_command() {
        needs({"-o,--output", &call->picture, "The file for the section", "FILE.svg"}, "--section"),
        threads_option(call->threads, "the answer"),
        json_option(call->json)},
-      "Rattlers are taken out one after the other until every sphere left is held by D + 1 contacts.\n"
-      "In a container: the chambers that the smallest spheres cannot leave, with the packing fraction "
-      "of\n"
-      "each, and what no sphere can cover; porosity over the distance from the wall, the packing "
-      "fraction\n"
-      "of the core (more than 3 mean diameters from it) and near it; whether small spheres gather "
-      "there.\n"
-      "In three dimensions: the share of the spheres whose neighbours lie as in a crystal.\n"
-      "Exit codes: 0 done; 2 bad input.",
+      {.text = "Rattlers are taken out one after the other until every sphere left is held by D + 1 "
+               "contacts.\n\nIn a container: the chambers that the smallest spheres cannot leave, with the "
+               "packing fraction of each, and what no sphere can cover; porosity over the distance from the "
+               "wall, the packing fraction of the core (more than 3 mean diameters from it) and near it; "
+               "whether small spheres gather there.\n\nIn three dimensions: the share of the spheres whose "
+               "neighbours lie as in a crystal.",
+       .examples = {{"bernal measure out", "everything, for people"},
+                    {"bernal measure out --json", "everything, for programs"},
+                    {"bernal measure out --section \"z = 1.5\" -o section.svg", "a picture of a section"}},
+       .exit_codes = {{"0", "done"}, {"2", "bad input"}}},
       [call] { return measure_folder(*call); }};
 }

@@ -70,6 +70,12 @@ Scene scene_of(const PackCall& call) {
   return read_scene(call.scene);
 }
 
+std::vector<std::string> scene_and_mesh_endings() {
+  std::vector<std::string> endings{".toml"};
+  for (const std::string_view ending : mesh_file_endings()) endings.emplace_back(ending);
+  return endings;
+}
+
 void print_result(const Packing& packing, const WrittenPacking& written) {
   say(stderr, "packed     {}, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
       packing.spheres.size() == 1 ? "1 sphere" : grouped(packing.spheres.size()) + " spheres",
@@ -124,36 +130,51 @@ int pack(const PackCall& call) {
 
 Command pack_command() {
   const auto call = std::make_shared<PackCall>();
-  return {"pack",
-          "Run a scene and write the packing, its report and its proof",
-          {required({"SCENE", &call->scene, "The scene, a TOML file; or a mesh, with its unit and sizes",
-                     "SCENE|MESH"}),
-           {"-o,--output", &call->folder,
-            "Folder for the results; made if it does not exist; named after the scene if absent", "DIR"},
-           {"--unit", &call->unit, "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft", "UNIT"},
-           {"--diameter", &call->diameter, "Of every sphere in a mesh", "D"},
-           excludes(
-               list_of(2, {"--lognormal", &call->lognormal, "Lognormal diameters in a mesh", "MEDIAN,SIGMA"}),
-               "--diameter"),
-           {"--with-mesh", &call->with_mesh,
-            "Copy the CAD files, and what the scene starts from, beside the spheres too, so that the folder "
-            "stands for itself"},
-           {"--no-view", &call->no_view,
-            "Leave the view to turn out of report.html, which is then smaller: a picture and plots"},
-           seed_option("Instead of the scene's; one seed gives one packing, bit for bit",
-                       [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
-           threads_option(call->threads, "the result"),
-           quiet_option(call->quiet, "Print nothing but errors")},
-          "Examples:\n"
-          "  bernal pack data/scenes/hopper.toml                   results in hopper/\n"
-          "  bernal pack bracket.stl --unit mm --diameter 2        no scene needed; results in bracket/\n"
-          "  bernal pack bracket.stl --unit mm --lognormal 2,0.3   median 2 mm, sigma 0.3\n\n"
-          "Writes spheres.csv, spheres.vtp, scene.toml, report.json, report.html and, in two and three\n"
-          "dimensions, packing.svg, and what the scene's [[output]] tables ask for: all or none.\n"
-          "For a mesh, prints the scene that the flags stand for, ready to be kept and changed.\n"
-          "Ctrl-C ends the run at the next safe point and writes what is there, certified.\n"
-          "Exit codes: 0 done; 2 bad input, nothing written; 3 ended without reaching what the scene asks:\n"
-          "the outcome is full, hit_limit, cancelled, or loose: all spheres are there, but jammed more than\n"
-          "0.05 below random close packing of their sizes; its reason says by how much, and the likely why.",
-          [call] { return pack(*call); }};
+  return {
+      "pack",
+      "Run a scene and write the packing, its report and its proof",
+      {file(required({"SCENE", &call->scene, "The scene, a TOML file; or a mesh, with its unit and sizes",
+                      "SCENE|MESH"}),
+            scene_and_mesh_endings()),
+       folder({"-o,--output", &call->folder,
+               "Folder for the results; made if it does not exist; named after the scene if absent", "DIR"}),
+       with_units({"--unit", &call->unit, "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft", "UNIT"}),
+       {"--diameter", &call->diameter, "Of every sphere in a mesh", "D"},
+       excludes(
+           list_of(2, {"--lognormal", &call->lognormal, "Lognormal diameters in a mesh", "MEDIAN,SIGMA"}),
+           "--diameter"),
+       {"--with-mesh", &call->with_mesh,
+        "Copy the CAD files, and what the scene starts from, beside the spheres too, so that the folder "
+        "stands for itself"},
+       seed_option("Instead of the scene's; one seed gives one packing, bit for bit",
+                   [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
+       threads_option(call->threads, "the result"),
+       quiet_option(call->quiet, "Print nothing but errors")},
+      {.text = "Ctrl-C ends the run at the next safe point and writes what is there, certified. For a "
+               "mesh, prints the scene that the flags stand for, ready to be kept and changed. What would "
+               "run bernal explain says before; the "
+               "result is for bernal verify, bernal measure and bernal export.",
+       .lists = {{.title = "Files",
+                  .text = "what is written into DIR, all or none, with what the scene's [[output]] tables "
+                          "ask for.",
+                  .entries = {{"spheres.csv", "the spheres, in the scene's unit"},
+                              {"spheres.vtp", "the same for ParaView"},
+                              {"scene.toml",
+                               "the scene with every default, which verify, measure and "
+                               "export read beside the spheres"},
+                              {"report.json", "how it went, what was measured, the certificate"},
+                              {"report.html", "the same to look at"},
+                              {"packing.svg", "a picture, in two and three dimensions"}}}},
+       .examples = {{"bernal pack data/scenes/hopper.toml", "results in hopper/"},
+                    {"bernal pack bracket.stl --unit mm --diameter 2",
+                     "no scene needed; results in bracket/"},
+                    {"bernal pack bracket.stl --unit mm --lognormal 2,0.3", "median 2 mm, sigma 0.3"}},
+       .exit_codes = {{"0", "done"},
+                      {"2", "bad input, nothing written"},
+                      {"3",
+                       "ended without reaching what the scene asks: the outcome is full, hit_limit, "
+                       "cancelled, or loose: all spheres are there, but jammed more than 0.05 below "
+                       "random close packing of their sizes; its reason says by how much, and the "
+                       "likely why"}}},
+      [call] { return pack(*call); }};
 }

@@ -181,28 +181,41 @@ int predict(PredictCall& call) {
   return status_of(answer);
 }
 
-constexpr const char* predict_footer = R"(Sizes, in one of three ways:
-  --lognormal and --classes, as often as needed: one mixture of all. Diameters and volumes are
-  in any unit; volumes are those of the spheres (or masses, of one material), not of the heap.
-  --scene: the [spheres] of a scene, of any distribution.
-  --stdin: a table, one population a line, '#' begins a comment. Lines of
-    l   d43 d32 volume     lognormal, volume- and surface-weighted mean diameter
-    w   d43 sigma volume   lognormal, sigma that of ln(diameter)
-    d   diameter volume    one diameter
-
-Examples:
-  bernal predict --lognormal 0.5                     0.7073
-  bernal predict --classes 1:0.25,5:0.75             a quarter of the volume five times smaller: 0.783
-  bernal predict --lognormal 20,17,3 --classes 100:7 --json
-  bernal predict --stdin d < sieves.txt
-  bernal predict --lognormal 0.5 --solids 0.6        viscosity of a suspension (Krieger and Dougherty)
-  bernal predict --lognormal 0.3 --gap-factor 0.918  if equal spheres packed to 0.60: 0.63
-  bernal predict --lognormal 0.3 --check             and is it true? some seconds
-
-The rod model (Farr and Groot 2009, Farr 2013) knows the sizes alone: smooth spheres, no walls, no
-friction, no segregation. It is up to 0.01 above simulations of lognormal spheres and their mixtures,
-and below the truth where sizes are very different: 0.8595 instead of 0.8729 at best for two sizes.
-Exit codes: 0 done; 2 bad input; with --check 1 not certified, 3 the packing was stopped or is loose.)";
+Explanation predict_explanation() {
+  return {
+      .text =
+          "The rod model (Farr and Groot 2009, Farr 2013) knows the sizes alone: smooth spheres, no walls, "
+          "no "
+          "friction, no segregation. It is up to 0.01 above simulations of lognormal spheres and their "
+          "mixtures, and below the truth where sizes are very different: 0.8595 instead of 0.8729 at best "
+          "for two sizes.",
+      .lists =
+          {{.title = "Sizes",
+            .text = "in one of three ways.",
+            .entries = {{"--lognormal, --classes",
+                         "as often as needed: one mixture of all. Diameters and volumes are in any unit; "
+                         "volumes are those of the spheres (or masses, of one material), not of the heap"},
+                        {"--scene", "the [spheres] of a scene, of any distribution"},
+                        {"--stdin", "a table, one population a line, '#' begins a comment"}}},
+           {.title = "Lines of --stdin",
+            .entries = {{"l", "d43 d32 volume: lognormal, volume- and surface-weighted mean diameter"},
+                        {"w", "d43 sigma volume: lognormal, sigma that of ln(diameter)"},
+                        {"d", "diameter volume: one diameter"}}}},
+      .examples = {{"bernal predict --lognormal 0.5", "0.7073"},
+                   {"bernal predict --classes 1:0.25,5:0.75",
+                    "a quarter of the volume five times smaller: 0.783"},
+                   {"bernal predict --lognormal 20,17,3 --classes 100:7 --json", "a mixture, for programs"},
+                   {"bernal predict --stdin d < sieves.txt", "a table"},
+                   {"bernal predict --lognormal 0.5 --solids 0.6",
+                    "viscosity of a suspension (Krieger and Dougherty)"},
+                   {"bernal predict --lognormal 0.3 --gap-factor 0.918",
+                    "if equal spheres packed to 0.60: 0.63"},
+                   {"bernal predict --lognormal 0.3 --check", "and is it true? some seconds"}},
+      .exit_codes = {{"0", "done"},
+                     {"1", "with --check: not certified"},
+                     {"2", "bad input"},
+                     {"3", "with --check: the packing was stopped or is loose"}}};
+}
 
 }  // namespace
 
@@ -215,7 +228,7 @@ Command predict_command() {
                  "A lognormal population: its width alone, or its mean diameters and its volume",
                  "SIGMA|D43,D32,VOLUME"}),
        {"--classes", &call->classes, "Populations of one diameter each", "D:V,D:V,…"},
-       {"--scene", &call->scene, "The sizes of a scene, a TOML file", "SCENE"},
+       file({"--scene", &call->scene, "The sizes of a scene, a TOML file", "SCENE"}, {".toml"}),
        one_of({"--stdin", &call->format, "Populations from standard input, in this format", "FORMAT"},
               {"l", "d", "w"}),
        rods_option(call->rods, 2, 10'000'000),
@@ -237,14 +250,16 @@ Command predict_command() {
                      "So many; 10,000 if absent, more for wide distributions", "N"},
                     1, 10'000'000),
              "--check"),
-       needs({"--stage",
-              [call = call.get()](const std::string& name) { call->packing.stage = stage_named(name); },
-              "What packs them, relax or grow; relax if absent", "NAME"},
-             "--check"),
+       offering(
+           needs({"--stage",
+                  [call = call.get()](const std::string& name) { call->packing.stage = stage_named(name); },
+                  "What packs them, relax or grow; relax if absent", "NAME"},
+                 "--check"),
+           {"relax", "grow"}),
        needs(seed_option("Of that packing; 1 if absent",
                          [call = call.get()](std::uint64_t seed) { call->packing.seed = seed; }),
              "--check"),
        quiet_option(call->quiet, "Show no progress")},
-      predict_footer,
+      predict_explanation(),
       [call] { return predict(*call); }};
 }

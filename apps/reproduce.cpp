@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -50,19 +51,20 @@ int reproduce(const ReproduceCall& call) {
 Command reproduce_command() {
   const auto call = std::make_shared<ReproduceCall>();
   std::vector<std::string> names;
-  std::string footer = "What NAME may be, and the time it takes on two cores:\n";
+  std::vector<Entry> figures;
   for (const Figure& figure : all_figures()) {
     names.emplace_back(figure.name);
-    footer += fmt::format("  {:<10}{}: {}{}{}\n", figure.name, figure.what, figure.time,
-                          figure.packs ? " *" : "", figure.sized ? " °" : "");
+    figures.push_back(
+        {std::string(figure.name), fmt::format("{}: {}{}{}", figure.what, figure.time,
+                                               figure.packs ? " *" : "", figure.sized ? " °" : "")});
   }
   return {
       "reproduce",
       "Compute a published figure, table or paper again: Zhao 2007, Han 2005, Farr 2013",
       {one_of(required({"NAME", &call->name, "Which of those below"}), names),
-       required({"-o,--output", &call->folder,
-                 "Folder for NAME.svg and NAME.csv, of a paper also NAME.md; made if it does not exist",
-                 "DIR"}),
+       folder(required(
+           {"-o,--output", &call->folder,
+            "Folder for NAME.svg and NAME.csv, of a paper also NAME.md; made if it does not exist", "DIR"})),
        {"--pack", &call->pack, "Also pack more of the sizes in three dimensions: minutes"},
        within({"--spheres", &call->spheres,
                "Packings of at most so many spheres: quick, and rougher than what is published", "N"},
@@ -70,20 +72,33 @@ Command reproduce_command() {
        seed_option("Of the packings; 1 if absent",
                    [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
        quiet_option(call->quiet)},
-      footer +
-          R"(  * with --pack more packings; in zhao2007 the published loop with 10,000 spheres of all sizes
-  ° with --spheres smaller packings: zhao2007 --spheres 1000 takes a minute, --spheres 100 four seconds
-
-A paper's page, NAME.md, puts printed and own values side by side and says where they differ and why, as
-far as that is known; it names the CSV and SVG files beside it. All appear together, or none.
-
-Sources
-  Zhao Liang, Li Shuixiang, Liu Yuewu: Numerical simulation of sphere packing with arbitrary diameter
-  distribution. Chinese Journal of Computational Physics (2007, in Chinese).
-  K. Han, Y. T. Feng, D. R. J. Owen: Sphere packing with a geometric based compression algorithm. Powder
-  Technology 155, 33 (2005).
-  R. S. Farr: Random close packing fractions of lognormal distributions of hard spheres. Powder
-  Technology 245, 28 (2013).
-Exit codes: 0 done; 2 bad input; 3 stopped by Ctrl-C, nothing written.)",
+      {.text =
+           "A paper's page, NAME.md, puts printed and own values side by side and says where they differ and "
+           "why, as far as that is known; it names the CSV and SVG files beside it. All appear together, or "
+           "none.",
+       .lists =
+           {{.title = "Names", .text = "and the time that each takes on two cores.", .entries = figures},
+            {.title = "Marks",
+             .entries = {{"*",
+                          "with --pack more packings; in zhao2007 the published loop with 10,000 spheres "
+                          "of all sizes"},
+                         {"°",
+                          "with --spheres smaller packings: zhao2007 --spheres 1000 takes a minute, "
+                          "--spheres 100 four seconds"}}},
+            {.title = "Sources",
+             .entries =
+                 {{"zhao2007, fig1 to fig6 and tables",
+                   "Zhao Liang, Li Shuixiang, Liu Yuewu: Numerical simulation of sphere packing with "
+                   "arbitrary "
+                   "diameter distribution. Chinese Journal of Computational Physics (2007, in Chinese)."},
+                  {"han2005",
+                   "K. Han, Y. T. Feng, D. R. J. Owen: Sphere packing with a geometric based "
+                   "compression algorithm. Powder Technology 155, 33 (2005)."},
+                  {"farr2013",
+                   "R. S. Farr: Random close packing fractions of lognormal distributions of hard "
+                   "spheres. Powder Technology 245, 28 (2013)."}}}},
+       .examples = {{"bernal reproduce fig6 -o out", "a figure"},
+                    {"bernal reproduce zhao2007 --spheres 1000 -o zhao", "a paper, in a minute"}},
+       .exit_codes = {{"0", "done"}, {"2", "bad input"}, {"3", "stopped by Ctrl-C, nothing written"}}},
       [call] { return reproduce(*call); }};
 }

@@ -123,16 +123,22 @@ Command verify_command() {
   return {
       "verify",
       "Certify files from scratch: no overlap, nothing outside",
-      {required({"DIR", &call->target,
-                 "What bernal pack wrote, or one CSV file whose header names x, y, z and r or d",
-                 "DIR|FILE.csv"}),
-       {"--scene", &call->scene, "The scene that names the container, if not DIR/scene.toml", "SCENE.toml"},
+      {file(required({"DIR", &call->target,
+                      "What bernal pack wrote, or one CSV file whose header names x, y, z and r or d",
+                      "DIR|FILE.csv"}),
+            {".csv"}),
+       file({"--scene", &call->scene, "The scene that names the container, if not DIR/scene.toml",
+             "SCENE.toml"},
+            {".toml"}),
        {"--list{all}", &call->list,
         "Name every overlapping pair and protruding sphere; --list=N: the N worst of each"},
        threads_option(call->threads, "the answer"),
        json_option(call->json)},
-      "Every near pair and every near wall is decided: in double arithmetic where a proven error bound "
-      "allows,\n"
-      "else exactly. Exit codes: 0 certified; 1 not; 2 bad input.",
+      {.text =
+           "Every near pair and every near wall is decided: in double arithmetic where a proven error bound "
+           "allows, else exactly.",
+       .examples = {{"bernal verify out", "what bernal pack wrote"},
+                    {"bernal verify bed.csv --scene scene.toml --list", "other spheres, and what is wrong"}},
+       .exit_codes = {{"0", "certified"}, {"1", "not certified"}, {"2", "bad input"}}},
       [call] { return verify(*call); }};
 }

@@ -10,9 +10,9 @@ write_basic_package_version_file(
 install(FILES
   ${PROJECT_BINARY_DIR}/bernal-config.cmake ${PROJECT_BINARY_DIR}/bernal-config-version.cmake
   ${PROJECT_SOURCE_DIR}/cmake/bernal_components.cmake
-  DESTINATION ${config})
+  DESTINATION ${config} COMPONENT development)
 
 # For editors and programs: what a scene may say and what report.json says.
 install(FILES
   ${PROJECT_SOURCE_DIR}/data/schemas/scene.schema.json ${PROJECT_SOURCE_DIR}/data/schemas/report.schema.json
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/bernal/schemas)
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bernal/schemas COMPONENT command)

@@ -139,6 +139,8 @@ std::string known_not_to_be_a_mesh(const std::filesystem::path& file) {
 
 namespace bernal {
 
+std::span<const std::string_view> mesh_file_endings() { return cad::read_formats; }
+
 bool is_mesh_file_name(const std::filesystem::path& file) {
   return std::ranges::find(cad::read_formats, cad::extension_of(file)) != std::end(cad::read_formats);
 }

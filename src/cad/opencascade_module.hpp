@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 
 namespace bernal::cad {
 
@@ -6,5 +7,8 @@ namespace bernal::cad {
 /// OpenCASCADE is seventy libraries, a quarter of a second. nullptr where there is no module, or no
 /// OpenCASCADE on this machine.
 void* opencascade_function(const char* name);
+
+/// What to do where there is none: "install it and build again".
+std::string opencascade_remedy();
 
 }  // namespace bernal::cad

@@ -1,6 +1,8 @@
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <initializer_list>
+#include <vector>
 
 #include "cad/caged_reader.hpp"
 #include "cad/known_formats.hpp"
@@ -29,14 +31,38 @@ std::optional<ShapeFormat> shape_format(const std::filesystem::path& file) {
 
 }  // namespace
 
-/// Looks for the module beside this library, where it was built or is installed.
-void* opencascade_function(const char* name) {
+namespace {
+
+/// Where the module may be: under its name alone where this was built, which the program's RUNPATH knows; beside
+/// the program where both are installed; where packages put it. A folder that anybody may write to is not among
+/// them.
+std::vector<std::filesystem::path> places_of_module() {
   std::error_code unknown;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  for (const char* module : std::initializer_list<const char*>{BERNAL_OPENCASCADE_MODULES})
-    if (void* loaded = dlopen((program.parent_path() / module).c_str(), RTLD_LAZY | RTLD_LOCAL))
+  std::vector<std::filesystem::path> places;
+  for (const std::filesystem::path module : std::initializer_list<const char*>{BERNAL_OPENCASCADE_MODULES})
+    places.push_back(module.has_parent_path() ? program.parent_path() / module : module);
+  return places;
+}
+
+}  // namespace
+
+void* opencascade_function(const char* name) {
+  for (const std::filesystem::path& module : places_of_module())
+    if (void* loaded = dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL))
       if (void* symbol = dlsym(loaded, name)) return symbol;
   return nullptr;
+}
+
+std::string opencascade_remedy() {
+  const auto places = places_of_module();
+  if (places.empty()) return "install it and build again";
+  std::error_code unknown;
+  const bool is_there = std::ranges::any_of(places, [&](const std::filesystem::path& module) {
+    return module.has_parent_path() && std::filesystem::exists(module, unknown);
+  });
+  return is_there ? "install its libraries, on Debian by apt install " BERNAL_OPENCASCADE_PACKAGE
+                  : "install " + places.front().string() + ", which the Debian package bernal has";
 }
 
 bool opencascade_reads(const std::filesystem::path& file) { return shape_format(file).has_value(); }
@@ -50,9 +76,8 @@ ReadAttempt read_with_opencascade(const std::filesystem::path& file, double defl
                           reader(file, shape_format(file).value(), deflection, result);
                         } else {
                           result.failure =
-                              "this bernal runs without OpenCASCADE, which reads STEP, IGES and BREP; "
-                              "install it and build again, "
-                              "or export STL";
+                              "this bernal runs without OpenCASCADE, which reads STEP, IGES and BREP; " +
+                              opencascade_remedy() + ", or export STL";
                         }
                         return result;
                       });

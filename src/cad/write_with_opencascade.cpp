@@ -19,8 +19,8 @@ WrittenShapes write_with_opencascade(const SolidShapes& shapes, SolidFormat form
           reinterpret_cast<decltype(&bernal_write_shapes)>(function)(shapes, format, file, result);
         else
           result.failure =
-              "this bernal runs without OpenCASCADE, which writes STEP and BREP; install it and build again, "
-              "or export gmsh";
+              "this bernal runs without OpenCASCADE, which writes STEP and BREP; " + opencascade_remedy() +
+              ", or export gmsh";
         out.text(result.failure);
         out.number(result.solids);
         out.real(result.volume);

@@ -1,7 +1,9 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "bernal/cad/mesh_report.hpp"
 #include "bernal/core/error.hpp"
@@ -36,6 +38,8 @@ class OptionError : public Error {
 /// Whether a file of that name is of a format that is read: STL, OBJ, PLY, OFF, 3MF, AMF, glTF, Collada, FBX,
 /// STEP, IGES, BREP, by its extension in upper or lower case.
 bool is_mesh_file_name(const std::filesystem::path& file);
+/// {".stl", ".obj", …}
+std::span<const std::string_view> mesh_file_endings();
 
 /// Reads a file of any known format, does what the options ask for, and says what came of it. Throws
 /// Error{bad_mesh} when the file is missing, cannot be parsed, holds no faces or coordinates that are not

@@ -1,0 +1,15 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "command_line.hpp"
+
+/// A page of the manual, in the macros man(7), which man-db and mandoc read.
+struct Page {
+  std::string name;  ///< "bernal-pack"; the file is bernal-pack.1
+  std::string text;
+};
+
+/// One page for the command and for each of its commands, from what --help is made of. `version` is
+/// "bernal 0.1.0", `day` "2025-01-31". Pure ASCII; nothing but the arguments is in it.
+std::vector<Page> manual_pages(const Command& bernal, const std::string& version, const std::string& day);

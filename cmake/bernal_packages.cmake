@@ -1,0 +1,114 @@
+# Debian packages of what `cmake --install` installs, each of some of its components: bernal, libbernal-dev and, where
+# the module of Python is built, python3-bernal. cmake/package builds and makes them; tests/packages/run tries them.
+set(doc ${CMAKE_INSTALL_DATADIR}/doc)
+set(examples ${doc}/bernal/examples)
+install(FILES README.md DESTINATION ${doc}/bernal COMPONENT command)
+file(GLOB scenes CONFIGURE_DEPENDS data/scenes/*)
+install(FILES ${scenes} DESTINATION ${examples}/scenes COMPONENT command)
+install(FILES data/meshes/lib3mf_helix.stl data/meshes/hopper.stl data/meshes/block_fillets_bore.step
+  DESTINATION ${examples}/meshes COMPONENT command)  # those of the scenes, and one with surfaces
+
+find_program(BERNAL_SHLIBDEPS dpkg-shlibdeps)
+if(NOT BERNAL_SHLIBDEPS)
+  return()  # this is no Debian
+endif()
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR bernal)
+set(CPACK_PACKAGE_CONTACT "bernal maintainers <maintainers@bernal.invalid>")
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE gzip)  # xz saves a third of 12 MB and takes five times as long
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/debian/dependencies.cmake)
+set(CPACK_BERNAL_PROGRAM ${PROJECT_BINARY_DIR}/bernal)
+set(CPACK_BERNAL_MODULE)
+if(bernal_with_opencascade)
+  set(CPACK_BERNAL_MODULE ${PROJECT_BINARY_DIR}/src/${CMAKE_SHARED_MODULE_PREFIX}bernal_opencascade${CMAKE_SHARED_MODULE_SUFFIX})
+endif()
+set(version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
+
+# A package of the components given, and of the copyright and the changelogs that policy wants of each.
+set(policy ${PROJECT_BINARY_DIR}/policy)
+set(CPACK_COMPONENTS_ALL)
+macro(bernal_package name section description)
+  string(MAKE_C_IDENTIFIER ${name} group)
+  string(TOUPPER ${group} group)
+  install(CODE "
+    set(version ${version})
+    include(${PROJECT_SOURCE_DIR}/cmake/debian/write_changelogs.cmake)
+    write_changelogs(${PROJECT_SOURCE_DIR}/CHANGELOG.md ${policy})" COMPONENT ${group}_POLICY EXCLUDE_FROM_ALL)
+  install(FILES ${policy}/changelog.gz ${policy}/changelog.Debian.gz ${PROJECT_SOURCE_DIR}/cmake/debian/copyright
+    DESTINATION ${doc}/${name} COMPONENT ${group}_POLICY EXCLUDE_FROM_ALL)
+  foreach(component ${ARGN} ${group}_POLICY)
+    list(APPEND CPACK_COMPONENTS_ALL ${component})
+    string(TOUPPER ${component} upper)
+    set(CPACK_COMPONENT_${upper}_GROUP ${group})
+  endforeach()
+  set(CPACK_DEBIAN_${group}_PACKAGE_NAME ${name})
+  set(CPACK_DEBIAN_${group}_PACKAGE_SECTION ${section})
+  set(CPACK_DEBIAN_${group}_DESCRIPTION "${description}")
+endmacro()
+
+# What the command and its module link is found out in debian/dependencies.cmake.
+bernal_package(bernal science
+"packs spheres into CAD parts and proves that nothing overlaps
+bernal fills a CAD part (STL, OBJ, PLY, 3MF, glTF, STEP, …), a simple shape or
+a periodic box with as many spheres of given sizes as fit, or as many as are
+asked for. Then it reads its own file back and decides for every two spheres
+that are near each other, and for every sphere near the wall, whether they
+overlap: in exact arithmetic wherever rounding could matter.
+.
+It measures packings, predicts how densely spheres of given sizes pack, and
+hands packings over to LAMMPS, LIGGGHTS, YADE, OpenMC, Gmsh, POV-Ray and others.
+.
+STEP, IGES and BREP are read and written by the recommended libraries of
+Open CASCADE."
+  command)
+
+set(depends)
+foreach(component IN LISTS bernal_components)
+  list(APPEND depends ${bernal_${component}_debian_packages})
+endforeach()
+list(REMOVE_DUPLICATES depends)
+list(SORT depends)
+list(JOIN depends ", " CPACK_DEBIAN_LIBBERNAL_DEV_PACKAGE_DEPENDS)
+set(CPACK_DEBIAN_LIBBERNAL_DEV_PACKAGE_RECOMMENDS "bernal (= ${version})")  # which has the module of Open CASCADE
+bernal_package(libbernal-dev libdevel
+"packs spheres and proves that nothing overlaps (C++ library)
+bernal fills CAD parts, simple shapes and periodic boxes with spheres of given
+sizes, and certifies packings in exact arithmetic.
+.
+This package has the static libraries, the C++20 headers and what
+find_package(bernal) of CMake needs. Programs that read STEP, IGES or BREP
+need the package bernal where they run."
+  development)
+
+get_cmake_property(components COMPONENTS)
+if(python IN_LIST components)
+  set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_RECOMMENDS "bernal (= ${version})")
+  set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_CONTROL_EXTRA
+    ${CMAKE_CURRENT_LIST_DIR}/debian/python/postinst ${CMAKE_CURRENT_LIST_DIR}/debian/python/prerm)
+  bernal_package(python3-bernal python
+"packs spheres and proves that nothing overlaps (Python module)
+bernal fills CAD parts, simple shapes and periodic boxes with spheres of given
+sizes, and certifies packings in exact arithmetic.
+.
+This package has the module for Python: scenes as classes, spheres as arrays of
+NumPy, progress and pictures in notebooks. The package bernal has what reads
+STEP, IGES and BREP."
+    python)
+endif()
+
+include(CPack)
