@@ -14,16 +14,29 @@ def find(command):
     return found or None
 
 
+def parameters(lines):
+    """Of a section of a docstring: "name : type", and below it, indented, what that is."""
+    parts = []
+    for line in lines:
+        if line.startswith(" ") and parts:
+            parts[-1][1].append(line.strip())
+        elif line.strip():
+            parts.append((line.strip(), []))
+    rows = "".join(f"<dt><code>{html.escape(name, quote=False)}</code></dt><dd>{inline(' '.join(text))}</dd>"
+                   for name, text in parts)
+    return f"<dl>{rows}</dl>"
+
+
 def docs(text):
-    """A docstring as HTML: paragraphs, and what is indented as it stands."""
+    """A docstring as HTML: paragraphs, sections of parameters, and what is indented as it stands."""
     parts = []
     for paragraph in re.split(r"\n\s*\n", (text or "").strip()):
         lines = paragraph.split("\n")
-        if not paragraph:
-            continue
-        if all(line.startswith("    ") or line.startswith(">>>") for line in lines):
-            parts.append("<pre><code>" + html.escape("\n".join(lines), quote=False) + "</code></pre>")
-        else:
+        if len(lines) > 1 and re.fullmatch(r"-{3,}", lines[1].strip()):
+            parts.append(f"<h4>{html.escape(lines[0])}</h4>" + parameters(lines[2:]))
+        elif paragraph and all(line.startswith("    ") or line.startswith(">>>") for line in lines):
+            parts.append("<pre><code>" + html.escape("\n".join(line[4:] for line in lines), quote=False) + "</code></pre>")
+        elif paragraph:
             parts.append("<p>" + inline(" ".join(line.strip() for line in lines)) + "</p>")
     return "\n".join(parts)
 

@@ -28,14 +28,14 @@ def said(value):
     return f"<code>{escaped(json.dumps(value, ensure_ascii=False))}</code>" if value is not None else ""
 
 
-WHERE = {"in_bed": " Between fixed walls.", "in_box": " In periodic boxes."}
+WHERE = {"in_bed": "; between fixed walls", "in_box": "; in periodic boxes"}
 
 
 def keys_table(part):
     rows = []
     for key in part["keys"]:
         must = "required" if key["required"] and key["default"] is None else said(key["default"])
-        help_text = key["help"][:1].upper() + key["help"][1:] + "." + WHERE.get(key["acts"], "")
+        help_text = key["help"] + WHERE.get(key["acts"], "")
         rows.append([cell(f"<code>{escaped(key['name'])}</code>"), cell(phrase(help_text), "what"),
                      cell(phrase(key["expectation"])), cell(must)])
     return table(["key", "what", "value", "default"], rows)
