@@ -146,6 +146,8 @@ Command pack_command() {
        {"--with-mesh", &call->with_mesh,
         "Copy the CAD files, and what the scene starts from, beside the spheres too, so that the folder "
         "stands for itself"},
+       {"--no-view", &call->no_view,
+        "Leave the view to turn out of report.html, which is then smaller: a picture and plots"},
        seed_option("Instead of the scene's; one seed gives one packing, bit for bit",
                    [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
        threads_option(call->threads, "the result"),
