@@ -115,6 +115,13 @@ JobPointer export_job(const PackingPointer& of, const std::string& format,
   });
 }
 
+/// The name of a format's file, where nobody gives one.
+std::string file_of_format(const std::string& name) {
+  for (const ExportFormat& format : export_formats())
+    if (format.name == name) return format.file;
+  throw Error(ErrorCode::bad_argument, "no such format: " + name);
+}
+
 /// `options` is a scene whose container is the mesh; else the file stands for itself.
 JobPointer inspect_job(const Path& name, const Scene* options, std::optional<double> radius,
                        const std::optional<Path>& places) {
@@ -184,6 +191,7 @@ void bind_work(py::module_& module) {
   module.def("write", &write_job);
   module.def("read", &read_job);
   module.def("export", &export_job);
+  module.def("file_of_format", &file_of_format);
   module.def("inspect", &inspect_job);
   module.def("import_", &import_job);
 }

@@ -122,7 +122,7 @@ def attributes_of(kind: type) -> dict[str, str]:
 
 def class_of(kind: type) -> str:
     bases = [str(base) if getattr(base, "__args__", None) else base.__name__
-             for base in getattr(kind, "__orig_bases__", kind.__bases__) if base is not object]  # fmt: skip
+             for base in vars(kind).get("__orig_bases__", kind.__bases__) if base is not object]  # fmt: skip
     bases = [base.replace("typing.", "") for base in bases if base != "Said"]
     made = init_of(kind)
     body = doc(kind.__doc__, "    ") + "".join(f"    {name}: {text}\n" for name, text in attributes_of(kind).items())

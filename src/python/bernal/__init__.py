@@ -33,3 +33,8 @@ __all__ = [
 ]  # fmt: skip
 
 globals().update(CLASSES)
+
+for _name in __all__:  # where users find them, and not where they stand
+    if isinstance(globals()[_name], type):
+        globals()[_name].__module__ = "bernal"
+del _name

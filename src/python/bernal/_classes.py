@@ -20,6 +20,10 @@ def group(name: str) -> dict[str, Any]:
     return next(each for each in REFERENCE if each["name"] == name)
 
 
+def table_of(name: str, of: str) -> dict[str, Any]:
+    return next(each for each in group(name)["tables"] if each["name"] == of)
+
+
 def otherwise(key: dict[str, Any]) -> str:
     """What goes for the key if it is not given, for people; "" where that is nothing."""
     return "" if key["default"] is None else f", default {_toml.text_of(key['default'])}"
@@ -50,6 +54,18 @@ def signature_of(table: dict[str, Any]) -> inspect.Signature:
     parameters = [kinds(name, kinds.POSITIONAL_OR_KEYWORD, default=None) for name in first]
     parameters += [kinds(name, kinds.KEYWORD_ONLY, default=None) for name in keys if name not in first]
     return inspect.Signature(parameters)
+
+
+def names_files(key: dict[str, Any]) -> bool:
+    return key["type"] == "file" or key["name"] == "obstacles"
+
+
+def taken(key: dict[str, Any], value: Any) -> Any:
+    """The value of a key as a scene has it. Names of files go on meaning what they mean here and now."""
+    value = _toml.plain(_surfaces.files_of(value) if names_files(key) else value)
+    if key["type"] == "integer" and isinstance(value, float) and value.is_integer():
+        return int(value)
+    return value
 
 
 class Said:
@@ -83,13 +99,7 @@ class Said:
         return next(key for key in self._table["keys"] if key["name"] == name)
 
     def _taken(self, name: str, value: Any) -> Any:
-        kind = self._key(name)["type"]
-        if kind == "file" or name == "obstacles":
-            value = _surfaces.files_of(value)
-        value = _toml.plain(value)
-        if kind == "integer" and isinstance(value, float) and value.is_integer():
-            return int(value)
-        return value
+        return taken(self._key(name), value)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -167,6 +177,9 @@ class Output(Said):
 
     def _called(self) -> str:
         return f'Output("{self.format}")'
+
+    def _taken(self, name: str, value: Any) -> Any:
+        return _toml.plain(value) if name == "file" else super()._taken(name, value)  # in the folder of the result
 
     def __repr__(self) -> str:
         return "Output(" + ", ".join([repr(self.format), *(f"{k}={v!r}" for k, v in self._said.items())]) + ")"

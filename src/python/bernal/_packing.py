@@ -125,8 +125,7 @@ class Packing:
     def scene(self) -> Scene:
         """The problem that it is an answer to."""
         if self._given_scene is None:
-            core = self._core.scene()
-            self._given_scene = Scene._of(core, core.toml(""))
+            self._given_scene = Scene._of(self._core.scene())
         return self._given_scene
 
     @property
@@ -238,7 +237,7 @@ class Packing:
         """A folder that a scene can begin from."""
         folder = os.path.join(_surfaces.folder(), f"start-{self.hash}")
         if not os.path.isdir(folder):
-            self.write(folder, with_mesh=True, progress=False)
+            self.write(folder, progress=False)
         return folder
 
     @property

@@ -114,9 +114,9 @@ def written(content: bytes, ending: str) -> str:
 
 
 def files_of(value: Any) -> Any:
-    """The name of a file, or of several, in place of what is a mesh or a packing."""
-    if value is None or isinstance(value, (str, os.PathLike)):
-        return value
+    """The whole name of a file, or of several, in place of its name, a mesh or a packing."""
+    if isinstance(value, (str, os.PathLike)):
+        return os.path.abspath(os.fspath(value))
     if hasattr(value, "_as_start"):  # a Packing
         return value._as_start()
     parts = _parts(value)

@@ -119,7 +119,7 @@ def export(
     output = format.replace(**keys) if isinstance(format, Output) else Output(format, **keys)
     of = packing if isinstance(packing, Packing) else read(packing, progress=progress)
     said = dict(output._said)
-    name = os.fspath(file) if file is not None else said.get("file") or output.file
+    name = os.fspath(file) if file is not None else said.get("file") or _core.file_of_format(output.format)
     said.pop("file", None)
     words = {key: value if isinstance(value, str) else _toml.text_of(value) for key, value in said.items()}
     files, note = finish(_core.export(of._core, output.format, words, name), progress)
@@ -175,7 +175,7 @@ def predict(
 def scene_of_sizes(diameters: Any) -> Any:
     """The library's scene of sizes that stand for themselves."""
     text = f'[container]\nkind = "box"\nsize = [1, 1, 1]\n[spheres]\ncount = 1\n{_toml.line("diameter", _toml.plain(diameters))}'
-    return _core.scene(text, os.path.join(os.getcwd(), _errors.MADE_HERE))
+    return _core.scene(text, "/" + _errors.MADE_HERE)
 
 
 def import_(
