@@ -60,6 +60,7 @@ class Arrays(InFolder):
         self.assertTrue(bernal.verify(five))
         self.assertEqual(str(five.picture), "")
         self.assertNotIn("<img", five._repr_html_())
+        self.refuses(bernal.InputError, "dimensions", five.view)
 
     def test_few_spheres(self):
         one = bernal.pack(bernal.Scene(bernal.Sphere(2), radii=1, count=1))
@@ -96,6 +97,11 @@ class Runs(InFolder):
         self.assertIn("packing fraction", page)
         self.assertIn("data:image/svg+xml;base64,", page)
         self.assertIn("<svg", str(packing.section("z = 1")))
+        view = packing.view(height=300)
+        self.assertIn("<html", view.page)
+        self.assertIn("&lt;html", view._repr_html_())
+        self.assertNotIn("<html", view._repr_html_())
+        self.assertIn("height:300px", view._repr_html_())
         self.refuses(bernal.InputError, "plane", lambda: packing.section("nowhere"))
 
     def test_no_place_left_is_an_outcome(self):
@@ -123,6 +129,11 @@ class Runs(InFolder):
         self.assertEqual(measured.g_r.r.shape, measured.g_r.g.shape)
         self.assertIsInstance(measured.g_r.g, np.ndarray)
         self.assertIsNone(measured.walls)
+        cells = measured.per_sphere.cell_volume
+        self.assertEqual((cells.shape, measured.per_sphere.neighbours.shape), ((300,), (300,)))
+        self.assertAlmostEqual(cells.sum() / bernal.pack(small()).volume, 1, 9)
+        vessel = bernal.measure(bernal.pack(bernal.Scene(bernal.Cylinder(3, 6), diameters=1, count=40)))
+        self.assertEqual(set(vessel.per_sphere.chamber), {0})
         self.assertEqual(measured["phi"], measured.phi)
         self.refuses(AttributeError, 'did you mean "rattlers"?', lambda: measured.ratlers)
         self.refuses(bernal.InputError, "gap", lambda: bernal.measure(bernal.pack(small()), gap=2))

@@ -92,13 +92,17 @@ def measure(packing: Packing | PathLike, *, gap: float = 0.002, progress: Progre
     Keys are those of `bernal measure --json`: n, dimension, unit, phi, coordination, rattlers, backbone, by_gap, g_r
     (r, g and error of shape (bins,)), size_correlation, crystalline, chambers, walls, sizes, hash. Lists of numbers
     are arrays. Lengths are in the scene's unit, radii are radii; what there is not is None, such as g_r between walls.
+    Also `per_sphere`, arrays of shape (N,): local_packing_fraction (the sphere's volume over that of its cell in the
+    radical diagram), cell_volume, neighbours (faces of the cell), and in containers chamber (-1: in none).
 
     gap : spheres touch below this gap over the sum of their radii.
     """
     of = packing if isinstance(packing, Packing) else read(packing, progress=progress)
     if not 0 <= gap <= 1:
         raise _errors.InputError("bad_argument", f"gap is a ratio from 0 to 1, not {gap}")
-    measured: Measurements = _records.record(Measurements, finish(_core.measure(of._core, gap), progress), arrays=True)
+    answer, per_sphere = finish(_core.measure(of._core, gap), progress)
+    measured: Measurements = _records.record(Measurements, answer, arrays=True)
+    measured["per_sphere"] = _records.Record(per_sphere)
     return measured
 
 
