@@ -161,6 +161,7 @@ class Runs(InFolder):
         packing = bernal.from_arrays(centers, radii, unit="um", box=[3, 4, 5], periodic="xyz")
         self.assertTrue((packing.centers == centers).all() and (packing.radii == radii).all())
         self.assertEqual((packing.unit, packing.bounds[1].tolist()), ("um", [3, 4, 5]))
+        self.refuses(bernal.InputError, "shape (N, D)", lambda: bernal.from_arrays(centers, [1, 2], unit="mm"))
         vessel = bernal.from_arrays([[0.0, 0.0, 1.0]], 1, unit="mm", container=bernal.Cylinder(1, 2))
         self.assertTrue(bernal.verify(vessel))
         self.assertFalse(bernal.verify(bernal.from_arrays([[0.1, 0, 1]], 1, unit="mm", container=bernal.Cylinder(1, 2))))

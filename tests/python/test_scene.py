@@ -30,6 +30,8 @@ class Classes(InFolder):
         self.assertEqual(bernal.Lognormal(2, 0.3), bernal.Lognormal(median=2, sigma=0.3))
         self.assertEqual(bernal.Cylinder(5, 20), bernal.Cylinder(height=20, radius=5))
         self.assertEqual(bernal.Periodic([1, 2, 3]).size, [1, 2, 3])
+        self.assertEqual(bernal.Polygon([(0, 0), (1, 0), (0, 1)]).vertices, [[0, 0], [1, 0], [0, 1]])
+        self.refuses(TypeError, "takes nothing by position", lambda: bernal.Relax(17))
         self.assertEqual(bernal.Sieve([1, 2], [0, 100]).passing, [0, 100])
         self.refuses(TypeError, "takes median, sigma by position", lambda: bernal.Lognormal(1, 2, 3))
         self.refuses(TypeError, "twice", lambda: bernal.Lognormal(1, median=2))
@@ -55,6 +57,8 @@ class Classes(InFolder):
     def test_docstrings_say_defaults_and_ranges(self):
         self.assertIn("alpha : a number above 0 and of at most 1000000, default 17", bernal.Relax.__doc__)
         self.assertIn("(vertices, faces)", bernal.Mesh.__doc__)
+        self.assertIn("Give alpha or period, or none of them.", bernal.Relax.__doc__)
+        self.assertIn("Give median and sigma and basis or d43 and d32.", bernal.Lognormal.__doc__)
         self.assertIn("overlap : ", bernal.Scene.__doc__)
         for kind in _classes.CLASSES.values():
             for key in kind._table["keys"]:

@@ -40,11 +40,23 @@ def described(keys: list[dict[str, Any]]) -> str:
 
 
 def positional(table: dict[str, Any]) -> list[str]:
-    """The keys that may be given without their names: those that every table needs, in their order."""
-    left_out = {
-        name for choice in table["choices"] for names in choice[1:] for name in names if name not in choice[0]
-    }
-    return [key["name"] for key in table["keys"] if key["required"] and key["name"] not in left_out]
+    """The keys that may be given without their names: those that a table needs, in their order; of a choice the first
+    set of them."""
+    firsts = {name for choice in table["choices"] if [] not in choice for name in choice[0]}
+    others = {name for choice in table["choices"] for names in choice[1:] for name in names if name not in choice[0]}
+    return [
+        key["name"]
+        for key in table["keys"]
+        if (key["required"] or key["name"] in firsts) and key["name"] not in others and key["default"] is None
+    ]
+
+
+def choice_in_words(choice: list[list[str]], table: dict[str, Any]) -> str:
+    """Which keys go together, and whether any need be given."""
+    defaults = {key["name"]: key["default"] for key in table["keys"]}
+    none = any(all(defaults[name] is not None for name in names) for names in choice)
+    sets = [" and ".join(names) for names in choice if names]
+    return f"\nGive {' or '.join(sets)}{', or none of them' if none else ''}.\n"
 
 
 def signature_of(table: dict[str, Any]) -> inspect.Signature:
@@ -191,10 +203,7 @@ class Output(Said):
 
 def _class_of(base: type[Said], table: dict[str, Any], selector: str) -> type[Said]:
     name = "".join(part.capitalize() for part in table["name"].split("_"))
-    choices = "".join(
-        "\nGive " + (" or ".join(" and ".join(names) or "none of them" for names in choice)) + ".\n"
-        for choice in table["choices"]
-    )
+    choices = "".join(choice_in_words(choice, table) for choice in table["choices"])
     more = _surfaces.MESHES if any(key["type"] == "file" for key in table["keys"]) and base is Container else ""
     doc = f"{table['help'][0].upper()}{table['help'][1:]}.\n{choices}{more}\nParameters\n----------\n"
     members = {

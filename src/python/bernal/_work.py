@@ -238,7 +238,12 @@ def from_arrays(
         repeats itself; else the bounds of the spheres.
     """
     points = np.atleast_2d(np.asarray(centers, dtype=float))
-    sizes = np.broadcast_to(np.asarray(radii, dtype=float), points.shape[:1])
+    sizes = np.asarray(radii, dtype=float)
+    if points.ndim != 2 or sizes.shape not in ((), points.shape[:1]):
+        raise _errors.InputError(
+            "bad_argument", f"centers have the shape (N, D) and radii (N,), not {points.shape} and {sizes.shape}"
+        )
+    sizes = np.broadcast_to(sizes, points.shape[:1])
     dimension = points.shape[1]
     names = ["x", "y", "z"][:dimension] if dimension <= 3 else [f"x{k}" for k in range(dimension)]
     rows = np.column_stack([points, sizes]).tolist()
