@@ -118,6 +118,18 @@ class CtrlC(InFolder):
         self.assertEqual(ended.returncode, 0)
 
 
+    def test_a_forked_process_ends_though_its_parent_goes_on(self):
+        program = (
+            "import bernal, threading, time, os, sys\n"
+            "s = bernal.Scene(bernal.Periodic(), diameters=1, count=30000, stages=bernal.Relax(alpha=100))\n"
+            "threading.Thread(target=bernal.pack, args=(s,), daemon=True).start()\n"
+            "time.sleep(0.5)\n"
+            "child = os.fork()\n"
+            "sys.exit(0 if child == 0 else os.waitpid(child, 0)[1])\n"
+        )
+        self.assertEqual(subprocess.run([sys.executable, "-c", program], timeout=60).returncode, 0)
+
+
 class SideBySide(InFolder):
     def test_several_threads_pack_at_once_and_alike(self):
         asked = {seed: bernal.pack(small(), seed=seed).hash for seed in (1, 2)}

@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """Containers that stand in no file: arrays, and what is like a mesh of trimesh, meshio or PyVista."""
 
+import atexit
+import os
+import sys
 import unittest
 import unittest.mock
 from types import SimpleNamespace
@@ -60,6 +63,18 @@ class Surfaces(InFolder):
         with unittest.mock.patch.object(_surfaces, "folder", lambda: "/nowhere"):
             self.assertTrue(bernal.verify("out"))
             self.assertEqual(bernal.pack("scene.toml").hash, bernal.read("out").hash)
+
+    def test_a_forked_process_leaves_them_alone(self):
+        file = scene_of((VERTICES, TRIANGLES)).container.file
+        child = os.fork()
+        if child == 0:
+            try:
+                sys.exit(0 if _surfaces.is_passing(file) and _surfaces.folder() != os.path.dirname(file) else 1)
+            finally:
+                atexit._run_exitfuncs()
+                os._exit(sys.exc_info()[1].code)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        self.assertTrue(os.path.exists(file))
 
     def test_files_are_named_by_paths_too(self):
         self.assertEqual(bernal.inspect(HELIX).faces, bernal.inspect(bernal.Mesh(HELIX), unit="mm").faces)

@@ -8,7 +8,6 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterable
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -22,21 +21,26 @@ process; `Packing.write` copies it beside the result.
 """
 
 
-@lru_cache(maxsize=1)
-def _folder_of(process: int) -> str:
-    folder = tempfile.mkdtemp(prefix="bernal-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return folder
+_folders: dict[int, str] = {}  # of this process, and of those that it was forked from
+
+
+def _remove(process: int) -> None:
+    if process == os.getpid():
+        shutil.rmtree(_folders[process], ignore_errors=True)
 
 
 def folder() -> str:
     """Where what this process makes for itself stands until it ends."""
-    return _folder_of(os.getpid())
+    process = os.getpid()
+    if process not in _folders:
+        _folders[process] = tempfile.mkdtemp(prefix="bernal-")
+        atexit.register(_remove, process)
+    return _folders[process]
 
 
 def is_passing(file: str) -> bool:
-    """Whether the file will be gone once this process has ended."""
-    return _folder_of.cache_info().currsize > 0 and os.path.abspath(file).startswith(folder() + os.sep)
+    """Whether the file will be gone once such a process has ended."""
+    return any(os.path.abspath(file).startswith(each + os.sep) for each in _folders.values())
 
 
 def _refuse(message: str) -> None:
