@@ -117,7 +117,6 @@ class CtrlC(InFolder):
         ended = subprocess.run([sys.executable, "-c", program], timeout=60)
         self.assertEqual(ended.returncode, 0)
 
-
     def test_a_forked_process_ends_though_its_parent_goes_on(self):
         program = (
             "import bernal, threading, time, os, sys\n"
@@ -135,7 +134,9 @@ class SideBySide(InFolder):
         asked = {seed: bernal.pack(small(), seed=seed).hash for seed in (1, 2)}
         made = []
         threads = [
-            threading.Thread(target=lambda seed: made.append((seed, bernal.pack(small(), seed=seed).hash)), args=(k % 2 + 1,))
+            threading.Thread(
+                target=lambda seed: made.append((seed, bernal.pack(small(), seed=seed).hash)), args=(k % 2 + 1,)
+            )
             for k in range(6)
         ]
         for thread in threads:

@@ -52,7 +52,7 @@ class Stubs(InFolder):
         (self.folder / "use.py").write_text(
             "import bernal\n"
             'part = bernal.Mesh("part.stl", unit="mm")\n'
-            'scene = bernal.Scene(part, diameters=bernal.Lognormal(2, 0.3), unit="mm", stages=[bernal.Relax(alpha=17)])\n'
+            'scene = bernal.Scene(part, diameters=bernal.Lognormal(2, 0.3), unit="mm", stages=bernal.Relax(alpha=17))\n'
             "packing = bernal.pack(scene, progress=lambda activity, fraction, detail: None)\n"
             "total: float = packing.radii.sum() + bernal.design.target(0.7).phi\n"
             "bernal.Relax(alhpa=3)\n"
@@ -61,7 +61,10 @@ class Stubs(InFolder):
         )
         paths = {"MYPYPATH": str(FOLDER.parent), "MYPY_CACHE_DIR": str(self.folder / "cache")}
         checked = subprocess.run(
-            [sys.executable, "-m", "mypy", "--strict", "use.py"], env={**os.environ, **paths}, capture_output=True, text=True
+            [sys.executable, "-m", "mypy", "--strict", "use.py"],
+            env={**os.environ, **paths},
+            capture_output=True,
+            text=True,
         )
         errors = [line.split(":")[1] for line in checked.stdout.splitlines() if ": error:" in line]
         self.assertEqual(errors, ["6", "7", "8"], checked.stdout)

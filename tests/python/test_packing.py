@@ -55,7 +55,9 @@ class Arrays(InFolder):
         self.assertTrue(bernal.verify(discs))
         self.assertIn("<svg", str(discs.picture))
         self.refuses(bernal.InputError, "three dimensions", discs.section)
-        five = bernal.pack(bernal.Scene(bernal.Periodic(dimension=5), diameters=1, count=100, stages=bernal.Relax(alpha=2)))
+        five = bernal.pack(
+            bernal.Scene(bernal.Periodic(dimension=5), diameters=1, count=100, stages=bernal.Relax(alpha=2))
+        )
         self.assertEqual(five.centers.shape, (100, 5))
         self.assertTrue(bernal.verify(five))
         self.assertEqual(str(five.picture), "")
@@ -113,7 +115,9 @@ class Runs(InFolder):
         packing = bernal.pack(small(outputs=["yade"]))
         written = packing.write("out")
         self.assertTrue(written.certificate)
-        self.assertLessEqual({"spheres.csv", "scene.toml", "report.html", "packing.svg"}, {f.name for f in written.files})
+        self.assertLessEqual(
+            {"spheres.csv", "scene.toml", "report.html", "packing.svg"}, {f.name for f in written.files}
+        )
         self.assertEqual(len(written.notes), 1)
         self.assertEqual(bernal.read("out").hash, packing.hash)
         self.assertEqual(bernal.verify("out").spheres, 300)
@@ -164,11 +168,15 @@ class Runs(InFolder):
         self.refuses(bernal.InputError, "shape (N, D)", lambda: bernal.from_arrays(centers, [1, 2], unit="mm"))
         vessel = bernal.from_arrays([[0.0, 0.0, 1.0]], 1, unit="mm", container=bernal.Cylinder(1, 2))
         self.assertTrue(bernal.verify(vessel))
-        self.assertFalse(bernal.verify(bernal.from_arrays([[0.1, 0, 1]], 1, unit="mm", container=bernal.Cylinder(1, 2))))
+        self.assertFalse(
+            bernal.verify(bernal.from_arrays([[0.1, 0, 1]], 1, unit="mm", container=bernal.Cylinder(1, 2)))
+        )
 
     def test_a_packing_is_where_another_begins(self):
         first = bernal.pack(bernal.Scene(bernal.Cylinder(3, 6), diameters=1, unit="mm", count=40))
-        second = bernal.pack(bernal.Scene(bernal.Cylinder(3, 6), diameters=1, unit="mm", start=first, stages=bernal.Insert()))
+        second = bernal.pack(
+            bernal.Scene(bernal.Cylinder(3, 6), diameters=1, unit="mm", start=first, stages=bernal.Insert())
+        )
         self.assertGreaterEqual(len(second), 40)
         self.assertTrue((second.centers[:40] == first.centers).all())
         second.write("out")
@@ -180,7 +188,9 @@ class Sizes(InFolder):
         self.assertAlmostEqual(bernal.predict(bernal.Lognormal(1, 0.5, basis="volume")).phi, 0.7073, 4)
         self.assertAlmostEqual(float(bernal.predict(3)), 0.6435, 3)
         self.assertEqual(bernal.predict(small()).phi, bernal.predict(bernal.Lognormal(1, 0.2)).phi)
-        self.refuses(bernal.InputError, "three dimensions", lambda: bernal.predict(bernal.Scene(bernal.Box([1, 1]), radii=0.1)))
+        self.refuses(
+            bernal.InputError, "three dimensions", lambda: bernal.predict(bernal.Scene(bernal.Box([1, 1]), radii=0.1))
+        )
         self.refuses(bernal.InputError, "positive", lambda: bernal.predict(-1))
 
     def test_designs(self):

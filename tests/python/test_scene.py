@@ -17,7 +17,9 @@ from bernal import _classes
 
 class Classes(InFolder):
     def test_there_is_a_class_for_every_table_of_the_command(self):
-        groups = json.loads(subprocess.run([COMMAND, "keys", "--json"], capture_output=True, check=True).stdout)["groups"]
+        groups = json.loads(subprocess.run([COMMAND, "keys", "--json"], capture_output=True, check=True).stdout)[
+            "groups"
+        ]
         tables = {group["name"]: [table["name"] for table in group["tables"]] for group in groups}
         for group, base in (("container", bernal.Container), ("diameter", bernal.Sizes), ("stage", bernal.Stage)):
             named = [name for name in bernal.__all__ if isinstance(getattr(bernal, name), type)]
@@ -73,7 +75,12 @@ class Classes(InFolder):
         self.refuses(bernal.InputError, "numbers, text, flags", lambda: bernal.Relax(alpha={}))
 
     def test_copies_and_pickles_are_equal(self):
-        for each in (bernal.Lognormal(2, 0.3), bernal.Output("lammps", unit="mm"), small(), bernal.Error("bad_mesh", "x", "f", 2)):
+        for each in (
+            bernal.Lognormal(2, 0.3),
+            bernal.Output("lammps", unit="mm"),
+            small(),
+            bernal.Error("bad_mesh", "x", "f", 2),
+        ):
             for again in (copy.deepcopy(each), pickle.loads(pickle.dumps(each))):
                 self.assertEqual(repr(again), repr(each))
 
@@ -89,7 +96,9 @@ class Scenes(InFolder):
         scene.write("scene.toml")
         again = bernal.Scene.read("scene.toml")
         self.assertEqual(again.toml, scene.toml)
-        self.assertEqual(again.radii, mixture.replace(of=[bernal.Constant(1), bernal.Lognormal(2, 0.3, basis="number")]))
+        self.assertEqual(
+            again.radii, mixture.replace(of=[bernal.Constant(1), bernal.Lognormal(2, 0.3, basis="number")])
+        )
         self.assertEqual([type(stage).__name__ for stage in again.stages], ["Insert", "Compress"])
         self.assertEqual(again.outputs[1].file, "bed.data")
         self.assertEqual((again.unit, again.seed, again.gap, again.walls), ("mm", 7, 0.1, "exact"))
@@ -108,7 +117,9 @@ class Scenes(InFolder):
         self.refuses(bernal.InputError, '"parsec"', lambda: small(unit="parsec"))
 
     def test_errors_are_the_ones_of_the_command_without_lines_that_nobody_sees(self):
-        error = self.refuses(bernal.InputError, '"diameter" in [spheres] must be a positive', lambda: small(diameters=-1))
+        error = self.refuses(
+            bernal.InputError, '"diameter" in [spheres] must be a positive', lambda: small(diameters=-1)
+        )
         self.assertEqual((error.code, error.file, error.line), ("bad_scene", None, None))
         self.assertEqual(str(error), error.message)
         self.refuses(bernal.InputError, "exclude each other", lambda: small(radii=1))
@@ -116,7 +127,9 @@ class Scenes(InFolder):
         self.refuses(bernal.InputError, "does not fit", lambda: bernal.explain(bernal.Scene(bernal.Sphere(1), radii=2)))
         self.refuses(bernal.InputError, "needs a container", lambda: bernal.Scene("part.stl", diameters=1))
         self.refuses(bernal.InputError, "such as Relax()", lambda: small(stages="relax"))
-        self.refuses(bernal.InputError, "no valid text", lambda: bernal.Scene(bernal.Mesh("\udcff.stl"), diameters=1, unit="m"))
+        self.refuses(
+            bernal.InputError, "no valid text", lambda: bernal.Scene(bernal.Mesh("\udcff.stl"), diameters=1, unit="m")
+        )
 
     def test_errors_in_files_name_the_line(self):
         (self.folder / "bad.toml").write_text('unit = "mm"\n[container]\nkind = "sphere"\nradios = 3\n')

@@ -300,6 +300,6 @@ class Packing:
         )
         picture = self.picture._repr_html_() if self.dimension in (2, 3) else ""
         return (
-            f'<div style="display:grid;grid-template-columns:max-content 1fr;gap:.2em 1.2em;max-width:44em">{cells}</div>'
-            + picture
+            '<div style="display:grid;grid-template-columns:max-content 1fr;gap:.2em 1.2em;max-width:44em">'
+            f"{cells}</div>{picture}"
         )

@@ -143,7 +143,9 @@ class Scene:
 
     def _passing(self) -> list[str]:
         """Its files that end with this process."""
-        files = [file for value in self._named_files().values() for file in (value if isinstance(value, list) else [value])]
+        files = [
+            file for value in self._named_files().values() for file in (value if isinstance(value, list) else [value])
+        ]
         return [file for file in files if file is not None and _surfaces.is_passing(file)]
 
     def _with_files(self, others: dict[str, str]) -> Scene:
@@ -207,7 +209,9 @@ def _several(given: Any, kinds: Any, name: str) -> tuple[Any, ...]:
     all_of = (given,) if isinstance(given, kinds) else tuple(given)
     for each in all_of:
         if not isinstance(each, kinds):
-            raise _errors.InputError("bad_scene", f"{name} of a scene are instances, such as Relax(), not {each!r:.100}")
+            raise _errors.InputError(
+                "bad_scene", f"{name} of a scene are instances, such as Relax(), not {each!r:.100}"
+            )
     return all_of
 
 

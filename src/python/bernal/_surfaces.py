@@ -70,8 +70,8 @@ def _of_cells(cells: dict[str, Any]) -> list[list[int]]:
     others = [kind for kind in kinds if kind not in (*faces, "vertex", "line")]
     if others or not faces:
         _refuse(
-            f"a container is a surface of triangles, quads or polygons, but the mesh has cells {', '.join(kinds) or 'none'}; "
-            "extract its surface first"
+            "a container is a surface of triangles, quads or polygons, but the mesh has cells "
+            f"{', '.join(kinds) or 'none'}; extract its surface first"
         )
     return [face for kind in faces for face in _faces(kinds[kind])]
 
@@ -128,5 +128,7 @@ def files_of(value: Any) -> Any:
         return written(_off(*parts), ".off")
     if isinstance(value, Iterable):
         return [files_of(part) for part in value]
-    _refuse(f"neither a file nor a mesh: {type(value).__name__}; give a path, (vertices, faces), or a mesh of trimesh, "
-            "meshio or PyVista")
+    _refuse(
+        f"neither a file nor a mesh: {type(value).__name__}; give a path, (vertices, faces), or a mesh of trimesh, "
+        "meshio or PyVista"
+    )

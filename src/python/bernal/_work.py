@@ -33,9 +33,7 @@ def explain(scene: Scene | PathLike, *, progress: Progress = None) -> Plan:
     return plan
 
 
-def pack(
-    scene: Scene | PathLike, *, seed: int | None = None, threads: int = 0, progress: Progress = None
-) -> Packing:
+def pack(scene: Scene | PathLike, *, seed: int | None = None, threads: int = 0, progress: Progress = None) -> Packing:
     """Runs a scene, or the scene of a file.
 
     One seed gives one packing, bit for bit, for any number of threads; `seed` stands for the scene's, `threads` 0 for
@@ -178,7 +176,8 @@ def predict(
 
 def scene_of_sizes(diameters: Any) -> Any:
     """The library's scene of sizes that stand for themselves."""
-    text = f'[container]\nkind = "box"\nsize = [1, 1, 1]\n[spheres]\ncount = 1\n{_toml.line("diameter", _toml.plain(diameters))}'
+    sizes = _toml.line("diameter", _toml.plain(diameters))
+    text = f'[container]\nkind = "box"\nsize = [1, 1, 1]\n[spheres]\ncount = 1\n{sizes}'
     return _core.scene(text, "/" + _errors.MADE_HERE)
 
 
