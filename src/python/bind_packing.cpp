@@ -6,6 +6,7 @@
 
 #include "bernal/io/picture.hpp"
 #include "bernal/io/section.hpp"
+#include "bernal/io/view_page.hpp"
 #include "bernal/measure/measure.hpp"
 #include "python/bindings.hpp"
 
@@ -90,6 +91,8 @@ void bind_packing(py::module_& module) {
       .def(
           "hash", [](const Packing& packing) { return hash_of(packing.spheres); }, Unlocked())
       .def("domain", [](const Packing& packing) { return name_of(packing.domain); })
+      .def(
+          "view", [](const Packing& packing) { return view_page(packing); }, Unlocked())
       .def_property_readonly("dimension", [](const Packing& p) { return p.spheres.dimension(); })
       .def_property_readonly("packing_fraction", &Packing::packing_fraction)
       .def_property_readonly("outcome", [](const Packing& p) { return name_of(p.outcome); })

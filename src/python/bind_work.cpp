@@ -1,4 +1,5 @@
 // What takes time, each as a Job whose result is an object of Python.
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -71,8 +72,30 @@ JobPointer verify_job(const PackingPointer& of, std::optional<std::size_t> list,
   });
 }
 
+template <class T>
+py::array_t<T> array_of(const std::vector<T>& values) {
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+/// What is measured of single spheres, each with one entry a sphere; a chamber of -1 is none.
+py::dict per_sphere(const Measurements& measured) {
+  py::dict all;
+  if (measured.local) {
+    all["local_packing_fraction"] = array_of(measured.local->packing_fraction);
+    all["cell_volume"] = array_of(measured.local->cell_volume);
+    all["neighbours"] = array_of(measured.local->neighbours);
+  }
+  if (measured.chambers) {
+    std::vector<std::int64_t> chambers;
+    for (const std::uint32_t chamber : measured.chambers->of_sphere)
+      chambers.push_back(chamber == Chambers::none ? -1 : static_cast<std::int64_t>(chamber));
+    all["chamber"] = array_of(chambers);
+  }
+  return all;
+}
+
 JobPointer measure_job(const PackingPointer& of, double contact_gap) {
-  return job([=](const Monitor& monitor) {
+  return job([=](const Monitor& monitor) -> Job::Finish {
     const SceneRadii radii = asked_radii_of(*of);
     MeasureOptions options;
     options.gap = of->scene.gap;
@@ -80,9 +103,11 @@ JobPointer measure_job(const PackingPointer& of, double contact_gap) {
     options.contact_gap = contact_gap;
     options.container = of->container;
     options.monitor = monitor;
-    const Measurements measured = measure(of->spheres, of->domain, radii.asked, options);
+    Measurements measured = measure(of->spheres, of->domain, radii.asked, options);
     if (monitor.stop()) throw Cancelled();
-    return text(measurements_as_json(*of, measured));
+    return [json = measurements_as_json(*of, measured), measured = std::move(measured)]() -> py::object {
+      return py::make_tuple(json, per_sphere(measured));
+    };
   });
 }
 
@@ -113,6 +138,13 @@ JobPointer export_job(const PackingPointer& of, const std::string& format,
       return py::make_tuple(written.files, written.note);
     };
   });
+}
+
+/// The name of a format's file, where nobody gives one.
+std::string file_of_format(const std::string& name) {
+  for (const ExportFormat& format : export_formats())
+    if (format.name == name) return format.file;
+  throw Error(ErrorCode::bad_argument, "no such format: " + name);
 }
 
 /// `options` is a scene whose container is the mesh; else the file stands for itself.
@@ -184,6 +216,7 @@ void bind_work(py::module_& module) {
   module.def("write", &write_job);
   module.def("read", &read_job);
   module.def("export", &export_job);
+  module.def("file_of_format", &file_of_format);
   module.def("inspect", &inspect_job);
   module.def("import_", &import_job);
 }

@@ -1,5 +1,7 @@
 #include "python/job.hpp"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -57,8 +59,14 @@ struct Running {
   std::set<std::atomic<bool>*> cancelled;  // of each job whose thread still asks for it
   std::size_t threads = 0;                 // that have not let go of everything yet
 };
+/// Those of this process: in one that was forked off runs none of its parent's. Outlives every thread.
 Running& running() {
-  static auto* const all = new Running;  // outlives every thread
+  static auto* all = new Running;
+  static pid_t process = getpid();
+  if (process != getpid()) {
+    all = new Running;
+    process = getpid();
+  }
   return *all;
 }
 

@@ -19,7 +19,7 @@ sys.path[0] = str(Path(sys.argv[1]).resolve().parent)  # beside this script stan
 import bernal  # noqa: E402
 from bernal import _classes, _scene  # noqa: E402
 
-HEAD = '''# Made by write_stubs.py; changes are lost.
+HEAD = """# Made by write_stubs.py; changes are lost.
 import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
 Progress = bool | None | Callable[[str, float | None, str], Any]
-'''
+"""
 FLOATS = "Sequence[float] | NDArray[Any]"
 PAIRS = "Sequence[Sequence[float]] | NDArray[Any]"
 TYPES = {
@@ -111,7 +111,9 @@ def init_of(kind: type) -> str | None:
 
 def attributes_of(kind: type) -> dict[str, str]:
     if kind is bernal.Scene:
-        keys = {key["name"]: f"{type_of(key)} | None" for key in _scene._KEYS.values() if not hasattr(kind, key["name"])}
+        keys = {
+            key["name"]: f"{type_of(key)} | None" for key in _scene._KEYS.values() if not hasattr(kind, key["name"])
+        }
         return {"container": "Container", "diameters": "float | Sizes | None", "radii": "float | Sizes | None",
                 "stages": "tuple[Stage, ...]", "outputs": "tuple[Output, ...]", **keys}  # fmt: skip
     if issubclass(kind, _classes.Said) and "_table" in vars(kind):
@@ -122,7 +124,7 @@ def attributes_of(kind: type) -> dict[str, str]:
 
 def class_of(kind: type) -> str:
     bases = [str(base) if getattr(base, "__args__", None) else base.__name__
-             for base in getattr(kind, "__orig_bases__", kind.__bases__) if base is not object]  # fmt: skip
+             for base in vars(kind).get("__orig_bases__", kind.__bases__) if base is not object]  # fmt: skip
     bases = [base.replace("typing.", "") for base in bases if base != "Said"]
     made = init_of(kind)
     body = doc(kind.__doc__, "    ") + "".join(f"    {name}: {text}\n" for name, text in attributes_of(kind).items())

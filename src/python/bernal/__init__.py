@@ -18,7 +18,7 @@ from . import _core, design
 from ._classes import CLASSES, Container, Output, Sizes, Stage
 from ._errors import Error, InputError, KeywordError, WriteError
 from ._jobs import Stopped
-from ._packing import Packing, Picture
+from ._packing import Packing, Picture, View
 from ._records import Certificate, Inspection, Measurements, Plan, Prediction, Record, Written
 from ._scene import Scene
 from ._work import explain, export, from_arrays, import_, inspect, measure, pack, predict, read, verify
@@ -27,9 +27,14 @@ __version__ = str(_core.version)
 
 __all__ = [
     "Scene", "pack", "explain", "verify", "measure", "export", "read", "import_", "from_arrays", "inspect", "predict",
-    "design", "Packing", "Picture", "Container", "Sizes", "Stage", "Output", *CLASSES,
+    "design", "Packing", "Picture", "View", "Container", "Sizes", "Stage", "Output", *CLASSES,
     "Record", "Plan", "Certificate", "Measurements", "Inspection", "Prediction", "Written",
     "Error", "InputError", "KeywordError", "WriteError", "Stopped",
 ]  # fmt: skip
 
 globals().update(CLASSES)
+
+for _name in __all__:  # where users find them, and not where they stand
+    if isinstance(globals()[_name], type):
+        globals()[_name].__module__ = "bernal"
+del _name

@@ -20,6 +20,10 @@ def group(name: str) -> dict[str, Any]:
     return next(each for each in REFERENCE if each["name"] == name)
 
 
+def table_of(name: str, of: str) -> dict[str, Any]:
+    return next(each for each in group(name)["tables"] if each["name"] == of)
+
+
 def otherwise(key: dict[str, Any]) -> str:
     """What goes for the key if it is not given, for people; "" where that is nothing."""
     return "" if key["default"] is None else f", default {_toml.text_of(key['default'])}"
@@ -36,11 +40,23 @@ def described(keys: list[dict[str, Any]]) -> str:
 
 
 def positional(table: dict[str, Any]) -> list[str]:
-    """The keys that may be given without their names: those that every table needs, in their order."""
-    left_out = {
-        name for choice in table["choices"] for names in choice[1:] for name in names if name not in choice[0]
-    }
-    return [key["name"] for key in table["keys"] if key["required"] and key["name"] not in left_out]
+    """The keys that may be given without their names: those that a table needs, in their order; of a choice the first
+    set of them."""
+    firsts = {name for choice in table["choices"] if [] not in choice for name in choice[0]}
+    others = {name for choice in table["choices"] for names in choice[1:] for name in names if name not in choice[0]}
+    return [
+        key["name"]
+        for key in table["keys"]
+        if (key["required"] or key["name"] in firsts) and key["name"] not in others and key["default"] is None
+    ]
+
+
+def choice_in_words(choice: list[list[str]], table: dict[str, Any]) -> str:
+    """Which keys go together, and whether any need be given."""
+    defaults = {key["name"]: key["default"] for key in table["keys"]}
+    none = any(all(defaults[name] is not None for name in names) for names in choice)
+    sets = [" and ".join(names) for names in choice if names]
+    return f"\nGive {' or '.join(sets)}{', or none of them' if none else ''}.\n"
 
 
 def signature_of(table: dict[str, Any]) -> inspect.Signature:
@@ -50,6 +66,18 @@ def signature_of(table: dict[str, Any]) -> inspect.Signature:
     parameters = [kinds(name, kinds.POSITIONAL_OR_KEYWORD, default=None) for name in first]
     parameters += [kinds(name, kinds.KEYWORD_ONLY, default=None) for name in keys if name not in first]
     return inspect.Signature(parameters)
+
+
+def names_files(key: dict[str, Any]) -> bool:
+    return key["type"] == "file" or key["name"] == "obstacles"
+
+
+def taken(key: dict[str, Any], value: Any) -> Any:
+    """The value of a key as a scene has it. Names of files go on meaning what they mean here and now."""
+    value = _toml.plain(_surfaces.files_of(value) if names_files(key) else value)
+    if key["type"] == "integer" and isinstance(value, float) and value.is_integer():
+        return int(value)
+    return value
 
 
 class Said:
@@ -83,13 +111,7 @@ class Said:
         return next(key for key in self._table["keys"] if key["name"] == name)
 
     def _taken(self, name: str, value: Any) -> Any:
-        kind = self._key(name)["type"]
-        if kind == "file" or name == "obstacles":
-            value = _surfaces.files_of(value)
-        value = _toml.plain(value)
-        if kind == "integer" and isinstance(value, float) and value.is_integer():
-            return int(value)
-        return value
+        return taken(self._key(name), value)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -168,6 +190,9 @@ class Output(Said):
     def _called(self) -> str:
         return f'Output("{self.format}")'
 
+    def _taken(self, name: str, value: Any) -> Any:
+        return _toml.plain(value) if name == "file" else super()._taken(name, value)  # in the folder of the result
+
     def __repr__(self) -> str:
         return "Output(" + ", ".join([repr(self.format), *(f"{k}={v!r}" for k, v in self._said.items())]) + ")"
 
@@ -178,10 +203,7 @@ class Output(Said):
 
 def _class_of(base: type[Said], table: dict[str, Any], selector: str) -> type[Said]:
     name = "".join(part.capitalize() for part in table["name"].split("_"))
-    choices = "".join(
-        "\nGive " + (" or ".join(" and ".join(names) or "none of them" for names in choice)) + ".\n"
-        for choice in table["choices"]
-    )
+    choices = "".join(choice_in_words(choice, table) for choice in table["choices"])
     more = _surfaces.MESHES if any(key["type"] == "file" for key in table["keys"]) and base is Container else ""
     doc = f"{table['help'][0].upper()}{table['help'][1:]}.\n{choices}{more}\nParameters\n----------\n"
     members = {

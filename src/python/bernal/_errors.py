@@ -61,8 +61,10 @@ MADE_HERE = "a scene made in Python"
 
 
 def _made(code: str, message: str, file: str, line: int, column: int) -> Error:
+    from ._surfaces import is_passing
+
     kind = WriteError if code == "cannot_write" else InputError
-    if not file or file.endswith(MADE_HERE):
+    if not file or file.endswith(MADE_HERE) or is_passing(file):
         return kind(code, message)
     return kind(code, message, file, line or None, column or None)
 

@@ -44,6 +44,28 @@ class Picture:
         return f'<img alt="" style="max-width:100%;max-height:32em" src="data:image/svg+xml;base64,{data}">'
 
 
+class View:
+    """A page with a view of a packing by WebGL, which notebooks show in a frame. It asks for nothing else."""
+
+    def __init__(self, page: str, height: int) -> None:
+        self.page, self.height = page, height
+
+    def __repr__(self) -> str:
+        return f"<View, {len(self.page) / 1000:.0f} kB of HTML>"
+
+    def write(self, file: str | os.PathLike[str]) -> Path:
+        """Writes the page into a file, for a browser."""
+        path = Path(file)
+        path.write_text(self.page, "utf-8")
+        return path
+
+    def _repr_html_(self) -> str:
+        return (
+            f'<iframe srcdoc="{html.escape(self.page)}" style="width:100%;height:{self.height}px;border:0" '
+            'title="A view of a packing"></iframe>'
+        )
+
+
 class Packing:
     """Spheres that were packed, read or imported; N of them in D dimensions, lengths in the scene's `unit`.
 
@@ -125,8 +147,7 @@ class Packing:
     def scene(self) -> Scene:
         """The problem that it is an answer to."""
         if self._given_scene is None:
-            core = self._core.scene()
-            self._given_scene = Scene._of(core, core.toml(""))
+            self._given_scene = Scene._of(self._core.scene())
         return self._given_scene
 
     @property
@@ -238,13 +259,17 @@ class Packing:
         """A folder that a scene can begin from."""
         folder = os.path.join(_surfaces.folder(), f"start-{self.hash}")
         if not os.path.isdir(folder):
-            self.write(folder, with_mesh=True, progress=False)
+            self.write(folder, progress=False)
         return folder
 
     @property
     def picture(self) -> Picture:
         """In two and three dimensions: what `packing.svg` shows, in others an empty picture."""
         return Picture(self._core.picture())
+
+    def view(self, height: int = 520) -> View:
+        """In two and three dimensions: the packing to turn, cut, colour and ask, in a notebook so many pixels high."""
+        return View(self._core.view(), height)
 
     def section(self, plane: str | None = None) -> Picture:
         """What a plane cuts of a packing of three dimensions, "z = 1.5" or "0.6 x + 0.8 z = 2"; if None that through
@@ -275,6 +300,6 @@ class Packing:
         )
         picture = self.picture._repr_html_() if self.dimension in (2, 3) else ""
         return (
-            f'<div style="display:grid;grid-template-columns:max-content 1fr;gap:.2em 1.2em;max-width:44em">{cells}</div>'
-            + picture
+            '<div style="display:grid;grid-template-columns:max-content 1fr;gap:.2em 1.2em;max-width:44em">'
+            f"{cells}</div>{picture}"
         )

@@ -133,7 +133,11 @@ class Notebook(Shown):
         self._display, self._handle = display, None
 
     def draw(self, seconds: int, activity: str, fraction: float, detail: str) -> None:
-        bar = f'<progress max="1" value="{min(fraction, 1.0):.3f}"></progress>' if fraction >= 0 else "<progress></progress>"
+        bar = (
+            f'<progress max="1" value="{min(fraction, 1.0):.3f}"></progress>'
+            if fraction >= 0
+            else "<progress></progress>"
+        )
         words = html.escape(f"{activity}, {seconds} s" + (f": {detail}" if detail else ""))
         self._put(_Cell(
             f'<div style="display:flex;gap:.8em;align-items:center">{bar}<span>{words}</span></div>',

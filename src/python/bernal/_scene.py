@@ -6,7 +6,7 @@ import inspect
 import os
 import shutil
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from ._classes import Container, Output, Said, Sizes, Stage
 # Keys that stand in tables of their own in a file and are keywords here; sizes and tables are parameters.
 _OWN = {table["name"]: [k for k in table["keys"] if k["name"] not in ("radius", "diameter")]
         for table in _classes.group("scene")["tables"]}  # fmt: skip
+_PARTS = ("container", "diameters", "radii", "stages", "outputs")
 _KEYS = {key["name"]: key for keys in _OWN.values() for key in keys}
 
 
@@ -46,7 +47,7 @@ class Scene:
         outputs: Output | str | Iterable[Output | str] = (),
         **keys: Any,
     ) -> None:
-        known = ["container", "diameters", "radii", "stages", "outputs", *_KEYS]
+        known = [*_PARTS, *_KEYS]
         for name in keys:
             if name not in _KEYS:
                 raise _errors.unknown(name, "Scene", known)
@@ -54,7 +55,7 @@ class Scene:
             raise _errors.InputError(
                 "bad_scene", f"a scene needs a container, such as Mesh(…) or Cylinder(…), not {container!r:.100}"
             )
-        said = {name: _taken(name, value) for name, value in keys.items() if value is not None}
+        said = {name: _classes.taken(_KEYS[name], value) for name, value in keys.items() if value is not None}
         self._parts: dict[str, Any] = {
             "container": container,
             "diameters": _toml.plain(diameters),
@@ -65,23 +66,22 @@ class Scene:
             ),
             **said,
         }
-        self._folder = os.getcwd()
         self._file: Path | None = None
-        self._core = _core.scene(self._text(), os.path.join(self._folder, _errors.MADE_HERE))
+        self._core = _core.scene(self._text(), "/" + _errors.MADE_HERE)
 
     @classmethod
     def read(cls, file: str | os.PathLike[str]) -> Scene:
         """The scene of a TOML file. Errors name its lines."""
         name = os.path.abspath(os.fspath(file))
-        return cls._of(_core.read_scene(name), Path(name).read_text("utf-8"), Path(name))
+        return cls._of(_core.read_scene(name), Path(name))
 
     @classmethod
-    def _of(cls, core: Any, text: str, file: Path | None = None) -> Scene:
-        """Of what the library has read, and the text of that."""
+    def _of(cls, core: Any, file: Path | None = None) -> Scene:
+        """Of what the library has; as far as it stands in a file with what that says alone."""
         scene = object.__new__(cls)
         scene._core, scene._file = core, file
-        scene._folder = str(file.parent) if file else os.getcwd()
-        scene._parts = _parts_of(tomllib.loads(text))
+        whole = tomllib.loads(core.toml(""))
+        scene._parts = _parts_of(tomllib.loads(file.read_text("utf-8")) if file else whole, whole)
         return scene
 
     def _text(self) -> str:
@@ -122,35 +122,46 @@ class Scene:
     def write(self, file: str | os.PathLike[str]) -> Path:
         """Writes it as TOML. Surfaces that stand in no file of the user are copied beside it."""
         path = Path(os.path.abspath(os.fspath(file)))
-        text = str(self._core.toml(str(path.parent)))
-        for passing in self._passing():
-            copy = path.parent / Path(passing).name
-            (shutil.copytree if os.path.isdir(passing) else shutil.copyfile)(passing, copy)
-            for name in (os.path.relpath(passing, os.path.realpath(path.parent)), os.path.relpath(passing, path.parent), passing):
-                text = text.replace(name, copy.name)
         try:
-            path.write_text(text, "utf-8")
+            copies = {passing: str(path.parent / Path(passing).name) for passing in self._passing()}
+            for passing, copy in copies.items():
+                if os.path.isdir(passing):
+                    shutil.copytree(passing, copy, dirs_exist_ok=True)
+                else:
+                    shutil.copyfile(passing, copy)
+            path.write_text(self._with_files(copies)._core.toml(str(path.parent)), "utf-8")
         except OSError as error:
             raise _errors.WriteError("cannot_write", f"cannot be written: {error.strerror}", str(path)) from error
         return path
 
+    def _named_files(self) -> dict[str, Any]:
+        """What the container says of files, and the start."""
+        said = self._parts["container"]._said
+        named = {key["name"]: said[key["name"]] for key in self._parts["container"]._table["keys"]
+                 if _classes.names_files(key) and key["name"] in said}  # fmt: skip
+        return {**named, "start": self._parts.get("start")}
+
     def _passing(self) -> list[str]:
         """Its files that end with this process."""
-        files: list[Any] = [self._parts.get("start")]
-        for name, value in self._parts["container"]._said.items():
-            if name in ("file", "obstacles"):
-                files += value if isinstance(value, list) else [value]
-        return [file for file in files if isinstance(file, str) and _surfaces.is_passing(file)]
+        files = [
+            file for value in self._named_files().values() for file in (value if isinstance(value, list) else [value])
+        ]
+        return [file for file in files if file is not None and _surfaces.is_passing(file)]
+
+    def _with_files(self, others: dict[str, str]) -> Scene:
+        """The same with these files in place of others."""
+        if not others:
+            return self
+        named = {
+            name: [others.get(each, each) for each in value] if isinstance(value, list) else others.get(value, value)
+            for name, value in self._named_files().items()
+        }
+        start = named.pop("start")
+        return self.replace(container=self._parts["container"].replace(**named), start=start)
 
     def replace(self, **keys: Any) -> Scene:
         """The same with other values of some parameters; None takes one away."""
-        here = os.getcwd()
-        try:  # names of files go on meaning the same
-            os.chdir(self._folder)
-            parts = {name: value for name, value in {**self._parts, **keys}.items() if value is not None}
-            return Scene(**parts)
-        finally:
-            os.chdir(here)
+        return Scene(**{name: value for name, value in {**self._parts, **keys}.items() if value is not None})
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -159,7 +170,7 @@ class Scene:
             return self._parts[name]
         if name in _KEYS:
             return _KEYS[name]["default"]
-        raise AttributeError(str(_errors.unknown(name, "Scene", [*self._parts, *_KEYS])))
+        raise AttributeError(str(_errors.unknown(name, "Scene", [*_PARTS, *_KEYS])))
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._parts, *_KEYS]
@@ -171,7 +182,7 @@ class Scene:
         return hash(self.toml)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (_unpickled, ({k: v for k, v in self._parts.items() if v is not None}, self._folder))
+        return (_again, (self._parts,))
 
     def __repr__(self) -> str:
         parts = {name: value for name, value in self._parts.items() if value is not None and value != ()}
@@ -190,47 +201,50 @@ def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
     return scene if isinstance(scene, Scene) else Scene.read(scene)
 
 
-def _unpickled(parts: dict[str, Any], folder: str) -> Scene:
-    scene = object.__new__(Scene)
-    scene._folder = folder
-    scene._parts = {"diameters": None, "radii": None, **parts}
-    scene._file = None
-    scene._core = _core.scene(scene._text(), os.path.join(folder, _errors.MADE_HERE))
-    return scene
-
-
-def _taken(name: str, value: Any) -> Any:
-    key = _KEYS[name]
-    value = _toml.plain(_surfaces.files_of(value) if key["type"] == "file" else value)
-    if key["type"] == "integer" and isinstance(value, float) and value.is_integer():
-        return int(value)
-    return value
+def _again(parts: dict[str, Any]) -> Scene:
+    return Scene(**{name: value for name, value in parts.items() if value is not None})
 
 
 def _several(given: Any, kinds: Any, name: str) -> tuple[Any, ...]:
     all_of = (given,) if isinstance(given, kinds) else tuple(given)
     for each in all_of:
         if not isinstance(each, kinds):
-            raise _errors.InputError("bad_scene", f"{name} of a scene are instances, such as Relax(), not {each!r:.100}")
+            raise _errors.InputError(
+                "bad_scene", f"{name} of a scene are instances, such as Relax(), not {each!r:.100}"
+            )
     return all_of
 
 
-def _parts_of(table: Mapping[str, Any]) -> dict[str, Any]:
-    """What a file says, as the parameters of `Scene`."""
-    own = dict(table)
-    container = _chosen("kind", own.pop("container"))
-    parts: dict[str, Any] = {"container": container, "diameters": None, "radii": None}
-    parts["stages"] = tuple(_chosen("do", each) for each in own.pop("stage", ()))
-    parts["outputs"] = tuple(_chosen("format", each) for each in own.pop("output", ()))
-    for name in _OWN:
-        own.update(own.pop(name, {}))
+def _parts_of(said: dict[str, Any], whole: dict[str, Any]) -> dict[str, Any]:
+    """What a file says, as the parameters of `Scene`; names of files, and what stands in them, as in the `whole`."""
+    container = {**said["container"]}
+    for key in _classes.table_of("container", container["kind"])["keys"]:
+        if key["name"] in container and _classes.names_files(key):
+            if key["name"] not in whole["container"]:  # its points have taken its place
+                container = whole["container"]
+                break
+            container[key["name"]] = whole["container"][key["name"]]
+    parts: dict[str, Any] = {"container": _chosen("kind", container), "diameters": None, "radii": None}
+    parts["stages"] = tuple(_chosen("do", each) for each in said.get("stage", ()))
+    parts["outputs"] = tuple(_chosen("format", each) for each in said.get("output", ()))
     for name, key in (("diameters", "diameter"), ("radii", "radius")):
-        if key in own:
-            parts[name] = _sizes(own.pop(key))
-    return {**parts, **own}
+        if key in said["spheres"]:
+            sizes = said["spheres"][key]
+            parts[name] = _sizes(whole["spheres"][key] if _names_a_file(sizes) else sizes)
+    own = {**said, **said["spheres"], **said.get("accuracy", {})}
+    parts.update({name: value for name, value in own.items() if name in _KEYS})
+    if "start" in parts:
+        parts["start"] = whole["spheres"]["start"]
+    return parts
 
 
-def _chosen(selector: str, table: Mapping[str, Any]) -> Said:
+def _names_a_file(sizes: Any) -> bool:
+    if isinstance(sizes, list):
+        return any(map(_names_a_file, sizes))
+    return isinstance(sizes, dict) and ("file" in sizes or any(map(_names_a_file, sizes.values())))
+
+
+def _chosen(selector: str, table: dict[str, Any]) -> Said:
     said = {name: _sizes(value) for name, value in table.items() if name != selector}
     return _classes.made(selector, table[selector], said)
 

@@ -8,7 +8,6 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterable
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -22,21 +21,26 @@ process; `Packing.write` copies it beside the result.
 """
 
 
-@lru_cache(maxsize=1)
-def _folder_of(process: int) -> str:
-    folder = tempfile.mkdtemp(prefix="bernal-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return folder
+_folders: dict[int, str] = {}  # of this process, and of those that it was forked from
+
+
+def _remove(process: int) -> None:
+    if process == os.getpid():
+        shutil.rmtree(_folders[process], ignore_errors=True)
 
 
 def folder() -> str:
     """Where what this process makes for itself stands until it ends."""
-    return _folder_of(os.getpid())
+    process = os.getpid()
+    if process not in _folders:
+        _folders[process] = tempfile.mkdtemp(prefix="bernal-")
+        atexit.register(_remove, process)
+    return _folders[process]
 
 
 def is_passing(file: str) -> bool:
-    """Whether the file will be gone once this process has ended."""
-    return _folder_of.cache_info().currsize > 0 and os.path.abspath(file).startswith(folder() + os.sep)
+    """Whether the file will be gone once such a process has ended."""
+    return any(os.path.abspath(file).startswith(each + os.sep) for each in _folders.values())
 
 
 def _refuse(message: str) -> None:
@@ -66,8 +70,8 @@ def _of_cells(cells: dict[str, Any]) -> list[list[int]]:
     others = [kind for kind in kinds if kind not in (*faces, "vertex", "line")]
     if others or not faces:
         _refuse(
-            f"a container is a surface of triangles, quads or polygons, but the mesh has cells {', '.join(kinds) or 'none'}; "
-            "extract its surface first"
+            "a container is a surface of triangles, quads or polygons, but the mesh has cells "
+            f"{', '.join(kinds) or 'none'}; extract its surface first"
         )
     return [face for kind in faces for face in _faces(kinds[kind])]
 
@@ -114,9 +118,9 @@ def written(content: bytes, ending: str) -> str:
 
 
 def files_of(value: Any) -> Any:
-    """The name of a file, or of several, in place of what is a mesh or a packing."""
-    if value is None or isinstance(value, (str, os.PathLike)):
-        return value
+    """The whole name of a file, or of several, in place of its name, a mesh or a packing."""
+    if isinstance(value, (str, os.PathLike)):
+        return os.path.abspath(os.fspath(value))
     if hasattr(value, "_as_start"):  # a Packing
         return value._as_start()
     parts = _parts(value)
@@ -124,5 +128,7 @@ def files_of(value: Any) -> Any:
         return written(_off(*parts), ".off")
     if isinstance(value, Iterable):
         return [files_of(part) for part in value]
-    _refuse(f"neither a file nor a mesh: {type(value).__name__}; give a path, (vertices, faces), or a mesh of trimesh, "
-            "meshio or PyVista")
+    _refuse(
+        f"neither a file nor a mesh: {type(value).__name__}; give a path, (vertices, faces), or a mesh of trimesh, "
+        "meshio or PyVista"
+    )

@@ -33,9 +33,7 @@ def explain(scene: Scene | PathLike, *, progress: Progress = None) -> Plan:
     return plan
 
 
-def pack(
-    scene: Scene | PathLike, *, seed: int | None = None, threads: int = 0, progress: Progress = None
-) -> Packing:
+def pack(scene: Scene | PathLike, *, seed: int | None = None, threads: int = 0, progress: Progress = None) -> Packing:
     """Runs a scene, or the scene of a file.
 
     One seed gives one packing, bit for bit, for any number of threads; `seed` stands for the scene's, `threads` 0 for
@@ -92,13 +90,17 @@ def measure(packing: Packing | PathLike, *, gap: float = 0.002, progress: Progre
     Keys are those of `bernal measure --json`: n, dimension, unit, phi, coordination, rattlers, backbone, by_gap, g_r
     (r, g and error of shape (bins,)), size_correlation, crystalline, chambers, walls, sizes, hash. Lists of numbers
     are arrays. Lengths are in the scene's unit, radii are radii; what there is not is None, such as g_r between walls.
+    Also `per_sphere`, arrays of shape (N,): local_packing_fraction (the sphere's volume over that of its cell in the
+    radical diagram), cell_volume, neighbours (faces of the cell), and in containers chamber (-1: in none).
 
     gap : spheres touch below this gap over the sum of their radii.
     """
     of = packing if isinstance(packing, Packing) else read(packing, progress=progress)
     if not 0 <= gap <= 1:
         raise _errors.InputError("bad_argument", f"gap is a ratio from 0 to 1, not {gap}")
-    measured: Measurements = _records.record(Measurements, finish(_core.measure(of._core, gap), progress), arrays=True)
+    answer, per_sphere = finish(_core.measure(of._core, gap), progress)
+    measured: Measurements = _records.record(Measurements, answer, arrays=True)
+    measured["per_sphere"] = _records.Record(per_sphere)
     return measured
 
 
@@ -119,7 +121,7 @@ def export(
     output = format.replace(**keys) if isinstance(format, Output) else Output(format, **keys)
     of = packing if isinstance(packing, Packing) else read(packing, progress=progress)
     said = dict(output._said)
-    name = os.fspath(file) if file is not None else said.get("file") or output.file
+    name = os.fspath(file) if file is not None else said.get("file") or _core.file_of_format(output.format)
     said.pop("file", None)
     words = {key: value if isinstance(value, str) else _toml.text_of(value) for key, value in said.items()}
     files, note = finish(_core.export(of._core, output.format, words, name), progress)
@@ -174,8 +176,9 @@ def predict(
 
 def scene_of_sizes(diameters: Any) -> Any:
     """The library's scene of sizes that stand for themselves."""
-    text = f'[container]\nkind = "box"\nsize = [1, 1, 1]\n[spheres]\ncount = 1\n{_toml.line("diameter", _toml.plain(diameters))}'
-    return _core.scene(text, os.path.join(os.getcwd(), _errors.MADE_HERE))
+    sizes = _toml.line("diameter", _toml.plain(diameters))
+    text = f'[container]\nkind = "box"\nsize = [1, 1, 1]\n[spheres]\ncount = 1\n{sizes}'
+    return _core.scene(text, "/" + _errors.MADE_HERE)
 
 
 def import_(
@@ -234,7 +237,12 @@ def from_arrays(
         repeats itself; else the bounds of the spheres.
     """
     points = np.atleast_2d(np.asarray(centers, dtype=float))
-    sizes = np.broadcast_to(np.asarray(radii, dtype=float), points.shape[:1])
+    sizes = np.asarray(radii, dtype=float)
+    if points.ndim != 2 or sizes.shape not in ((), points.shape[:1]):
+        raise _errors.InputError(
+            "bad_argument", f"centers have the shape (N, D) and radii (N,), not {points.shape} and {sizes.shape}"
+        )
+    sizes = np.broadcast_to(sizes, points.shape[:1])
     dimension = points.shape[1]
     names = ["x", "y", "z"][:dimension] if dimension <= 3 else [f"x{k}" for k in range(dimension)]
     rows = np.column_stack([points, sizes]).tolist()

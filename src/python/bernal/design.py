@@ -62,7 +62,9 @@ def target(
     return answer
 
 
-def best(smallest: float, largest: float, count: int = 3, *, rods: int = 16000, progress: Progress = None) -> Prediction:
+def best(
+    smallest: float, largest: float, count: int = 3, *, rods: int = 16000, progress: Progress = None
+) -> Prediction:
     """The `count` diameters between two, both among them, that pack densest, and their shares of the volume."""
     answer = _answer(finish(_core.densest_sizes(smallest, largest, count, rods), progress))
     values = [2 * radius for radius in answer.pop("radii")]
@@ -72,7 +74,9 @@ def best(smallest: float, largest: float, count: int = 3, *, rods: int = 16000, 
     return answer
 
 
-def density(smallest: float, largest: float, bins: int = 16, *, rods: int = 16000, progress: Progress = None) -> Prediction:
+def density(
+    smallest: float, largest: float, bins: int = 16, *, rods: int = 16000, progress: Progress = None
+) -> Prediction:
     """The density between two diameters that packs densest, by volume and in 2, 4, 8, 16, 32 or 64 bins on a
     logarithmic axis; as a sieve curve. `levels` says what fewer bins reach, `power_law_phi` the best power law."""
     answer = _answer(finish(_core.densest_density(smallest, largest, bins, rods), progress))

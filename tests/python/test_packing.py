@@ -1,0 +1,228 @@
+#!/usr/bin/env python3
+"""Packings: arrays without copies, proof, measurements, files."""
+
+import gc
+import subprocess
+import unittest
+
+import numpy as np
+from support import COMMAND, InFolder, small
+
+import bernal
+from bernal import _core
+
+
+def address(array):
+    return array.__array_interface__["data"][0]
+
+
+class Arrays(InFolder):
+    def test_a_million_spheres_are_looked_at_where_they_stand(self):
+        scene = bernal.Scene(bernal.Box([125] * 3), diameters=1, count=10**6, stages=bernal.Insert(layout="lattice"))
+        packing = bernal.pack(scene)
+        self.assertEqual(len(packing), 10**6)
+        own = packing._core.columns()  # made anew by the library each time
+        views = [packing.x, packing.y, packing.z, packing.radii]
+        for view, again in zip(views, own):
+            self.assertIsNot(view, again)
+            self.assertEqual(address(view), address(again))
+            self.assertIs(view.base, packing._core)
+            self.assertFalse(view.flags.writeable)
+            self.assertFalse(view.flags.owndata)
+            self.assertEqual((view.shape, view.dtype), ((10**6,), np.float64))
+        self.assertEqual([address(c) for c in packing.columns], [address(c) for c in views[:3]])
+        z, total = packing.z, packing.z.sum()
+        del packing, own, views, view, again
+        gc.collect()
+        self.assertEqual(z.sum(), total)  # the view keeps alive what it looks at
+        with self.assertRaises(ValueError):
+            z[0] = 1
+        with self.assertRaises(ValueError):
+            z.setflags(write=True)
+
+    def test_a_matrix_is_a_copy_that_is_kept(self):
+        packing = bernal.pack(small())
+        self.assertEqual(packing.centers.shape, (300, 3))
+        self.assertTrue((packing.centers[:, 1] == packing.y).all())
+        self.assertIs(packing.centers, packing.centers)
+        self.assertFalse(np.shares_memory(packing.centers, packing.x))
+        self.assertTrue((packing.diameters == 2 * packing.radii).all())
+
+    def test_other_dimensions(self):
+        discs = bernal.pack(bernal.Scene(bernal.Box([10, 10]), diameters=1, count=40))
+        self.assertEqual((discs.dimension, len(discs.columns), discs.bounds.shape), (2, 2, (2, 2)))
+        self.refuses(AttributeError, "no z", lambda: discs.z)
+        self.assertTrue(bernal.verify(discs))
+        self.assertIn("<svg", str(discs.picture))
+        self.refuses(bernal.InputError, "three dimensions", discs.section)
+        five = bernal.pack(
+            bernal.Scene(bernal.Periodic(dimension=5), diameters=1, count=100, stages=bernal.Relax(alpha=2))
+        )
+        self.assertEqual(five.centers.shape, (100, 5))
+        self.assertTrue(bernal.verify(five))
+        self.assertEqual(str(five.picture), "")
+        self.assertNotIn("<img", five._repr_html_())
+        self.refuses(bernal.InputError, "dimensions", five.view)
+
+    def test_few_spheres(self):
+        one = bernal.pack(bernal.Scene(bernal.Sphere(2), radii=1, count=1))
+        self.assertEqual(len(one), 1)
+        self.assertTrue(bernal.verify(one))
+        self.assertIn("1 sphere in", repr(one))
+        bernal.measure(one)
+        one._repr_html_()
+        two = bernal.from_arrays([[0, 0, 0], [1.5, 0, 0]], 1, unit="mm")
+        proof = bernal.verify(two, list=None)
+        self.assertFalse(proof)
+        self.assertEqual(proof.overlaps[0].pair, [0, 1])
+        self.assertAlmostEqual(proof.overlaps[0].ratio, 0.25)
+
+
+class Runs(InFolder):
+    def test_the_command_packs_the_same(self):
+        small().write("scene.toml")
+        subprocess.run([COMMAND, "pack", "scene.toml", "-o", "out", "--quiet"], check=True)
+        read, own = bernal.read("out"), bernal.pack("scene.toml", threads=1)
+        self.assertEqual(own.hash, read.hash)
+        self.assertNotEqual(bernal.pack("scene.toml", seed=2).hash, own.hash)
+        self.assertEqual(read.scene.diameters.median, 1)
+
+    def test_what_is_known_of_a_run(self):
+        packing = bernal.pack(small(), seed=3)
+        self.assertEqual((packing.outcome, packing.seed, packing.unit), ("converged", 3, "mm"))
+        volume = 4 / 3 * np.pi * (packing.radii**3).sum()
+        self.assertAlmostEqual(packing.packing_fraction, volume / packing.volume, 12)
+        self.assertAlmostEqual(packing.volume, np.prod(packing.bounds[1] - packing.bounds[0]))
+        self.assertEqual(packing.history[-1].spheres, 300)
+        self.assertIn("relaxation", [effect.name for effect in packing.effects])
+        page = packing._repr_html_()
+        self.assertIn("packing fraction", page)
+        self.assertIn("data:image/svg+xml;base64,", page)
+        self.assertIn("<svg", str(packing.section("z = 1")))
+        view = packing.view(height=300)
+        self.assertIn("<html", view.page)
+        self.assertIn("&lt;html", view._repr_html_())
+        self.assertNotIn("<html", view._repr_html_())
+        self.assertIn("height:300px", view._repr_html_())
+        self.refuses(bernal.InputError, "plane", lambda: packing.section("nowhere"))
+
+    def test_no_place_left_is_an_outcome(self):
+        packing = bernal.pack(bernal.Scene(bernal.Box([4, 4, 4]), diameters=1, count=500, stages=bernal.Insert()))
+        self.assertEqual(packing.outcome, "full")
+        self.assertTrue(bernal.verify(packing))
+
+    def test_files_hold_the_packing(self):
+        packing = bernal.pack(small(outputs=["yade"]))
+        written = packing.write("out")
+        self.assertTrue(written.certificate)
+        self.assertLessEqual(
+            {"spheres.csv", "scene.toml", "report.html", "packing.svg"}, {f.name for f in written.files}
+        )
+        self.assertEqual(len(written.notes), 1)
+        self.assertEqual(bernal.read("out").hash, packing.hash)
+        self.assertEqual(bernal.verify("out").spheres, 300)
+        self.assertTrue(bernal.verify("out", exact=True, threads=1))
+        (self.folder / "file").write_text("")
+        error = self.refuses(bernal.WriteError, "file", lambda: packing.write("file/out"))
+        self.assertIsInstance(error, OSError)
+        self.refuses(bernal.InputError, "no folder", lambda: bernal.read("nowhere"))
+
+    def test_measurements_hold_arrays(self):
+        measured = bernal.measure(bernal.pack(small()), gap=0.01)
+        self.assertEqual(measured.contact_gap, 0.01)
+        self.assertEqual(measured.g_r.r.shape, measured.g_r.g.shape)
+        self.assertIsInstance(measured.g_r.g, np.ndarray)
+        self.assertIsNone(measured.walls)
+        cells = measured.per_sphere.cell_volume
+        self.assertEqual((cells.shape, measured.per_sphere.neighbours.shape), ((300,), (300,)))
+        self.assertAlmostEqual(cells.sum() / bernal.pack(small()).volume, 1, 9)
+        vessel = bernal.measure(bernal.pack(bernal.Scene(bernal.Cylinder(3, 6), diameters=1, count=40)))
+        self.assertEqual(set(vessel.per_sphere.chamber), {0})
+        self.assertEqual(measured["phi"], measured.phi)
+        self.refuses(AttributeError, 'did you mean "rattlers"?', lambda: measured.ratlers)
+        self.refuses(bernal.InputError, "gap", lambda: bernal.measure(bernal.pack(small()), gap=2))
+
+    def test_exports_and_imports(self):
+        packing = bernal.pack(small())
+        bernal.export(packing, "lammps", "bed.data", unit="m", density=1000)
+        written = bernal.export(packing, bernal.Output("extxyz"))
+        self.assertEqual([file.name for file in written.files], ["extxyz.xyz"])
+        self.assertIn("300 spheres", written.note)
+        again = bernal.import_("extxyz.xyz", unit="mm")
+        self.assertEqual(again.outcome, "imported")
+        self.assertTrue((again.centers == packing.centers).all())
+        self.assertIn("spheres", again.notes)
+        again.write("again")
+        self.assertEqual(bernal.read("again").outcome, "imported")
+        (self.folder / "table.csv").write_text("x,y,z,r\n0,0,0,1\n")
+        self.refuses(bernal.InputError, "unit", lambda: bernal.import_("table.csv"))
+        self.refuses(bernal.InputError, "no such file", lambda: bernal.import_("nowhere.csv"))
+        self.refuses(bernal.KeywordError, "resolution", lambda: bernal.export(packing, "lammps", "x", resolution=3))
+
+    def test_arrays_become_packings(self):
+        rng = np.random.default_rng(1)
+        centers, radii = rng.random((50, 3)) * [3, 4, 5], rng.random(50) / 10
+        packing = bernal.from_arrays(centers, radii, unit="um", box=[3, 4, 5], periodic="xyz")
+        self.assertTrue((packing.centers == centers).all() and (packing.radii == radii).all())
+        self.assertEqual((packing.unit, packing.bounds[1].tolist()), ("um", [3, 4, 5]))
+        self.refuses(bernal.InputError, "shape (N, D)", lambda: bernal.from_arrays(centers, [1, 2], unit="mm"))
+        vessel = bernal.from_arrays([[0.0, 0.0, 1.0]], 1, unit="mm", container=bernal.Cylinder(1, 2))
+        self.assertTrue(bernal.verify(vessel))
+        self.assertFalse(
+            bernal.verify(bernal.from_arrays([[0.1, 0, 1]], 1, unit="mm", container=bernal.Cylinder(1, 2)))
+        )
+
+    def test_a_packing_is_where_another_begins(self):
+        first = bernal.pack(bernal.Scene(bernal.Cylinder(3, 6), diameters=1, unit="mm", count=40))
+        second = bernal.pack(
+            bernal.Scene(bernal.Cylinder(3, 6), diameters=1, unit="mm", start=first, stages=bernal.Insert())
+        )
+        self.assertGreaterEqual(len(second), 40)
+        self.assertTrue((second.centers[:40] == first.centers).all())
+        second.write("out")
+        self.assertTrue((self.folder / "out").is_dir() and bernal.verify("out"))
+
+
+class Sizes(InFolder):
+    def test_predictions_are_those_of_the_command(self):
+        self.assertAlmostEqual(bernal.predict(bernal.Lognormal(1, 0.5, basis="volume")).phi, 0.7073, 4)
+        self.assertAlmostEqual(float(bernal.predict(3)), 0.6435, 3)
+        self.assertEqual(bernal.predict(small()).phi, bernal.predict(bernal.Lognormal(1, 0.2)).phi)
+        self.refuses(
+            bernal.InputError, "three dimensions", lambda: bernal.predict(bernal.Scene(bernal.Box([1, 1]), radii=0.1))
+        )
+        self.refuses(bernal.InputError, "positive", lambda: bernal.predict(-1))
+
+    def test_designs(self):
+        best = bernal.design.maximise([1, 5])
+        self.assertAlmostEqual(best.shares[0], 0.208, 3)
+        self.assertAlmostEqual(bernal.predict(best.diameters).phi, best.phi, 6)
+        wide = bernal.design.maximise([1, bernal.Lognormal(8, 0.2, basis="volume")], rods=2000)
+        self.assertIsInstance(wide.diameters, bernal.Mixture)
+        self.assertAlmostEqual(bernal.predict(wide.diameters, rods=2000).phi, wide.phi, 5)
+        found = bernal.design.target(0.7)
+        self.assertAlmostEqual(found.parameter, 0.4619, 4)
+        self.assertAlmostEqual(bernal.predict(found.diameters).phi, 0.7, 6)
+        none = bernal.design.target(0.9, lambda t: bernal.Uniform(1, 1 + t, basis="volume"), 0.1, 2)
+        self.assertFalse(none.found)
+        self.assertLess(none.reachable[1], 0.9)
+        three = bernal.design.best(1, 10, 3, rods=2000)
+        self.assertEqual((three["values"][0], three["values"][-1]), (1, 10))
+        self.assertAlmostEqual(bernal.predict(three.diameters, rods=2000).phi, three.phi, 5)
+        self.assertGreater(bernal.design.relative_viscosity(0.3, 0.64), 2)
+
+    def test_errors_of_a_family_come_through(self):
+        self.refuses(ZeroDivisionError, "", lambda: bernal.design.target(0.7, lambda t: 1 / 0))
+        self.refuses(bernal.InputError, "between 0 and 1", lambda: bernal.design.target(2))
+        self.refuses(bernal.InputError, "", lambda: bernal.design.maximise([1]))
+
+
+class Version(unittest.TestCase):
+    def test_it_is_that_of_the_command(self):
+        said = subprocess.run([COMMAND, "--version"], capture_output=True, text=True, check=True).stdout
+        self.assertIn(bernal.__version__, said)
+        self.assertEqual(bernal.__version__, _core.version)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Containers that stand in no file: arrays, and what is like a mesh of trimesh, meshio or PyVista."""
+
+import atexit
+import os
+import sys
+import unittest
+import unittest.mock
+from types import SimpleNamespace
+
+import numpy as np
+from support import HELIX, InFolder, cube
+
+import bernal
+from bernal import _surfaces
+
+VERTICES, TRIANGLES, SQUARES = cube()
+
+
+def scene_of(mesh, **keys):
+    return bernal.Scene(bernal.Mesh(mesh, unit="mm"), **{"diameters": 2, "unit": "mm", "count": 10, **keys})
+
+
+class Surfaces(InFolder):
+    def test_whatever_is_like_a_mesh_is_a_container(self):
+        flat = np.concatenate([[4, *square] for square in SQUARES])
+        meshes = {
+            "arrays": (np.array(VERTICES), np.array(TRIANGLES)),
+            "lists": (VERTICES, SQUARES),
+            "trimesh": SimpleNamespace(vertices=np.array(VERTICES), faces=np.array(TRIANGLES)),
+            "meshio": SimpleNamespace(
+                points=np.array(VERTICES), cells_dict={"line": np.array([[0, 1]]), "quad": np.array(SQUARES)}
+            ),
+            "PyVista": SimpleNamespace(points=np.array(VERTICES, dtype=np.float32), faces=flat),
+            "PyVista's regular faces": SimpleNamespace(points=np.array(VERTICES), faces=np.array(SQUARES)),
+        }
+        for name, mesh in meshes.items():
+            with self.subTest(name):
+                found = bernal.inspect(mesh, unit="mm")
+                self.assertTrue(found)
+                self.assertEqual((found.volume, found.faces, found.unit), (1000, 12, "mm"))
+                packing = bernal.pack(scene_of(mesh))
+                self.assertTrue(bernal.verify(packing))
+                self.assertEqual(packing.volume, 1000)
+
+    def test_the_doubles_are_kept(self):
+        rng = np.random.default_rng(3)
+        turned = np.array(VERTICES) @ np.linalg.qr(rng.normal(size=(3, 3)))[0] + rng.normal(size=3) * 1e3
+        packing = bernal.pack(scene_of((turned, TRIANGLES), diameters=1, count=1))
+        vertices, triangles = packing.walls
+        self.assertEqual({tuple(v) for v in vertices}, {tuple(v) for v in turned})
+        self.assertEqual(triangles.shape, (12, 3))
+
+    def test_the_result_stands_for_itself(self):
+        scene = scene_of((VERTICES, TRIANGLES))
+        same, other = scene_of((np.array(VERTICES), SQUARES)), scene_of((VERTICES, TRIANGLES))
+        self.assertEqual(scene.container.file, other.container.file)
+        self.assertNotEqual(scene.container.file, same.container.file)
+        bernal.pack(scene).write("out")
+        scene.write("scene.toml")
+        text = (self.folder / "out" / "scene.toml").read_text() + (self.folder / "scene.toml").read_text()
+        self.assertNotIn(_surfaces.folder(), text)
+        with unittest.mock.patch.object(_surfaces, "folder", lambda: "/nowhere"):
+            self.assertTrue(bernal.verify("out"))
+            self.assertEqual(bernal.pack("scene.toml").hash, bernal.read("out").hash)
+
+    def test_a_forked_process_leaves_them_alone(self):
+        file = scene_of((VERTICES, TRIANGLES)).container.file
+        child = os.fork()
+        if child == 0:
+            try:
+                sys.exit(0 if _surfaces.is_passing(file) and _surfaces.folder() != os.path.dirname(file) else 1)
+            finally:
+                atexit._run_exitfuncs()
+                os._exit(sys.exc_info()[1].code)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        self.assertTrue(os.path.exists(file))
+
+    def test_files_are_named_by_paths_too(self):
+        self.assertEqual(bernal.inspect(HELIX).faces, bernal.inspect(bernal.Mesh(HELIX), unit="mm").faces)
+        found = bernal.inspect(bernal.Mesh(HELIX, unit="mm"), radius=1)
+        self.assertEqual(len(found.chambers["list"]), 1)
+        hollow = scene_of(HELIX, diameters=10).replace(container=bernal.Mesh(HELIX, obstacles=[(VERTICES, TRIANGLES)]))
+        self.assertTrue(hollow.container.obstacles[0].endswith(".off"))
+
+    def test_an_open_surface_is_told_what_helps(self):
+        found = bernal.inspect((VERTICES, SQUARES[1:]), places="bad.ply")
+        self.assertFalse(found)
+        self.assertEqual(found.container_lines, ['cap = "z = 0"'])
+        capped = bernal.Mesh((VERTICES, SQUARES[1:]), unit="mm", cap="z = 0")
+        self.assertTrue(bernal.verify(bernal.pack(scene_of(HELIX).replace(container=capped))))
+        self.assertTrue((self.folder / "bad.ply").exists())
+        error = self.refuses(bernal.InputError, "4 open edges", lambda: bernal.pack(scene_of((VERTICES, SQUARES[1:]))))
+        self.assertIsNone(error.file)  # whose name means nothing to anybody
+
+    def test_what_is_none_is_refused_with_the_reason(self):
+        tetra = SimpleNamespace(points=VERTICES, cells_dict={"tetra": np.array([[0, 1, 2, 4]])})
+        for mesh, message in (
+            (tetra, "extract its surface"),
+            ((VERTICES, []), "no faces"),
+            ((VERTICES, [(0, 1, 8)]), "vertices 0 to 7"),
+            ((VERTICES, np.zeros((1, 3))), "integers"),
+            (([(0, 0)], [(0, 0, 0)]), "shape (V, 3)"),
+            (([(0, 0, np.nan)] * 3, [(0, 1, 2)]), "not finite"),
+            (3, "neither a file nor a mesh"),
+        ):
+            self.refuses(bernal.InputError, message, lambda mesh=mesh: scene_of(mesh))
+
+
+if __name__ == "__main__":
+    unittest.main()
