@@ -11,21 +11,21 @@ constexpr const char* beginning = R"(# How bash completes the words of {0}; made
 _{0}_files()
 {{
     local file ending
-    compopt -o filenames 2>/dev/null
+    compopt -o filenames 2>/dev/null  # bash quotes what needs it
     while IFS= read -r file; do
-        if [[ -d $file || $# == 0 ]]; then
+        if [[ -d ${{file/#~\//$HOME/}} || $# == 0 ]]; then
             COMPREPLY+=("$file")
             continue
         fi
         for ending in "$@"; do
             [[ ${{file,,}} == *"$ending" ]] && COMPREPLY+=("$file")
         done
-    done < <(compgen -f -- "$word")
+    done < <(compgen -f -- "$begun")
 }}
 _{0}_folders()
 {{
     compopt -o filenames 2>/dev/null
-    mapfile -t COMPREPLY < <(compgen -d -- "$word")
+    mapfile -t COMPREPLY < <(compgen -d -- "$begun")
 }}
 _{0}_words() {{ mapfile -t COMPREPLY < <(compgen -W "$*" -- "$word"); }}
 
@@ -73,6 +73,8 @@ constexpr const char* middle = R"(        esac
         _{0}_words "$commands"
         return
     fi
+    local begun=${{word//\\/}}  # as the file is called: "a\ part", "'a part"
+    begun=${{begun#[\"\']}}
     case $path${{option:+ }}${{option:- $given}} in
 )";
 

@@ -35,7 +35,7 @@ std::string paragraphs(std::string_view text) {
 
 /// "  name      what it is", the second in a column.
 std::string as_lines(const std::vector<Entry>& entries) {
-  std::size_t column = 0;
+  std::size_t column = 6;
   for (const Entry& entry : entries)
     if (const std::size_t own = characters(entry.name); own <= widest_name)
       column = std::max(column, own + 4);

@@ -127,7 +127,7 @@ Command export_command() {
            "bernal import goes the other way.",
        .lists = {{.title = "Formats", .entries = entries_of_formats()}},
        .examples = {{"bernal export out --to lammps -o bed.data --density 2650 --types 3",
-                     "in metres, kilograms and seconds, atoms of three types by size"},
+                     "atoms of three types by size"},
                     {"bernal export out --to nrrd -o bed.nrrd --resolution 512 --values labels",
                      "an image: which sphere is where"},
                     {"bernal export out --to gmsh -o rve.geo --contact gap && python3 rve.py",

@@ -68,8 +68,8 @@ asked for. Then it reads its own file back and decides for every two spheres
 that are near each other, and for every sphere near the wall, whether they
 overlap: in exact arithmetic wherever rounding could matter.
 .
-It measures packings, predicts how densely spheres of given sizes pack, and
-hands packings over to LAMMPS, LIGGGHTS, YADE, OpenMC, Gmsh, POV-Ray and others.
+It measures packings, predicts how densely sizes pack, and hands packings over
+to LAMMPS, LIGGGHTS, YADE, OpenMC, Gmsh, POV-Ray and others.
 .
 STEP, IGES and BREP are read and written by the recommended libraries of
 Open CASCADE."

@@ -88,6 +88,8 @@ TEST(Completion, BashOffersFilesOfTheKindThatIsAskedFor) {
   EXPECT_EQ(bash.offers({"pack", "bed.toml", "-o", ""}), Words{"a folder"});
   EXPECT_EQ(bash.offers({"export", "a folder", "-o", "n"}), Words{"notes.txt"});
   EXPECT_EQ(bash.offers({"pack", "bed.toml", ""}), Words{}) << "there is no second scene";
+  for (const char* begun : {"a\\ fo", "\"a fo", "a fo"})
+    EXPECT_EQ(bash.offers({"measure", begun}), Words{"a folder"}) << begun;
 }
 
 // A value that has the name of a command is none; nor is one an option that has the name of one.
