@@ -1,6 +1,8 @@
 // What `bernal keys --schema` prints, from the one table that scenes are read by.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -66,8 +68,10 @@ SceneSchema within_range(const ReferenceKey& key) {
   };
   SceneSchema made = {{"type", key.type}};
   if (std::isfinite(key.min)) made[key.above_min ? "exclusiveMinimum" : "minimum"] = limit(key.min);
-  // No larger whole number can be written in TOML.
-  if (std::isfinite(key.max) && !(whole && key.max >= 0x1p63))
+  // No larger whole number can be written in TOML; but 1e31, which JSON takes for one.
+  if (whole && key.max >= 0x1p63)
+    made["maximum"] = std::numeric_limits<std::int64_t>::max();
+  else if (std::isfinite(key.max))
     made[key.below_max ? "exclusiveMaximum" : "maximum"] = limit(key.max);
   return made;
 }

@@ -122,7 +122,8 @@ class Page:
         for name in ("data", "tests"):
             (folder / name).symlink_to(self.source / name)
         environment = os.environ | {
-            "PATH": f"{self.command.parent}:{os.environ['PATH']}", "COLUMNS": "100",
+            "PATH": f"{self.command.parent}:/usr/bin:{os.environ['PATH']}",  # Debian's before others
+            "COLUMNS": "100",
             "PYTHONPATH": f"{self.command.parent}/python", "SOURCE_DATE_EPOCH": "0"}
         printed, before = None, None
         for block in blocks_of(self.lines):
