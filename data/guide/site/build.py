@@ -80,7 +80,6 @@ def html_of_markdown(text):
     body = pandoc(text)
     body = re.sub(r"<table>.*?</table>", lambda m: f'<div class="wide">{m[0]}</div>', body, flags=re.S)
     body = re.sub(r"<colgroup>.*?</colgroup>", "", body, flags=re.S)
-    body = re.sub(r' style="(?:text-align: right;)"', ' class="n"', body)
     return re.sub(r' style="[^"]*"', "", body)
 
 
