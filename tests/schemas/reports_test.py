@@ -10,7 +10,7 @@ import unittest
 
 import jsonschema
 
-BERNAL, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+BERNAL, SOURCE = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
 SCHEMA = json.loads((SOURCE / "data/schemas/report.schema.json").read_text())
 MEASUREMENTS = {"$defs": SCHEMA["$defs"], "$ref": "#/$defs/measurements"}
 CERTIFICATE = {"$defs": SCHEMA["$defs"], "$ref": "#/$defs/certificate"}

@@ -14,7 +14,7 @@ import jsonschema
 
 from values import bad_values, good_values, some, tables_of
 
-BERNAL, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+BERNAL, SOURCE = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
 
 
 def printed(*arguments):
