@@ -1,7 +1,7 @@
 # cmake -D FOLDER=src/io/viewer -D TO=viewer_files.cpp -P embed_viewer.cmake: the style sheet and the program of the view
 # as C++. The modules become one script, in the order below, in a scope of its own: their imports and the word export go,
 # for all names differ. Shaders become the strings that shaders.js asks for. Lines that are comments are left out.
-set(modules data colours camera shaders walls images renderer pick labels panel controls view)
+set(modules data colours camera shaders walls images renderer order pick labels panel controls view)
 
 function(read_without_comments file to)
   file(READ ${file} text)

@@ -83,8 +83,9 @@ std::vector<std::array<Vector<3>, 2>> sharp_edges(const Mesh& mesh, std::size_t 
   for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
     for (j = i; j < sides.size() && sides[j].from == sides[i].from && sides[j].to == sides[i].to; ++j) {
     }
-    const bool smooth =
-        j - i == 2 && normal_of(sides[i].triangle).dot(normal_of(sides[i + 1].triangle)) >= std::cos(sharp);
+    const Vector<3> n = normal_of(sides[i].triangle), m = normal_of(sides[j - 1].triangle);
+    const bool smooth = j - i == 2 && (n.isZero() || m.isZero() || n.dot(m) >= std::cos(sharp));
+    if (mesh.vertices[sides[i].from] == mesh.vertices[sides[i].to]) continue;
     if (!smooth) edges.push_back({mesh.vertices[sides[i].from], mesh.vertices[sides[i].to]});
   }
   if (edges.size() > most) {

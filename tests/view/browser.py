@@ -24,7 +24,7 @@ def executable():
 class Browser:
     """`with Browser() as browser: page = browser.open(path)`. Raises OSError where Chromium does not start."""
 
-    def __init__(self, width=1160, height=900, dark=False, graphics=True, script=True):
+    def __init__(self, width=1160, height=900, dark=False, graphics=True, software=True, script=True):
         self.folder = tempfile.mkdtemp(prefix="bernal-browser-")
         self.next_id = 0
         self.events = []
@@ -41,7 +41,8 @@ class Browser:
                  "--hide-scrollbars", "--force-device-scale-factor=1", "--enable-precise-memory-info",
                  "--disable-backgrounding-occluded-windows", "--disable-renderer-backgrounding",
                  f"--user-data-dir={self.folder}", f"--window-size={width},{height}"]
-        flags += (["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] if graphics
+        flags += ([] if graphics and not software else
+                  ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] if graphics
                   else ["--disable-gpu", "--disable-3d-apis"])
         self.process = subprocess.Popen([executable(), *flags, "about:blank"], stdin=subprocess.DEVNULL,
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, close_fds=False,

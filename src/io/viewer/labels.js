@@ -31,7 +31,7 @@ export class Labels {
   }
 
   update(camera, height) {
-    const size = 24, middle = [156, 34];
+    const size = 24, middle = [150, 36];
     this.axes.forEach(({ line, text }, k) => {
       const x = camera.right[k], y = -camera.up[k];
       line.setAttribute("x1", middle[0]);

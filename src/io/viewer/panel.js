@@ -1,5 +1,6 @@
 // What stands around the picture: the bar of choices, the key of the colours, the card of a sphere, the list of keys.
 import { numberText, categoryColour } from "./colours.js";
+import { svgElement } from "./labels.js";
 
 const KEYS = [
   ["drag, arrows", "turn", true], ["shift + drag, shift + arrows", "move"], ["wheel, + and \u2212", "nearer, farther"],
@@ -28,7 +29,12 @@ function tick(title, checked, onchange) {
   return [element("label", { className: "bernal-tick" }, box, element("span", { textContent: title })), box];
 }
 function button(text, title, onclick) {
-  return element("button", { type: "button", textContent: text, title, onclick, aria: { label: title } });
+  return element("button", { type: "button", title, onclick, aria: { label: title } }, text);
+}
+function cornersIcon() {
+  const icon = svgElement("svg", { width: 13, height: 13, viewBox: "0 0 13 13", class: "bernal-icon" });
+  svgElement("path", { d: "M1 4.5v-3.5h3.5M8.5 1h3.5v3.5M12 8.5v3.5h-3.5M4.5 12h-3.5v-3.5" }, icon);
+  return icon;
 }
 
 export class Panel {
@@ -64,7 +70,7 @@ export class Panel {
     }
     const buttons = element("span", { className: "bernal-group bernal-end" },
       button("reset", "View of the beginning (0)", act.reset), button("picture", "Save a picture (p)", act.picture));
-    if (document.fullscreenEnabled) buttons.append(button("\u26f6", "Whole screen (e)", act.wholeScreen));
+    if (document.fullscreenEnabled) buttons.append(button(cornersIcon(), "Whole screen (e)", act.wholeScreen));
     buttons.append(button("?", "Keys (?)", () => this.toggleKeys()));
     bar.append(ticks, buttons);
     frame.append(bar);
@@ -114,7 +120,7 @@ export class Panel {
         this.key.append(element("small", { textContent: `${there.length} in all; colours repeat` }));
     } else if (scale.equal) {
       this.key.append(swatch(this.data.palette[16], this.lengthText(scale.low, "number") + ", all of them"));
-    } else if (column.kind === "count" && scale.high - scale.low <= 14) {
+    } else if (column.kind === "count" && scale.high - scale.low <= 16) {
       const steps = [];
       for (let v = scale.low; v <= scale.high; ++v)
         steps.push(swatch(this.data.palette[Math.round(32 * scale.at(v))], String(v)));
@@ -124,9 +130,10 @@ export class Panel {
       bar.style.background = `linear-gradient(90deg,${this.data.palette.join(",")})`;
       const text = (value, sign) => element("span", { textContent: sign + numberText(value, 3) });
       this.key.append(bar, element("div", { className: "bernal-ends" },
-        text(scale.low, scale.below ? "\u2264 " : ""), text(scale.middle, ""),
+        text(scale.low, scale.below ? "\u2264 " : ""),
+        ...(column.kind === "count" ? [] : [text(scale.middle, "")]),
         text(scale.high, scale.above ? "\u2265 " : "")));
-      if (scale.logarithmic) this.key.append(element("small", { textContent: "even steps are equal ratios" }));
+      if (scale.logarithmic) this.key.append(element("small", { textContent: "logarithmic" }));
     }
     if (column.values.some((v) => !Number.isFinite(v)))
       this.key.append(swatch(categoryColour(0), "no number"));

@@ -1,9 +1,16 @@
-// Draws spheres, walls and lines. One draw call each; nothing is made in a frame.
-import { programOf, sphereFragment } from "./shaders.js";
+// Draws spheres, walls and lines. One draw call each; nothing is made in a frame. First the spheres: their colours and
+// their heights towards the eye; then their shading, walls and lines over it, in a picture that may have more pixels than
+// the canvas, or fewer.
+import { programOf, exact } from "./shaders.js";
+
+export const ROW = 1024;  // spheres in a row of a texture
+export const wholeRows = (count) => ROW * Math.ceil(count / ROW);
 
 export class Renderer {
-  constructor(canvas) {
+  // `overlap`: whether spheres may reach into each other, which takes longer to draw.
+  constructor(canvas, overlap) {
     this.canvas = canvas;
+    this.overlap = overlap;
     this.gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false, stencil: false });
     if (!this.gl) throw new Error("no WebGL 2");
     this.make();
@@ -13,12 +20,14 @@ export class Renderer {
   make() {
     const gl = this.gl;
     const texts = shaderTexts;
-    this.spheres = programOf(gl, texts["sphere.vert"], sphereFragment(gl, texts["sphere.frag"]));
+    const variant = (text) => (this.overlap ? exact(gl, text) : text);
+    this.spheres = programOf(gl, variant(texts["sphere.vert"]), variant(texts["sphere.frag"]));
     this.shading = programOf(gl, texts["whole.vert"], texts["shade.frag"]);
     this.surface = programOf(gl, texts["surface.vert"], texts["surface.frag"]);
     this.lines = programOf(gl, texts["line.vert"], texts["line.frag"]);
     this.nothing = gl.createVertexArray();
     this.groups = [];
+    this.colour = this.heights = this.shaded = this.depth = this.first = this.second = null;
     this.walls = this.edges = null;
     this.width = this.height = 0;
     this.extent = new Float32Array(3);
@@ -31,73 +40,80 @@ export class Renderer {
     this.gl.bufferData(target, values, this.gl.STATIC_DRAW);
     return buffer;
   }
-  vertices(attributes, each) {
+  // Of three numbers each.
+  vertices(buffer, stride, ...offsets) {
     const gl = this.gl, array = gl.createVertexArray();
     gl.bindVertexArray(array);
-    attributes.forEach(([buffer, size, type, stride, offset], k) => {
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    offsets.forEach((offset, k) => {
       gl.enableVertexAttribArray(k);
-      gl.vertexAttribPointer(k, size, type, type === gl.UNSIGNED_BYTE, stride, offset);
-      gl.vertexAttribDivisor(k, each);
+      gl.vertexAttribPointer(k, 3, gl.FLOAT, false, stride, offset);
     });
     return array;
   }
 
-  // Group 0 are the spheres, group 1 their images; four numbers and four bytes each.
-  setSpheres(group, spheres, colours) {
-    const gl = this.gl, old = this.groups[group];
-    if (old) {
-      gl.deleteVertexArray(old.array);
-      gl.deleteBuffer(old.places);
-      gl.deleteBuffer(old.colours);
-    }
-    const places = this.buffer(spheres), colour = this.buffer(colours);
-    const array = this.vertices([[places, 4, gl.FLOAT, 0, 0], [colour, 4, gl.UNSIGNED_BYTE, 0, 0]], 1);
-    this.groups[group] = { array, places, colours: colour, count: spheres.length / 4 };
-  }
-  setColours(group, colours) {
-    const gl = this.gl;
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.groups[group].colours);
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, colours);
+  // Group 0 are the spheres, group 1 their images; four numbers and four bytes each, of which `count` are drawn. Arrays
+  // are whole rows of ROW.
+  setSpheres(group, spheres, tints, count) {
+    const gl = this.gl, rows = spheres.length / (4 * ROW);
+    if (!this.groups[group])
+      this.groups[group] = { spheres: this.texture(ROW, rows, gl.RGBA32F), tints: this.texture(ROW, rows) };
+    const needed = Math.min(rows, Math.ceil(count / ROW));
+    const fill = (texture, type, values) => {
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, ROW, needed, gl.RGBA, type, values);
+    };
+    gl.activeTexture(gl.TEXTURE0);
+    fill(this.groups[group].spheres, gl.FLOAT, spheres);
+    fill(this.groups[group].tints, gl.UNSIGNED_BYTE, tints);
+    this.groups[group].count = count;
   }
   setWalls({ vertices, triangles, lines }) {
     const gl = this.gl;
     if (triangles.length > 0) {
-      const array = this.vertices([[this.buffer(vertices), 3, gl.FLOAT, 0, 0]], 0);
+      const array = this.vertices(this.buffer(vertices), 0, 0);
       this.buffer(triangles, gl.ELEMENT_ARRAY_BUFFER);
       this.walls = { array, count: triangles.length };
     }
-    const ends = this.buffer(lines);
-    this.edges = { count: lines.length / 6,
-                   array: this.vertices([[ends, 3, gl.FLOAT, 24, 0], [ends, 3, gl.FLOAT, 24, 12]], 1) };
+    const ends = new Float32Array(6 * lines.length);
+    for (let k = 0; k < ends.length; ++k) ends[k] = lines[6 * Math.floor(k / 36) + (k % 6)];
+    this.edges = { count: lines.length, array: this.vertices(this.buffer(ends), 24, 0, 12) };
     gl.bindVertexArray(null);
   }
 
-  texture(format, type, internal, width, height) {
+  texture(width, height, format = this.gl.RGBA8) {
     const gl = this.gl, texture = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texImage2D(gl.TEXTURE_2D, 0, internal, width, height, 0, format, type, null);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, Math.max(1, height));
     for (const [name, value] of [[gl.TEXTURE_MIN_FILTER, gl.NEAREST], [gl.TEXTURE_MAG_FILTER, gl.NEAREST],
                                  [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
       gl.texParameteri(gl.TEXTURE_2D, name, value);
     return texture;
   }
+  target(...textures) {
+    const gl = this.gl, target = gl.createFramebuffer(), attached = [];
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    textures.forEach((texture, k) => {
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + k, gl.TEXTURE_2D, texture, 0);
+      attached.push(gl.COLOR_ATTACHMENT0 + k);
+    });
+    gl.drawBuffers(attached);
+    return target;
+  }
   // The buffers of a picture of so many pixels, which may be more or fewer than those of the canvas.
   resize(width, height) {
     if (width === this.width && height === this.height) return;
     const gl = this.gl;
-    for (const name of ["colour", "depth", "shaded"]) if (this[name]) gl.deleteTexture(this[name]);
-    for (const name of ["first", "second"]) if (this[name]) gl.deleteFramebuffer(this[name]);
-    this.colour = this.texture(gl.RGBA, gl.UNSIGNED_BYTE, gl.RGBA8, width, height);
-    this.depth = this.texture(gl.DEPTH_COMPONENT, gl.UNSIGNED_INT, gl.DEPTH_COMPONENT24, width, height);
-    this.shaded = this.texture(gl.RGBA, gl.UNSIGNED_BYTE, gl.RGBA8, width, height);
-    this.first = gl.createFramebuffer();
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.first);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.colour, 0);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.depth, 0);
-    this.second = gl.createFramebuffer();
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.second);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.shaded, 0);
+    for (const name of ["colour", "heights", "shaded"]) gl.deleteTexture(this[name]);
+    gl.deleteRenderbuffer(this.depth);
+    for (const name of ["first", "second"]) gl.deleteFramebuffer(this[name]);
+    for (const name of ["colour", "heights", "shaded"]) this[name] = this.texture(width, height);
+    this.depth = gl.createRenderbuffer();
+    gl.bindRenderbuffer(gl.RENDERBUFFER, this.depth);
+    gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, width, height);
+    this.first = this.target(this.colour, this.heights);
+    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, this.depth);
+    this.second = this.target(this.shaded);
     this.width = width;
     this.height = height;
   }
@@ -112,10 +128,10 @@ export class Renderer {
     gl.uniform3fv(at.extent, this.extent);
     gl.uniform4fv(at.cut, cut);
     if (at.tint) gl.uniform3fv(at.tint, theme.line);
-    if (at.depths) gl.uniform1i(at.depths, 1);
+    if (at.heights) gl.uniform1i(at.heights, 1);
   }
 
-  // `scene`: {camera, radius and center of all there is, cut, theme, selected, most, images, walls, lines, rings,
+  // `scene`: {camera, radius and center of all there is, cut, theme, selected, images, walls, lines, rings,
   // meanRadius, flat, scale: pixels of the picture to one of the canvas}.
   draw(scene) {
     const gl = this.gl, { camera, cut, theme, scale } = scene;
@@ -148,12 +164,18 @@ export class Renderer {
     gl.uniform1f(at.pixel, pixel);
     gl.uniform1f(at.smallest, 0.6 * pixel);
     gl.uniform1f(at.flatView, scene.flat ? 1 : 0);
+    gl.uniform1i(at.spheres, 0);
+    gl.uniform1i(at.tints, 1);
+    gl.bindVertexArray(this.nothing);
     for (let group = 0; group < this.groups.length; ++group) {
-      const { array, count } = this.groups[group];
+      const { spheres, tints, count } = this.groups[group];
       if (group === 1 && !scene.images) continue;
       gl.uniform1i(at.selected, scene.selectedGroup === group ? scene.selected : -1);
-      gl.bindVertexArray(array);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, group === 0 ? Math.min(count, scene.most) : count);
+      gl.activeTexture(gl.TEXTURE0);
+      gl.bindTexture(gl.TEXTURE_2D, spheres);
+      gl.activeTexture(gl.TEXTURE1);
+      gl.bindTexture(gl.TEXTURE_2D, tints);
+      gl.drawArrays(gl.TRIANGLES, 0, 3 * count);
     }
 
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.second);
@@ -161,14 +183,13 @@ export class Renderer {
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.colour);
     gl.activeTexture(gl.TEXTURE1);
-    gl.bindTexture(gl.TEXTURE_2D, this.depth);
+    gl.bindTexture(gl.TEXTURE_2D, this.heights);
     this.use(this.shading, camera, cut, theme);
     gl.uniform1i(this.shading.at.colours, 0);
     gl.uniform3fv(this.shading.at.background, theme.background);
     gl.uniform1f(this.shading.at.pixel, pixel);
     gl.uniform1f(this.shading.at.reach, Math.min(0.06 * this.height, Math.max(2, scene.meanRadius / pixel)));
     gl.uniform1i(this.shading.at.rings, scene.flat ? 0 : scene.rings);
-    gl.bindVertexArray(this.nothing);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
 
     gl.enable(gl.BLEND);
@@ -183,7 +204,7 @@ export class Renderer {
       gl.uniform1f(this.lines.at.width, 0.65 * scene.density * scale * pixel);
       gl.uniform1f(this.lines.at.hidden, scene.flat ? 0.85 : 0.16);
       gl.bindVertexArray(this.edges.array);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.edges.count);
+      gl.drawArrays(gl.TRIANGLES, 0, this.edges.count);
     }
     gl.bindVertexArray(null);
 

@@ -25,10 +25,12 @@ export function programOf(gl, vertex, fragment) {
   return { program, at };
 }
 
-// Where the driver lets a shader promise that depths only grow, what is hidden costs nothing.
-export function sphereFragment(gl, text) {
-  if (!gl.getExtension("EXT_conservative_depth")) return text;
-  return text.replace("precision highp float;",
-    "#extension GL_EXT_conservative_depth : require\nprecision highp float;\n" +
-    "layout(depth_greater) out highp float gl_FragDepth;");
+// Shaders with a word defined. Where the driver lets a shader promise that depths only grow, what is hidden costs nothing.
+export function exact(gl, text) {
+  let head = "#define EXACT\n";
+  if (text.includes("gl_FragDepth") && gl.getExtension("EXT_conservative_depth"))
+    head = "#extension GL_EXT_conservative_depth : require\n" + head;
+  const promise = head.startsWith("#extension") ? "layout(depth_greater) out highp float gl_FragDepth;\n" : "";
+  return text.replace("#version 300 es\n", "#version 300 es\n" + head)
+    .replace("precision highp float;\n", "precision highp float;\n" + promise);
 }

@@ -1,5 +1,5 @@
 #version 300 es
-// The sphere, or the disc that the cut leaves of it, along one line of sight: exact, with its depth.
+// The sphere, or the disc that the cut leaves of it, along one line of sight: exact.
 precision highp float;
 in vec2 at;
 flat in vec4 ball;
@@ -10,7 +10,8 @@ uniform vec3 cutNormal;  // as the eye sees it
 uniform float pixel;     // its length
 uniform vec3 background, accent;
 uniform float flatView;
-out vec4 outColour;
+layout(location = 0) out vec4 outColour;  // and how much what stands around it shades it
+layout(location = 1) out vec4 outHeight;  // towards the eye, in three bytes
 
 const vec3 day = vec3(1.0, 0.985, 0.95);
 // Red goes first: shadows are cool.
@@ -45,5 +46,10 @@ void main() {
     if (ball.w > 0.5) shaded = mix(mix(shaded, accent, 0.35), accent, smoothstep(0.70, 0.76, sqrt(squared)));
   }
   outColour = vec4(mix(background, shaded, own), strength * own);
-  gl_FragDepth = 0.5 - 0.5 * (ball.x + r * z) / extent.z;
+  float height = 0.5 + 0.5 * (ball.x + r * z) / extent.z;
+  vec3 bytes = fract(height * vec3(1.0, 255.0, 65025.0));
+  outHeight = vec4(bytes - bytes.yzz * vec3(1.0 / 255.0, 1.0 / 255.0, 0.0), 1.0);
+#ifdef EXACT
+  gl_FragDepth = 1.0 - height;
+#endif
 }

@@ -4,7 +4,8 @@ import { scaleOf, colourBytes } from "./colours.js";
 import { Camera } from "./camera.js";
 import { wallsOf } from "./walls.js";
 import { imagesOf } from "./images.js";
-import { Renderer } from "./renderer.js";
+import { Order } from "./order.js";
+import { Renderer, wholeRows } from "./renderer.js";
 import { pick } from "./pick.js";
 import { Labels } from "./labels.js";
 import { Panel, element } from "./panel.js";
@@ -15,7 +16,10 @@ const SLOW = 45, FAST = 22;    // ms a frame while it moves: fewer pixels, or mo
 const LEAST_SCALE = 0.4;
 const MOST_PIXELS = 4.5e6;     // of a picture at rest
 const REST = 160;              // ms without a move
-const HIDING = 5;              // mean diameters of spheres hide what is behind them
+const SETTLED = 1000;          // ms until whatever shows the page has surely begun to
+const HIDING = 2;              // mean diameters of spheres hide what is behind them
+const OVERLAP = 1e-3;          // of a radius: more than this is seen
+const QUICK = 120, LAZY = 350; // ms of the first picture: below, a better one is drawn at rest; above, less in a move
 
 export class View {
   constructor(frame, json) {
@@ -29,7 +33,7 @@ export class View {
     this.cut = new Float32Array(4);
     this.images = null;
     this.moving = false;
-    this.pace = { scale: 1, rings: 2, last: 0, average: 0, shell: false };
+    this.pace = { scale: 1, rings: 2, last: 0, average: 0, shell: false, still: 1 };
     this.frames = 0;
     this.measureBounds();
 
@@ -39,7 +43,8 @@ export class View {
     this.canvas.setAttribute("role", "application");
     this.stage.append(this.canvas);
     frame.append(this.stage);
-    this.renderer = new Renderer(this.canvas);
+    this.renderer = new Renderer(this.canvas, this.anyOverlap());
+    this.order = new Order(data, this.center, this.radiusAlone);
     this.whole = document.documentElement.classList.contains("bernal-page");
     const act = this.actions();
     this.panel = new Panel(frame, this.stage, data, this.state, act);
@@ -67,6 +72,8 @@ export class View {
     });
     this.fitted = false;
     new ResizeObserver(() => this.resize()).observe(this.stage);
+    // What is drawn before the view is seen may be lost.
+    new IntersectionObserver(() => this.rest()).observe(this.stage);
     this.resize();
   }
 
@@ -97,13 +104,34 @@ export class View {
     this.scale = scaleOf(state.column);
     this.bytes ||= new Uint8Array(4 * data.shown);
     colourBytes(state.column, this.scale, data.palette, this.bytes);
-    this.renderer.setSpheres(0, data.spheres, this.bytes);
+    this.order.count = -1;
+    this.renderer.setSpheres(0, this.order.spheres, this.order.bytes, 0);
     this.renderer.setWalls(this.walls);
-    if (this.images) this.renderer.setSpheres(1, this.images.spheres, this.imageColours());
+    if (this.images) this.uploadImages();
     if (data.shown > 0) this.panel.writeKey(state.column, this.scale);
   }
+  uploadImages() {
+    const count = this.images.rows.length, whole = new Float32Array(4 * wholeRows(count));
+    whole.set(this.images.spheres);
+    this.renderer.setSpheres(1, whole, this.imageColours(), count);
+  }
+  // Nearest first, as the eye looks now; where only a quick picture is wanted without what is hidden anyway.
+  sortSpheres() {
+    const { data, order, pace } = this;
+    const quick = this.moving && pace.shell && this.state.cutAxis < 0 && !data.flat;
+    const depth = quick ? 2 * HIDING * data.meanRadius : Infinity;
+    if (order.serves(this.camera.eye, depth)) return;
+    order.sort(this.camera.eye, depth);
+    order.colour(this.bytes);
+    this.renderer.setSpheres(0, order.spheres, order.bytes, order.count);
+  }
+  anyOverlap() {
+    const { columns } = this.data;
+    const gap = columns.find((c) => c.key === "gap"), radius = columns.find((c) => c.key === "radius");
+    return Boolean(gap) && gap.values.some((v, k) => v < -OVERLAP * radius.values[k]);
+  }
   imageColours() {
-    const bytes = new Uint8Array(4 * this.images.rows.length);
+    const bytes = new Uint8Array(4 * wholeRows(this.images.rows.length));
     this.images.rows.forEach((row, k) => {
       for (let c = 0; c < 3; ++c) bytes[4 * k + c] = this.bytes[4 * row + c];
       bytes[4 * k + 3] = FADED;
@@ -115,8 +143,8 @@ export class View {
     this.state.column = this.data.columns.find((c) => c.key === key);
     this.scale = scaleOf(this.state.column);
     colourBytes(this.state.column, this.scale, this.data.palette, this.bytes);
-    this.renderer.setColours(0, this.bytes);
-    if (this.images) this.renderer.setColours(1, this.imageColours());
+    this.order.count = -1;
+    if (this.images) this.uploadImages();
     this.panel.writeKey(this.state.column, this.scale);
     this.changed();
   }
@@ -124,14 +152,18 @@ export class View {
   show(key, on) {
     const { state, data } = this;
     if (!(key in this.panel.ticks)) return;
+    const was = state[key];
     state[key] = on;
     this.panel.ticks[key].checked = on;
     if (key === "images") {
       if (on && !this.images) {
         this.images = imagesOf(data);
-        this.renderer.setSpheres(1, this.images.spheres, this.imageColours());
+        this.uploadImages();
       }
       if (!on && state.selectedGroup === 1) this.select(null);
+      const size = Math.max(...data.domain.periods);
+      const wider = 1 + (2 * this.images.margin) / size;
+      if (on !== was) this.camera.zoom(on ? 1 / wider : wider);
     }
     this.changed();
   }
@@ -262,12 +294,14 @@ export class View {
     const { clientWidth, clientHeight } = this.stage;
     if (clientWidth === 0 || clientHeight === 0) return;
     const density = Math.min(window.devicePixelRatio || 1, 3);
-    this.canvas.width = Math.round(clientWidth * density);
-    this.canvas.height = Math.round(clientHeight * density);
+    const width = Math.round(clientWidth * density), height = Math.round(clientHeight * density);
+    if (width === this.canvas.width && height === this.canvas.height && this.fitted) return;
+    Object.assign(this.canvas, { width, height });  // which empties it
     this.camera.aspect = clientWidth / clientHeight;
     if (!this.fitted) this.camera.reset(this.lower, this.upper);
     this.fitted = true;
-    this.changed();
+    if (this.frames > 0) this.onFrame(performance.now());  // at once: an empty picture is not to be seen
+    else this.changed();
   }
 
   // A choice was made: one good picture. A move: pictures as fast as they come, then a good one.
@@ -286,11 +320,25 @@ export class View {
   }
 
   onFrame(now) {
+    cancelAnimationFrame(this.asked);
     this.asked = 0;
     if (this.lost) return;
     if (this.moving) this.keepPace(now);
-    this.drawNow(this.moving ? this.pace.scale : this.scaleAtRest());
+    if (this.frames === 0) this.drawFirst();
+    else this.drawNow(this.moving ? this.pace.scale : this.scaleAtRest());
     this.labels.update(this.camera, this.canvas.clientHeight);
+  }
+  // Finds out how fast this machine draws, once.
+  drawFirst() {
+    const { gl } = this.renderer, { pace } = this;
+    const start = performance.now();
+    this.drawNow(1);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));  // which waits
+    const spent = performance.now() - start;
+    if (spent > LAZY) Object.assign(pace, { rings: 0, shell: true, scale: 0.5 });
+    if (spent <= QUICK) pace.still = 2;
+    this.changed();
+    setTimeout(() => this.changed(), SETTLED);
   }
   // Fewer pixels and less shading where frames come slowly.
   keepPace(now) {
@@ -312,23 +360,19 @@ export class View {
   }
   scaleAtRest() {
     const pixels = this.canvas.width * this.canvas.height;
-    const wanted = this.pace.shell || (window.devicePixelRatio || 1) > 1.5 ? 1 : 2;
+    const wanted = (window.devicePixelRatio || 1) > 1.5 ? 1 : this.pace.still;
     return Math.min(wanted, Math.sqrt(MOST_PIXELS / pixels));
-  }
-  // How many spheres a quick picture needs: without a cut those deep inside are hidden.
-  most() {
-    const { data, pace } = this;
-    if (!this.moving || !pace.shell || this.state.cutAxis >= 0) return data.shown;
-    const deep = data.depths.findIndex((depth) => depth > 2 * HIDING * data.meanRadius);
-    return deep < 0 ? data.shown : deep;
   }
   drawNow(scale) {
     const { camera, cut, theme, state, data } = this;
     const canvas = this.canvas;
     const shape = (this.shape ||= {});
+    this.sortSpheres();
+    const selected = state.selectedGroup === 1 || state.selected < 0 ? state.selected
+      : this.order.placeOf(state.selected);
     Object.assign(shape, {
-      camera, cut, theme, scale, radius: this.radius, center: this.center, selected: state.selected,
-      selectedGroup: state.selectedGroup, most: this.most(), images: state.images, walls: state.walls,
+      camera, cut, theme, scale, radius: this.radius, center: this.center, selected,
+      selectedGroup: state.selectedGroup, images: state.images, walls: state.walls,
       lines: state.lines, rings: this.moving ? this.pace.rings : 3, meanRadius: data.meanRadius, flat: data.flat,
       density: canvas.width / Math.max(1, canvas.clientWidth),
     });
