@@ -14,11 +14,13 @@
 #include "bernal/io/json.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/io/section.hpp"
+#include "bernal/io/write_local.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
+#include "structure_text.hpp"
 
 using namespace bernal;
 
@@ -31,6 +33,7 @@ struct MeasureCall {
   bool json = false;
   std::optional<std::string> plane;  ///< of a section, where no measurements are asked for
   std::filesystem::path picture;     ///< of the section
+  std::filesystem::path local;       ///< where the table of local packing fractions goes; empty: nowhere
 };
 
 /// Draws the section and measures nothing else.
@@ -88,28 +91,6 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
                                                  static_cast<double>(*at.isostatic))
                      : "-");
   }
-}
-
-/// Values from 0 to `highest` as columns of blocks; what is higher is cut. A row is 1 / rows_a_unit high.
-void print_chart(const std::vector<double>& values, int highest, int rows_a_unit, const std::string& reach) {
-  constexpr int columns = 75;
-  static const char* const blocks[] = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
-  std::vector<double> heights;
-  for (int k = 0; k < columns; ++k) {
-    const std::size_t first = values.size() * static_cast<std::size_t>(k) / columns;
-    const std::size_t end = std::max(first + 1, values.size() * (static_cast<std::size_t>(k) + 1) / columns);
-    double sum = 0;
-    for (std::size_t bin = first; bin < end; ++bin) sum += values[bin];
-    heights.push_back(8 * rows_a_unit * sum / static_cast<double>(end - first));
-  }
-  for (int row = highest * rows_a_unit - 1; row >= 0; --row) {
-    std::string line;
-    for (const double height : heights)
-      line += blocks[static_cast<int>(std::clamp(std::round(height - 8 * row), 0.0, 8.0))];
-    const bool marked = (row + 1) % rows_a_unit == 0;
-    fmt::print("{:>4} {}\n", marked ? fmt::format("{}", (row + 1) / rows_a_unit) : "", line);
-  }
-  fmt::print("     0{:>{}}\n", reach, columns - 1);
 }
 
 void print_radial(const Packing& packing, const std::optional<RadialDistribution>& radial) {
@@ -285,6 +266,9 @@ void print(const Packing& packing, const Measurements& measured) {
   if (measured.size_correlation) print_size_correlation(*measured.size_correlation);
   if (measured.walls) print_walls(packing, *measured.walls);
   if (measured.order && !packing.spheres.empty()) print_order(*measured.order);
+  if (measured.local) print_local(packing, *measured.local);
+  if (measured.pores) print_pores(packing, *measured.pores);
+  if (measured.structure) print_structure(*measured.structure);
   if (measured.sizes) print_sizes(packing, *measured.sizes);
 }
 
@@ -310,6 +294,12 @@ int measure_folder(const MeasureCall& call) {
   const Packing packing = read_packing(call.folder);
   const Measurements measured = measured_of(packing, call);
   bar.clear();
+  if (!call.local.empty()) {
+    if (!measured.local)
+      throw Error(ErrorCode::bad_argument,
+                  "--local: local packing fractions are those of spheres in two or three dimensions");
+    write_local(packing, *measured.local, call.local);
+  }
   if (call.json)
     fmt::print("{}", measurements_as_json(packing, measured));
   else
@@ -323,7 +313,7 @@ Command measure_command() {
   const auto call = std::make_shared<MeasureCall>();
   return {
       "measure",
-      "Contacts, rattlers, g(r), chambers, porosity near walls, order, sizes against those asked for",
+      "Contacts, rattlers, g(r), S(k), local packing, pores, chambers, walls, order, sizes",
       {folder(required(
            {"DIR", &call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read"})),
        within({"--gap", &call->options.contact_gap,
@@ -334,6 +324,10 @@ Command measure_command() {
         "\"z = 1.5\", \"0.6 x + 0.8 z = 2\"; nothing else is measured",
         "PLANE"},
        needs({"-o,--output", &call->picture, "The file for the section", "FILE.svg"}, "--section"),
+       {"--local", &call->local,
+        "Write the local packing fraction, the volume of the cell and the number of neighbours of every "
+        "sphere into this table",
+        "FILE.csv"},
        threads_option(call->threads, "the answer"),
        json_option(call->json)},
       {.text = "Rattlers are taken out one after the other until every sphere left is held by D + 1 "
@@ -341,9 +335,12 @@ Command measure_command() {
                "packing fraction of each, and what no sphere can cover; porosity over the distance from the "
                "wall, the packing fraction of the core (more than 3 mean diameters from it) and near it; "
                "whether small spheres gather there.\n\nIn three dimensions: the share of the spheres whose "
-               "neighbours lie as in a crystal.",
+               "neighbours lie as in a crystal.\n\nIn two and three: the packing fraction of every sphere in "
+               "its cell of the power diagram. In periodic boxes: g(r) and the structure factor S(k). "
+               "Everywhere: how far it is from points in the pores to the nearest solid.",
        .examples = {{"bernal measure out", "everything, for people"},
                     {"bernal measure out --json", "everything, for programs"},
+                    {"bernal measure out --local cells.csv", "and a table of the cell of every sphere"},
                     {"bernal measure out --section \"z = 1.5\" -o section.svg", "a picture of a section"}},
        .exit_codes = {{"0", "done"}, {"2", "bad input"}}},
       [call] { return measure_folder(*call); }};

@@ -204,6 +204,66 @@ std::string wall_size_chart(const WallProfile& profile) {
   return std::move(chart).finish();
 }
 
+std::string local_packing_chart(const LocalPacking& local) {
+  constexpr std::size_t bins = 36;
+  if (!(local.deviation > 1e-6 * local.mean)) return {};
+  double least = local.mean, most = local.mean;
+  for (std::size_t i = 0; i < local.cell_volume.size(); ++i) {
+    if (!(local.cell_volume[i] > 0)) continue;
+    least = std::min(least, local.packing_fraction[i]);
+    most = std::max(most, local.packing_fraction[i]);
+  }
+  least = std::max(least, local.mean - 5 * local.deviation);
+  most = std::min(most, local.mean + 5 * local.deviation);
+  const auto all = static_cast<double>(local.cell_volume.size() - local.empty);
+  std::vector<double> share(bins, 0);
+  for (std::size_t i = 0; i < local.cell_volume.size(); ++i) {
+    const double at = (local.packing_fraction[i] - least) / (most - least) * bins;
+    if (local.cell_volume[i] > 0 && at >= 0 && at <= bins)
+      share[std::min(bins - 1, static_cast<std::size_t>(at))] += 100 / all;
+  }
+  const double highest = 1.05 * std::ranges::max(share);
+  Chart chart({least, most, "local packing fraction"},
+              {0, highest, "per cent of the spheres, in 36 equal steps"});
+  const double bar = (chart.x(most) - chart.x(least)) / bins;
+  for (std::size_t k = 0; k < bins; ++k)
+    chart.add("<rect class=\"bar\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>",
+              chart.x(least) + bar * static_cast<double>(k) + 0.5, chart.y(share[k]), bar - 1,
+              chart.y(0) - chart.y(share[k]));
+  chart.add("<path class=\"asked line\" d=\"M{:.1f} {}V{}\"/>", chart.x(local.mean), top, height - bottom);
+  return std::move(chart).finish();
+}
+
+std::string structure_chart(const StructureFactor& factor) {
+  if (factor.k.size() < 2) return {};
+  double highest = 1.5;
+  std::vector<Uncertain> points;
+  for (std::size_t b = 0; b < factor.k.size(); ++b) {
+    const double s = factor.s[b], error = factor.error[b];
+    highest =
+        std::max(highest, std::min(1.1 * s, 6.0));  // the peaks of crystals are as high as they are many
+    points.push_back({factor.k[b] * factor.mean_diameter, s, error, error});
+  }
+  Chart chart({0, points.back().x, "wave number (inverse mean diameters)"}, {0, highest, "S(k)"});
+  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left, chart.y(1), width - right);
+  add_band(chart, points, highest);
+  return std::move(chart).finish();
+}
+
+std::string pore_chart(const PoreSizes& pores) {
+  if (pores.d.size() < 2) return {};
+  double highest = 0;
+  std::vector<Uncertain> points;
+  for (std::size_t k = 0; k < pores.d.size(); ++k) {
+    const double p = pores.density[k] * pores.mean_diameter, error = pores.error[k] * pores.mean_diameter;
+    highest = std::max(highest, 1.05 * (p + error));
+    points.push_back({pores.d[k] / pores.mean_diameter, p, error, error});
+  }
+  Chart chart({0, points.back().x, "distance to the nearest solid (mean diameters)"}, {0, highest, "P(d)"});
+  add_band(chart, points, highest);
+  return std::move(chart).finish();
+}
+
 std::string history_chart(std::span<const Milestone> history, double Milestone::*value,
                           std::string_view label) {
   std::vector<Moment> moments;

@@ -4,8 +4,11 @@
 #include <string>
 #include <string_view>
 
+#include "bernal/measure/local_packing.hpp"
+#include "bernal/measure/pore_sizes.hpp"
 #include "bernal/measure/radial_distribution.hpp"
 #include "bernal/measure/size_correlation.hpp"
+#include "bernal/measure/structure_factor.hpp"
 #include "bernal/measure/wall_profile.hpp"
 #include "bernal/run/packing.hpp"
 
@@ -36,6 +39,16 @@ std::string wall_chart(const WallProfile&);
 /// Mean volume over that of all spheres, over the distance of their surfaces from the wall; empty where the
 /// sizes are equal or fewer than two layers have spheres.
 std::string wall_size_chart(const WallProfile&);
+
+/// Bars: the share of the spheres by local packing fraction, within five deviations of the mean, which is a
+/// dashed line; empty where all are alike to six digits.
+std::string local_packing_chart(const LocalPacking&);
+
+/// S over k in inverse mean diameters, with the band of its error; what is higher than the axis is cut.
+std::string structure_chart(const StructureFactor&);
+
+/// The density of the distances over d in mean diameters, with the band of its error.
+std::string pore_chart(const PoreSizes&);
 
 /// A line over the seconds of the run, one point a milestone, as inline SVG. Where a stage begins
 /// its name stands, if there is room for it. Precondition: at least two milestones.

@@ -42,7 +42,9 @@ BERNAL_KEYS(Certificate::Overlap, pair, ratio)
 BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
 BERNAL_KEYS(Chambers::Uncovered, radius, share, error)
 BERNAL_KEYS(DrawnComparison, missing, scale, largest_deviation, above_largest)
+BERNAL_KEYS(LocalPacking::Quantile, share, packing_fraction)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
+BERNAL_KEYS(PoreSizes::Quantile, share, distance)
 BERNAL_KEYS(SizeCorrelation::Neighbours, correlation, error, pairs)
 BERNAL_KEYS(SizeComparison::Class, radius, asked_share, count)
 BERNAL_KEYS(SizeComparison::Share, above, up_to, asked_number, asked_volume, count, number, volume)
@@ -144,6 +146,43 @@ static void to_json(Json& json, const RadialDistribution& radial) {
           {"r", radial.r},
           {"g", radial.g},
           {"error", radial.error}};
+}
+
+/// Without what every single sphere has.
+static void to_json(Json& json, const LocalPacking& local) {
+  json = {{"mean", local.mean},
+          {"deviation", local.deviation},
+          {"quantiles", local.quantiles},
+          {"mean_neighbours", local.mean_neighbours},
+          {"empty_cells", local.empty},
+          {"volume", local.volume},
+          {"volume_error", local.volume_error}};
+}
+
+/// Without the values at all wave numbers.
+static void to_json(Json& json, const StructureFactor& factor) {
+  const auto value = [&](double k, double s, double error) {
+    return Json{{"k", k}, {"k_times_diameter", k * factor.mean_diameter}, {"s", s}, {"error", error}};
+  };
+  const auto peak = factor.peak();
+  json = {{"mean_diameter", factor.mean_diameter},
+          {"wave_vectors", factor.references},
+          {"peak", peak ? value(peak->k, peak->s, peak->error) : Json()},
+          {"smallest_k", value(factor.k.front(), factor.s.front(), factor.error.front())}};
+}
+
+/// Without the density.
+static void to_json(Json& json, const PoreSizes& pores) {
+  json = {{"points", pores.points},
+          {"in_pores", pores.in_pores},
+          {"porosity", pores.porosity},
+          {"porosity_error", pores.porosity_error},
+          {"mean", pores.mean},
+          {"mean_error", pores.mean_error},
+          {"second_moment", pores.second_moment},
+          {"second_moment_error", pores.second_moment_error},
+          {"largest", pores.largest},
+          {"quantiles", pores.quantiles}};
 }
 
 static void to_json(Json& json, const SizeComparison& sizes) {
@@ -250,6 +289,20 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
   json["chambers"] = measured.chambers;
   json["walls"] = measured.walls;
   if (measured.walls) json["walls"]["layers"] = measured.walls->layers;
+  json["local_packing"] = measured.local;
+  json["structure_factor"] = measured.structure;
+  if (const auto& factor = measured.structure)
+    json["structure_factor"].update({{"bin_width", factor->bin_width},
+                                     {"k", factor->k},
+                                     {"s", factor->s},
+                                     {"error", factor->error},
+                                     {"vectors", factor->vectors}});
+  json["pores"] = measured.pores;
+  if (const auto& pores = measured.pores)
+    json["pores"].update({{"bin_width", pores->bin_width},
+                          {"d", pores->d},
+                          {"density", pores->density},
+                          {"error", pores->error}});
   json["sizes"] = measured.sizes;
   json["hash"] = hash_of(packing.spheres);
   return text_of(json);
@@ -298,6 +351,9 @@ std::string json_of(const Report& report) {
                {"size_correlation", report.measured.size_correlation},
                {"chambers", report.measured.chambers},
                {"walls", report.measured.walls},
+               {"local_packing", report.measured.local},
+               {"structure_factor", report.measured.structure},
+               {"pores", report.measured.pores},
                {"sizes", figures_of(report.measured.sizes)},
                {"max_overlap", certificate.max_overlap},
                {"min_wall_gap", of_certificate.at("min_wall_gap")},

@@ -38,5 +38,6 @@ void write_sizes(Page&, const Report&);
 void write_contacts(Page&, const Report&);
 void write_chambers(Page&, const Report&);
 void write_walls(Page&, const Report&);
+void write_structure(Page&, const Report&);
 
 }  // namespace bernal

@@ -229,6 +229,7 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
   write_contacts(page, report);
   write_chambers(page, report);
   write_walls(page, report);
+  write_structure(page, report);
   write_course(page, report.packing);
   write_effects(page, report.packing);
   write_certificate(page, report);

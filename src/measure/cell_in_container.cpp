@@ -10,7 +10,7 @@ namespace {
 /// Of the length of a cell: what the clearance half-way between two corners may be off the mean of theirs,
 /// and the longest edge of what is halved no further. A wall that bends away from its chords by e over a cell
 /// of edge s takes e s² of its s³; a crease of it that is met only by parts of edge h takes h² s.
-constexpr double bend = 3e-4, large = 0.5, small = 0.02;
+constexpr double bend = 1e-3, large = 0.5, small = 0.04;
 
 template <int N>
 struct Simplex {

@@ -84,6 +84,8 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
     measured.order =
         bond_order(spheres, domain, measured.walls ? measured.walls->regions : std::vector<Region>{});
     measured.local = local_packing(spheres, domain, options.local, container);
+    measured.structure = structure_factor(spheres, domain, options.structure);
+    measured.pores = pore_sizes(spheres, domain, options.pores, container);
   } catch (const Cancelled&) {
   }
   if (asked.sizes && !spheres.empty()) measured.sizes = compare_sizes_of(spheres, domain, asked);

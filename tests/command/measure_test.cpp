@@ -60,9 +60,33 @@ TEST_F(Measure, JsonIsOneObjectAndNothingElse) {
   EXPECT_TRUE(measured["walls"].is_null());
   EXPECT_TRUE(measured["chambers"].is_null());
   EXPECT_TRUE(measured["crystalline"].is_null());  // in two dimensions
+  EXPECT_NEAR(measured["local_packing"]["mean"].get<double>(), 0.785398163, 1e-9);
+  EXPECT_EQ(measured["local_packing"]["mean_neighbours"], 4);
+  EXPECT_LT(measured["local_packing"]["volume_error"], 1e-9);
+  EXPECT_EQ(measured["structure_factor"]["s"].size(), measured["structure_factor"]["k"].size());
+  EXPECT_NEAR(measured["pores"]["porosity"].get<double>(), 1 - 0.785398163, 0.01);
+  EXPECT_EQ(measured["pores"]["d"].size(), measured["pores"]["density"].size());
   EXPECT_EQ(measured["sizes"]["drawn"]["missing"], 0);
   EXPECT_EQ(measured["sizes"]["ks_statistic"], 0);
   EXPECT_TRUE(measured["sizes"]["ks_p_value"].is_null());
+}
+
+TEST_F(Measure, WritesTheLocalPackingOfEverySphereAndReplacesNothingElse) {
+  const std::string table = (folder / "local.csv").string();
+  for (int twice = 0; twice < 2; ++twice) {
+    const Ended ended = with(discs, {"--local", table});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    const std::string text = text_of(folder / "local.csv");
+    EXPECT_TRUE(text.starts_with("# unit: mm\npacking_fraction,cell_volume,neighbours\n0.785398")) << text;
+    EXPECT_EQ(std::ranges::count(text, '\n'), 4);
+  }
+  for (const char* name : {"spheres.csv", "mine.csv"}) {
+    folder.write("mine.csv", "1,2,3\n");
+    const Ended refused = with(discs, {"--local", (folder / name).string()});
+    EXPECT_EQ(refused.status, 2) << name;
+    EXPECT_EQ(text_of(folder / "spheres.csv"), discs);
+    EXPECT_EQ(text_of(folder / "mine.csv"), "1,2,3\n");
+  }
 }
 
 /// Two discs that nothing holds: the count of rattlers would say nothing, and neither does it stand there.

@@ -11,9 +11,11 @@
 #include "bernal/measure/chambers.hpp"
 #include "bernal/measure/contacts.hpp"
 #include "bernal/measure/local_packing.hpp"
+#include "bernal/measure/pore_sizes.hpp"
 #include "bernal/measure/radial_distribution.hpp"
 #include "bernal/measure/size_comparison.hpp"
 #include "bernal/measure/size_correlation.hpp"
+#include "bernal/measure/structure_factor.hpp"
 #include "bernal/measure/wall_profile.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/sizes/size_distribution.hpp"
@@ -37,6 +39,8 @@ struct Measurements {
   std::optional<WallProfile> walls;
   std::optional<BondOrder> order;
   std::optional<LocalPacking> local;
+  std::optional<StructureFactor> structure;
+  std::optional<PoreSizes> pores;
   std::optional<SizeComparison> sizes;
 };
 
@@ -50,6 +54,8 @@ struct MeasureOptions {
   ChamberOptions chambers;
   WallOptions walls;
   LocalPackingOptions local = {};
+  StructureOptions structure = {};
+  PoreOptions pores = {};
   /// Of the domain in its own frame, see `local_container`; made where it is null and needed.
   std::shared_ptr<const Container> container = {};
   Monitor monitor = {};  ///< once it says stop, what may be absent is

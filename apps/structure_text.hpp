@@ -1,0 +1,18 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "bernal/measure/measure.hpp"
+#include "bernal/run/packing.hpp"
+
+namespace bernal {
+
+/// Values from 0 to `highest` as columns of blocks; what is higher is cut. A row is 1 / rows_a_unit high.
+void print_chart(const std::vector<double>& values, int highest, int rows_a_unit, const std::string& reach);
+
+// What `bernal measure` says of cells, waves and pores.
+void print_local(const Packing&, const LocalPacking&);
+void print_structure(const StructureFactor&);
+void print_pores(const Packing&, const PoreSizes&);
+
+}  // namespace bernal

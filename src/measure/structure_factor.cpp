@@ -1,0 +1,203 @@
+#include "bernal/measure/structure_factor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+#include <span>
+
+#include "bernal/core/dimension.hpp"
+#include "core/parallel.hpp"
+#include "measure/wave_vectors.hpp"
+
+namespace bernal {
+namespace {
+
+/// Spheres whose waves are summed together, so that their tables stay in the cache; and in how many parts the
+/// sums are kept apart, which are then added in one order.
+constexpr std::size_t spheres_together = 32, most_parts = 64;
+constexpr double fewest_vectors = 8, most_vectors = 400;  // a bin
+
+/// exp(i 2π n x) of some spheres along one axis, for any n: from a table, where that is not too large.
+class Waves {
+ public:
+  void fill(const std::vector<double>& x, double origin, double edge, std::size_t first, std::size_t count,
+            int largest) {
+    for (std::size_t j = 0; j < spheres_together; ++j) {
+      is_there_[j] = j < count ? 1 : 0;
+      turn_[j] = j < count ? 2 * std::numbers::pi * std::remainder((x[first + j] - origin) / edge, 1.0) : 0;
+    }
+    in_table_ = std::min(largest, largest_table);
+    table_.resize((static_cast<std::size_t>(in_table_) + 1) * 2 * spheres_together);
+    if (in_table_ > 0) compute(1, step_.data());
+    for (int n = 0; n <= in_table_; ++n) {
+      double* cosine = row(n);
+      if (n % steps_taken == 0) {  // a product loses a roundoff
+        compute(n, cosine);
+        continue;
+      }
+      double* sine = cosine + spheres_together;
+      const double *c = row(n - 1), *s = c + spheres_together;
+      const double *step_c = step_.data(), *step_s = step_c + spheres_together;
+      for (std::size_t j = 0; j < spheres_together; ++j) {
+        cosine[j] = c[j] * step_c[j] - s[j] * step_s[j];
+        sine[j] = s[j] * step_c[j] + c[j] * step_s[j];
+      }
+    }
+  }
+  /// The cosines, and after them the sines; 0 in place of spheres that there are not. Precondition: n >= 0.
+  const double* of(int n) {
+    if (n <= in_table_) return row(n);
+    compute(n, one_.data());
+    return one_.data();
+  }
+
+ private:
+  static constexpr int largest_table = 1000, steps_taken = 16;
+  double* row(int n) { return table_.data() + static_cast<std::size_t>(2 * n) * spheres_together; }
+  void compute(int n, double* cosine) const {
+    for (std::size_t j = 0; j < spheres_together; ++j) {
+      cosine[j] = is_there_[j] * std::cos(n * turn_[j]);
+      cosine[spheres_together + j] = is_there_[j] * std::sin(n * turn_[j]);
+    }
+  }
+
+  std::array<double, spheres_together> turn_, is_there_;
+  std::array<double, 2 * spheres_together> step_, one_;
+  std::vector<double> table_;
+  int in_table_ = 0;
+};
+
+template <int D>
+class Sums {
+ public:
+  Sums(const Spheres<D>& spheres, const Boundary<D>& boundary,
+       const std::vector<std::vector<WaveVector<D>>>& bins)
+      : spheres_(spheres), boundary_(boundary) {
+    largest_.setZero();
+    for (const auto& bin : bins)
+      for (const auto& vector : bin) {
+        vectors_.push_back(vector.n);
+        largest_ = largest_.cwiseMax(vector.n.cwiseAbs());
+      }
+  }
+
+  /// |Σ exp(i k·c)|² of every vector.
+  std::vector<double> squares() const {
+    const std::size_t n = spheres_.size(), groups = (n + spheres_together - 1) / spheres_together;
+    const std::size_t parts = std::min(groups, most_parts);
+    std::vector<std::vector<std::complex<double>>> sums(parts);
+    parallel_for(parts, [&](std::size_t part) {
+      sums[part].resize(vectors_.size());
+      std::array<Waves, D> waves;
+      for (std::size_t group = part * groups / parts; group < (part + 1) * groups / parts; ++group) {
+        throw_if_interrupted();
+        const std::size_t first = group * spheres_together;
+        for (int k = 0; k < D; ++k)
+          waves[k].fill(spheres_.x[k], boundary_.origin[k], boundary_.edges[k], first,
+                        std::min(spheres_together, n - first), largest_[k]);
+        for (std::size_t v = 0; v < vectors_.size(); ++v) sums[part][v] += sum(waves, vectors_[v]);
+      }
+    });
+    std::vector<double> squares;
+    for (std::size_t v = 0; v < vectors_.size(); ++v) {
+      std::complex<double> all = 0;
+      for (const auto& part : sums) all += part[v];
+      squares.push_back(std::norm(all));
+    }
+    return squares;
+  }
+
+ private:
+  static std::complex<double> sum(std::array<Waves, D>& waves, const Eigen::Matrix<int, D, 1>& n) {
+    std::array<double, spheres_together> re, im;
+    const double *c = waves[0].of(std::abs(n[0])), *s = c + spheres_together;
+    const double sign = n[0] < 0 ? -1 : 1;
+    for (std::size_t j = 0; j < spheres_together; ++j) {
+      re[j] = c[j];
+      im[j] = sign * s[j];
+    }
+    for (int k = 1; k < D; ++k) {
+      if (n[k] == 0) continue;
+      c = waves[k].of(std::abs(n[k]));
+      s = c + spheres_together;
+      const double turn = n[k] < 0 ? -1 : 1;
+      for (std::size_t j = 0; j < spheres_together; ++j) {
+        const double real = re[j] * c[j] - turn * im[j] * s[j];
+        im[j] = turn * re[j] * s[j] + im[j] * c[j];
+        re[j] = real;
+      }
+    }
+    double real = 0, imaginary = 0;
+    for (std::size_t j = 0; j < spheres_together; ++j) {
+      real += re[j];
+      imaginary += im[j];
+    }
+    return {real, imaginary};
+  }
+
+  const Spheres<D>& spheres_;
+  const Boundary<D>& boundary_;
+  std::vector<Eigen::Matrix<int, D, 1>> vectors_;
+  Eigen::Matrix<int, D, 1> largest_;
+};
+
+/// Mean and standard error of a bin.
+template <int D>
+void add_bin(const std::vector<WaveVector<D>>& vectors, std::span<const double> squares, double spheres,
+             StructureFactor& found) {
+  const auto n = static_cast<double>(vectors.size());
+  double k = 0, s = 0, scatter = 0;
+  for (const auto& vector : vectors) k += vector.length / n;
+  for (const double square : squares) s += square / spheres / n;
+  for (const double square : squares) scatter += (square / spheres - s) * (square / spheres - s);
+  found.k.push_back(k);
+  found.s.push_back(s);
+  found.error.push_back((n < fewest_vectors ? s : std::sqrt(scatter / (n - 1))) / std::sqrt(n));
+  found.vectors.push_back(static_cast<std::uint32_t>(vectors.size()));
+  found.references += vectors.size();
+}
+
+}  // namespace
+
+std::optional<StructureFactor::Peak> StructureFactor::peak() const {
+  std::optional<std::size_t> highest;
+  for (std::size_t b = 0; b < k.size(); ++b)
+    if (k[b] * mean_diameter > 4 && k[b] * mean_diameter < 10 && (!highest || s[b] > s[*highest]))
+      highest = b;
+  if (!highest || *highest == 0 || *highest + 1 == k.size()) return {};
+  const std::size_t b = *highest;
+  if (!(s[b] > s[b - 1] && s[b] > s[b + 1])) return {};
+  return Peak{k[b], s[b], error[b]};
+}
+
+std::optional<StructureFactor> structure_factor(const Spheres<dynamic>& spheres, const Domain& domain,
+                                                const StructureOptions& options) {
+  if (has_walls(domain) || spheres.size() < 2 || spheres.size() > options.most_spheres) return {};
+  const auto n = static_cast<double>(spheres.size());
+  StructureFactor found;
+  found.mean_diameter = 2 * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / n;
+  found.bin_width = options.bin / found.mean_diameter;
+  const auto bins = static_cast<std::size_t>(std::ceil(options.reach / options.bin));
+  const auto a_bin = static_cast<std::size_t>(
+      std::clamp(options.work / n / static_cast<double>(bins), fewest_vectors, most_vectors));
+  with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
+    constexpr int D = dimension;
+    const Boundary<D> boundary = boundary_of<D>(domain);
+    const auto vectors = wave_vectors<D>(boundary.edges, found.bin_width, bins, a_bin);
+    const Spheres<D> in_space = spheres.in<D>();
+    const std::vector<double> squares = Sums<D>(in_space, boundary, vectors).squares();
+    std::size_t first = 0;
+    for (const auto& bin : vectors) {
+      if (bin.empty()) continue;
+      add_bin<D>(bin, std::span(squares).subspan(first, bin.size()), n, found);
+      first += bin.size();
+    }
+  });
+  if (found.k.empty()) return {};
+  return found;
+}
+
+}  // namespace bernal

@@ -1,0 +1,127 @@
+#include "measure/wave_vectors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "bernal/core/random.hpp"
+
+namespace bernal {
+namespace {
+
+/// How many vectors are looked through one by one.
+constexpr double most_looked_through = 2e5;
+constexpr std::size_t tries_a_vector = 20;
+constexpr double largest_multiple = 1e9;
+
+template <int D>
+using Multiples = Eigen::Matrix<int, D, 1>;
+
+/// One of n and -n, and not zero: its last component that is not 0 is positive.
+template <int D>
+bool counts(const Multiples<D>& n) {
+  for (int k = D; k-- > 0;)
+    if (n[k] != 0) return n[k] > 0;
+  return false;
+}
+
+template <int D>
+Vector<D> steps_of(const Vector<D>& edges) {
+  return (2 * std::numbers::pi * edges.cwiseInverse()).eval();
+}
+
+/// The largest number of bins all of whose vectors are few enough to be looked through.
+template <int D>
+std::size_t bins_looked_through(const Vector<D>& step, double width, std::size_t bins) {
+  const auto vectors = [&](std::size_t count) {
+    double product = 0.5;
+    for (const double s : step) product *= 2 * std::floor(static_cast<double>(count) * width / s) + 1;
+    return product;
+  };
+  std::size_t low = 0, high = bins;
+  while (low < high) {
+    const std::size_t middle = (low + high + 1) / 2;
+    if (vectors(middle) <= most_looked_through)
+      low = middle;
+    else
+      high = middle - 1;
+  }
+  return low;
+}
+
+template <int D, class Visit>
+void for_each_multiple(const Vector<D>& step, double longest, Visit&& visit) {
+  Multiples<D> limit, n;
+  for (int k = 0; k < D; ++k) limit[k] = static_cast<int>(std::floor(longest / step[k]));
+  n = -limit;
+  for (int k = 0; k < D;) {
+    if (counts<D>(n)) visit(n);
+    for (k = 0; k < D && ++n[k] > limit[k]; ++k) n[k] = -limit[k];
+  }
+}
+
+/// `most` of them, evenly.
+template <int D>
+void thin_out(std::vector<WaveVector<D>>& vectors, std::size_t most) {
+  if (vectors.size() <= most) return;
+  std::ranges::stable_sort(vectors, {}, &WaveVector<D>::length);
+  std::vector<WaveVector<D>> some;
+  for (std::size_t k = 0; k < most; ++k) some.push_back(vectors[(2 * k + 1) * vectors.size() / (2 * most)]);
+  vectors.swap(some);
+}
+
+}  // namespace
+
+template <int D>
+std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, double width, std::size_t bins,
+                                                     std::size_t most) {
+  const Vector<D> step = steps_of<D>(edges);
+  const auto length_of = [&](const Multiples<D>& n) {
+    return n.template cast<double>().cwiseProduct(step).norm();
+  };
+  std::vector<std::vector<WaveVector<D>>> found(bins);
+  const std::size_t looked_through = bins_looked_through<D>(step, width, bins);
+  for_each_multiple<D>(step, static_cast<double>(looked_through) * width, [&](const Multiples<D>& n) {
+    const double length = length_of(n);
+    const auto bin = static_cast<std::size_t>(length / width);
+    if (bin < looked_through) found[bin].push_back({n, length});
+  });
+  for (auto& vectors : found) thin_out<D>(vectors, most);
+
+  const auto before = [](const Multiples<D>& a, const Multiples<D>& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  for (std::size_t bin = looked_through; bin < bins; ++bin) {
+    Random random(2, stream(Stream::measure, bin));
+    std::set<Multiples<D>, decltype(before)> drawn(before);
+    for (std::size_t k = 0; k < tries_a_vector * most && found[bin].size() < most; ++k) {
+      const double wanted = (static_cast<double>(bin) + random.uniform()) * width;
+      const Vector<D> direction = uniform_direction<D>(random);
+      const Vector<D> multiples = wanted * direction.cwiseQuotient(step);
+      if (!(multiples.cwiseAbs().maxCoeff() < largest_multiple)) continue;
+      Multiples<D> n;
+      for (int axis = 0; axis < D; ++axis) n[axis] = static_cast<int>(std::nearbyint(multiples[axis]));
+      if (!counts<D>(n)) n = -n;
+      const double length = length_of(n);
+      if (!counts<D>(n) || static_cast<std::size_t>(length / width) != bin) continue;
+      if (drawn.insert(n).second) found[bin].push_back({n, length});
+    }
+  }
+  return found;
+}
+
+#define BERNAL_WAVE_VECTORS(D)                                                                         \
+  template std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>&, double, std::size_t, \
+                                                                std::size_t);
+BERNAL_WAVE_VECTORS(1)
+BERNAL_WAVE_VECTORS(2)
+BERNAL_WAVE_VECTORS(3)
+BERNAL_WAVE_VECTORS(4)
+BERNAL_WAVE_VECTORS(5)
+BERNAL_WAVE_VECTORS(6)
+BERNAL_WAVE_VECTORS(7)
+BERNAL_WAVE_VECTORS(8)
+#undef BERNAL_WAVE_VECTORS
+
+}  // namespace bernal
