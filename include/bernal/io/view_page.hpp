@@ -25,7 +25,8 @@ constexpr bool has_view(int dimension) { return dimension == 2 || dimension == 3
 ///
 /// Centres and radii are there in single precision, relative to the middle of the domain and its size: to
 /// 6e-8 of that. Spheres are coloured by radius, contacts, gap to the nearest, distance from the wall, and by
-/// what `measured` has of single ones: chambers. Where it is null, what costs little is measured.
+/// what `measured` has of single ones: chambers, local packing fractions. Where it is null, what costs little
+/// is measured.
 /// Cost: some µs a sphere. Size: about 40 kB, and 45 bytes a sphere; see `most_spheres`.
 /// Throws Error{bad_argument} for other dimensions than two and three, and for numbers that are not finite.
 std::string view_page(const Packing&, const Measurements* measured = nullptr, const ViewOptions& = {});
