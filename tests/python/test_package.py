@@ -98,7 +98,7 @@ class Notebook(InFolder):
                 shown.append(value)
         packing = known["packing"]
         self.assertTrue(9_000 < len(packing) < 11_000)
-        self.assertEqual([type(value).__name__ for value in shown], ["str", "Plan", "Packing", "Picture"])
+        self.assertEqual([type(value).__name__ for value in shown], ["str", "Plan", "Packing", "Picture", "View"])
         self.assertIn("<img", packing._repr_html_())
         self.assertIn("<pre>", shown[1]._repr_html_())
         self.assertTrue(Path("first_packing/report.html").exists())
