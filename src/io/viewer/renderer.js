@@ -23,6 +23,7 @@ export class Renderer {
     const variant = (text) => (this.overlap ? exact(gl, text) : text);
     this.spheres = programOf(gl, variant(texts["sphere.vert"]), variant(texts["sphere.frag"]));
     this.shading = programOf(gl, texts["whole.vert"], texts["shade.frag"]);
+    this.copy = programOf(gl, texts["whole.vert"], texts["copy.frag"]);
     this.surface = programOf(gl, texts["surface.vert"], texts["surface.frag"]);
     this.lines = programOf(gl, texts["line.vert"], texts["line.frag"]);
     this.nothing = gl.createVertexArray();
@@ -113,6 +114,8 @@ export class Renderer {
     gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, width, height);
     this.first = this.target(this.colour, this.heights);
     gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, this.depth);
+    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
+      gl.texParameteri(gl.TEXTURE_2D, name, gl.LINEAR);  // the last of them, the shaded picture
     this.second = this.target(this.shaded);
     this.width = width;
     this.height = height;
@@ -206,11 +209,17 @@ export class Renderer {
       gl.bindVertexArray(this.edges.array);
       gl.drawArrays(gl.TRIANGLES, 0, this.edges.count);
     }
-    gl.bindVertexArray(null);
 
-    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.second);
-    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
-    gl.blitFramebuffer(0, 0, this.width, this.height, 0, 0, canvas.width, canvas.height, gl.COLOR_BUFFER_BIT,
-                       gl.LINEAR);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, canvas.width, canvas.height);
+    gl.disable(gl.BLEND);
+    gl.useProgram(this.copy.program);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, this.shaded);
+    gl.uniform1i(this.copy.at.picture, 0);
+    gl.uniform2f(this.copy.at.size, canvas.width, canvas.height);
+    gl.bindVertexArray(this.nothing);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.bindVertexArray(null);
   }
 }
