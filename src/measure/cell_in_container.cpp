@@ -10,7 +10,7 @@ namespace {
 /// Of the length of a cell: what the clearance half-way between two corners may be off the mean of theirs,
 /// and the longest edge of what is halved no further. A wall that bends away from its chords by e over a cell
 /// of edge s takes e s² of its s³; a crease of it that is met only by parts of edge h takes h² s.
-constexpr double bend = 1e-3, large = 0.5, small = 0.04;
+constexpr double most_bend = 1e-3, largest_part = 0.5, smallest_part = 0.04;
 
 template <int N>
 struct Simplex {
@@ -27,7 +27,7 @@ double size_of(const Simplex<3>& s) {
 }
 
 /// Of the edge from a corner where the clearance is f, what is on its side of zero.
-double reach(double f, double other) { return f / (f - other); }
+double part_inside(double f, double other) { return f / (f - other); }
 
 /// The share of a simplex where the linear interpolant of the clearances at its corners is positive.
 template <int N>
@@ -38,14 +38,14 @@ double inside_share(std::array<double, N + 1> f) {
   const auto corner_share = [&](std::size_t k) {  // the corner k is alone on its side
     double share = 1;
     for (std::size_t j = 0; j < f.size(); ++j)
-      if (j != k) share *= reach(f[k], f[j]);
+      if (j != k) share *= part_inside(f[k], f[j]);
     return share;
   };
   if (inside == 1) return corner_share(0);
   if (inside == N) return 1 - corner_share(N);
   if constexpr (N == 3) {  // a wedge between the corners 0 and 1, in three tetrahedra
-    const double s02 = reach(f[0], f[2]), s03 = reach(f[0], f[3]), s12 = reach(f[1], f[2]),
-                 s13 = reach(f[1], f[3]);
+    const double s02 = part_inside(f[0], f[2]), s03 = part_inside(f[0], f[3]), s12 = part_inside(f[1], f[2]),
+                 s13 = part_inside(f[1], f[3]);
     return s02 * s03 + s02 * (1 - s03) * s13 + (1 - s02) * s12 * s13;
   }
   return 0;
@@ -58,9 +58,9 @@ class Division {
   /// See `CellInContainer` for `length`.
   Division(const Container& container, double length)
       : container_(container),
-        tolerance_(bend * length),
-        largest_(large * length),
-        smallest_(small * length) {}
+        tolerance_(most_bend * length),
+        largest_(largest_part * length),
+        smallest_(smallest_part * length) {}
 
   /// `calm`: how many halvings in a row have found the clearance linear; as many as there are dimensions have
   /// looked along all of them.

@@ -21,12 +21,12 @@ constexpr std::size_t spheres_a_block = 16384, cells_a_piece = 64;
 /// What is looked at around a block: so many mean distances of centres, or largest radii.
 constexpr double mean_distances = 2.2, largest_radii = 2.4;
 /// Of the squared distance of a corner: a power that is less by no more than that is rounding.
-constexpr double slack = 1e-10;
+constexpr double power_slack = 1e-10;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// What a block knows: the spheres in a box around it, and on which sides of that box there are others.
-struct Surroundings {
+struct KnownSpheres {
   Bounds<3> known;
   std::array<bool, 3> ends_below, ends_above;
 
@@ -78,9 +78,9 @@ class Diagram {
     return std::max(mean_distances * distance, largest_radii * all.largest);
   }
 
-  Surroundings surroundings_of(const Tree::Node& core, double margin) const {
+  KnownSpheres surroundings_of(const Tree::Node& core, double margin) const {
     const Bounds<3>& all = tree_.nodes().front().bounds;
-    Surroundings around{core.bounds, {}, {}};
+    KnownSpheres around{core.bounds, {}, {}};
     for (int k = 0; k < 3; ++k) {
       const bool repeats = box_.boundary.repeats(k);
       const double period = box_.boundary.edges[k], reach = repeats ? std::min(margin, period) : margin;
@@ -93,7 +93,7 @@ class Diagram {
   }
 
   void visit_block(const Tree::Node& core, double margin, bool alone) const {
-    const Surroundings around = surroundings_of(core, margin);
+    const KnownSpheres around = surroundings_of(core, margin);
     const Vector<3> origin = core.bounds.center();
     std::vector<std::uint32_t> places;
     std::vector<Site> sites;
@@ -168,7 +168,7 @@ class Diagram {
     for (const Plane& p : planes) cell.cut(p.normal, p.offset, static_cast<ConvexCell::Label>(p.place));
   }
 
-  void prove(ConvexCell& cell, std::uint32_t place, const Surroundings& around) const {
+  void prove(ConvexCell& cell, std::uint32_t place, const KnownSpheres& around) const {
     const Vector<3>& center = tree_.center(place);
     const double weight = tree_.radius(place) * tree_.radius(place);
     const double largest = tree_.nodes().front().largest;
@@ -182,7 +182,7 @@ class Diagram {
         ++k;
         continue;
       }
-      const double limit = power - slack * squared;
+      const double limit = power - power_slack * squared;
       const Tree::Found other = tree_.nearest<Tree::Power>(center + away, limit);
       if (!(other.value < limit)) {
         cell.prove(k++);
@@ -205,7 +205,7 @@ class Diagram {
 };
 
 /// Those that are not another one's twin, in their order.
-std::vector<std::uint32_t> distinct(const Spheres<3>& spheres, const Boundary<3>& boundary) {
+std::vector<std::uint32_t> without_twins(const Spheres<3>& spheres, const Boundary<3>& boundary) {
   std::vector<Vector<3>> centers;
   for (std::size_t i = 0; i < spheres.size(); ++i) centers.push_back(boundary.wrap(spheres.center(i)));
   std::vector<std::uint32_t> ids(spheres.size());
@@ -223,7 +223,7 @@ std::vector<std::uint32_t> distinct(const Spheres<3>& spheres, const Boundary<3>
 
 void for_each_power_cell(const Spheres<3>& spheres, const CellBox& box, const VisitCell& visit) {
   if (spheres.empty()) return;
-  const std::vector<std::uint32_t> ids = distinct(spheres, box.boundary);
+  const std::vector<std::uint32_t> ids = without_twins(spheres, box.boundary);
   if (ids.size() == spheres.size()) return Diagram(spheres, box, visit).visit_all();
 
   Spheres<3> kept;

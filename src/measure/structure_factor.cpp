@@ -71,10 +71,10 @@ class Waves {
 };
 
 template <int D>
-class Sums {
+class WaveSums {
  public:
-  Sums(const Spheres<D>& spheres, const Boundary<D>& boundary,
-       const std::vector<std::vector<WaveVector<D>>>& bins)
+  WaveSums(const Spheres<D>& spheres, const Boundary<D>& boundary,
+           const std::vector<std::vector<WaveVector<D>>>& bins)
       : spheres_(spheres), boundary_(boundary) {
     largest_.setZero();
     for (const auto& bin : bins)
@@ -188,7 +188,7 @@ std::optional<StructureFactor> structure_factor(const Spheres<dynamic>& spheres,
     const Boundary<D> boundary = boundary_of<D>(domain);
     const auto vectors = wave_vectors<D>(boundary.edges, found.bin_width, bins, a_bin);
     const Spheres<D> in_space = spheres.in<D>();
-    const std::vector<double> squares = Sums<D>(in_space, boundary, vectors).squares();
+    const std::vector<double> squares = WaveSums<D>(in_space, boundary, vectors).squares();
     std::size_t first = 0;
     for (const auto& bin : vectors) {
       if (bin.empty()) continue;

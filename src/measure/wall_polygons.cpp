@@ -6,7 +6,7 @@
 namespace bernal {
 namespace {
 
-constexpr std::size_t walls_a_leaf = 4, few = 12;
+constexpr std::size_t walls_a_leaf = 4, few_walls = 12;
 constexpr double rounding_of_reach = 1e-12;
 
 Vector<3> middle_of(std::span<const Vector<3>> points) {
@@ -173,7 +173,7 @@ double WallPolygons::inside(const ConvexCell& cell, std::vector<Piece> pieces, c
     }
     return std::min(low, high) > 0 && low + high >= pieces.size() / 3;
   };
-  if (pieces.size() <= few || !halve()) {
+  if (pieces.size() <= few_walls || !halve()) {
     const Piece& largest = *std::ranges::max_element(pieces, {}, &Piece::area);
     normal = largest.normal;
     offset = normal.dot(largest.loop[0]);

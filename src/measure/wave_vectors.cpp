@@ -20,7 +20,7 @@ using Multiples = Eigen::Matrix<int, D, 1>;
 
 /// One of n and -n, and not zero: its last component that is not 0 is positive.
 template <int D>
-bool counts(const Multiples<D>& n) {
+bool stands_for_two(const Multiples<D>& n) {
   for (int k = D; k-- > 0;)
     if (n[k] != 0) return n[k] > 0;
   return false;
@@ -56,7 +56,7 @@ void for_each_multiple(const Vector<D>& step, double longest, Visit&& visit) {
   for (int k = 0; k < D; ++k) limit[k] = static_cast<int>(std::floor(longest / step[k]));
   n = -limit;
   for (int k = 0; k < D;) {
-    if (counts<D>(n)) visit(n);
+    if (stands_for_two<D>(n)) visit(n);
     for (k = 0; k < D && ++n[k] > limit[k]; ++k) n[k] = -limit[k];
   }
 }
@@ -102,9 +102,9 @@ std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, dou
       if (!(multiples.cwiseAbs().maxCoeff() < largest_multiple)) continue;
       Multiples<D> n;
       for (int axis = 0; axis < D; ++axis) n[axis] = static_cast<int>(std::nearbyint(multiples[axis]));
-      if (!counts<D>(n)) n = -n;
+      if (!stands_for_two<D>(n)) n = -n;
       const double length = length_of(n);
-      if (!counts<D>(n) || static_cast<std::size_t>(length / width) != bin) continue;
+      if (!stands_for_two<D>(n) || static_cast<std::size_t>(length / width) != bin) continue;
       if (drawn.insert(n).second) found[bin].push_back({n, length});
     }
   }
