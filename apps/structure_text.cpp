@@ -53,7 +53,7 @@ void print_structure(const StructureFactor& factor) {
              grouped(factor.references));
   // On an even grid, each bin until half-way to the next.
   std::vector<double> even;
-  constexpr std::size_t columns = 75;
+  constexpr std::size_t columns = 300;
   for (std::size_t column = 0, b = 0; column < columns; ++column) {
     const double at = (static_cast<double>(column) + 0.5) / columns * factor.k.back();
     while (b + 1 < factor.k.size() && factor.k[b + 1] + factor.k[b] < 2 * at) ++b;

@@ -31,7 +31,7 @@ namespace {
 /// Enough for curves that are smooth to the eye; `bernal measure` takes more.
 constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5;
 constexpr std::uint32_t points_for_a_report = 4000, pore_points_for_a_report = 20000;
-constexpr double waves_for_a_report = 2e7;
+constexpr double waves_for_a_report = 6e7, wave_bins_for_a_report = 0.4;
 /// Of more spheres, cells and waves would take longer than many a packing.
 constexpr std::size_t most_for_a_report = 100'000;
 
@@ -92,19 +92,20 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   certificate.statement += certified_walls(packing.scene);
   go_on();
   const SceneRadii radii = asked_radii_of(packing);
-  const Measurements measured =
-      measure(packing.spheres, packing.domain, radii.asked,
-              {.gap = packing.scene.gap,
-               .wall_gap = packing.scene.wall_gap,
-               .radial = {.work = distances_for_a_report},
-               .size_correlation = {.work = distances_for_a_report},
-               .chambers = {.points = points_for_a_report},
-               .walls = {.work = wall_distances_for_a_report},
-               .local = {.most_spheres = most_for_a_report},
-               .structure = {.work = waves_for_a_report, .most_spheres = most_for_a_report},
-               .pores = {.points = pore_points_for_a_report},
-               .container = packing.container,
-               .monitor = options.monitor});
+  const Measurements measured = measure(packing.spheres, packing.domain, radii.asked,
+                                        {.gap = packing.scene.gap,
+                                         .wall_gap = packing.scene.wall_gap,
+                                         .radial = {.work = distances_for_a_report},
+                                         .size_correlation = {.work = distances_for_a_report},
+                                         .chambers = {.points = points_for_a_report},
+                                         .walls = {.work = wall_distances_for_a_report},
+                                         .local = {.most_spheres = most_for_a_report},
+                                         .structure = {.bin = wave_bins_for_a_report,
+                                                       .work = waves_for_a_report,
+                                                       .most_spheres = most_for_a_report},
+                                         .pores = {.points = pore_points_for_a_report},
+                                         .container = packing.container,
+                                         .monitor = options.monitor});
   go_on();
   Manifest manifest;
   const std::string scene =

@@ -169,7 +169,7 @@ std::optional<StructureFactor::Peak> StructureFactor::peak() const {
       highest = b;
   if (!highest || *highest == 0 || *highest + 1 == k.size()) return {};
   const std::size_t b = *highest;
-  if (!(s[b] > s[b - 1] && s[b] > s[b + 1])) return {};
+  if (!(s[b] > s[b - 1] && s[b] > s[b + 1] && s[b] - error[b] > 1)) return {};
   return Peak{k[b], s[b], error[b]};
 }
 
