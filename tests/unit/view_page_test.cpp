@@ -308,11 +308,15 @@ Mesh ball(std::uint32_t rows) {
       const double t = std::numbers::pi * i / rows, p = std::numbers::pi * k / rows;
       mesh.vertices.push_back({std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)});
     }
+  const auto corner = [&](std::uint32_t i, std::uint32_t k) {  // the poles have one each
+    return i * around + (i == 0 || i == rows ? 0 : k % around);
+  };
   for (std::uint32_t i = 0; i < rows; ++i)
     for (std::uint32_t k = 0; k < around; ++k) {
-      const std::uint32_t a = i * around + k, b = i * around + (k + 1) % around;
-      mesh.triangles.push_back({a, a + around, b});
-      mesh.triangles.push_back({b, a + around, b + around});
+      const std::uint32_t a = corner(i, k), b = corner(i, k + 1), c = corner(i + 1, k),
+                          d = corner(i + 1, k + 1);
+      if (a != b) mesh.triangles.push_back({a, c, b});
+      if (c != d) mesh.triangles.push_back({b, c, d});
     }
   return mesh;
 }

@@ -26,6 +26,7 @@ class Browser:
 
     def __init__(self, width=1160, height=900, dark=False, graphics=True, software=True, script=True):
         self.folder = tempfile.mkdtemp(prefix="bernal-browser-")
+        self.script = script
         self.next_id = 0
         self.events = []
         self.pending = b""
@@ -121,7 +122,8 @@ class Browser:
         while (left := end - time.monotonic()) > 0:
             if event := self.receive(left):
                 self.events.append(event)
-        self.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        if self.script:
+            self.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
     def run(self, script, timeout=120):
         """The value of an expression, or of its promise. Raises RuntimeError for what it throws."""

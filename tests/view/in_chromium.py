@@ -178,7 +178,7 @@ def test_pixels(shown, name, samples=300):
     draw = random.Random(name)
     met = missed = 0
     while met + missed < samples or min(met, missed) < 20:
-        x, y = draw.randrange(int(shown.width)), draw.randrange(int(shown.height))
+        x, y = draw.randrange(12, int(shown.width) - 12), draw.randrange(12, int(shown.height) - 12)
         index, margin = shown.expected(x + 0.5, y + 0.5, camera)
         if margin < 1.5:
             continue

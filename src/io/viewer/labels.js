@@ -1,5 +1,7 @@
 // The scale bar and the axes, beside the picture.
 
+import { numberText } from "./colours.js";
+
 const SVG = "http:" + "//www.w3.org/2000/svg";
 
 export function svgElement(name, attributes = {}, parent = null) {
@@ -47,7 +49,7 @@ export class Labels {
     const unit = (2 * camera.half * this.data.scale) / height;  // of the scene, a pixel
     const length = roundLength(110 * unit), pixels = length / unit;
     this.bar.setAttribute("d", `M${184 - pixels} 82v6h${pixels}v-6`);
-    const text = `${Number(length.toPrecision(3))} ${this.data.unit}`;
+    const text = `${numberText(length, 3)} ${this.data.unit}`;
     if (this.length.textContent !== text) this.length.textContent = text;
   }
 }

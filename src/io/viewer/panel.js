@@ -147,7 +147,7 @@ export class Panel {
     this.slider.disabled = this.flip.disabled = axis < 0;
     this.slider.value = share;
     this.slider.setAttribute("aria-valuetext", text);
-    this.cutValue.textContent = text;
+    this.cutValue.textContent = this.cutValue.title = text;
   }
 
   // `image` says which period, or is null.
