@@ -14,6 +14,7 @@ if(NOT BERNAL_SHLIBDEPS)
 endif()
 
 set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each has one of its own, in the first line of its description
 set(CPACK_PACKAGE_VENDOR bernal)
 set(CPACK_PACKAGE_CONTACT "bernal maintainers <maintainers@bernal.invalid>")
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
