@@ -206,15 +206,17 @@ std::string wall_size_chart(const WallProfile& profile) {
 
 std::string local_packing_chart(const LocalPacking& local) {
   constexpr std::size_t bins = 36;
-  if (!(local.deviation > 1e-6 * local.mean)) return {};
+  if (!(local.deviation > 1e-6 * local.mean) || local.quantiles.empty()) return {};
   double least = local.mean, most = local.mean;
   for (std::size_t i = 0; i < local.cell_volume.size(); ++i) {
     if (!(local.cell_volume[i] > 0)) continue;
     least = std::min(least, local.packing_fraction[i]);
     most = std::max(most, local.packing_fraction[i]);
   }
-  least = std::max(least, local.mean - 5 * local.deviation);
-  most = std::min(most, local.mean + 5 * local.deviation);
+  // Spheres that overlaps hide nearly have next to no cell: what is far out is left out.
+  const double low = local.quantiles.front().packing_fraction, high = local.quantiles.back().packing_fraction;
+  least = std::max(least, low - (high - low));
+  most = std::min(most, high + (high - low));
   const auto all = static_cast<double>(local.cell_volume.size() - local.empty);
   std::vector<double> share(bins, 0);
   for (std::size_t i = 0; i < local.cell_volume.size(); ++i) {
@@ -230,7 +232,8 @@ std::string local_packing_chart(const LocalPacking& local) {
     chart.add("<rect class=\"bar\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>",
               chart.x(least) + bar * static_cast<double>(k) + 0.5, chart.y(share[k]), bar - 1,
               chart.y(0) - chart.y(share[k]));
-  chart.add("<path class=\"asked line\" d=\"M{:.1f} {}V{}\"/>", chart.x(local.mean), top, height - bottom);
+  if (local.mean <= most)
+    chart.add("<path class=\"asked line\" d=\"M{:.1f} {}V{}\"/>", chart.x(local.mean), top, height - bottom);
   return std::move(chart).finish();
 }
 

@@ -12,13 +12,16 @@ namespace bernal {
 namespace {
 
 void write_local_packing(Page& page, const LocalPacking& local) {
+  const std::string chart = local_packing_chart(local);
   page.add("<h2>How densely each sphere is packed</h2>\n<div class=\"pair\"><div>{}</div><div>\n",
-           local_packing_chart(local));
+           chart.empty() ? "<p class=\"dim\">All to the same.</p>" : chart);
   page.raw(
       "<p>The local packing fraction of a sphere: its volume over that of its cell, which is all that is "
       "nearer to it than to any other by the power distance |p − c|² − r². The cells of all spheres fill the "
-      "domain.</p>\n<div class=\"wide\"><table>\n");
-  page.row("mean", fmt::format("{:.4f}", local.mean), "over the spheres; the dashed line");
+      "domain; a sphere has more volume than its cell only where it overlaps others.</p>\n<div "
+      "class=\"wide\"><table>\n");
+  page.row("mean", fmt::format("{:.4f}", local.mean),
+           chart.empty() ? "over the spheres" : "over the spheres; the dashed line");
   page.row("standard deviation", fmt::format("{:.4f}", local.deviation), "");
   for (const auto& [share, phi] : local.quantiles)
     if (share == 0.05 || share == 0.5 || share == 0.95)
@@ -44,7 +47,7 @@ void write_structure_factor(Page& page, const StructureFactor& factor) {
     page.row("highest peak", fmt::format("{:.2f} ± {:.2f}", peak->s, peak->error),
              fmt::format("at k d = {:.2f}", peak->k * factor.mean_diameter));
   page.row("smallest k", fmt::format("{:.2g} ± {:.1g}", factor.s.front(), factor.error.front()),
-           fmt::format("S at k d = {:.2f}, the least that the box allows",
+           fmt::format("S at k d = {:.2f}, of the longest waves that the box allows",
                        factor.k.front() * factor.mean_diameter));
   page.raw("</table></div></div></div>\n");
 }
@@ -55,14 +58,15 @@ void write_pore_sizes(Page& page, const PoreSizes& pores, std::string_view unit,
       "<p>From points in the pores, how far it is to the nearest sphere{}. P(d) is the density of these "
       "distances, in mean diameters; the band is its standard error.</p>\n<div class=\"wide\"><table>\n",
       walls ? " or wall" : "");
-  page.row("mean", fmt::format("{:.4g} ± {:.1g}", pores.mean, pores.mean_error), fmt::format("in {}", unit));
-  page.row("root mean square", fmt::format("{:.4g}", std::sqrt(pores.second_moment)), "");
+  const std::string in = fmt::format("in {}", unit);
+  page.row("mean", fmt::format("{:.4g} ± {:.1g}", pores.mean, pores.mean_error), in);
+  page.row("root mean square", fmt::format("{:.4g}", std::sqrt(pores.second_moment)), in);
   for (const auto& [share, distance] : pores.quantiles)
     if (share == 0.5 || share == 0.95)
       page.row(share == 0.5 ? "median" : fmt::format("{:g} % below", 100 * share),
-               fmt::format("{:.4g}", distance), "");
+               fmt::format("{:.4g}", distance), in);
   page.row("largest seen", fmt::format("{:.4g}", pores.largest),
-           fmt::format("of {} points in pores", grouped(pores.in_pores)));
+           fmt::format("{}, from {} points in pores", in, grouped(pores.in_pores)));
   page.raw("</table></div></div></div>\n");
 }
 

@@ -200,8 +200,8 @@ void write_certificate(Page& page, const Report& report) {
 
 std::string html_of(const Report& report, const Pictures& pictures, std::string_view scene) {
   const Packing& packing = report.packing;
-  std::string title =
-      fmt::format("{} spheres in a {}", grouped(packing.spheres.size()), name_of(packing.domain));
+  std::string title = fmt::format("{} sphere{} in a {}", grouped(packing.spheres.size()),
+                                  packing.spheres.size() == 1 ? "" : "s", name_of(packing.domain));
   if (const auto* mesh = std::get_if<MeshFile>(&packing.scene.container))
     title += ", " + plain_text(mesh->file.filename().string());
   Page page;

@@ -33,7 +33,7 @@ void write_mean_q6(const Sums& sums, BondOrder& out) {
   double n = 0, sum = 0, squares = 0;
   for (std::size_t i = 0; i < sums.bonds.size(); ++i) {
     if (sums.bonds[i] == 0) continue;
-    const double q6 = sums.orders[i].norm() / sums.bonds[i];
+    const double q6 = std::min(1.0, sums.orders[i].norm() / sums.bonds[i]);
     ++n;
     sum += q6;
     squares += q6 * q6;

@@ -19,6 +19,7 @@ namespace {
 /// sums are kept apart, which are then added in one order.
 constexpr std::size_t spheres_together = 32, most_parts = 64;
 constexpr double fewest_vectors = 8, most_vectors = 400;  // a bin
+constexpr double surely_higher = 4.5;  // standard deviations: one box of points in a hundred has such a bin
 
 /// exp(i 2π n x) of some spheres along one axis, for any n: from a table, where that is not too large.
 class Waves {
@@ -169,7 +170,9 @@ std::optional<StructureFactor::Peak> StructureFactor::peak() const {
       highest = b;
   if (!highest || *highest == 0 || *highest + 1 == k.size()) return {};
   const std::size_t b = *highest;
-  if (!(s[b] > s[b - 1] && s[b] > s[b + 1] && s[b] - error[b] > 1)) return {};
+  // Centres spread by chance have 1 ± 1/√vectors in every bin, and one of thirty is the highest.
+  const double by_chance = 1 + surely_higher / std::sqrt(static_cast<double>(vectors[b]));
+  if (!(vectors[b] >= fewest_vectors && s[b] > s[b - 1] && s[b] > s[b + 1] && s[b] > by_chance)) return {};
   return Peak{k[b], s[b], error[b]};
 }
 

@@ -170,6 +170,9 @@ void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& en
     conclusion = {Outcome::cancelled,
                   short_of ? "stopped by the user: " + conclusion.reason
                            : fmt::format("stopped by the user with {}", counted(packing.spheres.size()))};
+    if (!in_bed && work.target_edges && work.edges.prod() > work.target_edges->prod())
+      conclusion.reason += fmt::format(", which stand in a box {} the one asked for",
+                                       larger(work.edges.prod() / work.target_edges->prod()));
   } else if (packing.spheres.empty() && conclusion.outcome == Outcome::converged) {
     conclusion = {Outcome::full, "no sphere has found a place; use smaller ones or check the units"};
   }

@@ -47,6 +47,16 @@ TEST(StructureFactor, OfAnIdealGasIsOne) {
   expect_ideal_gas<5>(800, Vector<5>::Constant(1));
 }
 
+TEST(StructureFactor, OfAnIdealGasHasNoPeakThoughOneBinIsTheHighest) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Vector<3> cube = Vector<3>::Ones(), rod(10, 0.5, 0.5);
+    for (const Vector<3>& edges : {cube, rod})
+      EXPECT_FALSE(factor_of(periodic_packing<3>(ideal_gas<3>(2000, 0.02, 0.02, edges, seed), edges)).peak());
+    const Vector<1> line(500);
+    EXPECT_FALSE(factor_of(periodic_packing<1>(ideal_gas<1>(500, 0.2, 0.2, line, seed), line)).peak());
+  }
+}
+
 TEST(StructureFactor, IsTheSumOverAllPairs) {
   // S(k) of every single wave vector against Σ cos(k·(ci - cj)) / N, in boxes off the origin.
   const Vector<3> edges(2, 3, 1);

@@ -29,8 +29,9 @@ struct StructureFactor {
   struct Peak {
     double k, s, error;
   };
-  /// The highest value between 4 and 10 inverse mean diameters, if it is a maximum and above 1 by more than
-  /// its error; near 7 for random packings of equal spheres, 6.6 for discs.
+  /// The highest value between 4 and 10 inverse mean diameters, if it is a maximum of eight wave vectors or
+  /// more and higher than centres spread by chance have: 1 + 4.5 / √vectors. Near 7 for random packings of
+  /// equal spheres, 6.6 for discs.
   std::optional<Peak> peak() const;
 };
 
