@@ -117,6 +117,34 @@ class CtrlC(InFolder):
         ended = subprocess.run([sys.executable, "-c", program], timeout=60)
         self.assertEqual(ended.returncode, 0)
 
+    def test_a_program_ends_though_threads_go_on_beginning(self):
+        program = (
+            "import bernal, threading, time, sys\n"
+            "s = bernal.Scene(bernal.Periodic(edge=6), diameters=1, unit='mm')\n"
+            "def work():\n"
+            "    while True: bernal.pack(s, threads=1)\n"
+            "for _ in range(3): threading.Thread(target=work, daemon=True).start()\n"
+            "time.sleep(float(sys.argv[1]))\n"
+        )
+        for seconds in (0.1, 0.2, 0.35):
+            with self.subTest(seconds):
+                ended = subprocess.run(
+                    [sys.executable, "-c", program, str(seconds)], timeout=60, capture_output=True, text=True
+                )
+                self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
+    def test_nothing_begins_once_a_program_has_ended(self):
+        program = (
+            "import atexit\n"
+            "def late():\n"
+            "    try: bernal.predict(1)\n"
+            "    except RuntimeError as error: print(error)\n"
+            "atexit.register(late)\n"
+            "import bernal\n"
+        )
+        ended = subprocess.run([sys.executable, "-c", program], timeout=60, capture_output=True, text=True)
+        self.assertIn("the program ends", ended.stdout)
+
     def test_a_forked_process_ends_though_its_parent_goes_on(self):
         program = (
             "import bernal, threading, time, os, sys\n"
