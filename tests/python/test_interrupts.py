@@ -229,6 +229,14 @@ class Progress(InFolder):
         self.assertIn("300 spheres", cells[0]._repr_html_())
         self.assertEqual(cells[-1]._repr_html_(), "")
 
+    def test_a_stream_that_is_none_or_closed_shows_nothing_and_loses_nothing(self):
+        closed = io.StringIO()
+        closed.close()
+        for stream in (None, closed, object()):
+            with mock.patch.object(sys, "stderr", stream):
+                self.assertIs(type(_progress.display_of(None)), _progress.Silent)
+                self.draw(_progress.Lines).clear()
+
     def test_nothing_is_shown_where_nobody_looks(self):
         with redirect_stderr(io.StringIO()) as out:
             self.assertIs(type(_progress.display_of(None)), _progress.Silent)
