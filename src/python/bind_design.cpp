@@ -83,7 +83,7 @@ JobPointer target_job(const py::function& family, double from, double to, double
     const auto member = [&](double parameter) {
       if (monitor.stop()) throw Cancelled();
       const Locked lock;
-      return or_stay([&] { return radii_of((*held)(parameter).cast<Scene>()); });
+      return radii_of(called(*held, py::make_tuple(parameter)).cast<Scene>());
     };
     const Match match = match_packing_fraction(member, from, to, target, rods);
     return [=]() -> py::object {

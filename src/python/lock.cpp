@@ -18,6 +18,12 @@ void stay() {
   for (;;) pause();
 }
 
+pybind11::object called(const pybind11::object& function, const pybind11::tuple& arguments) {
+  PyObject* const answer = or_stay([&] { return PyObject_CallObject(function.ptr(), arguments.ptr()); });
+  if (!answer) throw pybind11::error_already_set();
+  return pybind11::reinterpret_steal<pybind11::object>(answer);
+}
+
 void end_locking() { ended() = true; }
 
 Locked::Locked() {

@@ -1,5 +1,5 @@
 #pragma once
-#include <cxxabi.h>
+#include <type_traits>
 
 #include <pybind11/pybind11.h>
 
@@ -12,15 +12,29 @@ namespace bernal::python {
 /// Never comes back; called without the interpreter's lock.
 [[noreturn]] void stay();
 
-/// What `call` answers; stays if the interpreter ends the thread meanwhile.
+/// What `call` answers; stays if the interpreter ends the thread meanwhile. Precondition: `call` throws
+/// nothing, and what it holds needs no destructor, which would run without the lock. A destructor does it: a
+/// `catch` of such an end is refused where another exception is being handled.
 template <class Call>
 auto or_stay(const Call& call) {
-  try {
-    return call();
-  } catch (const abi::__forced_unwind&) {
-    stay();
+  struct Guard {
+    bool unwinding = true;
+    ~Guard() {
+      if (unwinding) stay();
+    }
+  } guard;
+  if constexpr (std::is_void_v<decltype(call())>) {
+    call();
+    guard.unwinding = false;
+  } else {
+    const auto answer = call();
+    guard.unwinding = false;
+    return answer;
   }
 }
+
+/// What a function of Python answers, in a thread that may be ended meanwhile. Throws what it raises.
+pybind11::object called(const pybind11::object& function, const pybind11::tuple& arguments);
 
 /// From now on nobody gets the lock by `Locked`: the interpreter is about to go.
 void end_locking();

@@ -40,9 +40,9 @@ void raise(const Error& error) {
   const Location& where = error.location();
   std::string message = error.what();
   if (const std::string place = where.text(); !place.empty()) message.erase(0, place.size() + 2);
-  const auto raised = or_stay([&]() -> py::object {
-    return exception_of_error()(name_of(error.code()), message, where.file, where.line, where.column);
-  });
+  const py::object raised =
+      called(exception_of_error(),
+             py::make_tuple(name_of(error.code()), message, where.file, where.line, where.column));
   PyErr_SetObject(py::type::of(raised).ptr(), raised.ptr());
 }
 

@@ -133,6 +133,20 @@ class CtrlC(InFolder):
                 )
                 self.assertEqual((ended.returncode, ended.stderr), (0, ""))
 
+    def test_a_program_ends_though_threads_go_on_being_refused(self):
+        program = (
+            "import bernal, threading, time\n"
+            "def work():\n"
+            "    while True:\n"
+            "        try: bernal.Scene(bernal.Periodic(edge=-1), diameters=1)\n"
+            "        except bernal.Error: pass\n"
+            "for _ in range(3): threading.Thread(target=work, daemon=True).start()\n"
+            "time.sleep(0.3)\n"
+        )
+        for _ in range(3):
+            ended = subprocess.run([sys.executable, "-c", program], timeout=60, capture_output=True, text=True)
+            self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
     def test_nothing_begins_once_a_program_has_ended(self):
         program = (
             "import atexit\n"
