@@ -12,6 +12,7 @@
 #include "bernal/run/run.hpp"
 #include "python/bindings.hpp"
 #include "python/job.hpp"
+#include "python/lock.hpp"
 
 namespace py = pybind11;
 
@@ -75,14 +76,14 @@ JobPointer maximise_job(const std::vector<Scene>& parts, int rods) {
 /// `family` answers with a scene that has the sizes; called in whatever thread the search is.
 JobPointer target_job(const py::function& family, double from, double to, double target, int rods) {
   const std::shared_ptr<py::function> held(new py::function(family), [](py::function* function) {
-    const py::gil_scoped_acquire lock;
+    const Locked lock;
     delete function;
   });
   return std::make_unique<Job>([=](const Monitor& monitor) -> Job::Finish {
     const auto member = [&](double parameter) {
       if (monitor.stop()) throw Cancelled();
-      const py::gil_scoped_acquire lock;
-      return radii_of((*held)(parameter).cast<Scene>());
+      const Locked lock;
+      return radii_of(called(*held, py::make_tuple(parameter)).cast<Scene>());
     };
     const Match match = match_packing_fraction(member, from, to, target, rods);
     return [=]() -> py::object {

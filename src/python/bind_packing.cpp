@@ -9,6 +9,7 @@
 #include "bernal/io/view_page.hpp"
 #include "bernal/measure/measure.hpp"
 #include "python/bindings.hpp"
+#include "python/lock.hpp"
 
 namespace py = pybind11;
 
@@ -78,7 +79,7 @@ std::string section_of_packing(const Packing& packing, const std::optional<std::
 }  // namespace
 
 void bind_packing(py::module_& module) {
-  using Unlocked = py::call_guard<py::gil_scoped_release>;
+  using OthersRun = py::call_guard<Unlocked>;
   py::class_<Packing, PackingPointer>(module, "Packing")
       .def("columns", &columns_of)
       .def("history", &history_of)
@@ -86,13 +87,13 @@ void bind_packing(py::module_& module) {
       .def("bounds", &bounds_of_domain)
       .def("walls", &walls_of)
       .def("scene", [](const Packing& packing) { return packing.scene; })
-      .def("picture", &picture_of, Unlocked())
-      .def("section", &section_of_packing, Unlocked())
+      .def("picture", &picture_of, OthersRun())
+      .def("section", &section_of_packing, OthersRun())
       .def(
-          "hash", [](const Packing& packing) { return hash_of(packing.spheres); }, Unlocked())
+          "hash", [](const Packing& packing) { return hash_of(packing.spheres); }, OthersRun())
       .def("domain", [](const Packing& packing) { return name_of(packing.domain); })
       .def(
-          "view", [](const Packing& packing) { return view_page(packing); }, Unlocked())
+          "view", [](const Packing& packing) { return view_page(packing); }, OthersRun())
       .def_property_readonly("dimension", [](const Packing& p) { return p.spheres.dimension(); })
       .def_property_readonly("packing_fraction", &Packing::packing_fraction)
       .def_property_readonly("outcome", [](const Packing& p) { return name_of(p.outcome); })

@@ -209,6 +209,7 @@ void bind_work(py::module_& module) {
       .def("cancel", &Job::cancel)
       .def("result", &Job::result);
   module.def("stop_all_jobs", &stop_all_jobs);
+  module.def("is_ending_elsewhere", &is_ending_elsewhere);
   module.def("explain", &explain_job);
   module.def("pack", &pack_job);
   module.def("verify", &verify_job);

@@ -5,12 +5,16 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <mutex>
 #include <set>
 #include <stdexcept>
 #include <thread>
 #include <utility>
+
+#include "python/lock.hpp"
 
 namespace bernal::python {
 
@@ -58,6 +62,8 @@ struct Running {
   std::condition_variable none;
   std::set<std::atomic<bool>*> cancelled;  // of each job whose thread still asks for it
   std::size_t threads = 0;                 // that have not let go of everything yet
+  bool ending = false;
+  std::thread::id ender;
 };
 /// Those of this process: in one that was forked off runs none of its parent's. Outlives every thread.
 Running& running() {
@@ -75,6 +81,7 @@ Running& running() {
 Job::Job(Work work) : state_(std::make_shared<State>()) {
   Running& all = running();
   const std::lock_guard begin(all.mutex);
+  if (all.ending) throw Ending();
   std::thread([state = state_, work = std::move(work), &all]() mutable {
     state->run(work);
     {
@@ -96,7 +103,7 @@ Job::~Job() { cancel(); }
 void Job::cancel() { state_->cancelled = true; }
 
 bool Job::wait(double seconds) const {
-  const pybind11::gil_scoped_release others_run;
+  const Unlocked others_run;
   std::unique_lock lock(state_->mutex);
   return state_->end.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return state_->ended; });
 }
@@ -117,12 +124,27 @@ pybind11::object Job::result() {
   return finish();
 }
 
+bool is_ending_elsewhere() {
+  Running& all = running();
+  const std::lock_guard lock(all.mutex);
+  return all.ending && all.ender != std::this_thread::get_id();
+}
+
 void stop_all_jobs() {
-  const pybind11::gil_scoped_release others_run;
+  const Unlocked others_run;
   Running& all = running();
   std::unique_lock lock(all.mutex);
+  all.ending = true;
+  all.ender = std::this_thread::get_id();
   for (std::atomic<bool>* const cancelled : all.cancelled) *cancelled = true;
-  all.none.wait(lock, [&] { return all.threads == 0; });
+  if (all.none.wait_for(lock, std::chrono::seconds(5), [&] { return all.threads == 0; })) return;
+  end_locking();
+  on_exit(  // the last to be registered is the first to be called
+      [](int status, void*) {
+        std::fflush(nullptr);
+        _exit(status);
+      },
+      nullptr);
 }
 
 }  // namespace bernal::python

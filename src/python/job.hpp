@@ -1,4 +1,5 @@
 #pragma once
+#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
@@ -18,7 +19,8 @@ class Job {
   using Finish = std::function<pybind11::object()>;  ///< called with the interpreter's lock, others without
   using Work = std::function<Finish(const Monitor&)>;
 
-  /// Begins. What `work` and its answer hold may be destroyed in any thread without the interpreter's lock.
+  /// Begins; throws Ending where that is too late. What `work` and its answer hold may be destroyed in any
+  /// thread without the interpreter's lock.
   explicit Job(Work work);
   /// Tells the work to stop at its next safe point and does not wait for that.
   ~Job();
@@ -39,7 +41,17 @@ class Job {
   std::shared_ptr<State> state_;
 };
 
-/// Stops all work and waits until the last thread has ended: what it uses is about to be taken down.
+/// The program ends, and nothing new may begin.
+struct Ending : std::exception {
+  const char* what() const noexcept override { return "nothing can begin any more, since the program ends"; }
+};
+
+/// Whether stop_all_jobs was called, in another thread.
+bool is_ending_elsewhere();
+
+/// Stops all work and waits until the last thread has ended: what it uses is about to be taken down. From
+/// then on nothing begins. Work that has come to no safe point after five seconds is left alone; the process
+/// then ends without taking down what such work uses.
 void stop_all_jobs();
 
 }  // namespace bernal::python

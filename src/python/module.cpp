@@ -6,6 +6,8 @@
 #include "bernal/core/monitor.hpp"
 #include "bernal/version.hpp"
 #include "python/bindings.hpp"
+#include "python/job.hpp"
+#include "python/lock.hpp"
 
 namespace py = pybind11;
 
@@ -39,7 +41,8 @@ void raise(const Error& error) {
   std::string message = error.what();
   if (const std::string place = where.text(); !place.empty()) message.erase(0, place.size() + 2);
   const py::object raised =
-      exception_of_error()(name_of(error.code()), message, where.file, where.line, where.column);
+      called(exception_of_error(),
+             py::make_tuple(name_of(error.code()), message, where.file, where.line, where.column));
   PyErr_SetObject(py::type::of(raised).ptr(), raised.ptr());
 }
 
@@ -50,6 +53,9 @@ void translate(std::exception_ptr thrown) {
     raise(error);
   } catch (const Cancelled&) {
     PyErr_SetNone(PyExc_KeyboardInterrupt);
+  } catch (const Ending& ending) {  // the first ends other threads without a word
+    if (is_ending_elsewhere()) return PyErr_SetNone(PyExc_SystemExit);
+    PyErr_SetString(PyExc_RuntimeError, ending.what());
   } catch (const std::system_error& error) {
     PyErr_SetString(PyExc_OSError, error.what());
   }

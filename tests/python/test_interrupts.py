@@ -117,6 +117,48 @@ class CtrlC(InFolder):
         ended = subprocess.run([sys.executable, "-c", program], timeout=60)
         self.assertEqual(ended.returncode, 0)
 
+    def test_a_program_ends_though_threads_go_on_beginning(self):
+        program = (
+            "import bernal, threading, time, sys\n"
+            "s = bernal.Scene(bernal.Periodic(edge=6), diameters=1, unit='mm')\n"
+            "def work():\n"
+            "    while True: bernal.pack(s, threads=1)\n"
+            "for _ in range(3): threading.Thread(target=work, daemon=True).start()\n"
+            "time.sleep(float(sys.argv[1]))\n"
+        )
+        for seconds in (0.1, 0.2, 0.35):
+            with self.subTest(seconds):
+                ended = subprocess.run(
+                    [sys.executable, "-c", program, str(seconds)], timeout=60, capture_output=True, text=True
+                )
+                self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
+    def test_a_program_ends_though_threads_go_on_being_refused(self):
+        program = (
+            "import bernal, threading, time\n"
+            "def work():\n"
+            "    while True:\n"
+            "        try: bernal.Scene(bernal.Periodic(edge=-1), diameters=1)\n"
+            "        except bernal.Error: pass\n"
+            "for _ in range(3): threading.Thread(target=work, daemon=True).start()\n"
+            "time.sleep(0.3)\n"
+        )
+        for _ in range(3):
+            ended = subprocess.run([sys.executable, "-c", program], timeout=60, capture_output=True, text=True)
+            self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
+    def test_nothing_begins_once_a_program_has_ended(self):
+        program = (
+            "import atexit\n"
+            "def late():\n"
+            "    try: bernal.predict(1)\n"
+            "    except RuntimeError as error: print(error)\n"
+            "atexit.register(late)\n"
+            "import bernal\n"
+        )
+        ended = subprocess.run([sys.executable, "-c", program], timeout=60, capture_output=True, text=True)
+        self.assertIn("the program ends", ended.stdout)
+
     def test_a_forked_process_ends_though_its_parent_goes_on(self):
         program = (
             "import bernal, threading, time, os, sys\n"
@@ -200,6 +242,14 @@ class Progress(InFolder):
         self.assertIn('<progress max="1" value="0.500">', cells[0]._repr_html_())
         self.assertIn("300 spheres", cells[0]._repr_html_())
         self.assertEqual(cells[-1]._repr_html_(), "")
+
+    def test_a_stream_that_is_none_or_closed_shows_nothing_and_loses_nothing(self):
+        closed = io.StringIO()
+        closed.close()
+        for stream in (None, closed, object()):
+            with mock.patch.object(sys, "stderr", stream):
+                self.assertIs(type(_progress.display_of(None)), _progress.Silent)
+                self.draw(_progress.Lines).clear()
 
     def test_nothing_is_shown_where_nobody_looks(self):
         with redirect_stderr(io.StringIO()) as out:

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Packings: arrays without copies, proof, measurements, files."""
 
+import copy
 import gc
+import json
+import pickle
 import subprocess
 import unittest
 
 import numpy as np
-from support import COMMAND, InFolder, small
+from support import COMMAND, HELIX, InFolder, small
 
 import bernal
 from bernal import _core
@@ -181,6 +184,45 @@ class Runs(InFolder):
         self.assertTrue((second.centers[:40] == first.centers).all())
         second.write("out")
         self.assertTrue((self.folder / "out").is_dir() and bernal.verify("out"))
+
+
+class Refusals(InFolder):
+    def test_arguments_of_another_kind_are_refused_in_one_line(self):
+        p, at = bernal.pack(small(count=5)), [[1.0, 1, 1]]
+        for message, call in {
+            "threads is a whole number": lambda: bernal.pack(small(), threads=None),
+            "at most 2147483647": lambda: bernal.pack(small(), threads=2**63 - 1),
+            "list is a whole number": lambda: bernal.verify(p, list=1.5),
+            "radius is a finite number": lambda: bernal.inspect(HELIX, radius="a"),
+            "gap is a finite number": lambda: bernal.measure(p, gap="a"),
+            "the folder is a path": lambda: p.write(""),
+            "give its name": lambda: bernal.read("a\0b"),
+            "box is a list of numbers": lambda: bernal.from_arrays(at, 1, unit="mm", box=5),
+            "give box too, such as box=[10,10,10]": lambda: bernal.from_arrays(at, 1, unit="mm", periodic="x"),
+            "not finite": lambda: bernal.from_arrays([[1, 1, np.nan]], 1, unit="mm"),
+            "not (3,)": lambda: bernal.from_arrays([1, 2, 3], 1, unit="mm"),
+            "masked": lambda: bernal.from_arrays(np.ma.masked_equal(at, 1), 1, unit="mm"),
+            "not an array of complex128": lambda: bernal.from_arrays(at, 1j, unit="mm"),
+        }.items():
+            with self.subTest(message):
+                said = str(self.refuses(bernal.InputError, message, call))
+                self.assertNotIn("--", said)
+                self.assertNotIn("\n", said)
+
+    def test_packings_are_written_and_not_pickled(self):
+        packing = bernal.pack(small(count=5))
+        self.refuses(TypeError, "bernal.read", lambda: pickle.dumps(packing))
+        self.assertIs(copy.copy(packing), packing)
+        self.refuses(ValueError, "WRITEABLE", lambda: packing.centers.setflags(write=True))
+        self.assertIsInstance(packing.centers.base, bytes)
+
+    def test_keys_win_over_methods_of_dictionaries(self):
+        plan = bernal.explain(small())
+        self.assertEqual(plan.items, plan["items"])
+        self.assertEqual(json.loads(json.dumps(plan))["items"], plan.items)
+        self.assertEqual(pickle.loads(pickle.dumps(plan)), plan)
+        self.assertEqual(str(copy.copy(plan)), plan.words)
+        self.assertEqual(len(bernal.design.best(1, 9).values), 3)
 
 
 class Sizes(InFolder):

@@ -56,6 +56,22 @@ class Classes(InFolder):
             bernal.Relax().alpha = 3
         self.assertEqual(bernal.Relax(alpha=3).replace(beta=2), bernal.Relax(alpha=3, beta=2))
 
+    def test_equal_ones_have_one_hash(self):
+        for one, other in (
+            (bernal.Lognormal(1, 0.3), bernal.Lognormal(1.0, 0.3)),
+            (bernal.Lognormal(1, 0.3, min=1), bernal.Lognormal(min=1, median=1, sigma=0.3)),
+            (bernal.Box([1, 2, 3]), bernal.Box((1.0, 2.0, 3.0))),
+        ):
+            self.assertEqual((one, hash(one)), (other, hash(other)))
+
+    def test_files_may_begin_with_a_mark_of_their_encoding(self):
+        (self.folder / "scene.toml").write_text(small().toml, "utf-8-sig")
+        self.assertEqual(bernal.Scene.read("scene.toml"), small())
+
+    def test_counts_that_nothing_holds_are_refused(self):
+        for count in (1e300, 10**30, 10**400):
+            self.refuses(bernal.InputError, "from 1 to 2147483647", lambda count=count: small(count=count))
+
     def test_docstrings_say_defaults_and_ranges(self):
         self.assertIn("alpha : a number above 0 and of at most 1000000, default 17", bernal.Relax.__doc__)
         self.assertIn("(vertices, faces)", bernal.Mesh.__doc__)

@@ -2,6 +2,7 @@
 """Containers that stand in no file: arrays, and what is like a mesh of trimesh, meshio or PyVista."""
 
 import atexit
+import multiprocessing
 import os
 import sys
 import unittest
@@ -19,6 +20,10 @@ VERTICES, TRIANGLES, SQUARES = cube()
 
 def scene_of(mesh, **keys):
     return bernal.Scene(bernal.Mesh(mesh, unit="mm"), **{"diameters": 2, "unit": "mm", "count": 10, **keys})
+
+
+def _folder_of_a_mesh():
+    return os.path.dirname(scene_of((VERTICES, TRIANGLES)).container.file)
 
 
 class Surfaces(InFolder):
@@ -83,6 +88,20 @@ class Surfaces(InFolder):
         hollow = scene_of(HELIX, diameters=10).replace(container=bernal.Mesh(HELIX, obstacles=[(VERTICES, TRIANGLES)]))
         self.assertTrue(hollow.container.obstacles[0].endswith(".off"))
 
+    def test_two_obstacles_are_no_mesh(self):
+        arrays = (np.array(VERTICES), np.array(TRIANGLES))
+        mesh = SimpleNamespace(vertices=arrays[0], faces=arrays[1])
+        for two in ([(VERTICES, TRIANGLES)] * 2, [arrays] * 2, (arrays, arrays), [mesh, arrays], [mesh] * 2):
+            self.assertEqual(len(bernal.Mesh(HELIX, obstacles=two).obstacles), 2)
+
+    def test_processes_of_multiprocessing_leave_no_folder(self):
+        with multiprocessing.get_context("fork").Pool(1) as pool:
+            folder = pool.apply(_folder_of_a_mesh)
+            pool.close()
+            pool.join()
+        self.assertNotEqual(folder, _surfaces.folder())
+        self.assertFalse(os.path.exists(folder))
+
     def test_an_open_surface_is_told_what_helps(self):
         found = bernal.inspect((VERTICES, SQUARES[1:]), places="bad.ply")
         self.assertFalse(found)
@@ -103,6 +122,20 @@ class Surfaces(InFolder):
             (([(0, 0)], [(0, 0, 0)]), "shape (V, 3)"),
             (([(0, 0, np.nan)] * 3, [(0, 1, 2)]), "not finite"),
             (3, "neither a file nor a mesh"),
+            ((VERTICES, [(0.5, 1, 2)]), "integers"),
+            ((VERTICES, ["012"]), "integers"),
+            ((VERTICES, None), "integers"),
+            ((VERTICES, [0, 1, 2]), "integers"),
+            ((np.array(VERTICES) + 1j, TRIANGLES), "not an array of complex128"),
+            ((np.array(VERTICES).astype(str), TRIANGLES), "numbers of shape (V, 3)"),
+            ((np.ma.masked_equal(VERTICES, 0.0), TRIANGLES), "masked"),
+            ((VERTICES, np.ma.masked_equal(TRIANGLES, 3)), "masked"),
+            (([(0, 0, 0), (1, 0)], TRIANGLES), "one length"),
+            ((iter(VERTICES), TRIANGLES), "not list_iterator"),
+            (SimpleNamespace(points=VERTICES, faces=np.array([3, 0, 1, 2, -1])), "at 4 there is -1"),
+            (SimpleNamespace(points=VERTICES, faces=np.array([0, 3, 0, 1, 2])), "at 0 there is 0"),
+            ("", "give its name"),
+            ("a\0b", "give its name"),
         ):
             self.refuses(bernal.InputError, message, lambda mesh=mesh: scene_of(mesh))
 

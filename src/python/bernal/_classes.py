@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import math
 import textwrap
 from typing import Any, ClassVar
 
@@ -68,6 +69,13 @@ def signature_of(table: dict[str, Any]) -> inspect.Signature:
     return inspect.Signature(parameters)
 
 
+def float_of(value: int) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
 def names_files(key: dict[str, Any]) -> bool:
     return key["type"] == "file" or key["name"] == "obstacles"
 
@@ -76,7 +84,9 @@ def taken(key: dict[str, Any], value: Any) -> Any:
     """The value of a key as a scene has it. Names of files go on meaning what they mean here and now."""
     value = _toml.plain(_surfaces.files_of(value) if names_files(key) else value)
     if key["type"] == "integer" and isinstance(value, float) and value.is_integer():
-        return int(value)
+        value = int(value)
+    if isinstance(value, int) and abs(value) >= 2**63:
+        raise _errors.InputError("bad_argument", f"{key['name']} is {key['expectation']}, not {float_of(value):.4g}")
     return value
 
 
@@ -131,7 +141,7 @@ class Said:
         return type(self) is type(other) and vars(self) == vars(other)
 
     def __hash__(self) -> int:
-        return hash(self._lines())
+        return hash((type(self), self._table["name"], frozenset((name, _fixed(v)) for name, v in self._said.items())))
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self._said.items())})"
@@ -151,6 +161,11 @@ class Said:
 
     def _as_toml(self) -> str:
         return "{ " + ", ".join(_toml.line(key, value).rstrip() for key, value in self._assignments()) + " }"
+
+
+def _fixed(value: Any) -> Any:
+    """What has the same hash where values are equal: 1 is 1.0."""
+    return tuple(map(_fixed, value)) if isinstance(value, list) else value
 
 
 class Container(Said):

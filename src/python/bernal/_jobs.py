@@ -21,7 +21,8 @@ class Stopped(UserWarning):
 def finish(job: Any, progress: Progress, leaves_something: bool = False) -> Any:
     """The job's result. Where it `leaves_something`, the first Ctrl-C stops it at its next safe point, and what
     it has by then is the result; the second raises KeyboardInterrupt, as every one does elsewhere. The thread
-    then ends by itself."""
+    then ends by itself. A KeyboardInterrupt that `progress` raises is one by Ctrl-C, which arrives there, too. Where
+    the program has ended in the main thread meanwhile, others end here."""
     display = display_of(progress)
     stopped = False
     try:
@@ -41,6 +42,8 @@ def finish(job: Any, progress: Progress, leaves_something: bool = False) -> Any:
         raise
     finally:
         display.clear()
+    if _core.is_ending_elsewhere():
+        raise SystemExit  # which ends a thread without a word
     return job.result()
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core, _records, _surfaces
+from . import _core, _records, _surfaces, _toml
 from ._jobs import finish
 from ._progress import Progress
 from ._records import Record, Written
@@ -130,8 +130,7 @@ class Packing:
     def centers(self) -> Array:
         """Shape (N, D). A copy, made when it is first asked for and then kept; read-only."""
         centers = np.stack(self.columns, axis=1)
-        centers.setflags(write=False)
-        return centers
+        return np.ndarray(centers.shape, float, centers.tobytes())  # which nobody can make writable again
 
     @property
     def diameters(self) -> Array:
@@ -249,7 +248,11 @@ class Packing:
         """
         passing = bool(self._given_scene and self._given_scene._passing())
         job = _core.write(
-            self._core, os.fspath(folder), passing if with_mesh is None else with_mesh, list, self._imported_from
+            self._core,
+            _surfaces.path(folder, "the folder"),
+            passing if with_mesh is None else bool(with_mesh),
+            _toml.whole(list, "list"),
+            self._imported_from,
         )
         files, certificate, notes = finish(job, progress)
         proof = _records.record(_records.Certificate, certificate)
@@ -275,6 +278,15 @@ class Packing:
         """What a plane cuts of a packing of three dimensions, "z = 1.5" or "0.6 x + 0.8 z = 2"; if None that through
         the middle. Circles are exact."""
         return Picture(self._core.section(plane))
+
+    def __reduce__(self) -> str | tuple[Any, ...]:
+        raise TypeError("a packing cannot be pickled; write it to a folder, and read it again with bernal.read")
+
+    def __copy__(self) -> Packing:
+        return self  # it does not change
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Packing:
+        return self
 
     def __repr__(self) -> str:
         n = len(self)

@@ -91,7 +91,7 @@ class Terminal(Shown):
         try:
             sys.stderr.write(text)
             sys.stderr.flush()
-        except OSError:
+        except (OSError, ValueError, AttributeError):  # closed, or none
             pass  # a run is not lost because nobody reads what it says
 
 
@@ -173,11 +173,18 @@ def _notebook() -> Callable[..., Any] | None:
 def display_of(progress: Progress) -> Silent:
     if callable(progress):
         return Told(progress)
-    if progress is False or (progress is None and sys.stderr is None):
+    if progress is False:
         return Silent()
     notebook = _notebook()
     if notebook:
         return Notebook(notebook)
-    if sys.stderr is not None and sys.stderr.isatty():
+    if _is_terminal(sys.stderr):
         return Terminal()
     return Lines() if progress else Silent()
+
+
+def _is_terminal(stream: Any) -> bool:
+    try:
+        return bool(stream.isatty())
+    except (AttributeError, ValueError, OSError):  # none, closed, or somebody's own that does not know
+        return False

@@ -10,8 +10,32 @@ import numpy as np
 from . import _errors
 
 
+class _Both(list[Any]):
+    """The list that stands under a key called like a method of dictionaries, and that method: `plan.items` is what a
+    scene runs, and `plan.items()` what makes json and pickle know a dictionary."""
+
+    _method: Any
+
+    def __call__(self) -> Any:
+        return self._method()
+
+    def __reduce__(self) -> Any:
+        return (list, ([*self],))
+
+
 class Record(dict[str, Any]):
-    """An answer as a dictionary whose keys are attributes: `answer["phi"]` is `answer.phi`."""
+    """An answer as a dictionary whose keys are attributes: `answer["phi"]` is `answer.phi`, whatever the key is."""
+
+    def __getattribute__(self, name: str) -> Any:
+        found = super().__getattribute__(name)
+        if name.startswith("_") or name not in _METHODS or name not in self:
+            return found
+        value = self[name]
+        if not isinstance(value, list):
+            return value
+        both = _Both(value)
+        both._method = found
+        return both
 
     def __getattr__(self, name: str) -> Any:
         try:
@@ -23,10 +47,15 @@ class Record(dict[str, Any]):
         return [*super().__dir__(), *self]
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(f'{key}={_short(value)}' for key, value in self.items())})"
+        return f"{type(self).__name__}({', '.join(f'{key}={_short(value)}' for key, value in dict.items(self))})"
 
     def __copy__(self) -> Record:
-        return type(self)(self)
+        made = type(self)(self)
+        made.__dict__.update(self.__dict__)
+        return made
+
+
+_METHODS = frozenset(dir(dict))
 
 
 class Plan(Record):

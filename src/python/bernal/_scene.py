@@ -72,7 +72,7 @@ class Scene:
     @classmethod
     def read(cls, file: str | os.PathLike[str]) -> Scene:
         """The scene of a TOML file. Errors name its lines."""
-        name = os.path.abspath(os.fspath(file))
+        name = os.path.abspath(_surfaces.path(file, "the file of a scene"))
         return cls._of(_core.read_scene(name), Path(name))
 
     @classmethod
@@ -81,7 +81,7 @@ class Scene:
         scene = object.__new__(cls)
         scene._core, scene._file = core, file
         whole = tomllib.loads(core.toml(""))
-        scene._parts = _parts_of(tomllib.loads(file.read_text("utf-8")) if file else whole, whole)
+        scene._parts = _parts_of(tomllib.loads(file.read_text("utf-8-sig")) if file else whole, whole)
         return scene
 
     def _text(self) -> str:

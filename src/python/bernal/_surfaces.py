@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import atexit
 import hashlib
+import multiprocessing
+import multiprocessing.util
+import numbers
+import operator
 import os
 import shutil
 import tempfile
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _errors
 
@@ -34,7 +39,10 @@ def folder() -> str:
     process = os.getpid()
     if process not in _folders:
         _folders[process] = tempfile.mkdtemp(prefix="bernal-")
-        atexit.register(_remove, process)
+        if multiprocessing.parent_process() is None:
+            atexit.register(_remove, process)
+        else:  # which ends without atexit
+            multiprocessing.util.Finalize(None, _remove, (process,), exitpriority=0)
     return _folders[process]
 
 
@@ -43,21 +51,66 @@ def is_passing(file: str) -> bool:
     return any(os.path.abspath(file).startswith(each + os.sep) for each in _folders.values())
 
 
-def _refuse(message: str) -> None:
+def _refuse(message: str) -> NoReturn:
     raise _errors.InputError("bad_mesh", message)
+
+
+def doubles(values: Any, name: str, shape: str) -> NDArray[np.float64]:
+    """An array of doubles of real numbers; refuses what would have to be guessed at."""
+    if np.ma.is_masked(values):
+        _refuse(f"{name} are masked in places, which only you can fill or leave out")
+    try:
+        array = np.asarray(values)
+    except (ValueError, TypeError):
+        _refuse(f"{name} are an array of shape {shape}, whose rows have one length")
+    if array.dtype.kind == "O" and array.ndim and all(isinstance(each, numbers.Real) for each in array.ravel()):
+        array = array.astype(float)
+    if array.dtype.kind not in "iuf":
+        what = f"an array of {array.dtype}" if array.dtype.kind != "O" else _short(values)
+        _refuse(f"{name} are an array of numbers of shape {shape}, not {what}")
+    if not np.isfinite(array).all():
+        _refuse(f"there are {name} that are not finite")
+    return array.astype(float, copy=False)
+
+
+def _short(value: Any) -> str:
+    return f"{value!r:.80}" if isinstance(value, (str, bytes, list, tuple)) or value is None else type(value).__name__
+
+
+def path(value: Any, name: str) -> str:
+    """The name of a file or a folder."""
+    try:
+        text = os.fsdecode(value)
+    except TypeError:
+        raise _errors.InputError("bad_argument", f"{name} is a path, not {_short(value)}") from None
+    if not text or "\0" in text:
+        raise _errors.InputError("bad_argument", f"{name} is a path, which {text!r:.80} is not; give its name")
+    return text
 
 
 def _faces(faces: Any) -> list[list[int]]:
     """Lists of indices of vertices, from an array or from lists."""
-    if isinstance(faces, np.ndarray) and faces.dtype != object and not np.issubdtype(faces.dtype, np.integer):
-        _refuse(f"faces are numbers of vertices, integers, not {faces.dtype}")
-    return [[int(k) for k in face] for face in faces]
+    if np.ma.is_masked(faces):
+        _refuse("faces are masked in places, which only you can fill or leave out")
+    if isinstance(faces, np.ndarray) and faces.dtype != object:
+        if not np.issubdtype(faces.dtype, np.integer) and faces.size:
+            _refuse(f"faces are numbers of vertices, integers, not {faces.dtype}")
+        faces = faces.tolist()
+    try:
+        return [[operator.index(k) for k in face] for face in faces]
+    except TypeError:
+        _refuse(f"faces are an array of shape (F, 3) or lists of numbers of vertices, integers, not {_short(faces)}")
 
 
 def _flat_faces(faces: Any) -> list[list[int]]:
     """PyVista's: each face as the number of its corners, then the corners."""
-    flat, found, at = np.asarray(faces).ravel().tolist(), [], 0
+    array = np.asarray(faces)
+    if array.size and not np.issubdtype(array.dtype, np.integer):
+        _refuse(f"faces are numbers of vertices, integers, not {array.dtype}")
+    flat, found, at = array.ravel().tolist(), [], 0
     while at < len(flat):
+        if not 0 < flat[at] < len(flat) - at:
+            _refuse(f"faces are numbers of corners, each followed by so many corners; at {at} there is {flat[at]}")
         found.append(flat[at + 1 : at + 1 + flat[at]])
         at += 1 + flat[at]
     return found
@@ -76,9 +129,26 @@ def _of_cells(cells: dict[str, Any]) -> list[list[int]]:
     return [face for kind in faces for face in _faces(kinds[kind])]
 
 
+def _depth(value: Any) -> int:
+    """In how many lists numbers stand, by the first of each."""
+    if hasattr(value, "ndim"):
+        return int(value.ndim)
+    if isinstance(value, (tuple, list)):
+        return 1 + (_depth(value[0]) if value else 0)
+    return 0
+
+
+def _is_pair(mesh: Any) -> bool:
+    """Whether these are vertices and faces, and not two files or meshes."""
+    if not isinstance(mesh, (tuple, list)) or len(mesh) != 2 or _depth(mesh[0]) > 2:
+        return False
+    whole = ("vertices", "points", "_as_start", "__fspath__")
+    return not any(isinstance(part, str) or any(hasattr(part, name) for name in whole) for part in mesh)
+
+
 def _parts(mesh: Any) -> tuple[Any, list[list[int]]] | None:
     """Vertices and faces of what is like a mesh; None for what is none."""
-    if isinstance(mesh, (tuple, list)) and len(mesh) == 2 and not any(isinstance(p, (str, os.PathLike)) for p in mesh):
+    if _is_pair(mesh):
         return mesh[0], _faces(mesh[1])
     if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):  # trimesh
         return mesh.vertices, _faces(mesh.faces)
@@ -91,11 +161,9 @@ def _parts(mesh: Any) -> tuple[Any, list[list[int]]] | None:
 
 
 def _off(vertices: Any, faces: list[list[int]]) -> bytes:
-    points = np.asarray(vertices, dtype=float)
+    points = doubles(vertices, "vertices", "(V, 3)")
     if points.ndim != 2 or points.shape[1] != 3 or not len(points):
         _refuse(f"vertices are an array of shape (V, 3), not {points.shape}")
-    if not np.isfinite(points).all():
-        _refuse("there are vertices that are not finite")
     if not faces:
         _refuse("the surface has no faces")
     for face in faces:
@@ -120,7 +188,7 @@ def written(content: bytes, ending: str) -> str:
 def files_of(value: Any) -> Any:
     """The whole name of a file, or of several, in place of its name, a mesh or a packing."""
     if isinstance(value, (str, os.PathLike)):
-        return os.path.abspath(os.fspath(value))
+        return os.path.abspath(path(value, "the file"))
     if hasattr(value, "_as_start"):  # a Packing
         return value._as_start()
     parts = _parts(value)

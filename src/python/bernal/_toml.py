@@ -52,3 +52,30 @@ def text_of(value: Any) -> str:
 
 def line(key: str, value: Any) -> str:
     return f"{key} = {text_of(value)}\n"
+
+
+def whole(value: Any, name: str, limit: int = 2**63 - 1) -> int:
+    """A whole number of at least 0."""
+    number = value if isinstance(value, str) or value is None else plain(value)
+    if not isinstance(number, int) or isinstance(number, bool) or not 0 <= number <= limit:
+        below = "" if limit == 2**63 - 1 else f" and at most {limit}"
+        raise _errors.InputError("bad_argument", f"{name} is a whole number of at least 0{below}, not {value!r:.80}")
+    return number
+
+
+def number(value: Any, name: str) -> float:
+    """A finite number."""
+    given = value if isinstance(value, str) or value is None else plain(value)
+    if not isinstance(given, (int, float)) or isinstance(given, bool) or not abs(given) <= 1.7e308:
+        raise _errors.InputError("bad_argument", f"{name} is a finite number, not {value!r:.80}")
+    return float(given)
+
+
+def several(values: Any, name: str) -> list[float]:
+    """Finite numbers, such as the edges of a box."""
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise _errors.InputError("bad_argument", f"{name} is a list of numbers, one for each axis, not {values!r:.80}")
+    return [number(each, name) for each in values]
+
+
+INT = 2**31 - 1

@@ -44,10 +44,10 @@ def pack(scene: Scene | PathLike, *, seed: int | None = None, threads: int = 0, 
     it. Not reaching what the scene asks for is no error either: see `Packing.outcome`.
 
     progress : True, False, None (where somebody looks) or a function of activity, fraction (None where nobody knows)
-        and detail. Raises InputError.
+        and detail; an exception of it ends the run, but KeyboardInterrupt, which is Ctrl-C. Raises InputError.
     """
     asked = as_scene(scene)
-    job = _core.pack(asked._core, _whole(seed, "seed"), _whole(threads, "threads"))
+    job = _core.pack(asked._core, None if seed is None else _toml.whole(seed, "seed"), _threads(threads))
     packing = Packing._of(finish(job, progress, leaves_something=True), asked)
     if packing.outcome == "cancelled":
         warnings.warn(f"stopped by Ctrl-C with {len(packing):,} spheres in place", Stopped, stacklevel=2)
@@ -57,7 +57,7 @@ def pack(scene: Scene | PathLike, *, seed: int | None = None, threads: int = 0, 
 def read(folder: PathLike, *, progress: Progress = None) -> Packing:
     """The packing that stands in a folder: its spheres.csv and scene.toml. How its run went is not among it, but
     whether another program made it. Raises InputError."""
-    return Packing._of(finish(_core.read(os.fspath(folder)), progress))
+    return Packing._of(finish(_core.read(_surfaces.path(folder, "the folder")), progress))
 
 
 def verify(
@@ -78,7 +78,8 @@ def verify(
     exact : exact arithmetic throughout, 4 to 12 times slower, with the same answer.
     """
     of = packing if isinstance(packing, Packing) else read(packing, progress=progress)
-    job = _core.verify(of._core, list, _whole(threads, "threads"), exact)
+    listed = None if list is None else _toml.whole(list, "list")
+    job = _core.verify(of._core, listed, _threads(threads), bool(exact))
     certificate: Certificate = _records.record(Certificate, finish(job, progress))
     return certificate
 
@@ -95,9 +96,9 @@ def measure(packing: Packing | PathLike, *, gap: float = 0.002, progress: Progre
 
     gap : spheres touch below this gap over the sum of their radii.
     """
-    of = packing if isinstance(packing, Packing) else read(packing, progress=progress)
-    if not 0 <= gap <= 1:
+    if not 0 <= (gap := _toml.number(gap, "gap")) <= 1:
         raise _errors.InputError("bad_argument", f"gap is a ratio from 0 to 1, not {gap}")
+    of = packing if isinstance(packing, Packing) else read(packing, progress=progress)
     answer, per_sphere = finish(_core.measure(of._core, gap), progress)
     measured: Measurements = _records.record(Measurements, answer, arrays=True)
     measured["per_sphere"] = _records.Record(per_sphere)
@@ -121,7 +122,7 @@ def export(
     output = format.replace(**keys) if isinstance(format, Output) else Output(format, **keys)
     of = packing if isinstance(packing, Packing) else read(packing, progress=progress)
     said = dict(output._said)
-    name = os.fspath(file) if file is not None else said.get("file") or _core.file_of_format(output.format)
+    name = said.get("file") or _core.file_of_format(output.format) if file is None else _surfaces.path(file, "the file")
     said.pop("file", None)
     words = {key: value if isinstance(value, str) else _toml.text_of(value) for key, value in said.items()}
     files, note = finish(_core.export(of._core, output.format, words, name), progress)
@@ -155,7 +156,8 @@ def inspect(
         file = os.fspath(_surfaces.files_of(mesh))
         if unit is not None:
             options = Scene(_classes.CLASSES["Mesh"](file, unit=unit), diameters=1, unit=unit)._core
-    job = _core.inspect(file, options, radius, None if places is None else os.fspath(places))
+    length = None if radius is None else _toml.number(radius, "radius")
+    job = _core.inspect(file, options, length, None if places is None else _surfaces.path(places, "places"))
     found: Inspection = _records.record(Inspection, finish(job, progress))
     return found
 
@@ -170,7 +172,8 @@ def predict(
     gap_factor : 0.918 gives equal spheres 0.60, a loose packing; as it is 0.6435.
     """
     core = sizes._core if isinstance(sizes, Scene) else scene_of_sizes(sizes)
-    answer: Prediction = _records.record(Prediction, finish(_core.predict(core, rods, gap_factor), progress))
+    job = _core.predict(core, _rods(rods), _toml.number(gap_factor, "gap_factor"))
+    answer: Prediction = _records.record(Prediction, finish(job, progress))
     return answer
 
 
@@ -209,14 +212,22 @@ def import_(
     """
     if isinstance(container, Scene):
         container = _surfaces.written(container.toml.encode(), ".toml")
-    name = os.path.abspath(os.fspath(file))
-    paths = [None if each is None else os.fspath(each) for each in (radii, container)]
+    name = os.path.abspath(_surfaces.path(file, "the file"))
+    paths = [None if each is None else _surfaces.path(each, "a file") for each in (radii, container)]
+    sizes = [None if d is None else _toml.number(d, of) for d, of in ((diameter, "diameter"), (radius, "radius"))]
+    whole = ((frame, "frame"), (dimension, "dimension"))
+    counts = [None if n is None else _toml.whole(n, of, _toml.INT) for n, of in whole]
+    places = [_toml.several(each, of) for each, of in ((box, "box"), (shift, "shift"))]
+    texts = {"format": format, "columns": columns, "periodic": periodic, "unit": "" if unit is None else unit}
+    for of, text in texts.items():
+        if not isinstance(text, str):
+            raise _errors.InputError("bad_argument", f"{of} is text, not {text!r:.80}")
     job = _core.import_(
-        name, format, columns, diameter, radius, paths[0], unit, [*box], periodic, paths[1], [*shift], frame, dimension
+        name, format, columns, *sizes, paths[0], unit, places[0], periodic, paths[1], places[1], *counts
     )
     core, notes = finish(job, progress)
     packing = Packing._of(core)
-    packing.notes.update(notes)
+    packing.notes.update({about: _errors.in_python(words) for about, words in notes.items()})
     packing._imported_from = name
     return packing
 
@@ -236,8 +247,10 @@ def from_arrays(
     container : what they lie in; else the box [0, a) of these edges, along whose axes `periodic`, "xyz" or "none", it
         repeats itself; else the bounds of the spheres.
     """
-    points = np.atleast_2d(np.asarray(centers, dtype=float))
-    sizes = np.asarray(radii, dtype=float)
+    points = _surfaces.doubles(centers, "centers", "(N, D)")
+    if not points.size and points.ndim == 1:
+        points = points.reshape(0, 3)
+    sizes = _surfaces.doubles(radii, "radii", "(N,)")
     if points.ndim != 2 or sizes.shape not in ((), points.shape[:1]):
         raise _errors.InputError(
             "bad_argument", f"centers have the shape (N, D) and radii (N,), not {points.shape} and {sizes.shape}"
@@ -252,10 +265,9 @@ def from_arrays(
     return import_(file, container=scene, box=box, periodic=periodic, progress=False)
 
 
-def _whole(value: Any, name: str) -> Any:
-    if value is None:
-        return None
-    number = _toml.plain(value)
-    if not isinstance(number, int) or isinstance(number, bool) or not 0 <= number < 2**63:
-        raise _errors.InputError("bad_argument", f"{name} is a whole number of at least 0, not {value!r}")
-    return number
+def _threads(threads: Any) -> int:
+    return _toml.whole(threads, "threads", _toml.INT)
+
+
+def _rods(rods: Any) -> int:
+    return _toml.whole(rods, "rods", _toml.INT)

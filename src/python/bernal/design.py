@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from . import _classes, _core, _records
+from . import _classes, _core, _records, _toml
 from ._classes import Sizes
 from ._errors import InputError
 from ._jobs import finish
 from ._progress import Progress
 from ._records import Prediction
-from ._work import scene_of_sizes
+from ._work import _rods, scene_of_sizes
 
 __all__ = ["maximise", "target", "best", "density", "relative_viscosity"]
 
@@ -31,7 +31,7 @@ def maximise(populations: Iterable[float | Sizes], *, rods: int = 16000, progres
     is: of `starts` searches `agreeing` ended within 0.00001 of the best, the worst `spread` below it.
     """
     parts = [*populations]
-    answer = _answer(finish(_core.maximise([scene_of_sizes(part) for part in parts], rods), progress))
+    answer = _answer(finish(_core.maximise([scene_of_sizes(part) for part in parts], _rods(rods)), progress))
     mixed = [(part, round(share, 6)) for part, share in zip(parts, answer.shares) if round(share, 6) > 0]
     answer["diameters"] = _mixture([part for part, _ in mixed], [share for _, share in mixed])
     return answer
@@ -53,10 +53,11 @@ def target(
     Returns found, parameter, diameters, phi, error, rods; where nothing is found, `reachable` says what the family
     reaches, from the least to the most, and the sizes are those that come nearest.
     """
-    if not 0 < phi < 1:
+    if not 0 < (phi := _toml.number(phi, "phi")) < 1:
         raise InputError("bad_argument", f"a packing fraction lies between 0 and 1, not at {phi}")
     member = family if family is not None else lambda sigma: _classes.CLASSES["Lognormal"](1, sigma, basis="volume")
-    job = _core.target(lambda number: scene_of_sizes(member(number)), narrow, wide, phi, rods)
+    ends = _toml.number(narrow, "narrow"), _toml.number(wide, "wide")
+    job = _core.target(lambda number: scene_of_sizes(member(number)), *ends, phi, _rods(rods))
     answer = _answer(finish(job, progress))
     answer["diameters"] = member(answer.parameter)
     return answer
@@ -66,7 +67,8 @@ def best(
     smallest: float, largest: float, count: int = 3, *, rods: int = 16000, progress: Progress = None
 ) -> Prediction:
     """The `count` diameters between two, both among them, that pack densest, and their shares of the volume."""
-    answer = _answer(finish(_core.densest_sizes(smallest, largest, count, rods), progress))
+    count = _toml.whole(count, "count", _toml.INT)
+    answer = _answer(finish(_core.densest_sizes(_size(smallest), _size(largest), count, _rods(rods)), progress))
     values = [2 * radius for radius in answer.pop("radii")]
     pairs = [(value, share) for value, share in zip(values, answer.shares) if share > 0]
     answer["values"] = values
@@ -79,7 +81,8 @@ def density(
 ) -> Prediction:
     """The density between two diameters that packs densest, by volume and in 2, 4, 8, 16, 32 or 64 bins on a
     logarithmic axis; as a sieve curve. `levels` says what fewer bins reach, `power_law_phi` the best power law."""
-    answer = _answer(finish(_core.densest_density(smallest, largest, bins, rods), progress))
+    bins = _toml.whole(bins, "bins", _toml.INT)
+    answer = _answer(finish(_core.densest_density(_size(smallest), _size(largest), bins, _rods(rods)), progress))
     edges, passing = [2 * radius for radius in answer.pop("radii")], [0.0]
     for share in answer.shares:
         passing.append(min(passing[-1] + 100 * share, 100.0))
@@ -90,7 +93,11 @@ def density(
 def relative_viscosity(solids: float, phi: float, intrinsic: float = 2.5) -> float:
     """Viscosity of a suspension with the volume fraction `solids` of spheres that pack to `phi`, over that of its
     liquid (Krieger and Dougherty)."""
-    return float(_core.relative_viscosity(solids, phi, intrinsic))
+    return float(_core.relative_viscosity(*(_toml.number(each, "a fraction") for each in (solids, phi, intrinsic))))
+
+
+def _size(value: float) -> float:
+    return _toml.number(value, "a diameter")
 
 
 def _mixture(parts: list[Any], shares: list[float]) -> Sizes:
