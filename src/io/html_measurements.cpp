@@ -63,15 +63,15 @@ void write_size_correlation(Page& page, const SizeCorrelation& correlation) {
       "itself, for what touches is as far apart as its sizes say, and that of neighbours is somewhat below "
       "0: hold these against another packing of the same sizes. The band, and errors, are those of sizes put "
       "on the places by chance.</p>\n<div class=\"wide\"><table>\n");
-  const auto row = [&](const std::string& of, double c, double error) {
-    page.row(of, fmt::format("{:+.4f} ± {:.4f}", c, error), "");
+  const auto row = [&](const std::string& of, double c, double error, const std::string& what) {
+    page.row(of, fmt::format("{:+.4f} ± {:.4f}", c, error), what);
   };
   if (correlation.neighbours)
-    row(fmt::format("neighbours, nearer than {:g} times the sum of the radii", 1 + BondOrder::widest_gap),
-        correlation.neighbours->correlation, correlation.neighbours->error);
+    row("neighbours", correlation.neighbours->correlation, correlation.neighbours->error,
+        fmt::format("nearer than {:g} times the sum of the radii", 1 + BondOrder::widest_gap));
   for (const auto& [from, to] : size_correlation_ranges)
     if (const auto mean = correlation.mean_between(from, to))
-      row(fmt::format("{:g} to {:g} mean diameters apart", from, to), mean->c, mean->error);
+      row(fmt::format("{:g} to {:g}", from, to), mean->c, mean->error, "mean diameters apart");
   page.raw("</table></div></div></div>\n");
 }
 
