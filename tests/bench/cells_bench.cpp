@@ -2,6 +2,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/random.hpp"

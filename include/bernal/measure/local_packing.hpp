@@ -62,6 +62,9 @@ struct LocalPackingOptions {
 /// container's volume within 1e-3. What of a container lies behind a thin wall belongs to the sphere of the
 /// least power all the same.
 ///
+/// Cost in one thread: about 20 µs a sphere from 10^4 to 10^6 of them in periodic boxes, 60 µs at 10^4 and 50
+/// at 10^5 between round walls, 30 and 20 in a mesh of 1,000 triangles; memory 240 MB for 10^6 spheres.
+///
 /// The same bits for any number of threads. `made`: see `local_container`. Throws Cancelled, see
 /// core/monitor.hpp, where an interrupt asks for that.
 /// Source: Gellatly & Finney, J. Non-Cryst. Solids 50 (1982) 313.
