@@ -22,9 +22,10 @@ inline double least_overlap(const Relax& options, double allowed) {
 }
 
 /// Sweeps of a cycle, at the pace for spheres of that largest overlap ratio. Returns what the last of them
-/// met, or nothing where cancelled.
+/// met, or nothing where cancelled; `each`: that tells about each sphere too.
 template <int D, class Engine>
-std::optional<double> sweep_cycle(Engine& packing, int sweeps, double molr, const Monitor& monitor) {
+std::optional<double> sweep_cycle(Engine& packing, int sweeps, double molr, const Monitor& monitor,
+                                  bool each = false) {
   const Pace pace = pace_for(molr);
   packing.wear_lists(pace.wear);
   const float omega = pace.omega * D / 3;
@@ -32,7 +33,7 @@ std::optional<double> sweep_cycle(Engine& packing, int sweeps, double molr, cons
     packing.sweep(omega);
     if (monitor.stop()) return std::nullopt;
   }
-  return packing.sweep_and_measure(omega);
+  return each ? packing.sweep_and_measure(omega) : packing.sweep_to_overlap(omega);
 }
 
 struct GrowingBox {

@@ -36,6 +36,7 @@ class NeighborRelaxation {
   void sweep(float omega) { sweep_and_measure(omega); }
   /// The same; returns the largest overlap ratio that was met.
   double sweep_and_measure(float omega);
+  double sweep_to_overlap(float omega) { return sweep_and_measure(omega); }
   /// Of each sphere the sum of its squared overlap ratios, as the last measuring sweep met them.
   std::vector<float> squeeze() const { return by_id(squeeze_); }
   /// Of each sphere the sum of the forces on it, as `SoftPacking::forces`.

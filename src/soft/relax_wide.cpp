@@ -96,7 +96,7 @@ StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, co
   StageEnd end = StageEnd::converged;
   double largest = 1, mean = std::numeric_limits<double>::infinity();
   for (int cycle = 0; cycle < most_cycles_of_kind; ++cycle) {
-    const std::optional<double> met = sweep_cycle<D>(packing, sweeps, largest, work.monitor);
+    const std::optional<double> met = sweep_cycle<D>(packing, sweeps, largest, work.monitor, true);
     if (!met) end = StageEnd::cancelled;
     if (!met) break;
     largest = *met;

@@ -37,6 +37,9 @@ class SoftEngine {
   double sweep_and_measure(float omega) {
     return std::visit([&](auto& engine) { return engine.sweep_and_measure(omega); }, engine_);
   }
+  double sweep_to_overlap(float omega) {
+    return std::visit([&](auto& engine) { return engine.sweep_to_overlap(omega); }, engine_);
+  }
   std::vector<float> squeeze() const {
     return std::visit([](const auto& engine) { return engine.squeeze(); }, engine_);
   }

@@ -33,23 +33,44 @@ inline constexpr std::size_t lanes = 16;
 class SoftWalls;
 
 /// The neighbours of `lanes` spheres: `rows` rows of one place for each of them.
+template <class Index>
 struct NeighborRows {
-  const std::uint32_t* first;
+  const Index* first;
   std::uint32_t rows;
 };
 
-/// What a sweep works on. Sphere g * lanes + l is lane l of group g.
+/// What a sweep works on. Sphere (g - first_group) * lanes + l is lane l of group g.
 struct SweepTask {
   SoftSphere* spheres;
-  const NeighborRows* groups;
+  std::size_t first_group;
   std::array<float, 3> scale;  ///< edge / 2^32 on each axis
   float omega;       ///< over-relaxation: the step is min(omega / contacts, 1) times the sum of overlaps
   SoftWalls* walls;  ///< of a container; null in a periodic box
-  float* squeeze;    ///< receives, of each sphere, the sum of its squared overlap ratios; null: not measured
-  float* force;      ///< receives, with `squeeze`, r Σ w (ri + rj - d) of each sphere
+  bool measure;      ///< the largest overlap ratio, and what has to be filled of these:
+  float* squeeze;  ///< receives, of lane l of group g at g * lanes + l, the sum of its squared overlap ratios
+  float* force;    ///< receives, with `squeeze`, r Σ w (ri + rj - d); both are null where nobody asks
 };
 
-/// One level of the background grid: spheres with radii in (largest / 2, largest], sorted by cell.
+/// A part of the box, cut out of it along some axes, in units of the coordinates of spheres; or all of it.
+struct SoftRegion {
+  static constexpr std::uint64_t all_round = std::uint64_t{1} << 32;
+  std::array<std::uint32_t, 3> origin{};
+  std::array<std::uint64_t, 3> extent{all_round, all_round, all_round};
+
+  bool wraps(std::size_t k) const { return extent[k] == all_round; }
+  /// From the origin, going round the box.
+  std::uint32_t offset(const SoftSphere& s, std::size_t k) const {
+    return static_cast<std::uint32_t>(s.x[k]) - origin[k];
+  }
+  /// The one of so many equal parts of an axis that the sphere's centre is in: the last for what is beyond.
+  int part(const SoftSphere& s, std::size_t k, int parts) const {
+    const double at = offset(s, k) * (parts / static_cast<double>(extent[k]));
+    return at < parts ? static_cast<int>(at) : parts - 1;
+  }
+};
+
+/// One level of the background grid of a region: spheres with radii in (largest / 2, largest], sorted by
+/// cell.
 struct SoftLevel {
   float largest;
   std::array<int, 3> cells;
@@ -58,13 +79,16 @@ struct SoftLevel {
 };
 
 struct SearchTask {
+  SoftRegion region;  ///< around all that may be searched for; the cells of a level share it equally
   std::array<double, 3> edges;
   std::array<float, 3> scale;
   float skin;  ///< spheres are neighbours where the gap between them is below twice this
   std::span<const SoftLevel> levels;
-  const std::uint32_t* start;   ///< of each cell in `sorted`; one more than there are cells
-  const SoftSphere* sorted;     ///< by level and cell; followed by `lanes` more that are read but not used
-  const std::uint32_t* places;  ///< of the sorted spheres in the sweep order; padded as they are
+  const std::uint32_t* start;  ///< of each cell in what follows; one more than there are cells
+  /// Spheres by level and cell; followed by `lanes` more that are read but not used.
+  const std::int32_t *x, *y, *z;
+  const float* r;
+  const std::uint32_t* places;  ///< of these in the sweep order
 };
 
 /// The inner loops of the fast relaxation, compiled for several instruction sets. All do the same operations
@@ -77,9 +101,14 @@ struct SoftKernels {
   /// and n = Σ w: of a pair the larger one gives way less, so that a large sphere among many small ones is
   /// moved by its large neighbours (Zhao, Li & Liu 2007, equations 3 and 4, for omega = 1 and equal radii). A
   /// wall counts as a neighbour with w = 1. Precondition: no two spheres of a group are neighbours. Cost:
-  /// about 1 ns a neighbour. Where there is a `squeeze` to fill, returns the largest overlap ratio
-  /// (ri + rj - d) / (ri + rj) that was met.
-  float (*sweep)(const SweepTask&, std::size_t begin, std::size_t end);
+  /// about 1 ns a neighbour. `groups` begins with
+  /// group `first_group`. Where it is to measure, returns the largest overlap ratio (ri + rj - d) / (ri + rj)
+  /// that was met.
+  template <class Index>
+  using Sweep = float (*)(const SweepTask&, const NeighborRows<Index>* groups, std::size_t begin,
+                          std::size_t end);
+  Sweep<std::uint32_t> sweep;
+  Sweep<std::uint16_t> sweep_short;  ///< where there are no more than 2^16 places
   /// Writes the places of all neighbours of a sphere but itself, `self`, to `out` and returns their end; up
   /// to `lanes` more entries are scribbled over. Cost: about 10 ns a row of three cells.
   std::uint32_t* (*search)(const SearchTask&, const SoftSphere&, std::uint32_t self, std::uint32_t* out);

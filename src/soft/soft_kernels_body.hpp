@@ -143,19 +143,21 @@ BERNAL_INLINE Floats numbers_at(const std::array<float, lanes>& of, std::size_t 
   return *reinterpret_cast<const UnalignedFloats*>(of.data() + first);
 }
 
-template <bool measure>
-float sweep_groups(const SweepTask& task, std::size_t begin, std::size_t end) {
+template <bool measure, class Index>
+float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std::size_t begin,
+                   std::size_t end) {
   const Floats scale_x = all(task.scale[0]), scale_y = all(task.scale[1]), scale_z = all(task.scale[2]);
   const Floats inverse_x = 1 / scale_x, inverse_y = 1 / scale_y, inverse_z = 1 / scale_z;
   Floats worst{};
   WallPush at_wall;
   for (std::size_t g = begin; g < end; ++g) {
     const bool near_wall = task.walls && task.walls->near(g);
-    if (near_wall) task.walls->push(g, task.spheres + lanes * g, at_wall);
-    const std::uint32_t* const rows = task.groups[g].first;
-    const std::uint32_t* const rows_end = rows + lanes * task.groups[g].rows;
+    SoftSphere* const group = task.spheres + lanes * (g - task.first_group);
+    if (near_wall) task.walls->push(g, group, at_wall);
+    const Index* const rows = groups[g - task.first_group].first;
+    const Index* const rows_end = rows + lanes * groups[g - task.first_group].rows;
     for (std::size_t first = 0; first < lanes; first += width) {
-      SoftSphere* const mine = task.spheres + lanes * g + first;
+      SoftSphere* const mine = group + first;
       const Columns me = load([&](int k) BERNAL_INLINE_LAMBDA { return mine + k; });
       Floats sum_x{}, sum_y{}, sum_z{}, contacts{}, squares{}, force{};
       if (near_wall) {
@@ -170,7 +172,7 @@ float sweep_groups(const SweepTask& task, std::size_t begin, std::size_t end) {
           worst = ratio > worst ? ratio : worst;
         }
       }
-      for (const std::uint32_t* places = rows + first; places < rows_end; places += lanes) {
+      for (const Index* places = rows + first; places < rows_end; places += lanes) {
         const Columns it = load([&](int k) BERNAL_INLINE_LAMBDA { return task.spheres + places[k]; });
         const Floats dx = to_floats(wrapped_difference(me.x, it.x)) * scale_x;
         const Floats dy = to_floats(wrapped_difference(me.y, it.y)) * scale_y;
@@ -197,30 +199,37 @@ float sweep_groups(const SweepTask& task, std::size_t begin, std::size_t end) {
                    wrapped_sum(me.y, to_ints(sum_y * step * inverse_y)),
                    wrapped_sum(me.z, to_ints(sum_z * step * inverse_z)), me.r});
       if constexpr (measure) {
-        *reinterpret_cast<UnalignedFloats*>(task.squeeze + lanes * g + first) = squares;
-        *reinterpret_cast<UnalignedFloats*>(task.force + lanes * g + first) = force * me.r;
+        if (task.squeeze) {
+          *reinterpret_cast<UnalignedFloats*>(task.squeeze + lanes * g + first) = squares;
+          *reinterpret_cast<UnalignedFloats*>(task.force + lanes * g + first) = force * me.r;
+        }
       }
     }
-    if (near_wall) task.walls->guard(g, at_wall, task.spheres + lanes * g);
+    if (near_wall) task.walls->guard(g, at_wall, group);
   }
   float largest = 0;
   for (int l = 0; l < width; ++l) largest = worst[l] > largest ? worst[l] : largest;
   return largest;
 }
 
-inline float sweep(const SweepTask& task, std::size_t begin, std::size_t end) {
-  return task.squeeze ? sweep_groups<true>(task, begin, end) : sweep_groups<false>(task, begin, end);
+template <class Index>
+float sweep(const SweepTask& task, const NeighborRows<Index>* groups, std::size_t begin, std::size_t end) {
+  return task.measure ? sweep_groups<true>(task, groups, begin, end)
+                      : sweep_groups<false>(task, groups, begin, end);
 }
 
 /// The cells of a level, on one axis, that a cube around a point may meet: `count` of them from `first` on,
-/// going round.
+/// going round where the region does.
 struct Cells {
   int first, count;
 };
 
-inline Cells cells_near(std::int32_t x, double reach, int cells) {
-  const double at = static_cast<std::uint32_t>(x) * 0x1p-32 * cells;
+inline Cells cells_near(double at, double reach, int cells, bool wraps) {
   const double first = std::floor(at - reach), last = std::floor(at + reach);
+  if (!wraps) {
+    const int low = first > 0 ? static_cast<int>(first) : 0;
+    return {low, (last < cells ? static_cast<int>(last) + 1 : cells) - low};
+  }
   if (last - first + 1 >= cells) return {0, cells};
   return {static_cast<int>(first) + (first < 0 ? cells : 0), static_cast<int>(last - first) + 1};
 }
@@ -232,15 +241,17 @@ inline std::uint32_t* search(const SearchTask& task, const SoftSphere& me, std::
   Ints lane;
   for (int l = 0; l < width; ++l) lane[l] = l;
 
+  const auto ints_at = [](const std::int32_t* from) BERNAL_INLINE_LAMBDA {
+    return Ints(*reinterpret_cast<const UnalignedInts*>(from));
+  };
   const auto search_run = [&](std::size_t first_cell, std::size_t end_cell) BERNAL_INLINE_LAMBDA {
     const std::uint32_t end = task.start[end_cell];
     for (std::uint32_t p = task.start[first_cell]; p < end; p += lanes) {
       for (std::uint32_t q = p; q < p + lanes; q += width) {  // a fixed number: no branch to mispredict
-        const Columns it = load([&](int k) BERNAL_INLINE_LAMBDA { return task.sorted + q + k; });
-        const Floats dx = to_floats(wrapped_difference(Ints{} + me.x[0], it.x)) * scale_x;
-        const Floats dy = to_floats(wrapped_difference(Ints{} + me.x[1], it.y)) * scale_y;
-        const Floats dz = to_floats(wrapped_difference(Ints{} + me.x[2], it.z)) * scale_z;
-        const Floats reach = it.r + blown_up;
+        const Floats dx = to_floats(wrapped_difference(Ints{} + me.x[0], ints_at(task.x + q))) * scale_x;
+        const Floats dy = to_floats(wrapped_difference(Ints{} + me.x[1], ints_at(task.y + q))) * scale_y;
+        const Floats dz = to_floats(wrapped_difference(Ints{} + me.x[2], ints_at(task.z + q))) * scale_z;
+        const Floats reach = Floats(*reinterpret_cast<const UnalignedFloats*>(task.r + q)) + blown_up;
         const Ints places = *reinterpret_cast<const UnalignedInts*>(task.places + q);
         const Ints near = ((dx * dx + dy * dy) + dz * dz < reach * reach) &
                           (lane < static_cast<int>(end) - static_cast<int>(q)) &
@@ -253,13 +264,16 @@ inline std::uint32_t* search(const SearchTask& task, const SoftSphere& me, std::
   for (const SoftLevel& level : task.levels) {
     if (level.spheres == 0) continue;
     Cells near[3];
-    for (int k = 0; k < 3; ++k)
-      near[k] =
-          cells_near(me.x[k], (blown_up + level.largest) / task.edges[k] * level.cells[k], level.cells[k]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double cells_a_unit = level.cells[k] / static_cast<double>(task.region.extent[k]);
+      const double units = (blown_up + level.largest) / task.edges[k] * 0x1p32;
+      near[k] = cells_near(task.region.offset(me, k) * cells_a_unit, units * cells_a_unit, level.cells[k],
+                           task.region.wraps(k));
+    }
     for (int a = 0; a < near[2].count; ++a) {
-      const int z = (near[2].first + a) % level.cells[2];
+      const int z = near[2].first + a - (near[2].first + a < level.cells[2] ? 0 : level.cells[2]);
       for (int b = 0; b < near[1].count; ++b) {
-        const int y = (near[1].first + b) % level.cells[1];
+        const int y = near[1].first + b - (near[1].first + b < level.cells[1] ? 0 : level.cells[1]);
         const std::size_t row =
             level.first_cell + (static_cast<std::size_t>(z) * level.cells[1] + y) * level.cells[0];
         const int beyond = near[0].first + near[0].count - level.cells[0];  // goes round the box

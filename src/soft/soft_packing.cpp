@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/large_pages.hpp"
+#include "core/parallel.hpp"
 #include "soft/fixed_point_grid.hpp"
 
 namespace bernal {
@@ -40,7 +42,7 @@ std::vector<float> as_floats(const std::vector<double>& values, double factor = 
 
 Pace pace_for(double largest_overlap) {
   constexpr double crowded = 0.06;
-  return largest_overlap > crowded ? Pace{5.4f, 1.6} : Pace{5, 0.9};
+  return largest_overlap > crowded ? Pace{5.6f, 2} : Pace{5, 0.9};
 }
 
 SoftPacking::SoftPacking(const std::vector<double>& radii, double most, int dimension,
@@ -48,8 +50,11 @@ SoftPacking::SoftPacking(const std::vector<double>& radii, double most, int dime
     : kernels_(kernels),
       count_(radii.size()),
       dimension_(dimension),
-      lists_(as_floats(radii, most), static_cast<float>(skin_for(radii)), kernels, by_octaves),
-      thickest_skin_(lists_.skin()),
+      sizes_(as_floats(radii, most)),
+      skin_(static_cast<float>(skin_for(radii))),
+      thickest_skin_(skin_),
+      lists_(kernels, by_octaves),
+      by_octaves_(by_octaves),
       spheres_(radii.size(), SoftSphere{}),
       sites_(radii.size()),
       id_of_site_(radii.size()),
@@ -94,37 +99,34 @@ double SoftPacking::smallest_edge(const std::vector<double>& radii) {
   return 4.001 * (std::ranges::max(radii) + skin_for(radii));
 }
 
-double SoftPacking::move_all(float omega, bool measure) {
-  if (measure) patience_ = 0;  // what is measured is measured on lists that are known to be good
+float SoftPacking::move_all(float omega, bool measure, bool each) {
   keep_lists_valid();
-  if (measure) {
+  if (each) {
     squeeze_.assign(spheres_.size(), 0);
     force_.assign(spheres_.size(), 0);
   }
-  const SweepTask task{spheres_.data(),
-                       lists_.groups(),
-                       scale_of(edges_),
-                       omega,
-                       walls_.get(),
-                       measure ? squeeze_.data() : nullptr,
-                       measure ? force_.data() : nullptr};
-  const bool in_one_thread = count_ < worth_threads;
-  if (walls_ && in_one_thread) walls_->push_ahead(spheres_);
-  std::vector<float> largest(spheres_.size() / lanes + 1, 0.0f);
-  for (const std::vector<Chain>& chains : lists_.phases()) {
-    const auto sweep = [&](std::size_t c) {
-      largest[chains[c].first] = kernels_.sweep(task, chains[c].first, chains[c].last);
-    };
-    if (in_one_thread || chains.size() == 1) {
-      for (std::size_t c = 0; c < chains.size(); ++c) sweep(c);
-    } else {
-      tbb::parallel_for(std::size_t{0}, chains.size(), sweep);
-    }
-  }
+  const SweepTask task{.spheres = spheres_.data(),
+                       .first_group = 0,
+                       .scale = scale_of(edges_),
+                       .omega = omega,
+                       .walls = walls_.get(),
+                       .measure = measure,
+                       .squeeze = each ? squeeze_.data() : nullptr,
+                       .force = each ? force_.data() : nullptr};
   ++sweeps_;
-  const float near = *std::ranges::max_element(largest);
+  if (in_blocks_) return blocks_->sweep(task);
+  const bool in_threads = count_ >= worth_threads;
+  if (walls_ && !in_threads) walls_->push_ahead(spheres_);
+  const float near = lists_.sweep(task, in_threads);
   if (far_images_.empty()) return near;
   return std::max(near, far_images_.push(spheres_, edges_, omega, task.squeeze, task.force));
+}
+
+void SoftPacking::sweep(float omega) { move_all(omega, false, false); }
+
+double SoftPacking::measure(float omega, bool each) {
+  patience_ = 0;  // what is measured is measured on lists that are known to be good
+  return move_all(omega, true, each);
 }
 
 void SoftPacking::grow(double factor) {
@@ -200,18 +202,28 @@ double SoftPacking::largest_move() const {
       [](float a, float b) { return std::max(a, b); }));
 }
 
+void SoftPacking::remember_places() {
+  if (built_at_.size() != spheres_.size()) reserve_anew(built_at_, spheres_.size());
+  built_at_.resize(spheres_.size());
+  parallel_ranges(spheres_.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
+    std::copy(spheres_.begin() + static_cast<std::ptrdiff_t>(first),
+              spheres_.begin() + static_cast<std::ptrdiff_t>(last),
+              built_at_.begin() + static_cast<std::ptrdiff_t>(first));
+  });
+}
+
 /// Looks at what has moved only as often as the speed of the last sweeps suggests. A pair that is missed for
 /// a sweep overlaps for so much longer, no more.
 /// Where lists last long, shorter ones that do not last so long cost less.
 void SoftPacking::choose_skin() {
-  const float skin = lists_.skin();
-  if (age_ > long_life) lists_.set_skin(std::max(thinnest * thickest_skin_, 0.5f * skin));
-  if (age_ < short_life) lists_.set_skin(std::min(thickest_skin_, 2 * skin));
+  const float skin = skin_;
+  if (age_ > long_life) skin_ = std::max(thinnest * thickest_skin_, 0.5f * skin);
+  if (age_ < short_life) skin_ = std::min(thickest_skin_, 2 * skin);
 }
 
 void SoftPacking::keep_lists_valid() {
   if (!stale_ && sweeps_ < patience_) return;
-  const double limit = wear_ * lists_.skin();
+  const double limit = wear_ * skin_;
   double moved = 0;
   if (lists_built_.calls > 0) moved = largest_move() + grown_;
   // Nothing is known before the first sweep, when the spheres are at their fastest.
@@ -220,12 +232,17 @@ void SoftPacking::keep_lists_valid() {
     if (walls_ && lists_built_.calls > 0) walls_->stop_strays(spheres_, built_at_, sites_);
     const EffectTimer timer(lists_built_);
     choose_skin();
-    lists_.build(spheres_, sites_, edges_);
+    in_blocks_ = !by_octaves_ && SoftBlocks::suit(count_, edges_, sizes_, skin_);
+    if (in_blocks_) {
+      if (!blocks_) blocks_ = std::make_unique<SoftBlocks>(kernels_);
+      in_blocks_ = blocks_->build(spheres_, sites_, built_at_, count_, edges_, sizes_, skin_);
+    }
+    if (!in_blocks_) lists_.build(spheres_, sites_, edges_, sizes_, skin_);
     if (walls_)
-      walls_->build(spheres_, sites_, lists_.skin());
+      walls_->build(spheres_, sites_, skin_);
     else
-      far_images_.build(spheres_, edges_, dimension_, wear_ * lists_.skin());
-    built_at_ = spheres_;
+      far_images_.build(spheres_, edges_, dimension_, wear_ * skin_);
+    remember_places();
     grown_ = 0;
     age_ = 0;
     stale_ = false;

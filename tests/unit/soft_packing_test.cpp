@@ -119,35 +119,46 @@ TEST(SoftPacking, KeepsItsPlacesWhenTheBoxGrows) {
     EXPECT_LT((spheres.center(i) - 1.5 * crowd.spheres.center(i)).norm(), 1e-8 * edges.norm());
 }
 
+/// The spheres of a crowd as the engine has them.
+struct SoftCrowd {
+  std::vector<SoftSphere> spheres;
+  std::vector<std::uint32_t> ids;
+  std::array<double, 3> edges;
+  SoftSizes sizes;
+
+  explicit SoftCrowd(const Crowd<3>& crowd) {
+    for (int k = 0; k < 3; ++k) edges[static_cast<std::size_t>(k)] = crowd.edges[k];
+    std::vector<float> radii;
+    for (std::size_t i = 0; i < crowd.spheres.size(); ++i) {
+      SoftSphere s{};
+      for (std::size_t k = 0; k < 3; ++k)
+        s.x[k] = static_cast<std::int32_t>(
+            static_cast<std::uint32_t>(crowd.spheres.x[k][i] / edges[k] * 4294967295.0));
+      s.r = static_cast<float>(crowd.spheres.r[i]);
+      spheres.push_back(s);
+      ids.push_back(static_cast<std::uint32_t>(i));
+      radii.push_back(s.r);
+    }
+    sizes = SoftSizes(radii);
+  }
+};
+
 /// Builds lists from scratch and reads them back as pairs of the original numbers.
 std::multiset<std::pair<std::uint32_t, std::uint32_t>> listed_pairs(const Crowd<3>& crowd, float skin,
                                                                     const SoftKernels& kernels,
                                                                     bool by_octaves) {
-  std::vector<SoftSphere> spheres;
-  std::vector<std::uint32_t> ids;
-  std::vector<float> radii;
-  std::array<double, 3> edges;
-  for (int k = 0; k < 3; ++k) edges[static_cast<std::size_t>(k)] = crowd.edges[k];
-  for (std::size_t i = 0; i < crowd.spheres.size(); ++i) {
-    SoftSphere s{};
-    for (std::size_t k = 0; k < 3; ++k)
-      s.x[k] = static_cast<std::int32_t>(
-          static_cast<std::uint32_t>(crowd.spheres.x[k][i] / edges[k] * 4294967295.0));
-    s.r = static_cast<float>(crowd.spheres.r[i]);
-    spheres.push_back(s);
-    ids.push_back(static_cast<std::uint32_t>(i));
-    radii.push_back(s.r);
-  }
-  SoftLists lists(radii, skin, kernels, by_octaves);
-  lists.build(spheres, ids, edges);
+  SoftCrowd soft(crowd);
+  std::vector<std::uint32_t>& ids = soft.ids;
+  SoftLists lists(kernels, by_octaves);
+  lists.build(soft.spheres, ids, soft.edges, soft.sizes, skin);
   std::multiset<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  for (std::size_t g = 0; g + 1 < spheres.size() / lanes + 1; ++g) {
+  for (std::size_t g = 0; g < soft.spheres.size() / lanes; ++g) {
     std::set<std::uint32_t> group;
     for (std::size_t l = 0; l < lanes; ++l) group.insert(ids[g * lanes + l]);
-    const NeighborRows& rows = lists.groups()[g];
+    const NeighborRows<std::uint32_t>& rows = lists.groups()[g];
     for (std::size_t e = 0; e < lanes * rows.rows; ++e) {
       const std::uint32_t i = ids[g * lanes + e % lanes], j = ids[rows.first[e]];
-      if (j == 0xFFFFFFFF) continue;
+      if (j == nobody) continue;
       EXPECT_FALSE(group.contains(j)) << "neighbours are moved together";
       pairs.insert({i, j});
     }
@@ -182,6 +193,102 @@ TEST(SoftLists, HoldEveryNeighbourOnce) {
       EXPECT_LE(listed.size(), surely + 20);
     }
   }
+}
+
+/// Of each sphere the sum of its squared overlap ratios.
+std::vector<double> squeezes(const Crowd<3>& crowd) {
+  const Boundary<3> boundary{crowd.edges};
+  std::vector<double> sums(crowd.spheres.size(), 0.0);
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const double reach = crowd.spheres.r[i] + crowd.spheres.r[j];
+      const double d = boundary.minimum_image(crowd.spheres.center(i) - crowd.spheres.center(j)).norm();
+      if (!(d < reach)) continue;
+      sums[i] += std::pow(1 - d / reach, 2);
+      sums[j] += std::pow(1 - d / reach, 2);
+    }
+  return sums;
+}
+
+/// Spheres in blocks of about so many, swept so often.
+struct BlockSweeps {
+  SoftCrowd soft;
+  std::vector<float> squeeze, force;  // by place
+  bool fits;
+
+  BlockSweeps(const Crowd<3>& crowd, double size, float step, int sweeps, const SoftKernels& kernels)
+      : soft(crowd) {
+    std::vector<SoftSphere> spare;
+    SoftBlocks blocks(kernels, size);
+    fits = blocks.build(soft.spheres, soft.ids, spare, crowd.spheres.size(), soft.edges, soft.sizes, 0.1f);
+    squeeze.resize(soft.spheres.size());
+    force.resize(soft.spheres.size());
+    for (int k = 0; k < sweeps && fits; ++k)
+      blocks.sweep({.spheres = soft.spheres.data(),
+                    .first_group = 0,
+                    .scale = scale_of(soft.edges),
+                    .omega = step,
+                    .walls = nullptr,
+                    .measure = true,
+                    .squeeze = squeeze.data(),
+                    .force = force.data()});
+  }
+
+  std::vector<std::array<std::int32_t, 3>> places() const {
+    std::vector<std::array<std::int32_t, 3>> by_id(soft.ids.size());
+    for (std::size_t p = 0; p < soft.ids.size(); ++p)
+      if (soft.ids[p] != nobody)
+        by_id[soft.ids[p]] = {soft.spheres[p].x[0], soft.spheres[p].x[1], soft.spheres[p].x[2]};
+    return by_id;
+  }
+};
+
+TEST(SoftBlocks, KnowEveryOverlap) {
+  const Crowd<3> slab(4000, 0.8, {4, 4, 0.3}, 0.9, 1.1);  // one block thick
+  for (const Crowd<3>& crowd : {equal_crowd(4000), mixed_crowd(6000), slab}) {
+    const std::vector<double> expected = squeezes(crowd);
+    for (const double size : {100, 700}) {
+      const BlockSweeps swept(crowd, size, 0, 1, soft_kernels().front());
+      ASSERT_TRUE(swept.fits);
+      std::size_t found = 0;
+      for (std::size_t p = 0; p < swept.soft.ids.size(); ++p) {
+        if (swept.soft.ids[p] == nobody) continue;
+        const double sum = expected[swept.soft.ids[p]];
+        EXPECT_NEAR(swept.squeeze[p], sum, 2e-5 * (1 + sum));
+        ++found;
+      }
+      EXPECT_EQ(found, crowd.spheres.size());
+    }
+  }
+}
+
+TEST(SoftBlocks, AreTheSameForAnyThreadsAndInstructions) {
+  const Crowd<3> crowd = mixed_crowd(5000);
+  const auto with_threads = [&](std::size_t n, const SoftKernels& kernels) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
+    return BlockSweeps(crowd, 100, omega, 5, kernels).places();
+  };
+  const auto one = with_threads(1, soft_kernels().back());
+  for (const SoftKernels& kernels : soft_kernels()) EXPECT_EQ(with_threads(4, kernels), one) << kernels.name;
+}
+
+TEST(SoftBlocks, SayWhereOneHoldsTooMany) {
+  const Crowd<3> crowd = equal_crowd(70000);
+  const BlockSweeps swept(crowd, 1e6, 0, 1, soft_kernels().front());
+  EXPECT_FALSE(swept.fits);
+  const std::set<std::uint32_t> ids(swept.soft.ids.begin(), swept.soft.ids.end());
+  EXPECT_EQ(ids.size(), crowd.spheres.size() + 1) << "all are still there, and the gaps";
+}
+
+TEST(SoftBlocks, SuitManySpheresInAWideBox) {
+  const auto suits = [](const Vector<3>& edges, std::size_t n, double r) {
+    return SoftBlocks::suit(n, {edges[0], edges[1], edges[2]},
+                            SoftSizes(std::vector<float>(n, static_cast<float>(r))), 0.1f);
+  };
+  EXPECT_TRUE(suits({200, 200, 200}, 1000000, 1));
+  EXPECT_FALSE(suits({60, 60, 60}, 30000, 1));      // fit into a cache
+  EXPECT_TRUE(suits({1e6, 3, 3}, 1000000, 1));      // a line is cut along one axis
+  EXPECT_TRUE(suits({2000, 2000, 3}, 1000000, 1));  // a sheet is cut along two axes
 }
 
 }  // namespace soft_packing_test

@@ -1,0 +1,322 @@
+#include "soft/soft_blocks.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/large_pages.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr SoftSphere no_sphere = {{0, 0, 0}, std::numeric_limits<float>::quiet_NaN()};
+/// What spheres fill of a block that is full.
+constexpr double full = 0.64;
+/// With fewer blocks there are too few of a colour for several threads, and the last levels of cache hold
+/// all.
+constexpr double fewest_blocks = 48;
+/// Of the width of halos. From one on halos are only in blocks that touch; a narrow one has many more spheres
+/// in its halo than of its own.
+constexpr double narrowest_block = 2;
+/// Empty ones cost time too.
+constexpr double most_blocks_a_sphere = 1.0 / 64;
+/// For sorting: the same for any number of threads.
+constexpr std::size_t parts_of_sorting = 64;
+constexpr std::size_t directions = 27, here = 13;
+
+/// Along each axis: an even number, or one.
+std::array<int, 3> blocks_across(double size, std::size_t spheres, const std::array<double, 3>& edges,
+                                 const SoftSizes& sizes, float skin) {
+  const double volume = size * sizes.volume_a_sphere / full;
+  const double least = narrowest_block * 2.0 * (sizes.largest + skin);
+  double edge = std::max(std::cbrt(volume), least);
+  std::array<int, 3> across{};
+  for (;; edge *= 1.2) {
+    double count = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int most = static_cast<int>(std::min(edges[k] / least, 1e4)) & ~1;
+      across[k] = std::min(most, 2 * static_cast<int>(std::min(std::round(edges[k] / (2 * edge)), 5e3)));
+      if (across[k] < 2) across[k] = 1;
+      count *= across[k];
+    }
+    if (count <= most_blocks_a_sphere * static_cast<double>(spheres) || count == 1) return across;
+  }
+}
+
+template <class Body>
+void in_parallel(std::size_t n, const Body& body) {
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, n, 1),
+      [&](const auto& range) {
+        for (std::size_t k = range.begin(); k < range.end(); ++k) body(k);
+      },
+      tbb::simple_partitioner());
+}
+
+}  // namespace
+
+bool SoftBlocks::suit(std::size_t spheres, const std::array<double, 3>& edges, const SoftSizes& sizes,
+                      float skin) {
+  const std::array<int, 3> across = blocks_across(usual_size, spheres, edges, sizes, skin);
+  const double full_blocks = static_cast<double>(spheres) / usual_size;
+  return std::min(full_blocks, 1.0 * across[0] * across[1] * across[2]) >= fewest_blocks;
+}
+
+void SoftBlocks::cut(std::size_t spheres, const std::array<double, 3>& edges, const SoftSizes& sizes,
+                     float skin) {
+  edges_ = edges;
+  sizes_ = sizes;
+  skin_ = skin;
+  across_ = blocks_across(size_, spheres, edges, sizes, skin);
+  std::size_t count = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    count *= static_cast<std::size_t>(across_[k]);
+    const double width = 2.0 * (sizes.largest + skin) / edges[k] * 0x1p32;
+    halo_width_[k] = across_[k] > 1 ? static_cast<std::uint64_t>(std::ceil(1.0001 * width)) : 0;
+  }
+  blocks_.assign(count, Block{});
+  for (auto& colour : colours_) colour.clear();
+  for (std::size_t b = 0; b < count; ++b) {
+    const std::size_t nx = static_cast<std::size_t>(across_[0]), ny = static_cast<std::size_t>(across_[1]);
+    colours_[(b % nx & 1) | (b / nx % ny & 1) << 1 | (b / nx / ny & 1) << 2].push_back(
+        static_cast<std::uint32_t>(b));
+  }
+}
+
+/// Parts of the axes whose ends are the same to the unit for every sphere: n · (x / 2^32), rounded down, is
+/// the part that x is in.
+SoftRegion SoftBlocks::region_of(std::size_t block) const {
+  SoftRegion region;
+  for (std::size_t k = 0, b = block; k < 3; b /= static_cast<std::size_t>(across_[k++])) {
+    const auto n = static_cast<std::uint64_t>(across_[k]);
+    if (n == 1) continue;
+    const auto begin = [&](std::uint64_t i) { return ((i << 32) + n - 1) / n; };
+    const std::uint64_t i = b % n;
+    region.origin[k] = static_cast<std::uint32_t>(begin(i));
+    region.extent[k] = begin(i + 1) - begin(i);
+  }
+  return region;
+}
+
+/// Where the spheres of each block are, in their order; gaps are left out.
+void SoftBlocks::sort_into_blocks(const std::vector<SoftSphere>& spheres) {
+  const std::size_t n = blocks_.size();
+  const auto block_of = [&](const SoftSphere& s) {
+    std::size_t b = 0;
+    for (std::size_t k = 3; k-- > 0;)
+      b = b * static_cast<std::size_t>(across_[k]) +
+          (std::uint64_t{static_cast<std::uint32_t>(s.x[k])} * static_cast<std::uint64_t>(across_[k]) >> 32);
+    return b;
+  };
+  const auto part = [&](std::size_t c) { return spheres.size() * c / parts_of_sorting; };
+  std::vector<std::uint32_t> next(parts_of_sorting * n, 0);
+  in_parallel(parts_of_sorting, [&](std::size_t c) {
+    for (std::size_t p = part(c); p < part(c + 1); ++p)
+      if (spheres[p].r > 0) ++next[c * n + block_of(spheres[p])];
+  });
+  start_.assign(n + 1, 0);
+  std::size_t sum = 0;
+  for (std::size_t b = 0; b < n; ++b) {
+    start_[b] = sum;
+    for (std::size_t c = 0; c < parts_of_sorting; ++c) {
+      const std::uint32_t count = next[c * n + b];
+      next[c * n + b] = static_cast<std::uint32_t>(sum);
+      sum += count;
+    }
+  }
+  start_[n] = sum;
+  reserve_anew(order_, sum);
+  order_.resize(sum);
+  in_parallel(parts_of_sorting, [&](std::size_t c) {
+    for (std::size_t p = part(c); p < part(c + 1); ++p)
+      if (spheres[p].r > 0) order_[next[c * n + block_of(spheres[p])]++] = static_cast<std::uint32_t>(p);
+  });
+}
+
+bool SoftBlocks::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& ids,
+                       std::vector<SoftSphere>& spare, std::size_t count, const std::array<double, 3>& edges,
+                       const SoftSizes& sizes, float skin) {
+  cut(count, edges, sizes, skin);
+  rows_.clear();
+  halos_.clear();
+  groups_.clear();
+  sort_into_blocks(spheres);
+
+  std::vector<Draft> drafts(blocks_.size());
+  in_parallel(blocks_.size(), [&](std::size_t b) {
+    Scratch& mine = scratch_.local();
+    mine.spheres.clear();
+    for (std::size_t n = start_[b]; n < start_[b + 1]; ++n) mine.spheres.push_back(spheres[order_[n]]);
+    mine.order.find(mine.spheres, region_of(b), edges_, sizes_, skin_, false);
+    std::vector<std::uint32_t>& from = drafts[b].from;
+    from = mine.order.sphere_at();
+    for (std::uint32_t& i : from)
+      if (i != nobody) i = order_[start_[b] + i];
+    blocks_[b].places = from.size();
+  });
+  std::size_t places = 0;
+  bool few = true;
+  for (Block& block : blocks_) {
+    block.first_place = places;
+    places += block.places;
+    few = few && block.places < most_places;
+  }
+
+  reserve_anew(spare, places + 1);
+  reserve_anew(spare_ids_, places + 1);
+  spare.resize(places + 1);
+  spare_ids_.resize(places + 1);
+  in_parallel(blocks_.size(), [&](std::size_t b) {
+    std::vector<std::uint32_t>& from = drafts[b].from;
+    for (std::size_t q = 0; q < from.size(); ++q) {
+      const std::uint32_t p = from[q];
+      spare[blocks_[b].first_place + q] = p == nobody ? no_sphere : spheres[p];
+      spare_ids_[blocks_[b].first_place + q] = p == nobody ? nobody : ids[p];
+    }
+    std::vector<std::uint32_t>().swap(from);
+    if (few) find_exports(drafts[b], b, spare);
+  });
+  spare.back() = no_sphere;
+  spare_ids_.back() = nobody;
+  spheres.swap(spare);
+  ids.swap(spare_ids_);
+  if (!few) return false;
+
+  std::atomic<bool> fits = true;
+  in_parallel(blocks_.size(), [&](std::size_t b) {
+    if (!find_neighbors(b, drafts, spheres, scratch_.local())) fits = false;
+  });
+  return fits;
+}
+
+/// By direction: minus one, none or one along each axis, the first axis the fastest.
+void SoftBlocks::find_exports(Draft& draft, std::size_t block, const std::vector<SoftSphere>& spheres) const {
+  const SoftRegion region = region_of(block);
+  const Block& mine = blocks_[block];
+  std::array<std::vector<std::uint16_t>, directions> by_direction;
+  for (std::size_t q = 0; q < mine.places; ++q) {
+    const SoftSphere& s = spheres[mine.first_place + q];
+    if (!(s.r > 0)) continue;
+    std::array<int, 3> low{}, high{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (region.wraps(k)) continue;
+      const std::uint64_t at = region.offset(s, k);
+      low[k] = at < halo_width_[k] ? -1 : 0;
+      high[k] = at + halo_width_[k] >= region.extent[k] ? 1 : 0;
+    }
+    for (int z = low[2]; z <= high[2]; ++z)
+      for (int y = low[1]; y <= high[1]; ++y)
+        for (int x = low[0]; x <= high[0]; ++x)
+          by_direction[static_cast<std::size_t>(13 + x + 3 * y + 9 * z)].push_back(
+              static_cast<std::uint16_t>(q));
+  }
+  by_direction[here].clear();
+  draft.exports.clear();
+  for (std::size_t d = 0; d < directions; ++d) {
+    draft.export_start[d] = static_cast<std::uint32_t>(draft.exports.size());
+    draft.exports.insert(draft.exports.end(), by_direction[d].begin(), by_direction[d].end());
+  }
+  draft.export_start[directions] = static_cast<std::uint32_t>(draft.exports.size());
+}
+
+bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<Draft>& drafts,
+                                const std::vector<SoftSphere>& spheres, Scratch& scratch) {
+  Block& block = blocks_[b];
+  const auto begin = spheres.begin() + static_cast<std::ptrdiff_t>(block.first_place);
+  scratch.spheres.assign(begin, begin + static_cast<std::ptrdiff_t>(block.places));
+  scratch.halo.clear();
+  std::array<int, 3> at{};
+  for (std::size_t k = 0, rest = b; k < 3; rest /= static_cast<std::size_t>(across_[k++]))
+    at[k] = static_cast<int>(rest % static_cast<std::size_t>(across_[k]));
+  for (std::size_t d = 0; d < directions; ++d) {
+    const std::array<int, 3> step = {static_cast<int>(d % 3) - 1, static_cast<int>(d / 3 % 3) - 1,
+                                     static_cast<int>(d / 9) - 1};
+    std::size_t other = 0;
+    bool is_other = d != here;
+    for (std::size_t k = 3; k-- > 0;) {
+      is_other = is_other && (step[k] == 0 || across_[k] > 1);
+      other = other * static_cast<std::size_t>(across_[k]) +
+              static_cast<std::size_t>((at[k] + step[k] + across_[k]) % across_[k]);
+    }
+    if (!is_other) continue;
+    const Draft& draft = drafts[other];
+    const std::size_t back = directions - 1 - d;
+    for (std::uint32_t e = draft.export_start[back]; e < draft.export_start[back + 1]; ++e)
+      scratch.halo.push_back(static_cast<std::uint32_t>(blocks_[other].first_place + draft.exports[e]));
+  }
+  if (block.places + scratch.halo.size() >= most_places) return false;
+  for (const std::uint32_t p : scratch.halo) scratch.spheres.push_back(spheres[p]);
+
+  SoftRegion around = region_of(b);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (around.wraps(k)) continue;
+    around.origin[k] -= static_cast<std::uint32_t>(halo_width_[k]);
+    around.extent[k] += 2 * halo_width_[k];
+  }
+  scratch.cells.sort(scratch.spheres, around, edges_, sizes_, skin_);
+  const SearchTask task = scratch.cells.task();
+  const auto filler = static_cast<std::uint16_t>(scratch.spheres.size());
+  scratch.rows.clear();
+  scratch.groups.resize(block.places / lanes);
+  for (std::size_t g = 0; g < scratch.groups.size(); ++g)
+    scratch.groups[g].rows =
+        scratch.found.append(kernels_, task, &scratch.spheres[g * lanes],
+                             static_cast<std::uint32_t>(g * lanes), filler, scratch.rows);
+
+  // Of the halo only what is anybody's neighbour.
+  scratch.place_of.assign(scratch.spheres.size() + 1, 0);
+  for (const std::uint16_t p : scratch.rows) scratch.place_of[p] = 1;
+  std::size_t kept = 0;
+  for (std::size_t p = 0; p < block.places; ++p) scratch.place_of[p] = static_cast<std::uint16_t>(p);
+  for (std::size_t h = 0; h < scratch.halo.size(); ++h) {
+    std::uint16_t& place = scratch.place_of[block.places + h];
+    if (place == 0) continue;
+    place = static_cast<std::uint16_t>(block.places + kept);
+    scratch.halo[kept++] = scratch.halo[h];
+  }
+  scratch.halo.resize(kept);
+  scratch.place_of[filler] = static_cast<std::uint16_t>(block.places + kept);
+  for (std::uint16_t& p : scratch.rows) p = scratch.place_of[p];
+
+  const std::uint16_t* row = rows_.keep(scratch.rows);
+  for (NeighborRows<std::uint16_t>& group : scratch.groups) {
+    group.first = row;
+    row += lanes * group.rows;
+  }
+  block.groups = groups_.keep(scratch.groups);
+  block.halo = halos_.keep(scratch.halo);
+  block.halo_size = static_cast<std::uint32_t>(kept);
+  return true;
+}
+
+float SoftBlocks::visit(const Block& block, const SweepTask& task) const {
+  if (block.places == 0) return 0;
+  thread_local std::vector<SoftSphere> here_and_around;
+  const std::size_t size = block.places + block.halo_size + 1;
+  if (here_and_around.size() < size) here_and_around.resize(size + size / 4);
+  SoftSphere* const spheres = here_and_around.data();
+  SoftSphere* const own = task.spheres + block.first_place;
+  std::memcpy(spheres, own, block.places * sizeof(SoftSphere));
+  for (std::uint32_t h = 0; h < block.halo_size; ++h) spheres[block.places + h] = task.spheres[block.halo[h]];
+  spheres[size - 1] = no_sphere;
+  SweepTask here_task = task;
+  here_task.spheres = spheres;
+  here_task.first_group = block.first_place / lanes;
+  const std::size_t last = here_task.first_group + block.places / lanes;
+  const float largest = kernels_.sweep_short(here_task, block.groups, here_task.first_group, last);
+  std::memcpy(own, spheres, block.places * sizeof(SoftSphere));
+  return largest;
+}
+
+float SoftBlocks::sweep(const SweepTask& task) const {
+  std::vector<float> largest(blocks_.size(), 0.0f);
+  for (const std::vector<std::uint32_t>& colour : colours_)
+    in_parallel(colour.size(), [&](std::size_t n) { largest[colour[n]] = visit(blocks_[colour[n]], task); });
+  return *std::ranges::max_element(largest);
+}
+
+}  // namespace bernal

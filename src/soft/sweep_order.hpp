@@ -1,0 +1,75 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "soft/soft_kernels.hpp"
+
+namespace bernal {
+
+inline constexpr std::uint32_t nobody = 0xFFFFFFFF;
+
+/// Of the radii of all spheres that are swept, as far as it matters to their order and their lists.
+struct SoftSizes {
+  float largest = 0;           ///< radius
+  float large = 0;             ///< spheres with larger radii are swept alone: one per cent at most
+  bool equal = true;           ///< radii
+  std::size_t levels = 1;      ///< of the background grid, each for radii half as large
+  double volume_a_sphere = 0;  ///< mean
+
+  SoftSizes() = default;
+  /// Cost: O(levels · N).
+  explicit SoftSizes(const std::vector<float>& radii);
+};
+
+/// Groups [first, last) that have to be swept one after the other, while other chains may be swept at the
+/// same time.
+struct Chain {
+  std::size_t first, last;
+};
+
+/// In what order the spheres of a region are swept.
+///
+/// The region is cut into pencils along the first axis, at least as wide as two neighbours can be apart, and
+/// every second pencil on each of the other axes is given the same colour. Spheres of different pencils of
+/// one colour are never neighbours. So a group takes its spheres from as many pencils of a colour, a chain is
+/// a sequence of groups from the same pencils, and the chains of a colour are independent of each other.
+/// Within a pencil spheres of similar radii come together, so that the lists in a group are of similar
+/// length; among these the order is along the axis. The few largest spheres, for whose sake pencils would
+/// have to be too wide, are swept alone, after the others.
+///
+/// All this is a function of the places and radii alone, the same for any number of threads.
+class SweepOrder {
+ public:
+  /// Finds the order of these spheres, all with centres in the region. `by_octaves`: spheres whose radii
+  /// differ by more than an octave are swept one kind after the other, each in pencils as wide as it needs,
+  /// the largest last. Cost: some 30 ns a sphere.
+  void find(std::span<const SoftSphere> spheres, const SoftRegion& region, const std::array<double, 3>& edges,
+            const SoftSizes& sizes, float skin, bool by_octaves);
+
+  /// For every place, a whole number of groups of them, which of the spheres has it, or `nobody`.
+  const std::vector<std::uint32_t>& sphere_at() const { return sphere_at_; }
+  /// By colour.
+  const std::vector<std::vector<Chain>>& phases() const { return phases_; }
+
+ private:
+  /// The spheres of one pencil that have not been given a turn yet.
+  struct Pencil {
+    std::uint32_t next, end;
+  };
+
+  void add_pencils(std::vector<std::uint32_t>& order, float largest);
+  void add_chain(const std::vector<std::uint32_t>& order, std::vector<Pencil> live);
+  void fill_group() { sphere_at_.resize((sphere_at_.size() + lanes - 1) / lanes * lanes, nobody); }
+
+  std::span<const SoftSphere> spheres_;
+  SoftRegion region_;
+  std::array<double, 3> edges_{};
+  float skin_ = 0;
+  std::vector<std::uint32_t> sphere_at_;
+  std::vector<std::vector<Chain>> phases_;
+  std::vector<std::uint32_t> order_, sorted_, place_, start_;  // of the sorting
+};
+
+}  // namespace bernal
