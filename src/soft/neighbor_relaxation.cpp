@@ -16,9 +16,9 @@ namespace {
 
 /// In mean diameters, by dimension: lists become longer by its D-th power.
 constexpr double relative_skin[] = {0.4, 0.4, 0.4, 0.3, 0.25, 0.2, 0.17, 0.15};
-/// Of lists, in sweeps, and the thinnest skin in the thickest.
-constexpr int long_life = 80, short_life = 20;
-constexpr double thinnest = 0.125;
+/// Of lists, in sweeps, and the thinnest_share skin in the thickest.
+constexpr int longest_life = 80, shortest_life = 20;
+constexpr double thinnest_share = 0.125;
 /// In a box of fewer of the largest radii spheres may overlap in several images; and a little more, for
 /// rounding.
 constexpr double narrow = 4.001;
@@ -246,8 +246,8 @@ void NeighborRelaxation<D>::keep_lists_valid() {
   if (!stale_ && !moved_too_far()) return;
   if (lists_built_.calls > 0 &&
       !stale_) {  // where lists last long, shorter ones that do not last so long cost less
-    if (age_ > long_life) skin_ = std::max(thinnest * thickest_skin_, skin_ / 1.4);
-    if (age_ < short_life) skin_ = std::min(thickest_skin_, skin_ * 1.4);
+    if (age_ > longest_life) skin_ = std::max(thinnest_share * thickest_skin_, skin_ / 1.4);
+    if (age_ < shortest_life) skin_ = std::min(thickest_skin_, skin_ * 1.4);
   }
   const EffectTimer timer(lists_built_);
   build_lists();

@@ -17,7 +17,7 @@ constexpr double microsecond = 1e-6;
 /// sorted arrays, or has walls, and spheres are swept one after the other, as they are from four dimensions
 /// on.
 constexpr double by_dimension[] = {12, 0.55, 1, 5.5, 13, 17, 22, 28};
-constexpr double one_by_one = 3.5, narrow = 4;
+constexpr double one_by_one = 3.5, narrow_box = 4;
 /// Diameters across a box from which on it is surely wide enough for sorted arrays at the start, too, when it
 /// is smaller.
 constexpr double surely_wide = 2.5;
@@ -65,7 +65,7 @@ constexpr double bytes_a_sphere = 130, bytes_of_lists = 130;
 double dimension_factor(const Outlook& outlook, bool in_any_width = false) {
   const int dimension = outlook.task.dimension;
   const bool sorted = (dimension != 2 && dimension != 3) || in_any_width ||
-                      (!outlook.task.has_walls && outlook.width > narrow);
+                      (!outlook.task.has_walls && outlook.width > narrow_box);
   return by_dimension[static_cast<std::size_t>(dimension - 1)] * (sorted ? 1 : one_by_one) *
          std::pow(std::max(1.0, outlook.spheres / many), cost_of_many);
 }

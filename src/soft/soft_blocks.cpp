@@ -6,14 +6,12 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "core/large_pages.hpp"
 
 namespace bernal {
 namespace {
 
-constexpr SoftSphere no_sphere = {{0, 0, 0}, std::numeric_limits<float>::quiet_NaN()};
 /// What spheres fill of a block that is full.
 constexpr double full = 0.64;
 /// With fewer blocks there are too few of a colour for several threads, and the last levels of cache hold

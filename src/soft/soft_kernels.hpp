@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -14,6 +15,8 @@ struct alignas(16) SoftSphere {
   std::int32_t x[3];
   float r;
 };
+
+inline constexpr SoftSphere no_sphere = {{0, 0, 0}, std::numeric_limits<float>::quiet_NaN()};
 
 /// The short way from one place of a sphere to another, in units of the coordinates.
 inline std::int32_t steps_between(const SoftSphere& from, const SoftSphere& to, std::size_t k) {

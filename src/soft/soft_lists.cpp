@@ -4,12 +4,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace bernal {
 namespace {
 
-constexpr SoftSphere no_sphere = {{0, 0, 0}, std::numeric_limits<float>::quiet_NaN()};
 constexpr std::size_t groups_per_block = 64;
 
 }  // namespace
