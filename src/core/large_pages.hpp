@@ -10,14 +10,16 @@ namespace bernal {
 /// a third less. A wish: nothing changes where the system does not grant it. Cost: a call of the system.
 void prefer_large_pages(void* begin, std::size_t bytes);
 
-/// Room for `size` items in such pages. What the vector held is lost if it has to become larger.
+/// Makes these `size` items in such pages, to be overwritten: what they are is what happens to be there. Next
+/// time there may be a few more of them without new memory. Cost: none but for new memory.
 template <class T>
-void reserve_anew(std::vector<T>& items, std::size_t size) {
-  items.clear();
-  if (items.capacity() >= size) return;
-  std::vector<T>().swap(items);  // first: so there are never two of them
-  items.reserve(size);
-  prefer_large_pages(items.data(), items.capacity() * sizeof(T));
+void resize_anew(std::vector<T>& items, std::size_t size) {
+  if (items.capacity() < size) {
+    std::vector<T>().swap(items);  // first: so there are never two of them
+    items.reserve(size + size / 64);
+    prefer_large_pages(items.data(), items.capacity() * sizeof(T));
+  }
+  items.resize(size);
 }
 
 }  // namespace bernal

@@ -11,7 +11,8 @@
 
 namespace bernal {
 
-/// From so many spheres on more sweeps a growth are not needed for the packing fraction to stay what it is.
+/// From so many spheres on sweeps a growth need not become more as fast as the paper says for the packing
+/// fraction to stay what it is.
 inline constexpr std::size_t enough_for_sweeps = 10000;
 
 /// The largest overlap ratio at which spheres in a growing box count as relaxed. Far below `options.stop`: a

@@ -127,8 +127,7 @@ void SoftBlocks::sort_into_blocks(const std::vector<SoftSphere>& spheres) {
     }
   }
   start_[n] = sum;
-  reserve_anew(order_, sum);
-  order_.resize(sum);
+  resize_anew(order_, sum);
   in_parallel(parts_of_sorting, [&](std::size_t c) {
     for (std::size_t p = part(c); p < part(c + 1); ++p)
       if (spheres[p].r > 0) order_[next[c * n + block_of(spheres[p])]++] = static_cast<std::uint32_t>(p);
@@ -143,59 +142,65 @@ bool SoftBlocks::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32
   halos_.clear();
   groups_.clear();
   sort_into_blocks(spheres);
+  if (!find_orders(spheres)) return false;
 
-  std::vector<Draft> drafts(blocks_.size());
+  const std::size_t places = blocks_.back().first_place + blocks_.back().places;
+  resize_anew(spare, places + 1);
+  resize_anew(spare_ids_, places + 1);
   in_parallel(blocks_.size(), [&](std::size_t b) {
-    Scratch& mine = scratch_.local();
-    mine.spheres.clear();
-    for (std::size_t n = start_[b]; n < start_[b + 1]; ++n) mine.spheres.push_back(spheres[order_[n]]);
-    mine.order.find(mine.spheres, region_of(b), edges_, sizes_, skin_, false);
-    std::vector<std::uint32_t>& from = drafts[b].from;
-    from = mine.order.sphere_at();
-    for (std::uint32_t& i : from)
-      if (i != nobody) i = order_[start_[b] + i];
-    blocks_[b].places = from.size();
-  });
-  std::size_t places = 0;
-  bool few = true;
-  for (Block& block : blocks_) {
-    block.first_place = places;
-    places += block.places;
-    few = few && block.places < most_places;
-  }
-
-  reserve_anew(spare, places + 1);
-  reserve_anew(spare_ids_, places + 1);
-  spare.resize(places + 1);
-  spare_ids_.resize(places + 1);
-  in_parallel(blocks_.size(), [&](std::size_t b) {
-    std::vector<std::uint32_t>& from = drafts[b].from;
+    const std::vector<std::uint16_t>& from = drafts_[b].from;
     for (std::size_t q = 0; q < from.size(); ++q) {
-      const std::uint32_t p = from[q];
-      spare[blocks_[b].first_place + q] = p == nobody ? no_sphere : spheres[p];
-      spare_ids_[blocks_[b].first_place + q] = p == nobody ? nobody : ids[p];
+      const bool is_gap = from[q] == gap;
+      const std::size_t p = is_gap ? 0 : order_[start_[b] + from[q]];
+      spare[blocks_[b].first_place + q] = is_gap ? no_sphere : spheres[p];
+      spare_ids_[blocks_[b].first_place + q] = is_gap ? nobody : ids[p];
     }
-    std::vector<std::uint32_t>().swap(from);
-    if (few) find_exports(drafts[b], b, spare);
+    find_exports(b, spare, scratch_.local());
   });
   spare.back() = no_sphere;
   spare_ids_.back() = nobody;
   spheres.swap(spare);
   ids.swap(spare_ids_);
-  if (!few) return false;
 
   std::atomic<bool> fits = true;
   in_parallel(blocks_.size(), [&](std::size_t b) {
-    if (!find_neighbors(b, drafts, spheres, scratch_.local())) fits = false;
+    if (!find_neighbors(b, spheres, scratch_.local())) fits = false;
   });
   return fits;
 }
 
+/// Within each block. Returns whether none has too many places.
+bool SoftBlocks::find_orders(const std::vector<SoftSphere>& spheres) {
+  drafts_.resize(blocks_.size());
+  std::atomic<bool> fit = true;
+  in_parallel(blocks_.size(), [&](std::size_t b) {
+    if (start_[b + 1] - start_[b] >= most_places) fit = false;
+    if (!fit) return;
+    Scratch& mine = scratch_.local();
+    mine.spheres.clear();
+    for (std::size_t n = start_[b]; n < start_[b + 1]; ++n) mine.spheres.push_back(spheres[order_[n]]);
+    mine.order.find(mine.spheres, region_of(b), edges_, sizes_, skin_, false);
+    const std::vector<std::uint32_t>& sphere_at = mine.order.sphere_at();
+    static_assert(static_cast<std::uint16_t>(nobody) == gap);
+    drafts_[b].from.assign(sphere_at.begin(), sphere_at.end());
+    blocks_[b].places = sphere_at.size();
+    if (blocks_[b].places >= most_places) fit = false;
+  });
+  std::size_t places = 0;
+  for (Block& block : blocks_) {
+    block.first_place = places;
+    places += block.places;
+  }
+  return fit;
+}
+
 /// By direction: minus one, none or one along each axis, the first axis the fastest.
-void SoftBlocks::find_exports(Draft& draft, std::size_t block, const std::vector<SoftSphere>& spheres) const {
+void SoftBlocks::find_exports(std::size_t block, const std::vector<SoftSphere>& spheres, Scratch& scratch) {
   const SoftRegion region = region_of(block);
   const Block& mine = blocks_[block];
-  std::array<std::vector<std::uint16_t>, directions> by_direction;
+  Draft& draft = drafts_[block];
+  auto& by_direction = scratch.exports;
+  for (auto& places : by_direction) places.clear();
   for (std::size_t q = 0; q < mine.places; ++q) {
     const SoftSphere& s = spheres[mine.first_place + q];
     if (!(s.r > 0)) continue;
@@ -221,8 +226,7 @@ void SoftBlocks::find_exports(Draft& draft, std::size_t block, const std::vector
   draft.export_start[directions] = static_cast<std::uint32_t>(draft.exports.size());
 }
 
-bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<Draft>& drafts,
-                                const std::vector<SoftSphere>& spheres, Scratch& scratch) {
+bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& spheres, Scratch& scratch) {
   Block& block = blocks_[b];
   const auto begin = spheres.begin() + static_cast<std::ptrdiff_t>(block.first_place);
   scratch.spheres.assign(begin, begin + static_cast<std::ptrdiff_t>(block.places));
@@ -241,7 +245,7 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<Draft>& drafts,
               static_cast<std::size_t>((at[k] + step[k] + across_[k]) % across_[k]);
     }
     if (!is_other) continue;
-    const Draft& draft = drafts[other];
+    const Draft& draft = drafts_[other];
     const std::size_t back = directions - 1 - d;
     for (std::uint32_t e = draft.export_start[back]; e < draft.export_start[back + 1]; ++e)
       scratch.halo.push_back(static_cast<std::uint32_t>(blocks_[other].first_place + draft.exports[e]));
@@ -265,20 +269,7 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<Draft>& drafts,
         scratch.found.append(kernels_, task, &scratch.spheres[g * lanes],
                              static_cast<std::uint32_t>(g * lanes), filler, scratch.rows);
 
-  // Of the halo only what is anybody's neighbour.
-  scratch.place_of.assign(scratch.spheres.size() + 1, 0);
-  for (const std::uint16_t p : scratch.rows) scratch.place_of[p] = 1;
-  std::size_t kept = 0;
-  for (std::size_t p = 0; p < block.places; ++p) scratch.place_of[p] = static_cast<std::uint16_t>(p);
-  for (std::size_t h = 0; h < scratch.halo.size(); ++h) {
-    std::uint16_t& place = scratch.place_of[block.places + h];
-    if (place == 0) continue;
-    place = static_cast<std::uint16_t>(block.places + kept);
-    scratch.halo[kept++] = scratch.halo[h];
-  }
-  scratch.halo.resize(kept);
-  scratch.place_of[filler] = static_cast<std::uint16_t>(block.places + kept);
-  for (std::uint16_t& p : scratch.rows) p = scratch.place_of[p];
+  if (!sizes_.equal) leave_out_strangers(block, scratch);
 
   const std::uint16_t* row = rows_.keep(scratch.rows);
   for (NeighborRows<std::uint16_t>& group : scratch.groups) {
@@ -287,8 +278,26 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<Draft>& drafts,
   }
   block.groups = groups_.keep(scratch.groups);
   block.halo = halos_.keep(scratch.halo);
-  block.halo_size = static_cast<std::uint32_t>(kept);
+  block.halo_size = static_cast<std::uint32_t>(scratch.halo.size());
   return true;
+}
+
+/// Of the halo those that are nobody's neighbours: most, where it is as wide as a few large spheres need it.
+void SoftBlocks::leave_out_strangers(const Block& block, Scratch& scratch) {
+  std::vector<std::uint16_t>& place_of = scratch.place_of;
+  place_of.assign(scratch.spheres.size() + 1, 0);
+  for (const std::uint16_t p : scratch.rows) place_of[p] = 1;
+  std::size_t kept = 0;
+  for (std::size_t h = 0; h < scratch.halo.size(); ++h) {
+    std::uint16_t& place = place_of[block.places + h];
+    if (place == 0) continue;
+    place = static_cast<std::uint16_t>(block.places + kept);
+    scratch.halo[kept++] = scratch.halo[h];
+  }
+  scratch.halo.resize(kept);
+  for (std::size_t p = 0; p < block.places; ++p) place_of[p] = static_cast<std::uint16_t>(p);
+  place_of.back() = static_cast<std::uint16_t>(block.places + kept);  // the gap
+  for (std::uint16_t& p : scratch.rows) p = place_of[p];
 }
 
 float SoftBlocks::visit(const Block& block, const SweepTask& task) const {
@@ -315,6 +324,17 @@ float SoftBlocks::sweep(const SweepTask& task) const {
   for (const std::vector<std::uint32_t>& colour : colours_)
     in_parallel(colour.size(), [&](std::size_t n) { largest[colour[n]] = visit(blocks_[colour[n]], task); });
   return *std::ranges::max_element(largest);
+}
+
+std::size_t SoftBlocks::bytes_a_sweep() const {
+  std::size_t bytes = 0;
+  for (const Block& block : blocks_) {
+    bytes += 2 * block.places * sizeof(SoftSphere);
+    bytes += block.halo_size * (sizeof(SoftSphere) + sizeof(std::uint32_t));
+    for (std::size_t g = 0; g < block.places / lanes; ++g)
+      bytes += sizeof(block.groups[g]) + lanes * block.groups[g].rows * sizeof(std::uint16_t);
+  }
+  return bytes;
 }
 
 }  // namespace bernal

@@ -49,9 +49,15 @@ class SoftBlocks {
   /// Every sphere once, in threads. Returns what `SoftKernels::sweep` does.
   float sweep(const SweepTask& task) const;
 
+  /// What a sweep reads from memory and writes to it, where no cache keeps anything from one visit to the
+  /// next: places twice, those of halos and their numbers once, and the lists.
+  std::size_t bytes_a_sweep() const;
+
  private:
   /// Of a visit, the gap behind them among them.
   static constexpr std::size_t most_places = 65535;
+  /// In place of the number of a sphere.
+  static constexpr std::uint16_t gap = 65535;
 
   struct Block {
     std::size_t first_place = 0, places = 0;              // in all; its own, a whole number of groups
@@ -67,21 +73,22 @@ class SoftBlocks {
     std::vector<std::uint32_t> halo;
     std::vector<std::uint16_t> rows, place_of;
     std::vector<NeighborRows<std::uint16_t>> groups;
+    std::array<std::vector<std::uint16_t>, 27> exports;
   };
   /// While lists are built: the order of a block, and which of its places others see.
   struct Draft {
-    std::vector<std::uint32_t> from;  // of each place, where the sphere was before, or nobody
-    std::vector<std::uint16_t>
-        exports;  // places of the block that may be in the halo of another, by direction
+    std::vector<std::uint16_t> from;     // of each place, which of the block's spheres, or gap
+    std::vector<std::uint16_t> exports;  // places that may be in the halo of another, by direction
     std::array<std::uint32_t, 28> export_start{};
   };
 
   void cut(std::size_t spheres, const std::array<double, 3>& edges, const SoftSizes& sizes, float skin);
   SoftRegion region_of(std::size_t block) const;
   void sort_into_blocks(const std::vector<SoftSphere>& spheres);
-  void find_exports(Draft& draft, std::size_t block, const std::vector<SoftSphere>& spheres) const;
-  bool find_neighbors(std::size_t block, const std::vector<Draft>& drafts,
-                      const std::vector<SoftSphere>& spheres, Scratch& scratch);
+  bool find_orders(const std::vector<SoftSphere>& spheres);
+  void find_exports(std::size_t block, const std::vector<SoftSphere>& spheres, Scratch& scratch);
+  bool find_neighbors(std::size_t block, const std::vector<SoftSphere>& spheres, Scratch& scratch);
+  static void leave_out_strangers(const Block& block, Scratch& scratch);
   float visit(const Block& block, const SweepTask& task) const;
 
   Made made_{"relaxation"}, lists_made_{"neighbour lists"};
@@ -93,6 +100,7 @@ class SoftBlocks {
   std::array<int, 3> across_{1, 1, 1};
   std::array<std::uint64_t, 3> halo_width_{};  // in units of the coordinates
   std::vector<Block> blocks_;
+  std::vector<Draft> drafts_;
   std::array<std::vector<std::uint32_t>, 8> colours_;
   std::vector<std::uint32_t> order_, spare_ids_;  // of the spheres, by block
   std::vector<std::size_t> start_;                // of each block in it; one more than blocks

@@ -203,8 +203,7 @@ double SoftPacking::largest_move() const {
 }
 
 void SoftPacking::remember_places() {
-  if (built_at_.size() != spheres_.size()) reserve_anew(built_at_, spheres_.size());
-  built_at_.resize(spheres_.size());
+  resize_anew(built_at_, spheres_.size());
   parallel_ranges(spheres_.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
     std::copy(spheres_.begin() + static_cast<std::ptrdiff_t>(first),
               spheres_.begin() + static_cast<std::ptrdiff_t>(last),

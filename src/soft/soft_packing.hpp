@@ -96,6 +96,9 @@ class SoftPacking {
   /// The unit of the coordinates on the longest edge.
   double resolution() const { return 0x1p-32 * *std::max_element(edges_.begin(), edges_.end()); }
 
+  /// See `SoftBlocks`; 0 where spheres are so few that caches keep them.
+  std::size_t bytes_a_sweep() const { return in_blocks_ ? blocks_->bytes_a_sweep() : 0; }
+
   /// How often lists were built.
   const Effect& lists_built() const { return lists_built_; }
 

@@ -9,6 +9,8 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "core/large_pages.hpp"
+#include "core/parallel.hpp"
 #include "soft/published_loop.hpp"
 #include "soft/soft_packing.hpp"
 #include "soft/sorted_cells.hpp"
@@ -67,6 +69,10 @@ void sweep(benchmark::State& state, const std::string& sizes) {
   for (auto _ : state) packing.sweep(omega);
   state.SetLabel(std::string(soft_kernels()[kernel].name));
   per_sphere(state, start.spheres.size());
+  const auto bytes = static_cast<double>(packing.bytes_a_sweep());
+  state.counters["bytes_a_sphere"] = bytes / static_cast<double>(start.spheres.size());
+  state.counters["GB_a_second"] =
+      benchmark::Counter(1e-9 * bytes, benchmark::Counter::kIsIterationInvariantRate);
 }
 void kernels_and_sizes(benchmark::internal::Benchmark* b) {
   b->ArgNames({"spheres", "kernel", "threads"})->UseRealTime();
@@ -75,7 +81,9 @@ void kernels_and_sizes(benchmark::internal::Benchmark* b) {
       ->Args({100000, 0, 1})
       ->Args({100000, 0, 2})
       ->Args({1000000, 0, 1})
-      ->Args({1000000, 0, 2});
+      ->Args({1000000, 0, 2})
+      ->Args({10000000, 0, 1})
+      ->Args({10000000, 0, 2});
 }
 BENCHMARK_CAPTURE(sweep, equal, equal)->Apply(kernels_and_sizes);
 BENCHMARK_CAPTURE(sweep, two_sizes, two_sizes)
@@ -84,6 +92,26 @@ BENCHMARK_CAPTURE(sweep, two_sizes, two_sizes)
 BENCHMARK_CAPTURE(sweep, lognormal, lognormal)
     ->ArgNames({"spheres", "kernel", "threads"})
     ->Args({10000, 0, 1});
+
+/// What memory gives at most: a = b + s c over arrays that no cache holds, in pages of 2 MiB.
+void memory(benchmark::State& state) {
+  constexpr std::size_t size = std::size_t{1} << 25;
+  const auto threads = static_cast<std::size_t>(state.range(0));
+  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+  std::vector<double> a, b, c;
+  for (auto* array : {&a, &b, &c}) {
+    resize_anew(*array, size);
+    std::ranges::fill(*array, 1.0);
+  }
+  for (auto _ : state)
+    parallel_ranges(size, size / 16, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) a[i] = b[i] + 0.5 * c[i];
+      benchmark::ClobberMemory();
+    });
+  state.counters["GB_a_second"] =
+      benchmark::Counter(24e-9 * size, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(memory)->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime();
 
 /// The published loop on linked lists and on sorted arrays: the same sweeps, to the bit. Crowded: the first
 /// twenty from random places at 0.86, when spheres change their cells all the time; else nearly at rest.
