@@ -280,7 +280,7 @@ Measurements measured_of(const Packing& packing, const MeasureCall& call) {
     options.wall_gap = packing.scene.wall_gap;
     return measure(packing.spheres, packing.domain, radii.asked, options);
   } catch (const Error& error) {
-    throw Error(error.code(), error.what(), {(call.folder / "spheres.csv").string()});
+    throw Error(error.code(), error.what(), {spheres_of_result(call.folder).string()});
   }
 }
 
@@ -315,7 +315,7 @@ Command measure_command() {
       "measure",
       "Contacts, rattlers, g(r), S(k), local packing, pores, chambers, walls, order, sizes",
       {folder(required(
-           {"DIR", &call->folder, "What bernal pack wrote: its spheres.csv and scene.toml are read"})),
+           {"DIR", &call->folder, "What bernal pack wrote: its spheres and scene.toml are read"})),
        within({"--gap", &call->options.contact_gap,
                "Spheres touch below this gap over the sum of their radii; 0.002 if absent", "RATIO"},
               0.0, 1.0),
