@@ -35,6 +35,8 @@ constexpr std::uint32_t points_for_a_report = 4000, pore_points_for_a_report = 2
 constexpr double waves_for_a_report = 6e7, wave_bins_for_a_report = 0.4;
 /// Of more spheres, cells and waves would take longer than many a packing.
 constexpr std::size_t most_for_a_report = 100'000;
+/// Of more spheres the search for pores would take as much memory as all the rest.
+constexpr std::size_t most_for_pores = 20'000'000;
 
 bool writes_array(const Packing& packing, const WriteOptions& options) {
   return options.as_array || packing.spheres.size() > options.most_as_text;
@@ -95,21 +97,23 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   Certificate certificate = certify_written(spheres, packing, options);
   certificate.statement += certified_walls(packing.scene);
   go_on();
+  const std::size_t n = packing.spheres.size();
   const SceneRadii radii = asked_radii_of(packing);
-  const Measurements measured = measure(packing.spheres, packing.domain, radii.asked,
-                                        {.gap = packing.scene.gap,
-                                         .wall_gap = packing.scene.wall_gap,
-                                         .radial = {.work = distances_for_a_report},
-                                         .size_correlation = {.work = distances_for_a_report},
-                                         .chambers = {.points = points_for_a_report},
-                                         .walls = {.work = wall_distances_for_a_report},
-                                         .local = {.most_spheres = most_for_a_report},
-                                         .structure = {.bin = wave_bins_for_a_report,
-                                                       .work = waves_for_a_report,
-                                                       .most_spheres = most_for_a_report},
-                                         .pores = {.points = pore_points_for_a_report},
-                                         .container = packing.container,
-                                         .monitor = options.monitor});
+  const Measurements measured =
+      measure(packing.spheres, packing.domain, radii.asked,
+              {.gap = packing.scene.gap,
+               .wall_gap = packing.scene.wall_gap,
+               .radial = {.work = distances_for_a_report},
+               .size_correlation = {.work = distances_for_a_report},
+               .chambers = {.points = points_for_a_report},
+               .walls = {.work = wall_distances_for_a_report},
+               .local = {.most_spheres = most_for_a_report},
+               .structure = {.bin = wave_bins_for_a_report,
+                             .work = waves_for_a_report,
+                             .most_spheres = most_for_a_report},
+               .pores = {.points = n > most_for_pores ? 0 : pore_points_for_a_report},
+               .container = packing.container,
+               .monitor = options.monitor});
   go_on();
   Manifest manifest;
   const std::string scene =
