@@ -116,7 +116,7 @@ Command export_command() {
       "export",
       "Write a result as other programs read it",
       {folder(required({"RESULT", &call->folder,
-                        "What bernal pack wrote: its spheres.csv and scene.toml are read", "DIR"})),
+                        "What bernal pack wrote: its spheres and scene.toml are read", "DIR"})),
        offering(required({"--to", &call->format, "The format, one of those below", "FORMAT"}),
                 names_of_formats()),
        required({"-o,--output", &call->file, "The file; those that go with it stand beside it", "FILE"})},

@@ -35,6 +35,7 @@ struct PackCall {
   int threads = 0;
   bool with_mesh = false;
   bool no_view = false;
+  bool as_array = false;
   bool quiet = false;
 };
 
@@ -111,6 +112,7 @@ int pack(const PackCall& call) {
   const WrittenPacking written = write_packing(packing, folder,
                                                {.with_mesh = call.with_mesh,
                                                 .view = !call.no_view,
+                                                .as_array = call.as_array,
                                                 .monitor = stopped ? Monitor{{}, at_once} : monitor});
   bar.clear();
   if (!stopped && interrupted())
@@ -148,6 +150,9 @@ Command pack_command() {
         "stands for itself"},
        {"--no-view", &call->no_view,
         "Leave the view to turn out of report.html, which is then smaller: a picture and plots"},
+       {"--binary", &call->as_array,
+        "Write spheres.npy, an array of doubles, in the place of spheres.csv and spheres.vtp, as more than "
+        "5 million spheres are"},
        seed_option("Instead of the scene's; one seed gives one packing, bit for bit",
                    [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
        threads_option(call->threads, "the result"),
@@ -161,6 +166,7 @@ Command pack_command() {
                           "ask for.",
                   .entries = {{"spheres.csv", "the spheres, in the scene's unit"},
                               {"spheres.vtp", "the same for ParaView"},
+                              {"spheres.npy", "in the place of both, see --binary"},
                               {"scene.toml",
                                "the scene with every default, which verify, measure and "
                                "export read beside the spheres"},

@@ -95,7 +95,7 @@ int verify(const VerifyCall& call) {
   if (is_folder(call.target)) finish_writing(call.target);
   const Scene scene = read_scene(scene_file(call));
   const Spheres<dynamic> spheres = is_folder(call.target)  // before another result replaces both
-                                       ? read_csv_of(scene, call.target / "spheres.csv")
+                                       ? read_spheres_of(scene, call.target)
                                        : read_columns_of(scene, call.target);
   const Domain domain = packed_domain_of(scene);
 
@@ -123,10 +123,11 @@ Command verify_command() {
   return {
       "verify",
       "Certify files from scratch: no overlap, nothing outside",
-      {file(required({"DIR", &call->target,
-                      "What bernal pack wrote, or one CSV file whose header names x, y, z and r or d",
-                      "DIR|FILE.csv"}),
-            {".csv"}),
+      {file(required(
+                {"DIR", &call->target,
+                 "What bernal pack wrote, or one file: CSV whose header names x, y, z and r or d, or .npy",
+                 "DIR|FILE.csv"}),
+            {".csv", ".npy"}),
        file({"--scene", &call->scene, "The scene that names the container, if not DIR/scene.toml",
              "SCENE.toml"},
             {".toml"}),

@@ -1,8 +1,7 @@
 #include <bit>
 #include <cstring>
 
-#include <fmt/format.h>
-
+#include "core/npy_file.hpp"
 #include "core/parallel.hpp"
 #include "export/format.hpp"
 #include "export/npy.hpp"
@@ -13,16 +12,8 @@ namespace bernal {
 void write_npy(const std::filesystem::path& path, std::size_t rows, std::size_t columns,
                const std::function<double(std::size_t, std::size_t)>& value) {
   static_assert(std::endian::native == std::endian::little);
-  std::string header = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},{}), }}", rows,
-                                   columns > 0 ? fmt::format(" {}", columns) : "");
-  constexpr std::size_t lead = 10, alignment = 64;  // magic, version and length of the header stand before it
-  header.resize((lead + header.size() + 1 + alignment - 1) / alignment * alignment - lead - 1, ' ');
-  header += '\n';
-  const auto length = static_cast<std::uint16_t>(header.size());
   OutputFile out(path);
-  out.append("\x93NUMPY");
-  out.append(std::string{'\x01', '\0', static_cast<char>(length & 0xFF), static_cast<char>(length >> 8)});
-  out.append(header);
+  out.append(npy_header(rows, columns));
   const std::size_t in_row = std::max<std::size_t>(columns, 1);
   std::string row(in_row * sizeof(double), '\0');
   for (std::size_t i = 0; i < rows; ++i) {

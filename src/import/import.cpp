@@ -215,7 +215,7 @@ WrittenPacking write_imported(Packing packing, const std::filesystem::path& file
   require_elsewhere(file, folder);
   packing.scene.start.file = file;
   check_writable(folder, packing.scene, options);
-  packing.scene.start.file = folder / "spheres.csv";
+  packing.scene.start.file = folder / spheres_file_of(packing, options);
   try {
     return write_packing(packing, folder, options);
   } catch (const Error& error) {  // of measuring, which gives up where nearly all spheres overlap

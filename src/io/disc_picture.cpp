@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "io/html_text.hpp"
 #include "io/palette.hpp"
 
 namespace bernal {
@@ -14,7 +13,6 @@ namespace {
 
 constexpr double farthest_out = 0.06;  // of the canvas, for what sticks out of the outline
 constexpr double caption_height = 36;
-constexpr std::string_view line_grey = "#8590a0";
 
 std::string flat_fill(int colour_class) { return size_colour((colour_class + 0.5) / colour_classes).text(); }
 
@@ -33,13 +31,6 @@ void append_discs(std::string& out, const ByColour& discs, double rim) {
     }
     out += "</g>\n";
   }
-}
-
-void append_words(std::string& out, double x, double y, double size, std::string_view words) {
-  out += fmt::format(
-      "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" font-family=\"system-ui,sans-serif\" "
-      "font-size=\"{}\" fill=\"{}\">{}</text>\n",
-      x, y, size, line_grey, escaped(words));
 }
 
 }  // namespace

@@ -236,6 +236,9 @@ void write_walls(Page& page, const Report& report) {
       1 + BondOrder::widest_gap);
   write_order(page, *order);
   page.raw("</table></div>\n");
+  if (order->all.spheres < report.packing.spheres.size())
+    page.add("<p class=\"dim\">Looked at: {} spheres that lie together in the middle.</p>\n",
+             grouped(order->all.spheres));
 }
 
 }  // namespace bernal

@@ -1,7 +1,10 @@
 // How dense single spheres are packed, how waves are scattered, how large the pores are.
 #include <cmath>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
 #include "io/chart.hpp"
@@ -72,6 +75,21 @@ void write_pore_sizes(Page& page, const PoreSizes& pores, std::string_view unit,
 
 }  // namespace
 
+/// Of very many spheres, and of those of a run that was stopped, not all is measured at once.
+void write_what_is_left(Page& page, const Report& report) {
+  const Measurements& measured = report.measured;
+  const int dimension = report.packing.spheres.dimension();
+  if (report.packing.spheres.empty() || dimension < 2 || dimension > 3) return;
+  std::vector<std::string_view> left;
+  if (!measured.local) left.push_back("local packing fractions");
+  if (!measured.pores) left.push_back("sizes of pores");
+  if (!measured.structure && !has_walls(report.packing.domain) && report.packing.spheres.size() > 1)
+    left.push_back("the structure factor");
+  if (!left.empty())
+    page.add("<p class=\"dim\">Left to <code>bernal measure</code> on this folder: {}.</p>\n",
+             fmt::join(left, ", "));
+}
+
 void write_structure(Page& page, const Report& report) {
   const Measurements& measured = report.measured;
   if (measured.local && measured.local->empty < measured.local->cell_volume.size())
@@ -80,6 +98,7 @@ void write_structure(Page& page, const Report& report) {
     write_pore_sizes(page, *measured.pores, escaped(name_of(report.packing.scene.unit)),
                      has_walls(report.packing.domain));
   if (measured.structure) write_structure_factor(page, *measured.structure);
+  write_what_is_left(page, report);
 }
 
 }  // namespace bernal

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "io/html_text.hpp"
+
 namespace bernal {
 
 SizeScale::SizeScale(const std::vector<double>& radii) : empty_(radii.empty()) {
@@ -39,6 +41,13 @@ double round_length(double length) {
 }
 
 }  // namespace
+
+void append_words(std::string& out, double x, double y, double size, std::string_view words) {
+  out += fmt::format(
+      "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" font-family=\"system-ui,sans-serif\" "
+      "font-size=\"{}\" fill=\"{}\">{}</text>\n",
+      x, y, size, line_grey, escaped(words));
+}
 
 void append_legend(std::string& out, const Canvas& canvas, const SizeScale& sizes, std::string_view unit,
                    const std::function<std::string(int)>& fill) {

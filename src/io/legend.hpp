@@ -12,6 +12,7 @@ inline constexpr double canvas_size = 1000;
 inline constexpr double narrowest_canvas = 480;  ///< so much the legend needs
 inline constexpr double canvas_margin = 12;
 inline constexpr double legend_height = 52;
+inline constexpr std::string_view line_grey = "#8590a0";
 inline constexpr int colour_classes = 9;
 
 /// Maps radii to colour classes, evenly in ln r between the least and the greatest of them, which the key
@@ -39,6 +40,9 @@ struct Canvas {
 
 /// The opening tag, with room for the legend.
 std::string svg_head(double width, double height, std::size_t spheres);
+
+/// A line of words, around that point.
+void append_words(std::string& out, double x, double y, double size, std::string_view words);
 
 /// A scale bar and the key of the sizes; `fill` paints a colour class.
 void append_legend(std::string& out, const Canvas& canvas, const SizeScale& sizes, std::string_view unit,

@@ -12,6 +12,9 @@
 namespace bernal {
 namespace {
 
+/// So many lines tell how long the others are.
+constexpr std::size_t enough_to_judge = 10'000;
+
 /// Which dimension has this header.
 int dimension_of_header(const CsvLines& lines) {
   for (int dimension = 1; dimension <= max_dimension; ++dimension)
@@ -53,7 +56,15 @@ SpheresFile read_csv(const std::filesystem::path& file) {
   if (!found) lines.fail(fmt::format("the header {} is missing", csv_header(3)));
   SpheresFile result{Spheres<dynamic>(dimension_of_header(lines)), std::move(unit)};
   const std::vector<std::string> columns = csv_columns(result.spheres.dimension());
-  while (lines.next()) read_sphere(lines, columns, result.spheres);
+  std::size_t bytes = 0;
+  while (lines.next()) {
+    read_sphere(lines, columns, result.spheres);
+    bytes += lines.line().size() + 1;
+    if (result.spheres.size() == enough_to_judge) {  // or columns that grow hold twice what they need
+      const double share = static_cast<double>(std::filesystem::file_size(file)) / static_cast<double>(bytes);
+      result.spheres.reserve(static_cast<std::size_t>(1.01 * share * static_cast<double>(enough_to_judge)));
+    }
+  }
   return result;
 }
 

@@ -5,7 +5,9 @@
 #include "bernal/core/error.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "scene/read_npy_spheres.hpp"
 #include "scene/read_spheres.hpp"
+#include "scene/spheres_file.hpp"
 
 namespace bernal {
 
@@ -39,6 +41,16 @@ Spheres<dynamic> read_columns_of(const Scene& scene, const std::filesystem::path
   return of_the_scene(scene, file, {std::move(read.spheres), std::move(read.unit)});
 }
 
+std::filesystem::path spheres_of_result(const std::filesystem::path& folder) {
+  return spheres_file_in(folder);
+}
+
+Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder) {
+  const std::filesystem::path file = spheres_file_in(folder);
+  if (file.filename() == spheres_as_array) return of_the_scene(scene, file, {read_npy_spheres(file), {}});
+  return read_csv_of(scene, file);
+}
+
 Packing read_packing(const std::filesystem::path& folder) {
   std::error_code unknown;
   if (!std::filesystem::is_directory(folder, unknown)) {
@@ -48,13 +60,12 @@ Packing read_packing(const std::filesystem::path& folder) {
   finish_writing(folder);
   Packing packing;
   packing.scene = read_scene(folder / "scene.toml");
-  packing.spheres =
-      read_csv_of(packing.scene, folder / "spheres.csv");  // before another result replaces both
+  packing.spheres = read_spheres_of(packing.scene, folder);  // before another result replaces both
   packing.domain = packed_domain_of(packing.scene);
   packing.volume = volume_of(packing.domain);
   packing.seed = packing.scene.seed;
   if (const auto& start = packing.scene.start.file;
-      start && std::filesystem::equivalent(*start, folder / "spheres.csv", unknown))
+      start && std::filesystem::equivalent(*start, spheres_file_in(folder), unknown))
     packing.outcome = Outcome::imported;  // only such a result begins from itself
   return packing;
 }

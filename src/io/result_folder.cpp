@@ -17,6 +17,7 @@
 #include "cad/known_formats.hpp"
 #include "io/report.hpp"
 #include "scene/output_table.hpp"
+#include "scene/spheres_file.hpp"
 
 namespace fs = std::filesystem;
 
@@ -178,7 +179,7 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
   for (const auto& [named, sha256] : files) {
     const bool is_start = packed.start.file && &named == &*packed.start.file;
     std::error_code unknown;  // of a link that leads to itself
-    const fs::path file = fs::is_directory(named, unknown) ? named / "spheres.csv" : named;
+    const fs::path file = fs::is_directory(named, unknown) ? spheres_file_in(named) : named;
     const fs::path meant = fs::weakly_canonical(fs::absolute(file), unknown);
     if (std::ranges::find(names, meant.filename().string()) == names.end() || !stands_in(meant, folder))
       continue;

@@ -174,6 +174,33 @@ Section section_of(const Spheres<dynamic>& spheres, const Domain& domain, const 
   return section;
 }
 
+namespace {
+
+/// More circles than that make no picture that tells more.
+constexpr std::size_t most_circles = 30'000;
+
+/// Of very many circles those in a corner of a rectangle, cut off at its sides.
+void show_corner(DiscPicture& picture) {
+  if (picture.discs.size() <= most_circles || picture.outline.size() != 1 ||
+      picture.outline.front().size() != 4)
+    return;
+  const double part =
+      std::sqrt(static_cast<double>(most_circles) / static_cast<double>(picture.discs.size()));
+  const Vector<2> lower = picture.window.lower, upper = lower + part * picture.window.size();
+  picture.window.upper = upper;
+  picture.outline = {{lower, {upper[0], lower[1]}, upper, {lower[0], upper[1]}}};
+  std::erase_if(picture.discs, [&](const Disc& disc) {
+    return (disc.center.array() + disc.radius <= lower.array()).any() ||
+           (disc.center.array() - disc.radius >= upper.array()).any();
+  });
+  for (Disc& disc : picture.discs)
+    disc.sticks_out = disc.sticks_out || (disc.center.array() - disc.radius < lower.array()).any() ||
+                      (disc.center.array() + disc.radius > upper.array()).any();
+  picture.remark = fmt::format("a corner, {:.2g} of the edges", part);
+}
+
+}  // namespace
+
 std::string section_svg(const Section& section, const Spheres<dynamic>& spheres, std::string_view unit) {
   DiscPicture picture{{}, section.outline, bounds_of_loops(section.outline)};
   for (const Section::Circle& circle : section.circles)
@@ -181,6 +208,7 @@ std::string section_svg(const Section& section, const Spheres<dynamic>& spheres,
   picture.caption = fmt::format("{}   ·   area fraction {:.4f}   ·   {} circle{}",
                                 caption_of(section.plane.text, unit), section.area_fraction(),
                                 grouped(section.circles.size()), section.circles.size() == 1 ? "" : "s");
+  show_corner(picture);
   return svg_of(picture, SizeScale(spheres.r), spheres.size(), unit);
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "core/parallel.hpp"
 #include "io/base64.hpp"
 #include "io/palette.hpp"
 #include "io/view.hpp"
@@ -68,13 +69,15 @@ std::vector<double> depths_of(const Packing& packing, std::span<const std::uint3
   const Vector<3> periods = periods_of(packing.domain);
   std::vector<double> depths(of.size(), bounds.size().maxCoeff());
   if (has_walls(packing.domain)) depths = wall_gaps(packing.spheres, packing.domain, of, packing.container);
-  for (std::size_t k = 0; k < of.size(); ++k) {
-    const Vector<dynamic> c = packing.spheres.center(of[k]);
-    for (int axis = 0; axis < dimension; ++axis)
-      if (periods[axis] > 0)
-        depths[k] = std::min({depths[k], c[axis] - bounds.lower[axis] - packing.spheres.r[of[k]],
-                              bounds.upper[axis] - c[axis] - packing.spheres.r[of[k]]});
-  }
+  parallel_ranges(of.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      const Vector<dynamic> c = packing.spheres.center(of[k]);
+      for (int axis = 0; axis < dimension; ++axis)
+        if (periods[axis] > 0)
+          depths[k] = std::min({depths[k], c[axis] - bounds.lower[axis] - packing.spheres.r[of[k]],
+                                bounds.upper[axis] - c[axis] - packing.spheres.r[of[k]]});
+    }
+  });
   return depths;
 }
 
@@ -90,11 +93,19 @@ Shell shell_of(const Packing& packing, std::size_t most) {
   std::iota(shell.spheres.begin(), shell.spheres.end(), 0u);
   if (n <= most) return shell;
   const std::vector<double> depths = depths_of(packing, shell.spheres);
-  const auto last = shell.spheres.begin() + static_cast<std::ptrdiff_t>(most);
-  std::ranges::nth_element(shell.spheres, last, {}, [&](std::uint32_t i) { return std::pair(depths[i], i); });
-  shell.depth = depths[*last];
-  shell.spheres.erase(last, shell.spheres.end());
-  std::ranges::sort(shell.spheres);
+  std::vector<double> sorted = depths;
+  const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(most);
+  std::ranges::nth_element(sorted, last);
+  shell.depth = *last;
+  // Of those that are as deep as that, the first.
+  std::size_t left = most - static_cast<std::size_t>(std::count_if(
+                                sorted.begin(), last, [&](double depth) { return depth < shell.depth; }));
+  std::erase_if(shell.spheres, [&](std::uint32_t i) {
+    if (depths[i] < shell.depth) return false;
+    if (depths[i] > shell.depth || left == 0) return true;
+    --left;
+    return false;
+  });
   return shell;
 }
 

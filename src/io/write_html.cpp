@@ -146,13 +146,14 @@ void write_certificate(Page& page, const Report& report) {
   const Certificate& c = report.certificate;
   const bool walls = has_walls(report.packing.domain);
   page.add(
-      "<h2>The certificate</h2>\n<p>After writing, <code>spheres.csv</code> was read back, and every "
+      "<h2>The certificate</h2>\n<p>After writing, <code>{}</code> was read back, and every "
       "question of "
       "the kind “do these two overlap?”{}{} was decided for the numbers as they stand in the file: in "
       "ordinary "
       "arithmetic where its rounding error provably cannot change the answer, in exact arithmetic everywhere "
       "else. "
       "Touching is allowed.</p>\n<div class=\"wide\"><table>\n",
+      report.files.contains("spheres.npy") ? "spheres.npy" : "spheres.csv",
       is_periodic(report.packing.domain) ? ", images in the neighbouring periods included," : "",
       walls ? " or “does this sphere cross this piece of wall?”" : "");
   page.row("pairs of spheres", grouped(c.pairs_tested), "near enough to need a decision");

@@ -18,12 +18,13 @@
 #include "io/report.hpp"
 #include "io/result_folder.hpp"
 #include "io/viewer_data.hpp"
-#include "io/write_csv.hpp"
 #include "io/write_off.hpp"
 #include "io/write_output.hpp"
+#include "io/write_spheres.hpp"
 #include "io/write_svg.hpp"
 #include "io/write_vtp.hpp"
 #include "scene/scene_sources.hpp"
+#include "scene/spheres_file.hpp"
 
 namespace bernal {
 namespace {
@@ -34,18 +35,22 @@ constexpr std::uint32_t points_for_a_report = 4000, pore_points_for_a_report = 2
 constexpr double waves_for_a_report = 6e7, wave_bins_for_a_report = 0.4;
 /// Of more spheres, cells and waves would take longer than many a packing.
 constexpr std::size_t most_for_a_report = 100'000;
+/// Of more spheres the search for pores would take as much memory as all the rest.
+constexpr std::size_t most_for_pores = 20'000'000;
 
-/// Certifies what stands in the file, not what stood in memory.
-Certificate certify_written(const std::filesystem::path& csv, const Packing& packing, std::size_t list) {
-  const SpheresFile written = read_csv(csv);
-  if (written.spheres != packing.spheres || written.unit != name_of(packing.scene.unit)) {
-    throw Error(ErrorCode::cannot_write, "reads back differently from what was written", {csv.string()});
-  }
-  return certify(written.spheres, packing.domain,
+bool writes_array(const Packing& packing, const WriteOptions& options) {
+  return options.as_array || packing.spheres.size() > options.most_as_text;
+}
+
+/// Certifies what stands in the file: that is what stands in memory, to the bit.
+Certificate certify_written(const std::filesystem::path& file, const Packing& packing,
+                            const WriteOptions& options) {
+  require_written(file, packing.spheres, name_of(packing.scene.unit), writes_array(packing, options));
+  return certify(packing.spheres, packing.domain,
                  {.allowed_overlap = packing.scene.overlap,
                   .gap = packing.scene.gap,
                   .wall_gap = packing.scene.wall_gap,
-                  .list = list});
+                  .list = options.list});
 }
 
 /// Scripts are written to be changed, and then are their user's. What is larger nobody changes by hand, and
@@ -68,6 +73,10 @@ std::string middle_section(const Packing& packing) {
 
 }  // namespace
 
+std::string spheres_file_of(const Packing& packing, const WriteOptions& options) {
+  return std::string(writes_array(packing, options) ? spheres_as_array : spheres_as_text);
+}
+
 WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
                              const WriteOptions& options) {
   const auto go_on = [&] {
@@ -77,35 +86,34 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   if (options.all_or_nothing) interruptible.emplace(options.monitor);
   go_on();
   StagedFolder staged(folder);
-  const std::filesystem::path csv = staged.add("spheres.csv");
-  {
-    OutputFile file(csv);
-    write_csv(file, packing.spheres, name_of(packing.scene.unit));
-    file.close();
-  }
-  {
+  const bool as_array = writes_array(packing, options);
+  const std::filesystem::path spheres = staged.add(spheres_file_of(packing, options));
+  write_spheres(spheres, packing.spheres, name_of(packing.scene.unit), as_array);
+  if (!as_array) {
     OutputFile file(staged.add("spheres.vtp"));
     write_vtp(file, packing.spheres);
     file.close();
   }
-  Certificate certificate = certify_written(csv, packing, options.list);
+  Certificate certificate = certify_written(spheres, packing, options);
   certificate.statement += certified_walls(packing.scene);
   go_on();
+  const std::size_t n = packing.spheres.size();
   const SceneRadii radii = asked_radii_of(packing);
-  const Measurements measured = measure(packing.spheres, packing.domain, radii.asked,
-                                        {.gap = packing.scene.gap,
-                                         .wall_gap = packing.scene.wall_gap,
-                                         .radial = {.work = distances_for_a_report},
-                                         .size_correlation = {.work = distances_for_a_report},
-                                         .chambers = {.points = points_for_a_report},
-                                         .walls = {.work = wall_distances_for_a_report},
-                                         .local = {.most_spheres = most_for_a_report},
-                                         .structure = {.bin = wave_bins_for_a_report,
-                                                       .work = waves_for_a_report,
-                                                       .most_spheres = most_for_a_report},
-                                         .pores = {.points = pore_points_for_a_report},
-                                         .container = packing.container,
-                                         .monitor = options.monitor});
+  const Measurements measured =
+      measure(packing.spheres, packing.domain, radii.asked,
+              {.gap = packing.scene.gap,
+               .wall_gap = packing.scene.wall_gap,
+               .radial = {.work = distances_for_a_report},
+               .size_correlation = {.work = distances_for_a_report},
+               .chambers = {.points = points_for_a_report},
+               .walls = {.work = wall_distances_for_a_report},
+               .local = {.most_spheres = most_for_a_report},
+               .structure = {.bin = wave_bins_for_a_report,
+                             .work = waves_for_a_report,
+                             .most_spheres = most_for_a_report},
+               .pores = {.points = n > most_for_pores ? 0 : pore_points_for_a_report},
+               .container = packing.container,
+               .monitor = options.monitor});
   go_on();
   Manifest manifest;
   const std::string scene =

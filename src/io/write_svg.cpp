@@ -185,7 +185,30 @@ std::vector<Vector<3>> corners_of(const Mesh& mesh, const Domain& domain, const 
   return corners;
 }
 
-std::string solid_svg(const Spheres<dynamic>& spheres, const Domain& domain, std::string_view unit) {
+/// Of more spheres in a box a corner is shown, with about so many; nobody could tell them apart otherwise.
+constexpr std::size_t most_in_box = 2'000'000, in_corner = 200'000;
+
+/// The spheres of a corner of the box, and its edges, `part` of those of the box.
+std::pair<Spheres<dynamic>, Box> corner_of(const Spheres<dynamic>& spheres, const Box& box, double part) {
+  Box corner = box;
+  corner.size *= part;
+  Spheres<dynamic> there(3);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    bool inside = true;
+    for (int k = 0; k < 3; ++k)
+      inside = inside && spheres.x[static_cast<std::size_t>(k)][i] - box.corner[k] < corner.size[k];
+    if (inside) there.push_back(spheres.center(i), spheres.r[i]);
+  }
+  return {std::move(there), std::move(corner)};
+}
+
+std::string solid_svg(const Spheres<dynamic>& spheres, const Domain& domain, std::string_view unit,
+                      const std::string& remark = {}) {
+  if (const auto* box = std::get_if<Box>(&domain); box && spheres.size() > most_in_box) {
+    const double part = std::cbrt(static_cast<double>(in_corner) / static_cast<double>(spheres.size()));
+    const auto [there, corner] = corner_of(spheres, *box, part);
+    return solid_svg(there, corner, unit, fmt::format("a corner of the box, {:.2g} of its edges", part));
+  }
   const Mesh mesh = drawable_mesh(domain);
   const View view(corners_of(mesh, domain, spheres), canvas_size, canvas_margin, narrowest_canvas);
   const SizeScale sizes(spheres.r);
@@ -197,6 +220,7 @@ std::string solid_svg(const Spheres<dynamic>& spheres, const Domain& domain, std
   append_strokes(out, strokes, true, 0.5, 1);
   append_spheres(out, spheres, view, sizes);
   append_strokes(out, strokes, false, periodic ? 0.95 : 0.55, periodic ? 1.8 : 1.2);
+  if (!remark.empty()) append_words(out, view.width() / 2, view.height() + legend_height / 2 + 6, 17, remark);
   append_legend(out, {view.width(), view.height(), view.scale()}, sizes, unit,
                 [](int colour) { return fmt::format("url(#bernal{}0)", static_cast<char>('a' + colour)); });
   out += "</svg>\n";

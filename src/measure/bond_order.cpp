@@ -28,10 +28,10 @@ struct Sums {
   }
 };
 
-/// Mean of q6 and its standard error.
-void write_mean_q6(const Sums& sums, BondOrder& out) {
+/// Mean of q6 of the first so many, and its standard error.
+void write_mean_q6(const Sums& sums, std::size_t asked, BondOrder& out) {
   double n = 0, sum = 0, squares = 0;
-  for (std::size_t i = 0; i < sums.bonds.size(); ++i) {
+  for (std::size_t i = 0; i < asked; ++i) {
     if (sums.bonds[i] == 0) continue;
     const double q6 = std::min(1.0, sums.orders[i].norm() / sums.bonds[i]);
     ++n;
@@ -71,21 +71,24 @@ std::vector<Bonds> solid_bonds(const std::vector<NearBond>& bonds, std::vector<H
 std::optional<BondOrder> bond_order(const Spheres<dynamic>& spheres, const Domain& domain,
                                     std::span<const Region> regions) {
   if (spheres.dimension() != 3) return {};
-  const std::vector<NearBond> near = near_bonds(spheres, domain, BondOrder::widest_gap);
-  Sums sums(spheres.size(), near);
+  const BondsInside near =
+      near_bonds_inside(spheres, domain, BondOrder::widest_gap,
+                        spheres.size() > BondOrder::most_spheres ? BondOrder::looked_at : spheres.size());
+  Sums sums(near.ids.empty() ? spheres.size() : near.ids.size(), near.bonds);
   BondOrder order;
-  write_mean_q6(sums, order);
-  const std::vector<Bonds> bonds = solid_bonds(near, std::move(sums.orders));
+  write_mean_q6(sums, near.asked, order);
+  const std::vector<Bonds> bonds = solid_bonds(near.bonds, std::move(sums.orders));
   if (!regions.empty()) order.near_wall = order.core = BondOrder::Count{};
-  for (std::size_t i = 0; i < bonds.size(); ++i) {
+  for (std::size_t i = 0; i < near.asked; ++i) {
     const auto count = [&](BondOrder::Count& where) {
       ++where.spheres;
       where.crystalline += bonds[i].crystalline();
     };
     count(order.all);
     if (regions.empty()) continue;
-    if (regions[i] == Region::near_wall) count(*order.near_wall);
-    if (regions[i] == Region::core) count(*order.core);
+    const Region region = regions[near.ids.empty() ? i : near.ids[i]];
+    if (region == Region::near_wall) count(*order.near_wall);
+    if (region == Region::core) count(*order.core);
   }
   return order;
 }

@@ -2,73 +2,127 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
 #include "measure/touching.hpp"
 
 namespace bernal {
 namespace {
 
-/// Who touches whom, both ways, in one flat list.
+/// Ranks take a byte.
+constexpr std::size_t most_gaps = 256;
+
+/// Who is near whom, both ways, in one flat list, with the rank of each pair; and the pairs of spheres and
+/// their own images, which hold nothing.
 class Neighbours {
  public:
-  Neighbours(std::size_t spheres, const std::vector<NearPair>& pairs) : start_(spheres + 1, 0) {
-    const auto holds = [](const NearPair& pair) { return pair.first != pair.second; };
-    for (const NearPair& pair : pairs) {
-      if (!holds(pair)) continue;
-      ++start_[pair.first];
-      ++start_[pair.second];
+  struct Near {
+    std::span<const std::uint32_t> ids;
+    std::span<const std::uint8_t> ranks;
+
+    /// Calls visit(id) for those of at most this rank.
+    template <class Visit>
+    void up_to(std::uint32_t rank, const Visit& visit) const {
+      for (std::size_t k = 0; k < ids.size(); ++k)
+        if (ranks[k] <= rank) visit(ids[k]);
     }
+  };
+
+  /// The parts of the pairs go as they are read.
+  Neighbours(std::size_t spheres, std::vector<std::vector<RankedPair>> parts) : start_(spheres + 1, 0) {
+    for (const auto& part : parts)
+      for (const RankedPair& pair : part) {
+        if (pair.first == pair.second) {
+          own_.push_back(pair);
+          continue;
+        }
+        ++start_[pair.first];
+        ++start_[pair.second];
+      }
     for (std::size_t k = 1; k < start_.size(); ++k) start_[k] += start_[k - 1];
-    list_.resize(start_.back());
-    for (const NearPair& pair : pairs) {
-      if (!holds(pair)) continue;
-      list_[--start_[pair.first]] = pair.second;
-      list_[--start_[pair.second]] = pair.first;
+    ids_.resize(start_.back());
+    ranks_.resize(start_.back());
+    for (auto& part : parts) {
+      for (const RankedPair& pair : part) {
+        if (pair.first == pair.second) continue;
+        add(pair.first, pair.second, pair.rank);
+        add(pair.second, pair.first, pair.rank);
+      }
+      part = {};
     }
   }
-  std::span<const std::uint32_t> of(std::size_t i) const {
-    return {list_.data() + start_[i], list_.data() + start_[i + 1]};
+
+  Near of(std::size_t i) const {
+    return {std::span(ids_).subspan(start_[i], start_[i + 1] - start_[i]),
+            std::span(ranks_).subspan(start_[i], start_[i + 1] - start_[i])};
   }
+  const std::vector<RankedPair>& own_images() const { return own_; }
 
  private:
+  void add(std::uint32_t of, std::uint32_t id, std::uint32_t rank) {
+    ids_[--start_[of]] = id;
+    ranks_[start_[of]] = static_cast<std::uint8_t>(rank);
+  }
+
   std::vector<std::size_t> start_;
-  std::vector<std::uint32_t> list_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<std::uint8_t> ranks_;
+  std::vector<RankedPair> own_;
 };
 
-/// Which spheres are no rattlers. `held` starts as the number of walls that each touches.
-std::vector<bool> backbone_of(int dimension, std::vector<int> held, const std::vector<NearPair>& pairs) {
-  const int needed = dimension + 1;
-  const Neighbours neighbours(held.size(), pairs);
+/// Which spheres are no rattlers, by the pairs up to that rank. `held` starts as the number of walls that
+/// each touches, and ends as the number of all that hold it at first.
+std::vector<bool> backbone_of(int dimension, std::vector<std::uint32_t>& held, const Neighbours& neighbours,
+                              std::uint32_t rank) {
+  const auto needed = static_cast<std::uint32_t>(dimension + 1);
   std::vector<std::uint32_t> loose;
   for (std::uint32_t i = 0; i < held.size(); ++i) {
-    held[i] += static_cast<int>(neighbours.of(i).size());
+    neighbours.of(i).up_to(rank, [&](std::uint32_t) { ++held[i]; });
     if (held[i] < needed) loose.push_back(i);
   }
   std::vector<bool> backbone(held.size(), true);
   for (std::size_t k = 0; k < loose.size(); ++k) {
     backbone[loose[k]] = false;
-    for (const std::uint32_t j : neighbours.of(loose[k]))
+    neighbours.of(loose[k]).up_to(rank, [&](std::uint32_t j) {
       if (held[j]-- == needed) loose.push_back(j);
+    });
   }
   return backbone;
 }
 
-Contacts count(std::size_t spheres, const Domain& domain, const std::vector<NearPair>& pairs,
+Contacts count(std::size_t spheres, const Domain& domain, const Neighbours& neighbours, std::uint32_t rank,
                const std::vector<NearWall>& walls, double contact_gap) {
   const int dimension = dimension_of(domain);
   const auto n = static_cast<double>(spheres);
-  std::vector<int> held(spheres, 0);
-  for (const NearWall& wall : walls) ++held[wall.sphere];
-  const std::vector<bool> backbone = backbone_of(dimension, held, pairs);
-
   Contacts contacts;
   contacts.contact_gap = contact_gap;
-  contacts.pairs = pairs.size();
-  contacts.walls = walls.size();
-  contacts.coordination = n > 0 ? 2.0 * static_cast<double>(pairs.size()) / n : 0;
+  std::vector<std::uint32_t> held(spheres, 0);
+  for (const NearWall& wall : walls) {
+    if (!(wall.gap < contact_gap)) continue;
+    ++held[wall.sphere];
+    ++contacts.walls;
+  }
+  const std::vector<bool> backbone = backbone_of(dimension, held, neighbours, rank);
+
+  std::uint64_t ends = 0, backbone_ends = 0;  // of pairs, each seen from both
+  for (std::uint32_t i = 0; i < spheres; ++i)
+    neighbours.of(i).up_to(rank, [&](std::uint32_t j) {
+      ++ends;
+      backbone_ends += backbone[i] && backbone[j];
+    });
+  contacts.pairs = ends / 2;
+  contacts.backbone_pairs = backbone_ends / 2;
+  for (const RankedPair& pair : neighbours.own_images()) {
+    if (pair.rank > rank) continue;
+    ++contacts.pairs;
+    contacts.backbone_pairs += backbone[pair.first];
+  }
+  contacts.coordination = n > 0 ? 2.0 * static_cast<double>(contacts.pairs) / n : 0;
   contacts.backbone = static_cast<std::uint64_t>(std::ranges::count(backbone, true));
   contacts.rattlers = spheres - contacts.backbone;
-  for (const NearPair& pair : pairs) contacts.backbone_pairs += backbone[pair.first] && backbone[pair.second];
-  for (const NearWall& wall : walls) contacts.backbone_walls += backbone[wall.sphere];
+  for (const NearWall& wall : walls)
+    contacts.backbone_walls += wall.gap < contact_gap && backbone[wall.sphere];
   if (contacts.backbone == 0) return contacts;
   contacts.backbone_coordination =
       2.0 * static_cast<double>(contacts.backbone_pairs) / static_cast<double>(contacts.backbone);
@@ -96,17 +150,19 @@ std::vector<Contacts> measure_contacts(const Spheres<dynamic>& spheres, const Do
                                        std::span<const double> contact_gaps,
                                        const std::shared_ptr<const Container>& made) {
   if (contact_gaps.empty()) return {};
-  const double widest = std::ranges::max(contact_gaps);
-  const std::vector<NearPair> pairs = near_pairs(spheres, domain, widest);
-  const std::vector<NearWall> walls = near_walls(spheres, domain, widest, made);
+  std::vector<double> ascending(contact_gaps.begin(), contact_gaps.end());
+  std::ranges::sort(ascending);
+  const auto repeated = std::ranges::unique(ascending);
+  ascending.erase(repeated.begin(), repeated.end());
+  if (ascending.size() > most_gaps)
+    throw Error(ErrorCode::bad_argument, fmt::format("contacts of more than {} gaps at once", most_gaps));
+  const Neighbours neighbours(spheres.size(), ranked_pairs(spheres, domain, ascending));
+  const std::vector<NearWall> walls = near_walls(spheres, domain, ascending.back(), made);
   std::vector<Contacts> all;
   for (const double gap : contact_gaps) {
-    const auto touches = [gap](const auto& near) { return near.gap < gap; };
-    std::vector<NearPair> touching_pairs;
-    std::vector<NearWall> touching_walls;
-    std::ranges::copy_if(pairs, std::back_inserter(touching_pairs), touches);
-    std::ranges::copy_if(walls, std::back_inserter(touching_walls), touches);
-    all.push_back(count(spheres.size(), domain, touching_pairs, touching_walls, gap));
+    const auto rank =
+        static_cast<std::uint32_t>(std::ranges::lower_bound(ascending, gap) - ascending.begin());
+    all.push_back(count(spheres.size(), domain, neighbours, rank, walls, gap));
   }
   return all;
 }

@@ -134,7 +134,11 @@ std::optional<SizeCorrelation::Mean> SizeCorrelation::mean_between(double from, 
 std::optional<SizeCorrelation> size_correlation(const Spheres<dynamic>& spheres, const Domain& domain,
                                                 const SizeCorrelationOptions& options) {
   if (spheres.size() < 2) return {};
-  const std::vector<NearPair> bonds = near_pairs(spheres, domain, BondOrder::widest_gap);
+  const auto [smallest, largest] = std::ranges::minmax(spheres.r);
+  if (smallest == largest) return {};  // at once
+  const std::vector<NearPair> bonds =
+      near_pairs_inside(spheres, domain, BondOrder::widest_gap,
+                        spheres.size() > BondOrder::most_spheres ? BondOrder::looked_at : spheres.size());
   if (has_walls(domain) && dimension_of(domain) == 3) {
     const Frame frame = frame_of(domain);
     return correlation_in<3>(localised(spheres, frame), localised(boundary_of<3>(domain), frame), frame.scale,

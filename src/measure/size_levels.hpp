@@ -15,7 +15,7 @@ namespace bernal {
 template <int D>
 struct Level {
   double largest = 0;
-  std::vector<std::uint32_t> members;
+  std::vector<std::uint32_t> members;  ///< until they are in the grid
   std::unique_ptr<PointGrid<D>> grid;
 };
 
@@ -36,6 +36,7 @@ std::vector<Level<D>> levels_of(const Spheres<D>& spheres, const Boundary<D>& bo
   for (Level<D>& level : by_octave) {
     level.grid = std::make_unique<PointGrid<D>>(spheres, level.members, boundary,
                                                 2 * (1 + widest_gap) * level.largest);
+    level.members = {};
   }
   return by_octave;
 }

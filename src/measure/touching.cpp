@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,6 +14,7 @@
 #include "bernal/domain/container.hpp"
 #include "core/parallel.hpp"
 #include "measure/localised.hpp"
+#include "measure/patch.hpp"
 #include "measure/size_levels.hpp"
 
 namespace bernal {
@@ -28,29 +29,50 @@ bool counts(std::uint32_t i, std::uint32_t j, const Vector<D>& d) {
   return false;
 }
 
-template <int D>
-void append(std::vector<NearPair>& out, std::uint32_t i, std::uint32_t j, double gap, const Vector<D>&) {
-  out.push_back({i, j, gap});
-}
-void append(std::vector<NearBond>& out, std::uint32_t i, std::uint32_t j, double gap, const Vector<3>& d) {
-  out.push_back({i, j, d, gap});
-}
+/// What is kept of a pair whose gap is below the widest that matters.
+struct AsPair {
+  using Found = NearPair;
+  double widest;
+
+  template <int D>
+  Found operator()(std::uint32_t i, std::uint32_t j, double gap, const Vector<D>&) const {
+    return {i, j, gap};
+  }
+};
+struct AsBond {
+  using Found = NearBond;
+  double widest;
+
+  Found operator()(std::uint32_t i, std::uint32_t j, double gap, const Vector<3>& d) const {
+    return {i, j, d, gap};
+  }
+};
+struct AsRanked {
+  using Found = RankedPair;
+  std::span<const double> gaps;
+  double widest = gaps.back();
+
+  template <int D>
+  Found operator()(std::uint32_t i, std::uint32_t j, double gap, const Vector<D>&) const {
+    return {i, j, static_cast<std::uint32_t>(std::ranges::upper_bound(gaps, gap) - gaps.begin())};
+  }
+};
 
 /// The pairs of sphere i, at `c`, with spheres of its own level and of larger ones: each pair is met from its
 /// smaller end, which need not look far.
-template <int D, class Found>
-void append_pairs(const Spheres<D>& spheres, std::span<const Level<D>> levels, std::uint32_t i,
-                  const Vector<D>& c, double widest_gap, std::vector<Found>& out) {
-  const double r = spheres.r[i];
+template <int D, class As>
+void append_pairs(const std::vector<double>& radii, std::span<const Level<D>> levels, std::uint32_t i,
+                  const Vector<D>& c, const As& as, std::vector<typename As::Found>& out) {
+  const double r = radii[i];
   for (const Level<D>& level : levels) {
     const bool own = &level == &levels.back();
-    const double reach = (1 + widest_gap) * (r + level.largest);
+    const double reach = (1 + as.widest) * (r + level.largest);
     level.grid->for_each_near(c, reach, [&](std::uint32_t j, const Vector<D>& d) {
       if (own && !counts<D>(i, j, d)) return;
       const double squared = d.squaredNorm();
       if (!(squared < reach * reach)) return;
-      const double sum = r + spheres.r[j], gap = (std::sqrt(squared) - sum) / sum;
-      if (gap < widest_gap) append(out, i, j, gap, d);
+      const double sum = r + radii[j], gap = (std::sqrt(squared) - sum) / sum;
+      if (gap < as.widest) out.push_back(as(i, j, gap, d));
     });
   }
 }
@@ -91,58 +113,143 @@ void require_few(std::size_t pairs, std::size_t most) {
                     most));
 }
 
-template <class Found, int D>
-std::vector<Found> pairs_among(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
+template <int D, class As>
+using Parts = std::vector<std::vector<typename As::Found>>;
+
+/// In parts, which follow each other.
+template <int D, class As>
+Parts<D, As> parts_among(Spheres<D> spheres, const Boundary<D>& boundary, const As& as) {
   constexpr std::size_t chunk = 4096;
-  require_countable_images(spheres, boundary, widest_gap);
-  const std::size_t most = most_pairs<D>(spheres.size(), widest_gap);
-  const std::vector<Level<D>> levels = levels_of(spheres, boundary, widest_gap);
-  std::vector<Found> pairs;
+  require_countable_images(spheres, boundary, as.widest);
+  const std::size_t most = most_pairs<D>(spheres.size(), as.widest);
+  const std::vector<Level<D>> levels = levels_of(spheres, boundary, as.widest);
+  spheres.x = {};  // the grids have them
+  Parts<D, As> parts;
+  std::size_t pairs = 0;
   for (std::size_t l = 0; l < levels.size(); ++l) {
     const PointGrid<D>& grid = *levels[l].grid;
-    const std::size_t n = grid.ids().size();
-    std::vector<std::vector<Found>> found((n + chunk - 1) / chunk);
-    parallel_for(found.size(), [&](std::size_t part) {
+    const std::size_t n = grid.ids().size(), before = parts.size();
+    parts.resize(before + (n + chunk - 1) / chunk);
+    parallel_for(parts.size() - before, [&](std::size_t part) {
+      auto& found = parts[before + part];
       for (std::size_t place = part * chunk; place < std::min(n, (part + 1) * chunk); ++place) {
-        append_pairs<D>(spheres, std::span(levels).first(l + 1), grid.ids()[place], grid.point(place),
-                        widest_gap, found[part]);
-        require_few(found[part].size(), most);
+        append_pairs<D>(spheres.r, std::span(levels).first(l + 1), grid.ids()[place], grid.point(place), as,
+                        found);
+        require_few(found.size(), most);
       }
+      found.shrink_to_fit();
     });
-    for (const std::vector<Found>& part : found) {
-      pairs.insert(pairs.end(), part.begin(), part.end());
-      require_few(pairs.size(), most);
-    }
+    for (std::size_t p = before; p < parts.size(); ++p) require_few(pairs += parts[p].size(), most);
   }
-  return pairs;
+  return parts;
+}
+
+template <class Found>
+std::vector<Found> joined(std::vector<std::vector<Found>> parts) {
+  std::size_t count = 0;
+  for (const auto& part : parts) count += part.size();
+  std::vector<Found> all;
+  all.reserve(count);
+  for (auto& part : parts) {
+    all.insert(all.end(), part.begin(), part.end());
+    part = {};
+  }
+  return all;
 }
 
 /// Whether to work in the frame of the walls, which keeps the digits that far away would be lost.
 bool has_own_frame(const Domain& domain) { return has_walls(domain) && dimension_of(domain) == 3; }
 
-template <class Found>
-std::vector<Found> pairs_in_own_frame(const Spheres<dynamic>& spheres, const Domain& domain,
-                                      double widest_gap) {
+template <class As>
+Parts<3, As> parts_in_own_frame(const Spheres<dynamic>& spheres, const Domain& domain, const As& as) {
   const Frame frame = frame_of(domain);
-  return pairs_among<Found, 3>(localised(spheres, frame), localised(boundary_of<3>(domain), frame),
-                               widest_gap);
+  return parts_among<3>(localised(spheres, frame), localised(boundary_of<3>(domain), frame), as);
+}
+
+template <class As>
+std::vector<std::vector<typename As::Found>> parts_of(const Spheres<dynamic>& spheres, const Domain& domain,
+                                                      const As& as) {
+  if (spheres.empty()) return {};
+  if (has_own_frame(domain)) return parts_in_own_frame(spheres, domain, as);
+  return with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
+    constexpr int D = dimension;
+    return parts_among<D>(spheres.in<D>(), boundary_of<D>(domain), as);
+  });
 }
 
 }  // namespace
 
 std::vector<NearPair> near_pairs(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap) {
-  if (spheres.empty()) return {};
-  if (has_own_frame(domain)) return pairs_in_own_frame<NearPair>(spheres, domain, widest_gap);
-  return with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
-    constexpr int D = dimension;
-    return pairs_among<NearPair, D>(spheres.in<D>(), boundary_of<D>(domain), widest_gap);
-  });
+  return joined(parts_of(spheres, domain, AsPair{widest_gap}));
+}
+
+std::vector<std::vector<RankedPair>> ranked_pairs(const Spheres<dynamic>& spheres, const Domain& domain,
+                                                  std::span<const double> gaps) {
+  return parts_of(spheres, domain, AsRanked{gaps});
 }
 
 std::vector<NearBond> near_bonds(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap) {
   if (spheres.empty()) return {};
-  if (has_own_frame(domain)) return pairs_in_own_frame<NearBond>(spheres, domain, widest_gap);
-  return pairs_among<NearBond, 3>(spheres.in<3>(), boundary_of<3>(domain), widest_gap);
+  const AsBond as{widest_gap};
+  if (has_own_frame(domain)) return joined(parts_in_own_frame(spheres, domain, as));
+  return joined(parts_among<3>(spheres.in<3>(), boundary_of<3>(domain), as));
+}
+
+namespace {
+
+/// How far the centre of a neighbour is at most.
+double bond_reach(const Spheres<dynamic>& spheres, double widest_gap) {
+  return 2 * (1 + widest_gap) * std::ranges::max(spheres.r);
+}
+
+template <int D>
+Patch<D> middle_patch(const Spheres<dynamic>& spheres, const Domain& domain, std::size_t most,
+                      double margin) {
+  const Vector<D> middle = bounds_of<dynamic>(domain).center();
+  return patch_of<D>(spheres, boundary_of<D>(domain), middle, most, margin);
+}
+
+template <int D, class As>
+std::vector<typename As::Found> found_in(Patch<D>&& patch, const Domain& domain, const As& as) {
+  if constexpr (D == 3)
+    if (has_own_frame(domain)) {
+      const Frame frame = frame_of(domain);
+      return joined(parts_among<3>(localised(Spheres<dynamic>(std::move(patch.spheres)), frame),
+                                   localised(patch.boundary, frame), as));
+    }
+  return joined(parts_among<D>(std::move(patch.spheres), patch.boundary, as));
+}
+
+}  // namespace
+
+BondsInside near_bonds_inside(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
+                              std::size_t most) {
+  BondsInside inside;
+  if (spheres.size() <= most) {
+    inside.asked = spheres.size();
+    inside.bonds = near_bonds(spheres, domain, widest_gap);
+    return inside;
+  }
+  Patch<3> patch = middle_patch<3>(spheres, domain, most, 2 * bond_reach(spheres, widest_gap));
+  inside.ids = std::move(patch.ids);
+  inside.asked = patch.asked;
+  inside.bonds = found_in<3>(std::move(patch), domain, AsBond{widest_gap});
+  return inside;
+}
+
+std::vector<NearPair> near_pairs_inside(const Spheres<dynamic>& spheres, const Domain& domain,
+                                        double widest_gap, std::size_t most) {
+  if (spheres.size() <= most) return near_pairs(spheres, domain, widest_gap);
+  return with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
+    constexpr int D = dimension;
+    Patch<D> patch = middle_patch<D>(spheres, domain, most, bond_reach(spheres, widest_gap));
+    const std::vector<std::uint32_t> ids = std::move(patch.ids);
+    const std::size_t asked = patch.asked;
+    std::vector<NearPair> pairs = found_in<D>(std::move(patch), domain, AsPair{widest_gap});
+    std::erase_if(pairs, [&](const NearPair& pair) { return pair.first >= asked && pair.second >= asked; });
+    for (NearPair& pair : pairs) pair = {ids[pair.first], ids[pair.second], pair.gap};
+    return pairs;
+  });
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
 #include "bernal/domain/boundary.hpp"
+#include "core/parallel.hpp"
 #include "neighbors/counting_sort.hpp"
 
 namespace bernal {
@@ -30,21 +31,23 @@ class PointGrid {
   /// to come, or a third of it where a cell would hold many points.
   PointGrid(const Spheres<D>& spheres, std::span<const Id> ids, const Boundary<D>& boundary, double edge)
       : boundary_(boundary) {
-    std::vector<Vector<D>> points;
-    points.reserve(ids.size());
-    for (const Id id : ids) points.push_back(boundary.wrap(spheres.center(id)));
-    lay_cells(points, edge);
-
-    std::vector<std::uint32_t> place;
-    place.reserve(points.size());
-    for (const Vector<D>& p : points) place.push_back(cell_of(p));
+    constexpr std::size_t grain = 1 << 14;
+    const auto point_of = [&](Id id) { return boundary.wrap(spheres.center(id)); };
+    lay_cells(ids, point_of, edge);
+    std::vector<std::uint32_t> place(ids.size());
+    parallel_ranges(ids.size(), grain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) place[i] = cell_of(point_of(ids[i]));
+    });
     counting_sort(place, cell_count_, start_);
-    ids_.resize(points.size());
-    for (auto& column : x_) column.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      ids_[place[i]] = ids[i];
-      for (int k = 0; k < D; ++k) x_[k][place[i]] = points[i][k];
-    }
+    ids_.resize(ids.size());
+    for (auto& column : x_) column.resize(ids.size());
+    parallel_ranges(ids.size(), grain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const Vector<D> p = point_of(ids[i]);
+        ids_[place[i]] = ids[i];
+        for (int k = 0; k < D; ++k) x_[k][place[i]] = p[k];
+      }
+    });
   }
 
   /// The ids in the order of the cells: whoever asks for all of them in this order stays in the cache.
@@ -69,10 +72,12 @@ class PointGrid {
  private:
   static constexpr double cells_per_point = 2;
 
-  void lay_cells(const std::vector<Vector<D>>& points, double edge) {
+  template <class PointOf>
+  void lay_cells(std::span<const Id> ids, const PointOf& point_of, double edge) {
     Vector<D> upper = Vector<D>::Zero();
-    if (!points.empty()) lower_ = upper = points.front();
-    for (const Vector<D>& p : points) {
+    if (!ids.empty()) lower_ = upper = point_of(ids.front());
+    for (const Id id : ids) {
+      const Vector<D> p = point_of(id);
       lower_ = lower_.cwiseMin(p);
       upper = upper.cwiseMax(p);
     }
@@ -82,7 +87,7 @@ class PointGrid {
       lower_[k] = boundary_.origin[k];
       size[k] = boundary_.edges[k];
     }
-    const double most = std::max(1.0, cells_per_point * static_cast<double>(points.size()));
+    const double most = std::max(1.0, cells_per_point * static_cast<double>(ids.size()));
     double cells = 0;
     edge = std::max(edge, 1e-12 / most * size.maxCoeff());  // or it takes long, or for ever, to be as large
     for (;; edge *= 1.1) {

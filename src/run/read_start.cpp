@@ -12,6 +12,7 @@
 #include "cad/known_formats.hpp"
 #include "run/start.hpp"
 #include "scene/read_spheres.hpp"
+#include "scene/spheres_file.hpp"
 #include "scene/stage_table.hpp"
 #include "sizes/volume_carriers.hpp"
 
@@ -37,7 +38,7 @@ void look_into_folder(Scene& scene) {
   if (const auto* box = std::get_if<PeriodicBox>(&there.container); box && start.box.empty())
     for (const double edge : edges_of(*box)) start.box.push_back(in_our_unit * edge);
   if (!start.unit) start.unit = there.unit;
-  *start.file /= "spheres.csv";
+  *start.file = spheres_file_in(*start.file);
 }
 
 /// The box that the spheres lie in, where it repeats itself.

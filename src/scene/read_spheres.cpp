@@ -13,6 +13,8 @@
 #include "bernal/core/error.hpp"
 #include "core/csv_headings.hpp"
 #include "core/csv_lines.hpp"
+#include "core/npy_file.hpp"
+#include "scene/read_npy_spheres.hpp"
 
 namespace bernal {
 namespace {
@@ -152,6 +154,7 @@ double number_in(std::string_view field, const std::string& column, const CsvLin
 
 NamedColumns read_spheres(const std::filesystem::path& file,
                           const std::function<void(std::string_view bytes)>& see) {
+  if (is_npy_file(file)) return {read_npy_spheres(file, {smallest_size, farthest}, see), {}, 1};
   CsvLines lines(file, {.last_line_may_lack_feed = true, .see = see});
   NamedColumns read;
   bool is_sphere = false;

@@ -1,7 +1,10 @@
 #include "bernal/verify/certificate.hpp"
 
 #include <cmath>
+#include <mutex>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,6 +15,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "verify/judge.hpp"
+#include "verify/slabs.hpp"
 
 namespace bernal {
 namespace {
@@ -39,6 +43,8 @@ void check_arguments(const Spheres<dynamic>& spheres, const Domain& domain, cons
     if (column.size() != spheres.size())
       throw Error(ErrorCode::bad_argument, fmt::format("a column of coordinates has {} entries for {} radii",
                                                        column.size(), spheres.size()));
+  if (options.at_once == 0)
+    throw Error(ErrorCode::bad_argument, "no spheres are to be looked at at once; leave at_once as it is");
   if (!(allowed_overlap >= 0 && allowed_overlap < 1))
     throw Error(ErrorCode::bad_argument,
                 fmt::format("the allowed overlap ratio is {}; it must be in [0, 1)", allowed_overlap));
@@ -46,11 +52,18 @@ void check_arguments(const Spheres<dynamic>& spheres, const Domain& domain, cons
 
 /// Why there is nothing to prove: the spheres that are none.
 std::optional<std::string> complaint_about(const Spheres<dynamic>& spheres) {
-  std::uint64_t bad = 0, first = 0;
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    const bool good = spheres.center(i).allFinite() && std::isfinite(spheres.r[i]) && spheres.r[i] > 0;
-    if (!good && bad++ == 0) first = i;
-  }
+  std::uint64_t bad = 0, first = spheres.size();
+  std::mutex adding;
+  parallel_ranges(spheres.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      bool good = std::isfinite(spheres.r[i]) && spheres.r[i] > 0;
+      for (const auto& column : spheres.x) good = good && std::isfinite(column[i]);
+      if (good) continue;
+      const std::lock_guard lock(adding);
+      ++bad;
+      first = std::min<std::uint64_t>(first, i);
+    }
+  });
   if (bad == 0) return std::nullopt;
   const Vector<dynamic> c = spheres.center(first);
   return fmt::format(
@@ -59,24 +72,30 @@ std::optional<std::string> complaint_about(const Spheres<dynamic>& spheres) {
       counted_spheres(bad), first, fmt::join(c, ", "), spheres.r[first]);
 }
 
-template <int D, class Space>
-verify::BallTree<D> tree_of(const Spheres<dynamic>& spheres, const Space& space) {
-  std::vector<verify::Ball<D>> balls(spheres.size());
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    for (int k = 0; k < D; ++k)
-      balls[i].c[k] = space.representative(k, spheres.x[static_cast<std::size_t>(k)][i]);
-    balls[i].r = spheres.r[i];
-    balls[i].index = i;
-  }
-  return verify::BallTree<D>(std::move(balls));
-}
-
+/// Slab by slab, each with what reaches into it of those that follow.
 template <int D, class Space>
 verify::Tally judge_in(const Space& space, const Spheres<dynamic>& spheres, const Domain& domain,
                        const verify::Course& course) {
-  const verify::BallTree<D> balls = tree_of<D>(spheres, space);
-  verify::Tally tally = verify::judge_pairs(balls, space, course);
-  return tally += verify::judge_walls(balls, domain, course);
+  const verify::Walls<D> walls = verify::walls_of<D>(domain);
+  const verify::Slabs<D> slabs(spheres, space, course.options().at_once);
+  const double known = verify::distances_known_up_to(course.options().gap);
+  verify::Tally tally(course.options().list);
+  std::vector<verify::Ball<D>> next = slabs.balls(0, space);
+  for (std::size_t s = 0; s < slabs.size() && !course.stopped(); ++s) {
+    course.goes_on(s, slabs.size());
+    const verify::BallTree<D> balls(std::exchange(next, {}));
+    tally += verify::judge_pairs(balls, space, course);
+    const auto reach = space.reach_of(verify::widened(slabs.extent(s), known));
+    if (s + 1 < slabs.size()) next = slabs.balls(s + 1, space);
+    for (std::size_t t = s + 1; t < slabs.size() && !course.stopped(); ++t) {
+      if (!touch(slabs.extent(t), reach)) continue;
+      const std::vector<verify::Ball<D>> more = t > s + 1 ? slabs.balls(t, space) : decltype(next)();
+      const std::span<const verify::Ball<D>> others = t > s + 1 ? more : next;
+      tally += verify::judge_pairs_with(others, balls, space, course);
+    }
+    tally += verify::judge_walls<D>(balls.items(), walls, course);
+  }
+  return tally;
 }
 
 verify::Tally judge(const Spheres<dynamic>& spheres, const Domain& domain, const verify::Course& course) {

@@ -8,7 +8,7 @@
 namespace bernal::verify {
 namespace {
 
-/// That the work is cut into where somebody watches it.
+/// That the work, or a slab of it, is cut into where somebody watches it.
 constexpr std::size_t parts = 256;
 constexpr std::chrono::milliseconds between_reports{50};
 
@@ -37,7 +37,8 @@ void Course::report(std::string_view activity, std::size_t done, std::size_t n) 
   stopped_ = options_.monitor.stop();
   const auto now = std::chrono::steady_clock::now();
   if (now < next_report_) return;
-  options_.monitor.report({activity, static_cast<double>(done) / static_cast<double>(n), {}});
+  const double here = static_cast<double>(done) / static_cast<double>(n);
+  options_.monitor.report({activity, (static_cast<double>(at_) + here) / static_cast<double>(parts_), {}});
   next_report_ = now + between_reports;
 }
 

@@ -17,6 +17,12 @@ class Course {
   const CertifyOptions& options() const { return options_; }
   bool stopped() const { return stopped_; }
 
+  /// What is judged from now on is part `at` of so many.
+  void goes_on(std::size_t at, std::size_t parts) const {
+    at_ = at;
+    parts_ = parts;
+  }
+
   using Judge = std::function<void(std::size_t k, Tally& tally)>;
 
   /// The sum of judge(k, tally) over k from 0 to n, `grain` or more of them to a task. A monitor is asked
@@ -28,6 +34,7 @@ class Course {
 
   const CertifyOptions& options_;
   mutable bool stopped_ = false;
+  mutable std::size_t at_ = 0, parts_ = 1;
   mutable std::chrono::steady_clock::time_point next_report_{};
 };
 

@@ -1,4 +1,7 @@
 #pragma once
+#include <functional>
+#include <span>
+
 #include "bernal/domain/domain.hpp"
 #include "verify/ball.hpp"
 #include "verify/course.hpp"
@@ -15,6 +18,17 @@ template <int D>
 Tally judge_pairs(const BallTree<D>& balls, const PeriodicSpace<D>& space, const Course& course);
 Tally judge_pairs(const BallTree<3>& balls, const OpenSpace<3>& space, const Course& course);
 
+/// The same for every pair of a ball of the tree and one of `others`, which the tree does not hold.
+template <int D>
+Tally judge_pairs_with(std::span<const Ball<D>> others, const BallTree<D>& balls,
+                       const PeriodicSpace<D>& space, const Course& course);
+Tally judge_pairs_with(std::span<const Ball<3>> others, const BallTree<3>& balls, const OpenSpace<3>& space,
+                       const Course& course);
+
+/// Walls that have been made ready: how a ball stands to them, and what was decided for that.
+template <int D>
+using Walls = std::function<Stand(const Ball<D>& ball, const CertifyOptions& options, Tally& tally)>;
+
 /// Decides for every ball whether it lies in the closed domain; along axes that repeat themselves it may lie
 /// anywhere.
 ///
@@ -23,8 +37,11 @@ Tally judge_pairs(const BallTree<3>& balls, const OpenSpace<3>& space, const Cou
 /// touch the ball's are tried, and the side of its centre is decided, and of a polygon the edges
 /// likewise. Throws Error{bad_mesh} for a mesh that
 /// encloses nothing and Error{bad_argument} for absurd measures. Cost: O(N), for a mesh of T triangles
-/// O(T log T + N log T + near pieces). Precondition: D is the dimension of the domain.
+/// O(T log T + N log T + near pieces). Preconditions: D is the dimension of the domain, which outlives the
+/// walls.
 template <int D>
-Tally judge_walls(const BallTree<D>& balls, const Domain& domain, const Course& course);
+Walls<D> walls_of(const Domain& domain);
+template <int D>
+Tally judge_walls(std::span<const Ball<D>> balls, const Walls<D>& walls, const Course& course);
 
 }  // namespace bernal::verify

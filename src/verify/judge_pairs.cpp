@@ -21,6 +21,15 @@ class PairJudge {
                             [this](std::size_t l, Tally& tally) { judge_leaf(l, tally); });
   }
 
+  Tally judge_with(std::span<const Ball<D>> others) const {
+    return course_.for_each("pairs", others.size(), 256, [&](std::size_t k, Tally& tally) {
+      const Ball<D>& other = others[k];
+      balls_.for_each_touching(reach_of(other.box()), [&](const Ball<D>& ball) {
+        ball.index < other.index ? judge(ball, other, tally) : judge(other, ball, tally);
+      });
+    });
+  }
+
  private:
   /// Every near pair within a leaf, and of it with a later leaf.
   void judge_leaf(std::size_t l, Tally& tally) const {
@@ -103,8 +112,21 @@ template <int D>
 Tally judge_pairs(const BallTree<D>& balls, const PeriodicSpace<D>& space, const Course& course) {
   return PairJudge(balls, space, course).judge_all();
 }
-#define BERNAL_INSTANTIATE(D) \
-  template Tally judge_pairs(const BallTree<D>&, const PeriodicSpace<D>&, const Course&);
+
+Tally judge_pairs_with(std::span<const Ball<3>> others, const BallTree<3>& balls, const OpenSpace<3>& space,
+                       const Course& course) {
+  return PairJudge(balls, space, course).judge_with(others);
+}
+
+template <int D>
+Tally judge_pairs_with(std::span<const Ball<D>> others, const BallTree<D>& balls,
+                       const PeriodicSpace<D>& space, const Course& course) {
+  return PairJudge(balls, space, course).judge_with(others);
+}
+#define BERNAL_INSTANTIATE(D)                                                                            \
+  template Tally judge_pairs(const BallTree<D>&, const PeriodicSpace<D>&, const Course&);                \
+  template Tally judge_pairs_with(std::span<const Ball<D>>, const BallTree<D>&, const PeriodicSpace<D>&, \
+                                  const Course&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

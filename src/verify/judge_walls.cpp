@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 #include <variant>
 
 #include <Eigen/Geometry>
@@ -124,31 +126,39 @@ class CylinderWall {
 };
 
 template <int D, class Wall>
-Tally judge_all(const BallTree<D>& balls, const Wall& wall, const Course& course) {
-  const auto all = balls.items();
-  return course.for_each("walls", all.size(), 64, [&](std::size_t i, Tally& tally) {
-    const Stand stand = wall.stand_of(all[i], course.options(), tally);
-    tally.add_ball({all[i].index, stand.gap}, stand.inside);
-    tally.least_wall_distance = std::min(tally.least_wall_distance, stand.distance);
-  });
+Walls<D> made(Wall wall) {
+  return [wall = std::make_shared<const Wall>(std::move(wall))](const Ball<D>& ball,
+                                                                const CertifyOptions& options, Tally& tally) {
+    return wall->stand_of(ball, options, tally);
+  };
 }
 
 }  // namespace
 
 template <int D>
-Tally judge_walls(const BallTree<D>& balls, const Domain& domain, const Course& course) {
-  if (const auto* box = std::get_if<bernal::Box>(&domain)) return judge_all(balls, BoxWall<D>(*box), course);
-  if constexpr (D == 2) return judge_all(balls, PolygonWall(std::get<Polygon>(domain)), course);
+Walls<D> walls_of(const Domain& domain) {
+  if (const auto* box = std::get_if<bernal::Box>(&domain)) return made<D>(BoxWall<D>(*box));
+  if constexpr (D == 2) return made<D>(PolygonWall(std::get<Polygon>(domain)));
   if constexpr (D == 3) {
-    if (const auto* cylinder = std::get_if<Cylinder>(&domain))
-      return judge_all(balls, CylinderWall(*cylinder), course);
-    if (const auto* sphere = std::get_if<Sphere>(&domain))
-      return judge_all(balls, SphereWall(*sphere), course);
-    return judge_all(balls, MeshWall(std::get<Mesh>(domain)), course);
+    if (const auto* cylinder = std::get_if<Cylinder>(&domain)) return made<D>(CylinderWall(*cylinder));
+    if (const auto* sphere = std::get_if<Sphere>(&domain)) return made<D>(SphereWall(*sphere));
+    return made<D>(MeshWall(std::get<Mesh>(domain)));
   }
-  return Tally(0);
+  return [](const Ball<D>&, const CertifyOptions&, Tally&) { return Stand(); };
 }
-#define BERNAL_INSTANTIATE(D) template Tally judge_walls(const BallTree<D>&, const Domain&, const Course&);
+
+template <int D>
+Tally judge_walls(std::span<const Ball<D>> balls, const Walls<D>& walls, const Course& course) {
+  return course.for_each("walls", balls.size(), 64, [&](std::size_t i, Tally& tally) {
+    const Stand stand = walls(balls[i], course.options(), tally);
+    tally.add_ball({balls[i].index, stand.gap}, stand.inside);
+    tally.least_wall_distance = std::min(tally.least_wall_distance, stand.distance);
+  });
+}
+
+#define BERNAL_INSTANTIATE(D)                \
+  template Walls<D> walls_of(const Domain&); \
+  template Tally judge_walls(std::span<const Ball<D>>, const Walls<D>&, const Course&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

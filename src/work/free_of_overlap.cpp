@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <optional>
+#include <span>
 
 #include "bernal/core/tolerance.hpp"
 #include "bernal/domain/boundary.hpp"
 #include "core/every_dimension.hpp"
+#include "core/parallel.hpp"
 #include "domain/dyadic.hpp"
 #include "neighbors/cell_grid.hpp"
+#include "work/blocks.hpp"
 #include "work/random_insertion.hpp"
 
 namespace bernal {
@@ -45,10 +49,70 @@ void for_each_pair(const Spheres<D>& spheres, const Vector<D>& edges, Reach&& re
   }
 }
 
+/// Of more spheres the cache holds only some, and blocks are looked at one by one.
+constexpr std::size_t enough_for_blocks = 300'000, spheres_a_block = 1 << 16;
+
+/// The contact factor of some spheres and their images, above one that is known; `of_all` is the metric.
+template <int D>
+double contact_factor_among(const Spheres<D>& spheres, std::span<const std::uint32_t> ids,
+                            std::span<const Vector<D>> places, const Bounds<D>& bounds,
+                            const Boundary<D>& local, const Boundary<D>& of_all, double largest,
+                            double factor) {
+  std::vector<std::uint32_t> order(ids.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto radius = [&](std::uint32_t k) { return spheres.r[ids[k]]; };
+  std::ranges::stable_sort(order, std::greater<>(), radius);
+  if (order.empty()) return factor;
+  CellGrid<D> grid(bounds, local, radius(order.back()), radius(order.front()), ids.size());
+  constexpr double rounding = 1e-9;  // of the places of images
+  for (const std::uint32_t k : order) {
+    const double r = radius(k);
+    const Vector<D> c = spheres.center(ids[k]);
+    const double reach = r / factor + largest * (std::max(0.0, 1 / factor - 1) + rounding);
+    grid.for_each_near(places[k], reach, [&](std::uint32_t m) {
+      if (ids[m] == ids[k]) return;
+      const Vector<D> apart = of_all.minimum_image(c - spheres.center(ids[m]));
+      factor = std::max(factor, (r + spheres.r[ids[m]]) / apart.norm());
+    });
+    grid.insert(k, places[k], r);
+  }
+  return factor;
+}
+
+/// The same number as by looking at all at once: each pair is met in the blocks of both, and the largest of
+/// the ratios does not depend on the order. Nothing where spheres reach too far for blocks.
+template <int D>
+std::optional<double> contact_factor_in_blocks(const Spheres<D>& spheres, const Vector<D>& edges) {
+  // Of the diameter: so far apart are the closest spheres at most, or others could matter, too.
+  constexpr double farthest = 1.25;
+  const double largest = std::ranges::max(spheres.r);
+  const Blocks<D> blocks(spheres, edges, farthest * 2 * largest, spheres_a_block);
+  if (blocks.size() == 1) return {};
+  const Boundary<D> of_all{edges};
+  Boundary<D> local = of_all;
+  for (int k = 0; k < D; ++k)
+    if (blocks.is_cut(k)) local.edges[k] = 0;
+  std::vector<Vector<D>> places;
+  for (const std::uint32_t i : blocks.own(0)) places.push_back(spheres.center(i));
+  const double known = contact_factor_among<D>(spheres, blocks.own(0), places, blocks.around(0), local,
+                                               of_all, largest, 2 * largest / edges.minCoeff());
+  if (!(known * farthest >= 1) || !std::isfinite(known)) return {};
+  std::vector<double> factors(blocks.size(), known);
+  parallel_for(blocks.size(), [&](std::size_t b) {
+    const auto here = blocks.local(b);
+    factors[b] = contact_factor_among<D>(spheres, here.ids, here.places, blocks.around(b), local, of_all,
+                                         largest, known);
+  });
+  return std::ranges::max(factors);
+}
+
 }  // namespace
 
 template <int D>
 double contact_factor(const Spheres<D>& spheres, const Vector<D>& edges) {
+  if constexpr (D == 2 || D == 3)
+    if (spheres.size() >= enough_for_blocks)
+      if (const auto factor = contact_factor_in_blocks<D>(spheres, edges)) return *factor;
   double factor = 2 * std::ranges::max(spheres.r) / edges.minCoeff();
   for_each_pair<D>(
       spheres, edges,

@@ -21,18 +21,24 @@ SpheresFile read_csv(const std::filesystem::path& file);
 /// where their unit or dimension is not the scene's.
 Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file);
 
+/// Which file of a result's folder holds its spheres: spheres.csv, or spheres.npy where only that is there.
+std::filesystem::path spheres_of_result(const std::filesystem::path& folder);
+/// Those spheres. Throws as `read_csv_of`. Memory: for the spheres once.
+Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder);
+
 /// The same of a file of another program, whose header names its columns in any order: what a scene may start
-/// from. Throws Error{bad_packing} for a header that does not, as the others for the rest.
+/// from; or an array of NumPy's. Throws Error{bad_packing} for a header that does not, as the others for the
+/// rest.
 Spheres<dynamic> read_columns_of(const Scene& scene, const std::filesystem::path& file);
 
 /// Completes what a run that was killed had begun to put into the folder; most often there is no such thing.
 /// Throws Error{cannot_write}.
 void finish_writing(const std::filesystem::path& folder);
 
-/// What stands in scene.toml and spheres.csv of a folder that `write_packing` made, or that has files of that
-/// form. How the run went is not among it: effects, history, seconds and version are empty; the outcome says
-/// whether another program made it. Throws as `finish_writing`, `read_scene`, `packed_domain_of` and
-/// `read_csv_of` do.
+/// What stands in scene.toml and spheres.csv, or spheres.npy, of a folder that `write_packing` made, or that
+/// has files of that form. How the run went is not among it: effects, history, seconds and version are empty;
+/// the outcome says whether another program made it. Throws as `finish_writing`, `read_scene`,
+/// `packed_domain_of` and `read_csv_of` do.
 Packing read_packing(const std::filesystem::path& folder);
 
 }  // namespace bernal

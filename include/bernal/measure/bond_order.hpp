@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -40,13 +41,16 @@ struct BondOrder {
   static constexpr double solid_bond = 0.7;
   static constexpr std::uint32_t fewest_solid = 5;
   static constexpr double solid_share = 0.6;
+  /// Of more spheres than `most_spheres` those in the middle are looked at, `looked_at` of them:
+  /// `all.spheres` says how many.
+  static constexpr std::size_t most_spheres = 4'000'000, looked_at = 1'000'000;
 };
 
 /// Absent in other dimensions than three. `regions` are those of a wall profile, or empty. Cost: O(N bonds),
-/// about 2 µs a sphere. Random close packings of equal spheres have up to about 1 %, fcc and hcp 100 %.
-/// Source: Steinhardt, Nelson & Ronchetti, Phys. Rev. B 28 (1983) 784; ten Wolde, Ruiz-Montero & Frenkel, J.
-/// Chem. Phys. 104 (1996) 9932, who compare neighbours; the limit 0.7 for hard spheres is that of Filion,
-/// Hermes, Ni & Dijkstra, J. Chem. Phys. 133 (2010) 244115.
+/// about 2 µs a sphere, and 900 bytes. Random close packings of equal spheres have up to about 1 %, fcc and
+/// hcp 100 %. Source: Steinhardt, Nelson & Ronchetti, Phys. Rev. B 28 (1983) 784; ten Wolde, Ruiz-Montero &
+/// Frenkel, J. Chem. Phys. 104 (1996) 9932, who compare neighbours; the limit 0.7 for hard spheres is that of
+/// Filion, Hermes, Ni & Dijkstra, J. Chem. Phys. 133 (2010) 244115.
 std::optional<BondOrder> bond_order(const Spheres<dynamic>&, const Domain&,
                                     std::span<const Region> regions = {});
 

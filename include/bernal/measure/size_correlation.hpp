@@ -42,7 +42,8 @@ struct SizeCorrelation {
   /// (1 + BondOrder::widest_gap)(ri + rj); the mean and variance are those at the ends of bonds, where large
   /// spheres come up more often. As which spheres are neighbours depends on their sizes, it is somewhat below
   /// 0 where nothing separates, -0.06 in random close packings of lognormal spheres with sigma 0.3: to be
-  /// held against another packing of the same sizes. Absent where all that have neighbours are of one size.
+  /// held against another packing of the same sizes. Of more than BondOrder::most_spheres those in the middle
+  /// are looked at. Absent where all that have neighbours are of one size.
   struct Neighbours {
     double correlation, error;  ///< 1 / √pairs
     std::uint64_t pairs;

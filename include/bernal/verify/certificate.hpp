@@ -100,7 +100,10 @@ struct CertifyOptions {
   /// How many overlapping pairs and how many protruding spheres are listed at most: the worst of each.
   std::size_t list = 0;
   static constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
-  int threads = 0;       ///< 0: those of the calling arena
+  int threads = 0;  ///< 0: those of the calling arena
+  /// So many spheres, twice that for a moment, are held beside those that are given; of more, slabs are
+  /// looked at one after the other, each with what reaches into it. Nothing is decided otherwise for that.
+  std::size_t at_once = std::size_t{1} << 21;
   Monitor monitor = {};  ///< hears of pairs, then of walls
 };
 
@@ -116,7 +119,9 @@ struct CertifyOptions {
 /// Cost: O(N log N + near pairs), about 0.7 µs a sphere at N = 30,000 and 0.9 at 10,000,000 on one core, a
 /// quarter more where the domain repeats itself; a mesh of T triangles adds O(T log T), about 0.5 µs each.
 /// Exact arithmetic throughout is 4 to 12 times slower. In high dimensions most pairs are near ones, and the
-/// cost is that of all pairs. A list of n takes up to 48 n bytes a thread.
+/// cost is that of all pairs. Memory beside the spheres: about 64 bytes for each of those that are looked at
+/// at once and 40 more for those that come next, and 4 bytes for all where there are more. A list of n takes
+/// up to 48 n bytes a thread.
 Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain,
                     const CertifyOptions& options = {});
 
