@@ -148,6 +148,12 @@ bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const Wo
   return free[0] <= edges[0] / (1 - options.stop);
 }
 
+/// Gives their memory back: of very many spheres it is needed elsewhere.
+template <class Columns>
+void forget_places(Columns& columns) {
+  for (std::vector<double>& column : columns) std::vector<double>().swap(column);
+}
+
 int sweeps_a_growth(const Relax& options, std::size_t spheres) {
   constexpr double more_a_decade = 0.06;
   if (options.period || spheres <= enough_for_sweeps) return sweeps_a_cycle(options, spheres);
@@ -177,6 +183,7 @@ int sweeps_a_growth(const Relax& options, std::size_t spheres) {
 template <int D>
 StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
   SoftEngine<D> packing(spheres, edges, 1, work.walls);
+  forget_places(spheres.x);  // which the engine has
   const GrowingBox box{.molr = overlap,
                        .stop = least_overlap(options, work.allowed_overlap),
                        .sweeps = sweeps_a_growth(options, spheres.size()),
@@ -185,6 +192,7 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
       packing, box, work.monitor, [](int, double molr) { return molr; },
       [&](double factor, double molr) { tell_growth(work, factor, molr, box.stop); });
   work.effects["neighbour lists"] += packing.lists_built();
+  spheres.resize(spheres.r.size());
   packing.write_to(spheres, edges);
   return end;
 }
@@ -235,6 +243,7 @@ StageEnd relax_in(Work& work, const Relax& options) {
   if (!work.walls.empty() && by_the_book)
     throw Error(ErrorCode::bad_scene, "the reference method of relax knows no walls; leave \"method\" out");
   Spheres<D> spheres = work.spheres.in<D>();
+  if (!work.placed && work.begun == 0) forget_places(work.spheres.x);  // for there are none yet
   Vector<D> edges = work.edges;
   const auto finish = [&](StageEnd end) {
     return finish_in_periodic_box<D>(std::move(spheres), edges, end, is_loose(work) ? 0 : options.polish,
