@@ -69,7 +69,11 @@ TEST(SlabCertificate, SaysTheSameOfSpheresAnywhere) {
   for (const int dimension : {1, 2, 3, 5})
     for (const bool periodic : {false, true})
       for (const double ratio : {1.0, 3.0})
-        expect_same_in_slabs(anywhere(dimension, 150, dimension < 3 ? 0.05 : 0.4, ratio, 7),
+        expect_same_in_slabs(anywhere(dimension, 150,
+                                      dimension < 3    ? 0.05
+                                      : dimension == 3 ? 0.4
+                                                       : 1.2,
+                                      ratio, 7),
                              box(dimension, periodic));
 }
 
@@ -120,7 +124,7 @@ TEST(SlabCertificate, FindsTheOnePairAcrossTheLimitOfTwoSlabs) {
   for (const double at : {0.0, 2.5, 5.0, 9.5}) {
     Spheres<dynamic> spheres(3);
     for (int i = 0; i < 10; ++i) spheres.push_back(Vector<3>(i, 5, 5), 0.45);
-    spheres.push_back(Vector<3>(std::fmod(at + 0.6, 10.0), 5.7, 5), 0.3);
+    spheres.push_back(Vector<3>(std::fmod(at + 0.6, 10.0), 5.6, 5), 0.3);
     const Certificate whole = certify(spheres, box(3, true));
     const Certificate slabs = certify(spheres, box(3, true), {.at_once = 2});
     EXPECT_FALSE(slabs.certified);
