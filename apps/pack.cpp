@@ -37,6 +37,8 @@ struct PackCall {
   bool no_view = false;
   bool as_array = false;
   bool quiet = false;
+  bool resume = false;
+  double checkpoint_every = CheckpointOptions().every;  ///< seconds; 0: none
 };
 
 /// The scene that the flags stand for.
@@ -102,7 +104,15 @@ int pack(const PackCall& call) {
   if (!call.quiet) say(stderr, "{}", describe(plan));  // a wrong unit is seen at once
   const Monitor monitor = bar.monitor();
   bar.now("prepare");
-  const Packing packing = run(plan, {call.seed, call.threads, monitor});
+  CheckpointOptions checkpoints;
+  if (call.checkpoint_every > 0) checkpoints.folder = folder;
+  checkpoints.every = call.checkpoint_every;
+  checkpoints.resume = call.resume;
+  checkpoints.tell = [&](const std::string& what) {
+    bar.clear();
+    if (!call.quiet) say(stderr, "bernal: {}\n", plain_text(what, 5000));
+  };
+  const Packing packing = run(plan, {call.seed, call.threads, monitor, checkpoints});
   bar.now("measure");
   // What was stopped is written as a whole, with what can be measured at once; a second interrupt kills.
   const bool stopped = packing.outcome == Outcome::cancelled;
@@ -118,6 +128,8 @@ int pack(const PackCall& call) {
   if (!stopped && interrupted())
     say(stderr, "bernal: measuring was stopped; bernal measure {} makes up for it\n",
         plain_text(folder.string(), 5000));
+
+  if (!stopped) remove_checkpoints(folder);
 
   if (!call.quiet) print_result(packing, written);
   if (!written.certificate.certified) {
@@ -156,11 +168,20 @@ Command pack_command() {
        seed_option("Instead of the scene's; one seed gives one packing, bit for bit",
                    [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
        threads_option(call->threads, "the result"),
+       {"--resume", &call->resume,
+        "Go on from the checkpoint in DIR, to the very result of a run that nothing ended; start anew where "
+        "there is none"},
+       within({"--checkpoint-every", &call->checkpoint_every,
+               "Seconds between two checkpoints in DIR, 60 if absent; 0: none", "SECONDS"},
+              0.0, 1e9),
        quiet_option(call->quiet, "Print nothing but errors")},
-      {.text = "Ctrl-C ends the run at the next safe point and writes what is there, certified. For a "
-               "mesh, prints the scene that the flags stand for, ready to be kept and changed. What would "
-               "run bernal explain says before; the "
-               "result is for bernal verify, bernal measure and bernal export.",
+      {.text =
+           "Ctrl-C and SIGTERM end the run at the next safe point: it keeps a checkpoint and writes what is "
+           "there, certified; --resume goes on from there, and after a SIGKILL from the last checkpoint. For "
+           "a "
+           "mesh, prints the scene that the flags stand for, ready to be kept and changed. What would "
+           "run bernal explain says before; the "
+           "result is for bernal verify, bernal measure and bernal export.",
        .lists = {{.title = "Files",
                   .text = "what is written into DIR, all or none, with what the scene's [[output]] tables "
                           "ask for.",

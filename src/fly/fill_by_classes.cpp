@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "bernal/core/dimension.hpp"
@@ -52,8 +53,11 @@ class Insertion {
   /// `full` where not all found a place: then the others are put into holes, where they overlap. Where it is
   /// cancelled only those that found one are left.
   StageEnd run() {
-    if (work_.placed) keep_places();
-    for (std::size_t first = 0; first < order_.size();) {
+    std::size_t first = 0;
+    const Resumable part(work_, "classes",
+                         [&](Archive& a) { a(first, random_, spheres_, grid_, placed_, count_, trials_); });
+    if (!part.resumed() && work_.placed) keep_places();
+    while (first < order_.size()) {
       const double least = least_of_class * spheres_.r[order_[first]];
       std::size_t last = first;
       while (last < order_.size() && spheres_.r[order_[last]] > least) ++last;
@@ -95,14 +99,19 @@ class Insertion {
 
   void insert_class(const std::vector<Id>& members) {
     double step = first_step;
-    for (int failures = 0; failures < patience;) {
-      std::size_t waiting = 0, found = 0;
-      for (const Id i : members) {
-        if (placed_[i]) continue;
-        ++waiting;
-        if (find_place(i)) ++found;
+    int failures = 0;
+    std::size_t waiting = 0, found = 0;
+    const Resumable part(work_, "class", [&](Archive& a) { a(step, failures, waiting, found); });
+    for (bool goes_on = part.resumed(); failures < patience;) {
+      if (!std::exchange(goes_on, false)) {
+        waiting = found = 0;
+        for (const Id i : members) {
+          if (placed_[i]) continue;
+          ++waiting;
+          if (find_place(i)) ++found;
+        }
       }
-      if (found == waiting || (cancelled_ = work_.monitor.stop())) return;
+      if (found == waiting || (cancelled_ = work_.stop())) return;
       failures = static_cast<double>(found) < worthwhile * static_cast<double>(waiting) ? failures + 1 : 0;
       for (int k = 0; k < sweeps_a_round; ++k) move_at_random(members, step);
       work_.milestone("fill", static_cast<double>(count_) / static_cast<double>(placed_.size()), 0);
@@ -198,13 +207,19 @@ class Insertion {
 }  // namespace
 
 StageEnd fill_by_classes(Work& work, const FillOptions& options) {
-  if (!work.spheres.empty() && fits_box(work)) {
+  bool inserted = false;
+  const Resumable part(work, "fill by classes", [&](Archive& a) {
+    a(inserted);
+    if (inserted) a(work.placed, work.edges, work.needed_volume);
+  });
+  if (!inserted && !work.spheres.empty() && fits_box(work)) {
     const EffectTimer timer(work.effects["insertion"]);
     const StageEnd end = with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
       return Insertion<decltype(dimension)::value>(work).run();
     });
     if (end != StageEnd::full) return end;
   }
+  inserted = true;
   return fill_by_relaxation(work, options);
 }
 

@@ -108,12 +108,15 @@ FillChoice choose_filling(FillMethod method, const FillTask& task) {
 }
 
 StageEnd fly(Work& work, const FillChoice& choice, const Fly& options) {
-  if (work.placed && work.edges == *work.target_edges) {
-    work.account = "all had places in this box before";
-    return StageEnd::converged;
+  std::size_t wanted = work.spheres.size(), too_wide = 0;
+  const Resumable part(work, "fly", [&](Archive& a) { a(wanted, too_wide, work.spheres); });
+  if (!part.resumed()) {
+    if (work.placed && work.edges == *work.target_edges) {
+      work.account = "all had places in this box before";
+      return StageEnd::converged;
+    }
+    too_wide = drop_too_wide(work);
   }
-  const std::size_t wanted = work.spheres.size();
-  const std::size_t too_wide = drop_too_wide(work);
   StageEnd end = StageEnd::converged;
   if (!work.spheres.empty()) {
     end = fill(work, choice.method, options);

@@ -34,6 +34,11 @@ class EventFlight {
   /// What they took, with foreseeing the next ones.
   double seconds_of_collisions() const { return times_.seconds(); }
 
+  /// Its state between two stretches, but for the spheres.
+  void archive(Archive& a) {
+    a(times_, random_, near_, listed_, from_, time_, room_, hits_, end_, collisions_);
+  }
+
  private:
   struct Event {
     double time;

@@ -45,6 +45,9 @@ class PatentFlight {
   double seconds_of_collisions() const { return seconds_of_collisions_; }
   std::uint64_t steps() const { return steps_; }
 
+  /// Its state between two steps, but for the spheres.
+  void archive(Archive& a) { a(seconds_of_collisions_, random_, next_, flown_, collisions_, steps_); }
+
  private:
   void step();
   /// A pair or, if `wall` is not negative, a sphere and the wall of that axis.

@@ -13,8 +13,11 @@ StageEnd fly_until_full(Work& work, const Fly& options) {
   Flight flight(spheres, options, work.random(Stream::fly));
   StageEnd end = StageEnd::converged;
   double reported = 0;
+  const Resumable part(work, "flight", [&](Archive& a) {
+    a(reported, work.placed_share, work.placed_count, spheres, flight);
+  });
   while (!spheres.queue().empty()) {
-    if (work.monitor.stop()) {
+    if (work.stop()) {
       end = StageEnd::cancelled;
       break;
     }

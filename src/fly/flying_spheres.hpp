@@ -173,6 +173,9 @@ class FlyingSpheres {
   /// Those that are placed, in the order in which they were drawn, with centres in [0, edges).
   Spheres<dynamic> result() const;
 
+  /// All of their state, of the same work.
+  void archive(Archive& a) { a(x, v, queue_, tags_, r_, mass_, volume_, in_vain_, *grid_, pairs_); }
+
   Columns x, v;
 
  private:

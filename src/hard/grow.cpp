@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -136,19 +137,32 @@ template <int D>
 StageEnd grow_in(Work& work, const Grow& options) {
   Spheres<D> spheres = work.spheres.in<D>();
   Vector<D> edges = work.edges;
-  start<D>(spheres, edges, work, options.phi_init.value_or(loose_start[D - 2]));
+  bool grown = false;
+  StageEnd end = StageEnd::converged;
+  const Resumable part(work, "grow", [&](Archive& a) {
+    a(grown, end, edges, work.edges);
+    if (grown) a(spheres);  // before that, they fly
+  });
+  const auto finish = [&] {
+    // While it is polished, a checkpoint has what that began with.
+    return finish_in_periodic_box<D>(options.polish > 0 ? spheres : std::move(spheres), edges, end,
+                                     options.polish, work);
+  };
+  if (grown) return finish();
+  if (!part.resumed()) start<D>(spheres, edges, work, options.phi_init.value_or(loose_start[D - 2]));
   const double volume = edges.prod();
   double largest = std::numeric_limits<double>::infinity();
   if (work.target_edges)
     largest = std::max(1.0, std::pow(volume / work.target_edges->prod(), 1.0 / D)) * (1 + room_for_rounding);
   const Arena<D> arena{edges_around_walls(edges, work.walls), walls_of(work, edges), volume};
-  const StageEnd end = grow_to<D>(largest, spheres, arena, work, options, [&](double size_now, double done) {
-                         work.edges = edges / size_now;
-                         work.milestone("grow", std::clamp(done, 0.0, 0.99), 0);
-                       }).end;
+  end = grow_to<D>(largest, spheres, arena, work, options, [&](double size_now, double done) {
+          work.edges = edges / size_now;
+          work.milestone("grow", std::clamp(done, 0.0, 0.99), 0);
+        }).end;
   free_of_overlap<D>(spheres, edges, work);
   if (end != StageEnd::cancelled && stands_in_asked_box<D>(spheres, edges, work)) return StageEnd::converged;
-  return finish_in_periodic_box<D>(std::move(spheres), edges, end, options.polish, work);
+  grown = true;
+  return finish();
 }
 
 }  // namespace
@@ -178,9 +192,14 @@ Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Work& 
   StageEnd end = StageEnd::converged;
   double next_squeezed = 0, next_filled = 0;
   FlightPeriod period;
+  const Resumable part(work, "flight", [&](Archive& a) { a(flight, next_squeezed, next_filled, period); });
   while (flight.size() < largest && period.compressibility_factor < options.pressure) {
     if (!flight.has_room()) {
       end = StageEnd::hit_limit;
+      break;
+    }
+    if (work.stop()) {
+      end = StageEnd::cancelled;
       break;
     }
     const bool in_haste = !options.delta && period.compressibility_factor < fluid * D;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -43,6 +44,8 @@ constexpr double margin = 3;
 struct Growing : Work::Drawn {
   double size = 1;     ///< the share of their radii that they have
   bool grown = false;  ///< they have reached them
+
+  void archive(Archive& a) { a(spheres, placed, size, grown); }
 };
 
 class Growth {
@@ -74,12 +77,19 @@ class Growth {
     }
     Growing growing{work_.drawn(0)};
     std::size_t count = std::min(wanted, work_.count_filling(most_of_attainable * work_.attainable));
-    for (bool first = true;;
+    bool first = true;
+    Growing more;
+    const Resumable part(work_, "growth",
+                         [&](Archive& a) { a(growing, count, first, more, trims_, random_); });
+    for (bool goes_on = part.resumed();;
          first = false, count = std::min(wanted, count + std::max<std::size_t>(1, count / 10))) {
-      Growing more = growing;
-      more.extend(count, *work_.supply);
-      insert(more);
-      const bool jammed = !grow(more);
+      if (!std::exchange(goes_on, false)) {
+        more = growing;
+        more.extend(count, *work_.supply);
+        insert(more);
+        trims_ = 0;
+      }
+      const bool jammed = trims_ > 0 || !grow(more);
       if (jammed) trim_and_grow(more);
       if (first || (more.grown && more.spheres.size() > growing.spheres.size())) growing = std::move(more);
       if (jammed || growing.spheres.size() >= wanted) break;
@@ -167,9 +177,10 @@ class Growth {
   /// As often as it takes, or a few times: takes out what the jammed spheres had no room for, and a little
   /// more, and lets the others grow.
   void trim_and_grow(Growing& growing) {
-    double spare = caution;
-    for (int k = 0; k < most_trims && !growing.grown && !cancelled_; ++k, spare *= 2) {
+    if (trims_ > 0) grow(growing);  // as it was at
+    while (trims_ < most_trims && !growing.grown && !cancelled_) {
       const double size = growing.size, volume = size * size * size * volume_of(growing.spheres);
+      const double spare = std::ldexp(caution, trims_++);
       const std::size_t fitting = work_.supply->count_filling((1 - spare) * volume);
       growing.spheres.resize(std::min(fitting, growing.spheres.size()) - 1);
       growing.size *= 1 - shrinkage;
@@ -183,6 +194,7 @@ class Growth {
   const double full_size_;  // at which spheres have their radii and the skin
   Arena<3> arena_;
   Vector<3> to_box_;
+  int trims_ = 0;  // of those that grow
   bool cancelled_ = false;
 };
 
@@ -193,13 +205,18 @@ std::vector<Wall<3>> walls_for_growth(const Domain& shape, double smallest_radiu
 }
 
 StageEnd grow_in_container(Work& work, const Grow& options) {
+  StageEnd end = StageEnd::converged;
+  bool is_grown = false;
+  const Resumable part(work, "grow in container", [&](Archive& a) { a(is_grown, end); });
   const auto grown = [&] {
     // What fits only touching the walls is never as large as it has to be in flight.
     if (SnugPlaces(work).only_some_touch()) return insert_largest_first(work);
-    const StageEnd end = Growth(work, options).run();
-    return work.target.is_open() ? end : insert_what_else_fits(work, end);
+    const StageEnd growth = Growth(work, options).run();
+    return work.target.is_open() ? growth : insert_what_else_fits(work, growth);
   };
-  return finish_in_bed(grown(), options.polish, work);
+  if (!is_grown) end = grown();
+  is_grown = true;
+  return finish_in_bed(end, options.polish, work);
 }
 
 }  // namespace bernal

@@ -90,6 +90,12 @@ class HardSpheres {
 
   /// Of a box, in largest diameters: so that no sphere meets two images of a neighbour.
   static constexpr double smallest_edge = 2.5;
+  /// Its state between two periods, in one that was made of as many spheres, with the same radii and walls.
+  void archive(Archive& a) {
+    a(spheres_, original_, shells_, walls_, size_, growth_, horizon_, freedom_, largest_listed_, times_,
+      period_, listed_collisions_, listed_departures_);
+  }
+
   /// Whether the box is still that large.
   bool has_room() const { return edges_.minCoeff() >= smallest_edge * 2 * largest_radius_ * size_; }
 

@@ -41,6 +41,8 @@ class HomeGrid {
     points_.resize(cells * room);
   }
 
+  void archive(Archive& a) { a(edges_, inverse_edges_, most_, margin_, levels_, cells_, points_, cell_of_); }
+
   void insert(Id id, const Vector<D>& home, double reach) {
     Level& level = level_of(reach);
     ++level.points;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "hard/prefetch.hpp"
 
 namespace bernal {
@@ -23,6 +24,8 @@ class NeighborPool {
     pool_.resize(count * lines);
     longest_ = 0;
   }
+
+  void archive(Archive& a) { a(lists_, pool_, longest_); }
 
   std::span<const Id> of(Id i) const { return {ids() + lists_[i].begin, lists_[i].count}; }
   std::size_t longest() const { return longest_; }

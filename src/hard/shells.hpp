@@ -47,6 +47,8 @@ class Shells {
   /// A new home, in [0, edge).
   void settle(Id i, const Vector<D>& home);
 
+  void archive(Archive& a) { a(places_, reaches_, lists_, grid_); }
+
  private:
   struct alignas(D == 3 ? 32 : 16) Place {
     Vector<D> home;

@@ -92,6 +92,9 @@ class Walls {
   /// the momentum that the wall takes, at least `least`; the mass is 1.
   double reflect(Id i, FlyingSphere<D>& sphere, double growth, double least) const;
 
+  /// What it knows of spheres, of the same walls.
+  void archive(Archive& a) { a(reach_, levels_, cells_, near_, next_); }
+
  private:
   void fill_cells(const Vector<D>& lower, const Vector<D>& size, int level, std::size_t first,
                   const std::vector<Id>& near);

@@ -368,6 +368,7 @@ std::string json_of(const Report& report) {
                {"effects", packing.effects},
                {"history", packing.history},
                {"seconds", packing.seconds},
+               {"resumed", packing.resumed},
                {"peak_memory_bytes", peak_memory_bytes()}});
   json["made_from"] = report.made_from;
   for (const auto& [name, sha256] : report.files)

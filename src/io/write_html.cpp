@@ -70,7 +70,11 @@ void write_headline(Page& page, const Report& report) {
                 : "no overlap, nothing sticks out; proven on the written file",
             certified ? "yes" : "no");
   page.card(seconds_text(packing.seconds), "Time",
-            fmt::format("{} thread{}", packing.threads, packing.threads == 1 ? "" : "s"));
+            fmt::format("{} thread{}{}", packing.threads, packing.threads == 1 ? "" : "s",
+                        packing.resumed == 0 ? ""
+                        : packing.resumed == 1
+                            ? "; went on from a checkpoint once"
+                            : fmt::format("; went on from checkpoints {} times", packing.resumed)));
   page.raw("</div>\n");
   page.add("<p class=\"statement{}\">{}</p>\n", certified ? "" : " failed",
            escaped(report.certificate.statement));

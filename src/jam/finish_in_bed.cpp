@@ -45,9 +45,11 @@ StageEnd finish_in_bed(StageEnd end, double polish, Work& work) {
   std::ranges::sort(tags);
   const Jammed jammed = polish_in_container(
       spheres, bed.container(), symmetries_of(work.domain), std::max(least_overlap, share_of_solver * polish),
-      work.monitor, [&](double done, double overlap) {
+      work.monitor,
+      [&](double done, double overlap) {
         work.crowd_milestone("polish", spheres.size(), volume_of(spheres), overlap, done);
-      });
+      },
+      work.checkpoints);
   if (jammed.end == StageEnd::cancelled) return jammed.end;
   if (jammed.too_loose) {
     work.missed = fmt::format(

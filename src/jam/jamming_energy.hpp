@@ -112,11 +112,24 @@ class JammingEnergy final : public SmoothFunction {
   /// Sets the centres as they are, in a box of its size at first: of scale 1.
   void write_to_scale(Spheres<D>& spheres) const;
 
+  /// All of its state but the last move and the preconditioner, in one that was made of as many spheres
+  /// between the same walls.
+  void archive(Archive& a) {
+    a(order_, radius_, load_per_overlap_, load_, smoothing_, state_, now_, pairs_, at_finding_,
+      width_at_finding_, held_, fixed_);
+    if (!enclosure_) return;
+    const auto walls = std::make_shared<NearWalls<D>>();
+    if (near_walls_) *walls = *near_walls_;
+    a(*walls);
+    near_walls_ = walls;
+  }
+
  private:
   struct State {
     Eigen::VectorXd centers;
     Vector<D> edges;
     double scale = 1;
+    void archive(Archive& a) { a(centers, edges, scale); }
   };
   using Block = Eigen::Matrix<double, D, D>;
   struct Evaluation {
@@ -124,6 +137,7 @@ class JammingEnergy final : public SmoothFunction {
     std::vector<Block> bends;  // of those with walls
     Eigen::VectorXd gradient;
     double energy = 0, elastic = 0, largest_overlap = 0;
+    void archive(Archive& a) { a(contacts, bends, gradient, energy, elastic, largest_overlap); }
   };
   struct Spring {
     double force, stiffness;

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "jam/enclosure.hpp"
 
 namespace bernal {
@@ -30,6 +31,7 @@ class NearWalls {
   }
   /// The k-th of all.
   void erase(std::size_t k);
+  void archive(Archive& a) { a(begin_, walls_); }
 
  private:
   std::vector<std::uint32_t> begin_{0};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -56,6 +57,7 @@ struct Task {
   double least_scale = 0;  ///< of the box: it gives up before it is smaller
   const Monitor& monitor;
   std::function<void(double done, double largest_overlap)> report;
+  Checkpoints* checkpoints = nullptr;
 };
 
 template <int D>
@@ -68,11 +70,20 @@ class Polish {
   }
 
   StageEnd run() {
-    soft_.set_level(task_.start, 0);
-    start_ = std::clamp(soft_.largest_overlap(), task_.start, hardest_start);
-    for (double overlap = start_;;) {
+    double overlap = 0;
+    std::optional<Checkpoints::Part> part;
+    if (task_.checkpoints)
+      part.emplace(*task_.checkpoints, "polish", [&](Archive& a) {
+        a(overlap, soft_, start_, imbalance_, overlap_, done_, unfinished_, climbs_);
+      });
+    if (!part || !part->resumed()) {
+      soft_.set_level(task_.start, 0);
+      overlap = start_ = std::clamp(soft_.largest_overlap(), task_.start, hardest_start);
+    }
+    for (;;) {
       unfinished_ = false;
-      if (!settle({overlap, overlap, balance_})) break;
+      if (!settle({.overlap = overlap, .smoothing = overlap, .balance = balance_, .is_resumable = true}))
+        break;
       if (overlap > settled_) {
         overlap =
             unfinished_ && may_climb() ? climb(overlap) : std::max(settled_, overlap * fall_of_pressure);
@@ -108,6 +119,7 @@ class Polish {
     double radius = 0;  // of the trust region: a ratio; 0 for ten overlaps
     double forcing = 0.03;
     int most_steps = 0;  // 0 for the task's
+    bool is_resumable = false;
   };
 
   /// What slides on without an end at a small load has a longer way to go than its steps allow there: it goes
@@ -198,19 +210,31 @@ class Polish {
   /// Minimises at one level of pressure. Returns false if cancelled or too loose.
   bool settle(const Level& level) {
     const double overlap = overlap_ = level.overlap;
-    soft_.set_level(overlap, level.smoothing);
+    std::optional<TrustRegion> made;
+    double radius = 0;
+    int step = 0;
+    Checkpoints* const checkpoints = level.is_resumable ? task_.checkpoints : nullptr;
+    std::optional<Checkpoints::Part> part;
+    if (checkpoints)
+      part.emplace(*checkpoints, "level", [&](Archive& a) {
+        if (made) radius = made->radius();
+        a(step, radius);
+      });
+    if (!part || !part->resumed()) {
+      soft_.set_level(overlap, level.smoothing);
+      radius = soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap);
+    }
     const double noise = resolution() / overlap;
-    TrustRegion region(soft_, soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap), level.forcing,
-                       task_.monitor);
+    TrustRegion& region = made.emplace(soft_, radius, level.forcing, task_.monitor);
     const int most_steps = level.most_steps > 0 ? level.most_steps : task_.most_steps;
-    for (int step = 0;; ++step) {
+    for (;; ++step) {
       if (step == most_steps) {
         unfinished_ = unfinished_ || imbalance_ > loose_balance;
         break;
       }
       imbalance_ = region.gradient_length() / std::sqrt(2 * soft_.elastic_energy());
       if (!(imbalance_ >= std::max(level.balance, 4 * noise))) break;  // or there is neither force nor load
-      if (task_.monitor.stop()) {
+      if (checkpoints ? checkpoints->stop() : task_.monitor.stop()) {
         cancelled_ = true;
         return false;
       }
@@ -296,7 +320,8 @@ StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& w
                  .slenderness = edges.maxCoeff() / std::ranges::min(spheres.r),
                  .symmetries = D - walls,
                  .monitor = work.monitor,
-                 .report = [&](double done, double overlap) { work.milestone("polish", done, overlap); }});
+                 .report = [&](double done, double overlap) { work.milestone("polish", done, overlap); },
+                 .checkpoints = work.checkpoints});
   const StageEnd end = act.run();
   act.soft().write(spheres);
   if (walls > 0)
@@ -308,7 +333,7 @@ StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& w
 
 Jammed polish_in_container(const Spheres<3>& spheres, const Container& container, int symmetries,
                            double tolerance, const Monitor& monitor,
-                           const std::function<void(double, double)>& report) {
+                           const std::function<void(double, double)>& report, Checkpoints* checkpoints) {
   const Boundary<3>& boundary = container.boundary();
   const Vector<3> extent = container.bounds().size();
   Vector<3> edges = extent.array() + margin * 2 * std::ranges::max(spheres.r);
@@ -323,7 +348,8 @@ Jammed polish_in_container(const Spheres<3>& spheres, const Container& container
                  .most_climbs = most_climbs,
                  .least_scale = 1 / Jammed::most_growth,
                  .monitor = monitor,
-                 .report = report});
+                 .report = report,
+                 .checkpoints = checkpoints});
   const StageEnd end = act.run();
   Jammed jammed{end, spheres, 1, act.too_loose(), act.held()};
   act.soft().write_to_scale(jammed.spheres);

@@ -72,7 +72,8 @@ struct Jammed {
 /// hundreds a Newton step, and a thousand steps or two: 6 to 14 s for 1,000 spheres.
 Jammed polish_in_container(const Spheres<3>& spheres, const Container& container, int symmetries,
                            double tolerance, const Monitor& monitor,
-                           const std::function<void(double done, double largest_overlap)>& report);
+                           const std::function<void(double done, double largest_overlap)>& report,
+                           Checkpoints* checkpoints = nullptr);
 
 /// The end of every stage that packs a bed: polishes contacts until their gap ratios are below `polish`, if
 /// that is above 0, or to the skin of the bed where that is wider. All sizes grow by one factor, which

@@ -8,6 +8,7 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
 #include "bernal/domain/boundary.hpp"
+#include "core/archive.hpp"
 #include "neighbors/cell_layout.hpp"
 
 namespace bernal {
@@ -85,6 +86,9 @@ class CellGrid {
   const CellLayout<D>& layout() const { return layout_; }
   std::size_t level_count() const { return layout_.levels().size(); }
   std::size_t cell_count() const { return heads_.size(); }
+
+  /// Which spheres are in which lists, in a grid that was made alike.
+  void archive(Archive& a) { a(layout_, spheres_on_, heads_, links_); }
 
  private:
   struct Link {

@@ -7,6 +7,7 @@
 
 #include "bernal/core/vector.hpp"
 #include "bernal/domain/boundary.hpp"
+#include "core/archive.hpp"
 
 namespace bernal {
 
@@ -42,6 +43,8 @@ class CellLayout {
 
   /// See CellGrid::rescale.
   void rescale(const Vector<D>& edges);
+  /// What it has been rescaled to.
+  void archive(Archive& a) { a(lower_, size_, levels_); }
 
   const std::vector<Level>& levels() const { return levels_; }
   std::size_t cell_count() const { return cell_count_; }

@@ -7,6 +7,7 @@
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
+#include "core/archive.hpp"
 
 namespace bernal {
 
@@ -68,6 +69,12 @@ class PartialGrid {
       visit(id, squared);
       return false;
     });
+  }
+
+  /// All of its state.
+  void archive(Archive& a) {
+    a(dimension_, repeats_, period_, slack_, largest_, axes_, cells_, per_length_, start_, x_, r_, ids_,
+      last_added_, added_before_);
   }
 
   /// No sphere is larger; every query reaches so much farther.

@@ -40,6 +40,7 @@ class PeriodicPairs {
   }
   /// In whole edges; images()[0] is zero.
   const std::vector<Vector<D>>& images() const { return images_; }
+  void archive(Archive& a) { a(pairs_, images_); }
 
  private:
   using Center = Eigen::Map<const Vector<D>>;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,6 +15,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
 #include "core/parallel.hpp"
+#include "run/checkpoint_owner.hpp"
 #include "run/conclude.hpp"
 #include "run/estimate.hpp"
 #include "run/fitting.hpp"
@@ -26,6 +29,12 @@
 #include "work/work.hpp"
 
 namespace bernal {
+
+/// For checkpoints.
+static void archive(Archive& a, Milestone& m) {
+  a(m.stage, m.spheres, m.packing_fraction, m.potential, m.max_overlap, m.seconds);
+}
+
 namespace {
 
 /// How often a box of given size that is to be filled is tried with another number of spheres.
@@ -58,14 +67,18 @@ double random_close_packing_of(const Plan& plan) {
 /// over has not.
 class Run {
  public:
-  Run(const Plan& plan, const Monitor& monitor, Packing& packing)
+  Run(const Plan& plan, const RunOptions& options, Packing& packing)
       : stated_(plan),
         with_room_(plan.scene.asks_for_gaps() ? std::optional(plan_with_room(plan)) : std::nullopt),
         plan_(with_room_ ? *with_room_ : plan),
         scene_(plan_.scene),
-        monitor_(monitor),
+        monitor_(options.monitor),
         packing_(packing),
-        any_in_bed_(any_in_bed(plan.scene)) {}
+        any_in_bed_(any_in_bed(plan.scene)),
+        checkpoints_(options.monitor, options.checkpoints,
+                     options.checkpoints.folder.empty() ? CheckpointOwner()
+                                                        : checkpoint_owner(plan.scene, packing.seed),
+                     [this](Archive& a) { archive_record(a); }) {}
 
   void go() {
     try {
@@ -76,13 +89,19 @@ class Run {
       packing_.reason = "stopped by the user before the first sphere was placed";
       state_edges();
     }
-    packing_.seconds = watch_.seconds();
+    packing_.seconds = seconds();
   }
 
  private:
   void attempt() {
     double fraction = any_in_bed_ ? Supply::densest : plan_.expected_packing_fraction;
-    for (int attempt = 1;; ++attempt) {
+    int attempt = 1;
+    // What is told of the run so far comes first, that effects are in its order, and last, as it was.
+    const Checkpoints::Part part(checkpoints_, "run", [&](Archive& a) {
+      a(attempt, fraction);
+      archive_record(a);
+    });
+    for (;; ++attempt) {
       Work work = start(fraction);
       const StageEnd end = run_stages(work);
       if (const std::optional<double> other = other_fraction(work, end, attempt)) {
@@ -94,6 +113,35 @@ class Run {
       conclude(packing_, work, end, ending());
       return;
     }
+  }
+
+  /// Of this process and those before it.
+  double seconds() const { return seconds_before_ + watch_.seconds(); }
+
+  /// What the run has to tell, and how many streams of random numbers it has used.
+  void archive_record(Archive& a) {
+    std::vector<Effect> effects = effects_.all_so_far();
+    Effect asked = asked_of_walls();
+    double so_far = seconds();
+    std::uint64_t streams = work_ ? work_->streams_used : 0;
+    a(effects, asked, packing_.history, packing_.resumed, so_far, streams);
+    if (!a.reads()) return;
+    effects_.go_on_from(effects);
+    asked_before_ = asked;
+    asked_anew_ = walls_ ? walls_->asked() : Effect{};
+    if (work_) work_->streams_used = streams;
+    if (!work_) return;  // all of it comes again, once everything else is there
+    ++packing_.resumed;
+    seconds_before_ = so_far - watch_.seconds();
+  }
+
+  /// So far, but for what is asked until a run goes on, which was asked before.
+  Effect asked_of_walls() const {
+    Effect asked = walls_ ? walls_->asked() : Effect{};
+    asked.name = "walls";
+    asked.calls += asked_before_.calls - asked_anew_.calls;
+    asked.seconds += asked_before_.seconds - asked_anew_.seconds;
+    return asked;
   }
 
   Ending ending() const {
@@ -118,7 +166,8 @@ class Run {
               .seed = packing_.seed,
               .monitor = monitor_,
               .effects = effects_,
-              .on_course = [this](const Course& course) { tell(course); }};
+              .on_course = [this](const Course& course) { tell(course); },
+              .checkpoints = checkpoints_.keeps() ? &checkpoints_ : nullptr};
     Supply::Source source{*stated_.radii, work.dimension(), packing_.seed, *scene_.draw};
     source.first = stated_.start.spheres.r;
     source.coat = coat_of(scene_);
@@ -229,11 +278,35 @@ class Run {
 
   StageEnd run_stages(Work& work) {
     StageEnd end = StageEnd::converged;
-    for (const Stage& stage : scene_.stages) {
+    std::size_t n = 0;            // stages that are over
+    std::string facts;            // as the present one began
+    std::optional<Keepsake> bed;  // in a box all may have to start anew
+    work_ = &work;
+    const Checkpoints::Part part(checkpoints_, "stages", [&](Archive& a) {
+      bool in_bed = work.stands_in_bed();
+      a(n, end, facts, in_bed, bed);
+      if (a.reads()) {
+        ArchiveFromBytes then(facts);
+        work.archive_facts(then);
+      }
+      if (in_bed) {
+        work.archive_bed(a);
+        return;
+      }
+      work.bed_ = nullptr;
+      if (n > 0) a(work.spheres);  // which the first stage begins with as they were drawn
+    });
+    for (bool goes_on = part.resumed(); n < scene_.stages.size(); ++n) {
+      const Stage& stage = scene_.stages[n];
       const bool in_bed = table_of(stage).traits.stands_in_bed(scene_);
-      std::optional<Keepsake> bed;  // in a box all may have to start anew
-      if (!in_bed && work.stands_in_bed()) bed.emplace(work);
-      in_bed ? work.stand_in_bed() : work.stand_in_box();
+      if (!std::exchange(goes_on, false)) {
+        bed.reset();
+        if (!in_bed && work.stands_in_bed()) bed.emplace(work);
+        in_bed ? work.stand_in_bed() : work.stand_in_box();
+        facts.clear();
+        ArchiveToBytes now(facts);
+        work.archive_facts(now);
+      }
       const Keepsake before(work);
       end = run_stage(stage, work);
       if (end == StageEnd::cancelled && !work.may_overlap) before.give_back_if_denser(work);
@@ -245,6 +318,13 @@ class Run {
       if (in_bed) work.milestone(stage.name());
       if (end == StageEnd::cancelled) break;
     }
+    if (end != StageEnd::cancelled) {
+      facts.clear();
+      ArchiveToBytes now(facts);
+      work.archive_facts(now);
+      checkpoints_.write_if_long();
+    }
+    work_ = nullptr;
     Supply& supply = *work.supply;
     if (work.stands_in_bed() && supply.passed_over() > 0 && supply.trimming_is_cheap())
       work.bed().remove_tags_from(supply.first_missing());
@@ -299,7 +379,7 @@ class Run {
       packing_.volume = volume_of(packing_.domain);
     }
     state_edges();
-    if (walls_ && walls_->asked().calls > 0) effects_["walls"] += walls_->asked();
+    if (const Effect asked = asked_of_walls(); asked.calls > 0) effects_["walls"] += asked;
     packing_.effects = effects_.all();
   }
 
@@ -324,7 +404,7 @@ class Run {
     packing_.history.push_back(
         {std::string(course.stage), course.spheres, fraction,
          course.potential ? frame_.scale * *course.potential + frame_.origin[scene_.dimension() - 1] : 0,
-         course.max_overlap, watch_.seconds()});
+         course.max_overlap, seconds()});
     const double expected = stated_.expected_packing_fraction;
     const double share = expected > 0 ? std::min(fraction / expected, 0.99) : 0;
     const std::string overlap =
@@ -342,11 +422,15 @@ class Run {
   Packing& packing_;
   const bool any_in_bed_;
   const Stopwatch watch_;
+  double seconds_before_ = 0;  // of processes before this one
   EffectLog effects_;
+  Effect asked_before_, asked_anew_;  // of walls: then, and again until the run went on
+  Work* work_ = nullptr;              // while stages act on it
   Frame frame_;
   double share_ = 1;                               // of packing fractions, that is left without coats
   std::shared_ptr<const CountedContainer> walls_;  // null where no stage asks any
   std::unique_ptr<Container> of_scene_;            // where a sphere is to be placed exactly
+  Checkpoints checkpoints_;
 };
 
 }  // namespace
@@ -365,8 +449,10 @@ Packing run(const Plan& plan, const RunOptions& options) {
   packing.version = version();
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(std::max(1, packing.threads)));
-  Run(plan, options.monitor, packing).go();
+  Run(plan, options, packing).go();
   return packing;
 }
+
+void remove_checkpoints(const std::filesystem::path& folder) { CheckpointFolder::remove_from(folder); }
 
 }  // namespace bernal

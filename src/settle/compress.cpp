@@ -126,14 +126,16 @@ StageEnd compress(Work& work, const Compress& options) {
   if (bed.size() == 0) return StageEnd::converged;
   const EffectTimer timer(work.effects["compression"]);
   const double floor = floor_of(bed.container().bounds(), direction);
-  const double radius = bed.mean_radius();
+  double radius = bed.mean_radius();
   Random random = work.random(Stream::compress);
-  bed.sort_by_height(direction);
+  double box = options.buffer * radius;
+  int iteration = 0;
+  const Resumable part(work, "compress", [&](Archive& a) { a(radius, random, box, iteration); });
+  if (!part.resumed()) bed.sort_by_height(direction);
   GlobalSweeps global(bed, direction);
 
-  double box = options.buffer * radius;
-  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    if (work.monitor.stop()) return StageEnd::cancelled;
+  for (; iteration < options.max_iterations; ++iteration) {
+    if (work.stop()) return StageEnd::cancelled;
     box = bed.enclose(box);
     global.wake_all();  // the ends of the old boxes held some
     const double before = bed.potential(direction);

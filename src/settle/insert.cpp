@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "work/random_insertion.hpp"
@@ -90,12 +91,14 @@ StageEnd insert(Work& work, const Insert& options) {
   const double attempts =
       options.attempts * std::clamp(bed.places().volume() / bed.container().volume(), 1.0, most_drawn);
   SnugPlaces snug(work);
-  if (snug.only_some_touch()) snug.place_those_that_touch();
   std::size_t waiting = 0;  // so many at the head of the window found no place
+  const Resumable part(work, "insert", [&](Archive& a) { a(random, waiting, snug); });
+  if (!part.resumed() && snug.only_some_touch()) snug.place_those_that_touch();
+  bool goes_on = part.resumed();
   do {
-    waiting = 0;
+    if (!std::exchange(goes_on, false)) waiting = 0;
     while (waiting < supply.window().size() && bed.packing_fraction() < options.packing_fraction) {
-      if (work.monitor.stop()) return StageEnd::cancelled;
+      if (work.stop()) return StageEnd::cancelled;
       const std::uint32_t tag = supply.window()[waiting];
       const double r = supply.radius(tag);
       const auto place = find_place(
@@ -165,6 +168,7 @@ StageEnd insert_largest_first(Work& work, double densest_so_far) {
 
 StageEnd insert_what_else_fits(Work& work, StageEnd end) {
   if (end != StageEnd::full) return end;
+  const NotResumable rest(work);
   const bool few_wanted = !work.target.is_open() && work.target_count() <= few;
   if (few_wanted || falls_short(work)) end = insert_if_denser(work, end);
   return end == StageEnd::full && hardly_any_left(work) ? insert(work, until_full) : end;

@@ -94,18 +94,32 @@ void fill_free_space(Work& work, std::vector<Probe>& probes) {
 /// compression.
 StageEnd refill(Work& work, const Refill& options) {
   require_support(work.bed().container().boundary(), direction_of(options.shake.compress));
-  if (work.supply->exhausted()) return StageEnd::converged;
-  std::vector<Probe> probes = draw_probes(work, options.probes);
-  for (int round = 0; round < options.max_rounds; ++round) {
-    if (work.monitor.stop()) return StageEnd::cancelled;
-    const double before = work.bed().packing_fraction();
-    fill_free_space(work, probes);
-    const double after = work.bed().packing_fraction();
-    work.milestone("refill");
-    if (compress(work, options.shake.compress) == StageEnd::cancelled) return StageEnd::cancelled;
+  enum class Step { fill, compress, shake } step = Step::fill;
+  int round = 0;
+  double before = 0, after = 0;
+  std::vector<Probe> probes;
+  const Resumable part(work, "refill", [&](Archive& a) { a(step, round, before, after, probes); });
+  if (!part.resumed()) {
     if (work.supply->exhausted()) return StageEnd::converged;
-    if (after - before <= options.patience * after) return StageEnd::full;
+    probes = draw_probes(work, options.probes);
+  }
+  for (; round < options.max_rounds; ++round) {
+    if (step == Step::fill) {
+      if (work.stop()) return StageEnd::cancelled;
+      before = work.bed().packing_fraction();
+      fill_free_space(work, probes);
+      after = work.bed().packing_fraction();
+      work.milestone("refill");
+      step = Step::compress;
+    }
+    if (step == Step::compress) {
+      if (compress(work, options.shake.compress) == StageEnd::cancelled) return StageEnd::cancelled;
+      if (work.supply->exhausted()) return StageEnd::converged;
+      if (after - before <= options.patience * after) return StageEnd::full;
+      step = Step::shake;
+    }
     if (shake(work, options.shake) == StageEnd::cancelled) return StageEnd::cancelled;
+    step = Step::fill;
   }
   return StageEnd::hit_limit;
 }

@@ -11,9 +11,12 @@ StageEnd shake(Work& work, const Shake& options) {
   Bed& bed = work.bed();
   const Vector<3> direction = direction_of(options.compress);
   require_support(bed.container().boundary(), direction);
-  for (int round = 0; round < options.rounds; ++round) {
-    if (work.monitor.stop()) return StageEnd::cancelled;
-    {
+  int round = 0;
+  bool compressing = false;
+  const Resumable part(work, "shake", [&](Archive& a) { a(round, compressing); });
+  for (; round < options.rounds; ++round) {
+    if (!compressing) {
+      if (work.stop()) return StageEnd::cancelled;
       const EffectTimer timer(work.effects["shaking"]);
       const double radius = bed.mean_radius();
       Random random = work.random(Stream::shake);
@@ -23,7 +26,9 @@ StageEnd shake(Work& work, const Shake& options) {
         sweep_at_random(bed, Vector<3>::Zero(), 1, direction, options.amplitude * radius, random);
       }
     }
+    compressing = true;
     const StageEnd end = compress(work, options.compress);
+    compressing = false;
     work.milestone("shake");
     if (end == StageEnd::cancelled) return end;
   }

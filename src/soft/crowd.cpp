@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "core/every_dimension.hpp"
 
@@ -60,17 +61,27 @@ bool Crowd<Ground>::is_free() const {
 template <class Ground>
 StageEnd Crowd<Ground>::settle(const Monitor& monitor, const std::function<void()>& milestone,
                                double most_sweeps) {
+  Settling so_far;
+  return settle(
+      so_far, [&] { return monitor.stop(); }, milestone, most_sweeps);
+}
+
+template <class Ground>
+StageEnd Crowd<Ground>::settle(Settling& so_far, const std::function<bool()>& stop,
+                               const std::function<void()>& milestone, double most_sweeps) {
   StageEnd end = StageEnd::full;
-  double least_squeeze = 1e300;
-  for (int slow = 0; slow < most_slow_looks;) {
+  auto& [slow, sweeps, least_squeeze] = so_far;
+  while (slow < most_slow_looks) {
     const Pace pace = pace_for(largest_overlap_);
     ground_.engine().wear_lists(pace.wear);
-    for (int k = 1; k < sweeps_a_look && end != StageEnd::cancelled; ++k) {
+    while (sweeps + 1 < sweeps_a_look && end != StageEnd::cancelled) {
       ground_.engine().sweep(pace.omega * D / 3);
       ++sweeps_;
-      if (monitor.stop()) end = StageEnd::cancelled;
+      ++sweeps;
+      if (stop()) end = StageEnd::cancelled;
     }
     if (end == StageEnd::cancelled) break;
+    sweeps = 0;
     measure();
     if (milestone) milestone();
     if (is_free())
@@ -98,8 +109,15 @@ double Crowd<Ground>::exchange(SizeExchange& sizes, double step) {
 template <class Ground>
 StageEnd Crowd<Ground>::relax(const Stirring& how, const Monitor& monitor, Random& random) {
   double least_squeeze = 1e300;
-  for (int failures = 0;;) {
-    const StageEnd end = settle(monitor, how.milestone, how.most_sweeps);
+  int failures = 0;
+  Settling settling;
+  std::optional<Checkpoints::Part> part;
+  if (how.checkpoints)
+    part.emplace(*how.checkpoints, "crowd",
+                 [&](Archive& a) { a(least_squeeze, failures, settling, random, *this); });
+  const auto stop = [&] { return how.checkpoints ? how.checkpoints->stop() : monitor.stop(); };
+  for (;; settling = {}) {
+    const StageEnd end = settle(settling, stop, how.milestone, how.most_sweeps);
     if (end == StageEnd::cancelled || (end == StageEnd::converged && how.is_free())) return end;
     if (how.is_over()) return StageEnd::hit_limit;
     if (mean_squeeze_ < progress * least_squeeze) {

@@ -24,6 +24,7 @@ struct Stirring {
   std::function<bool()> is_over;                                 ///< asked between two attempts
   double most_sweeps = std::numeric_limits<double>::infinity();  ///< and within each
   std::function<bool()> is_free = [] { return true; };  ///< for certain, as far as the engine can tell
+  Checkpoints* checkpoints = nullptr;
 };
 
 /// What is taken out where not all spheres find room, in mean squeezes times spheres; and the factor from one
@@ -92,7 +93,22 @@ class Crowd {
   double sweeps() const { return sweeps_; }
   Effect lists_built() const { return ground_.lists_built(); }
 
+  /// All of its state, on the same ground; spheres are those that it had last.
+  void archive(Archive& a) {
+    a(spheres_, squeeze_, largest_overlap_, mean_squeeze_, severe_, sweeps_);
+    if (a.reads()) ground_.place(spheres_);
+    a(ground_);
+  }
+
  private:
+  /// How far `settle` has come.
+  struct Settling {
+    int slow = 0;    // looks in a row that found them hardly freer
+    int sweeps = 0;  // since the last look
+    double least_squeeze = 1e300;
+  };
+  StageEnd settle(Settling& so_far, const std::function<bool()>& stop, const std::function<void()>& milestone,
+                  double most_sweeps);
   void measure();
   std::vector<std::uint32_t> most_squeezed(std::size_t count) const;
 

@@ -36,9 +36,13 @@ std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, boo
     for (int k = 1; k < sweeps; ++k) engine.sweep(omega);
     overlap = engine.sweep_and_measure(omega);
   };
-  compress(first_compression);
-  sweep(sweeps_an_exchange);
-  for (int k = 0; k < exchanges && !work.monitor.stop(); ++k) {
+  int k = 0;
+  const Resumable part(work, "exchange in a box", [&](Archive& a) { a(k, edge, overlap, engine); });
+  if (!part.resumed()) {
+    compress(first_compression);
+    sweep(sweeps_an_exchange);
+  }
+  for (; k < exchanges && !work.stop(); ++k) {
     const double done = static_cast<double>(k) / exchanges;
     engine.exchange(sizes.deal(engine.forces(), exchange_step(done)));
     sweep(sweeps_an_exchange);

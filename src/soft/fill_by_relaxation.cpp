@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -121,8 +122,14 @@ class Filling {
         crowd_(BoxGround<D>(edges_, work.allowed_overlap, work.walls), shaken(std::move(spheres))) {}
 
   StageEnd run() {
-    const StageEnd end = relax(patience);
-    if (end != StageEnd::converged && end != StageEnd::cancelled) take_out(end);
+    StageEnd end = StageEnd::full;
+    const Resumable part(work_, "filling",
+                         [&](Archive& a) { a(end, taking_out_, share_out_, most_sweeps_, reported_); });
+    if (!taking_out_) {
+      end = relax(patience);
+      most_sweeps_ = crowd_.sweeps() + more_sweeps * options_.sweeps;
+    }
+    if (taking_out_ || (end != StageEnd::converged && end != StageEnd::cancelled)) take_out(end);
     work_.effects["neighbour lists"] += crowd_.lists_built();
     work_.spheres = without_overlap<D>(crowd_.spheres(), edges_, work_.allowed_overlap);
     return end;
@@ -146,20 +153,20 @@ class Filling {
                          .milestone = [this] { report(); },
                          .is_over = [this] { return crowd_.sweeps() > most_sweeps_; },
                          .most_sweeps = most_sweeps_,
-                         .is_free = is_free},
+                         .is_free = is_free,
+                         .checkpoints = work_.checkpoints},
                         work_.monitor, random_);
   }
 
   /// Fewer and fewer, the last ones first, until the others are free of overlap.
   void take_out(StageEnd end) {
-    most_sweeps_ = crowd_.sweeps() + more_sweeps * options_.sweeps;
-    double share = taken_out;
+    if (std::exchange(taking_out_, true)) end = relax(0);  // as it was at
     while (end != StageEnd::converged && end != StageEnd::cancelled && crowd_.size() > 1 &&
            crowd_.sweeps() <= most_sweeps_) {
       const double count =
-          std::min(share * crowd_.mean_squeeze(), most_taken_out) * static_cast<double>(crowd_.size());
+          std::min(share_out_ * crowd_.mean_squeeze(), most_taken_out) * static_cast<double>(crowd_.size());
       crowd_.drop_last(count, random_);
-      share *= taken_out_faster;
+      share_out_ *= taken_out_faster;
       end = relax(0);
     }
   }
@@ -177,6 +184,8 @@ class Filling {
   const Vector<D> edges_;
   CrowdInBox<D> crowd_;
   double reported_ = 0;
+  bool taking_out_ = false;
+  double share_out_ = taken_out;
 };
 
 template <int D>

@@ -49,6 +49,9 @@ class ContainerGround {
 
   Effect lists_built() const { return lists_built_ + packing_->lists_built(); }
 
+  /// Of as many spheres as were placed.
+  void archive(Archive& a) { a(margin_, lists_built_, *packing_); }
+
  private:
   const Container* container_;
   const Places* places_;
@@ -86,6 +89,9 @@ class BoxGround {
   void move_to_holes(Spheres<D>& spheres, std::vector<std::uint32_t> ids, Random& random);
 
   Effect lists_built() const { return lists_built_ + engine_->lists_built(); }
+
+  /// Of as many spheres as were placed.
+  void archive(Archive& a) { a(margin_, lists_built_, *engine_); }
 
  private:
   Vector<D> edges_;

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <optional>
 
-#include "bernal/core/monitor.hpp"
 #include "bernal/soft/relax.hpp"
 #include "soft/soft_packing.hpp"
 #include "work/work.hpp"
@@ -22,39 +21,48 @@ inline double least_overlap(const Relax& options, double allowed) {
   return std::max({0.05 * options.stop, std::min(allowed, options.stop), 4e-6});
 }
 
-/// Sweeps of a cycle, at the pace for spheres of that largest overlap ratio. Returns what the last of them
-/// met, or nothing where cancelled; `each`: that tells about each sphere too.
-template <int D, class Engine>
-std::optional<double> sweep_cycle(Engine& packing, int sweeps, double molr, const Monitor& monitor,
+/// Sweeps of a cycle, at the pace for spheres of that largest overlap ratio, of which `done` are over; it is
+/// 0 again in the end. After each but the last, asks whether to stop. Returns what the last of them met, or
+/// nothing where stopped; `each`: that tells about each sphere too.
+template <int D, class Engine, class Stop>
+std::optional<double> sweep_cycle(Engine& packing, int sweeps, int& done, double molr, Stop&& stop,
                                   bool each = false) {
   const Pace pace = pace_for(molr);
   packing.wear_lists(pace.wear);
   const float omega = pace.omega * D / 3;
-  for (int k = 1; k < sweeps; ++k) {
+  while (done + 1 < sweeps) {
     packing.sweep(omega);
-    if (monitor.stop()) return std::nullopt;
+    ++done;
+    if (stop()) return std::nullopt;
   }
+  done = 0;
   return each ? packing.sweep_and_measure(omega) : packing.sweep_to_overlap(omega);
 }
 
 struct GrowingBox {
-  double molr = 1;  ///< the largest overlap ratio to begin with
-  double stop;      ///< and to end with
-  int sweeps;       ///< between two growths
+  double stop;  ///< largest overlap ratio to end with
+  int sweeps;   ///< between two growths
   double beta;
+};
+
+/// How far `grow_apart` has come.
+struct BoxGrowth {
+  double molr = 1;  ///< the largest overlap ratio
+  double last_molr = 0, growth = 0;
+  int cycle = 1, sweeps = 0;  ///< over in this cycle
 };
 
 /// Spheres push each other apart while their box grows, each time by `overlap_of(cycle, molr)` / beta. Where
 /// molr < 0.003, when it falls in proportion with the growth of the box, the next growth is 0.9 of what the
 /// last two predict, at most molr / 6; earlier, prediction costs contacts. `on_growth` is told the factor of
 /// each growth, and molr.
-template <int D, class Engine, class OverlapOf, class OnGrowth>
-StageEnd grow_apart(Engine& packing, const GrowingBox& box, const Monitor& monitor, OverlapOf&& overlap_of,
-                    OnGrowth&& on_growth) {
+template <int D, class Engine, class Stop, class OverlapOf, class OnGrowth>
+StageEnd grow_apart(Engine& packing, const GrowingBox& box, BoxGrowth& so_far, Stop&& stop,
+                    OverlapOf&& overlap_of, OnGrowth&& on_growth) {
   constexpr double predictable = 3e-3, share_of_prediction = 0.9, longest_predicted = 1.0 / 6;
-  double molr = box.molr, last_molr = 0, growth = 0;
-  for (int cycle = 1;; ++cycle) {
-    const std::optional<double> met = sweep_cycle<D>(packing, box.sweeps, molr, monitor);
+  auto& [molr, last_molr, growth, cycle, sweeps] = so_far;
+  for (;; ++cycle) {
+    const std::optional<double> met = sweep_cycle<D>(packing, box.sweeps, sweeps, molr, stop);
     if (!met) return StageEnd::cancelled;
     molr = *met;
     if (molr < box.stop) return StageEnd::converged;

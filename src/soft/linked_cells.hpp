@@ -44,6 +44,8 @@ class Slots {
     box_.edges = edges;
   }
 
+  void archive_slots(Archive& a) { a(box_, spheres_, slot_of_); }
+
   Boundary<D> box_;
   std::vector<PlacedSphere<D>> spheres_;  // by slot
   std::vector<Slot> slot_of_;             // by number
@@ -93,6 +95,10 @@ class LinkedCells : public Slots<D> {
   void grow(const Vector<D>& edges) {
     this->carry_along(edges);
     grid_.rescale(edges);
+  }
+  void archive(Archive& a) {
+    this->archive_slots(a);
+    a(grid_);
   }
 
  private:

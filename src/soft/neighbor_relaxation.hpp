@@ -52,6 +52,12 @@ class NeighborRelaxation {
   /// How often lists were built.
   const Effect& lists_built() const { return lists_built_; }
 
+  /// All of its state, in one that was made of as many spheres.
+  void archive(Archive& a) {
+    a(edges_, scale_, inverse_scale_, walled_, wall_share_, skin_, places_, radii_, ids_, squeeze_, force_,
+      neighbors_, list_, built_at_, hits_, stale_, wear_, age_, grown_, lists_built_);
+  }
+
  private:
   using Floats = typename RegistersFor<D>::Floats;
   using Ints = typename RegistersFor<D>::Ints;

@@ -44,6 +44,9 @@ class PublishedLoop {
   /// So far.
   std::uint64_t pairs_tested() const { return tested_; }
 
+  /// All of its state, in one that was made of as many spheres in the same box.
+  void archive(Archive& a) { a(random_, cells_, tested_); }
+
  private:
   using Slot = typename Cells<D>::Slot;
 

@@ -184,12 +184,13 @@ template <int D>
 StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
   SoftEngine<D> packing(spheres, edges, 1, work.walls);
   forget_places(spheres.x);  // which the engine has
-  const GrowingBox box{.molr = overlap,
-                       .stop = least_overlap(options, work.allowed_overlap),
+  const GrowingBox box{.stop = least_overlap(options, work.allowed_overlap),
                        .sweeps = sweeps_a_growth(options, spheres.size()),
                        .beta = options.beta};
+  BoxGrowth growth{.molr = overlap};
+  const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
   const StageEnd end = grow_apart<D>(
-      packing, box, work.monitor, [](int, double molr) { return molr; },
+      packing, box, growth, [&] { return work.stop(); }, [](int, double molr) { return molr; },
       [&](double factor, double molr) { tell_growth(work, factor, molr, box.stop); });
   work.effects["neighbour lists"] += packing.lists_built();
   spheres.resize(spheres.r.size());
@@ -214,10 +215,17 @@ StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
 template <int D>
 StageEnd exchange_sizes(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
   EffectTimer timer(work.effects["exchange"]);
-  const Spheres<D> ordinary = spheres;
-  const Vector<D> ordinary_edges = edges;
+  Spheres<D> ordinary = spheres;
+  Vector<D> ordinary_edges = edges;
   const bool wide = is_for_wide_sizes(work.fill_task, options);
-  const std::optional<double> overlap = exchange_in_box<D>(spheres, edges, wide, work);
+  bool exchanged = false;
+  std::optional<double> overlap;
+  const Resumable part(work, "exchange", [&](Archive& a) {
+    a(exchanged, overlap);
+    if (exchanged) a(ordinary, ordinary_edges, spheres, edges);
+  });
+  if (!exchanged) overlap = exchange_in_box<D>(spheres, edges, wide, work);
+  exchanged = true;
   if (!overlap) {
     work.account = "without an exchange of sizes: they are equal or too far apart";
     return StageEnd::converged;
@@ -245,31 +253,46 @@ StageEnd relax_in(Work& work, const Relax& options) {
   Spheres<D> spheres = work.spheres.in<D>();
   if (!work.placed && work.begun == 0) forget_places(work.spheres.x);  // for there are none yet
   Vector<D> edges = work.edges;
-  const auto finish = [&](StageEnd end) {
-    return finish_in_periodic_box<D>(std::move(spheres), edges, end, is_loose(work) ? 0 : options.polish,
+  enum class Step { place, push, exchange, finish } step = Step::place;
+  StageEnd end = StageEnd::converged;
+  int starts = 1;
+  const bool loose_box = is_loose(work);
+  const auto finish = [&] {
+    step = Step::finish;
+    const double polish_to = loose_box ? 0 : options.polish;
+    // While it is polished, a checkpoint has what that began with.
+    return finish_in_periodic_box<D>(polish_to > 0 ? spheres : std::move(spheres), edges, end, polish_to,
                                      work);
   };
-  if (is_done<D>(spheres, edges, work, options)) return finish(StageEnd::converged);
-  StageEnd end = StageEnd::converged;
-  if (begins_in_its_box(work, options) && hardly_overlaps<D>(spheres, edges, work, options)) {
+  Vector<D> start = edges;
+  const Resumable part(work, "relax", [&](Archive& a) {
+    a(step, end, starts, start, edges, work.edges);
+    if (step >= Step::exchange) a(spheres);  // before that, engines have their places
+  });
+  if (!part.resumed() && is_done<D>(spheres, edges, work, options)) return finish();
+  if (!part.resumed()) start = edges_to_start_from(work, options);
+  if (!part.resumed() && begins_in_its_box(work, options) &&
+      hardly_overlaps<D>(spheres, edges, work, options)) {
     free_of_overlap<D>(spheres, edges, work);
-  } else {
-    const Vector<D> start = edges_to_start_from(work, options);
-    end = place<D>(spheres, edges, start, work, options);
-    const int most_starts = is_loose(work) ? most_starts_in_a_loose_box : 1;
-    for (int starts = 1;; ++starts) {
-      work.edges = edges;
-      if (end == StageEnd::converged) end = push_apart<D>(spheres, edges, work, options);
-      free_of_overlap<D>(spheres, edges, work);
-      if (end != StageEnd::converged || starts == most_starts ||
-          lies_within<D>(spheres, edges, *work.target_edges))
-        break;
-      resize_box<D>(spheres, edges, start);
-    }
+    step = Step::exchange;
   }
-  if (options.exchange && end == StageEnd::converged && !is_loose(work))
+  if (step == Step::place) {
+    end = place<D>(spheres, edges, start, work, options);
+    step = Step::push;
+  }
+  for (const int most_starts = loose_box ? most_starts_in_a_loose_box : 1; step == Step::push; ++starts) {
+    work.edges = edges;
+    if (end == StageEnd::converged) end = push_apart<D>(spheres, edges, work, options);
+    free_of_overlap<D>(spheres, edges, work);
+    if (end != StageEnd::converged || starts == most_starts ||
+        lies_within<D>(spheres, edges, *work.target_edges))
+      step = Step::exchange;
+    else
+      resize_box<D>(spheres, edges, start);
+  }
+  if (step == Step::exchange && options.exchange && end == StageEnd::converged && !loose_box)
     end = exchange_sizes<D>(spheres, edges, work, options);
-  return finish(end);
+  return finish();
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -48,9 +49,19 @@ class Relaxation {
         target_count_(std::max(crowd_.size(), work.target_count())) {}
 
   StageEnd run() {
-    const bool free = free_by_dropping();
-    const bool limited = over_;  // what is added after that is as much as there is time for
-    if (free && !over_ && gain_ > 1 && crowd_.size() < target_count_) exchange();
+    enum class Step { free, exchange, push_in } step = Step::free;
+    bool free = false, limited = false;
+    const Resumable part(work_, "relaxation", [&](Archive& a) {
+      a(step, free, limited, share_out_, patience_, random_, over_, sweeps_of_exchange_);
+    });
+    if (step == Step::free) {
+      free = free_by_dropping();
+      limited = over_;  // what is added after that is as much as there is time for
+      const bool exchanges_sizes = free && !over_ && gain_ > 1 && crowd_.size() < target_count_;
+      step = exchanges_sizes ? Step::exchange : Step::push_in;
+    }
+    if (step == Step::exchange) exchange();
+    step = Step::push_in;
     if (free && !over_) push_in();
     // Single precision saw them free of overlap in motion; a few more sweeps bring all of them there.
     bool all_there = put_in_bed();
@@ -115,7 +126,8 @@ class Relaxation {
                                        .hopeless_patience = hopeless_patience,
                                        .failures_a_burst = std::numeric_limits<int>::max(),
                                        .milestone = [this] { report(); },
-                                       .is_over = is_over},
+                                       .is_over = is_over,
+                                       .checkpoints = work_.checkpoints},
                                       work_.monitor, random_);
     cancelled_ = end == StageEnd::cancelled;
     over_ = over_ || cancelled_ || end == StageEnd::hit_limit;
@@ -138,16 +150,18 @@ class Relaxation {
 
   /// More and more of the sequence, until even a few find no room.
   void push_in() {
-    for (double share = pushed_in; share >= least_pushed_in && !over_;) {
-      const Spheres<3> before = crowd_.spheres();
-      const std::size_t more = count_of_more(share);
-      if (more == 0 || !add(more)) return;
-      if (gain_ > 1) {
-        if (settle_by_exchange()) continue;
-      } else {
-        crowd_.burst();
-        if (relax(options_.patience)) continue;
+    double share = pushed_in;
+    std::size_t more = 0;
+    Spheres<3> before;
+    const Resumable part(work_, "push in", [&](Archive& a) { a(share, more, before); });
+    for (bool goes_on = part.resumed(); share >= least_pushed_in && !over_;) {
+      if (!std::exchange(goes_on, false)) {
+        before = crowd_.spheres();
+        more = count_of_more(share);
+        if (more == 0 || !add(more)) return;
+        if (!(gain_ > 1)) crowd_.burst();
       }
+      if (gain_ > 1 ? settle_by_exchange() : relax(options_.patience)) continue;
       crowd_.restore(before);
       if (more == 1) return;
       share /= 2;
@@ -156,24 +170,26 @@ class Relaxation {
 
   /// Relaxes and stirs, and takes out what does not come free. Returns whether the others are.
   bool free_by_dropping() {
-    bool free = relax(options_.patience);
-    for (double share = taken_out, patience = options_.patience; !free && !cancelled_ && crowd_.size() > 1;) {
-      const double count = share * crowd_.mean_squeeze() * static_cast<double>(crowd_.size());
+    for (;;) {
+      const bool free = relax(patience_);
+      if (free || cancelled_ || crowd_.size() <= 1) return free;
+      const double count = share_out_ * crowd_.mean_squeeze() * static_cast<double>(crowd_.size());
       crowd_.drop_last(count, random_);
-      share *= taken_out_faster;
-      patience = over_ ? 0 : less_patience * patience;
-      free = relax(patience);
+      share_out_ *= taken_out_faster;
+      patience_ = over_ ? 0 : less_patience * patience_;
     }
-    return free;
   }
 
   /// Spheres that are free of overlap exchange their sizes, and more of the sequence come in as that makes
   /// room. Where that comes to no good end, all is as it was.
   void exchange() {
     const EffectTimer timer(work_.effects["exchange"]);
-    const Spheres<3> ordinary = crowd_.spheres();
-    const double sweeps_before = crowd_.sweeps();
-    crowd_by_exchange();
+    Spheres<3> ordinary = crowd_.spheres();
+    double sweeps_before = crowd_.sweeps();
+    bool crowding = true;
+    const Resumable part(work_, "exchange", [&](Archive& a) { a(ordinary, sweeps_before, crowding); });
+    if (crowding) crowd_by_exchange();
+    crowding = false;
     bool free = settle_by_exchange();
     while (!free && !over_ && crowd_.size() > ordinary.size()) {
       crowd_.drop_last_dealing(taken_out_dealing * crowd_.mean_squeeze() *
@@ -193,8 +209,10 @@ class Relaxation {
 
   /// Up to a little more than there is room for, unless all are there before.
   void crowd_by_exchange() {
+    int k = 0;
+    const Resumable part(work_, "crowding", [&](Archive& a) { a(k, crowd_); });
     SizeExchange sizes(crowd_.spheres().r, work_.dimension());
-    for (int k = 0; k < exchanges && !(crowd_.is_free() && crowd_.size() == target_count_); ++k) {
+    for (; k < exchanges && !(crowd_.is_free() && crowd_.size() == target_count_); ++k) {
       if (exchange_is_over()) return;
       const double done = static_cast<double>(k) / exchanges;
       const double energy = crowd_.exchange(sizes, exchange_step(done));
@@ -211,8 +229,10 @@ class Relaxation {
   /// Returns whether the spheres came free of overlap. Nothing is stirred: that would undo what exchange has
   /// done.
   bool settle_by_exchange() {
+    int k = 0;
+    const Resumable part(work_, "settling", [&](Archive& a) { a(k, crowd_); });
     SizeExchange sizes(crowd_.spheres().r, work_.dimension());
-    for (int k = 0; k < exchanges_to_settle && !crowd_.is_free(); ++k) {
+    for (; k < exchanges_to_settle && !crowd_.is_free(); ++k) {
       if (exchange_is_over()) return false;
       crowd_.exchange(sizes, exchange_step(1));
     }
@@ -223,7 +243,7 @@ class Relaxation {
   }
 
   bool exchange_is_over() {
-    cancelled_ = work_.monitor.stop();
+    cancelled_ = work_.stop();
     over_ = over_ || cancelled_ || (options_.seconds > 0 && seconds() > options_.seconds);
     return over_;
   }
@@ -252,6 +272,7 @@ class Relaxation {
   CrowdInContainer crowd_;
   const std::size_t target_count_;
   double sweeps_of_exchange_ = 0;
+  double share_out_ = taken_out, patience_ = options_.patience;  // of the next that are taken out
   bool over_ = false;  // there is no more time, or no more patience of the user
   bool cancelled_ = false;
 };
@@ -265,14 +286,21 @@ bool is_dilute(const Work& work) {
 }  // namespace
 
 StageEnd relax_in_container(Work& work, const Relax& options) {
+  enum class Step { begin, insert, relax, finish } step = Step::begin;
+  StageEnd end = StageEnd::converged;
+  const Resumable part(work, "relax in container", [&](Archive& a) { a(step, end); });
   const auto relaxed = [&] {
-    // What fits only touching the walls would be pushed off its place; the others come around it.
-    if (SnugPlaces(work).only_some_touch()) return insert_largest_first(work);
-    const bool all_stand = work.begun > 0 && !work.target.is_open() && work.supply->exhausted();
-    if (all_stand) return StageEnd::converged;
-    if (is_dilute(work) && work.crowded_start.empty()) {
-      const StageEnd end = insert(work, until_full);
-      if (end != StageEnd::full) return end;
+    if (step == Step::begin) {
+      // What fits only touching the walls would be pushed off its place; the others come around it.
+      if (SnugPlaces(work).only_some_touch()) return insert_largest_first(work);
+      const bool all_stand = work.begun > 0 && !work.target.is_open() && work.supply->exhausted();
+      if (all_stand) return StageEnd::converged;
+      step = is_dilute(work) && work.crowded_start.empty() ? Step::insert : Step::relax;
+    }
+    if (step == Step::insert) {
+      const StageEnd inserted = insert(work, until_full);
+      if (inserted != StageEnd::full) return inserted;
+      step = Step::relax;
     }
     const auto relax = [&] {
       const EffectTimer timer(work.effects["relaxation"]);
@@ -280,7 +308,9 @@ StageEnd relax_in_container(Work& work, const Relax& options) {
     };
     return insert_what_else_fits(work, relax());
   };
-  return finish_in_bed(relaxed(), options.polish, work);
+  if (step != Step::finish) end = relaxed();
+  step = Step::finish;
+  return finish_in_bed(end, options.polish, work);
 }
 
 }  // namespace bernal

@@ -13,18 +13,21 @@ template <int D, template <int> class Cells>
 StageEnd relax_on(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
   PublishedLoop<D, Cells> loop(spheres, edges, options.settle, work.random(Stream::relax));
   const int sweeps = sweeps_a_cycle(options, spheres.size());
-  double reported = 0;
+  double reported = 0, molr = 0;
+  int sweep = 0;
+  const Resumable part(work, "published loop",
+                       [&](Archive& a) { a(reported, molr, sweep, work.edges, loop); });
   const auto end = [&](StageEnd how) {
     loop.write_to(spheres);
     edges = loop.edges();
     return how;
   };
   for (;;) {
-    double molr = 0;
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
-      if (work.monitor.stop()) return end(StageEnd::cancelled);
+    for (; sweep < sweeps; ++sweep) {
+      if (work.stop()) return end(StageEnd::cancelled);
       molr = loop.sweep();
     }
+    sweep = 0;
     if (molr < options.stop) return end(StageEnd::converged);
     loop.grow(1 + molr / options.beta);
     const double done = std::log(molr) / std::log(options.stop);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "neighbors/cell_grid.hpp"
 #include "soft/growing_box.hpp"
@@ -95,8 +96,11 @@ StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, co
   const int sweeps = sweeps_of_wide(options, spheres.size());
   StageEnd end = StageEnd::converged;
   double largest = 1, mean = std::numeric_limits<double>::infinity();
-  for (int cycle = 0; cycle < most_cycles_of_kind; ++cycle) {
-    const std::optional<double> met = sweep_cycle<D>(packing, sweeps, largest, work.monitor, true);
+  int cycle = 0, done = 0;
+  const Resumable part(work, "kind", [&](Archive& a) { a(largest, mean, cycle, done, packing); });
+  for (; cycle < most_cycles_of_kind; ++cycle) {
+    const std::optional<double> met = sweep_cycle<D>(
+        packing, sweeps, done, largest, [&] { return work.stop(); }, true);
     if (!met) end = StageEnd::cancelled;
     if (!met) break;
     largest = *met;
@@ -110,17 +114,17 @@ StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, co
   return end;
 }
 
-/// The spheres, of a largest overlap ratio of about `molr`, push each other apart while the box grows.
-template <int D, class OnGrowth>
-StageEnd grow_by_means(SoftPacking& packing, const std::vector<double>& radii, double molr, double stop,
-                       const Relax& options, const Monitor& monitor, OnGrowth&& on_growth) {
+/// The spheres push each other apart while the box grows.
+template <int D, class Stop, class OnGrowth>
+StageEnd grow_by_means(SoftPacking& packing, const std::vector<double>& radii, BoxGrowth& growth,
+                       double overlap, const Relax& options, Stop&& stop, OnGrowth&& on_growth) {
   const auto overlap_of = [&](int cycle, double largest) {
     const double share = std::min(1.0, std::pow(cycle / cycles_of_means, power_of_cycles));
     return std::min(largest, std::max(mean_overlap<D>(packing, radii), share * largest));
   };
   const GrowingBox box{
-      .molr = molr, .stop = stop, .sweeps = sweeps_of_wide(options, radii.size()), .beta = options.beta};
-  return grow_apart<D>(packing, box, monitor, overlap_of, on_growth);
+      .stop = overlap, .sweeps = sweeps_of_wide(options, radii.size()), .beta = options.beta};
+  return grow_apart<D>(packing, box, growth, stop, overlap_of, on_growth);
 }
 
 /// Few spheres, in the densest of some packings of them, spread out or squeezed into the box.
@@ -138,7 +142,10 @@ StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, cons
     Vector<D> box = factor * edges;
     place_between(start, 0, box, random, work.monitor);
     SoftPacking packing(start, box, soft_kernels().front(), true);
-    end = grow_by_means<D>(packing, start.r, 1, options.stop, options, work.monitor, [](double, double) {});
+    BoxGrowth growth;
+    end = grow_by_means<D>(
+        packing, start.r, growth, options.stop, options, [&] { return work.monitor.stop(); },
+        [](double, double) {});
     work.effects["neighbour lists"] += packing.lists_built();
     packing.write_to(start, box);
     if (!(box.prod() < least)) continue;
@@ -167,13 +174,17 @@ StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& w
   for (const std::size_t i : order) descending.push_back(Vector<D>::Zero(), spheres.r[i]);
 
   StageEnd end = StageEnd::converged;
-  for (std::size_t first = 0, last = 0; first < count; first = last) {
+  std::size_t first = 0, last = 0;
+  const Resumable part(work, "from the largest", [&](Archive& a) { a(first, last, descending, random); });
+  for (bool goes_on = part.resumed(); first < count; first = last) {
     while (last < count && descending.r[last] > 0.5 * descending.r[first]) ++last;
     if (static_cast<double>(count - last) <= least_of_kind * static_cast<double>(count)) last = count;
     Spheres<D> there = descending;
     there.resize(last);
     const bool are_few = first == 0 && last < spheres_in_starts;
-    if (are_few)
+    if (std::exchange(goes_on, false))
+      ;  // they have their places
+    else if (are_few)
       end = place_few(there, edges, work, options, random);
     else
       place_between(there, first, edges, random, work.monitor);
@@ -188,9 +199,11 @@ template <int D>
 StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
   SoftPacking packing(spheres, edges, soft_kernels().front(), true);
   const double stop = least_overlap(options, work.allowed_overlap);
-  const StageEnd end =
-      grow_by_means<D>(packing, spheres.r, overlap, stop, options, work.monitor,
-                       [&](double factor, double molr) { tell_growth(work, factor, molr, stop); });
+  BoxGrowth growth{.molr = overlap};
+  const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
+  const StageEnd end = grow_by_means<D>(
+      packing, spheres.r, growth, stop, options, [&] { return work.stop(); },
+      [&](double factor, double molr) { tell_growth(work, factor, molr, stop); });
   work.effects["neighbour lists"] += packing.lists_built();
   packing.write_to(spheres, edges);
   return end;

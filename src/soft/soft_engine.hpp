@@ -58,6 +58,9 @@ class SoftEngine {
   const Effect& lists_built() const {
     return std::visit([](const auto& engine) -> const Effect& { return engine.lists_built(); }, engine_);
   }
+  void archive(Archive& a) {
+    std::visit([&](auto& engine) { engine.archive(a); }, engine_);
+  }
 
  private:
   // In more than three dimensions there is but one kind.

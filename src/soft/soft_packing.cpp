@@ -220,6 +220,18 @@ void SoftPacking::choose_skin() {
   if (age_ < short_life) skin_ = std::min(thickest_skin_, 2 * skin);
 }
 
+/// In the box of that time; what is in `spare` is lost.
+void SoftPacking::build_lists(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& sites,
+                              std::vector<SoftSphere>& spare) {
+  in_blocks_ = !by_octaves_ && SoftBlocks::suit(count_, edges_then_, sizes_, skin_);
+  if (in_blocks_) {
+    if (!blocks_) blocks_ = std::make_unique<SoftBlocks>(kernels_);
+    in_blocks_ = blocks_->build(spheres, sites, spare, count_, edges_then_, sizes_, skin_);
+  }
+  if (!in_blocks_) lists_.build(spheres, sites, edges_then_, sizes_, skin_);
+  if (!walls_) far_images_.build(spheres, edges_then_, dimension_, wear_then_ * skin_);
+}
+
 void SoftPacking::keep_lists_valid() {
   if (!stale_ && sweeps_ < patience_) return;
   const double limit = wear_ * skin_;
@@ -231,16 +243,11 @@ void SoftPacking::keep_lists_valid() {
     if (walls_ && lists_built_.calls > 0) walls_->stop_strays(spheres_, built_at_, sites_);
     const EffectTimer timer(lists_built_);
     choose_skin();
-    in_blocks_ = !by_octaves_ && SoftBlocks::suit(count_, edges_, sizes_, skin_);
-    if (in_blocks_) {
-      if (!blocks_) blocks_ = std::make_unique<SoftBlocks>(kernels_);
-      in_blocks_ = blocks_->build(spheres_, sites_, built_at_, count_, edges_, sizes_, skin_);
-    }
-    if (!in_blocks_) lists_.build(spheres_, sites_, edges_, sizes_, skin_);
-    if (walls_)
-      walls_->build(spheres_, sites_, skin_);
-    else
-      far_images_.build(spheres_, edges_, dimension_, wear_ * skin_);
+    sites_then_ = sites_;
+    edges_then_ = edges_;
+    wear_then_ = wear_;
+    build_lists(spheres_, sites_, built_at_);
+    if (walls_) walls_->build(spheres_, sites_, skin_);
     remember_places();
     grown_ = 0;
     age_ = 0;
@@ -251,6 +258,28 @@ void SoftPacking::keep_lists_valid() {
   age_ += sweeps_;
   sweeps_ = 0;
   patience_ = static_cast<int>(std::clamp(0.5 * (limit - moved) / speed, 1.0, double{longest_patience}));
+}
+
+void SoftPacking::archive(Archive& a) {
+  a(edges_, skin_, spheres_, sites_, id_of_site_, squeeze_, force_, swelling_, stale_, lists_built_, grown_,
+    moved_, wear_, age_, sweeps_, patience_);
+  if (walls_) a(*walls_);
+  if (lists_built_.calls > 0) build_again(a);
+}
+
+void SoftPacking::build_again(Archive& a) {
+  a(built_at_, sites_then_, edges_then_, wear_then_);
+  if (!a.reads() || stale_) return;  // they are built before they are used
+  std::vector<SoftSphere> at_site(count_), spheres, spare;
+  for (std::size_t p = 0; p < built_at_.size(); ++p)
+    if (built_at_[p].r > 0) at_site[sites_[p]] = built_at_[p];
+  std::vector<std::uint32_t> sites;
+  for (const std::uint32_t site : sites_then_) {
+    if (site >= count_) continue;  // a gap
+    spheres.push_back(at_site[site]);
+    sites.push_back(site);
+  }
+  build_lists(spheres, sites, spare);
 }
 
 template <int D>

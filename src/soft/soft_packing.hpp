@@ -102,6 +102,10 @@ class SoftPacking {
   /// How often lists were built.
   const Effect& lists_built() const { return lists_built_; }
 
+  /// All of its state, in one that was made of as many spheres with the same radii in the same box or
+  /// container. Lists are not kept but built again, of what they were built of.
+  void archive(Archive& a);
+
  private:
   /// Radii become up to `most` times these; places are still to be set.
   SoftPacking(const std::vector<double>& radii, double most, int dimension, const SoftKernels& kernels,
@@ -113,7 +117,10 @@ class SoftPacking {
   void set_place(SoftSphere& sphere, const Vector<D>& center) const;
   void choose_skin();
   void keep_lists_valid();
+  void build_lists(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& sites,
+                   std::vector<SoftSphere>& spare);
   void remember_places();
+  void build_again(Archive& a);
   double largest_move() const;
   std::uint32_t id_at(std::size_t p) const { return id_of_site_[sites_[p]]; }
   std::vector<float> by_id(const std::vector<float>& in_sweep_order) const;
@@ -135,10 +142,13 @@ class SoftPacking {
   std::vector<std::uint32_t> sites_;       // in sweep order: what the walls know of a place goes with it
   std::vector<std::uint32_t> id_of_site_;  // of the sphere that stands there
   std::vector<float> squeeze_, force_;
-  std::vector<float> radii_;          // as given, by id
-  float swelling_ = 1;                // of these
-  bool stale_ = true;                 // the lists
-  std::vector<SoftSphere> built_at_;  // where they were when the lists were built
+  std::vector<float> radii_;               // as given, by id
+  float swelling_ = 1;                     // of these
+  bool stale_ = true;                      // the lists
+  std::vector<SoftSphere> built_at_;       // where they were when the lists were built
+  std::vector<std::uint32_t> sites_then_;  // in the order in which they came to that
+  std::array<double, 3> edges_then_{};
+  double wear_then_ = 0;
   Effect lists_built_{"neighbour lists", 0, 0};
   double grown_ = 0;  // at most, by exchanges since then
   double moved_ = 0;  // largest move since then, when it was last looked at

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bernal/domain/container.hpp"
+#include "core/archive.hpp"
 #include "core/made.hpp"
 #include "kernels/closest_point.hpp"
 #include "soft/soft_kernels.hpp"
@@ -55,6 +56,9 @@ class SoftWalls {
   /// Forgets what is known of a sphere that is about to be elsewhere.
   void forget(std::uint32_t id) { views_[id] = {}; }
 
+  /// Between two sweeps: all that it knows.
+  void archive(Archive& a) { a(skin_, views_, first_, near_, has_fine_, until_, least_until_); }
+
   bool near(std::size_t group) const { return first_[group] < first_[group + 1]; }
   /// Where the container has to be asked, works out in all threads what `push` will say during one sweep: for
   /// sweeps that have only one. Until its push a group of `spheres` stays where it is.
@@ -77,6 +81,7 @@ class SoftWalls {
     double reach = 0;           // all pieces nearer than this to `at` are there
     bool is_fine = false;       // too many for that: none is
     std::vector<Piece> pieces;  // nearest first
+    void archive(Archive& a) { a(at, clearance, reach, is_fine, pieces); }
   };
   /// A sphere that may meet a wall until lists are built anew: what a sweep touches, in its order.
   struct NearSphere {

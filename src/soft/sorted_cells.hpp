@@ -92,6 +92,10 @@ class SortedCells : public Slots<D> {
     this->carry_along(edges);
     layout_.rescale(edges);
   }
+  void archive(Archive& a) {
+    this->archive_slots(a);
+    a(layout_, motion_, tags_, start_, clock_, strays_);
+  }
 
  private:
   /// Of a cell's edge, and of the spheres.

@@ -43,6 +43,7 @@ void concatenate(const std::vector<std::vector<T>>& blocks, std::vector<std::uin
 
 Bed::Bed(const Container& container, double r_min, double r_max, std::size_t expected, EffectLog& effects)
     : container_(container),
+      made_for_{r_min, r_max, expected},
       effects_(effects),
       repeats_(container.boundary().repeats()),
       skin_(tolerance::skin(r_min, container.resolution())),

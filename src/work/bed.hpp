@@ -6,6 +6,7 @@
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/container.hpp"
+#include "core/archive.hpp"
 #include "domain/places.hpp"
 #include "neighbors/cell_grid.hpp"
 #include "work/effect_log.hpp"
@@ -121,6 +122,17 @@ class Bed {
   /// The same with as many coordinates as the container has.
   Spheres<dynamic> spheres_as_packed() const;
 
+  /// What it was made for.
+  struct Sizes {
+    double r_min, r_max;
+    std::size_t expected;
+  };
+  const Sizes& made_for() const { return made_for_; }
+  /// All spheres, in a bed that was made for the same; `enclose` comes next.
+  void archive(Archive& a) {
+    a(balls_, tags_, grid_, sum_of_radii_, sum_of_volumes_, far_from_wall_, far_from_wall_at_);
+  }
+
  private:
   friend class Mover;
   void reorder(const std::vector<Id>& order);
@@ -136,6 +148,7 @@ class Bed {
   }
 
   const Container& container_;
+  const Sizes made_for_;
   EffectLog& effects_;
   const Made made_{"walls"};
   const bool repeats_;  // along some axis

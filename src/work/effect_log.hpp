@@ -7,9 +7,12 @@
 #include <vector>
 
 #include "bernal/run/packing.hpp"
+#include "core/archive.hpp"
 #include "core/made.hpp"
 
 namespace bernal {
+
+inline void archive(Archive& a, Effect& effect) { a(effect.name, effect.calls, effect.seconds); }
 
 /// Counts what each effect of a run did and how long it took. One writer: the thread that runs the stages.
 class EffectLog {
@@ -22,6 +25,12 @@ class EffectLog {
     return effects_.emplace_back(Effect{std::string(name), 0, 0});
   }
   std::vector<Effect> all() const { return {effects_.begin(), effects_.end()}; }
+  /// The same with the time of what is in progress in this thread.
+  std::vector<Effect> all_so_far() const;
+  /// Those that there were in an earlier process: in their order, if nothing has been counted yet.
+  void go_on_from(const std::vector<Effect>& earlier) {
+    for (const Effect& e : earlier) (*this)[e.name] = e;
+  }
 
  private:
   std::deque<Effect> effects_;  // entries stay where they are
@@ -42,20 +51,35 @@ class EffectTimer {
   explicit EffectTimer(Effect& effect)
       : effect_(effect),
         outer_(std::exchange(effect_in_progress, effect.name.c_str())),
+        around_(std::exchange(innermost_, this)),
         start_(Clock::now()) {}
   ~EffectTimer() {
+    innermost_ = around_;
     effect_in_progress = outer_;
     ++effect_.calls;
-    effect_.seconds += std::chrono::duration<double>(Clock::now() - start_).count();
+    effect_.seconds += seconds();
   }
   EffectTimer(const EffectTimer&) = delete;
   EffectTimer& operator=(const EffectTimer&) = delete;
 
  private:
+  friend class EffectLog;
   using Clock = std::chrono::steady_clock;
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  inline static thread_local const EffectTimer* innermost_ = nullptr;
   Effect& effect_;
   const char* const outer_;
+  const EffectTimer* const around_;
   Clock::time_point start_;
 };
+
+inline std::vector<Effect> EffectLog::all_so_far() const {
+  std::vector<Effect> so_far = all();
+  for (const EffectTimer* timer = EffectTimer::innermost_; timer; timer = timer->around_)
+    for (std::size_t k = 0; k < effects_.size(); ++k)
+      if (&timer->effect_ == &effects_[k]) so_far[k].seconds += timer->seconds();
+  return so_far;
+}
 
 }  // namespace bernal

@@ -33,6 +33,9 @@ class SnugPlaces {
   /// The same; where all sizes need such places and some still wait, all start anew if more find one then.
   void complete(double packing_fraction);
 
+  /// What it has found out.
+  void archive(Archive& a) { a(random_, roomy_, tight_); }
+
  private:
   /// `touching`: only what touches the walls exactly.
   std::optional<Vector<3>> from(const Vector<3>& start, double r, bool touching) const;

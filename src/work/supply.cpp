@@ -86,6 +86,7 @@ void Supply::multiply_by(double factor) {
   for (double& r : radii_) r *= factor;
   smallest_ *= factor;
   largest_ *= factor;
+  is_scaled_ = true;
 }
 
 void Supply::open_window() {

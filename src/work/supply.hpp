@@ -6,6 +6,7 @@
 #include "bernal/scene/scene.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/sizes/size_distribution.hpp"
+#include "core/archive.hpp"
 
 namespace bernal {
 
@@ -81,6 +82,12 @@ class Supply {
   double smallest() const { return smallest_; }
   double largest() const { return largest_; }
 
+  /// What has happened since the radii were drawn, which they are again before this is read.
+  void archive(Archive& a) {
+    a(window_, taken_first_, in_sequence_, next_, is_scaled_);
+    if (is_scaled_) a(radii_, smallest_, largest_);
+  }
+
  private:
   void open_window();
 
@@ -96,6 +103,7 @@ class Supply {
   double cut_ = 0;
   double smallest_ = 0;
   double largest_ = 0;
+  bool is_scaled_ = false;  // by `multiply_by`
 };
 
 }  // namespace bernal

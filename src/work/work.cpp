@@ -137,6 +137,14 @@ void Work::stand_in_box() {
   bed_ = nullptr;
 }
 
+void Work::archive_bed(Archive& a) {
+  a(*supply);
+  Bed::Sizes sizes = bed_ ? bed_->made_for() : Bed::Sizes{};
+  a(sizes);
+  if (a.reads()) bed_ = std::make_shared<Bed>(*container, sizes.r_min, sizes.r_max, sizes.expected, effects);
+  a(*bed_);
+}
+
 void Work::milestone(std::string_view stage) const {
   if (!on_course) return;
   on_course({.stage = stage,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bernal/core/dimension.hpp"
@@ -14,6 +15,7 @@
 #include "bernal/domain/domain.hpp"
 #include "bernal/scene/scene.hpp"
 #include "work/bed.hpp"
+#include "work/checkpoints.hpp"
 #include "work/effect_log.hpp"
 #include "work/supply.hpp"
 
@@ -124,6 +126,9 @@ struct Work {
   EffectLog& effects;
   std::function<void(const Course&)> on_course = {};
   std::uint64_t streams_used = 0;
+  Checkpoints* checkpoints = nullptr;  ///< none: those that stages make are without use
+  /// At a safe point of a stage, within a `Part`: see `Checkpoints::stop`.
+  bool stop() { return checkpoints ? checkpoints->stop() : monitor.stop(); }
 
   /// A fresh stream of random numbers for one round of a stage.
   Random random(Stream purpose) { return {seed, stream(purpose, streams_used++)}; }
@@ -173,8 +178,38 @@ struct Work {
   void insert_in_bed(const Spheres<dynamic>& others,
                      const std::function<bool(const Vector<3>&, double)>& may_stand = {});
 
+  /// What stages leave to each other, besides the spheres.
+  void archive_facts(Archive& a) {
+    a(edges, placed, placed_count, placed_share, target_edges, account, missed, size_scale, begun,
+      may_overlap, crowded_start, needed_volume, streams_used);
+  }
+  /// The spheres that stand in a bed, which is made if there is none, and those that are still to come.
+  void archive_bed(Archive& a);
+
   std::shared_ptr<Bed> bed_ = {};
   mutable std::optional<Room> roomiest_ = {};
+};
+
+/// The state of a stage, or of what it does, while this lives: see `Checkpoints::Part`. In work without
+/// checkpoints it is none.
+class Resumable {
+ public:
+  Resumable(const Work& work, std::string_view name, std::function<void(Archive&)> state) {
+    if (work.checkpoints) part_.emplace(*work.checkpoints, name, std::move(state));
+  }
+  bool resumed() const { return part_ && part_->resumed(); }
+
+ private:
+  std::optional<Checkpoints::Part> part_;
+};
+
+/// Checkpoints are not written while this lives.
+class NotResumable {
+ public:
+  explicit NotResumable(const Work& work) : pause_(work.checkpoints) {}
+
+ private:
+  const Checkpoints::Pause pause_;
 };
 
 /// The spheres as they stand before a stage, so that a stage which is cut short takes nothing away from what
@@ -182,16 +217,19 @@ struct Work {
 class Keepsake {
  public:
   explicit Keepsake(const Work& work);
+  Keepsake() = default;  ///< to be read from an archive
 
   /// Puts everything back if less of the domain is filled now. What stood in a bed stands in one again.
   void give_back_if_denser(Work& work) const;
 
+  void archive(Archive& a) { a(in_bed_, packing_fraction_, spheres_, edges_, needed_volume_); }
+
  private:
-  bool in_bed_;
-  double packing_fraction_;
+  bool in_bed_ = false;
+  double packing_fraction_ = 0;
   Spheres<dynamic> spheres_;
   Vector<dynamic> edges_;
-  double needed_volume_;
+  double needed_volume_ = 0;
 };
 
 }  // namespace bernal

@@ -1,5 +1,7 @@
 #pragma once
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,6 +59,22 @@ struct Milestone {
   double seconds = 0;      ///< since the start of the run
 };
 
+/// Where a run keeps its state now and then, so that it can go on from there after the process has ended,
+/// however that was: to the same bits as if nothing had happened, for any number of threads before and after.
+struct CheckpointOptions {
+  /// That will hold the result: checkpoints stand in a folder of their own within. Empty: none are written.
+  std::filesystem::path folder = {};
+  /// Seconds between two, at least; more where writing takes more than a fiftieth of the time. One more is
+  /// written when the monitor says stop.
+  double every = 60;
+  /// Goes on from the latest of the same scene, seed and version, if there is one.
+  bool resume = false;
+  /// Told in a sentence what people should know at once: that it goes on, or starts anew, or cannot write.
+  std::function<void(const std::string&)> tell = {};
+  /// Asked at every safe point in place of the clock: whether one is to be written now.
+  std::function<bool()> due = {};
+};
+
 /// The result of a run: plain data. Lengths are in the scene's unit and frame. `spheres` has the dimension of
 /// the domain.
 struct Packing {
@@ -80,7 +98,8 @@ struct Packing {
   std::string reason;  ///< one sentence behind the outcome
   std::vector<Effect> effects;
   std::vector<Milestone> history;
-  double seconds = 0;
+  double seconds = 0;  ///< of all processes that it took
+  int resumed = 0;     ///< how often it went on from a checkpoint
 
   double packing_fraction() const;
 };

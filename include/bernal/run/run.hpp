@@ -87,9 +87,15 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;  ///< the scene's own if absent
   int threads = 0;                    ///< 0: as many as the machine has
   Monitor monitor;
+  CheckpointOptions checkpoints = {};
 };
 
-/// Runs the plan's stages. One seed gives one packing, bit for bit, for any number of threads.
+/// Runs the plan's stages. One seed gives one packing, bit for bit, for any number of threads. Throws
+/// Error{bad_argument} where it is to go on from a checkpoint of another run.
 Packing run(const Plan& plan, const RunOptions& options = {});
+
+/// To be called once a result has been written into its folder: its checkpoints, and those that killed runs
+/// left there, go, unless a run is at work with them.
+void remove_checkpoints(const std::filesystem::path& folder);
 
 }  // namespace bernal

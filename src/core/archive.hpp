@@ -1,0 +1,158 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "bernal/core/spheres.hpp"
+
+namespace bernal {
+
+/// Bytes that stand for values: those of something that is to go on later, in another process. One function
+/// says what belongs to it, and both writes and reads, so that the two cannot drift apart:
+///
+///   void archive(Archive& a) { a(count_, places_, radii_); }
+///
+/// Plain values go as their bytes, for machines of one kind; vectors with their lengths; whatever has a
+/// member `archive`, or a function archive(Archive&, T&), by that. What holds addresses has to have one.
+/// Order and types of what is read must be those of what was written, which nothing checks but the number of
+/// bytes: whoever reads has made sure before that the bytes are those, of the same program. Cost: that of
+/// copying.
+class Archive {
+ public:
+  Archive() = default;
+  virtual ~Archive() = default;
+  Archive(const Archive&) = delete;
+  Archive& operator=(const Archive&) = delete;
+
+  /// Whether values are set here, not kept.
+  virtual bool reads() const = 0;
+
+  template <class... Values>
+  void operator()(Values&... values) {
+    (take(values), ...);
+  }
+
+ protected:
+  /// Keeps or sets them.
+  virtual void bytes(void* data, std::size_t count) = 0;
+  /// How many are still to be read.
+  virtual std::uint64_t left() const = 0;
+  /// Throws Error{bad_packing}: there are not so many.
+  [[noreturn]] static void fail();
+
+ private:
+  /// Has no address of anything, as far as a type can tell. Fixed vectors of Eigen are copied by functions of
+  /// their own, but have nothing else.
+  template <class T>
+  static constexpr bool is_plain = std::is_trivially_destructible_v<T> && !std::is_pointer_v<T>;
+
+  template <class T>
+  void take(T& value) {
+    static_assert(!std::is_const_v<T>);
+    if constexpr (requires { value.archive(*this); })
+      value.archive(*this);
+    else if constexpr (requires { archive(*this, value); })
+      archive(*this, value);
+    else if constexpr (is_plain<T>)
+      bytes(static_cast<void*>(&value), sizeof value);
+    else
+      take_parts(value);
+  }
+
+  /// A length, of values that take at least that many bytes each.
+  std::size_t length(std::size_t now, std::size_t least_bytes) {
+    std::uint64_t n = now;
+    bytes(&n, sizeof n);
+    if (reads() && least_bytes > 0 && n > left() / least_bytes) fail();
+    return static_cast<std::size_t>(n);
+  }
+
+  template <class T, class Allocator>
+  void take_parts(std::vector<T, Allocator>& values) {
+    constexpr bool own = requires(T & value) { value.archive(*this); }
+    || requires(T & value) { archive(*this, value); };
+    constexpr bool plain = is_plain<T> && !own;
+    const std::size_t n = length(values.size(), plain ? sizeof(T) : 1);
+    if (reads()) values.resize(n);
+    if constexpr (plain) {
+      if (n > 0) bytes(static_cast<void*>(values.data()), n * sizeof(T));
+    } else {
+      for (T& value : values) take(value);
+    }
+  }
+  void take_parts(std::vector<bool>& values) {
+    std::vector<char> plain(values.begin(), values.end());
+    take_parts(plain);
+    if (reads()) values.assign(plain.begin(), plain.end());
+  }
+  void take_parts(std::string& text) {
+    const std::size_t n = length(text.size(), 1);
+    if (reads()) text.resize(n);
+    if (n > 0) bytes(text.data(), n);
+  }
+  template <class T, std::size_t N>
+  void take_parts(std::array<T, N>& values) {
+    for (T& value : values) take(value);
+  }
+  template <class T>
+  void take_parts(std::optional<T>& value) {
+    bool there = value.has_value();
+    take(there);
+    if (reads()) value.reset();
+    if (reads() && there) value.emplace();
+    if (there) take(*value);
+  }
+  template <int D>
+  void take_parts(Spheres<D>& spheres) {
+    (*this)(spheres.x, spheres.r);
+  }
+  template <class Derived>
+  void take_parts(Eigen::PlainObjectBase<Derived>& values) {
+    std::int64_t rows = values.rows(), columns = values.cols();
+    (*this)(rows, columns);
+    if (reads()) {
+      const std::uint64_t most = left() / sizeof(typename Derived::Scalar);
+      if (rows < 0 || columns < 0 || (columns > 0 && static_cast<std::uint64_t>(rows) > most / columns))
+        fail();
+      values.derived().resize(rows, columns);
+    }
+    if (values.size() > 0)
+      bytes(values.data(), static_cast<std::size_t>(values.size()) * sizeof(typename Derived::Scalar));
+  }
+};
+
+/// Into a string.
+class ArchiveToBytes final : public Archive {
+ public:
+  explicit ArchiveToBytes(std::string& bytes) : bytes_(bytes) {}
+  bool reads() const override { return false; }
+
+ private:
+  void bytes(void* data, std::size_t count) override { bytes_.append(static_cast<const char*>(data), count); }
+  std::uint64_t left() const override { return 0; }
+  std::string& bytes_;
+};
+
+/// And out of one, which outlives this.
+class ArchiveFromBytes final : public Archive {
+ public:
+  explicit ArchiveFromBytes(std::string_view bytes) : bytes_(bytes) {}
+  bool reads() const override { return true; }
+
+ private:
+  void bytes(void* data, std::size_t count) override {
+    if (count > bytes_.size()) fail();
+    std::memcpy(data, bytes_.data(), count);
+    bytes_.remove_prefix(count);
+  }
+  std::uint64_t left() const override { return bytes_.size(); }
+  std::string_view bytes_;
+};
+
+}  // namespace bernal

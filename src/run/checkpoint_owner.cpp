@@ -1,0 +1,36 @@
+#include "run/checkpoint_owner.hpp"
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "bernal/scene/read_scene.hpp"
+#include "bernal/version.hpp"
+
+namespace bernal {
+
+CheckpointOwner checkpoint_owner(const Scene& scene, std::uint64_t seed) {
+  CheckpointOwner owner;
+  owner.version = version();
+  owner.seed = seed;
+  Scene bare = scene;
+  bare.seed = 1;
+  bare.outputs.clear();
+  const auto note = [&](std::vector<std::string>& digests) {
+    for (const std::string& digest : digests) owner.files += digest + "\n";
+    digests.clear();
+  };
+  if (auto* mesh = std::get_if<MeshFile>(&bare.container)) {
+    note(mesh->sha256);
+    mesh->file = mesh->file.filename();
+    for (std::filesystem::path& file : mesh->obstacles) file = file.filename();
+  }
+  if (bare.start.file) {
+    note(bare.start.sha256);
+    bare.start.file = bare.start.file->filename();
+  }
+  owner.scene = scene_as_toml(bare);
+  return owner;
+}
+
+}  // namespace bernal

@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/archive.hpp"
+
+namespace bernal {
+
+/// Whose a checkpoint is: what a run depends on. With another program, scene or seed nothing can go on from
+/// it.
+struct CheckpointOwner {
+  std::string version;
+  std::string scene;  ///< complete, as text, less what is below
+  std::string files;  ///< the SHA-256 of CAD files and starts
+  std::uint64_t seed = 0;
+  void archive(Archive& a) { a(version, scene, files, seed); }
+  bool operator==(const CheckpointOwner&) const = default;
+};
+
+/// The checkpoints of a run, in a folder of their own inside the one that will hold its result:
+/// `.bernal-checkpoint`. The last one is `latest`; it takes the place of the one before it, by renaming, once
+/// all of it is on the disk, and that one stays as `before`. So whenever a process is killed, at least one
+/// is whole, once there has been one.
+///
+/// A file is a name and a format number, its owner, what the run writes, the number of bytes so far and a
+/// 64-bit sum of them: a file that was cut short, or of which any bit has changed, is told from a whole one.
+///
+/// While a run has written or read there, it holds a lock of the folder, so that no other takes it for
+/// abandoned or writes its own there.
+class CheckpointFolder {
+ public:
+  /// Of the folder that will hold the result. Nothing is made yet.
+  explicit CheckpointFolder(const std::filesystem::path& result);
+  ~CheckpointFolder();
+  CheckpointFolder(const CheckpointFolder&) = delete;
+  CheckpointFolder& operator=(const CheckpointFolder&) = delete;
+
+  const std::filesystem::path& path() const { return folder_; }
+
+  /// Writes one, whose contents `write` gives. Throws Error{cannot_write} where that cannot be, and where
+  /// another run holds the folder; the earlier ones are what they were.
+  void write(CheckpointOwner& owner, const std::function<void(Archive&)>& write);
+
+  /// The latest that is whole, after its owner; null if there is none. `note` says in a sentence what was
+  /// wrong with one that had to be passed over. Throws Error{bad_argument} where that is another's, naming
+  /// what differs, and where another run holds the folder.
+  std::unique_ptr<Archive> open(const CheckpointOwner& owner, std::string& note);
+
+  /// Whether there is one, whole or not.
+  static bool stands_in(const std::filesystem::path& result);
+  /// Takes all of them away, unless another run is at work with them.
+  static void remove_from(const std::filesystem::path& result);
+
+ private:
+  bool hold();
+  std::filesystem::path folder_;
+  int lock_ = -1;
+};
+
+}  // namespace bernal

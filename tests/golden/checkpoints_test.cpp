@@ -1,0 +1,126 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "support/folder.hpp"
+
+// A run that is ended at safe points and goes on from its checkpoints comes to what it would have come to,
+// bit for bit, on any number of threads before and after: every scene of this folder, which are those of
+// every stage.
+namespace bernal {
+namespace checkpoints_test {
+
+constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
+
+struct Ended {
+  Packing packing;
+  std::uint64_t safe_points = 0;  ///< that it came to
+  std::string told;
+};
+
+/// Runs until so many safe points have been passed: at the last of them a checkpoint is written.
+Ended run_to(std::uint64_t end, const Plan& plan, const std::filesystem::path& folder, bool resume,
+             int threads) {
+  Ended ended;
+  RunOptions options;
+  options.threads = threads;
+  options.monitor.cancelled = [&] { return ended.safe_points >= end; };
+  options.checkpoints.folder = folder;
+  options.checkpoints.resume = resume;
+  options.checkpoints.due = [&] { return ++ended.safe_points == end; };
+  options.checkpoints.tell = [&](const std::string& what) { ended.told += what + "\n"; };
+  ended.packing = run(plan, options);
+  return ended;
+}
+
+void expect_the_same(const Packing& resumed, const Packing& undisturbed) {
+  EXPECT_EQ(hash_of(resumed.spheres), hash_of(undisturbed.spheres));
+  EXPECT_EQ(resumed.outcome, undisturbed.outcome);
+  EXPECT_EQ(resumed.reason, undisturbed.reason);
+  EXPECT_EQ(resumed.packing_fraction(), undisturbed.packing_fraction());
+  EXPECT_EQ(resumed.size_scale, undisturbed.size_scale);
+  ASSERT_EQ(resumed.history.size(), undisturbed.history.size());
+  for (std::size_t k = 0; k < resumed.history.size(); ++k) {
+    const Milestone &one = resumed.history[k], &other = undisturbed.history[k];
+    EXPECT_EQ(one.stage, other.stage) << k;
+    EXPECT_EQ(one.spheres, other.spheres) << k;
+    EXPECT_EQ(one.packing_fraction, other.packing_fraction) << k;
+    EXPECT_EQ(one.max_overlap, other.max_overlap) << k;
+    EXPECT_EQ(one.potential, other.potential) << k;
+  }
+  // Nothing was done twice, and nothing left out.
+  ASSERT_EQ(resumed.effects.size(), undisturbed.effects.size());
+  for (std::size_t k = 0; k < resumed.effects.size(); ++k) {
+    EXPECT_EQ(resumed.effects[k].name, undisturbed.effects[k].name);
+    EXPECT_EQ(resumed.effects[k].calls, undisturbed.effects[k].calls) << resumed.effects[k].name;
+  }
+}
+
+std::vector<std::string> scenes() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(BERNAL_SOURCE "/tests/golden"))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+Plan plan_of_scene(const std::string& name) {
+  return build(read_scene(std::filesystem::path(BERNAL_SOURCE "/tests/golden") / (name + ".toml")));
+}
+
+class Resumed : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(, Resumed, ::testing::ValuesIn(scenes()),
+                         [](const auto& scene) { return scene.param; });
+
+TEST_P(Resumed, ComesToTheSameBits) {
+  const Plan plan = plan_of_scene(GetParam());
+  const testing::Folder folder;
+  const Ended undisturbed = run_to(never, plan, folder.path(), false, 1);
+  if (undisturbed.safe_points == 0) GTEST_SKIP() << "is over before the first safe point";
+  // Ends seven times on the way, or at every safe point if these are fewer.
+  const std::uint64_t step = std::max<std::uint64_t>(1, undisturbed.safe_points / 7);
+  std::uint64_t passed = 0;
+  int parts = 0;
+  for (;; ++parts) {
+    ASSERT_LE(parts, 9) << passed << " of " << undisturbed.safe_points;
+    const Ended part = run_to(step, plan, folder.path(), parts > 0, 1 + parts % 2);
+    passed += part.safe_points;
+    EXPECT_EQ(part.packing.resumed, parts);
+    if (part.packing.outcome != Outcome::cancelled) {
+      expect_the_same(part.packing, undisturbed.packing);
+      break;
+    }
+  }
+  EXPECT_GE(parts, 1);
+}
+
+/// Few spheres, and all safe points one by one.
+class AtEverySafePoint : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(, AtEverySafePoint,
+                         ::testing::Values("settle_helix_exact", "dense_predicted_cylinder", "relax_1d",
+                                           "grow_few", "fly_3d_patent"),
+                         [](const auto& scene) { return std::string(scene.param); });
+
+TEST_P(AtEverySafePoint, ComesToTheSameBits) {
+  const Plan plan = plan_of_scene(GetParam());
+  const testing::Folder folder;
+  const Ended undisturbed = run_to(never, plan, folder.path(), false, 1);
+  const std::uint64_t most = 40, step = std::max<std::uint64_t>(1, undisturbed.safe_points / most);
+  for (std::uint64_t k = 1; k <= undisturbed.safe_points; k += step) {
+    run_to(k, plan, folder.path(), false, 1);
+    const Ended resumed = run_to(never, plan, folder.path(), true, 2);
+    EXPECT_EQ(hash_of(resumed.packing.spheres), hash_of(undisturbed.packing.spheres)) << k;
+    EXPECT_EQ(resumed.packing.resumed, 1);
+  }
+}
+
+}  // namespace checkpoints_test
+}  // namespace bernal
