@@ -58,12 +58,13 @@ double random_close_packing_of(const Plan& plan) {
 /// over has not.
 class Run {
  public:
-  Run(const Plan& plan, const Monitor& monitor, Packing& packing)
+  Run(const Plan& plan, const RunOptions& options, Packing& packing)
       : stated_(plan),
         with_room_(plan.scene.asks_for_gaps() ? std::optional(plan_with_room(plan)) : std::nullopt),
         plan_(with_room_ ? *with_room_ : plan),
         scene_(plan_.scene),
-        monitor_(monitor),
+        monitor_(options.monitor),
+        engine_folder_(options.engine_folder),
         packing_(packing),
         any_in_bed_(any_in_bed(plan.scene)) {}
 
@@ -149,6 +150,7 @@ class Run {
       work.exact_place = [this](const Vector<3>& place, double r) { return exact_place(place, r); };
     if (scene_.is_periodic()) put_into_box(work);
     take_start(plan_, frame_, work);
+    if (scene_.engine) take_engine(plan_, engine_folder_, work);
     if (with_room_)
       share_ = share_of_drawn(*work.supply, work.dimension()) * volume_of(plan_.domain) /
                volume_of(stated_.domain);
@@ -339,6 +341,7 @@ class Run {
   const Plan& plan_;
   const Scene& scene_;
   const Monitor& monitor_;
+  const std::filesystem::path& engine_folder_;
   Packing& packing_;
   const bool any_in_bed_;
   const Stopwatch watch_;
@@ -365,7 +368,7 @@ Packing run(const Plan& plan, const RunOptions& options) {
   packing.version = version();
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(std::max(1, packing.threads)));
-  Run(plan, options.monitor, packing).go();
+  Run(plan, options, packing).go();
   return packing;
 }
 

@@ -51,6 +51,7 @@ class Reader {
     read_spheres(table_in(root, "spheres"), scene);
     if (root.contains("accuracy"))
       read_own(table_in(root, "accuracy"), schema::accuracy_entry(), "[accuracy]", scene);
+    read_engine(root, scene);
     read_stages(root, scene);
     read_outputs(root, scene);
     complete(scene);
@@ -143,6 +144,14 @@ class Reader {
       fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
     mesh->file = beside_the_scene(mesh->file);
     for (std::filesystem::path& file : mesh->obstacles) file = beside_the_scene(file);
+  }
+
+  void read_engine(const toml::table& root, Scene& scene) const {
+    if (!root.contains("engine")) return;
+    const toml::table& table = table_in(root, "engine");
+    SceneEngine& engine = scene.engine.emplace();
+    schema::hold(engine, choose(table, "kind", names_of(schema::engine_entries()), "[engine]"));
+    read(table, schema::entry_of(engine), "kind", "[engine]", schema::options_of(engine), engine.locations);
   }
 
   void read_spheres(const toml::table& table, Scene& scene) const {
@@ -355,8 +364,8 @@ class Reader {
     throw Error(ErrorCode::bad_scene, fmt::format(format, std::forward<Args>(args)...), at(where));
   }
 
-  static constexpr std::array<std::string_view, 5> tables = {"container", "spheres", "accuracy", "stage",
-                                                             "output"};
+  static constexpr std::array<std::string_view, 6> tables = {"container", "spheres", "accuracy",
+                                                             "engine",    "stage",   "output"};
 
   std::filesystem::path path_;
   std::string file_;
