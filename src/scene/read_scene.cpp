@@ -151,6 +151,7 @@ class Reader {
     const toml::table& table = table_in(root, "engine");
     SceneEngine& engine = scene.engine.emplace();
     schema::hold(engine, choose(table, "kind", names_of(schema::engine_entries()), "[engine]"));
+    engine.locations.keys["kind"] = at(table.find("kind")->first.source());
     read(table, schema::entry_of(engine), "kind", "[engine]", schema::options_of(engine), engine.locations);
   }
 
