@@ -37,6 +37,9 @@ class EngineFolder {
  public:
   explicit EngineFolder(const std::filesystem::path& folder) : folder_(std::filesystem::absolute(folder)) {
     std::error_code failed;
+    for (auto at = folder_; !at.empty() && !std::filesystem::exists(at, failed) && !failed;
+         at = at.parent_path())
+      made_.push_back(at);
     std::filesystem::create_directories(folder_, failed);
     if (failed || !std::filesystem::is_directory(folder_, failed))
       throw Error(ErrorCode::cannot_write,
@@ -52,7 +55,11 @@ class EngineFolder {
       throw Error(ErrorCode::cannot_write, why, {folder_.string()});
     }
   }
-  ~EngineFolder() { close(lock_); }
+  ~EngineFolder() {
+    close(lock_);
+    std::error_code is_used;
+    for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, is_used);
+  }
   EngineFolder(const EngineFolder&) = delete;
   EngineFolder& operator=(const EngineFolder&) = delete;
 
@@ -69,6 +76,7 @@ class EngineFolder {
 
  private:
   std::filesystem::path folder_;
+  std::vector<std::filesystem::path> made_;  // innermost first: those that nothing came into go again
   int lock_ = -1;
 };
 

@@ -60,7 +60,9 @@ engine::Places run_in_folder(const Plan& plan, const std::filesystem::path& fold
   try {
     return engine::run_engine(*plan.scene.engine, task, at.path(), work.monitor);
   } catch (const Error&) {
-    if (!std::filesystem::is_empty(at.path())) at.stays();
+    std::error_code gone;
+    const bool is_empty = std::filesystem::is_empty(at.path(), gone);
+    if (!is_empty && !gone) at.stays();
     throw;
   }
 }
