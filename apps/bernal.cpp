@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/engine/engine_error.hpp"
 #include "bernal/version.hpp"
 #include "commands.hpp"
 #include "say.hpp"
@@ -104,6 +105,9 @@ int main(int argc, char** argv) {
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::broken_pipe && reader_has_left()) return status;
     return complain(std::ferror(stdout) != 0 ? "standard output cannot be written" : error.what());
+  } catch (const bernal::EngineError& error) {
+    complain(error.what());
+    return exit_code::not_reached;
   } catch (const std::bad_alloc&) {
     return complain("out of memory");
   } catch (const std::exception& error) {

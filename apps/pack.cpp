@@ -112,7 +112,7 @@ int pack(const PackCall& call) {
     bar.clear();
     if (!call.quiet) say(stderr, "bernal: {}\n", plain_text(what, 5000));
   };
-  const Packing packing = run(plan, {call.seed, call.threads, monitor, checkpoints});
+  const Packing packing = run(plan, {call.seed, call.threads, monitor, checkpoints, folder / "engine"});
   bar.now("measure");
   // What was stopped is written as a whole, with what can be measured at once; a second interrupt kills.
   const bool stopped = packing.outcome == Outcome::cancelled;
@@ -204,6 +204,7 @@ Command pack_command() {
                        "ended without reaching what the scene asks: the outcome is full, hit_limit, "
                        "cancelled, or loose: all spheres are there, but jammed more than 0.05 below "
                        "random close packing of their sizes; its reason says by how much, and the "
-                       "likely why"}}},
+                       "likely why. Or the scene's engine is missing, failed or is left to Slurm: nothing "
+                       "but the engine's folder is written"}}},
       [call] { return pack(*call); }};
 }

@@ -20,6 +20,7 @@ Files figure_2(const FigureOptions&);
 Files figure_3(const FigureOptions&);
 Files figure_5(const FigureOptions&);
 Files figure_6(const FigureOptions&);
+Files soft_particles(const FigureOptions&);
 Files table_1(const FigureOptions&);
 Files table_2(const FigureOptions&);
 Files farr_2013(const FigureOptions&);

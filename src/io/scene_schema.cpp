@@ -213,6 +213,8 @@ std::string scene_schema_as_json() {
   properties["container"] = refers_to("container");
   properties["container"]["description"] = "what the spheres lie in";
   properties.update(tables);
+  properties["engine"] = refers_to("engine");
+  properties["engine"]["description"] = "another program that finds the places the first stage begins with";
   properties["stage"] = array_of(refers_to("stage"), 1);
   properties["stage"]["description"] = "what is done, in this order; if absent what bernal explain prints";
   properties["output"] = array_of(refers_to("output"), 1);

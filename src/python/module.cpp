@@ -4,6 +4,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/monitor.hpp"
+#include "bernal/engine/engine_error.hpp"
 #include "bernal/version.hpp"
 #include "python/bindings.hpp"
 #include "python/job.hpp"
@@ -36,21 +37,23 @@ py::object& exception_of_error() {
   return *made;
 }
 
-void raise(const Error& error) {
+void raise(const Error& error, std::string_view code) {
   const Location& where = error.location();
   std::string message = error.what();
   if (const std::string place = where.text(); !place.empty()) message.erase(0, place.size() + 2);
   const py::object raised =
       called(exception_of_error(),
-             py::make_tuple(name_of(error.code()), message, where.file, where.line, where.column));
+             py::make_tuple(code, message, where.file, where.line, where.column));
   PyErr_SetObject(py::type::of(raised).ptr(), raised.ptr());
 }
 
 void translate(std::exception_ptr thrown) {
   try {
     std::rethrow_exception(thrown);
+  } catch (const EngineError& error) {
+    raise(error, "no_engine");
   } catch (const Error& error) {
-    raise(error);
+    raise(error, name_of(error.code()));
   } catch (const Cancelled&) {
     PyErr_SetNone(PyExc_KeyboardInterrupt);
   } catch (const Ending& ending) {  // the first ends other threads without a word

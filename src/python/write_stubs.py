@@ -115,7 +115,7 @@ def attributes_of(kind: type) -> dict[str, str]:
             key["name"]: f"{type_of(key)} | None" for key in _scene._KEYS.values() if not hasattr(kind, key["name"])
         }
         return {"container": "Container", "diameters": "float | Sizes | None", "radii": "float | Sizes | None",
-                "stages": "tuple[Stage, ...]", "outputs": "tuple[Output, ...]", **keys}  # fmt: skip
+                "engine": "Engine | None", "stages": "tuple[Stage, ...]", "outputs": "tuple[Output, ...]", **keys}  # fmt: skip
     if issubclass(kind, _classes.Said) and "_table" in vars(kind):
         return {key["name"]: f"{type_of(key)} | None" for key in kind._table["keys"]}
     own = vars(kind).get("__annotations__", {})
@@ -139,7 +139,7 @@ def class_of(kind: type) -> str:
             body += function(name, member.__func__, "    ", "    @classmethod\n")
         elif inspect.isfunction(member):
             body += function(name, member, "    ")
-    if kind in (bernal.Container, bernal.Sizes, bernal.Stage):
+    if kind in (bernal.Container, bernal.Sizes, bernal.Stage, bernal.Engine):
         body += "    def replace(self, **keys: Any) -> Any: ...\n"
     head = f"class {kind.__name__}({', '.join(bases)}):" if bases else f"class {kind.__name__}:"
     return f"{head}\n{body}\n" if body else f"{head} ...\n\n"

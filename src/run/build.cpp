@@ -8,6 +8,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/voxels/voxels.hpp"
+#include "engine/engine_plan.hpp"
 #include "run/estimate.hpp"
 #include "run/few_large.hpp"
 #include "run/fitting.hpp"
@@ -355,6 +356,7 @@ Plan build(const Scene& stated) {
   require_effect_of_accuracy(scene);
   plan.start = read_start(plan.scene);
   plan.domain = domain_of(plan.scene, plan.container_notes);
+  if (scene.engine) engine::require_engine_fits(scene, plan.domain);
   plan.radii = scene.draws() ? radii_of(scene) : radii_there(plan.start.spheres.r);
   if (scene.asks_for_gaps()) {
     require_gaps(plan);

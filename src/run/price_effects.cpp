@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
+#include "engine/engine_plan.hpp"
 #include "run/estimate.hpp"
 #include "run/stages.hpp"
 #include "work/bed.hpp"
@@ -108,6 +109,7 @@ void price_effects(Plan& plan) {
     outlook.wall_query = wall_query(scene, plan.domain);
     outlook.at_walls = share_at_walls(plan);
   }
+  if (scene.engine) plan.items.push_back(engine::planned_engine(scene, plan.expected_count));
   for (const Stage& stage : scene.stages) {
     const StageEntry& entry = entry_of(stage);
     outlook.in_bed = entry.table.traits.stands_in_bed(scene);

@@ -73,6 +73,7 @@ class Run {
         plan_(with_room_ ? *with_room_ : plan),
         scene_(plan_.scene),
         monitor_(options.monitor),
+        engine_folder_(options.engine_folder),
         packing_(packing),
         any_in_bed_(any_in_bed(plan.scene)),
         checkpoints_(options.monitor, options.checkpoints,
@@ -198,6 +199,7 @@ class Run {
       work.exact_place = [this](const Vector<3>& place, double r) { return exact_place(place, r); };
     if (scene_.is_periodic()) put_into_box(work);
     take_start(plan_, frame_, work);
+    if (scene_.engine) take_engine(plan_, engine_folder_, work);
     if (with_room_)
       share_ = share_of_drawn(*work.supply, work.dimension()) * volume_of(plan_.domain) /
                volume_of(stated_.domain);
@@ -419,6 +421,7 @@ class Run {
   const Plan& plan_;
   const Scene& scene_;
   const Monitor& monitor_;
+  const std::filesystem::path& engine_folder_;
   Packing& packing_;
   const bool any_in_bed_;
   const Stopwatch watch_;

@@ -273,6 +273,9 @@ void complete(Scene& scene) {
     check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",
                 scene);
   complete_stages(scene);
+  if (scene.engine)
+    check(schema::entry_of(*scene.engine), schema::options_of(std::as_const(*scene.engine)),
+          {"[engine]", scene.engine->locations});
   for (Output& output : scene.outputs) complete_output(output, scene);
   require_names(scene);
 }

@@ -49,6 +49,7 @@ class Reader {
     read_spheres(table_in(root, "spheres"), scene);
     if (root.contains("accuracy"))
       read_own(table_in(root, "accuracy"), schema::accuracy_entry(), "[accuracy]", scene);
+    read_engine(root, scene);
     read_stages(root, scene);
     read_outputs(root, scene);
     complete(scene);
@@ -103,6 +104,15 @@ class Reader {
     const Locations& locations = scene.container.locations;
     mesh->file = beside(locations.of("file"), mesh->file);
     for (std::filesystem::path& file : mesh->obstacles) file = beside(locations.of("obstacles"), file);
+  }
+
+  void read_engine(const toml::table& root, Scene& scene) const {
+    if (!root.contains("engine")) return;
+    const toml::table& table = table_in(root, "engine");
+    SceneEngine& engine = scene.engine.emplace();
+    schema::hold(engine, choose(table, "kind", names_of(schema::engine_entries()), "[engine]"));
+    engine.locations.keys["kind"] = at(table.find("kind")->first.source());
+    read(table, schema::entry_of(engine), "kind", "[engine]", schema::options_of(engine), engine.locations);
   }
 
   void read_spheres(const toml::table& table, Scene& scene) const {
@@ -313,8 +323,8 @@ class Reader {
     throw Error(ErrorCode::bad_scene, fmt::format(format, std::forward<Args>(args)...), at(where));
   }
 
-  static constexpr std::array<std::string_view, 5> tables = {"container", "spheres", "accuracy", "stage",
-                                                             "output"};
+  static constexpr std::array<std::string_view, 6> tables = {"container", "spheres", "accuracy",
+                                                             "engine",    "stage",   "output"};
 
   std::filesystem::path path_;
   std::string file_;

@@ -22,15 +22,14 @@ std::string line_of(const ReferenceKey& key) {
 
 std::string reference(std::string_view name) {
   const std::vector<ReferenceGroup> groups = scene_reference();
-  std::string all;
+  std::string all, tables;
   std::vector<std::string_view> names;
   for (const ReferenceGroup& group : groups) {
     std::string lines = fmt::format("{}:\n", group.title);
     for (const ReferenceTable& table : group.tables) {
       if (table.name == name) {
-        std::string text = fmt::format("{}: {}\n", table.name, table.help);
-        for (const ReferenceKey& key : table.keys) text += line_of(key);
-        return text;
+        tables += fmt::format("{}{}: {}\n", tables.empty() ? "" : "\n", table.name, table.help);
+        for (const ReferenceKey& key : table.keys) tables += line_of(key);
       }
       names.push_back(table.name);
       lines += fmt::format("  {:<14}{}\n", table.name, table.help);
@@ -41,6 +40,7 @@ std::string reference(std::string_view name) {
     }
     all += (all.empty() ? "" : "\n") + lines;
   }
+  if (!tables.empty()) return tables;  // a format for a program, and that program as an engine
   if (name.empty()) return all;
   throw Error(ErrorCode::bad_argument,
               fmt::format("nothing in a scene is called {}{}", toml_string(name), remedy(name, names)));

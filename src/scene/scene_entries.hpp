@@ -15,15 +15,17 @@ const Entry& spheres_entry();
 const Entry& accuracy_entry();
 const std::array<const Entry*, 3>& own_entries();
 
-/// In the order of the alternatives of SceneContainer and SceneSizes.
+/// In the order of the alternatives of SceneContainer, SceneSizes and SceneEngine.
 const std::vector<Entry>& container_entries();
 const std::vector<Entry>& size_entries();
+const std::vector<Entry>& engine_entries();
 Entry polygon_entry();
 
 inline const Entry& entry_of(const SceneContainer& container) {
   return container_entries()[container.index()];
 }
 inline const Entry& entry_of(const SceneSizes& sizes) { return size_entries()[sizes.index()]; }
+inline const Entry& entry_of(const SceneEngine& engine) { return engine_entries()[engine.index()]; }
 
 /// The struct that a variant holds.
 template <class... T>

@@ -55,12 +55,14 @@ std::vector<ReferenceGroup> scene_reference() {
       {"container", "kind", "Containers: kind = \"…\" in [container]", {}},
       {"diameter", "distribution", "Sizes: distribution = \"…\" in radius or diameter", {}},
       {"stage", "do", "Stages: do = \"…\" in [[stage]]", {}},
-      {"output", "format", "Files for other programs: format = \"…\" in [[output]]", {}}};
+      {"output", "format", "Files for other programs: format = \"…\" in [[output]]", {}},
+      {"engine", "kind", "Other programs that find the places: kind = \"…\" in [engine]", {}}};
   for (const Entry* entry : schema::own_entries()) groups[0].tables.push_back(described(*entry));
   for (const Entry& entry : schema::container_entries()) groups[1].tables.push_back(described(entry));
   for (const Entry& entry : schema::size_entries()) groups[2].tables.push_back(described(entry));
   for (const StageTable* table : stage_tables()) groups[3].tables.push_back(described(table->keys));
   for (const OutputTable* table : output_tables()) groups[4].tables.push_back(described(table->keys));
+  for (const Entry& entry : schema::engine_entries()) groups[5].tables.push_back(described(entry));
   return groups;
 }
 

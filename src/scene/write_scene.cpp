@@ -82,6 +82,12 @@ std::string lines(const schema::Entry& entry, const void* options, bool in_bed =
   return fmt::format("{}\n", fmt::join(assignments(entry, options, in_bed), "\n"));
 }
 
+std::string engine_as_toml(const SceneEngine& engine) {
+  const schema::Entry& entry = schema::entry_of(engine);
+  return fmt::format("\n[engine]\nkind = {}\n{}", toml_string(entry.name),
+                     lines(entry, schema::options_of(engine)));
+}
+
 std::string container_as_toml(SceneContainer container, const std::filesystem::path& folder) {
   if (auto* mesh = std::get_if<MeshFile>(&container); mesh && !folder.empty()) {
     mesh->file = std::filesystem::proximate(mesh->file, folder);
@@ -130,6 +136,7 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
       fmt::format("{}\n{}\n[spheres]\n{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
                   container_as_toml(scene.container, folder), lines(schema::spheres_entry(), &named),
                   lines(schema::accuracy_entry(), &scene));
+  if (scene.engine) out += engine_as_toml(*scene.engine);
   if (!scene.stages.empty()) out.append("\n").append(stages_as_toml(scene));
   for (const Output& output : scene.outputs) {
     schema::Entry entry = table_of(output).keys;

@@ -50,9 +50,9 @@ constexpr StageTraits traits = {.in_bed = true,
                                 .is_default = true,
                                 .reaches = Reaches::close_packing};
 
-/// What comes first from a start begins at the packing fraction that it has there.
+/// What comes first from a start, or from an engine, begins at the packing fraction that it has there.
 void complete_relax(Relax& relax, Scene& scene, const schema::Section&) {
-  if (scene.start.file && scene.stages.front().as<Relax>() == &relax) return;
+  if ((scene.start.file || scene.engine) && scene.stages.front().as<Relax>() == &relax) return;
   if (!relax.phi0 && !traits.stands_in_bed(scene)) relax.phi0 = dense_start[scene.dimension() - 1];
 }
 

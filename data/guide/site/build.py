@@ -33,6 +33,7 @@ SECTIONS = [
     ("Guide", [(f"guide/{name}", f"data/guide/{name}.md", title) for name, title in (
         ("part", "Fill a CAD part"), ("repair", "Repair a CAD file"), ("sieve", "Match a sieve curve"),
         ("periodic", "A dense periodic box"), ("mesh", "Mesh a packing"), ("hand_over", "Hand over to LAMMPS"),
+        ("engines", "Engines on many machines"),
         ("density", "How dense can it be"), ("settle", "Settle a bed"), ("measure", "Look and measure"),
         ("cost", "Accuracy, time and cost"), ("sweep", "Many scenes at once"),
         ("python", "From Python"))]),
@@ -47,6 +48,7 @@ SECTIONS = [
      [(f"results/{name}", f"data/results/{name}.md", title) for name, title in (
          ("methods", "Methods, priced"), ("effects", "Effects, one by one"), ("arithmetic", "The arithmetic, priced"),
          ("exchange", "Exchange of sizes"), ("loose", "Loose packings"), ("lists", "Lists and arrays"),
+         ("engines", "Engines over MPI"),
          ("hard", "Hard cases"), ("starts", "Packings of others"))] +
      [(f"results/{name}", f"data/results/papers/{name}/{name}.md", title) for name, title in (
          ("zhao2007", "Zhao et al. 2007"), ("han2005", "Han et al. 2005"), ("farr2013", "Farr 2013"))] +

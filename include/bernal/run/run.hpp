@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -86,8 +87,11 @@ SceneRadii asked_radii_of(const Packing& packing);
 struct RunOptions {
   std::optional<std::uint64_t> seed;  ///< the scene's own if absent
   int threads = 0;                    ///< 0: as many as the machine has
-  Monitor monitor;
+  Monitor monitor = {};
   CheckpointOptions checkpoints = {};
+  /// Where an engine of the scene works, and leaves its logs; made if it does not exist. Empty: in a folder
+  /// for temporary files, which goes unless the engine fails.
+  std::filesystem::path engine_folder = {};
 };
 
 /// Runs the plan's stages. One seed gives one packing, bit for bit, for any number of threads. Throws

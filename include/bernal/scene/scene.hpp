@@ -14,6 +14,7 @@
 #include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
 #include "bernal/domain/mesh_file.hpp"
+#include "bernal/engine/engine.hpp"
 #include "bernal/scene/sizes.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/solids/contact_treatment.hpp"
@@ -37,6 +38,17 @@ struct PeriodicBox {
 struct SceneContainer : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox, Polygon> {
   using variant::variant;
   Locations locations;
+};
+
+/// Another program that finds the places which the first stage begins with: `scene.engine = Lammps{}`.
+struct SceneEngine : std::variant<Lammps, Liggghts> {
+  using variant::variant;
+  Locations locations;
+
+  const EngineProcess& process() const {
+    return std::visit([](const auto& engine) -> const EngineProcess& { return engine.process; },
+                      static_cast<const variant&>(*this));
+  }
 };
 
 /// One act of the protocol: the options of any stage, such as Relax{.patience = 20}.
@@ -131,6 +143,7 @@ struct Scene {
   std::optional<Draw> draw = {};
   Target target;
   Start start = {};
+  std::optional<SceneEngine> engine = {};
   double gap = 0;       ///< least distance between the surfaces of two spheres, or of one and its own image
   double wall_gap = 0;  ///< least distance of a sphere's surface from the walls
   WallArithmetic walls = WallArithmetic::filtered;

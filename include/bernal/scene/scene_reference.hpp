@@ -36,7 +36,7 @@ struct ReferenceTable {
 
 /// Tables of which one is chosen by a word, or that all may be there.
 struct ReferenceGroup {
-  std::string name;      ///< where it stands: "container", "stage", "output"; "diameter" of sizes; "scene"
+  std::string name;      ///< where it stands: "container", "stage", "output", "engine"; "diameter" of sizes; "scene"
   std::string selector;  ///< the key whose word chooses: "kind", "distribution", "do", "format"; empty: none
   std::string title;     ///< for people
   std::vector<ReferenceTable> tables;

@@ -15,8 +15,8 @@ Bad input raises `bernal.Error`, with one line that names the remedy. Lengths ar
 from __future__ import annotations
 
 from . import _core, design
-from ._classes import CLASSES, Container, Output, Sizes, Stage
-from ._errors import Error, InputError, KeywordError, WriteError
+from ._classes import CLASSES, Container, Engine, Output, Sizes, Stage
+from ._errors import EngineError, Error, InputError, KeywordError, WriteError
 from ._jobs import Stopped
 from ._packing import Packing, Picture, View
 from ._records import Certificate, Inspection, Measurements, Plan, Prediction, Record, Written
@@ -27,9 +27,9 @@ __version__ = str(_core.version)
 
 __all__ = [
     "Scene", "pack", "explain", "verify", "measure", "export", "read", "import_", "from_arrays", "inspect", "predict",
-    "design", "Packing", "Picture", "View", "Container", "Sizes", "Stage", "Output", *CLASSES,
+    "design", "Packing", "Picture", "View", "Container", "Sizes", "Stage", "Engine", "Output", *CLASSES,
     "Record", "Plan", "Certificate", "Measurements", "Inspection", "Prediction", "Written",
-    "Error", "InputError", "KeywordError", "WriteError", "Stopped",
+    "Error", "InputError", "KeywordError", "WriteError", "EngineError", "Stopped",
 ]  # fmt: skip
 
 globals().update(CLASSES)

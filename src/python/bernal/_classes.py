@@ -183,6 +183,10 @@ class Stage(Said):
     """An act of the protocol by which a scene is packed."""
 
 
+class Engine(Said):
+    """Another program that finds the places which the first stage begins with: `bernal.Lammps(ranks=4)`."""
+
+
 class Output(Said):
     """One more file of a result, as another program reads it: `bernal.Output("lammps", unit="mm")`."""
 
@@ -233,7 +237,7 @@ def _class_of(base: type[Said], table: dict[str, Any], selector: str) -> type[Sa
 
 def _made_classes() -> dict[str, type[Said]]:
     classes: dict[str, type[Said]] = {}
-    for base, name in ((Container, "container"), (Sizes, "diameter"), (Stage, "stage")):
+    for base, name in ((Container, "container"), (Sizes, "diameter"), (Stage, "stage"), (Engine, "engine")):
         of = group(name)
         for table in of["tables"]:
             each = _class_of(base, table, of["selector"])

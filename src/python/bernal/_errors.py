@@ -14,7 +14,7 @@ class Error(Exception):
     """
 
     code: str
-    """"bad_scene", "bad_mesh", "bad_packing", "bad_argument" or "cannot_write"."""
+    """"bad_scene", "bad_mesh", "bad_packing", "bad_argument", "cannot_write" or "no_engine"."""
     message: str
     """What is wrong and what to do, without the place."""
     file: str | None
@@ -53,6 +53,10 @@ class WriteError(Error, OSError):
     """A file or folder that cannot be written, or whose content is not to be replaced."""
 
 
+class EngineError(Error, RuntimeError):
+    """The engine of a scene is not there, crashed, or left no whole result; the message names its folder."""
+
+
 def unknown(name: str, where: str, known: list[str]) -> KeywordError:
     """The error that names what was meant."""
     return KeywordError("bad_argument", f'{where} has no "{name}"{_core.remedy(name, known)}')
@@ -81,7 +85,7 @@ def _made(code: str, message: str, file: str, line: int, column: int) -> Error:
     from ._surfaces import is_passing
 
     message = in_python(message)
-    kind = WriteError if code == "cannot_write" else InputError
+    kind = {"cannot_write": WriteError, "no_engine": EngineError}.get(code, InputError)
     if not file or file.endswith(MADE_HERE) or is_passing(file):
         return kind(code, message)
     return kind(code, message, file, line or None, column or None)

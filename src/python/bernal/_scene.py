@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from . import _classes, _core, _errors, _surfaces, _toml
-from ._classes import Container, Output, Said, Sizes, Stage
+from ._classes import Container, Engine, Output, Said, Sizes, Stage
 
 # Keys that stand in tables of their own in a file and are keywords here; sizes and tables are parameters.
 _OWN = {table["name"]: [k for k in table["keys"] if k["name"] not in ("radius", "diameter")]
         for table in _classes.group("scene")["tables"]}  # fmt: skip
-_PARTS = ("container", "diameters", "radii", "stages", "outputs")
+_PARTS = ("container", "diameters", "radii", "engine", "stages", "outputs")
 _KEYS = {key["name"]: key for keys in _OWN.values() for key in keys}
 
 
@@ -31,6 +31,8 @@ class Scene:
         `Mesh("part.stl", unit="mm")`, `Cylinder(5, 20)`, `Box([4, 5, 6])`, `Periodic(edge=10)`, …
     diameters, radii : length or Sizes
         exactly one of them, so that nobody has to guess: `diameters=2` or `diameters=Lognormal(2, 0.3)`.
+    engine : Engine
+        another program that finds the places which the first stage begins with, such as `Lammps(ranks=4)`.
     stages : Stage, or several
         in their order; none: the one that suits any container, or any periodic box.
     outputs : Output or name of a format, or several
@@ -43,6 +45,7 @@ class Scene:
         *,
         diameters: float | Sizes | None = None,
         radii: float | Sizes | None = None,
+        engine: Engine | None = None,
         stages: Stage | Iterable[Stage] = (),
         outputs: Output | str | Iterable[Output | str] = (),
         **keys: Any,
@@ -55,11 +58,16 @@ class Scene:
             raise _errors.InputError(
                 "bad_scene", f"a scene needs a container, such as Mesh(…) or Cylinder(…), not {container!r:.100}"
             )
+        if engine is not None and not isinstance(engine, Engine):
+            raise _errors.InputError(
+                "bad_scene", f"the engine of a scene is an instance, such as Lammps(ranks=2), not {engine!r:.100}"
+            )
         said = {name: _classes.taken(_KEYS[name], value) for name, value in keys.items() if value is not None}
         self._parts: dict[str, Any] = {
             "container": container,
             "diameters": _toml.plain(diameters),
             "radii": _toml.plain(radii),
+            "engine": engine,
             "stages": _several(stages, Stage, "stages"),
             "outputs": tuple(
                 Output(each) if isinstance(each, str) else each for each in _several(outputs, (Output, str), "outputs")
@@ -95,6 +103,8 @@ class Scene:
                 tables["spheres"] += _toml.line(key, parts[name])
         text = f"{tables.pop('scene')}\n[container]\n{parts['container']._lines()}"
         text += "".join(f"\n[{table}]\n{lines}" for table, lines in tables.items())
+        if parts["engine"] is not None:
+            text += f"\n[engine]\n{parts['engine']._lines()}"
         for name in ("stage", "output"):
             text += "".join(f"\n[[{name}]]\n{each._lines()}" for each in parts[name + "s"])
         return text
@@ -225,6 +235,7 @@ def _parts_of(said: dict[str, Any], whole: dict[str, Any]) -> dict[str, Any]:
                 break
             container[key["name"]] = whole["container"][key["name"]]
     parts: dict[str, Any] = {"container": _chosen("kind", container), "diameters": None, "radii": None}
+    parts["engine"] = _chosen("kind", said["engine"]) if "engine" in said else None
     parts["stages"] = tuple(_chosen("do", each) for each in said.get("stage", ()))
     parts["outputs"] = tuple(_chosen("format", each) for each in said.get("output", ()))
     for name, key in (("diameters", "diameter"), ("radii", "radius")):

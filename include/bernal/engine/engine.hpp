@@ -1,0 +1,35 @@
+#pragma once
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace bernal {
+
+/// How the processes of an engine are started.
+enum class EngineLauncher {
+  mpirun,  ///< as a child of this process, which waits for it
+  slurm,   ///< by a script that the user submits; the run that comes after it reads the result
+};
+
+/// What any engine is told: how it is started and for how long it works.
+struct EngineProcess {
+  int ranks = 1;  ///< processes that share the spheres; a single one is started without a launcher
+  EngineLauncher launcher = EngineLauncher::mpirun;
+  std::vector<std::string> command = {};     ///< starts the ranks; else mpirun, in a Slurm script srun
+  std::vector<std::string> executable = {};  ///< the engine, and options of its own; else Debian's name of it
+  std::vector<std::string> slurm = {};       ///< lines "#SBATCH …" of the script, such as "--time=02:00:00"
+  int steps = 1000;                          ///< of its motion, in all
+  bool keep = false;  ///< what it read and wrote stays beside the result, and is taken up again
+};
+
+/// LAMMPS, with the package GRANULAR: periodic boxes, boxes, cylinders and spheres.
+struct Lammps {
+  EngineProcess process = {};
+};
+
+/// LIGGGHTS: parts of CAD, boxes, cylinders along an axis and periodic boxes.
+struct Liggghts {
+  EngineProcess process = {};
+};
+
+}  // namespace bernal

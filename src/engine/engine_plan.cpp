@@ -1,0 +1,110 @@
+#include "engine/engine_plan.hpp"
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/soft/relax.hpp"
+#include "engine/engine_command.hpp"
+#include "engine/engine_files.hpp"
+#include "scene/stage_table.hpp"
+
+namespace bernal::engine {
+namespace {
+
+/// Of a sphere, a step on one rank; and what a rank holds of it. Measured with 10,000 and 100,000 equal
+/// spheres.
+constexpr double seconds_a_step = 0.3e-6, bytes_a_sphere_of_engine = 1200;
+
+struct Refusal {
+  const Scene& scene;
+
+  [[noreturn]] void at(const Location& where, const std::string& why) const {
+    throw Error(ErrorCode::bad_scene, why, where);
+  }
+  [[noreturn]] void of_kind(const std::string& why) const { at(scene.engine->locations.of("kind"), why); }
+};
+
+/// Why the engine cannot have such walls, or empty.
+std::string lack_of_walls(const SceneEngine& engine, const Domain& domain) {
+  const bool is_lammps = std::holds_alternative<Lammps>(engine);
+  if (std::holds_alternative<Polygon>(domain)) return "engines pack spheres, no discs; leave [engine] out";
+  if (is_lammps && std::holds_alternative<Mesh>(domain))
+    return "LAMMPS has no walls of triangles; kind = \"liggghts\" has";
+  if (is_lammps) return {};
+  if (std::holds_alternative<Sphere>(domain))
+    return "LIGGGHTS has no wall around a sphere; kind = \"lammps\" has";
+  if (const auto* cylinder = std::get_if<Cylinder>(&domain); cylinder && cylinder->coordinate_axis() < 0)
+    return "LIGGGHTS has cylinders along x, y and z only; kind = \"lammps\" has others";
+  return {};
+}
+
+void require_stages(const Scene& scene, const Refusal& refuse) {
+  const Stage& first = scene.stages.front();
+  const StageTraits& traits = table_of(first).traits;
+  if (!(traits.stands_in_bed(scene) ? traits.frees_bed : traits.frees_box))
+    refuse.at(first.locations.whole,
+              fmt::format("\"{}\" cannot begin with what an engine leaves, for soft particles overlap: begin "
+                          "with \"relax\"",
+                          first.name()));
+  if (const Relax* relax = first.as<Relax>(); relax && relax->phi0)
+    refuse.at(first.locations.of("phi0"),
+              "with an [engine] relax begins where that ends; leave \"phi0\" out");
+}
+
+}  // namespace
+
+void require_engine_fits(const Scene& scene, const Domain& domain) {
+  const Refusal refuse{scene};
+  if (scene.dimension() != 3)
+    refuse.of_kind(
+        fmt::format("engines pack in three dimensions, not in {}; leave [engine] out", scene.dimension()));
+  if (const std::string lack = lack_of_walls(*scene.engine, domain); !lack.empty()) refuse.of_kind(lack);
+  if (scene.start.file)
+    refuse.at(
+        scene.locations.of("start"),
+        "\"start\" and [engine] exclude each other: both say where the spheres begin; give one of them");
+  require_stages(scene, refuse);
+  if (const auto* box = std::get_if<PeriodicBox>(&scene.container)) {
+    if (box->scalable && !box->walls.empty())
+      refuse.of_kind("engines know no box between walls whose size follows; give it \"size\" or \"edge\"");
+    if (!box->scalable && box->walls.empty() && scene.target.is_open())
+      refuse.at(
+          scene.target.where,
+          "with an [engine] a periodic box of given size needs a \"count\" or a \"packing_fraction\" in "
+          "[spheres]");
+  }
+  for (const Output& output : scene.outputs)
+    if (output.file == "engine")
+      refuse.at(output.locations.of("file"),
+                "\"engine\" is the folder of the [engine]; give it another \"file\"");
+}
+
+PlanItem planned_engine(const Scene& scene, double spheres) {
+  const SceneEngine& engine = *scene.engine;
+  const EngineProcess& process = engine.process();
+  const Dialect& dialect = dialect_of(engine);
+  const std::vector<std::string> words = words_of(engine);
+  std::string what =
+      fmt::format("soft particles in {}, {} steps, in the folder \"engine\" of the result: {}", dialect.title,
+                  grouped(static_cast<std::uint64_t>(process.steps)), in_shell(words));
+  if (process.launcher == EngineLauncher::slurm)
+    what += "; in a script for sbatch, after whose job the same call goes on";
+  else
+    try {
+      found_words(engine);
+    } catch (const Error& error) {
+      std::string why = error.what();
+      if (const std::string place = error.location().text(); !place.empty()) why.erase(0, place.size() + 2);
+      what += "; it would fail here: " + why;
+    }
+  return {.name = engine_effect,
+          .what = what,
+          .cost = "O(N) a step",
+          .seconds = seconds_a_step * spheres * process.steps / process.ranks,
+          .bytes = bytes_a_sphere_of_engine * spheres};
+}
+
+}  // namespace bernal::engine

@@ -1,0 +1,49 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "bernal/core/spheres.hpp"
+#include "bernal/domain/domain.hpp"
+
+namespace bernal::engine {
+
+/// What an engine does: spheres that overlap push each other apart, and are pushed by walls, until they lie
+/// as soft particles do.
+///
+/// Motion: m x'' = sum of d n, over contacts of depth d and normal n, with stiffness 1; a damping of m_eff
+/// v_n at contacts; steps of 0.3, none of which moves a sphere by more than a tenth of the mean diameter.
+/// Masses are max(1, (r / mean r)²), so that those with many contacts do not swing; walls have a stiffness
+/// of 4. So nothing depends on the unit of lengths. Measured on 10,000 equal spheres in a periodic box, that
+/// grows from a packing fraction of 0.70 to 0.64 in 400 of 1,000 steps: overlap ratios of 1e-3 are left.
+struct EngineTask {
+  /// Lengths such that the mean radius is about 1; centres in the box, or in the container.
+  Spheres<3> spheres;
+  /// A box with its lower corner at the origin where it repeats itself along all axes; a container of any
+  /// other kind; a cylinder along a coordinate axis.
+  Domain domain = {};
+  /// The edges of a box without walls become so many times as long.
+  double growth = 1;
+  int steps = 1000;
+
+  double mean_radius() const;
+  /// Of steps: fixed, while the box grows, fixed again.
+  int steps_before() const { return growth == 1 ? steps : 2 * steps / 5; }
+  int steps_of_growth() const { return growth == 1 ? 0 : 2 * steps / 5; }
+  int steps_after() const { return steps - steps_before() - steps_of_growth(); }
+  double mass(double r) const;
+};
+
+/// Spheres in classes of similar size, each up to `class_width` times as large as its smallest, so that
+/// engines find the neighbours of small ones without looking as far as large ones reach.
+struct SizeClasses {
+  int count = 1;
+  std::vector<std::uint8_t> of;  ///< from 0, for each sphere
+};
+inline constexpr double class_width = 1.6;
+SizeClasses size_classes(const std::vector<double>& radii);
+
+/// The region that the engine's box covers: bounds of the domain, with room beyond walls, so that a sphere
+/// that has slipped through one is not lost.
+Bounds<3> region_of(const EngineTask& task);
+
+}  // namespace bernal::engine

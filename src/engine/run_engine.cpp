@@ -1,0 +1,226 @@
+#include "engine/run_engine.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bernal/core/text.hpp"
+#include "bernal/engine/engine_error.hpp"
+#include "core/fnv.hpp"
+#include "engine/child.hpp"
+#include "engine/engine_command.hpp"
+#include "engine/engine_files.hpp"
+#include "engine/engine_log.hpp"
+#include "engine/script_parts.hpp"
+
+namespace bernal::engine {
+namespace {
+
+/// Which input the files of the folder are of; what makes them bernal's.
+constexpr const char* mark_name = "input.fnv";
+constexpr const char* submit_name = "submit.sh";
+
+[[noreturn]] void refuse(const std::string& why, const std::filesystem::path& folder) {
+  throw EngineError(fmt::format("{} (its files are in {})", why, folder.string()));
+}
+
+/// The folder of one engine at work, which nobody else works in meanwhile.
+class EngineFolder {
+ public:
+  explicit EngineFolder(const std::filesystem::path& folder) : folder_(std::filesystem::absolute(folder)) {
+    std::error_code failed;
+    for (auto at = folder_; !at.empty() && !std::filesystem::exists(at, failed) && !failed;
+         at = at.parent_path())
+      made_.push_back(at);
+    std::filesystem::create_directories(folder_, failed);
+    if (failed || !std::filesystem::is_directory(folder_, failed))
+      throw Error(ErrorCode::cannot_write,
+                  fmt::format("the engine's folder cannot be made{}{}", failed ? ": " : "",
+                              failed ? failed.message() : ""),
+                  {folder_.string()});
+    lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock_ < 0 || flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+      const bool is_taken = lock_ >= 0 && errno == EWOULDBLOCK;
+      const std::string why = is_taken ? "another run is at work in it; wait for that, or give another folder"
+                                       : fmt::format("cannot be used: {}", strerror(errno));
+      if (lock_ >= 0) close(lock_);
+      throw Error(ErrorCode::cannot_write, why, {folder_.string()});
+    }
+  }
+  ~EngineFolder() {
+    close(lock_);
+    std::error_code is_used;
+    for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, is_used);
+  }
+  EngineFolder(const EngineFolder&) = delete;
+  EngineFolder& operator=(const EngineFolder&) = delete;
+
+  const std::filesystem::path& path() const { return folder_; }
+  std::filesystem::path file(std::string_view name) const { return folder_ / name; }
+  bool has(std::string_view name) const {
+    std::error_code unknown;
+    return std::filesystem::exists(std::filesystem::symlink_status(file(name), unknown));
+  }
+  void remove(std::string_view name) const {
+    std::error_code gone;
+    std::filesystem::remove(file(name), gone);
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> made_;  // innermost first: those that nothing came into go again
+  int lock_ = -1;
+};
+
+std::string content_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What decides the result: the script, the spheres and the walls, the engine and its ranks.
+std::string mark_of(const SceneEngine& engine, const EngineTask& task, const std::string& script) {
+  Fnv1a hash;
+  for (const std::string& word : words_of(engine)) {
+    hash.absorb(word);
+    hash.absorb(std::string_view("\n"));
+  }
+  hash.absorb(script);
+  for (const auto& column : task.spheres.x)
+    for (const double x : column) hash.absorb(x);
+  for (const double r : task.spheres.r) hash.absorb(r);
+  if (const Mesh* mesh = std::get_if<Mesh>(&task.domain))
+    for (const auto& triangle : mesh->triangles)
+      for (const std::uint32_t corner : triangle)
+        for (const double x : mesh->vertices[corner]) hash.absorb(x);
+  return fmt::format("{:016x}\n", hash.hash());
+}
+
+class EngineRun {
+ public:
+  EngineRun(const SceneEngine& engine, const EngineTask& task, const std::filesystem::path& folder,
+            const Monitor& monitor)
+      : engine_(engine),
+        dialect_(dialect_of(engine)),
+        task_(task),
+        folder_(folder),
+        monitor_(monitor),
+        script_(dialect_.script_of(task)),
+        mark_(mark_of(engine, task, script_)) {}
+
+  Places go() {
+    const bool by_slurm = engine_.process().launcher == EngineLauncher::slurm;
+    const bool is_there = content_of(folder_.file(mark_name)) == mark_ && folder_.has(places_name);
+    if (by_slurm) {
+      if (!is_there) submit();
+    } else if (!is_there || !is_whole()) {
+      const std::vector<std::string> words = found_words(engine_);
+      prepare();
+      start(words);
+    }
+    Places places = read();
+    if (!engine_.process().keep)
+      for (const char* name : {data_name, places_name, walls_name, mark_name}) folder_.remove(name);
+    return places;
+  }
+
+ private:
+  bool is_whole() const {
+    return !what_is_wrong(dialect_, {}, tail_of(folder_.file(dialect_.log), longest_tail),
+                          tail_of(folder_.file(output_name), longest_tail));
+  }
+
+  void prepare() {
+    for (const std::string_view name : {dialect_.script, std::string_view(data_name), dialect_.log,
+                                        std::string_view(places_name), std::string_view(output_name)})
+      if (folder_.has(name) && !is_ours())
+        throw Error(ErrorCode::cannot_write,
+                    "is in the way: an engine's files go there, and this is none that bernal wrote; move it",
+                    {folder_.file(name).string()});
+    for (const std::string_view name :
+         {std::string_view(places_name), dialect_.log, std::string_view(output_name)})
+      folder_.remove(name);
+    if (monitor_.stop()) throw Cancelled();
+    monitor_.report({dialect_.title, 0, "writes its input"});
+    write_text(folder_.file(dialect_.script), script_);
+    write_data(folder_.file(data_name), task_, dialect_);
+    if (const Mesh* mesh = std::get_if<Mesh>(&task_.domain)) write_walls_stl(folder_.file(walls_name), *mesh);
+    write_text(folder_.file(mark_name), mark_);
+  }
+
+  /// The first line of the script is one that only bernal writes.
+  bool is_ours() const {
+    return folder_.has(mark_name) || content_of(folder_.file(dialect_.script)).starts_with(script_mark);
+  }
+
+  /// A job of this input that has begun is left alone.
+  [[noreturn]] void submit() {
+    const bool is_submitted = content_of(folder_.file(mark_name)) == mark_ && folder_.has(output_name);
+    if (is_submitted)
+      refuse(fmt::format("the job of {} has left no places yet: wait for its end, or see what it says in {}; "
+                         "to begin again remove that file",
+                         dialect_.title, output_name),
+             folder_.path());
+    prepare();
+    write_text(folder_.file(submit_name), slurm_script(engine_, folder_.path()));
+    throw EngineError(
+        fmt::format("the places are still to be found: sbatch {}, and when that job has ended the same "
+                    "call again, which goes on from them",
+                    in_shell({folder_.file(submit_name).string()})));
+  }
+
+  void start(const std::vector<std::string>& words) {
+    const Stopwatch watch;
+    LogWatch log(folder_.file(dialect_.log));
+    const std::string ranks =
+        engine_.process().ranks == 1 ? "" : fmt::format(" on {} ranks", engine_.process().ranks);
+    const auto look = [&] {
+      if (monitor_.stop()) throw Cancelled();
+      if (const auto step = log.new_step())
+        monitor_.report({dialect_.title, static_cast<double>(*step) / std::max(1, task_.steps),
+                         fmt::format("step {} of {}{}", *step, task_.steps, ranks)});
+    };
+    const ChildEnd end = run_child({.words = words,
+                                    .environment = environment_of_mpi(),
+                                    .folder = folder_.path(),
+                                    .output = folder_.file(output_name)},
+                                   look);
+    const auto wrong = what_is_wrong(dialect_, end, tail_of(folder_.file(dialect_.log), longest_tail),
+                                     tail_of(folder_.file(output_name), longest_tail));
+    if (wrong) refuse(*wrong, folder_.path());
+  }
+
+  Places read() const {
+    const auto wrong = what_is_wrong(dialect_, {}, tail_of(folder_.file(dialect_.log), longest_tail),
+                                     tail_of(folder_.file(output_name), longest_tail));
+    if (wrong) refuse(*wrong, folder_.path());
+    monitor_.report({dialect_.title, 1, "its places are read"});
+    return read_places(folder_.file(places_name), task_.spheres.r);
+  }
+
+  /// Of logs, which are long only where something has gone wrong.
+  static constexpr std::uintmax_t longest_tail = 1 << 20;
+
+  const SceneEngine& engine_;
+  const Dialect& dialect_;
+  const EngineTask& task_;
+  const EngineFolder folder_;
+  const Monitor& monitor_;
+  const std::string script_, mark_;
+};
+
+}  // namespace
+
+Places run_engine(const SceneEngine& engine, const EngineTask& task, const std::filesystem::path& folder,
+                  const Monitor& monitor) {
+  return EngineRun(engine, task, folder, monitor).go();
+}
+
+}  // namespace bernal::engine

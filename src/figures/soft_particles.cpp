@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/figures/check_prediction.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "figures/drawing.hpp"
+#include "figures/figure_files.hpp"
+#include "figures/packings.hpp"
+#include "figures/published.hpp"
+
+namespace bernal::figures {
+namespace {
+
+constexpr int soft_spheres = 6000;  // as in Farr's figure
+constexpr int soft_seeds = 3;
+constexpr double widest_soft = 0.7;
+constexpr int soft_widths = 7;
+
+struct MeanOfSeeds {
+  double phi = 0, deviation = 0, rods = 0;
+  std::size_t spheres = 0;
+};
+
+/// Of one width, whose packings stand in a row.
+MeanOfSeeds mean_of(const DonePacking* first) {
+  MeanOfSeeds mean;
+  double squares = 0;
+  for (int k = 0; k < soft_seeds; ++k) {
+    mean.phi += first[k].phi / soft_seeds;
+    mean.rods += predicted_for(first[k].packing.spheres.r) / soft_seeds;
+    mean.spheres = first[k].packing.spheres.size();
+  }
+  for (int k = 0; k < soft_seeds; ++k) squares += std::pow(first[k].phi - mean.phi, 2);
+  mean.deviation = std::sqrt(squares / (soft_seeds - 1));
+  return mean;
+}
+
+}  // namespace
+
+/// Farr's figure 2 once more, with a soft particle method of today: LAMMPS pushes the spheres apart while
+/// their box grows, see src/engine/engine_task.hpp, and relax takes the rest of their overlap from them.
+Files soft_particles(const FigureOptions& options) {
+  constexpr int rods = 16000;
+  const std::vector<double> sigmas = spread(0, widest_soft, 70), packed = spread(0, widest_soft, soft_widths);
+  const auto sizes = [&](std::size_t i) { return make_two_populations({.sigma_a = sigmas[i], .share = 0}); };
+  const std::vector<Prediction> predictions =
+      predict_all(sigmas.size(), sizes, rods, "fig2soft", options.monitor);
+  if (predictions.empty()) return {};
+  std::vector<PackingTask> tasks;
+  for (const bool by_engine : {true, false})
+    for (const double sigma : packed)
+      for (int seed = 0; seed < soft_seeds; ++seed) {
+        CheckOptions check;
+        check.spheres = options.spheres == 0 ? soft_spheres : options.spheres;
+        check.seed = options.seed + static_cast<std::uint64_t>(seed);
+        PackingTask task{.scene = scene_to_check(sizes_of({.sigma_a = sigma, .share = 0}), true, check),
+                         .cost = (by_engine ? 4.0 : 1.0) * (1 + sigma)};
+        if (by_engine) {
+          task.scene.engine = Lammps{};
+          task.scene.stages = {Relax{}};  // begins where the engine ends
+          complete(task.scene);
+        }
+        tasks.push_back(std::move(task));
+      }
+  const std::optional<std::vector<DonePacking>> done = pack_all(tasks, "fig2soft", options);
+  if (!done) return {};
+  for (const DonePacking& each : *done)
+    if (!is_packed(each.packing.outcome))
+      throw Error(ErrorCode::bad_argument, "a packing for fig2soft did not jam");
+
+  std::string csv = "source,sigma,phi,deviation,spheres,phi_rods_of_them\n";
+  Plot plot({78, 136, 700, 440}, {0, widest_soft, "width σ of ln(diameter)"},
+            {0.62, 0.76, "packing fraction φ"});
+  plot.axes();
+  std::vector<double> phi;
+  for (std::size_t i = 0; i < sigmas.size(); ++i) {
+    phi.push_back(predictions[i].phi);
+    csv += fmt::format("rods,{:.2f},{:.7f},,,\n", sigmas[i], phi[i]);
+  }
+  plot.line(sigmas, phi, "line heavy");
+  legend_line(plot, 100, 58, "line heavy", "rod model, 16,000 rods");
+  legend_marker(plot, Marker::triangle, 340, 58, "KTS, 1,024 and 2,048 spheres (Farr, table 2)");
+  legend_marker(plot, Marker::disc, 340, 80, "soft particles by LAMMPS, then relax: 6,000 spheres");
+  legend_marker(plot, Marker::ring, 340, 102, "relax alone, the same spheres");
+  for (const PublishedMixture& row : published_mixtures) {
+    if (!row.is_one_population()) continue;
+    csv += fmt::format("KTS,{:.2f},{},{},{},\n", row.mix.sigma_a, row.kts, row.kts_error, row.spheres);
+    add_error_bar(plot, row.mix.sigma_a, row.kts, row.kts_error);
+    add_marker(plot, Marker::triangle, row.mix.sigma_a, row.kts);
+  }
+  for (std::size_t k = 0; k < 2 * packed.size(); ++k) {
+    const bool by_engine = k < packed.size();
+    const double sigma = packed[k % packed.size()];
+    const MeanOfSeeds mean = mean_of(done->data() + k * soft_seeds);
+    csv += fmt::format("{},{:.2f},{:.6f},{:.6f},{},{:.6f}\n", by_engine ? "soft" : "relax", sigma, mean.phi,
+                       mean.deviation, mean.spheres, mean.rods);
+    add_error_bar(plot, sigma, mean.phi, mean.deviation);
+    add_marker(plot, by_engine ? Marker::disc : Marker::ring, sigma, mean.phi);
+  }
+  return {{"fig2soft.svg", svg_document(730, 500, "Lognormal spheres, as soft particles and by the rod model",
+                                        std::move(plot).finish())},
+          {"fig2soft.csv", csv}};
+}
+
+}  // namespace bernal::figures

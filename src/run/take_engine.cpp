@@ -1,0 +1,211 @@
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "bernal/core/text.hpp"
+#include "domain/places.hpp"
+#include "engine/engine_plan.hpp"
+#include "engine/run_engine.hpp"
+#include "run/stages.hpp"
+#include "run/start.hpp"
+
+namespace bernal {
+namespace {
+
+/// Packing fractions between which a periodic box grows, in shares of what the sizes are likely to reach, and
+/// how far above one that is asked for: equal spheres from 0.70 to 0.64, just below which they jam.
+constexpr double ends_at = 0.9955, begins_at = 1.088, above_asked = 1.03;
+/// Below this share of what they reach spheres come free without a box that grows.
+constexpr double comes_free = 0.9;
+/// Of edges, over the largest diameter: no sphere reaches around the box.
+constexpr double least_edge = 1.05;
+/// More than what is likely to fit is not put between walls.
+constexpr double most_of_attainable = 1.1;
+/// Tries to find a place where a sphere clears the wall; and one that is inside at all.
+constexpr int tries = 100, most_tries = 100'000;
+
+/// The folder that an engine works in, and that goes with this object where nobody wants it.
+class FolderOfEngine {
+ public:
+  explicit FolderOfEngine(const std::filesystem::path& wanted) : path_(wanted), passes_(wanted.empty()) {
+    if (!passes_) return;
+    std::string name = (std::filesystem::temp_directory_path() / "bernal-engine-XXXXXX").string();
+    if (!mkdtemp(name.data()))
+      throw Error(ErrorCode::cannot_write, "no folder can be made for the engine: is TMPDIR full?",
+                  {std::filesystem::temp_directory_path().string()});
+    path_ = name;
+  }
+  ~FolderOfEngine() {
+    std::error_code gone;
+    if (passes_) std::filesystem::remove_all(path_, gone);
+  }
+  FolderOfEngine(const FolderOfEngine&) = delete;
+  FolderOfEngine& operator=(const FolderOfEngine&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// What has gone wrong there is to be seen.
+  void stays() { passes_ = false; }
+
+ private:
+  std::filesystem::path path_;
+  bool passes_;
+};
+
+engine::Places run_in_folder(const Plan& plan, const std::filesystem::path& folder,
+                             const engine::EngineTask& task, const Work& work) {
+  FolderOfEngine at(folder);
+  try {
+    return engine::run_engine(*plan.scene.engine, task, at.path(), work.monitor);
+  } catch (const Error&) {
+    std::error_code gone;
+    const bool is_empty = std::filesystem::is_empty(at.path(), gone);
+    if (!is_empty && !gone) at.stays();
+    throw;
+  }
+}
+
+/// A power of two, such that the mean radius is between 1 and 2 of it.
+double unit_of(const std::vector<double>& radii) {
+  double sum = 0;
+  for (const double r : radii) sum += r;
+  return std::exp2(std::floor(std::log2(sum / static_cast<double>(radii.size()))));
+}
+
+std::string name_of_engine(const Plan& plan) {
+  return std::holds_alternative<Lammps>(*plan.scene.engine) ? "lammps" : "liggghts";
+}
+
+void take_engine_in_box(const Plan& plan, const std::filesystem::path& folder, Work& work) {
+  const std::vector<double>& radii = work.spheres.r;
+  const double volume = work.volume_of_spheres(), unit = unit_of(radii);
+  double last = ends_at * work.attainable;
+  if (work.target_edges) last = std::min(last, above_asked * volume / work.target_edges->prod());
+  const double first = last < comes_free * work.attainable ? last : last * begins_at / ends_at;
+  const double needed = least_edge * 2 * std::ranges::max(radii) / work.edges.minCoeff();
+  const auto scale_to = [&](double fraction) {
+    return std::max(needed, std::cbrt(volume / fraction / work.edges.prod()));
+  };
+  const Vector<3> proportions = work.edges;
+  const Vector<3> edges = proportions * (scale_to(first) / unit);
+  engine::EngineTask task{.spheres = {},
+                          .domain = Box{Vector<3>::Zero().eval(), edges, {true, true, true}},
+                          .growth = scale_to(last) / scale_to(first),
+                          .steps = plan.scene.engine->process().steps};
+  Random random = work.random(Stream::insert);
+  task.spheres.reserve(radii.size());
+  for (const double r : radii)
+    task.spheres.push_back(uniform_point<3>(random, {Vector<3>::Zero(), edges}), r / unit);
+
+  const engine::Places places = run_in_folder(plan, folder, task, work);
+  const Vector<3> box = places.box.size(), end = proportions * scale_to(last);
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    const double factor = end[k] / box[k];
+    for (std::size_t i = 0; i < radii.size(); ++i) {
+      double x = (places.spheres.x[axis][i] - places.box.lower[k]) * factor;
+      x -= end[k] * std::floor(x / end[k]);
+      work.spheres.x[axis][i] = x < end[k] ? x : 0;
+    }
+  }
+  work.edges = end;
+  work.begun = radii.size();
+  work.placed = work.may_overlap = true;
+  work.milestone(name_of_engine(plan), 1, 0);
+}
+
+/// Random places, at which spheres clear the wall where that is to be found, else where they do best.
+class PlacesToBegin {
+ public:
+  explicit PlacesToBegin(Work& work) : work_(work), random_(work.random(Stream::insert)) {}
+
+  Vector<3> place_for(double r) {
+    if (work_.monitor.stop()) throw Cancelled();
+    const Container& container = work_.bed().container();
+    Vector<3> best = Vector<3>::Zero();
+    double most = 0;
+    for (int k = 0; k < (most > 0 ? tries : most_tries); ++k) {
+      const Vector<3> p = work_.bed().places().draw(random_);
+      const double clearance = container.clearance_within(p, r);
+      if (clearance > most) {
+        most = clearance;
+        best = p;
+      }
+      if (clearance >= r) break;
+    }
+    return best;
+  }
+
+ private:
+  Work& work_;
+  Random random_;
+};
+
+/// From the packer's coordinates to the engine's: a cylinder that is oblique is turned upright.
+struct Turn {
+  Vector<3> base = Vector<3>::Zero();
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
+  Domain domain = {};
+
+  explicit Turn(const Domain& of) : domain(of) {
+    auto* cylinder = std::get_if<Cylinder>(&domain);
+    if (!cylinder || cylinder->coordinate_axis() >= 0) return;
+    base = cylinder->base;
+    turned = Eigen::Quaterniond::FromTwoVectors(cylinder->axis, Vector<3>::UnitZ()).toRotationMatrix();
+    cylinder->base = Vector<3>::Zero();
+    cylinder->axis = Vector<3>::UnitZ();
+  }
+  Vector<3> there(const Vector<3>& p) const { return turned * (p - base); }
+  Vector<3> back(const Vector<3>& p) const { return base + turned.transpose() * p; }
+};
+
+void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, Work& work) {
+  work.stand_in_bed();
+  const Container& container = work.bed().container();
+  const std::size_t count = std::max<std::size_t>(
+      1, std::min(work.target_count(), work.count_filling(most_of_attainable * work.attainable)));
+  const std::vector<double>& all = work.supply->radii();
+  const std::vector<double> radii(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
+  const double unit = unit_of(radii);
+  const Turn turn(work.domain);
+  engine::EngineTask task{.spheres = {},
+                          .domain = to_local(turn.domain, Frame{.scale = unit}),
+                          .steps = plan.scene.engine->process().steps};
+  PlacesToBegin begin(work);
+  task.spheres.reserve(count);
+  for (const double r : radii) task.spheres.push_back(turn.there(begin.place_for(r)) / unit, r / unit);
+
+  const engine::Places places = run_in_folder(plan, folder, task, work);
+  Spheres<3> spheres;
+  spheres.reserve(count);
+  std::size_t put_back = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    Vector<3> c = container.boundary().wrap(turn.back(unit * places.spheres.center(i)));
+    if (!container.contains(c, 0)) {
+      c = begin.place_for(radii[i]);
+      ++put_back;
+    }
+    spheres.push_back(c, radii[i]);
+  }
+  work.begun = count;
+  work.crowded_start = std::move(spheres);
+  if (put_back > 0)
+    work.account = fmt::format("{} had left the container in {}, and {} put back",
+                               put_back == 1 ? "1 sphere" : grouped(put_back) + " spheres",
+                               name_of_engine(plan), put_back == 1 ? "was" : "were");
+  work.crowd_milestone(name_of_engine(plan), count, volume_of(work.crowded_start), 0, 1);
+}
+
+}  // namespace
+
+void take_engine(const Plan& plan, const std::filesystem::path& folder, Work& work) {
+  const EffectTimer timer(work.effects[engine::engine_effect]);
+  if (table_of(plan.scene.stages.front()).traits.stands_in_bed(plan.scene))
+    take_engine_in_bed(plan, folder, work);
+  else
+    take_engine_in_box(plan, folder, work);
+}
+
+}  // namespace bernal

@@ -1,0 +1,65 @@
+#include "scene/scene_entries.hpp"
+
+namespace bernal::schema {
+namespace {
+
+constexpr int most_ranks = 1'000'000;
+
+std::vector<Key> keys_of_process() {
+  return {
+      integer(&EngineProcess::ranks, "ranks",
+              "processes that share the spheres; a single one is started without a launcher",
+              {1, most_ranks}),
+      word(&EngineProcess::launcher, "launcher",
+           "mpirun: started at once, and waited for; slurm: a script is written for sbatch, and the same "
+           "call after that job goes on from its result",
+           {"mpirun", "slurm"}),
+      names(&EngineProcess::command, "command",
+            "what starts the ranks, with options of its own; if absent mpirun, in a script for Slurm srun"),
+      names(&EngineProcess::executable, "executable",
+            "the engine, with options of its own; if absent as Debian calls it"),
+      names(&EngineProcess::slurm, "slurm",
+            "options for sbatch that the script begins with, such as \"--time=02:00:00\""),
+      integer(&EngineProcess::steps, "steps",
+              "of the motion that pushes spheres apart; more make a periodic box denser", {10, 1e9}),
+      flag(&EngineProcess::keep, "keep",
+           "true: what the engine read and wrote stays in the folder \"engine\" of the result, and the "
+           "same scene takes it up again; its script and logs stay anyway")};
+}
+
+void engine_rule(const EngineProcess& process, const Section& section) {
+  if (!process.slurm.empty() && process.launcher != EngineLauncher::slurm)
+    section.refuse("slurm", "goes with launcher = \"slurm\"; leave it out");
+  for (const auto& [key, words] : {std::pair{"command", &process.command},
+                                   {"executable", &process.executable},
+                                   {"slurm", &process.slurm}})
+    for (const std::string& word : *words)
+      if (word.empty() || word.find_first_of("\n\r") != std::string::npos)
+        section.refuse(key, "must have no empty words and no line breaks");
+}
+
+template <class Options>
+Entry entry_of_engine(std::string_view name, std::string_view help) {
+  return entry<Options>({.name = name,
+                         .help = help,
+                         .keys = inside(&Options::process, keys_of_process()),
+                         .rule = [](const void* options, const Section& section) {
+                           engine_rule(static_cast<const Options*>(options)->process, section);
+                         }});
+}
+
+}  // namespace
+
+const std::vector<Entry>& engine_entries() {
+  static const std::vector<Entry> all = {
+      entry_of_engine<Lammps>(
+          "lammps",
+          "LAMMPS over MPI finds the places, as soft particles: in periodic boxes, boxes, "
+          "cylinders and spheres"),
+      entry_of_engine<Liggghts>("liggghts",
+                                "LIGGGHTS over MPI finds the places, as soft particles: in parts of CAD, "
+                                "boxes, cylinders along an axis and periodic boxes")};
+  return all;
+}
+
+}  // namespace bernal::schema
