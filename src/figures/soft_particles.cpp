@@ -20,14 +20,14 @@ constexpr int soft_seeds = 3;
 constexpr double widest_soft = 0.7;
 constexpr int soft_widths = 7;
 
-struct MeanOfSeeds {
+struct SoftMean {
   double phi = 0, deviation = 0, rods = 0;
   std::size_t spheres = 0;
 };
 
 /// Of one width, whose packings stand in a row.
-MeanOfSeeds mean_of(const DonePacking* first) {
-  MeanOfSeeds mean;
+SoftMean soft_mean_of(const DonePacking* first) {
+  SoftMean mean;
   double squares = 0;
   for (int k = 0; k < soft_seeds; ++k) {
     mean.phi += first[k].phi / soft_seeds;
@@ -95,7 +95,7 @@ Files soft_particles(const FigureOptions& options) {
   for (std::size_t k = 0; k < 2 * packed.size(); ++k) {
     const bool by_engine = k < packed.size();
     const double sigma = packed[k % packed.size()];
-    const MeanOfSeeds mean = mean_of(done->data() + k * soft_seeds);
+    const SoftMean mean = soft_mean_of(done->data() + k * soft_seeds);
     csv += fmt::format("{},{:.2f},{:.6f},{:.6f},{},{:.6f}\n", by_engine ? "soft" : "relax", sigma, mean.phi,
                        mean.deviation, mean.spheres, mean.rods);
     add_error_bar(plot, sigma, mean.phi, mean.deviation);
