@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bernal/fly/fly.hpp"
+#include "core/archive.hpp"
 #include "fly/flying_spheres.hpp"
 
 namespace bernal {

@@ -1,5 +1,6 @@
 #pragma once
 #include "bernal/fly/fly.hpp"
+#include "core/archive.hpp"
 #include "fly/flying_spheres.hpp"
 
 namespace bernal {

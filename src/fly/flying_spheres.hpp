@@ -8,6 +8,7 @@
 
 #include "bernal/core/random.hpp"
 #include "bernal/core/tolerance.hpp"
+#include "core/archive.hpp"
 #include "core/event_clock.hpp"
 #include "core/made.hpp"
 #include "neighbors/partial_grid.hpp"

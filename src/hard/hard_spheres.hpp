@@ -7,6 +7,7 @@
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
 #include "bernal/hard/grow.hpp"
+#include "core/archive.hpp"
 #include "core/event_clock.hpp"
 #include "core/made.hpp"
 #include "hard/calendar.hpp"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bernal/core/vector.hpp"
+#include "core/archive.hpp"
 #include "hard/prefetch.hpp"
 
 namespace bernal {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bernal/core/vector.hpp"
+#include "core/archive.hpp"
 #include "core/made.hpp"
 #include "hard/home_grid.hpp"
 #include "hard/neighbor_pool.hpp"

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "core/made.hpp"
 #include "hard/flying_sphere.hpp"
 #include "hard/neighbor_pool.hpp"

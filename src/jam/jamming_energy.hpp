@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "bernal/core/spheres.hpp"
+#include "core/archive.hpp"
 #include "core/made.hpp"
 #include "jam/near_walls.hpp"
 #include "jam/trust_region.hpp"

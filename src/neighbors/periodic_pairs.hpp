@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bernal/domain/boundary.hpp"
+#include "core/archive.hpp"
 #include "neighbors/cell_grid.hpp"
 
 namespace bernal {

@@ -9,6 +9,7 @@
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
+#include "core/archive.hpp"
 #include "soft/ground.hpp"
 #include "soft/size_exchange.hpp"
 #include "work/work.hpp"

@@ -7,6 +7,7 @@
 
 #include "bernal/core/random.hpp"
 #include "bernal/domain/container.hpp"
+#include "core/archive.hpp"
 #include "domain/places.hpp"
 #include "soft/soft_engine.hpp"
 

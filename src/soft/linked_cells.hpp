@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "neighbors/cell_grid.hpp"
 #include "neighbors/counting_sort.hpp"
 #include "work/free_of_overlap.hpp"

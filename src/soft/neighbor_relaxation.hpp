@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
+#include "core/archive.hpp"
 #include "core/made.hpp"
 #include "soft/fixed_point_grid.hpp"
 #include "work/effect_log.hpp"

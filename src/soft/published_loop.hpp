@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bernal/core/random.hpp"
+#include "core/archive.hpp"
 #include "core/made.hpp"
 #include "soft/linked_cells.hpp"
 

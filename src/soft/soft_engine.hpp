@@ -2,6 +2,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "soft/neighbor_relaxation.hpp"
 #include "soft/soft_packing.hpp"
 

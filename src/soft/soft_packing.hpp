@@ -7,6 +7,7 @@
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/container.hpp"
+#include "core/archive.hpp"
 #include "soft/far_images.hpp"
 #include "soft/soft_blocks.hpp"
 #include "soft/soft_lists.hpp"

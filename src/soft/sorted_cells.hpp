@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "soft/linked_cells.hpp"
 
 namespace bernal {

@@ -9,6 +9,7 @@
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/run/packing.hpp"
+#include "core/archive.hpp"
 #include "work/checkpoint_folder.hpp"
 
 namespace bernal {

@@ -2,6 +2,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/archive.hpp"
 #include "work/work.hpp"
 
 namespace bernal {

@@ -14,6 +14,7 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/domain.hpp"
 #include "bernal/scene/scene.hpp"
+#include "core/archive.hpp"
 #include "work/bed.hpp"
 #include "work/checkpoints.hpp"
 #include "work/effect_log.hpp"
