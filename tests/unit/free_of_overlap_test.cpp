@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
+#include "bernal/core/random.hpp"
 #include "bernal/domain/boundary.hpp"
 #include "support/nearest_images.hpp"
 
@@ -165,6 +170,88 @@ TEST(IsFreeOfOverlap, IsDecidedExactly) {
   EXPECT_FALSE(is_free(5, std::nextafter(1, 0), walls));
   EXPECT_TRUE(is_free(5, 9, walls));
   EXPECT_FALSE(is_free(5, std::nextafter(9, 10), walls));
+}
+
+/// Near the points of a lattice, so that who is near whom is known; in any order.
+template <int D>
+struct Lattice {
+  int edge;
+  Spheres<D> spheres;
+  std::vector<std::uint32_t> at;  ///< the sphere of each point
+
+  Lattice(int points, double farthest, double smallest, std::uint64_t seed) : edge(points) {
+    Random random(seed, stream(Stream::test));
+    std::size_t n = 1;
+    for (int k = 0; k < D; ++k) n *= static_cast<std::size_t>(points);
+    at.resize(n);
+    std::iota(at.begin(), at.end(), 0u);
+    for (std::size_t i = n - 1; i > 0; --i) std::swap(at[i], at[random() % (i + 1)]);
+    spheres.resize(n);
+    const Boundary<D> boundary{Vector<D>::Constant(points)};
+    for (std::size_t p = 0; p < n; ++p) {
+      Vector<D> c;
+      std::size_t rest = p;
+      for (int k = 0; k < D; ++k, rest /= static_cast<std::size_t>(points))
+        c[k] = static_cast<double>(rest % static_cast<std::size_t>(points)) +
+               random.uniform(-farthest, farthest);
+      spheres.set_center(at[p], boundary.wrap(c));
+      spheres.r[at[p]] = random.uniform(smallest, 0.5);
+    }
+  }
+
+  double contact_factor_of_neighbours() const {
+    const Boundary<D> boundary{Vector<D>::Constant(edge)};
+    double factor = 2 * std::ranges::max(spheres.r) / edge;
+    int around = 1;
+    for (int k = 0; k < D; ++k) around *= 3;
+    for (std::size_t p = 0; p < at.size(); ++p)
+      for (int a = 0; a < around; ++a) {
+        std::size_t other = 0, weight = 1, rest = p;
+        for (int k = 0, way = a; k < D; ++k, way /= 3, rest /= static_cast<std::size_t>(edge)) {
+          other += weight *
+                   ((rest % static_cast<std::size_t>(edge) + static_cast<std::size_t>(edge + way % 3 - 1)) %
+                    static_cast<std::size_t>(edge));
+          weight *= static_cast<std::size_t>(edge);
+        }
+        if (other == p) continue;
+        const Vector<D> d = spheres.center(at[p]) - spheres.center(at[other]);
+        factor =
+            std::max(factor, (spheres.r[at[p]] + spheres.r[at[other]]) / boundary.minimum_image(d).norm());
+      }
+    return factor;
+  }
+};
+
+// Of so many spheres the box is looked at in blocks: the same number to the bit, wherever the worst pair is.
+TEST(FreeOfOverlapInBlocks, IsThatOfAllPairs) {
+  for (const double smallest : {0.5, 0.1}) {
+    Lattice<3> lattice(70, 0.05, smallest, 1);
+    const Vector<3> edges = Vector<3>::Constant(70);
+    EXPECT_EQ(contact_factor(lattice.spheres, edges), lattice.contact_factor_of_neighbours());
+    for (const double x : {0.01, 17.4, 34.99, 69.9}) {  // across faces of the box and anywhere else
+      Spheres<3> close = lattice.spheres;
+      close.set_center(5, Vector<3>(x, x, 0.02));
+      close.set_center(77, Vector<3>(x, x, 69.5));
+      EXPECT_NEAR(contact_factor(close, edges), (close.r[5] + close.r[77]) / 0.52, 1e-9);
+    }
+  }
+  const Lattice<2> discs(600, 0.1, 0.3, 2);
+  EXPECT_EQ(contact_factor(discs.spheres, Vector<2>(Vector<2>::Constant(600))),
+            discs.contact_factor_of_neighbours());
+}
+
+TEST(FreeOfOverlapInBlocks, KnowsSpheresThatAreFarApart) {
+  Lattice<3> lattice(70, 0.01, 0.5, 3);
+  for (double& r : lattice.spheres.r) r *= 0.2;
+  EXPECT_EQ(contact_factor(lattice.spheres, Vector<3>(Vector<3>::Constant(70))),
+            lattice.contact_factor_of_neighbours());
+}
+
+TEST(FreeOfOverlapInBlocks, KnowsCentresThatCoincide) {
+  Lattice<3> lattice(70, 0.01, 0.5, 4);
+  lattice.spheres.set_center(1000, lattice.spheres.center(200'000));
+  EXPECT_EQ(contact_factor(lattice.spheres, Vector<3>(Vector<3>::Constant(70))),
+            std::numeric_limits<double>::infinity());
 }
 
 }  // namespace free_of_overlap_test
