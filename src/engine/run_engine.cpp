@@ -118,23 +118,23 @@ class EngineRun {
   Places go() {
     const bool by_slurm = engine_.process().launcher == EngineLauncher::slurm;
     const bool is_there = content_of(folder_.file(mark_name)) == mark_ && folder_.has(places_name);
-    if (by_slurm) {
-      if (!is_there) submit();
-    } else if (!is_there || !is_whole()) {
-      const std::vector<std::string> words = found_words(engine_);
-      prepare();
-      start(words);
-    }
-    Places places = read();
-    if (!engine_.process().keep)
-      for (const char* name : {data_name, places_name, walls_name, mark_name}) folder_.remove(name);
-    return places;
+    if (by_slurm && !is_there) submit();
+    if (by_slurm) return kept_or_gone(read());
+    if (is_there) try {
+        return kept_or_gone(read());
+      } catch (const EngineError&) {  // of what is not whole it begins again
+      }
+    const std::vector<std::string> words = found_words(engine_);
+    prepare();
+    start(words);
+    return kept_or_gone(read());
   }
 
  private:
-  bool is_whole() const {
-    return !what_is_wrong(dialect_, {}, tail_of(folder_.file(dialect_.log), longest_tail),
-                          tail_of(folder_.file(output_name), longest_tail));
+  Places kept_or_gone(Places places) const {
+    if (!engine_.process().keep)
+      for (const char* name : {data_name, places_name, walls_name, mark_name}) folder_.remove(name);
+    return places;
   }
 
   void prepare() {
