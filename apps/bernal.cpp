@@ -47,6 +47,8 @@ Explanation explanation() {
                    {"bernal explain data/scenes/hopper.toml", "what would run, and what it would cost"},
                    {"bernal cost data/scenes/relax_equal.toml -o out",
                     "what accuracy costs in time there, and what to take"},
+                   {"bernal sweep data/sweeps/exchange.toml -o out",
+                    "many scenes at once: a grid over any keys, resumable, one table"},
                    {"bernal keys relax", "what a scene may say of a stage"},
                    {"bernal predict --lognormal 0.5", "how densely spheres of these sizes pack"},
                    {"bernal design maximise --diameters 1,3,9", "how much of each size packs densest"},
@@ -94,7 +96,7 @@ int main(int argc, char** argv) {
         explanation(),
         {},
         {pack_command(), verify_command(), inspect_command(), explain_command(), keys_command(),
-         cost_command(), measure_command(), export_command(), import_command(), predict_command(),
+         cost_command(), sweep_command(), measure_command(), export_command(), import_command(), predict_command(),
          design_command(), map_command(), reproduce_command(), bench_command()}};
     command.commands.push_back(completion_command(command));
     command.commands.push_back(manual_command(command));

@@ -202,3 +202,24 @@ Option threads_option(int& threads, const std::string& what) {
       {"--threads", &threads, "As many as the machine has if absent; " + what + " is the same", "N"}, 1,
       1024);
 }
+
+std::optional<double> seconds_of(std::string_view text) {
+  constexpr double longest = 30 * 86400.0;
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
+  const double seconds = factor * number;
+  if (error != std::errc{} || !(seconds > 0) || seconds > longest) return {};
+  return seconds;
+}
+
+Option time_option(std::string& time, const std::string& what) {
+  const auto complaint = [](const std::string& text) {
+    return seconds_of(text)
+               ? std::string()
+               : fmt::format("must be a time above 0 and up to 30 days, such as 90s, 10m or 2h, not {}",
+                             text);
+  };
+  return checked({"--time", &time, what, "TIME"}, complaint);
+}

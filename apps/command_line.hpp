@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -110,5 +111,9 @@ Option rods_option(int& rods, int least, int most);
 Option seed_option(const std::string& what, const std::function<void(std::uint64_t)>& take);
 /// With 0 for as many as the machine has; `what` is the same for any number: "the answer".
 Option threads_option(int& threads, const std::string& what);
+/// "90", "90s", "10m", "2h"; `seconds_of` what it was given.
+Option time_option(std::string& time, const std::string& what);
+/// None where the text is no such time, above 0 and at most 30 days.
+std::optional<double> seconds_of(std::string_view text);
 /// The units of length that a scene may name.
 Option with_units(Option);

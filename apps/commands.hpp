@@ -7,6 +7,7 @@ Command verify_command();
 Command inspect_command();
 Command explain_command();
 Command cost_command();
+Command sweep_command();
 Command keys_command();
 Command measure_command();
 Command predict_command();

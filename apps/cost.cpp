@@ -1,6 +1,5 @@
 #include "bernal/cost/cost.hpp"
 
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -29,19 +28,6 @@ struct CostCall {
   bool json = false;
   bool quiet = false;
 };
-
-constexpr double longest_time = 30 * 86400.0;
-
-/// Of "90", "90s", "10m", "2h"; none where it is not such a time, above 0 and at most 30 days.
-std::optional<double> seconds_of(std::string_view text) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
-  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
-  const double seconds = factor * number;
-  if (error != std::errc{} || !(seconds > 0) || seconds > longest_time) return {};
-  return seconds;
-}
 
 template <class Number>
 nlohmann::ordered_json or_null(const std::optional<Number>& value) {
@@ -134,19 +120,13 @@ int cost(const CostCall& call) {
 
 Command cost_command() {
   const auto call = std::make_shared<CostCall>();
-  const auto complaint = [](const std::string& text) {
-    return seconds_of(text)
-               ? std::string()
-               : fmt::format("must be a time above 0 and up to 30 days, such as 90s, 10m or 2h, not {}",
-                             text);
-  };
   return {
       "cost",
       "Run a scene at several accuracies: what each costs in time, what it buys, what to take",
       {file(required({"SCENE", &call->scene, "The scene, a TOML file"}), {".toml"}),
        folder(required(
            {"-o,--output", &call->folder, "Folder for the results; made if it does not exist", "DIR"})),
-       checked({"--time", &call->time, "For all of it on the wall; 10m if absent", "TIME"}, complaint),
+       time_option(call->time, "For all of it on the wall; 10m if absent"),
        within(
            {"--seeds", &call->seeds, "Runs of every setting, each with a seed of its own; 2 if absent", "N"},
            1, 100),

@@ -5,6 +5,8 @@ set(examples ${doc}/bernal/examples)
 install(FILES README.md DESTINATION ${doc}/bernal COMPONENT command)
 file(GLOB scenes CONFIGURE_DEPENDS data/scenes/*)
 install(FILES ${scenes} DESTINATION ${examples}/scenes COMPONENT command)
+file(GLOB sweeps CONFIGURE_DEPENDS data/sweeps/*)
+install(FILES ${sweeps} DESTINATION ${examples}/sweeps COMPONENT command)
 install(FILES data/meshes/lib3mf_helix.stl data/meshes/hopper.stl data/meshes/block_fillets_bore.step
   DESTINATION ${examples}/meshes COMPONENT command)  # those of the scenes, and one with surfaces
 

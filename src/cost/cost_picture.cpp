@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
@@ -13,26 +12,6 @@ namespace {
 constexpr double drawing_width = 980, drawing_height = 600;
 constexpr PlotArea area = {78, 92, 690, 530};
 constexpr double legend_at = 716;
-/// Told apart by shape and colour: Okabe & Ito's colours, but for yellow, which is none on white.
-constexpr std::array colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"};
-constexpr std::size_t shapes = 4;
-
-/// A marker of one of the shapes about a place of the picture.
-std::string marker(std::size_t shape, double x, double y, double r, const std::string& style) {
-  switch (shape % shapes) {
-    case 0:
-      return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" {}/>", x, y, r, style);
-    case 1:
-      return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" {}/>",
-                         x - 0.85 * r, y - 0.85 * r, 1.7 * r, 1.7 * r, style);
-    case 2:
-      return fmt::format("<path d=\"M{:.1f} {:.1f}l{:.1f} {:.1f}h{:.1f}z\" {}/>", x, y - 1.1 * r, 1.1 * r,
-                         1.9 * r, -2.2 * r, style);
-    default:
-      return fmt::format("<path d=\"M{:.1f} {:.1f}l{:.1f} {:.1f}h{:.1f}z\" {}/>", x, y + 1.1 * r, 1.1 * r,
-                         -1.9 * r, -2.2 * r, style);
-  }
-}
 
 std::vector<const CostRow*> drawn_rows(const CostReport& report) {
   std::vector<const CostRow*> rows;
@@ -79,13 +58,13 @@ class Markers {
     return fmt::format("<path d=\"M{:.1f} {:.1f}l7 7l-7 7l-7 -7z\" fill=\"#1d2733\"/>", x, y - 7);
   }
   static std::string several(double x, double y) {
-    return marker(0, x, y, 3.2, "fill=\"#ffffff\" stroke=\"#5d6b7a\" stroke-width=\"1.3\"");
+    return figures::shape(0, x, y, 3.2, "fill=\"#ffffff\" stroke=\"#5d6b7a\" stroke-width=\"1.3\"");
   }
   static std::string short_of_it(double x, double y) {
     return fmt::format("<path class=\"short\" d=\"M{:.1f} {:.1f}l7 7m0 -7l-7 7\"/>", x - 3.5, y - 3.5);
   }
   static std::string of_knob(std::size_t k, double x, double y) {
-    return marker(k, x, y, 4.4, fmt::format("fill=\"{}\"", colours[k % colours.size()]));
+    return figures::shape(k, x, y, 4.4, fmt::format("fill=\"{}\"", figures::series_colour(k)));
   }
 
   std::map<std::string, std::size_t> knobs_;

@@ -1,5 +1,6 @@
 #include "figures/drawing.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "io/html_text.hpp"
@@ -54,6 +55,30 @@ void add_marker(Plot& plot, Marker marker, double x, double y) {
 void legend_marker(Plot& plot, Marker marker, double x, double y, std::string_view text) {
   draw_marker(plot, marker, x + 17, y - 4);
   add_text(plot, x + 42, y, "start", text);
+}
+
+std::string_view series_colour(std::size_t k) {
+  // Okabe & Ito's, but for yellow, which is none on white.
+  constexpr std::array<std::string_view, 6> colours = {"#0072b2", "#d55e00", "#009e73",
+                                                       "#cc79a7", "#56b4e9", "#e69f00"};
+  return colours[k % colours.size()];
+}
+
+std::string shape(std::size_t k, double x, double y, double r, std::string_view style) {
+  constexpr std::size_t shapes = 4;
+  switch (k % shapes) {
+    case 0:
+      return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" {}/>", x, y, r, style);
+    case 1:
+      return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" {}/>",
+                         x - 0.85 * r, y - 0.85 * r, 1.7 * r, 1.7 * r, style);
+    case 2:
+      return fmt::format("<path d=\"M{:.1f} {:.1f}l{:.1f} {:.1f}h{:.1f}z\" {}/>", x, y - 1.1 * r, 1.1 * r,
+                         1.9 * r, -2.2 * r, style);
+    default:
+      return fmt::format("<path d=\"M{:.1f} {:.1f}l{:.1f} {:.1f}h{:.1f}z\" {}/>", x, y + 1.1 * r, 1.1 * r,
+                         -1.9 * r, -2.2 * r, style);
+  }
 }
 
 void add_error_bar(Plot& plot, double x, double y, double error) {

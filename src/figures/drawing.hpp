@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,10 @@ void legend_line(Plot&, double x, double y, std::string_view classes, std::strin
 enum class Marker { triangle, disc, ring };
 void add_marker(Plot&, Marker, double x, double y);
 void legend_marker(Plot&, Marker, double x, double y, std::string_view text);
+/// Series that are told apart by shape and colour: the k-th of them, over and over again after some.
+std::string_view series_colour(std::size_t k);
+/// Its marker about a place of the picture, of about that radius; `style` is attributes of SVG.
+std::string shape(std::size_t k, double x, double y, double r, std::string_view style);
 /// A vertical bar of ± error.
 void add_error_bar(Plot&, double x, double y, double error);
 

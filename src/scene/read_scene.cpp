@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
@@ -11,12 +9,13 @@
 #include <toml++/toml.h>
 
 #include "bernal/core/text.hpp"
-#include "core/file_kind.hpp"
 #include "scene/output_table.hpp"
 #include "scene/read_columns.hpp"
 #include "scene/read_value.hpp"
 #include "scene/scene_entries.hpp"
+#include "scene/scene_of_table.hpp"
 #include "scene/stage_table.hpp"
+#include "scene/toml_file.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {
@@ -40,8 +39,7 @@ class Reader {
  public:
   explicit Reader(const std::filesystem::path& file) : path_(file), file_(file.string()) {}
 
-  Scene read(std::string_view text) {
-    const toml::table root = parse(text);
+  Scene read(const toml::table& root) {
     Scene scene;
     scene.file = path_;
     check_tables(root);
@@ -58,47 +56,6 @@ class Reader {
   }
 
  private:
-  toml::table parse(std::string_view text) const {
-    const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
-    if (std::ranges::all_of(text, is_blank))
-      throw Error(ErrorCode::bad_scene, "the scene is empty; it needs at least [container] and [spheres]",
-                  {file_});
-    require_shallow(text);
-    try {
-      return toml::parse(text, file_);
-    } catch (const toml::parse_error& error) {
-      std::string what(error.description());
-      std::ranges::replace_if(
-          what, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-      fail(error.source(), "this is not TOML: {}", what);
-    }
-  }
-
-  /// Of "a.b.c" the parser makes tables in tables, and comes back from them by recursion.
-  void require_shallow(std::string_view text) const {
-    constexpr int most_parts = 32;
-    int parts = 1, line = 1;
-    for (std::size_t k = 0; k < text.size(); ++k) {
-      const char c = text[k];
-      if (c == '.' && ++parts > most_parts)
-        throw Error(ErrorCode::bad_scene,
-                    fmt::format("a key has more than {} parts; no key of a scene has", most_parts),
-                    {file_, line});
-      if (c == '"' || c == '\'') {  // is one part
-        while (++k < text.size() && text[k] != c && text[k] != '\n')
-          if (text[k] == '\\' && c == '"') ++k;
-        if (k < text.size() && text[k] == '\n') --k;
-        continue;
-      }
-      if (c == '#')
-        while (k + 1 < text.size() && text[k + 1] != '\n') ++k;
-      const bool in_key = c == '.' || c == '_' || c == '-' || c == ' ' || c == '\t' ||
-                          std::isalnum(static_cast<unsigned char>(c)) != 0;
-      if (!in_key) parts = 1;
-      line += c == '\n';
-    }
-  }
-
   /// A misspelt table is reported as such, before anything is missed for it.
   void check_tables(const toml::table& root) const {
     check_names(root, schema::scene_entry(), {tables.begin(), tables.end()}, "the scene");
@@ -120,14 +77,16 @@ class Reader {
     scene.locations.whole = {file_};
   }
 
-  /// Where a file is that the scene names. Behind links to folders ".." is what the system takes it for; a
-  /// scene that is a link itself may mean the folder that the link stands in, or the one that it leads to.
-  std::filesystem::path beside_the_scene(const std::filesystem::path& file) const {
+  /// Where a file is that is named at a place: most often in the scene, and else in what lays values over it.
+  /// Behind links to folders ".." is what the system takes it for; a file that is a link itself may mean the
+  /// folder that the link stands in, or the one that it leads to.
+  static std::filesystem::path beside(const Location& place, const std::filesystem::path& file) {
     std::error_code unknown;
-    const std::filesystem::path here = path_.parent_path() / file, plain = here.lexically_normal();
+    const std::filesystem::path naming = place.file;
+    const std::filesystem::path here = naming.parent_path() / file, plain = here.lexically_normal();
     if (std::filesystem::equivalent(here, plain, unknown)) return plain;
     if (std::filesystem::exists(here, unknown)) return here;
-    const std::filesystem::path there = std::filesystem::canonical(path_, unknown).parent_path() / file;
+    const std::filesystem::path there = std::filesystem::canonical(naming, unknown).parent_path() / file;
     return !unknown && std::filesystem::exists(there, unknown) ? there.lexically_normal() : plain;
   }
 
@@ -141,15 +100,16 @@ class Reader {
     if (!mesh) return;
     if (!root.contains("unit"))
       fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
-    mesh->file = beside_the_scene(mesh->file);
-    for (std::filesystem::path& file : mesh->obstacles) file = beside_the_scene(file);
+    const Locations& locations = scene.container.locations;
+    mesh->file = beside(locations.of("file"), mesh->file);
+    for (std::filesystem::path& file : mesh->obstacles) file = beside(locations.of("obstacles"), file);
   }
 
   void read_spheres(const toml::table& table, Scene& scene) const {
     read_own(table, schema::spheres_entry(), "[spheres]", scene);
     if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start"))
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
-    if (scene.start.file) scene.start.file = beside_the_scene(*scene.start.file);
+    if (scene.start.file) scene.start.file = beside(scene.locations.of("start"), *scene.start.file);
     scene.target.where = at(table.source());
     for (const char* key : {"count", "packing_fraction", "fill"})
       if (table.contains(key)) scene.target.where = scene.locations.of(key);
@@ -193,9 +153,7 @@ class Reader {
     }
   }
 
-  Location at(const toml::source_region& where) const {
-    return {file_, static_cast<int>(where.begin.line), static_cast<int>(where.begin.column)};
-  }
+  Location at(const toml::source_region& where) const { return location_of(where, file_); }
 
   /// Reports the first key, in the order of the file, that is neither one of the entry's nor one of `others`.
   void check_names(const toml::table& table, const Entry& entry, const Names& others,
@@ -282,7 +240,7 @@ class Reader {
     const std::array keys = {entry.find(entry.columns.at(0)), entry.find(entry.columns.at(1))};
     try {
       // More points are measurements, not a distribution; and a scene has to hold them.
-      const auto columns = read_columns(beside_the_scene(file), {keys, unit_, 4096, "sum them up in fewer"});
+      const auto columns = read_columns(beside(at_file, file), {keys, unit_, 4096, "sum them up in fewer"});
       for (std::size_t k = 0; k < keys.size(); ++k) {
         keys[k]->member.set(options, columns[k]);
         locations.keys[std::string(keys[k]->name)] = at_file;
@@ -301,7 +259,7 @@ class Reader {
     try {
       // So many, which the scene of a result holds, can be read there again.
       const auto columns =
-          read_columns(beside_the_scene(file),
+          read_columns(beside(at_file, file),
                        {{&x, &y}, unit_, 20'000, "leave out corners that are finer than the discs can feel"});
       Polygon polygon{{{}}};
       for (std::size_t k = 0; k < columns[0].size(); ++k)
@@ -365,25 +323,20 @@ class Reader {
 
 }  // namespace
 
+Scene scene_of_table(const toml::table& root, const std::filesystem::path& file) {
+  return Reader(file).read(root);
+}
+
 Scene parse_scene(std::string_view toml, const std::filesystem::path& name) {
-  return Reader(name).read(toml);
+  if (is_blank(toml))
+    throw Error(ErrorCode::bad_scene, "the scene is empty; it needs at least [container] and [spheres]",
+                {name.string()});
+  return scene_of_table(parse_toml(toml, name), name);
 }
 
 Scene read_scene(const std::filesystem::path& file) {
   constexpr std::streamsize largest = 1 << 20;
-  const auto fail = [&](const std::string& why) { throw Error(ErrorCode::bad_scene, why, {file.string()}); };
-  const FileKind kind = kind_of_file(file);
-  if (kind == FileKind::missing) fail("no such scene file");
-  if (kind == FileKind::folder) fail("this is a folder, not a scene file");
-  if (kind == FileKind::other) fail("this is a pipe or a device, not a scene file");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) fail("the scene file cannot be opened for reading");
-  std::string text(largest + 1, '\0');
-  in.read(text.data(), largest + 1);
-  if (in.bad()) fail("the scene file cannot be read");
-  if (in.gcount() > largest) fail("the file is larger than 1 MiB, which no scene is; is it the mesh?");
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return parse_scene(text, file);
+  return parse_scene(read_toml_text(file, "scene", largest, "no scene is; is it the mesh?"), file);
 }
 
 }  // namespace bernal

@@ -43,6 +43,7 @@ class Process {
   std::string said() const { return text_of(err()); }
 
   void signal(int number) const { kill(pid_, number); }
+  pid_t pid() const { return pid_; }
 
   /// Waits until it has a handler of its own for a signal; false where it ends before.
   bool listens_to(int number) const {

@@ -34,7 +34,8 @@ SECTIONS = [
         ("part", "Fill a CAD part"), ("repair", "Repair a CAD file"), ("sieve", "Match a sieve curve"),
         ("periodic", "A dense periodic box"), ("mesh", "Mesh a packing"), ("hand_over", "Hand over to LAMMPS"),
         ("density", "How dense can it be"), ("settle", "Settle a bed"), ("measure", "Look and measure"),
-        ("cost", "Accuracy, time and cost"), ("python", "From Python"))]),
+        ("cost", "Accuracy, time and cost"), ("sweep", "Many scenes at once"),
+        ("python", "From Python"))]),
     ("To know more", [(f"guide/{name}", f"data/guide/{name}.md", title) for name, title in (
         ("scene", "The scene file"), ("certificate", "What the certificate means"), ("files", "The files of a result"),
         ("formats", "Formats of other programs"), ("import", "From other programs"),

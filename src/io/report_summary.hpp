@@ -1,0 +1,19 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace bernal {
+
+/// The figures at the top of a report.json.
+struct ReportSummary {
+  std::string version, outcome, reason, hash;
+  std::optional<std::size_t> n, rattlers;
+  std::optional<double> phi, coordination, max_overlap, min_wall_gap, seconds, peak_memory_bytes;
+  bool certified = false;
+};
+
+/// Nothing where the text is no report of bernal's.
+std::optional<ReportSummary> summary_of_report(const std::string& report);
+
+}  // namespace bernal

@@ -1,0 +1,134 @@
+#include "sweep/cell_folder.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/io/read_packing.hpp"
+#include "io/output_file.hpp"
+#include "io/report_summary.hpp"
+#include "scene/toml_text.hpp"
+
+namespace fs = std::filesystem;
+
+namespace bernal {
+namespace {
+
+constexpr const char* failure_name = "failed.toml";
+
+std::string whole_file(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void take_report(const ReportSummary& report, CellResult& result) {
+  result.state = CellResult::State::packed;
+  result.outcome = report.outcome;
+  result.exit_code = report.certified && report.outcome == "converged" ? 0 : 3;
+  result.reason = report.reason;
+  result.n = report.n;
+  result.rattlers = report.rattlers;
+  result.phi = report.phi;
+  result.coordination = report.coordination;
+  result.max_overlap = report.max_overlap;
+  result.min_wall_gap = report.min_wall_gap;
+  result.seconds = report.seconds;
+  result.peak_memory_bytes = report.peak_memory_bytes;
+  result.certified = report.certified;
+  result.hash = report.hash;
+  result.version = report.version;
+}
+
+void take_failure(const fs::path& file, CellResult& result) {
+  try {
+    const toml::table failure = toml::parse_file(file.string());
+    const auto state = failure["outcome"].value<std::string>();
+    const auto exit_code = failure["exit_code"].value<std::int64_t>();
+    if (!state || !exit_code) return;
+    result.state = *state == "refused" ? CellResult::State::refused : CellResult::State::crashed;
+    result.outcome = *state == "refused" ? "refused" : "crashed";
+    result.exit_code = static_cast<int>(*exit_code);
+    result.reason = failure["reason"].value_or(std::string());
+  } catch (const toml::parse_error&) {  // then nothing is known
+  }
+}
+
+}  // namespace
+
+fs::path folder_of_cell(const std::string& hash) { return fs::path("cells") / hash; }
+
+CellResult read_cell(const fs::path& folder, const std::string& hash) {
+  const fs::path there = folder / folder_of_cell(hash);
+  CellResult result;
+  std::error_code unknown;
+  if (!fs::is_directory(there, unknown)) return result;
+  finish_writing(there);
+  if (const auto report = summary_of_report(whole_file(there / "report.json")))
+    take_report(*report, result);
+  else if (fs::is_regular_file(there / failure_name, unknown))
+    take_failure(there / failure_name, result);
+  return result;
+}
+
+namespace sweep {
+
+fs::path claim_of_cell(const fs::path& folder, const std::string& hash) {
+  return folder / "cells" / ".claims" / hash;
+}
+
+void replace_file(const fs::path& file, const std::string& text) {
+  const fs::path partial =
+      file.parent_path() / fmt::format(".bernal-{}-{}", ::getpid(), file.filename().string());
+  std::error_code problem;
+  fs::create_directories(file.parent_path(), problem);
+  fs::remove(partial, problem);
+  try {
+    OutputFile out(partial);
+    out.append(text);
+    out.close();
+    fs::rename(partial, file, problem);
+  } catch (const Error&) {
+    fs::remove(partial, problem);
+    throw;
+  }
+  if (!problem) return;
+  const std::string why = problem.message();
+  fs::remove(partial, problem);
+  throw Error(ErrorCode::cannot_write, "cannot be replaced: " + why, {file.string()});
+}
+
+void write_failure(const fs::path& folder, const std::string& hash, const Failure& failure) {
+  const bool refused = failure.state == CellResult::State::refused;
+  replace_file(folder / folder_of_cell(hash) / failure_name,
+               fmt::format("outcome = \"{}\"\nexit_code = {}\nreason = {}\n", refused ? "refused" : "crashed",
+                           failure.exit_code, toml_string(plain_text(failure.reason, 1000))));
+}
+
+void remove_failure(const fs::path& folder, const std::string& hash) {
+  std::error_code ignored;
+  fs::remove(folder / folder_of_cell(hash) / failure_name, ignored);
+}
+
+bool is_to_be_run(const CellResult& result, std::optional<double> seconds, bool retry) {
+  switch (result.state) {
+    case CellResult::State::missing:
+    case CellResult::State::crashed:
+      return true;
+    case CellResult::State::refused:
+      return retry;
+    case CellResult::State::packed:
+      // One that was stopped at its time gets more of it, and never the same again.
+      return result.outcome == "cancelled" && (!seconds || *seconds > 1.2 * result.seconds.value_or(0) + 1);
+  }
+  return false;
+}
+
+}  // namespace sweep
+}  // namespace bernal

@@ -1,0 +1,27 @@
+#pragma once
+#include <filesystem>
+
+namespace bernal::sweep {
+
+/// That this process alone works at something, as long as it lives: a lock of a file, which the system lets
+/// go of however the process ends. Where file systems know no locks everybody has it.
+class Claim {
+ public:
+  /// The folder of the file is made.
+  explicit Claim(std::filesystem::path file);
+  ~Claim();
+  Claim(const Claim&) = delete;
+  Claim& operator=(const Claim&) = delete;
+
+  bool is_ours() const { return ours_; }
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+  bool ours_ = false;
+};
+
+/// Whether another process has it; nothing is made.
+bool is_claimed(const std::filesystem::path& file);
+
+}  // namespace bernal::sweep
