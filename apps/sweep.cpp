@@ -67,7 +67,8 @@ std::string program() {
 std::vector<std::string> call_of_cells(const SweepCall& call, const Sweep& sweep, int threads,
                                        bool absolute) {
   const auto named = [&](const std::filesystem::path& path) {
-    return (absolute ? std::filesystem::absolute(path).lexically_normal() : path).string();
+    if (absolute) return std::filesystem::absolute(path).lexically_normal().string();
+    return path.string().starts_with('-') ? "./" + path.string() : path.string();  // no option
   };
   std::vector<std::string> words = {
       program(), "sweep",        named(call.sweep), "--output=" + named(call.folder),

@@ -128,6 +128,7 @@ class Pool {
                       "the system has no room for another process; give fewer --jobs");
         return;
       }
+      row(k).result = {};
     }
   }
 

@@ -88,7 +88,7 @@ class Picture {
     const double right = series_.size() > 1 ? 700 : 940;
     Plot plot({78, 92, right, 530}, axis_of(xs, x), axis_of(ys, y));
     plot.axes();
-    add_means(plot);
+    if (add_means(plot)) figures::add_text(plot, right, 44, "end", "lines: means");
     for (const Point& p : points_) plot.add("{}", marker(p.series, p.is_done, plot.x(p.x), plot.y(p.y)));
     add_legend(plot);
     return figures::svg_document(drawing_width, drawing_height, title, std::move(plot).finish());
@@ -114,9 +114,10 @@ class Picture {
                                 fmt::format("fill=\"#ffffff\" stroke=\"{}\" stroke-width=\"1.4\"", colour));
   }
 
-  /// Through the mean of the cells of a series at each place.
-  void add_means(Plot& plot) const {
+  /// Lines through the mean of the cells of a series at each place; whether there are any.
+  bool add_means(Plot& plot) const {
     constexpr std::size_t most_places = 200;
+    bool some = false;
     for (const std::string& series : series_) {
       std::map<double, std::pair<double, int>> sums;
       for (const Point& p : points_)
@@ -129,8 +130,10 @@ class Picture {
       for (const auto& [x, sum] : sums)
         path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', plot.x(x),
                             plot.y(sum.first / sum.second));
+      some = true;
       plot.add("<path class=\"line\" style=\"stroke:{}\" d=\"{}\"/>", colour_of(series), path);
     }
+    return some;
   }
 
   void add_legend(Plot& plot) const {

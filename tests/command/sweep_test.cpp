@@ -324,6 +324,20 @@ TEST(SweepCommand, TheScriptForSlurmRunsEveryCell) {
   expect_refused_in_one_line(swept.run({"--slurm"}), {"sweep.sbatch", "remove it"});
 }
 
+TEST(SweepCommand, OddNamesAreNames) {
+  const Folder folder;
+  folder.write("b'é $x.toml", tiny_bed);
+  folder.write("-s w.toml", "scene = \"b'é $x.toml\"\nrepeats = 2\n");
+  const std::string out = (folder / "o'ut $HOME").string(), odd = (folder / "-s w.toml").string();
+  const Ended here =
+      Process({"env", "-C", folder.path().string(), BERNAL_COMMAND, "sweep", "-o", out, "--", "-s w.toml"})
+          .wait();
+  EXPECT_EQ(here.status, 0) << here.err;
+  ASSERT_EQ(bernal({"sweep", odd, "-o", out, "--slurm"}).status, 0);
+  fs::remove_all(out + "/cells");
+  EXPECT_EQ(Process({"env", "SLURM_ARRAY_TASK_ID=2", "bash", out + "/sweep.sbatch"}).wait().status, 0);
+}
+
 TEST(SweepCommand, ManyCellsBecomeFewTasks) {
   const Swept swept("scene = \"bed.toml\"\n[grid]\nseed = { from = 1, to = 2345 }\n");
   ASSERT_EQ(swept.run({"--slurm"}).status, 0);
