@@ -230,9 +230,10 @@ TEST(FreeOfOverlapInBlocks, IsThatOfAllPairs) {
     EXPECT_EQ(contact_factor(lattice.spheres, edges), lattice.contact_factor_of_neighbours());
     for (const double x : {0.01, 17.4, 34.99, 69.9}) {  // across faces of the box and anywhere else
       Spheres<3> close = lattice.spheres;
-      close.set_center(5, Vector<3>(x, x, 0.02));
-      close.set_center(77, Vector<3>(x, x, 69.5));
-      EXPECT_NEAR(contact_factor(close, edges), (close.r[5] + close.r[77]) / 0.52, 1e-9);
+      close.set_center(5, Vector<3>(x, x, 3e-5));
+      close.set_center(77, Vector<3>(x, x, 70 - 6e-5));
+      const double factor = (close.r[5] + close.r[77]) / 9e-5;
+      EXPECT_NEAR(contact_factor(close, edges), factor, 1e-6 * factor);
     }
   }
   const Lattice<2> discs(600, 0.1, 0.3, 2);
