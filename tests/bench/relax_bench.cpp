@@ -179,9 +179,9 @@ void build_lists(benchmark::State& state, const std::string& sizes) {
     ids.push_back(static_cast<std::uint32_t>(i));
   }
   const std::vector<float> radii(start.spheres.r.begin(), start.spheres.r.end());
-  const SoftSizes sizes(radii);
+  const SoftSizes of_radii(radii);
   SoftLists lists(soft_kernels().front());
-  for (auto _ : state) lists.build(spheres, ids, edges, sizes, static_cast<float>(0.4 * mean));
+  for (auto _ : state) lists.build(spheres, ids, edges, of_radii, static_cast<float>(0.4 * mean));
   per_sphere(state, start.spheres.size());
 }
 void spheres_and_threads(benchmark::internal::Benchmark* b) {
