@@ -127,6 +127,8 @@ class Table:
             return sphere + "[spheres]\ncount = 3\ndiameter = { " + ", ".join(body) + " }\n"
         if self.group in ("stage", "output"):
             return sphere + spheres + f"[[{self.group}]]\n" + "\n".join(body) + "\n"
+        if self.group == "engine":
+            return sphere + spheres + "[engine]\n" + "\n".join(body) + "\n"
         if self.name == "scene":
             return "\n".join(body) + "\n" + sphere + spheres
         if self.name == "spheres":
