@@ -116,7 +116,8 @@ TEST(BondOrder, SeesALayerThatAWallHasOrderedUnderARandomPacking) {
       bond_order(packing_of(spheres, {{-1, -1, 0}, size + Vector<3>(2, 2, 0)}), regions).value();
   EXPECT_EQ(order.near_wall->spheres, in_layer);
   EXPECT_GT(order.near_wall->crystalline, 9 * inner / 10);
-  EXPECT_LT(order.core->fraction(), 0.02);
+  // By chance some 0.5 %, and of those that lie on the layer more.
+  EXPECT_LT(order.core->fraction(), 0.03);
   EXPECT_EQ(order.all.spheres, spheres.size());
 }
 

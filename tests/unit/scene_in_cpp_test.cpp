@@ -199,6 +199,7 @@ TEST(Reference, AsDataSaysTheSame) {
                                                         {"container", schema::container_entries().size()},
                                                         {"diameter", schema::size_entries().size()},
                                                         {"stage", stage_tables().size()},
+                                                        {"engine", schema::engine_entries().size()},
                                                         {"output", export_formats().size()}}));
 }
 
