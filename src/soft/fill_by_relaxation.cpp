@@ -129,7 +129,8 @@ class Filling {
       end = relax(patience);
       most_sweeps_ = crowd_.sweeps() + more_sweeps * options_.sweeps;
     }
-    if (taking_out_ || (end != StageEnd::converged && end != StageEnd::cancelled)) take_out(end);
+    if ((taking_out_ || (end != StageEnd::converged && end != StageEnd::cancelled)) && !take_out(end))
+      end = StageEnd::cancelled;
     work_.effects["neighbour lists"] += crowd_.lists_built();
     work_.spheres = without_overlap<D>(crowd_.spheres(), edges_, work_.allowed_overlap);
     return end;
@@ -158,8 +159,8 @@ class Filling {
                         work_.monitor, random_);
   }
 
-  /// Fewer and fewer, the last ones first, until the others are free of overlap.
-  void take_out(StageEnd end) {
+  /// Fewer and fewer, the last ones first, until the others are free of overlap. Returns false if cancelled.
+  bool take_out(StageEnd end) {
     if (std::exchange(taking_out_, true)) end = relax(0);  // as it was at
     while (end != StageEnd::converged && end != StageEnd::cancelled && crowd_.size() > 1 &&
            crowd_.sweeps() <= most_sweeps_) {
@@ -169,6 +170,7 @@ class Filling {
       share_out_ *= taken_out_faster;
       end = relax(0);
     }
+    return end != StageEnd::cancelled;
   }
 
   void report() {
