@@ -85,8 +85,8 @@ SceneRadii asked_radii_of(const Scene& scene, std::size_t count);
 SceneRadii asked_radii_of(const Packing& packing);
 
 struct RunOptions {
-  std::optional<std::uint64_t> seed;  ///< the scene's own if absent
-  int threads = 0;                    ///< 0: as many as the machine has
+  std::optional<std::uint64_t> seed = {};  ///< the scene's own if absent
+  int threads = 0;                         ///< 0: as many as the machine has
   Monitor monitor = {};
   CheckpointOptions checkpoints = {};
   /// Where an engine of the scene works, and leaves its logs; made if it does not exist. Empty: in a folder
