@@ -100,7 +100,7 @@ def main():
             print(f"killed after {wait:.1f} s; there: {', '.join(left_in(out)) if out.exists() else 'nothing'}",
                   flush=True)
             if options.apart:
-                there = (out / ".bernal-checkpoint" / "latest").exists()
+                there = any((out / ".bernal-checkpoint" / name).exists() for name in ("latest", "before"))
                 report, more = runs.to_the_end(out, True)
                 if report["hash"] != whole["hash"]:
                     fail(f"came to {report['hash']}")
