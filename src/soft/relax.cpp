@@ -153,6 +153,11 @@ template <class Columns>
 void forget_places(Columns& columns) {
   for (std::vector<double>& column : columns) std::vector<double>().swap(column);
 }
+/// Room for a place of each again. A checkpoint that is written meanwhile has none either.
+template <int D>
+void have_places(Spheres<D>& spheres) {
+  spheres.resize(spheres.r.size());
+}
 
 int sweeps_a_growth(const Relax& options, std::size_t spheres) {
   constexpr double more_a_decade = 0.06;
@@ -182,6 +187,7 @@ int sweeps_a_growth(const Relax& options, std::size_t spheres) {
 /// included; 0.07 µs in four dimensions and 0.13 µs in eight, lists not included.
 template <int D>
 StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
+  have_places(spheres);
   SoftEngine<D> packing(spheres, edges, 1, work.walls);
   forget_places(spheres.x);  // which the engine has
   const GrowingBox box{.stop = least_overlap(options, work.allowed_overlap),
@@ -193,7 +199,7 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
       packing, box, growth, [&] { return work.stop(); }, [](int, double molr) { return molr; },
       [&](double factor, double molr) { tell_growth(work, factor, molr, box.stop); });
   work.effects["neighbour lists"] += packing.lists_built();
-  spheres.resize(spheres.r.size());
+  have_places(spheres);
   packing.write_to(spheres, edges);
   return end;
 }
@@ -251,6 +257,7 @@ StageEnd relax_in(Work& work, const Relax& options) {
   if (!work.walls.empty() && by_the_book)
     throw Error(ErrorCode::bad_scene, "the reference method of relax knows no walls; leave \"method\" out");
   Spheres<D> spheres = work.spheres.in<D>();
+  have_places(spheres);
   if (!work.placed && work.begun == 0) forget_places(work.spheres.x);  // for there are none yet
   Vector<D> edges = work.edges;
   enum class Step { place, push, exchange, finish } step = Step::place;

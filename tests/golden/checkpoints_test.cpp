@@ -127,5 +127,19 @@ TEST_P(AtEverySafePoint, ComesToTheSameBits) {
   }
 }
 
+/// The relaxation after it has few of the safe points, at the end: spheres that have their places only in its
+/// engine, and sizes that are dealt already.
+TEST(ResumedAfterExchange, ComesToTheSameBits) {
+  const Plan plan = plan_of_scene("relax_3d_exchange");
+  const testing::Folder folder;
+  const Ended undisturbed = run_to(never, plan, folder.path(), false, 1);
+  for (const std::uint64_t before_the_end : {1, 5, 25}) {
+    run_to(undisturbed.safe_points - before_the_end, plan, folder.path(), false, 1);
+    const Ended resumed = run_to(never, plan, folder.path(), true, 2);
+    EXPECT_EQ(resumed.packing.resumed, 1);
+    expect_the_same(resumed.packing, undisturbed.packing);
+  }
+}
+
 }  // namespace checkpoints_test
 }  // namespace bernal
