@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
-#include "domain/places.hpp"
 #include "engine/engine_plan.hpp"
 #include "engine/run_engine.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
+#include "work/clear_place.hpp"
 
 namespace bernal {
 namespace {
@@ -24,8 +24,6 @@ constexpr double comes_free = 0.9;
 constexpr double least_edge = 1.05;
 /// More than what is likely to fit is not put between walls.
 constexpr double most_of_attainable = 1.1;
-/// Tries to find a place where a sphere clears the wall; and one that is inside at all.
-constexpr int tries = 100, most_tries = 100'000;
 
 /// The folder that an engine works in, and that goes with this object where nobody wants it.
 class FolderOfEngine {
@@ -116,33 +114,6 @@ void take_engine_in_box(const Plan& plan, const std::filesystem::path& folder, W
   work.milestone(name_of_engine(plan), 1, 0);
 }
 
-/// Random places, at which spheres clear the wall where that is to be found, else where they do best.
-class PlacesToBegin {
- public:
-  explicit PlacesToBegin(Work& work) : work_(work), random_(work.random(Stream::insert)) {}
-
-  Vector<3> place_for(double r) {
-    if (work_.monitor.stop()) throw Cancelled();
-    const Container& container = work_.bed().container();
-    Vector<3> best = Vector<3>::Zero();
-    double most = 0;
-    for (int k = 0; k < (most > 0 ? tries : most_tries); ++k) {
-      const Vector<3> p = work_.bed().places().draw(random_);
-      const double clearance = container.clearance_within(p, r);
-      if (clearance > most) {
-        most = clearance;
-        best = p;
-      }
-      if (clearance >= r) break;
-    }
-    return best;
-  }
-
- private:
-  Work& work_;
-  Random random_;
-};
-
 /// From the packer's coordinates to the engine's: a cylinder that is oblique is turned upright.
 struct Turn {
   Vector<3> base = Vector<3>::Zero();
@@ -173,9 +144,12 @@ void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, W
   engine::EngineTask task{.spheres = {},
                           .domain = to_local(turn.domain, Frame{.scale = unit}),
                           .steps = plan.scene.engine->process().steps};
-  PlacesToBegin begin(work);
+  Random random = work.random(Stream::insert);
+  const auto place_for = [&](double r) {
+    return clear_place(r, container, work.bed().places(), random, work.monitor);
+  };
   task.spheres.reserve(count);
-  for (const double r : radii) task.spheres.push_back(turn.there(begin.place_for(r)) / unit, r / unit);
+  for (const double r : radii) task.spheres.push_back(turn.there(place_for(r)) / unit, r / unit);
 
   const engine::Places places = run_in_folder(plan, folder, task, work);
   Spheres<3> spheres;
@@ -184,7 +158,7 @@ void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, W
   for (std::size_t i = 0; i < count; ++i) {
     Vector<3> c = container.boundary().wrap(turn.back(unit * places.spheres.center(i)));
     if (!container.contains(c, 0)) {
-      c = begin.place_for(radii[i]);
+      c = place_for(radii[i]);
       ++put_back;
     }
     spheres.push_back(c, radii[i]);

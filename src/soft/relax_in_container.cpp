@@ -11,6 +11,7 @@
 #include "jam/polish.hpp"
 #include "settle/insert.hpp"
 #include "soft/crowd.hpp"
+#include "work/clear_place.hpp"
 #include "work/snug_places.hpp"
 
 namespace bernal {
@@ -31,11 +32,6 @@ constexpr int exchanges_to_settle = 50;
 
 /// Of the radii: a skin up to this is lost in the margin.
 constexpr double thin_skin = 1e-7;
-/// Tries to find a place where a sphere clears the wall.
-constexpr int tries = 100;
-/// And to find one that is inside at all, which of a container's places at least one in a hundred is, and of
-/// those that `Places` cannot narrow down one in a thousand.
-constexpr int most_tries = 100000;
 
 class Relaxation {
  public:
@@ -86,7 +82,9 @@ class Relaxation {
     const Spheres<3>& begun = work_.crowded_start;
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       if (placed[i]) continue;
-      spheres.set_center(i, i < begun.size() ? begun.center(i) : place_for(spheres.r[i]));
+      spheres.set_center(i, i < begun.size() ? begun.center(i)
+                                             : clear_place(spheres.r[i], work_.bed().container(),
+                                                           work_.bed().places(), random_, work_.monitor));
     }
     for (double& r : spheres.r) r += skin_;
     return spheres;
@@ -96,24 +94,6 @@ class Relaxation {
     Spheres<3> spheres = crowd_.spheres();
     for (std::uint32_t i = 0; i < spheres.size(); ++i) spheres.r[i] = work_.supply->radius(i);
     return work_.put_in_bed(spheres);
-  }
-
-  /// A random place at which a sphere clears the wall, if there is any to be found, else the best.
-  Vector<3> place_for(double r) {
-    if (work_.monitor.stop()) throw Cancelled();
-    const Container& container = work_.bed().container();
-    Vector<3> best = Vector<3>::Zero();
-    double most = 0;
-    for (int k = 0; k < (most > 0 ? tries : most_tries); ++k) {
-      const Vector<3> p = work_.bed().places().draw(random_);
-      const double clearance = container.clearance_within(p, r);
-      if (clearance > most) {
-        most = clearance;
-        best = p;
-      }
-      if (clearance >= r) break;
-    }
-    return best;
   }
 
   /// Settles and stirs. Returns whether the spheres came free of overlap.
