@@ -7,13 +7,13 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
 #include "bernal/engine/engine_error.hpp"
+#include "core/bytes_of_file.hpp"
 #include "core/fnv.hpp"
 #include "engine/child.hpp"
 #include "engine/engine_command.hpp"
@@ -80,11 +80,6 @@ class EngineFolder {
   int lock_ = -1;
 };
 
-std::string content_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// What decides the result: the script, the spheres and the walls, the engine and its ranks.
 std::string mark_of(const SceneEngine& engine, const EngineTask& task, const std::string& script) {
   Fnv1a hash;
@@ -117,7 +112,7 @@ class EngineRun {
 
   Places go() {
     const bool by_slurm = engine_.process().launcher == EngineLauncher::slurm;
-    const bool is_there = content_of(folder_.file(mark_name)) == mark_ && folder_.has(places_name);
+    const bool is_there = bytes_of_file(folder_.file(mark_name)) == mark_ && folder_.has(places_name);
     if (by_slurm && !is_there) submit();
     if (by_slurm) return kept_or_gone(read());
     if (is_there) try {
@@ -157,12 +152,12 @@ class EngineRun {
 
   /// The first line of the script is one that only bernal writes.
   bool is_ours() const {
-    return folder_.has(mark_name) || content_of(folder_.file(dialect_.script)).starts_with(script_mark);
+    return folder_.has(mark_name) || bytes_of_file(folder_.file(dialect_.script)).starts_with(script_mark);
   }
 
   /// A job of this input that has begun is left alone.
   [[noreturn]] void submit() {
-    const bool is_submitted = content_of(folder_.file(mark_name)) == mark_ && folder_.has(output_name);
+    const bool is_submitted = bytes_of_file(folder_.file(mark_name)) == mark_ && folder_.has(output_name);
     if (is_submitted)
       refuse(fmt::format("the job of {} has left no places yet: wait for its end, or see what it says in {}; "
                          "to begin again remove that file",

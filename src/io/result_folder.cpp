@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -15,6 +13,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "cad/file_digest.hpp"
 #include "cad/known_formats.hpp"
+#include "core/bytes_of_file.hpp"
 #include "io/report.hpp"
 #include "scene/output_table.hpp"
 #include "scene/spheres_file.hpp"
@@ -43,17 +42,12 @@ bool stands_in(const fs::path& file, const fs::path& folder) {
   return fs::equivalent(fs::weakly_canonical(fs::absolute(file), unknown).parent_path(), folder, unknown);
 }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// Whether nothing is lost where bernal writes that scene again: whoever wrote it by hand left out defaults,
 /// or put in comments.
 bool is_as_written(const fs::path& scene) {
   if (!is_regular(scene)) return false;
   try {
-    return scene_as_toml(read_scene(scene), scene.parent_path()) == text_of(scene);
+    return scene_as_toml(read_scene(scene), scene.parent_path()) == bytes_of_file(scene);
   } catch (const Error&) {
     return false;
   }
@@ -98,12 +92,12 @@ bool holds_only(const fs::path& below, const fs::path& folder, const std::vector
 
 Manifest manifest_of(const fs::path& folder) {
   const fs::path report = folder / "report.json";
-  return is_regular(report) ? manifest_in(text_of(report)) : Manifest();
+  return is_regular(report) ? manifest_in(bytes_of_file(report)) : Manifest();
 }
 
 std::vector<std::string> sources_of_result(const fs::path& folder) {
   const fs::path report = folder / "report.json";
-  return is_regular(report) ? sources_in(text_of(report)) : std::vector<std::string>();
+  return is_regular(report) ? sources_in(bytes_of_file(report)) : std::vector<std::string>();
 }
 
 std::vector<fs::path> files_of_part_beside(const fs::path& part) { return files_of_part(part); }

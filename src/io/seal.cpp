@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "cad/file_digest.hpp"
+#include "core/bytes_of_file.hpp"
 
 namespace fs = std::filesystem;
 
@@ -42,8 +43,7 @@ std::string end_of(const fs::path& file) {
 /// Empty where it has no seal that is whole.
 std::string sealed_text_of(const fs::path& file) {
   if (!has_seal(file)) return {};
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::string text = bytes_of_file(file);
   return is_sealed(text) ? text : std::string();
 }
 

@@ -3,8 +3,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <fstream>
-#include <iterator>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -12,6 +10,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/io/read_packing.hpp"
+#include "core/bytes_of_file.hpp"
 #include "io/output_file.hpp"
 #include "io/report_summary.hpp"
 #include "scene/toml_text.hpp"
@@ -22,11 +21,6 @@ namespace bernal {
 namespace {
 
 constexpr const char* failure_name = "failed.toml";
-
-std::string whole_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void take_report(const ReportSummary& report, CellResult& result) {
   result.state = CellResult::State::packed;
@@ -70,7 +64,7 @@ CellResult read_cell(const fs::path& folder, const std::string& hash) {
   std::error_code unknown;
   if (!fs::is_directory(there, unknown)) return result;
   finish_writing(there);
-  if (const auto report = summary_of_report(whole_file(there / "report.json")))
+  if (const auto report = summary_of_report(bytes_of_file(there / "report.json")))
     take_report(*report, result);
   else if (fs::is_regular_file(there / failure_name, unknown))
     take_failure(there / failure_name, result);

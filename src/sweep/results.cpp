@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "core/bytes_of_file.hpp"
 #include "io/seal.hpp"
 #include "io/staged_folder.hpp"
 #include "sweep/cell_folder.hpp"
@@ -39,11 +39,6 @@ std::string in_table(const std::string& text) {
 template <class Number>
 std::string text_of(const std::optional<Number>& value) {
   return value ? fmt::format("{}", *value) : std::string();
-}
-
-std::string whole_file_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 void refuse_foreign(const fs::path& file, bool is_ours) {
@@ -113,7 +108,7 @@ ResultFiles::ResultFiles(const Sweep& sweep, const fs::path& folder, const std::
     : sweep_(sweep), folder_(folder), plot_(plot) {
   refuse_foreign(folder / table_name, is_table_of_ours(folder / table_name));
   refuse_foreign(folder / picture_name,
-                 is_regular(folder / picture_name) && is_sealed(whole_file_of(folder / picture_name)));
+                 is_regular(folder / picture_name) && is_sealed(bytes_of_file(folder / picture_name)));
   plotted_columns(sweep, {}, plot);
 }
 

@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "bernal/sweep/sweep.hpp"
+#include "core/bytes_of_file.hpp"
 #include "io/seal.hpp"
 #include "io/staged_folder.hpp"
 #include "sweep/cell_folder.hpp"
@@ -58,8 +57,7 @@ fs::path write_slurm_script(const Sweep& sweep, const fs::path& folder, const Sl
   require_plain(there);
   check_writable(folder);
   const fs::path file = folder / script_name;
-  std::ifstream earlier(file, std::ios::binary);
-  if (stands(file) && !is_sealed(std::string(std::istreambuf_iterator<char>(earlier), {})))
+  if (stands(file) && !is_sealed(bytes_of_file(file)))
     throw Error(
         ErrorCode::cannot_write,
         "is not as bernal sweep wrote it, and would be replaced; remove it, or give another folder with -o",
