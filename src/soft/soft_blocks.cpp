@@ -1,13 +1,13 @@
 #include "soft/soft_blocks.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
 
 #include "core/large_pages.hpp"
+#include "core/parallel.hpp"
+#include "neighbors/counting_sort.hpp"
 
 namespace bernal {
 namespace {
@@ -22,8 +22,6 @@ constexpr double fewest_blocks = 48;
 constexpr double narrowest_block = 2;
 /// Empty ones cost time too.
 constexpr double most_blocks_a_sphere = 1.0 / 64;
-/// For sorting: the same for any number of threads.
-constexpr std::size_t parts_of_sorting = 64;
 constexpr std::size_t directions = 27, here = 13;
 
 /// Along each axis: an even number, or one.
@@ -43,16 +41,6 @@ std::array<int, 3> blocks_across(double size, std::size_t spheres, const std::ar
     }
     if (count <= most_blocks_a_sphere * static_cast<double>(spheres) || count == 1) return across;
   }
-}
-
-template <class Body>
-void in_parallel(std::size_t n, const Body& body) {
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, n, 1),
-      [&](const auto& range) {
-        for (std::size_t k = range.begin(); k < range.end(); ++k) body(k);
-      },
-      tbb::simple_partitioner());
 }
 
 }  // namespace
@@ -102,36 +90,16 @@ SoftRegion SoftBlocks::region_of(std::size_t block) const {
 
 /// Where the spheres of each block are, in their order; gaps are left out.
 void SoftBlocks::sort_into_blocks(const std::vector<SoftSphere>& spheres) {
-  const std::size_t n = blocks_.size();
-  const auto block_of = [&](const SoftSphere& s) {
+  const auto block_of = [&](std::size_t p) {
+    const SoftSphere& s = spheres[p];
+    if (!(s.r > 0)) return blocks_.size();
     std::size_t b = 0;
     for (std::size_t k = 3; k-- > 0;)
       b = b * static_cast<std::size_t>(across_[k]) +
           (std::uint64_t{static_cast<std::uint32_t>(s.x[k])} * static_cast<std::uint64_t>(across_[k]) >> 32);
     return b;
   };
-  const auto part = [&](std::size_t c) { return spheres.size() * c / parts_of_sorting; };
-  std::vector<std::uint32_t> next(parts_of_sorting * n, 0);
-  in_parallel(parts_of_sorting, [&](std::size_t c) {
-    for (std::size_t p = part(c); p < part(c + 1); ++p)
-      if (spheres[p].r > 0) ++next[c * n + block_of(spheres[p])];
-  });
-  start_.assign(n + 1, 0);
-  std::size_t sum = 0;
-  for (std::size_t b = 0; b < n; ++b) {
-    start_[b] = sum;
-    for (std::size_t c = 0; c < parts_of_sorting; ++c) {
-      const std::uint32_t count = next[c * n + b];
-      next[c * n + b] = static_cast<std::uint32_t>(sum);
-      sum += count;
-    }
-  }
-  start_[n] = sum;
-  resize_anew(order_, sum);
-  in_parallel(parts_of_sorting, [&](std::size_t c) {
-    for (std::size_t p = part(c); p < part(c + 1); ++p)
-      if (spheres[p].r > 0) order_[next[c * n + block_of(spheres[p])]++] = static_cast<std::uint32_t>(p);
-  });
+  sort_into_buckets(spheres.size(), blocks_.size(), block_of, order_, start_);
 }
 
 bool SoftBlocks::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& ids,
@@ -147,7 +115,7 @@ bool SoftBlocks::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32
   const std::size_t places = blocks_.back().first_place + blocks_.back().places;
   resize_anew(spare, places + 1);
   resize_anew(spare_ids_, places + 1);
-  in_parallel(blocks_.size(), [&](std::size_t b) {
+  parallel_for(blocks_.size(), [&](std::size_t b) {
     const std::vector<std::uint16_t>& from = drafts_[b].from;
     for (std::size_t q = 0; q < from.size(); ++q) {
       const bool is_gap = from[q] == gap;
@@ -163,7 +131,7 @@ bool SoftBlocks::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32
   ids.swap(spare_ids_);
 
   std::atomic<bool> fits = true;
-  in_parallel(blocks_.size(), [&](std::size_t b) {
+  parallel_for(blocks_.size(), [&](std::size_t b) {
     if (!find_neighbors(b, spheres, scratch_.local())) fits = false;
   });
   return fits;
@@ -173,7 +141,7 @@ bool SoftBlocks::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32
 bool SoftBlocks::find_orders(const std::vector<SoftSphere>& spheres) {
   drafts_.resize(blocks_.size());
   std::atomic<bool> fit = true;
-  in_parallel(blocks_.size(), [&](std::size_t b) {
+  parallel_for(blocks_.size(), [&](std::size_t b) {
     if (start_[b + 1] - start_[b] >= most_places) fit = false;
     if (!fit) return;
     Scratch& mine = scratch_.local();
@@ -322,7 +290,7 @@ float SoftBlocks::visit(const Block& block, const SweepTask& task) const {
 float SoftBlocks::sweep(const SweepTask& task) const {
   std::vector<float> largest(blocks_.size(), 0.0f);
   for (const std::vector<std::uint32_t>& colour : colours_)
-    in_parallel(colour.size(), [&](std::size_t n) { largest[colour[n]] = visit(blocks_[colour[n]], task); });
+    parallel_for(colour.size(), [&](std::size_t n) { largest[colour[n]] = visit(blocks_[colour[n]], task); });
   return *std::ranges::max_element(largest);
 }
 

@@ -102,8 +102,8 @@ class SoftBlocks {
   std::vector<Block> blocks_;
   std::vector<Draft> drafts_;
   std::array<std::vector<std::uint32_t>, 8> colours_;
-  std::vector<std::uint32_t> order_, spare_ids_;  // of the spheres, by block
-  std::vector<std::size_t> start_;                // of each block in it; one more than blocks
+  std::vector<std::uint32_t> spare_ids_;
+  std::vector<std::uint32_t> order_, start_;  // of the spheres, by block; of each block in it, one more
   tbb::enumerable_thread_specific<Scratch> scratch_;
   RowArena<std::uint16_t> rows_;
   RowArena<std::uint32_t> halos_;

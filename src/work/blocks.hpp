@@ -4,12 +4,11 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
-#include "core/parallel.hpp"
+#include "neighbors/counting_sort.hpp"
 
 namespace bernal {
 
@@ -37,7 +36,8 @@ class Blocks {
       if (parts_[k] < 3) parts_[k] = 1;
       count *= parts_[k];
     }
-    sort_into(count);
+    sort_into_buckets(
+        spheres.size(), count, [this](std::size_t i) { return block_of(i); }, order_, start_);
   }
 
   std::size_t size() const { return start_.size() - 1; }
@@ -121,30 +121,6 @@ class Blocks {
       local.ids.push_back(i);
       local.places.push_back(image);
     }
-  }
-
-  /// A counting sort, in parts that do not depend on the threads.
-  void sort_into(std::size_t blocks) {
-    constexpr std::size_t most_chunks = 64;
-    const std::size_t n = spheres_.size(), chunks = std::min<std::size_t>(most_chunks, 1 + n / 65536);
-    const auto in_chunks = [&](const auto& body) {
-      parallel_for(chunks, [&](std::size_t c) {
-        for (std::size_t i = n * c / chunks; i < n * (c + 1) / chunks; ++i) body(c, i);
-      });
-    };
-    std::vector<std::vector<std::uint32_t>> next(chunks, std::vector<std::uint32_t>(blocks, 0));
-    in_chunks([&](std::size_t c, std::size_t i) { ++next[c][block_of(i)]; });
-    start_.assign(blocks + 1, 0);
-    std::uint32_t before = 0;
-    for (std::size_t b = 0; b < blocks; ++b) {
-      start_[b] = before;
-      for (auto& chunk : next) before += std::exchange(chunk[b], before);
-    }
-    start_[blocks] = before;
-    order_.resize(n);
-    in_chunks([&](std::size_t c, std::size_t i) {
-      order_[next[c][block_of(i)]++] = static_cast<std::uint32_t>(i);
-    });
   }
 
   const Spheres<D>& spheres_;
