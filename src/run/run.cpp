@@ -18,8 +18,10 @@
 #include "run/checkpoint_owner.hpp"
 #include "run/conclude.hpp"
 #include "run/estimate.hpp"
+#include "run/exact_place.hpp"
 #include "run/fitting.hpp"
 #include "run/room_for_gaps.hpp"
+#include "run/run_record.hpp"
 #include "run/shortfall.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
@@ -29,11 +31,6 @@
 #include "work/work.hpp"
 
 namespace bernal {
-
-/// For checkpoints.
-static void archive(Archive& a, Milestone& m) {
-  a(m.stage, m.spheres, m.packing_fraction, m.potential, m.max_overlap, m.seconds);
-}
 
 namespace {
 
@@ -76,10 +73,12 @@ class Run {
         engine_folder_(options.engine_folder),
         packing_(packing),
         any_in_bed_(any_in_bed(plan.scene)),
+        record_(packing),
+        exact_place_(plan_, frame_),
         checkpoints_(options.monitor, options.checkpoints,
                      options.checkpoints.folder.empty() ? CheckpointOwner()
                                                         : checkpoint_owner(plan.scene, packing.seed),
-                     [this](Archive& a) { archive_record(a); }) {}
+                     [this](Archive& a) { record_.archive(a, work_); }) {}
 
   void go() {
     try {
@@ -90,7 +89,7 @@ class Run {
       packing_.reason = "stopped by the user before the first sphere was placed";
       state_edges();
     }
-    packing_.seconds = seconds();
+    packing_.seconds = record_.seconds();
   }
 
  private:
@@ -100,7 +99,7 @@ class Run {
     // What is told of the run so far comes first, that effects are in its order, and last, as it was.
     const Checkpoints::Part part(checkpoints_, "run", [&](Archive& a) {
       a(attempt, fraction);
-      archive_record(a);
+      record_.archive(a, work_);
     });
     for (;; ++attempt) {
       Work work = start(fraction);
@@ -114,35 +113,6 @@ class Run {
       conclude(packing_, work, end, ending());
       return;
     }
-  }
-
-  /// Of this process and those before it.
-  double seconds() const { return seconds_before_ + watch_.seconds(); }
-
-  /// What the run has to tell, and how many streams of random numbers it has used.
-  void archive_record(Archive& a) {
-    std::vector<Effect> effects = effects_.all_so_far();
-    Effect asked = asked_of_walls();
-    double so_far = seconds();
-    std::uint64_t streams = work_ ? work_->streams_used : 0;
-    a(effects, asked, packing_.history, packing_.resumed, so_far, streams);
-    if (!a.reads()) return;
-    effects_.go_on_from(effects);
-    asked_before_ = asked;
-    asked_anew_ = walls_ ? walls_->asked() : Effect{};
-    if (work_) work_->streams_used = streams;
-    if (!work_) return;  // all of it comes again, once everything else is there
-    ++packing_.resumed;
-    seconds_before_ = so_far - watch_.seconds();
-  }
-
-  /// So far, but for what is asked until a run goes on, which was asked before.
-  Effect asked_of_walls() const {
-    Effect asked = walls_ ? walls_->asked() : Effect{};
-    asked.name = "walls";
-    asked.calls += asked_before_.calls - asked_anew_.calls;
-    asked.seconds += asked_before_.seconds - asked_anew_.seconds;
-    return asked;
   }
 
   Ending ending() const {
@@ -166,7 +136,7 @@ class Run {
               .attainable = plan_.attainable_packing_fraction,
               .seed = packing_.seed,
               .monitor = monitor_,
-              .effects = effects_,
+              .effects = record_.effects(),
               .on_course = [this](const Course& course) { tell(course); },
               .checkpoints = checkpoints_.keeps() ? &checkpoints_ : nullptr};
     Supply::Source source{*stated_.radii, work.dimension(), packing_.seed, *scene_.draw};
@@ -183,7 +153,7 @@ class Run {
       work.domain = to_local(plan_.domain, frame_);
       std::shared_ptr<const Container> made = plan_.container;
       if (!made) made = make_container(work.domain, scene_.walls, frame_.resolution);
-      work.container = walls_ = std::make_shared<CountedContainer>(std::move(made));
+      work.container = counted(std::move(made));
       volume = std::pow(frame_.scale, work.dimension()) * work.container->volume();
       if (!std::isfinite(source.radii.max()))
         source.cut = tail_cut(scene_, plan_.domain, *plan_.radii, plan_.container);
@@ -196,7 +166,7 @@ class Run {
     if (any_in_bed_) require_long_periods(scene_, plan_.domain, work.supply->largest());
     work.supply->divide_by(frame_.scale);
     if (any_in_bed_)
-      work.exact_place = [this](const Vector<3>& place, double r) { return exact_place(place, r); };
+      work.exact_place = [this](const Vector<3>& place, double r) { return exact_place_.near(place, r); };
     if (scene_.is_periodic()) put_into_box(work);
     take_start(plan_, frame_, work);
     if (scene_.engine) take_engine(plan_, engine_folder_, work);
@@ -206,37 +176,18 @@ class Run {
     return work;
   }
 
+  /// Walls that stages may ask.
+  std::shared_ptr<const CountedContainer> counted(std::shared_ptr<const Container> walls) {
+    auto asked = std::make_shared<CountedContainer>(std::move(walls));
+    record_.count(asked);
+    return asked;
+  }
+
   /// A packing fraction is asked of the scene's own spheres and its own domain.
   std::shared_ptr<Supply> supply_from(const Supply::Source& source, double volume, double fraction) const {
     const bool stated = with_room_ && scene_.target.packing_fraction;
     return std::make_shared<Supply>(source, stated ? volume_of(stated_.domain) : volume, stated_.scene.target,
                                     fraction);
-  }
-
-  /// Roundings of a place: as it is and with what is nearly in the middle there, each coordinate a few
-  /// doubles up or down, in the scene's unit, where it is decided exactly.
-  std::optional<Vector<3>> exact_place(const Vector<3>& place, double r) {
-    if (!of_scene_) {
-      const Frame none{.resolution = frame_.resolution * frame_.scale};
-      const bool plain = scene_.walls == WallArithmetic::plain;  // of which a place that touches has no use
-      of_scene_ =
-          make_container(plan_.domain, plain ? WallArithmetic::filtered : scene_.walls, none.resolution);
-    }
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const Vector<3> middle = bounds_of(plan_.domain).center(), at = frame_.to_scene(place);
-    const double near = 1e-9 * frame_.scale + 4 * frame_.resolution * frame_.scale;
-    for (const bool in_the_middle : {false, true}) {
-      for (int n = 0; n < 27; ++n) {
-        Vector<3> p = at;
-        for (int k = 0, step = n; k < scene_.dimension(); ++k, step /= 3) {
-          if (in_the_middle && std::abs(p[k] - middle[k]) < near) p[k] = middle[k];
-          if (step % 3 > 0) p[k] = std::nextafter(p[k], step % 3 == 1 ? infinity : -infinity);
-        }
-        const Vector<3> local = frame_.to_local(p);
-        if (frame_.to_scene(local) == p && of_scene_->contains(p, frame_.scale * r)) return local;
-      }
-    }
-    return {};
   }
 
   /// All spheres of the sequence, in a box of the plan's proportions, with the edges that the scene asks for.
@@ -249,8 +200,7 @@ class Run {
       work.walls.flip();
     }
     if (any_in_bed_) {
-      work.container = walls_ =
-          std::make_shared<CountedContainer>(make_container(work.domain, scene_.walls, frame_.resolution));
+      work.container = counted(make_container(work.domain, scene_.walls, frame_.resolution));
       work.target_edges = work.edges;
       work.fill_task = fill_task_of(plan_);
       if (table_of(scene_.stages.front()).traits.stands_in_bed(scene_)) return;
@@ -381,8 +331,7 @@ class Run {
       packing_.volume = volume_of(packing_.domain);
     }
     state_edges();
-    if (const Effect asked = asked_of_walls(); asked.calls > 0) effects_["walls"] += asked;
-    packing_.effects = effects_.all();
+    record_.conclude();
   }
 
   /// Along axes at whose end there are walls, what is between these begins at zero for the stages.
@@ -406,7 +355,7 @@ class Run {
     packing_.history.push_back(
         {std::string(course.stage), course.spheres, fraction,
          course.potential ? frame_.scale * *course.potential + frame_.origin[scene_.dimension() - 1] : 0,
-         course.max_overlap, seconds()});
+         course.max_overlap, record_.seconds()});
     const double expected = stated_.expected_packing_fraction;
     const double share = expected > 0 ? std::min(fraction / expected, 0.99) : 0;
     const std::string overlap =
@@ -424,15 +373,11 @@ class Run {
   const std::filesystem::path& engine_folder_;
   Packing& packing_;
   const bool any_in_bed_;
-  const Stopwatch watch_;
-  double seconds_before_ = 0;  // of processes before this one
-  EffectLog effects_;
-  Effect asked_before_, asked_anew_;  // of walls: then, and again until the run went on
-  Work* work_ = nullptr;              // while stages act on it
+  RunRecord record_;
+  Work* work_ = nullptr;  // while stages act on it
   Frame frame_;
-  double share_ = 1;                               // of packing fractions, that is left without coats
-  std::shared_ptr<const CountedContainer> walls_;  // null where no stage asks any
-  std::unique_ptr<Container> of_scene_;            // where a sphere is to be placed exactly
+  double share_ = 1;  // of packing fractions, that is left without coats
+  ExactPlace exact_place_;
   Checkpoints checkpoints_;
 };
 

@@ -1,0 +1,28 @@
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "bernal/core/vector.hpp"
+#include "bernal/domain/container.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/domain/domain.hpp"
+
+namespace bernal {
+
+/// Roundings of a place in a container at which a sphere certainly stands.
+class ExactPlace {
+ public:
+  /// Both outlive this. Places are those of the frame.
+  ExactPlace(const Plan& plan, const Frame& frame) : plan_(plan), frame_(frame) {}
+
+  /// The place as it is and with what is nearly in the middle there, each coordinate a few doubles up or down
+  /// in the scene's unit: the first at which that unit's walls, exactly, leave the sphere room.
+  std::optional<Vector<3>> near(const Vector<3>& place, double r);
+
+ private:
+  const Plan& plan_;
+  const Frame& frame_;
+  std::unique_ptr<Container> of_scene_;  // made when it is needed
+};
+
+}  // namespace bernal
