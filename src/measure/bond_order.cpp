@@ -10,21 +10,25 @@
 namespace bernal {
 namespace {
 
+/// Harmonics in single precision, of sums over some ten bonds good to 1e-6: half of the memory.
+using Order = Eigen::Matrix<float, 13, 1>;
+using BondParts = std::vector<std::vector<NearDirection>>;
+
 /// Of every sphere the sum over its bonds, zero without bonds, and how many these are.
 struct Sums {
-  std::vector<Harmonics6> orders;
-  std::vector<double> bonds;
+  std::vector<Order> orders;
+  std::vector<std::uint32_t> bonds;
 
-  Sums(std::size_t spheres, const std::vector<NearBond>& all)
-      : orders(spheres, Harmonics6::Zero()), bonds(spheres, 0) {
-    for (const NearBond& bond : all) {
-      if (bond.displacement.isZero(0)) continue;  // centres that coincide show no direction
-      const Harmonics6 h = harmonics6(bond.displacement.normalized());
-      for (const std::uint32_t i : {bond.first, bond.second}) {
-        orders[i] += h;
-        ++bonds[i];
+  Sums(std::size_t spheres, const BondParts& parts) : orders(spheres, Order::Zero()), bonds(spheres, 0) {
+    for (const auto& part : parts)
+      for (const NearDirection& bond : part) {
+        if (bond.direction.isZero(0)) continue;  // centres that coincide show no direction
+        const Order h = harmonics6(bond.direction.cast<double>()).cast<float>();
+        for (const std::uint32_t i : {bond.first, bond.second}) {
+          orders[i] += h;
+          ++bonds[i];
+        }
       }
-    }
   }
 };
 
@@ -33,7 +37,7 @@ void write_mean_q6(const Sums& sums, std::size_t asked, BondOrder& out) {
   double n = 0, sum = 0, squares = 0;
   for (std::size_t i = 0; i < asked; ++i) {
     if (sums.bonds[i] == 0) continue;
-    const double q6 = std::min(1.0, sums.orders[i].norm() / sums.bonds[i]);
+    const double q6 = std::min(1.0, sums.orders[i].cast<double>().norm() / sums.bonds[i]);
     ++n;
     sum += q6;
     squares += q6 * q6;
@@ -55,14 +59,15 @@ struct Bonds {
   }
 };
 
-std::vector<Bonds> solid_bonds(const std::vector<NearBond>& bonds, std::vector<Harmonics6> orders) {
-  for (Harmonics6& q : orders) q.normalize();
+std::vector<Bonds> solid_bonds(const BondParts& parts, std::vector<Order> orders) {
+  for (Order& q : orders) q.normalize();
   std::vector<Bonds> found(orders.size());
-  for (const NearBond& bond : bonds) {
-    const bool solid = orders[bond.first].dot(orders[bond.second]) > BondOrder::solid_bond;
-    found[bond.first].add(solid);
-    found[bond.second].add(solid);
-  }
+  for (const auto& part : parts)
+    for (const NearDirection& bond : part) {
+      const bool solid = orders[bond.first].dot(orders[bond.second]) > BondOrder::solid_bond;
+      found[bond.first].add(solid);
+      found[bond.second].add(solid);
+    }
   return found;
 }
 
@@ -71,9 +76,9 @@ std::vector<Bonds> solid_bonds(const std::vector<NearBond>& bonds, std::vector<H
 std::optional<BondOrder> bond_order(const Spheres<dynamic>& spheres, const Domain& domain,
                                     std::span<const Region> regions) {
   if (spheres.dimension() != 3) return {};
-  const BondsInside near =
-      near_bonds_inside(spheres, domain, BondOrder::widest_gap,
-                        spheres.size() > BondOrder::most_spheres ? BondOrder::looked_at : spheres.size());
+  const BondsInside near = near_directions_inside(
+      spheres, domain, BondOrder::widest_gap,
+      spheres.size() > BondOrder::most_spheres ? BondOrder::looked_at : spheres.size());
   Sums sums(near.ids.empty() ? spheres.size() : near.ids.size(), near.bonds);
   BondOrder order;
   write_mean_q6(sums, near.asked, order);

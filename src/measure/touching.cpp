@@ -47,6 +47,14 @@ struct AsBond {
     return {i, j, d, gap};
   }
 };
+struct AsDirection {
+  using Found = NearDirection;
+  double widest;
+
+  Found operator()(std::uint32_t i, std::uint32_t j, double, const Vector<3>& d) const {
+    return {i, j, d.stableNormalized().cast<float>()};
+  }
+};
 struct AsRanked {
   using Found = RankedPair;
   std::span<const double> gaps;
@@ -177,6 +185,14 @@ std::vector<std::vector<typename As::Found>> parts_of(const Spheres<dynamic>& sp
   });
 }
 
+/// Precondition: three dimensions.
+template <class As>
+Parts<3, As> parts_in_space(const Spheres<dynamic>& spheres, const Domain& domain, const As& as) {
+  if (spheres.empty()) return {};
+  if (has_own_frame(domain)) return parts_in_own_frame(spheres, domain, as);
+  return parts_among<3>(spheres.in<3>(), boundary_of<3>(domain), as);
+}
+
 }  // namespace
 
 std::vector<NearPair> near_pairs(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap) {
@@ -189,10 +205,7 @@ std::vector<std::vector<RankedPair>> ranked_pairs(const Spheres<dynamic>& sphere
 }
 
 std::vector<NearBond> near_bonds(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap) {
-  if (spheres.empty()) return {};
-  const AsBond as{widest_gap};
-  if (has_own_frame(domain)) return joined(parts_in_own_frame(spheres, domain, as));
-  return joined(parts_among<3>(spheres.in<3>(), boundary_of<3>(domain), as));
+  return joined(parts_in_space(spheres, domain, AsBond{widest_gap}));
 }
 
 namespace {
@@ -210,30 +223,30 @@ Patch<D> middle_patch(const Spheres<dynamic>& spheres, const Domain& domain, std
 }
 
 template <int D, class As>
-std::vector<typename As::Found> found_in(Patch<D>&& patch, const Domain& domain, const As& as) {
+Parts<D, As> parts_in(Patch<D>&& patch, const Domain& domain, const As& as) {
   if constexpr (D == 3)
     if (has_own_frame(domain)) {
       const Frame frame = frame_of(domain);
-      return joined(parts_among<3>(localised(Spheres<dynamic>(std::move(patch.spheres)), frame),
-                                   localised(patch.boundary, frame), as));
+      return parts_among<3>(localised(Spheres<dynamic>(std::move(patch.spheres)), frame),
+                            localised(patch.boundary, frame), as);
     }
-  return joined(parts_among<D>(std::move(patch.spheres), patch.boundary, as));
+  return parts_among<D>(std::move(patch.spheres), patch.boundary, as);
 }
 
 }  // namespace
 
-BondsInside near_bonds_inside(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
-                              std::size_t most) {
+BondsInside near_directions_inside(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
+                                   std::size_t most) {
   BondsInside inside;
   if (spheres.size() <= most) {
     inside.asked = spheres.size();
-    inside.bonds = near_bonds(spheres, domain, widest_gap);
+    inside.bonds = parts_in_space(spheres, domain, AsDirection{widest_gap});
     return inside;
   }
   Patch<3> patch = middle_patch<3>(spheres, domain, most, 2 * bond_reach(spheres, widest_gap));
   inside.ids = std::move(patch.ids);
   inside.asked = patch.asked;
-  inside.bonds = found_in<3>(std::move(patch), domain, AsBond{widest_gap});
+  inside.bonds = parts_in<3>(std::move(patch), domain, AsDirection{widest_gap});
   return inside;
 }
 
@@ -245,7 +258,7 @@ std::vector<NearPair> near_pairs_inside(const Spheres<dynamic>& spheres, const D
     Patch<D> patch = middle_patch<D>(spheres, domain, most, bond_reach(spheres, widest_gap));
     const std::vector<std::uint32_t> ids = std::move(patch.ids);
     const std::size_t asked = patch.asked;
-    std::vector<NearPair> pairs = found_in<D>(std::move(patch), domain, AsPair{widest_gap});
+    std::vector<NearPair> pairs = joined(parts_in<D>(std::move(patch), domain, AsPair{widest_gap}));
     std::erase_if(pairs, [&](const NearPair& pair) { return pair.first >= asked && pair.second >= asked; });
     for (NearPair& pair : pairs) pair = {ids[pair.first], ids[pair.second], pair.gap};
     return pairs;

@@ -23,6 +23,13 @@ struct NearBond {
   double gap;  ///< as NearPair::gap
 };
 
+/// The same and nothing else than in which direction, of length 1 to single precision; 0 where the centres
+/// coincide.
+struct NearDirection {
+  std::uint32_t first, second;
+  Eigen::Vector3f direction;
+};
+
 /// A pair, and of some ascending gaps the place of the first that is above its own.
 struct RankedPair {
   std::uint32_t first, second, rank;
@@ -44,14 +51,16 @@ std::vector<std::vector<RankedPair>> ranked_pairs(const Spheres<dynamic>&, const
 /// The same pairs in the same order. Precondition: three dimensions.
 std::vector<NearBond> near_bonds(const Spheres<dynamic>&, const Domain&, double widest_gap);
 
-/// The bonds of some spheres in the middle, and of their neighbours.
+/// The bonds of some spheres in the middle, and of their neighbours, in parts of some thousand spheres: 20
+/// bytes a bond and nothing beside them.
 struct BondsInside {
   std::vector<std::uint32_t> ids;  ///< of those that bonds number; empty: all, as they are
   std::size_t asked = 0;  ///< so many of them, the first, have all their bonds, and their neighbours too
-  std::vector<NearBond> bonds;
+  std::vector<std::vector<NearDirection>> bonds;
 };
 /// Of all spheres, or of so many where there are more. Precondition: three dimensions.
-BondsInside near_bonds_inside(const Spheres<dynamic>&, const Domain&, double widest_gap, std::size_t most);
+BondsInside near_directions_inside(const Spheres<dynamic>&, const Domain&, double widest_gap,
+                                   std::size_t most);
 /// `near_pairs`, of more spheres than so many only those of some in the middle.
 std::vector<NearPair> near_pairs_inside(const Spheres<dynamic>&, const Domain&, double widest_gap,
                                         std::size_t most);

@@ -47,7 +47,7 @@ struct BondOrder {
 };
 
 /// Absent in other dimensions than three. `regions` are those of a wall profile, or empty. Cost: O(N bonds),
-/// about 2 µs a sphere, and 900 bytes. Random close packings of equal spheres have up to about 1 %, fcc and
+/// about 2 µs a sphere, and 260 bytes. Random close packings of equal spheres have up to about 1 %, fcc and
 /// hcp 100 %. Source: Steinhardt, Nelson & Ronchetti, Phys. Rev. B 28 (1983) 784; ten Wolde, Ruiz-Montero &
 /// Frenkel, J. Chem. Phys. 104 (1996) 9932, who compare neighbours; the limit 0.7 for hard spheres is that of
 /// Filion, Hermes, Ni & Dijkstra, J. Chem. Phys. 133 (2010) 244115.
