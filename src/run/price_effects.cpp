@@ -19,8 +19,10 @@ namespace {
 /// The program itself, its libraries and their threads; the tables that predict packing fractions; what reads
 /// meshes.
 constexpr double program = 15e6, tables = 7e6, mesh_reader = 8e6;
-/// A sphere as it is drawn, handed over, written, certified and measured: mostly text and copies.
-constexpr double bytes_a_sphere = 170, bytes_a_sphere_and_axis = 30;
+/// A sphere as it is kept while stages run, and as it is written, certified and measured after them, of which
+/// less is there at once where they are very many.
+constexpr double bytes_kept = 40, bytes_written = 160, bytes_written_an_axis = 30, bytes_of_very_many = 150,
+                 very_many = 4e6;
 /// A triangle of a mesh, in its tree, in the certificate's and in the file.
 constexpr double bytes_a_face = 1500;
 /// A question to the walls of a box, cylinder or sphere; to a mesh of 1,000 faces, and how that grows with
@@ -110,10 +112,17 @@ void price_effects(Plan& plan) {
     outlook.at_walls = share_at_walls(plan);
   }
   if (scene.engine) plan.items.push_back(engine::planned_engine(scene, plan.expected_count));
+  double before_stages = 0, of_stages = 0;
+  for (const PlanItem& item : plan.items) before_stages += item.bytes;
   for (const Stage& stage : scene.stages) {
     const StageEntry& entry = entry_of(stage);
     outlook.in_bed = entry.table.traits.stands_in_bed(scene);
-    for (const PlanItem& item : effects_of(stage, outlook)) add(plan.items, item);
+    double bytes = 0;
+    for (const PlanItem& item : effects_of(stage, outlook)) {
+      add(plan.items, item);
+      bytes += item.bytes;
+    }
+    of_stages = std::max(of_stages, bytes_kept * plan.expected_count + bytes);
     if (entry.table.traits.only_moves) continue;
     outlook.placed = true;
     outlook.filled =
@@ -132,13 +141,13 @@ void price_effects(Plan& plan) {
     if (!is_planned(name) && std::ranges::find(plan.absent, name) == plan.absent.end())
       plan.absent.push_back(name);
 
-  plan.expected_memory_bytes =
-      program + (scene.dimension() == 3 ? tables : 0) +
-      plan.expected_count * (bytes_a_sphere + bytes_a_sphere_and_axis * scene.dimension());
-  for (const PlanItem& item : plan.items) {
+  const double written = plan.expected_count < very_many
+                             ? bytes_written + bytes_written_an_axis * scene.dimension()
+                             : bytes_of_very_many;
+  plan.expected_memory_bytes = program + (scene.dimension() == 3 ? tables : 0) + before_stages +
+                               std::max(of_stages, written * plan.expected_count);
+  for (const PlanItem& item : plan.items)
     if (!item.part) plan.expected_seconds += item.seconds;
-    plan.expected_memory_bytes += item.bytes;
-  }
 }
 
 }  // namespace bernal

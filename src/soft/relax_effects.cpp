@@ -7,6 +7,7 @@
 #include "jam/polish.hpp"
 #include "soft/relax.hpp"
 #include "soft/relax_wide.hpp"
+#include "soft/soft_blocks.hpp"
 
 namespace bernal {
 namespace {
@@ -25,8 +26,8 @@ constexpr double surely_wide = 2.5;
 constexpr double cost_of_spread = 1, cost_of_spread_in_bed = 1.5;
 /// The same in boxes where they are wide: of what equal spheres take, and the power of their spread.
 constexpr double share_of_wide = 0.75, cost_of_wide_spread = 0.75;
-/// From so many spheres on the memory has to be waited for.
-constexpr double many = 1e5, cost_of_many = 0.4;
+/// More than so many take a little more each, as it takes longer until they lie as densely.
+constexpr double many = 1e4, cost_of_many = 0.08;
 /// A box that grows, for each sphere and (log10 N)²: at the start and the end, and for each unit of alpha.
 constexpr double cycles_at_ends = 0.29 * microsecond, cycles_of_alpha = 0.57 * microsecond;
 constexpr double most_in_cycles = 1e4;
@@ -61,6 +62,8 @@ constexpr double least_of_exchange = 1.5, spheres_of_least = 300, power_of_excha
 /// To walls, of a sphere.
 constexpr double questions = 6;
 constexpr double bytes_a_sphere = 130, bytes_of_lists = 130;
+/// In blocks, in which the places are sorted.
+constexpr double bytes_in_blocks = 85, bytes_of_lists_in_blocks = 75;
 
 double dimension_factor(const Outlook& outlook, bool in_any_width = false) {
   const int dimension = outlook.task.dimension;
@@ -110,12 +113,15 @@ double seconds_in_bed(const Relax& options, const Outlook& outlook) {
 }  // namespace
 
 std::vector<PlanItem> effects_of_pushing(double seconds, const Outlook& outlook, std::string what) {
-  return {neighbor_lists(share_of_lists * seconds, bytes_of_lists * outlook.spheres),
+  const bool in_blocks =
+      !outlook.task.has_walls && outlook.task.dimension <= 3 && outlook.spheres >= SoftBlocks::fewest_spheres;
+  return {neighbor_lists(share_of_lists * seconds,
+                         (in_blocks ? bytes_of_lists_in_blocks : bytes_of_lists) * outlook.spheres),
           {.name = "relaxation",
            .what = std::move(what),
            .cost = "some 1,000 sweeps of O(N)",
            .seconds = seconds,
-           .bytes = bytes_a_sphere * outlook.spheres}};
+           .bytes = (in_blocks ? bytes_in_blocks : bytes_a_sphere) * outlook.spheres}};
 }
 
 double seconds_of_filling_box(const Outlook& outlook) {

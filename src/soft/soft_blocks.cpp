@@ -14,9 +14,6 @@ namespace {
 
 /// What spheres fill of a block that is full.
 constexpr double full = 0.64;
-/// With fewer blocks there are too few of a colour for several threads, and the last levels of cache hold
-/// all.
-constexpr double fewest_blocks = 48;
 /// Of the width of halos. From one on halos are only in blocks that touch; a narrow one has many more spheres
 /// in its halo than of its own.
 constexpr double narrowest_block = 2;

@@ -31,6 +31,9 @@ class SoftBlocks {
   /// Spheres in a block that is full: with their halo and their lists they take half of a second-level cache
   /// of 1 MiB.
   static constexpr double usual_size = 6000;
+  /// With fewer blocks there are too few of a colour for several threads, and the last levels of cache hold
+  /// all.
+  static constexpr double fewest_blocks = 48, fewest_spheres = fewest_blocks * usual_size;
 
   explicit SoftBlocks(const SoftKernels& kernels, double size = usual_size)
       : kernels_(kernels), size_(size) {}
