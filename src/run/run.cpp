@@ -352,10 +352,11 @@ class Run {
 
   void tell(const Course& course) {
     const double fraction = share_ * course.packing_fraction;
-    packing_.history.push_back(
-        {std::string(course.stage), course.spheres, fraction,
-         course.potential ? frame_.scale * *course.potential + frame_.origin[scene_.dimension() - 1] : 0,
-         course.max_overlap, record_.seconds()});
+    if (course.for_history)
+      packing_.history.push_back(
+          {std::string(course.stage), course.spheres, fraction,
+           course.potential ? frame_.scale * *course.potential + frame_.origin[scene_.dimension() - 1] : 0,
+           course.max_overlap, record_.seconds()});
     const double expected = stated_.expected_packing_fraction;
     const double share = expected > 0 ? std::min(fraction / expected, 0.99) : 0;
     const std::string overlap =

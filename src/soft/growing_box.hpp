@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "bernal/core/monitor.hpp"
 #include "bernal/soft/relax.hpp"
 #include "soft/soft_packing.hpp"
 #include "work/work.hpp"
@@ -76,10 +77,36 @@ StageEnd grow_apart(Engine& packing, const GrowingBox& box, BoxGrowth& so_far, S
   }
 }
 
-/// To be called on growth: tells the run how large the box is, and how far things are.
-inline void tell_growth(Work& work, double factor, double molr, double stop) {
-  work.edges *= factor;
-  work.milestone("relax", std::min(0.99, std::log(molr) / std::log(stop)), molr);
-}
+/// Tells a run how its box grows.
+class GrowthTeller {
+ public:
+  /// Once `stop` is the largest overlap ratio it is over; `sweeps` are between two growths.
+  GrowthTeller(Work& work, double stop, int sweeps) : work_(work), stop_(stop), sweeps_(sweeps) {}
+
+  /// To be called on growth.
+  void grown(double factor, double molr) {
+    work_.edges *= factor;
+    work_.milestone("relax", std::min(most, share(molr)), molr);
+    told_ = watch_.seconds();
+  }
+  /// To be called after sweeps: of very many spheres some take minutes until the box grows.
+  void swept(const BoxGrowth& growth) {
+    if (watch_.seconds() < told_ + between) return;
+    told_ = watch_.seconds();
+    const double done = share(growth.molr) + share_of_a_growth * growth.sweeps / sweeps_;
+    work_.milestone("relax", std::clamp(done, 0.0, most), growth.molr, false);
+  }
+
+ private:
+  static constexpr double most = 0.99, share_of_a_growth = 0.04, between = 0.5;  // seconds
+
+  double share(double molr) const { return std::log(molr) / std::log(stop_); }
+
+  Work& work_;
+  const double stop_;
+  const int sweeps_;
+  const Stopwatch watch_;
+  double told_ = 0;
+};
 
 }  // namespace bernal

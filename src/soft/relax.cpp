@@ -195,9 +195,14 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
                        .beta = options.beta};
   BoxGrowth growth{.molr = overlap};
   const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
+  GrowthTeller teller(work, box.stop, box.sweeps);
+  const auto stop = [&] {
+    teller.swept(growth);
+    return work.stop();
+  };
   const StageEnd end = grow_apart<D>(
-      packing, box, growth, [&] { return work.stop(); }, [](int, double molr) { return molr; },
-      [&](double factor, double molr) { tell_growth(work, factor, molr, box.stop); });
+      packing, box, growth, stop, [](int, double molr) { return molr; },
+      [&](double factor, double molr) { teller.grown(factor, molr); });
   work.effects["neighbour lists"] += packing.lists_built();
   have_places(spheres);
   packing.write_to(spheres, edges);

@@ -201,9 +201,13 @@ StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
   const double stop = least_overlap(options, work.allowed_overlap);
   BoxGrowth growth{.molr = overlap};
   const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
-  const StageEnd end = grow_by_means<D>(
-      packing, spheres.r, growth, stop, options, [&] { return work.stop(); },
-      [&](double factor, double molr) { tell_growth(work, factor, molr, stop); });
+  GrowthTeller teller(work, stop, sweeps_of_wide(options, spheres.size()));
+  const auto stops = [&] {
+    teller.swept(growth);
+    return work.stop();
+  };
+  const StageEnd end = grow_by_means<D>(packing, spheres.r, growth, stop, options, stops,
+                                        [&](double factor, double molr) { teller.grown(factor, molr); });
   work.effects["neighbour lists"] += packing.lists_built();
   packing.write_to(spheres, edges);
   return end;

@@ -153,13 +153,14 @@ void Work::milestone(std::string_view stage) const {
              .potential = bed().potential(-Vector<3>::Unit(bed().dimension() - 1))});
 }
 
-void Work::milestone(std::string_view stage, double done, double max_overlap) const {
+void Work::milestone(std::string_view stage, double done, double max_overlap, bool for_history) const {
   if (!on_course) return;
   on_course({.stage = stage,
              .spheres = placed_share < 1 ? placed_count : spheres.size(),
              .packing_fraction = placed_share * volume_of_spheres() / edges.prod(),
              .max_overlap = max_overlap,
-             .done = done});
+             .done = done,
+             .for_history = for_history});
 }
 
 void Work::crowd_milestone(std::string_view stage, std::size_t count, double volume, double max_overlap,

@@ -57,6 +57,7 @@ struct Course {
   std::optional<double> potential = {};  ///< mean height in the bed, in the packer's unit
   double max_overlap = 0;                ///< largest overlap ratio of a pair
   std::optional<double> done = {};       ///< in [0, 1], where the stage knows it
+  bool for_history = true;               ///< false: for the progress bar alone
 };
 
 /// What the stages of one run share: where they report, what is asked for, and the spheres as the last of
@@ -170,7 +171,7 @@ struct Work {
   /// To be called some hundred times a stage at most: of the bed; of the box, where `done` says how far the
   /// stage has come; and of spheres that are in neither, because they overlap or are still to grow.
   void milestone(std::string_view stage) const;
-  void milestone(std::string_view stage, double done, double max_overlap) const;
+  void milestone(std::string_view stage, double done, double max_overlap, bool for_history = true) const;
   void crowd_milestone(std::string_view stage, std::size_t count, double volume, double max_overlap,
                        double done) const;
 
