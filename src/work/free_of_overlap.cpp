@@ -52,27 +52,30 @@ void for_each_pair(const Spheres<D>& spheres, const Vector<D>& edges, Reach&& re
 /// Of more spheres the cache holds only some, and blocks are looked at one by one.
 constexpr std::size_t enough_for_blocks = 300'000, spheres_a_block = 1 << 16;
 
-/// The contact factor of some spheres and their images, above one that is known; `of_all` is the metric.
+/// The contact factor of some spheres and their images, above one that is known; `of_all` is the metric,
+/// which only those are held against that are as near by their places here.
 template <int D>
 double contact_factor_among(const Spheres<D>& spheres, std::span<const std::uint32_t> ids,
                             std::span<const Vector<D>> places, const Bounds<D>& bounds,
                             const Boundary<D>& local, const Boundary<D>& of_all, double largest,
                             double factor) {
+  std::vector<double> radii;  // beside each other, as the places are
+  radii.reserve(ids.size());
+  for (const std::uint32_t i : ids) radii.push_back(spheres.r[i]);
   std::vector<std::uint32_t> order(ids.size());
   std::iota(order.begin(), order.end(), 0u);
-  const auto radius = [&](std::uint32_t k) { return spheres.r[ids[k]]; };
-  std::ranges::stable_sort(order, std::greater<>(), radius);
+  std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t k) { return radii[k]; });
   if (order.empty()) return factor;
-  CellGrid<D> grid(bounds, local, radius(order.back()), radius(order.front()), ids.size());
+  CellGrid<D> grid(bounds, local, radii[order.back()], radii[order.front()], ids.size());
   constexpr double rounding = 1e-9;  // of the places of images
   for (const std::uint32_t k : order) {
-    const double r = radius(k);
-    const Vector<D> c = spheres.center(ids[k]);
+    const double r = radii[k];
     const double reach = r / factor + largest * (std::max(0.0, 1 / factor - 1) + rounding);
     grid.for_each_near(places[k], reach, [&](std::uint32_t m) {
-      if (ids[m] == ids[k]) return;
-      const Vector<D> apart = of_all.minimum_image(c - spheres.center(ids[m]));
-      factor = std::max(factor, (r + spheres.r[ids[m]]) / apart.norm());
+      const double near = (r + radii[m]) / factor + largest * rounding;
+      if (ids[m] == ids[k] || local.minimum_image(places[k] - places[m]).squaredNorm() > near * near) return;
+      const Vector<D> apart = of_all.minimum_image(spheres.center(ids[k]) - spheres.center(ids[m]));
+      factor = std::max(factor, (r + radii[m]) / apart.norm());
     });
     grid.insert(k, places[k], r);
   }
