@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "core/parallel.hpp"
 #include "measure/touching.hpp"
 
 namespace bernal {
@@ -158,12 +159,13 @@ std::vector<Contacts> measure_contacts(const Spheres<dynamic>& spheres, const Do
     throw Error(ErrorCode::bad_argument, fmt::format("contacts of more than {} gaps at once", most_gaps));
   const Neighbours neighbours(spheres.size(), ranked_pairs(spheres, domain, ascending));
   const std::vector<NearWall> walls = near_walls(spheres, domain, ascending.back(), made);
-  std::vector<Contacts> all;
-  for (const double gap : contact_gaps) {
+  std::vector<Contacts> all(contact_gaps.size());
+  parallel_for(all.size(), [&](std::size_t k) {
+    const double gap = contact_gaps[k];
     const auto rank =
         static_cast<std::uint32_t>(std::ranges::lower_bound(ascending, gap) - ascending.begin());
-    all.push_back(count(spheres.size(), domain, neighbours, rank, walls, gap));
-  }
+    all[k] = count(spheres.size(), domain, neighbours, rank, walls, gap);
+  });
   return all;
 }
 

@@ -87,7 +87,8 @@ std::optional<PoreSizes> pore_sizes(const Spheres<dynamic>& spheres, const Domai
                                     const PoreOptions& options,
                                     const std::shared_ptr<const Container>& made) {
   const int dimension = dimension_of(domain);
-  if (spheres.empty() || (has_walls(domain) && dimension != 2 && dimension != 3)) return {};
+  if (spheres.empty() || options.points == 0 || (has_walls(domain) && dimension != 2 && dimension != 3))
+    return {};
   std::vector<double> distances =
       has_walls(domain)
           ? distances_between_walls(spheres, domain, *local_container(domain, made), options.points)
