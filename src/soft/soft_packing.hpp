@@ -117,12 +117,16 @@ class SoftPacking {
   template <int D>
   void set_place(SoftSphere& sphere, const Vector<D>& center) const;
   void choose_skin();
-  void keep_lists_valid();
+  void keep_lists_valid(bool for_all);
   void build_lists(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& sites,
                    std::vector<SoftSphere>& spare);
   void remember_places();
   void build_again(Archive& a);
-  double largest_move() const;
+  /// Farthest moves since the lists were built.
+  struct Moves {
+    double of_most, of_all;
+  };
+  Moves farthest_moves() const;
   std::uint32_t id_at(std::size_t p) const { return id_of_site_[sites_[p]]; }
   std::vector<float> by_id(const std::vector<float>& in_sweep_order) const;
 
@@ -152,7 +156,7 @@ class SoftPacking {
   double wear_then_ = 0;
   Effect lists_built_{"neighbour lists", 0, 0};
   double grown_ = 0;  // at most, by exchanges since then
-  double moved_ = 0;  // largest move since then, when it was last looked at
+  double moved_ = 0;  // most of them since then, when it was last looked at
   double wear_ = 0.9;
   int age_ = 0;       // of the lists, in sweeps, when it was last looked at
   int sweeps_ = 0;    // since it was last looked at
