@@ -181,9 +181,11 @@ constexpr std::size_t most_circles = 30'000;
 
 /// Of very many circles those in a corner of a rectangle, cut off at its sides.
 void show_corner(DiscPicture& picture) {
-  if (picture.discs.size() <= most_circles || picture.outline.size() != 1 ||
-      picture.outline.front().size() != 4)
-    return;
+  const auto is_rectangle = [&] {
+    return picture.outline.size() == 1 &&
+           std::abs(area_within(picture.outline.front())) > (1 - rounding) * picture.window.size().prod();
+  };
+  if (picture.discs.size() <= most_circles || !is_rectangle()) return;
   const double part =
       std::sqrt(static_cast<double>(most_circles) / static_cast<double>(picture.discs.size()));
   const Vector<2> lower = picture.window.lower, upper = lower + part * picture.window.size();

@@ -358,5 +358,20 @@ TEST(Section, PictureHasEveryCircleAndWhatItIs) {
   EXPECT_EQ(circles(picture(box, "z = 0.5")), 0);
 }
 
+TEST(Section, PictureOfVeryManyCirclesIsOfACorner) {
+  const auto picture = [](int across) {
+    Spheres<3> spheres;
+    for (int i = 0; i < across; ++i)
+      for (int j = 0; j < across; ++j) spheres.push_back({i + 0.5, j + 0.5, 0.5}, 0.45);
+    const Box box{Vector<3>::Zero(), Vector<3>(across, across, 1)};
+    return section_svg(section_of(spheres, box, section_plane("z = 0.5")), spheres, "mm");
+  };
+  const std::string all = picture(170), corner = picture(340);
+  EXPECT_EQ(all.find("a corner"), std::string::npos);
+  EXPECT_NE(corner.find("a corner, 0.51 of the edges"), std::string::npos);
+  EXPECT_NE(corner.find("115,600 circles"), std::string::npos);
+  EXPECT_LT(corner.size(), all.size() + all.size() / 10);
+}
+
 }  // namespace section_test
 }  // namespace bernal
