@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
+#include "core/parallel.hpp"
 #include "measure/harmonics.hpp"
 #include "measure/touching.hpp"
 
@@ -12,23 +14,75 @@ namespace {
 
 /// Harmonics in single precision, of sums over some ten bonds good to 1e-6: half of the memory.
 using Order = Eigen::Matrix<float, 13, 1>;
-using BondParts = std::vector<std::vector<NearDirection>>;
+
+/// Bonds in groups of their parts, so that what each bond adds to the spheres at both of its ends is summed
+/// in threads, in an order that does not depend on them. A group has the spheres from which its bonds were
+/// found, and adds to these alone; what bonds add to spheres of other groups these add after it.
+class GroupedBonds {
+ public:
+  GroupedBonds(std::size_t spheres, std::vector<std::vector<NearDirection>> parts)
+      : parts_(std::move(parts)),
+        groups_(std::clamp<std::size_t>(parts_.size() / parts_a_group, 1, most_groups)),
+        group_of_(spheres, 0),
+        strays_(groups_ * groups_) {
+    parallel_for(groups_, [&](std::size_t g) {
+      for_each_in(g,
+                  [&](const NearDirection& bond) { group_of_[bond.first] = static_cast<std::uint8_t>(g); });
+    });
+    parallel_for(groups_, [&](std::size_t g) {
+      for_each_in(g, [&](const NearDirection& bond) {
+        const std::size_t other = group_of_[bond.second];
+        if (other != g) strays_[other * groups_ + g].push_back(&bond);
+      });
+    });
+  }
+
+  /// Calls add(sphere, of(bond)) for both ends of each.
+  template <class Of, class Add>
+  void add_to_both(const Of& of, const Add& add) const {
+    parallel_for(groups_, [&](std::size_t g) {
+      for_each_in(g, [&](const NearDirection& bond) {
+        const auto value = of(bond);
+        add(bond.first, value);
+        if (group_of_[bond.second] == g) add(bond.second, value);
+      });
+    });
+    parallel_for(groups_, [&](std::size_t g) {
+      for (std::size_t from = 0; from < groups_; ++from)
+        for (const NearDirection* bond : strays_[g * groups_ + from]) add(bond->second, of(*bond));
+    });
+  }
+
+ private:
+  static constexpr std::size_t parts_a_group = 4, most_groups = 32;
+
+  template <class Visit>
+  void for_each_in(std::size_t group, const Visit& visit) const {
+    for (std::size_t p = parts_.size() * group / groups_; p < parts_.size() * (group + 1) / groups_; ++p)
+      for (const NearDirection& bond : parts_[p]) visit(bond);
+  }
+
+  std::vector<std::vector<NearDirection>> parts_;
+  std::size_t groups_;
+  std::vector<std::uint8_t> group_of_;                     // of spheres
+  std::vector<std::vector<const NearDirection*>> strays_;  // to each group from each
+};
 
 /// Of every sphere the sum over its bonds, zero without bonds, and how many these are.
 struct Sums {
   std::vector<Order> orders;
   std::vector<std::uint32_t> bonds;
 
-  Sums(std::size_t spheres, const BondParts& parts) : orders(spheres, Order::Zero()), bonds(spheres, 0) {
-    for (const auto& part : parts)
-      for (const NearDirection& bond : part) {
-        if (bond.direction.isZero(0)) continue;  // centres that coincide show no direction
-        const Order h = harmonics6(bond.direction.cast<double>()).cast<float>();
-        for (const std::uint32_t i : {bond.first, bond.second}) {
+  Sums(std::size_t spheres, const GroupedBonds& all) : orders(spheres, Order::Zero()), bonds(spheres, 0) {
+    all.add_to_both(
+        [](const NearDirection& bond) -> Order {
+          if (bond.direction.isZero(0)) return Order::Zero();  // centres that coincide show no direction
+          return harmonics6(bond.direction.cast<double>()).cast<float>();
+        },
+        [&](std::uint32_t i, const Order& h) {
           orders[i] += h;
-          ++bonds[i];
-        }
-      }
+          bonds[i] += !h.isZero(0);
+        });
   }
 };
 
@@ -59,15 +113,14 @@ struct Bonds {
   }
 };
 
-std::vector<Bonds> solid_bonds(const BondParts& parts, std::vector<Order> orders) {
+std::vector<Bonds> solid_bonds(const GroupedBonds& all, std::vector<Order> orders) {
   for (Order& q : orders) q.normalize();
   std::vector<Bonds> found(orders.size());
-  for (const auto& part : parts)
-    for (const NearDirection& bond : part) {
-      const bool solid = orders[bond.first].dot(orders[bond.second]) > BondOrder::solid_bond;
-      found[bond.first].add(solid);
-      found[bond.second].add(solid);
-    }
+  all.add_to_both(
+      [&](const NearDirection& bond) {
+        return orders[bond.first].dot(orders[bond.second]) > BondOrder::solid_bond;
+      },
+      [&](std::uint32_t i, bool is_solid) { found[i].add(is_solid); });
   return found;
 }
 
@@ -76,13 +129,15 @@ std::vector<Bonds> solid_bonds(const BondParts& parts, std::vector<Order> orders
 std::optional<BondOrder> bond_order(const Spheres<dynamic>& spheres, const Domain& domain,
                                     std::span<const Region> regions) {
   if (spheres.dimension() != 3) return {};
-  const BondsInside near = near_directions_inside(
+  BondsInside near = near_directions_inside(
       spheres, domain, BondOrder::widest_gap,
       spheres.size() > BondOrder::most_spheres ? BondOrder::looked_at : spheres.size());
-  Sums sums(near.ids.empty() ? spheres.size() : near.ids.size(), near.bonds);
+  const std::size_t known = near.ids.empty() ? spheres.size() : near.ids.size();
+  const GroupedBonds grouped(known, std::move(near.bonds));
+  Sums sums(known, grouped);
   BondOrder order;
   write_mean_q6(sums, near.asked, order);
-  const std::vector<Bonds> bonds = solid_bonds(near.bonds, std::move(sums.orders));
+  const std::vector<Bonds> bonds = solid_bonds(grouped, std::move(sums.orders));
   if (!regions.empty()) order.near_wall = order.core = BondOrder::Count{};
   for (std::size_t i = 0; i < near.asked; ++i) {
     const auto count = [&](BondOrder::Count& where) {
