@@ -126,6 +126,8 @@ std::optional<std::string> what_is_wrong(const Dialect& dialect, const ChildEnd&
   return std::nullopt;
 }
 
+bool says_it_is_alone(std::string_view log) { return holds(log, "  1 by 1 by 1 MPI processor grid"); }
+
 std::string tail_of(const std::filesystem::path& file, std::uintmax_t most) {
   std::error_code missing;
   const std::uintmax_t size = std::filesystem::file_size(file, missing);

@@ -33,6 +33,10 @@ class LogWatch {
 std::optional<std::string> what_is_wrong(const Dialect& dialect, const ChildEnd& end, std::string_view log,
                                          std::string_view output);
 
+/// Whether the engine says that it is one process. Where several were started, each then did not know of the
+/// others and packed everything by itself: the launcher is of another MPI than the engine.
+bool says_it_is_alone(std::string_view log);
+
 /// The last `most` bytes of a file; empty where there is none.
 std::string tail_of(const std::filesystem::path& file, std::uintmax_t most);
 

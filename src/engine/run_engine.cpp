@@ -193,9 +193,16 @@ class EngineRun {
   }
 
   Places read() const {
-    const auto wrong = what_is_wrong(dialect_, {}, tail_of(folder_.file(dialect_.log), longest_tail),
-                                     tail_of(folder_.file(output_name), longest_tail));
+    const std::string log = tail_of(folder_.file(dialect_.log), longest_tail);
+    const auto wrong = what_is_wrong(dialect_, {}, log, tail_of(folder_.file(output_name), longest_tail));
     if (wrong) refuse(*wrong, folder_.path());
+    if (engine_.process().ranks > 1 && says_it_is_alone(log))
+      refuse(
+          fmt::format("the {} ranks of {} did not find each other, each packed everything by itself: start "
+                      "them by a \"command\" of its own MPI, such as [\"mpirun\"] or [\"srun\", "
+                      "\"--mpi=pmix\"]",
+                      engine_.process().ranks, dialect_.title),
+          folder_.path());
     monitor_.report({dialect_.title, 1, "its places are read"});
     return read_places(folder_.file(places_name), task_.spheres.r);
   }

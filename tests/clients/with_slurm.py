@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Slurm runs the job array that bernal sweep writes: tests/clients/with_slurm.py [BERNAL]
+"""Slurm runs the job array that bernal sweep writes, and the script that starts an engine:
+tests/clients/with_slurm.py [BERNAL]
 
-Debian: slurm-wlm, munge. Where no cluster answers, one of this machine alone is started for it, which takes root. Takes
+Debian: slurm-wlm, munge; for the engine lammps, openmpi-bin. Where no cluster answers, one of this machine alone is started for it, which takes root. Takes
 half a minute.
 """
 import csv
@@ -21,6 +22,18 @@ count = 30
 radius = 1
 [[stage]]
 do = "relax"
+"""
+BY_ENGINE = """[container]
+kind = "periodic"
+[spheres]
+count = 500
+diameter = 1.0
+[engine]
+kind = "lammps"
+launcher = "slurm"
+ranks = 2
+command = {command}
+slurm = ["--oversubscribe", "--time=5"]
 """
 SWEEP = """scene = "bed.toml"
 [grid]
@@ -117,11 +130,33 @@ def work_on(folder):
                "the same packings as in a pool on this machine")
 
 
+def by_engine(folder, name, command):
+    """The first call leaves a script, which Slurm runs; what the second one says."""
+    (folder / f"{name}.toml").write_text(BY_ENGINE.format(command=json.dumps(command)))
+    pack = [BERNAL, "pack", f"{name}.toml", "-o", name, "--quiet"]
+    first = subprocess.run(pack, cwd=folder, capture_output=True, text=True)
+    expect(first.returncode == 3 and "sbatch " in first.stderr, f"{name}: what is to be submitted is said")
+    run(SBATCH, "--parsable", "--wait", "--output", folder / f"{name}.log", folder / name / "engine/submit.sh", folder=folder)
+    return subprocess.run(pack, cwd=folder, capture_output=True, text=True)
+
+
+def work_on_engine(folder):
+    if not find_program("lmp", "lammps") or not find_program("mpirun", "openmpi-bin"):
+        return
+    done = by_engine(folder, "together", ["mpirun"])
+    expect(done.returncode == 0, f"the same call goes on after the job {done.stderr}")
+    run(BERNAL, "verify", "together", folder=folder)
+    # Ranks whose launcher is of another MPI than theirs: each packs everything by itself.
+    done = by_engine(folder, "alone", ["srun", "--mpi=none"])
+    expect(done.returncode == 3 and "did not find each other" in done.stderr, f"ranks that are alone: {done.stderr.strip()}")
+
+
 def work(folder):
     folder = Path(folder)
     daemons = [] if answers("scontrol", "ping") else start_cluster(folder / "cluster")
     try:
         work_on(folder)
+        work_on_engine(folder)
     finally:
         end(daemons)
 

@@ -224,6 +224,16 @@ TEST_F(EngineOfScripts, AreLeftToSlurmAndTakenUpAfterIt) {
   EXPECT_EQ(calls(), 1u);
 }
 
+TEST_F(EngineOfScripts, MustFindEachOther) {
+  const std::string scene =
+      in_periodic_box +
+      engine(idle_engine + std::string("echo '  1 by 1 by 1 MPI processor grid' >> log.lammps\n"),
+             "launcher = \"slurm\"\ncommand = \"env\"\nranks = 2\n");
+  EXPECT_TRUE(holds(error_of(scene), "sbatch "));
+  ASSERT_EQ(std::system(("bash " + (folder / "engine/submit.sh").string()).c_str()), 0);
+  EXPECT_TRUE(holds(error_of(scene), "did not find each other"));
+}
+
 TEST_F(EngineOfScripts, LeaveTheFilesOfOthersAlone) {
   fs::create_directory(folder / "engine");
   folder.write("engine/spheres.data", "mine");
