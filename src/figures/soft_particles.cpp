@@ -48,7 +48,7 @@ struct Width {
   SoftMean soft, alone;
 };
 
-std::string soft_page(const std::vector<Width>& widths, double seconds) {
+std::string soft_page(const std::vector<Width>& widths, int asked, double seconds) {
   std::vector<std::vector<std::string>> rows;
   std::vector<double> from_rods, from_alone;
   double scatter = 0;
@@ -73,7 +73,7 @@ std::string soft_page(const std::vector<Width>& widths, double seconds) {
       R"(# Farr's figure 2 with soft particles of today
 
 R. S. Farr: *Random close packing fractions of lognormal distributions of hard spheres*. Powder Technology
-245 (2013) 28–34. Written by `bernal reproduce fig2soft` in {:.0f} s on: {}.
+245 (2013) 28–34. Written by `bernal reproduce fig2soft{}` in {:.0f} s on: {}.
 
 ![figure 2 with soft particles](fig2soft.svg)
 
@@ -85,10 +85,13 @@ curve, from 16,000 rods; the second is the model's answer to the very diameters 
 {}
 The soft particles of the paper are drawn and not printed, so theirs and these cannot be put side by side
 in numbers. What the text says of them is this: they agree with the rod model excellently, and lie slightly
-above the KTS packings. Here they lie {:+.4f} to {:+.4f} from the rod model of their sizes, one packing
-scatters by up to {:.4f}; `relax` alone ends {:+.4f} to {:+.4f} from them.
+above the KTS packings. What agrees is how much denser wider sizes pack. What does not is where the curve
+lies: from the rod model of their sizes these are {:+.4f} to {:+.4f} away, and a packing scatters by up to
+{:.4f}. How dense soft particles come to rest is a matter of how slowly they do: here in a thousand steps,
+and more are denser. `relax` alone ends {:+.4f} to {:+.4f} from them.
 )",
-      seconds, processor_name(), grouped(widths.front().soft.spheres), soft_seeds,
+      asked == 0 ? "" : fmt::format(" --spheres {}", asked), seconds, processor_name(),
+      grouped(widths.front().soft.spheres), soft_seeds,
       markdown_table({"sigma", "rods", "rods of these", "LAMMPS, then relax", "from rods", "relax alone",
                       "KTS, printed"},
                      rows),
@@ -166,7 +169,7 @@ Files soft_particles(const FigureOptions& options) {
   };
   for (const Width& width : widths) add("soft", Marker::disc, width.sigma, width.soft);
   for (const Width& width : widths) add("relax", Marker::ring, width.sigma, width.alone);
-  return {{"fig2soft.md", soft_page(widths, watch.seconds())},
+  return {{"fig2soft.md", soft_page(widths, options.spheres, watch.seconds())},
           {"fig2soft.svg", svg_document(730, 500, "Lognormal spheres, as soft particles and by the rod model",
                                         std::move(plot).finish())},
           {"fig2soft.csv", csv}};
