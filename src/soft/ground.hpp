@@ -26,6 +26,8 @@ class ContainerGround {
   static constexpr double burst_swelling = 1.02;
   /// So many spheres are never moved to holes, however squeezed they are.
   static constexpr std::size_t always_stay = 0;
+  /// Lists may be worn further while spheres are crowded.
+  static constexpr bool crowds_wear_lists = true;
 
   /// Both outlive this.
   ContainerGround(const Container& container, const Places& places)
@@ -72,6 +74,7 @@ class BoxGround {
   /// in five dimensions at 0.302 and six at 0.197, 0.4 s and 0.85 s instead of 0.85 s and 1.3 s.
   static constexpr double burst_swelling = D <= 4 ? 1.02 : 1.04;
   static constexpr std::size_t always_stay = 1;
+  static constexpr bool crowds_wear_lists = false;
 
   /// Every edge is at least the largest diameter less what overlap is allowed: the spheres are relaxed with
   /// the share 1 - `allowed` of their radii. Axes with `walls` keep whole spheres between them; none: empty.

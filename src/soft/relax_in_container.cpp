@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/parallel.hpp"
 #include "jam/polish.hpp"
 #include "settle/insert.hpp"
 #include "soft/crowd.hpp"
@@ -32,6 +33,7 @@ constexpr int exchanges_to_settle = 50;
 
 /// Of the radii: a skin up to this is lost in the margin.
 constexpr double thin_skin = 1e-7;
+constexpr std::size_t places_a_task = 1024;
 
 class Relaxation {
  public:
@@ -80,12 +82,17 @@ class Relaxation {
     const std::size_t count = std::min(work_.target_count(), work_.count_filling(most * work_.attainable));
     auto [spheres, placed] = work_.drawn(std::max<std::size_t>(1, count));
     const Spheres<3>& begun = work_.crowded_start;
-    for (std::size_t i = 0; i < spheres.size(); ++i) {
-      if (placed[i]) continue;
-      spheres.set_center(i, i < begun.size() ? begun.center(i)
-                                             : clear_place(spheres.r[i], work_.bed().container(),
-                                                           work_.bed().places(), random_, work_.monitor));
-    }
+    const std::uint64_t seed = random_();
+    const Interruptible listening(work_.monitor);
+    parallel_ranges(spheres.size(), places_a_task, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        if (placed[i]) continue;
+        Random own(seed, i);
+        spheres.set_center(i, i < begun.size() ? begun.center(i)
+                                               : clear_place(spheres.r[i], work_.bed().container(),
+                                                             work_.bed().places(), own, work_.monitor));
+      }
+    });
     for (double& r : spheres.r) r += skin_;
     return spheres;
   }

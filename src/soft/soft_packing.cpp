@@ -109,6 +109,7 @@ float SoftPacking::move_all(float omega, bool measure, bool each) {
                        .measure = measure,
                        .squeeze = each ? squeeze_.data() : nullptr,
                        .force = each ? force_.data() : nullptr};
+  if (walls_) walls_->look_anew(measure);
   ++sweeps_;
   if (in_blocks_) return blocks_->sweep(task);
   const bool in_threads = count_ >= worth_threads;
@@ -131,10 +132,10 @@ void SoftPacking::grow(double factor) {
 }
 
 void SoftPacking::swell(double factor) {
+  if (factor > static_cast<double>(swelling_)) stale_ = true;  // who was not near may be now
   swelling_ = static_cast<float>(factor);
   for (std::size_t p = 0; p < spheres_.size(); ++p)
     if (spheres_[p].r > 0) spheres_[p].r = swelling_ * radii_[id_at(p)];
-  stale_ = true;
 }
 
 void SoftPacking::put(const std::vector<Move>& moves) {

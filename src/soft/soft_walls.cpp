@@ -1,6 +1,7 @@
 #include "soft/soft_walls.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/parallel.hpp"
 #include "domain/wall_contacts.hpp"
@@ -19,6 +20,8 @@ constexpr double units_kept = 64;
 /// How far from the wall a sphere is told apart from one that is farther, in skins.
 constexpr double far_reach = 3;
 constexpr std::size_t groups_a_task = 64;
+/// In radii, see SoftWalls.
+constexpr double leeway = 0.02;
 
 /// p minus the nearest point of the facet; for a facet of an analytic container p is on its inner side.
 Vector<3> offset(const std::variant<Facet, PreparedTriangle>& piece, const Vector<3>& p) {
@@ -69,20 +72,27 @@ Vector<3> SoftWalls::way_between(const SoftSphere& from, const SoftSphere& to) c
 
 void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<SoftSphere>& built_at,
                             const std::vector<std::uint32_t>& ids) const {
-  std::vector<bool> near(spheres.size(), false);
-  for (std::size_t g = 0; g + 1 < first_.size(); ++g)
-    for (std::uint32_t n = first_[g]; n < first_[g + 1]; ++n) near[g * lanes + near_[n].lane] = true;
-  for (std::size_t p = 0; p < spheres.size(); ++p) {
-    if (!(spheres[p].r > 0) || near[p]) continue;
-    const Vector<3> from = place(built_at[p]);
-    const Vector<3> move = way_between(built_at[p], spheres[p]);
-    const double length = move.norm();
-    if (!(length > 0)) continue;
-    const View& view = views_[ids[p]];
-    if (length < view.clearance - way(view.at, from).norm()) continue;
-    const double free = container_.first_contact(from, 0, move / length, length);
-    if (free < length) shorten(spheres[p], built_at[p], (1 - kept) * free / length);
-  }
+  const std::size_t groups = first_.size() - 1;
+  parallel_ranges(groups, groups_a_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin; g < end; ++g) {
+      std::array<bool, lanes> is_near{};
+      for (std::uint32_t n = first_[g]; n < first_[g + 1]; ++n) is_near[near_[n].lane] = true;
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const std::size_t p = lanes * g + l;
+        if (spheres[p].r > 0 && !is_near[l]) stop_stray(spheres[p], built_at[p], views_[ids[p]]);
+      }
+    }
+  });
+}
+
+void SoftWalls::stop_stray(SoftSphere& sphere, const SoftSphere& built_at, const View& view) const {
+  const Vector<3> from = place(built_at);
+  const Vector<3> move = way_between(built_at, sphere);
+  const double length = move.norm();
+  if (!(length > 0)) return;
+  if (length < view.clearance - way(view.at, from).norm()) return;
+  const double free = container_.first_contact(from, 0, move / length, length);
+  if (free < length) shorten(sphere, built_at, (1 - kept) * free / length);
 }
 
 /// Whether a wall is nearer to the centre than r + skin; the view then knows all that is.
@@ -115,41 +125,59 @@ void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<
                       float skin) {
   skin_ = skin;
   const std::size_t groups = spheres.size() / lanes;
-  std::vector<std::uint16_t> near_lanes(groups, 0);
-  parallel_for((groups + groups_a_task - 1) / groups_a_task, [&](std::size_t b) {
+  std::vector<Found> found((groups + groups_a_task - 1) / groups_a_task);
+  first_.resize(groups + 1);
+  parallel_for(found.size(), [&](std::size_t b) {
     for (std::size_t g = b * groups_a_task; g < std::min(groups, (b + 1) * groups_a_task); ++g) {
-      for (std::size_t l = 0; l < lanes; ++l) {
+      for (std::uint32_t l = 0; l < lanes; ++l) {
         const SoftSphere& s = spheres[g * lanes + l];
-        if (s.r > 0 && look(place(s), radius_at_wall(s), skin, views_[ids[g * lanes + l]]))
-          near_lanes[g] = static_cast<std::uint16_t>(near_lanes[g] | 1u << l);
+        const std::uint32_t id = ids[g * lanes + l];
+        if (s.r > 0 && look(place(s), radius_at_wall(s), skin, views_[id])) add_near(l, id, s, found[b]);
       }
+      first_[g + 1] = static_cast<std::uint32_t>(found[b].near.size());
     }
   });
-  first_.assign(1, 0);
-  near_.clear();
-  until_.clear();
-  least_until_.clear();
-  has_fine_ = false;
-  ahead_.clear();
-  for (std::size_t g = 0; g < groups; ++g) {
-    for (std::uint32_t l = 0; l < lanes; ++l) {
-      if (near_lanes[g] >> l & 1) add_near(l, ids[g * lanes + l], spheres[g * lanes + l]);
-    }
-    first_.push_back(static_cast<std::uint32_t>(near_.size()));
-  }
+  join(found);
 }
 
-void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere) {
+/// What the tasks of `build` have found, one after the other.
+void SoftWalls::join(const std::vector<Found>& found) {
+  std::vector<Found::Ends> before(1);
+  has_fine_ = false;
+  for (const Found& part : found) {
+    const Found::Ends& last = before.back();
+    before.push_back({last.near + part.near.size(), last.until + part.until.size(),
+                      last.least_until + part.least_until.size()});
+    has_fine_ |= part.has_fine;
+  }
+  near_.resize(before.back().near);
+  until_.resize(before.back().until);
+  least_until_.resize(before.back().least_until);
+  planes_.resize(most_planes * near_.size());
+  ahead_.clear();
+  first_[0] = 0;
+  parallel_for(found.size(), [&](std::size_t b) {
+    const auto at = [](auto& all, std::size_t k) { return all.begin() + static_cast<std::ptrdiff_t>(k); };
+    std::ranges::copy(found[b].near, at(near_, before[b].near));
+    std::ranges::copy(found[b].until, at(until_, before[b].until));
+    std::ranges::copy(found[b].least_until, at(least_until_, before[b].least_until));
+    for (std::size_t n = before[b].near; n < before[b + 1].near; ++n) {
+      near_[n].first += static_cast<std::uint32_t>(before[b].until);
+      near_[n].first_run += static_cast<std::uint32_t>(before[b].least_until);
+    }
+    for (std::size_t g = b * groups_a_task + 1; g < std::min(first_.size(), (b + 1) * groups_a_task + 1); ++g)
+      first_[g] += static_cast<std::uint32_t>(before[b].near);
+  });
+}
+
+void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere, Found& found) const {
   const View& view = views_[id];
-  NearSphere near{lane,
-                  id,
-                  static_cast<std::uint32_t>(until_.size()),
-                  static_cast<std::uint32_t>(least_until_.size()),
-                  0,
-                  place(sphere),
-                  0,
-                  0};
-  has_fine_ |= view.is_fine;
+  NearSphere near{.lane = lane,
+                  .id = id,
+                  .first = static_cast<std::uint32_t>(found.until.size()),
+                  .first_run = static_cast<std::uint32_t>(found.least_until.size()),
+                  .last = place(sphere)};
+  found.has_fine |= view.is_fine;
   const double moved = way(view.at, near.last).norm();
   near.beyond = (view.is_fine ? view.clearance : view.reach) - moved;
   for (const Piece& piece : view.pieces) {
@@ -158,27 +186,28 @@ void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere&
       break;
     }
     // Pieces come nearest first.
-    if (near.count % run == 0) least_until_.push_back(static_cast<float>(piece.distance - moved));
-    until_.push_back(static_cast<float>(piece.distance - moved));
+    if (near.count % run == 0) found.least_until.push_back(static_cast<float>(piece.distance - moved));
+    found.until.push_back(static_cast<float>(piece.distance - moved));
     ++near.count;
   }
-  near_.push_back(near);
+  found.near.push_back(near);
 }
 
-/// Appends the contacts of a sphere among its pieces; returns a distance that no wall is nearer than.
-double SoftWalls::look_through(const NearSphere& near, double r, std::vector<WallContact>& contacts) {
+/// Appends what is nearer than `reach` among the pieces of a sphere; returns a distance that no wall is
+/// nearer than.
+double SoftWalls::look_through(const NearSphere& near, double reach, std::vector<WallContact>& contacts) {
   const std::vector<Piece>& pieces = views_[near.id].pieces;
   double free = near.beyond - near.way;
   for (std::uint32_t first = 0; first < near.count; first += run) {
     float& least = least_until_[near.first_run + first / run];
-    if (least - near.way >= r) {
+    if (least - near.way >= reach) {
       free = std::min(free, least - near.way);
       continue;
     }
     const std::uint32_t end = std::min(near.count, first + run);
     for (std::uint32_t k = first; k < end; ++k) {
       float& until = until_[near.first + k];
-      if (until - near.way >= r) {
+      if (until - near.way >= reach) {
         free = std::min(free, until - near.way);
         continue;
       }
@@ -186,14 +215,82 @@ double SoftWalls::look_through(const NearSphere& near, double r, std::vector<Wal
       const double d = away.norm();
       until = static_cast<float>(d + near.way);
       free = std::min(free, d);
-      if (!(d < r && d > 0)) continue;
-      if (contacts.size() == most_contacts) leave_distinct(contacts, r);
+      if (!(d < reach && d > 0)) continue;
+      if (contacts.size() == most_contacts) leave_distinct(contacts, reach);
       if (contacts.size() < most_contacts) contacts.push_back({away / d, d});
     }
     least = *std::min_element(until_.begin() + near.first + first, until_.begin() + near.first + end);
   }
-  leave_distinct(contacts, r);
   return free;
+}
+
+/// Makes planes of the contacts that were found within `reach`, patch by patch, and leaves those that push.
+/// Where there are too many there are none, and the sphere looks anew each time.
+void SoftWalls::take_for_planes(std::uint32_t n, double r, double reach, std::vector<WallContact>& contacts) {
+  NearSphere& near = near_[n];
+  near.seen_from = near.last;
+  near.seen_to = contacts.size() <= most_planes ? reach : 0;
+  near.planes = 0;
+  if (near.seen_to > 0) {
+    Plane* planes = planes_.data() + most_planes * n;
+    std::sort(contacts.begin(), contacts.end(),
+              [](const WallContact& a, const WallContact& b) { return a.distance < b.distance; });
+    std::array<std::uint32_t, most_planes> speaker;  // of each contact
+    for (std::uint32_t k = 0; k < contacts.size(); ++k) {
+      speaker[k] = k;
+      for (std::uint32_t j = 0; j < k && speaker[k] == k; ++j)
+        if (speaker[j] == j && speaks_for(contacts[j], contacts[k], r)) speaker[k] = j;
+    }
+    for (std::uint32_t j = 0; j < contacts.size(); ++j) {
+      if (speaker[j] != j) continue;
+      for (std::uint32_t k = j; k < contacts.size(); ++k)
+        if (speaker[k] == j)
+          planes[near.planes++] = {
+              {static_cast<float>(contacts[k].normal[0]), static_cast<float>(contacts[k].normal[1]),
+               static_cast<float>(contacts[k].normal[2])},
+              static_cast<float>(contacts[k].distance),
+              j};
+    }
+  }
+  std::erase_if(contacts, [r](const WallContact& contact) { return !(contact.distance < r); });
+  leave_distinct(contacts, r);
+}
+
+/// Appends the contacts of a sphere; returns a distance that no wall is nearer than.
+double SoftWalls::touch(std::uint32_t n, double r, std::vector<WallContact>& contacts) {
+  NearSphere& near = near_[n];
+  if (!anew_ && near.seen_to > 0) {
+    const Vector<3> gone = way(near.seen_from, near.last);
+    const double length = gone.norm();
+    if (length <= leeway * r && length <= near.seen_to - r) {
+      const auto x = static_cast<float>(gone[0]), y = static_cast<float>(gone[1]),
+                 z = static_cast<float>(gone[2]);
+      const auto at = [&](const Plane& plane) {
+        return plane.distance + plane.normal[0] * x + plane.normal[1] * y + plane.normal[2] * z;
+      };
+      const Plane* plane = planes_.data() + most_planes * n;
+      for (const Plane* const end = plane + near.planes; plane < end;) {
+        // The edge of a face is as deep as the face to the first order of the way, but pushes askew.
+        const Plane* deepest = plane;
+        const auto as_deep = static_cast<float>(length * length) / plane->distance;
+        float least = at(*plane);
+        for (const std::uint32_t patch = plane->patch; plane < end && plane->patch == patch; ++plane) {
+          const float d = at(*plane);
+          if (d < least - as_deep) {
+            least = d;
+            deepest = plane;
+          }
+        }
+        if (least < static_cast<float>(r) && least > 0)
+          contacts.push_back({{deepest->normal[0], deepest->normal[1], deepest->normal[2]}, least});
+      }
+      return near.free - length;
+    }
+  }
+  const double reach = (1 + leeway) * r;
+  near.free = look_through(near, reach, contacts);
+  take_for_planes(n, r, reach, contacts);
+  return near.free;
 }
 
 /// The same of a sphere at a fine wall, where the container knows.
@@ -235,7 +332,7 @@ void SoftWalls::work_out(std::size_t group, const SoftSphere* spheres, WallPush&
     near.way += way(near.last, c).norm();
     near.last = c;
     contacts.clear();
-    out.free[l] = views_[near.id].is_fine ? ask(near, r, contacts) : look_through(near, r, contacts);
+    out.free[l] = near.count == 0 && views_[near.id].is_fine ? ask(near, r, contacts) : touch(n, r, contacts);
     Vector<3> sum = Vector<3>::Zero();
     for (const WallContact& contact : contacts) {
       const double depth = r - contact.distance, ratio = depth / r;

@@ -5,6 +5,7 @@
 
 #include "bernal/domain/boundary.hpp"
 #include "core/every_dimension.hpp"
+#include "core/parallel.hpp"
 
 namespace bernal {
 namespace {
@@ -13,6 +14,28 @@ namespace {
 constexpr std::size_t candidates_a_hole = 8;
 /// Of radii that look for holes among themselves.
 constexpr std::size_t most_groups = 4;
+/// Probes that are looked at by one thread, and so many parts at most.
+constexpr std::size_t probes_a_part = 8192, most_parts = 16;
+
+bool roomier(const Hole& a, const Hole& b) { return a.room > b.room; }
+
+/// The roomiest so many of the places that have some clearance.
+struct Group {
+  double least_clearance;
+  std::size_t candidates;
+  std::vector<Hole> best = {};  // a heap, the least roomy on top
+
+  double enough(double none) const { return best.size() < candidates ? none : best.front().room; }
+  void take(const Hole& hole) {
+    if (best.size() == candidates) {
+      if (hole.room <= best.front().room) return;
+      std::ranges::pop_heap(best, roomier);
+      best.pop_back();
+    }
+    best.push_back(hole);
+    std::ranges::push_heap(best, roomier);
+  }
+};
 
 }  // namespace
 
@@ -25,40 +48,42 @@ std::vector<Hole> holes_for(std::span<const double> radii, const Container& cont
     grid.insert(static_cast<CellGrid<3>::Id>(i), spheres.center(i), spheres.r[i]);
 
   // Of a hole a sphere needs to clear the wall first of all; the roomiest places may all be too near to it.
-  const auto roomier = [](const Hole& a, const Hole& b) { return a.room > b.room; };
-  struct Group {
-    double least_clearance;
-    std::size_t candidates;
-    std::vector<Hole> best = {};  // a heap, the least roomy on top
-    double enough(double none) const { return best.size() < candidates ? none : best.front().room; }
-  };
-  std::vector<Group> groups;
+  std::vector<Group> none;
   for (std::size_t g = 0; g < most_groups; ++g) {
     const std::size_t first = radii.size() * g / most_groups, last = radii.size() * (g + 1) / most_groups;
-    if (last > first) groups.push_back({radii[first], candidates_a_hole * (last - first)});
+    if (last > first) none.push_back({radii[first], candidates_a_hole * (last - first)});
   }
   // A centre stays clear of the wall, as it will not pass it; that is the last resort.
-  groups.push_back({0.5 * radii.back(), groups.back().candidates});
-  for (std::size_t n = 0; n < probes; ++n) {
-    const Vector<3> p = places.draw(random);
-    double enough = most;
-    for (const Group& group : groups) enough = std::min(enough, group.enough(-most));
-    const double room = room_between_spheres(grid, p, enough, most, 0, [&](CellGrid<3>::Id j) {
-      return Nearby{boundary.minimum_image(spheres.center(j) - p).squaredNorm(), spheres.r[j]};
-    });
-    if (room <= enough) continue;
-    const double clearance = container.clearance_within(p, radii.front());
-    for (Group& group : groups) {
-      if (clearance < group.least_clearance || room <= group.enough(-most)) continue;
-      if (group.best.size() == group.candidates) {
-        std::ranges::pop_heap(group.best, roomier);
-        group.best.pop_back();
+  none.push_back({0.5 * radii.back(), none.back().candidates});
+
+  // Of several parts every one has random numbers of its own, and its best go to the best of all in order.
+  const std::size_t parts = std::clamp<std::size_t>(probes / probes_a_part, 1, most_parts);
+  const std::uint64_t seed = parts > 1 ? random() : 0;
+  std::vector<std::vector<Group>> found(parts, none);
+  parallel_for(parts, [&](std::size_t part) {
+    std::vector<Group>& groups = found[part];
+    Random of_part(seed, part);
+    Random& own = parts > 1 ? of_part : random;
+    for (std::size_t n = probes * part / parts; n < probes * (part + 1) / parts; ++n) {
+      const Vector<3> p = places.draw(own);
+      double enough = most;
+      for (const Group& group : groups) enough = std::min(enough, group.enough(-most));
+      const double room = room_between_spheres(grid, p, enough, most, 0, [&](CellGrid<3>::Id j) {
+        return Nearby{boundary.minimum_image(spheres.center(j) - p).squaredNorm(), spheres.r[j]};
+      });
+      if (room <= enough) continue;
+      const double clearance = container.clearance_within(p, radii.front());
+      for (Group& group : groups) {
+        if (clearance < group.least_clearance || room <= group.enough(-most)) continue;
+        group.take({p, room, clearance});
+        break;
       }
-      group.best.push_back({p, room, clearance});
-      std::ranges::push_heap(group.best, roomier);
-      break;
     }
-  }
+  });
+  std::vector<Group>& groups = found.front();
+  for (std::size_t part = 1; part < parts; ++part)
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      for (const Hole& hole : found[part][g].best) groups[g].take(hole);
   std::vector<Hole> best;
   for (const Group& group : groups) best.insert(best.end(), group.best.begin(), group.best.end());
   std::ranges::sort(best, roomier);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 #include "bernal/cad/mesh_container.hpp"
@@ -116,6 +117,68 @@ TEST(SoftWalls, BetweenPlatesNearerThanADiameterPushToTheMiddle) {
   EXPECT_LT((spheres.center(0) - Vector<3>(0.4, 0.45, 0.075)).norm(), 1e-7);
 }
 
+// ---- planes in place of facets
+
+/// A sphere that moves by less than the leeway meets planes, which are tangent to all that it touches: they
+/// push as the facets do but for the square of the way, and never hide a wall that has come nearer.
+TEST(SoftWalls, AreAsGoodAsPlanesForAWhile) {
+  constexpr double r = 0.15, leeway = 0.02;
+  std::size_t touched = 0, corners = 0, otherwise = 0;
+  for (const Domain& shape : {Domain(Box{{0, 0, 0}, {1, 1, 1}}), Domain(Cylinder{{0, 0, 0}, {0, 0, 1}, 1, 2}),
+                              Domain(Sphere{{0, 0, 0}, 1}), Domain(cube_with_cubic_void()),
+                              Domain(test::l_shape_mesh()), Domain(test::divided(test::l_shape_mesh(), 2))}) {
+    const auto container = container_of(shape);
+    const Bounds<3> bounds = container->bounds();
+    const Vector<3> corner = bounds.lower - Vector<3>::Constant(0.5);
+    const Vector<3> unit = (bounds.size() + Vector<3>::Constant(1)) * 0x1p-32;
+    Random random(11, stream(Stream::test));
+    for (int trial = 0; trial < 400; ++trial) {
+      const Vector<3> from = uniform_point(random, bounds);
+      const double clearance = container->clearance(from);
+      if (clearance < 0.3 * r || clearance > 1.1 * r) continue;
+      const Vector<3> to = from + 0.99 * leeway * r * random.uniform() * uniform_direction<3>(random);
+      std::vector<SoftSphere> spheres(lanes + 1, {{0, 0, 0}, std::numeric_limits<float>::quiet_NaN()});
+      const std::vector<std::uint32_t> ids(lanes + 1, 0);
+      const auto put = [&](const Vector<3>& p) {
+        spheres[0].r = static_cast<float>(r);
+        for (int k = 0; k < 3; ++k)
+          spheres[0].x[k] =
+              static_cast<std::int32_t>(static_cast<std::uint32_t>((p[k] - corner[k]) / unit[k]));
+      };
+      const auto push = [&](SoftWalls& walls) {
+        WallPush out;
+        walls.push(0, spheres.data(), out);
+        return out;
+      };
+      SoftWalls walls(*container, corner, unit, 1), anew(*container, corner, unit, 1);
+      put(from);
+      walls.build(spheres, ids, 0.05f);
+      anew.build(spheres, ids, 0.05f);
+      if (!walls.near(0)) continue;
+      push(walls);
+      put(to);
+      anew.look_anew(true);
+      const WallPush planes = push(walls), facets = push(anew);
+      const double error = 3 * leeway * leeway * r;
+      const Vector<3> difference(planes.x[0] - facets.x[0], planes.y[0] - facets.y[0],
+                                 planes.z[0] - facets.z[0]);
+      touched += facets.contacts[0] > 0;
+      corners += facets.contacts[0] > 1;
+      if (planes.contacts[0] == facets.contacts[0]) {
+        EXPECT_LT(difference.norm(), leeway * r) << to.transpose();  // normals turn with the way
+        EXPECT_NEAR(planes.depth[0], facets.depth[0], error * facets.contacts[0]) << to.transpose();
+      } else {  // one that only just touches, or is just another patch
+        ++otherwise;
+      }
+      EXPECT_NEAR(planes.worst[0], facets.worst[0], error / r) << to.transpose();
+      EXPECT_LE(planes.free[0], container->clearance(to) + 1e-6 * r);
+    }
+  }
+  EXPECT_GT(touched, 400u);
+  EXPECT_GT(corners, 40u);
+  EXPECT_LT(otherwise, touched / 20);
+}
+
 // ---- where space repeats itself
 
 /// Two spheres that overlap each other across the seam of a column, and its wall: the one goes through the
@@ -215,7 +278,7 @@ TEST_P(EnclosedCrowd, NeverPassesAWall) {
   for (const double phi : {0.8, 2.5}) {
     const Spheres<3> start = crowd_in(*container, tested.r, tested.range, phi, 3);
     SoftPacking packing(start, *container, soft_kernels().front());
-    packing.wear_lists(1.6);  // as a crowd does
+    packing.wear_lists(3);  // as a crowd does
     for (int k = 1; k <= 200; ++k) {
       packing.sweep(5.4f);
       if (k > 10 && k % 50 != 0) continue;
