@@ -26,8 +26,12 @@ constexpr int most_slow_looks = 2;
 constexpr double progress = 0.9;
 /// Mean squeeze at which there are so many spheres too many that stirring is of no use.
 constexpr double hopeless = 0.02;
-/// The share of the spheres that is put elsewhere at a time.
+/// The share of the spheres that is put elsewhere at a time; in a container in mean squeezes, and at most;
+/// and there those alone whose sum is not less than so much of the largest: of very many spheres hardly any
+/// are stuck in the end, and whoever is put elsewhere needlessly is stuck there.
 constexpr double relocated = 0.002;
+constexpr double relocated_by_squeeze = 1, most_relocated = 0.03;
+constexpr float squeezed_as_well = 0.05f;
 /// Largest overlap ratio, in mean squeezes, above which it is only a few spheres that are stuck.
 constexpr double local_jam = 40;
 constexpr int burst_sweeps = 50;
@@ -144,13 +148,16 @@ StageEnd Crowd<Ground>::relax(const Stirring& how, const Monitor& monitor, Rando
     if (failures % how.failures_a_burst == 0 && !local)
       burst();
     else
-      relocate(relocated, random);
+      relocate(Ground::crowds_wear_lists ? std::min(relocated_by_squeeze * mean_squeeze_, most_relocated)
+                                         : relocated,
+               random);
   }
 }
 
 template <class Ground>
 void Crowd<Ground>::burst() {
   ground_.swell(Ground::burst_swelling);
+  if (Ground::crowds_wear_lists) ground_.engine().wear_lists(wear_of_crowd);
   for (int k = 0; k < burst_sweeps; ++k) ground_.engine().sweep(pace_for(0).omega * D / 3);
   sweeps_ += burst_sweeps;
   ground_.swell(1);
@@ -171,7 +178,12 @@ std::vector<std::uint32_t> Crowd<Ground>::most_squeezed(std::size_t count) const
 
 template <class Ground>
 void Crowd<Ground>::relocate(double share, Random& random) {
-  const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(size())));
+  auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(size())));
+  if (Ground::crowds_wear_lists) {
+    const float least = squeezed_as_well * *std::ranges::max_element(squeeze_);
+    count = std::min(count, static_cast<std::size_t>(
+                                std::ranges::count_if(squeeze_, [&](float s) { return s >= least; })));
+  }
   ground_.read_places(spheres_);
   ground_.move_to_holes(spheres_, most_squeezed(std::max(count, severe_)), random);
 }

@@ -26,7 +26,7 @@ class ContainerGround {
   static constexpr double burst_swelling = 1.02;
   /// So many spheres are never moved to holes, however squeezed they are.
   static constexpr std::size_t always_stay = 0;
-  /// Lists may be worn further while spheres are crowded.
+  /// Lists may be worn further while spheres are crowded, and as many are put into holes as are stuck.
   static constexpr bool crowds_wear_lists = true;
 
   /// Both outlive this.

@@ -56,6 +56,7 @@ SoftWalls::SoftWalls(const Container& container, const Vector<3>& corner, const 
       inset_(container.inset()),
       corner_(corner),
       unit_(unit),
+      float_unit_{static_cast<float>(unit[0]), static_cast<float>(unit[1]), static_cast<float>(unit[2])},
       resolution_(unit.maxCoeff()),
       views_(spheres) {}
 
@@ -172,7 +173,7 @@ void SoftWalls::join(const std::vector<Found>& found) {
 
 void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere, Found& found) const {
   const View& view = views_[id];
-  NearSphere near{.lane = lane,
+  NearSphere near{.lane = static_cast<std::uint16_t>(lane),
                   .id = id,
                   .first = static_cast<std::uint32_t>(found.until.size()),
                   .first_run = static_cast<std::uint32_t>(found.least_until.size()),
@@ -228,8 +229,7 @@ double SoftWalls::look_through(const NearSphere& near, double reach, std::vector
 /// Where there are too many there are none, and the sphere looks anew each time.
 void SoftWalls::take_for_planes(std::uint32_t n, double r, double reach, std::vector<WallContact>& contacts) {
   NearSphere& near = near_[n];
-  near.seen_from = near.last;
-  near.seen_to = contacts.size() <= most_planes ? reach : 0;
+  near.seen_to = contacts.size() <= most_planes ? static_cast<float>(reach) : 0;
   near.planes = 0;
   if (near.seen_to > 0) {
     Plane* planes = planes_.data() + most_planes * n;
@@ -256,41 +256,11 @@ void SoftWalls::take_for_planes(std::uint32_t n, double r, double reach, std::ve
   leave_distinct(contacts, r);
 }
 
-/// Appends the contacts of a sphere; returns a distance that no wall is nearer than.
+/// Looks at facets. Appends the contacts of a sphere; returns a distance that no wall is nearer than.
 double SoftWalls::touch(std::uint32_t n, double r, std::vector<WallContact>& contacts) {
-  NearSphere& near = near_[n];
-  if (!anew_ && near.seen_to > 0) {
-    const Vector<3> gone = way(near.seen_from, near.last);
-    const double length = gone.norm();
-    if (length <= leeway * r && length <= near.seen_to - r) {
-      const auto x = static_cast<float>(gone[0]), y = static_cast<float>(gone[1]),
-                 z = static_cast<float>(gone[2]);
-      const auto at = [&](const Plane& plane) {
-        return plane.distance + plane.normal[0] * x + plane.normal[1] * y + plane.normal[2] * z;
-      };
-      const Plane* plane = planes_.data() + most_planes * n;
-      for (const Plane* const end = plane + near.planes; plane < end;) {
-        // The edge of a face is as deep as the face to the first order of the way, but pushes askew.
-        const Plane* deepest = plane;
-        const auto as_deep = static_cast<float>(length * length) / plane->distance;
-        float least = at(*plane);
-        for (const std::uint32_t patch = plane->patch; plane < end && plane->patch == patch; ++plane) {
-          const float d = at(*plane);
-          if (d < least - as_deep) {
-            least = d;
-            deepest = plane;
-          }
-        }
-        if (least < static_cast<float>(r) && least > 0)
-          contacts.push_back({{deepest->normal[0], deepest->normal[1], deepest->normal[2]}, least});
-      }
-      return near.free - length;
-    }
-  }
-  const double reach = (1 + leeway) * r;
-  near.free = look_through(near, reach, contacts);
+  const double reach = (1 + leeway) * r, free = look_through(near_[n], reach, contacts);
   take_for_planes(n, r, reach, contacts);
-  return near.free;
+  return free;
 }
 
 /// The same of a sphere at a fine wall, where the container knows.
@@ -320,19 +290,76 @@ void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out
     out = ahead_[group];
 }
 
+SoftWalls::Step SoftWalls::step(const std::int32_t* from, const std::int32_t* to) const {
+  Step step;
+  for (std::size_t k = 0; k < 3; ++k)
+    step.x[k] =
+        float_unit_[k] * static_cast<float>(static_cast<std::int32_t>(static_cast<std::uint32_t>(to[k]) -
+                                                                      static_cast<std::uint32_t>(from[k])));
+  return step;
+}
+
+/// What a sphere touches that has not gone far since facets were looked at. Returns false, with nothing done,
+/// where that has to be done again.
+bool SoftWalls::push_by_planes(std::uint32_t n, const SoftSphere& sphere, WallPush& out) const {
+  const NearSphere& near = near_[n];
+  const auto r = static_cast<float>(radius_at_wall(sphere));
+  const Step gone = step(near.seen_from.data(), sphere.x);
+  const float squared = gone.squared(), alone = near.free - r;  // there is no contact as far as that
+  const std::uint16_t l = near.lane;
+  if (alone > 0 && squared < alone * alone) {
+    out.free[l] = near.free - std::sqrt(squared);
+    return true;
+  }
+  const float farthest = std::min(static_cast<float>(leeway) * r, near.seen_to - r);
+  if (!(farthest > 0 && squared <= farthest * farthest)) return false;
+  out.free[l] = near.free - std::sqrt(squared);
+  const auto at = [&](const Plane& plane) {
+    return plane.distance +
+           (plane.normal[0] * gone.x[0] + plane.normal[1] * gone.x[1] + plane.normal[2] * gone.x[2]);
+  };
+  const Plane* plane = planes_.data() + most_planes * n;
+  for (const Plane* const end = plane + near.planes; plane < end;) {
+    // The edge of a face is as deep as the face to the first order of the way, but pushes askew.
+    const Plane* deepest = plane;
+    const float as_deep = squared / plane->distance;
+    float least = at(*plane);
+    for (const std::uint32_t patch = plane->patch; plane < end && plane->patch == patch; ++plane) {
+      const float d = at(*plane);
+      if (d < least - as_deep) {
+        least = d;
+        deepest = plane;
+      }
+    }
+    if (!(least < r && least > 0)) continue;
+    const float depth = r - least, ratio = depth / r;
+    out.x[l] += depth * deepest->normal[0];
+    out.y[l] += depth * deepest->normal[1];
+    out.z[l] += depth * deepest->normal[2];
+    out.squares[l] += ratio * ratio;
+    out.depth[l] += depth;
+    out.worst[l] = std::max(out.worst[l], ratio);
+    ++out.contacts[l];
+  }
+  return true;
+}
+
 void SoftWalls::work_out(std::size_t group, const SoftSphere* spheres, WallPush& out) {
   out = {};
   std::copy(spheres, spheres + lanes, out.before.begin());
   thread_local std::vector<WallContact> contacts;
   for (std::uint32_t n = first_[group]; n < first_[group + 1]; ++n) {
     NearSphere& near = near_[n];
-    const std::uint32_t l = near.lane;
+    const std::uint16_t l = near.lane;
+    if (!anew_ && push_by_planes(n, spheres[l], out)) continue;
     const Vector<3> c = place(spheres[l]);
     const double r = radius_at_wall(spheres[l]);
     near.way += way(near.last, c).norm();
     near.last = c;
+    std::copy(spheres[l].x, spheres[l].x + 3, near.seen_from.begin());
     contacts.clear();
     out.free[l] = near.count == 0 && views_[near.id].is_fine ? ask(near, r, contacts) : touch(n, r, contacts);
+    near.free = static_cast<float>(out.free[l]);
     Vector<3> sum = Vector<3>::Zero();
     for (const WallContact& contact : contacts) {
       const double depth = r - contact.distance, ratio = depth / r;
@@ -353,23 +380,25 @@ void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spher
     const NearSphere& near = near_[n];
     SoftSphere& now = spheres[near.lane];
     const SoftSphere& before = push.before[near.lane];
-    const Vector<3> move = way_between(before, now);
+    const auto enough = static_cast<float>((1 - kept) * push.free[near.lane]);
+    if (enough > 0 && step(before.x, now.x).squared() <= enough * enough) continue;
+    const Vector<3> move = way_between(before, now), c = place(before);
     const double length = move.norm();
-    if (length <= (1 - kept) * push.free[near.lane]) continue;
-    const Vector<3>& c = near.last;
+    if (!(length > 0)) continue;
     if (views_[near.id].is_fine) {
       const double free = container_.first_contact(c, 0, move / length, length);
       if (free < length) shorten(now, before, (1 - kept) * free / length);
       continue;
     }
+    const double gone = near.way + way(near.last, c).norm();
     const std::vector<Piece>& pieces = views_[near.id].pieces;
-    double share = std::min(1.0, (1 - kept) * std::max(0.0, near.beyond - near.way) / length);
+    double share = std::min(1.0, (1 - kept) * std::max(0.0, near.beyond - gone) / length);
     for (std::uint32_t k = 0; k < near.count && share > 0; ++k) {
-      if (k % run == 0 && (1 - kept) * (least_until_[near.first_run + k / run] - near.way) > length) {
+      if (k % run == 0 && (1 - kept) * (least_until_[near.first_run + k / run] - gone) > length) {
         k += run - 1;
         continue;
       }
-      if ((1 - kept) * (until_[near.first + k] - near.way) > length) continue;
+      if ((1 - kept) * (until_[near.first + k] - gone) > length) continue;
       const Vector<3> away = offset(pieces[k].facet, c);
       const double d = away.norm();
       if (!(d > 0)) {

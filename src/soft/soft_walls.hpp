@@ -89,24 +89,29 @@ class SoftWalls {
     std::vector<Piece> pieces;  // nearest first
     void archive(Archive& a) { a(at, clearance, reach, is_fine, pieces); }
   };
-  /// A sphere that may meet a wall until lists are built anew: what a sweep touches, in its order.
+  /// A sphere that may meet a wall until lists are built anew: what a sweep touches, in its order. The first
+  /// four members are all that most sweeps look at.
   struct NearSphere {
-    std::uint32_t lane = 0, id = 0;
-    std::uint32_t first = 0, first_run = 0,
-                  count = 0;                  // its pieces, the first `count` of its view, in until_
-    std::uint32_t planes = 0;                 // of `most_planes`
-    Vector<3> last = Vector<3>::Zero();       // where it was pushed last
-    double way = 0;                           // gone since the lists were built
-    double beyond = 0;                        // no other piece is nearer to it than this less `way`
-    Vector<3> seen_from = Vector<3>::Zero();  // where what it touches was looked at last
-    double seen_to = 0;  // the planes of all that is nearer to that are known; 0: of none
-    double free = 0;     // from there
+    std::array<std::int32_t, 3> seen_from{};  // where it was when facets were looked at last
+    float seen_to = 0;                        // the planes of all nearer than that are known; 0: of none
+    float free = 0;                           // no wall is nearer, from there
+    std::uint16_t lane = 0, planes = 0;       // of `most_planes`
+    std::uint32_t id = 0, first = 0, first_run = 0,
+                  count = 0;             // its pieces, the first `count` of its view, in until_
+    Vector<3> last = Vector<3>::Zero();  // the place `seen_from`
+    double way = 0;                      // gone to there since the lists were built, or more
+    double beyond = 0;                   // no other piece is nearer to it than this less the way
   };
   /// What a sphere may touch, as seen from there. Those of one patch come one after the other.
   struct Plane {
     std::array<float, 3> normal;
     float distance;
     std::uint32_t patch;
+  };
+  /// How far a sphere has gone, in single precision.
+  struct Step {
+    std::array<float, 3> x;
+    float squared() const { return x[0] * x[0] + x[1] * x[1] + x[2] * x[2]; }
   };
   static constexpr std::uint32_t most_planes = 8;
   /// What a task of `build` finds.
@@ -131,7 +136,9 @@ class SoftWalls {
   void stop_stray(SoftSphere& sphere, const SoftSphere& built_at, const View&) const;
   void add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere, Found& found) const;
   void join(const std::vector<Found>& found);
+  Step step(const std::int32_t* from, const std::int32_t* to) const;
   void work_out(std::size_t group, const SoftSphere* spheres, WallPush& out);
+  bool push_by_planes(std::uint32_t n, const SoftSphere& sphere, WallPush& out) const;
   double touch(std::uint32_t n, double r, std::vector<WallContact>& contacts);
   void take_for_planes(std::uint32_t n, double r, double reach, std::vector<WallContact>& contacts);
   double look_through(const NearSphere&, double reach, std::vector<WallContact>& contacts);
@@ -143,6 +150,7 @@ class SoftWalls {
   const bool repeats_;  // along some axis
   const double inset_;
   Vector<3> corner_, unit_;
+  std::array<float, 3> float_unit_;
   double resolution_;
   double skin_ = 0;
   std::vector<View> views_;           // by id

@@ -1,5 +1,6 @@
 #include "work/bed.hpp"
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -117,6 +118,32 @@ void Bed::insert(const Vector<3>& place, double r, std::uint32_t tag) {
   far_from_wall_at_.push_back(c);
   sum_of_radii_ += r;
   sum_of_volumes_ += ball_volume(dimension(), r);
+}
+
+bool Bed::insert_if_all_fit(const Spheres<3>& spheres) {
+  if (exact_walls()) return false;
+  std::atomic<bool> all_fit = true;
+  const auto ask_all = [&](const auto& fits) {
+    parallel_ranges(spheres.size(), block_size, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last && all_fit; ++i)
+        if (!fits(i)) all_fit = false;
+    });
+    return all_fit.load();
+  };
+  if (!ask_all([&](std::size_t i) { return container_.contains(spheres.center(i), spheres.r[i] + skin_); }))
+    return false;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    insert(spheres.center(i), spheres.r[i], static_cast<std::uint32_t>(i));
+  const auto fits_between = [&](std::size_t i) {
+    const Vector<3> c = spheres.center(i);
+    return !grid_.any_near(c, spheres.r[i] + skin_, [&](Id j) {
+      const double s = spheres.r[i] + balls_[j].r + skin_;
+      return j < i && way(c, balls_[j].center).squaredNorm() < s * s;
+    });
+  };
+  if (ask_all(fits_between)) return true;
+  remove_tags_from(0);
+  return false;
 }
 
 void Bed::remove_tags_from(std::uint32_t first) {

@@ -87,6 +87,10 @@ class Bed {
   /// Adds a sphere that fits. `tag` is the caller's name for it: its place in the drawn sequence.
   void insert(const Vector<3>& c, double r, std::uint32_t tag);
 
+  /// Adds them all to an empty bed, tags 0, 1, …, if each fits between walls and those before it. Returns
+  /// whether they do; where not, or where walls decide exactly, the bed stays empty. Parallel.
+  bool insert_if_all_fit(const Spheres<3>& spheres);
+
   /// Removes all spheres whose tag is `first` or greater.
   void remove_tags_from(std::uint32_t first);
 

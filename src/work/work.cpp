@@ -79,7 +79,11 @@ bool Work::fits_in_bed(const Vector<3>& place, double r) const {
 
 bool Work::put_in_bed(const Spheres<3>& first) {
   bed().remove_tags_from(0);
-  std::vector<bool> fits(first.size());
+  std::vector<bool> fits(first.size(), true);
+  if (bed().insert_if_all_fit(first)) {
+    supply->set_placed(fits);
+    return true;
+  }
   for (std::size_t i = 0; i < first.size(); ++i) {
     fits[i] = fits_in_bed(first.center(i), first.r[i]);
     if (fits[i]) bed().insert(first.center(i), first.r[i], static_cast<std::uint32_t>(i));
