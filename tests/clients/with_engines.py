@@ -61,7 +61,7 @@ SHAPES = {
     "cylinder of LIGGGHTS": ('kind = "cylinder"\nradius = 8\nheight = 20\naxis = [0, 1, 0]', "liggghts"),
     "periodic box of LIGGGHTS": ('kind = "periodic"\nedge = 16', "liggghts"),
 }
-WIDE = 'diameter = { distribution = "lognormal", median = 1.2, sigma = 0.5 }'
+WIDE = 'diameter = { distribution = "lognormal", median = 1.2, sigma = 0.3 }'
 
 
 def shapes(folder):
