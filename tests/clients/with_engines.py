@@ -55,7 +55,7 @@ def one_seed(folder):
 
 SHAPES = {
     "sphere": ('kind = "sphere"\nradius = 10\ncenter = [5, -3, 1]', "lammps"),
-    "column": ('kind = "cylinder"\nradius = 8\nheight = 20\nperiodic = true', "lammps"),
+    "column": ('kind = "cylinder"\nradius = 8\nheight = 50\nperiodic = true', "lammps"),
     "between walls": ('kind = "periodic"\nsize = [15, 16, 17]\nwalls = [1]', "lammps"),
     "box of LIGGGHTS": ('kind = "box"\nsize = [15, 16, 17]', "liggghts"),
     "cylinder of LIGGGHTS": ('kind = "cylinder"\nradius = 8\nheight = 20\naxis = [0, 1, 0]', "liggghts"),
