@@ -55,13 +55,13 @@ def one_seed(folder):
 
 SHAPES = {
     "sphere": ('kind = "sphere"\nradius = 10\ncenter = [5, -3, 1]', "lammps"),
-    "column": ('kind = "cylinder"\nradius = 8\nheight = 50\nperiodic = true', "lammps"),
+    "column": ('kind = "cylinder"\nradius = 8\nheight = 20\nperiodic = true', "lammps"),
     "between walls": ('kind = "periodic"\nsize = [15, 16, 17]\nwalls = [1]', "lammps"),
     "box of LIGGGHTS": ('kind = "box"\nsize = [15, 16, 17]', "liggghts"),
     "cylinder of LIGGGHTS": ('kind = "cylinder"\nradius = 8\nheight = 20\naxis = [0, 1, 0]', "liggghts"),
     "periodic box of LIGGGHTS": ('kind = "periodic"\nedge = 16', "liggghts"),
 }
-WIDE = 'diameter = { distribution = "lognormal", median = 1.2, sigma = 0.3 }'
+WIDE = 'diameter = { distribution = "lognormal", median = 1.2, sigma = 0.5, max = 4.5 }'
 
 
 def shapes(folder):
