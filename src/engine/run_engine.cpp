@@ -150,9 +150,13 @@ class EngineRun {
     write_text(folder_.file(mark_name), mark_);
   }
 
-  /// The first line of the script is one that only bernal writes.
+  /// The first line of a script, of either engine, is one that only bernal writes.
   bool is_ours() const {
-    return folder_.has(mark_name) || bytes_of_file(folder_.file(dialect_.script)).starts_with(script_mark);
+    const auto has_script_of = [&](const Dialect& dialect) {
+      return bytes_of_file(folder_.file(dialect.script)).starts_with(script_mark);
+    };
+    return folder_.has(mark_name) || has_script_of(dialect_of(Lammps{})) ||
+           has_script_of(dialect_of(Liggghts{}));
   }
 
   /// A job of this input that has begun is left alone.

@@ -234,6 +234,13 @@ TEST_F(EngineOfScripts, MustFindEachOther) {
   EXPECT_TRUE(holds(error_of(scene), "did not find each other"));
 }
 
+TEST_F(EngineOfScripts, TakeTheFolderOfTheOther) {
+  packed(in_periodic_box + engine(idle_engine));
+  std::string scene = in_periodic_box + engine("#!/bin/bash\nexit 5\n");
+  scene.replace(scene.find("lammps"), 6, "liggghts");
+  EXPECT_TRUE(holds(error_of(scene), "LIGGGHTS ended with exit code 5"));
+}
+
 TEST_F(EngineOfScripts, LeaveTheFilesOfOthersAlone) {
   fs::create_directory(folder / "engine");
   folder.write("engine/spheres.data", "mine");
