@@ -27,8 +27,9 @@ void expect_isostatic(const Packing& packing) {
   ASSERT_TRUE(contacts.isostatic.has_value());
   EXPECT_GT(2 * contacts.backbone, packing.spheres.size());
   EXPECT_GT(contacts.backbone_walls, 0u);
+  // Equal spheres lie in layers at walls, which closes some contacts more: 0 to 10 of 609 in twenty packings.
   const auto isostatic = static_cast<double>(*contacts.isostatic);
-  EXPECT_NEAR(static_cast<double>(contacts.backbone_contacts()), isostatic, 0.01 * isostatic + 1);
+  EXPECT_NEAR(static_cast<double>(contacts.backbone_contacts()), isostatic, 0.02 * isostatic + 1);
   EXPECT_NE(packing.size_scale, 1);
   EXPECT_NEAR(packing.size_scale, 1, 0.03);
   for (const double r : packing.spheres.r) EXPECT_NEAR(r / (0.5 * packing.size_scale), 1, 1e-14);
