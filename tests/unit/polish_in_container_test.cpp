@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
@@ -11,36 +15,48 @@
 namespace bernal {
 namespace polish_in_container_test {
 
-Packing polished(const std::string& container, const std::string& stage = "do = \"relax\"\n") {
+Packing polished(const std::string& container, const std::string& stage = "do = \"relax\"\n",
+                 std::uint64_t seed = 1) {
   RunOptions options;
   options.threads = 1;
+  options.seed = seed;
   return run(testing::plan_of("unit = \"cm\"\n[container]\n" + container +
                               "[spheres]\nradius = 0.5\n[[stage]]\n" + stage + "polish = 1e-8\n"),
              options);
 }
 
-void expect_isostatic(const Packing& packing) {
+/// Checks all that polishing promises but the number of contacts; returns what that is above the isostatic
+/// one, over a hundredth of it and one.
+double excess_of(const Packing& packing) {
   EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
   const Certificate certificate = certify(packing.spheres, packing.domain);
   EXPECT_TRUE(certificate.certified) << certificate.statement;
   const Contacts contacts = measure_contacts(packing, 1e-8);
-  ASSERT_TRUE(contacts.isostatic.has_value());
+  EXPECT_TRUE(contacts.isostatic.has_value());
   EXPECT_GT(2 * contacts.backbone, packing.spheres.size());
   EXPECT_GT(contacts.backbone_walls, 0u);
-  // Equal spheres lie in layers at walls, which closes some contacts more: 0 to 10 of 609 in twenty packings.
-  const auto isostatic = static_cast<double>(*contacts.isostatic);
-  EXPECT_NEAR(static_cast<double>(contacts.backbone_contacts()), isostatic, 0.02 * isostatic + 1);
   EXPECT_NE(packing.size_scale, 1);
   EXPECT_NEAR(packing.size_scale, 1, 0.03);
   for (const double r : packing.spheres.r) EXPECT_NEAR(r / (0.5 * packing.size_scale), 1, 1e-14);
+  const auto isostatic = static_cast<double>(contacts.isostatic.value_or(0));
+  const double excess = static_cast<double>(contacts.backbone_contacts()) - isostatic;
+  return excess / (0.01 * isostatic + 1);
 }
+
+void expect_isostatic(const Packing& packing) { EXPECT_LE(std::abs(excess_of(packing)), 1); }
 
 TEST(PolishInContainer, LeavesABoxIsostatic) {
   expect_isostatic(polished("kind = \"box\"\nsize = [6.0, 6.0, 6.0]\n"));
 }
 
 TEST(PolishInContainer, LeavesACylinderIsostatic) {
-  expect_isostatic(polished("kind = \"cylinder\"\nradius = 3.0\nheight = 7.0\n"));
+  // Equal spheres lie in layers at a round wall, which closes some contacts more: 0 to 10 of 609 by seed.
+  std::array<double, 3> excess;
+  for (std::size_t k = 0; k < excess.size(); ++k)
+    excess[k] = std::abs(
+        excess_of(polished("kind = \"cylinder\"\nradius = 3.0\nheight = 7.0\n", "do = \"relax\"\n", k + 1)));
+  std::ranges::sort(excess);
+  EXPECT_LE(excess[1], 1);
 }
 
 TEST(PolishInContainer, LeavesAnEndlessColumnIsostatic) {

@@ -33,10 +33,10 @@ struct FigureOptions {
 };
 
 /// Computes a figure and writes NAME.svg and NAME.csv (table1: the CSV alone; fig4: those of table2; fig2soft
-/// a page NAME.md too, packs by LAMMPS and throws EngineError without), or for a paper NAME.md, a page that puts printed and
-/// own values side by side, and the CSV and SVG files that it names, into `folder`, all or none. Returns the
-/// files; none where the monitor stopped it. Nothing in them depends on the number of threads but times.
-/// Throws Error{bad_argument} for another name or number of spheres, Error{cannot_write}.
+/// a page NAME.md too, packs by LAMMPS and throws EngineError without), or for a paper NAME.md, a page that
+/// puts printed and own values side by side, and the CSV and SVG files that it names, into `folder`, all or
+/// none. Returns the files; none where the monitor stopped it. Nothing in them depends on the number of
+/// threads but times. Throws Error{bad_argument} for another name or number of spheres, Error{cannot_write}.
 std::vector<std::filesystem::path> write_figure(std::string_view name, const std::filesystem::path& folder,
                                                 const FigureOptions& options = {});
 

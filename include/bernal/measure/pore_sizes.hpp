@@ -40,10 +40,10 @@ struct PoreOptions {
   double bin = 0.01;  ///< mean diameters; wider where the largest distance is more than a hundred bins
 };
 
-/// Absent without spheres or points, and between walls in other dimensions than two and three. The same points for the
-/// same domain, and the same bits for any number of threads. Cost: about 1 µs a point, and 0.5 µs a sphere
-/// for a tree. `made`: see `local_container`. Precondition: options positive. Source: Torquato, Random
-/// Heterogeneous Materials (2002), section 2.6, where d is called δ.
+/// Absent without spheres or points, and between walls in other dimensions than two and three. The same
+/// points for the same domain, and the same bits for any number of threads. Cost: about 1 µs a point, and 0.5
+/// µs a sphere for a tree. `made`: see `local_container`. Precondition: options positive. Source: Torquato,
+/// Random Heterogeneous Materials (2002), section 2.6, where d is called δ.
 std::optional<PoreSizes> pore_sizes(const Spheres<dynamic>&, const Domain&, const PoreOptions& = {},
                                     const std::shared_ptr<const Container>& made = {});
 
