@@ -12,10 +12,9 @@ namespace {
 
 /// Of the margin, what single precision leaves to rely on.
 constexpr double share_of_margin = 0.97;
-/// Of the lists while spheres overlap by this and more, in a container: there are always a few that are
-/// squeezed out of where they are, and for their sake lists would be built in every other sweep. As the walls
-/// know by themselves who has come near, a neighbour that is missed is one that overlaps for so much longer.
-/// N = 50,000 in a CAD part: 125 lists in place of 258.
+/// Of the lists while spheres overlap by this and more, in a container: as the walls know by themselves who
+/// has come near, a neighbour that is missed is one that overlaps for so much longer. N = 300,000 in a CAD
+/// part, by how far most spheres have moved: 28 lists in place of 41, and of 107 in another.
 constexpr double crowded = 0.06, wear_of_crowd = 3;
 /// After so many sweeps it is looked at how far things are.
 constexpr int sweeps_a_look = 25;

@@ -15,8 +15,9 @@ namespace {
 
 /// Of margins.
 constexpr double largest_margin = 0.01;
-/// Random places that are looked at for each sphere to find holes.
-constexpr double probes_a_sphere = 2, least_probes = 1000;
+/// Random places that are looked at to find holes: so many for each sphere that there is, or for each hole
+/// where that is less, and a few more.
+constexpr double probes_a_sphere = 2, probes_a_hole = 1000, least_probes = 1000;
 
 /// A hundred times the resolution of the coordinates at least, that in smallest radii.
 double margin_for(double resolution) { return std::max(1e-4, 100 * resolution); }
@@ -59,8 +60,9 @@ void ContainerGround::move_to_holes(Spheres<3>& spheres, std::vector<std::uint32
 
 std::vector<Vector<3>> ContainerGround::holes_for(std::span<const double> radii, const Spheres<3>& spheres,
                                                   Random& random) const {
-  const auto probes =
-      static_cast<std::size_t>(least_probes + probes_a_sphere * static_cast<double>(spheres.size()));
+  const auto probes = static_cast<std::size_t>(
+      least_probes + std::min(probes_a_sphere * static_cast<double>(spheres.size()),
+                              probes_a_hole * static_cast<double>(radii.size())));
   std::vector<Vector<3>> places;
   for (const Hole& hole : bernal::holes_for(radii, *container_, *places_, spheres, probes, random))
     places.push_back(hole.place);

@@ -204,7 +204,6 @@ SoftPacking::Moves SoftPacking::farthest_moves() const {
     parallel_for(squares.size(), look_at);
   }
   const double all = std::sqrt(std::ranges::max(squares));
-  if (walls_) return {all, all};
   const auto parts = static_cast<double>(squares.size());
   const auto nth = squares.begin() + static_cast<std::ptrdiff_t>(std::min(parts - 1, most * parts));
   std::ranges::nth_element(squares, nth);

@@ -23,21 +23,6 @@ constexpr std::size_t groups_a_task = 64;
 /// In radii, see SoftWalls.
 constexpr double leeway = 0.02;
 
-/// p minus the nearest point of the facet; for a facet of an analytic container p is on its inner side.
-Vector<3> offset(const std::variant<Facet, PreparedTriangle>& piece, const Vector<3>& p) {
-  if (const auto* triangle = std::get_if<PreparedTriangle>(&piece)) return triangle->offset(p);
-  return p - closest_point(std::get<Facet>(piece), p);
-}
-
-/// A lower bound of the distance from the facet after a straight move by `move` from p, whose offset is
-/// `from`: concave along the way for the curved walls, whose inside is convex; for a triangle the distance
-/// from the plane through its nearest point, which has all of it behind.
-double distance_after(const std::variant<Facet, PreparedTriangle>& piece, const Vector<3>& p,
-                      const Vector<3>& from, double distance_before, const Vector<3>& move) {
-  if (const auto* facet = std::get_if<Facet>(&piece)) return distance(*facet, p + move);
-  return distance_before + move.dot(from) / distance_before;
-}
-
 /// Takes back all but a share of the way.
 void shorten(SoftSphere& to, const SoftSphere& from, double share) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -58,6 +43,7 @@ SoftWalls::SoftWalls(const Container& container, const Vector<3>& corner, const 
       unit_(unit),
       float_unit_{static_cast<float>(unit[0]), static_cast<float>(unit[1]), static_cast<float>(unit[2])},
       resolution_(unit.maxCoeff()),
+      stands_(spheres),
       views_(spheres) {}
 
 Vector<3> SoftWalls::place(const SoftSphere& s) const {
@@ -80,45 +66,45 @@ void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<
       for (std::uint32_t n = first_[g]; n < first_[g + 1]; ++n) is_near[near_[n].lane] = true;
       for (std::size_t l = 0; l < lanes; ++l) {
         const std::size_t p = lanes * g + l;
-        if (spheres[p].r > 0 && !is_near[l]) stop_stray(spheres[p], built_at[p], views_[ids[p]]);
+        if (spheres[p].r > 0 && !is_near[l]) stop_stray(spheres[p], built_at[p], stands_[ids[p]]);
       }
     }
   });
 }
 
-void SoftWalls::stop_stray(SoftSphere& sphere, const SoftSphere& built_at, const View& view) const {
+void SoftWalls::stop_stray(SoftSphere& sphere, const SoftSphere& built_at, const Stand& stand) const {
+  // Then it was not near, and no farther than that it has not come through.
+  constexpr double surely = 0.999;
+  const auto near = static_cast<float>(surely * (radius_at_wall(built_at) + skin_));
+  if (step(built_at.x, sphere.x).squared() < near * near) return;
   const Vector<3> from = place(built_at);
   const Vector<3> move = way_between(built_at, sphere);
   const double length = move.norm();
   if (!(length > 0)) return;
-  if (length < view.clearance - way(view.at, from).norm()) return;
+  if (length < stand.clearance - way(stand.at, from).norm()) return;
   const double free = container_.first_contact(from, 0, move / length, length);
   if (free < length) shorten(sphere, built_at, (1 - kept) * free / length);
 }
 
 /// Whether a wall is nearer to the centre than r + skin; the view then knows all that is.
-bool SoftWalls::look(const Vector<3>& at, double r, double skin, View& view) const {
-  const double near = r + skin, moved = way(view.at, at).norm();
-  if (view.clearance - moved >= near) return false;
+bool SoftWalls::look(const Vector<3>& at, double r, double skin, std::uint32_t id) {
+  Stand& stand = stands_[id];
+  const double near = r + skin, moved = way(stand.at, at).norm();
+  if (stand.clearance - moved >= near) return false;
+  View& view = views_[id];
   if (view.reach - moved >= near)
-    return (view.is_fine ? view.clearance : view.pieces.front().distance) - moved < near;
-  view.at = at;
+    return (view.is_fine ? stand.clearance : view.pieces.front().distance) - moved < near;
   view.pieces.clear();
   view.is_fine = false;
   view.reach = 0;
-  view.clearance = container_.clearance_within(at, near + far_reach * skin - inset_) + inset_;
-  if (view.clearance >= near) return false;
+  stand = {at, container_.clearance_within(at, near + far_reach * skin - inset_) + inset_};
+  if (stand.clearance >= near) return false;
   std::vector<NearFacet> facets;
   view.reach = near + skin;
   view.is_fine = !container_.few_facets_near(at, view.reach - inset_, most_pieces, facets);
   if (view.is_fine) return true;
   view.pieces.reserve(facets.size());
-  for (const NearFacet& f : facets) {
-    if (f.facet.kind == Facet::Kind::triangle)
-      view.pieces.push_back({f.distance + inset_, PreparedTriangle(f.facet.a, f.facet.b, f.facet.c)});
-    else
-      view.pieces.push_back({f.distance + inset_, f.facet});
-  }
+  for (const NearFacet& f : facets) view.pieces.push_back({f.distance + inset_, facets_.number_of(f.facet)});
   return !view.pieces.empty();
 }
 
@@ -133,7 +119,7 @@ void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<
       for (std::uint32_t l = 0; l < lanes; ++l) {
         const SoftSphere& s = spheres[g * lanes + l];
         const std::uint32_t id = ids[g * lanes + l];
-        if (s.r > 0 && look(place(s), radius_at_wall(s), skin, views_[id])) add_near(l, id, s, found[b]);
+        if (s.r > 0 && look(place(s), radius_at_wall(s), skin, id)) add_near(l, id, s, found[b]);
       }
       first_[g + 1] = static_cast<std::uint32_t>(found[b].near.size());
     }
@@ -174,13 +160,14 @@ void SoftWalls::join(const std::vector<Found>& found) {
 void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere, Found& found) const {
   const View& view = views_[id];
   NearSphere near{.lane = static_cast<std::uint16_t>(lane),
+                  .is_fine = view.is_fine,
                   .id = id,
                   .first = static_cast<std::uint32_t>(found.until.size()),
                   .first_run = static_cast<std::uint32_t>(found.least_until.size()),
                   .last = place(sphere)};
   found.has_fine |= view.is_fine;
-  const double moved = way(view.at, near.last).norm();
-  near.beyond = (view.is_fine ? view.clearance : view.reach) - moved;
+  const double moved = way(stands_[id].at, near.last).norm();
+  near.beyond = (view.is_fine ? stands_[id].clearance : view.reach) - moved;
   for (const Piece& piece : view.pieces) {
     if (piece.distance - moved >= radius_at_wall(sphere) + skin_) {
       near.beyond = piece.distance - moved;
@@ -188,7 +175,7 @@ void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere&
     }
     // Pieces come nearest first.
     if (near.count % run == 0) found.least_until.push_back(static_cast<float>(piece.distance - moved));
-    found.until.push_back(static_cast<float>(piece.distance - moved));
+    found.until.push_back({static_cast<float>(piece.distance - moved), piece.facet});
     ++near.count;
   }
   found.near.push_back(near);
@@ -197,7 +184,6 @@ void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere&
 /// Appends what is nearer than `reach` among the pieces of a sphere; returns a distance that no wall is
 /// nearer than.
 double SoftWalls::look_through(const NearSphere& near, double reach, std::vector<WallContact>& contacts) {
-  const std::vector<Piece>& pieces = views_[near.id].pieces;
   double free = near.beyond - near.way;
   for (std::uint32_t first = 0; first < near.count; first += run) {
     float& least = least_until_[near.first_run + first / run];
@@ -207,12 +193,12 @@ double SoftWalls::look_through(const NearSphere& near, double reach, std::vector
     }
     const std::uint32_t end = std::min(near.count, first + run);
     for (std::uint32_t k = first; k < end; ++k) {
-      float& until = until_[near.first + k];
+      auto& [until, facet] = until_[near.first + k];
       if (until - near.way >= reach) {
         free = std::min(free, until - near.way);
         continue;
       }
-      const Vector<3> away = offset(pieces[k].facet, near.last);
+      const Vector<3> away = facets_.offset(facet, near.last);
       const double d = away.norm();
       until = static_cast<float>(d + near.way);
       free = std::min(free, d);
@@ -220,7 +206,8 @@ double SoftWalls::look_through(const NearSphere& near, double reach, std::vector
       if (contacts.size() == most_contacts) leave_distinct(contacts, reach);
       if (contacts.size() < most_contacts) contacts.push_back({away / d, d});
     }
-    least = *std::min_element(until_.begin() + near.first + first, until_.begin() + near.first + end);
+    least = std::numeric_limits<float>::infinity();
+    for (std::uint32_t k = first; k < end; ++k) least = std::min(least, until_[near.first + k].until);
   }
   return free;
 }
@@ -358,7 +345,7 @@ void SoftWalls::work_out(std::size_t group, const SoftSphere* spheres, WallPush&
     near.last = c;
     std::copy(spheres[l].x, spheres[l].x + 3, near.seen_from.begin());
     contacts.clear();
-    out.free[l] = near.count == 0 && views_[near.id].is_fine ? ask(near, r, contacts) : touch(n, r, contacts);
+    out.free[l] = near.is_fine ? ask(near, r, contacts) : touch(n, r, contacts);
     near.free = static_cast<float>(out.free[l]);
     Vector<3> sum = Vector<3>::Zero();
     for (const WallContact& contact : contacts) {
@@ -385,27 +372,27 @@ void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spher
     const Vector<3> move = way_between(before, now), c = place(before);
     const double length = move.norm();
     if (!(length > 0)) continue;
-    if (views_[near.id].is_fine) {
+    if (near.is_fine) {
       const double free = container_.first_contact(c, 0, move / length, length);
       if (free < length) shorten(now, before, (1 - kept) * free / length);
       continue;
     }
     const double gone = near.way + way(near.last, c).norm();
-    const std::vector<Piece>& pieces = views_[near.id].pieces;
     double share = std::min(1.0, (1 - kept) * std::max(0.0, near.beyond - gone) / length);
     for (std::uint32_t k = 0; k < near.count && share > 0; ++k) {
       if (k % run == 0 && (1 - kept) * (least_until_[near.first_run + k / run] - gone) > length) {
         k += run - 1;
         continue;
       }
-      if ((1 - kept) * (until_[near.first + k] - gone) > length) continue;
-      const Vector<3> away = offset(pieces[k].facet, c);
+      const auto& [until, facet] = until_[near.first + k];
+      if ((1 - kept) * (until - gone) > length) continue;
+      const Vector<3> away = facets_.offset(facet, c);
       const double d = away.norm();
       if (!(d > 0)) {
         share = 0;
         break;
       }
-      const double after = distance_after(pieces[k].facet, c, away, d, move);
+      const double after = facets_.distance_after(facet, c, away, d, move);
       if (after >= d || (after >= kept * d && after >= units_kept * resolution_)) continue;
       share = std::min(share, d <= units_kept * resolution_ ? 0.0 : (1 - kept) * d / (d - after));
     }

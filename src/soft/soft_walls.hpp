@@ -1,13 +1,12 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <variant>
 #include <vector>
 
 #include "bernal/domain/container.hpp"
 #include "core/archive.hpp"
 #include "core/made.hpp"
-#include "kernels/closest_point.hpp"
+#include "soft/facet_table.hpp"
 #include "soft/soft_kernels.hpp"
 
 namespace bernal {
@@ -57,10 +56,15 @@ class SoftWalls {
   void build(const std::vector<SoftSphere>& spheres, const std::vector<std::uint32_t>& ids, float skin);
 
   /// Forgets what is known of a sphere that is about to be elsewhere.
-  void forget(std::uint32_t id) { views_[id] = {}; }
+  void forget(std::uint32_t id) {
+    stands_[id] = {};
+    views_[id] = {};
+  }
 
   /// Between two sweeps: all that it knows.
-  void archive(Archive& a) { a(skin_, views_, first_, near_, has_fine_, until_, least_until_, planes_); }
+  void archive(Archive& a) {
+    a(skin_, facets_, stands_, views_, first_, near_, has_fine_, until_, least_until_, planes_);
+  }
 
   /// For the sweep to come no plane stands for a facet, if `anew`.
   void look_anew(bool anew) { anew_ = anew; }
@@ -76,18 +80,27 @@ class SoftWalls {
 
  private:
   static constexpr std::uint32_t run = 32;  // pieces that share an entry of least_until_
-  struct Piece {
-    double distance;  // from View::at
-    std::variant<Facet, PreparedTriangle> facet;
-  };
-  /// What a sphere knows of the wall.
-  struct View {
+  /// Where a sphere stood when it looked for the wall, and how far from it, or a lower bound of that: all
+  /// that most spheres look at when lists are built.
+  struct Stand {
     Vector<3> at = Vector<3>::Zero();
-    double clearance = 0;       // of `at`, or a lower bound
-    double reach = 0;           // all pieces nearer than this to `at` are there
+    double clearance = 0;
+  };
+  struct Piece {
+    double distance;  // from Stand::at
+    FacetTable::Number facet;
+  };
+  /// What it saw from there.
+  struct View {
+    double reach = 0;           // all pieces nearer than this are there
     bool is_fine = false;       // too many for that: none is
     std::vector<Piece> pieces;  // nearest first
-    void archive(Archive& a) { a(at, clearance, reach, is_fine, pieces); }
+    void archive(Archive& a) { a(reach, is_fine, pieces); }
+  };
+  /// One that a sphere may meet, and no nearer to its centre than `until` less NearSphere::way.
+  struct NearPiece {
+    float until;
+    FacetTable::Number facet;
   };
   /// A sphere that may meet a wall until lists are built anew: what a sweep touches, in its order. The first
   /// four members are all that most sweeps look at.
@@ -95,7 +108,9 @@ class SoftWalls {
     std::array<std::int32_t, 3> seen_from{};  // where it was when facets were looked at last
     float seen_to = 0;                        // the planes of all nearer than that are known; 0: of none
     float free = 0;                           // no wall is nearer, from there
-    std::uint16_t lane = 0, planes = 0;       // of `most_planes`
+    std::uint16_t lane = 0;
+    std::uint8_t planes = 0;  // of `most_planes`
+    bool is_fine = false;     // there are too many pieces: it has none
     std::uint32_t id = 0, first = 0, first_run = 0,
                   count = 0;             // its pieces, the first `count` of its view, in until_
     Vector<3> last = Vector<3>::Zero();  // the place `seen_from`
@@ -120,7 +135,8 @@ class SoftWalls {
       std::size_t near = 0, until = 0, least_until = 0;
     };
     std::vector<NearSphere> near;
-    std::vector<float> until, least_until;
+    std::vector<NearPiece> until;
+    std::vector<float> least_until;
     bool has_fine = false;
   };
 
@@ -133,7 +149,7 @@ class SoftWalls {
     const Vector<3> direct = to - from;
     return repeats_ ? container_.boundary().minimum_image(direct) : direct;
   }
-  void stop_stray(SoftSphere& sphere, const SoftSphere& built_at, const View&) const;
+  void stop_stray(SoftSphere& sphere, const SoftSphere& built_at, const Stand&) const;
   void add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere& sphere, Found& found) const;
   void join(const std::vector<Found>& found);
   Step step(const std::int32_t* from, const std::int32_t* to) const;
@@ -143,7 +159,7 @@ class SoftWalls {
   void take_for_planes(std::uint32_t n, double r, double reach, std::vector<WallContact>& contacts);
   double look_through(const NearSphere&, double reach, std::vector<WallContact>& contacts);
   double ask(NearSphere&, double r, std::vector<WallContact>& contacts) const;
-  bool look(const Vector<3>& at, double r, double skin, View& view) const;
+  bool look(const Vector<3>& at, double r, double skin, std::uint32_t id);
 
   const Made made_{"walls"};
   const Container& container_;
@@ -153,6 +169,8 @@ class SoftWalls {
   std::array<float, 3> float_unit_;
   double resolution_;
   double skin_ = 0;
+  FacetTable facets_;
+  std::vector<Stand> stands_;         // by id
   std::vector<View> views_;           // by id
   std::vector<std::uint32_t> first_;  // of a group in near_
   std::vector<NearSphere> near_;      // by group
@@ -160,7 +178,7 @@ class SoftWalls {
   bool anew_ = false;
   bool has_fine_ = false;           // some view is
   std::vector<WallPush> ahead_;     // of every group, or none
-  std::vector<float> until_;        // no piece is nearer to the centre than this less NearSphere::way
+  std::vector<NearPiece> until_;    // of all near spheres
   std::vector<float> least_until_;  // of every so many pieces of a sphere: a fine mesh has thousands of them
 };
 
