@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <shared_mutex>
 #include <unordered_map>
@@ -20,6 +21,13 @@ class FacetTable {
   /// Of a facet, which is added if it is new. One container may give several of the same id, images of each
   /// other. Not while others ask for something else. Cost: some 50 ns.
   Number number_of(const Facet&);
+
+  /// Asks the memory for what is about to be needed.
+  void fetch(Number n) const {
+    constexpr std::size_t line = 64;
+    const auto* bytes = reinterpret_cast<const char*>(&ready_[n]);
+    for (std::size_t at = 0; at < sizeof ready_[n]; at += line) __builtin_prefetch(bytes + at);
+  }
 
   /// p minus the nearest point of the facet; for a facet of an analytic container p is on its inner side.
   Vector<3> offset(Number n, const Vector<3>& p) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "core/parallel.hpp"
 #include "domain/wall_contacts.hpp"
@@ -192,15 +193,21 @@ double SoftWalls::look_through(const NearSphere& near, double reach, std::vector
       continue;
     }
     const std::uint32_t end = std::min(near.count, first + run);
-    for (std::uint32_t k = first; k < end; ++k) {
-      auto& [until, facet] = until_[near.first + k];
-      if (until - near.way >= reach) {
-        free = std::min(free, until - near.way);
+    // Of a fine mesh facets come from far away in memory: they are on their way before they are needed.
+    std::array<std::uint32_t, run> touchable;
+    std::size_t count = 0;
+    for (std::uint32_t k = near.first + first; k < near.first + end; ++k) {
+      if (until_[k].until - near.way >= reach) {
+        free = std::min(free, until_[k].until - near.way);
         continue;
       }
-      const Vector<3> away = facets_.offset(facet, near.last);
+      touchable[count++] = k;
+      facets_.fetch(until_[k].facet);
+    }
+    for (const std::uint32_t k : std::span(touchable).first(count)) {
+      const Vector<3> away = facets_.offset(until_[k].facet, near.last);
       const double d = away.norm();
-      until = static_cast<float>(d + near.way);
+      until_[k].until = static_cast<float>(d + near.way);
       free = std::min(free, d);
       if (!(d < reach && d > 0)) continue;
       if (contacts.size() == most_contacts) leave_distinct(contacts, reach);
