@@ -15,7 +15,7 @@ count = 20000
 radius = 1
 [[stage]]
 do = "relax"
-alpha = 15
+alpha = 30
 )";
 
 /// Runs it until there is a checkpoint, and ends it by that signal.
