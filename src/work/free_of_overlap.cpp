@@ -50,20 +50,21 @@ void for_each_pair(const Spheres<D>& spheres, const Vector<D>& edges, Reach&& re
 }
 
 /// Of more spheres the cache holds only some, and blocks are looked at one by one.
-constexpr std::size_t enough_for_blocks = 300'000, spheres_a_block = 1 << 16;
+constexpr std::size_t enough_for_blocks = 50'000, spheres_a_block = 1 << 13;
 
-/// The contact factor of some spheres and their images, above one that is known; `of_all` is the metric,
-/// which only those are held against that are as near by their places here.
+/// The contact factor of a block's own spheres, the first of those in it and around it, above one that is
+/// known; `of_all` is the metric, which only those are held against that are as near by their places here.
 template <int D>
-double contact_factor_among(const Spheres<D>& spheres, std::span<const std::uint32_t> ids,
-                            std::span<const Vector<D>> places, const Bounds<D>& bounds,
-                            const Boundary<D>& local, const Boundary<D>& of_all, double largest,
-                            double factor) {
+double contact_factor_in(const typename Blocks<D>::Local& here, std::size_t own, const Spheres<D>& spheres,
+                         const Bounds<D>& bounds, const Boundary<D>& local, const Boundary<D>& of_all,
+                         double largest, double factor) {
+  const auto& [ids, places] = here;
   std::vector<double> radii;  // beside each other, as the places are
   radii.reserve(ids.size());
   for (const std::uint32_t i : ids) radii.push_back(spheres.r[i]);
+  // The larger first, of equal ones those around: so each own one finds all of these that are no smaller.
   std::vector<std::uint32_t> order(ids.size());
-  std::iota(order.begin(), order.end(), 0u);
+  std::iota(order.rbegin(), order.rend(), 0u);
   std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t k) { return radii[k]; });
   if (order.empty()) return factor;
   CellGrid<D> grid(bounds, local, radii[order.back()], radii[order.front()], ids.size());
@@ -71,19 +72,21 @@ double contact_factor_among(const Spheres<D>& spheres, std::span<const std::uint
   for (const std::uint32_t k : order) {
     const double r = radii[k];
     const double reach = r / factor + largest * (std::max(0.0, 1 / factor - 1) + rounding);
-    grid.for_each_near(places[k], reach, [&](std::uint32_t m) {
-      const double near = (r + radii[m]) / factor + largest * rounding;
-      if (ids[m] == ids[k] || local.minimum_image(places[k] - places[m]).squaredNorm() > near * near) return;
-      const Vector<D> apart = of_all.minimum_image(spheres.center(ids[k]) - spheres.center(ids[m]));
-      factor = std::max(factor, (r + radii[m]) / apart.norm());
-    });
+    if (k < own)
+      grid.for_each_near(places[k], reach, [&](std::uint32_t m) {
+        const double near = (r + radii[m]) / factor + largest * rounding;
+        if (ids[m] == ids[k] || local.minimum_image(places[k] - places[m]).squaredNorm() > near * near)
+          return;
+        const Vector<D> apart = of_all.minimum_image(spheres.center(ids[k]) - spheres.center(ids[m]));
+        factor = std::max(factor, (r + radii[m]) / apart.norm());
+      });
     grid.insert(k, places[k], r);
   }
   return factor;
 }
 
-/// The same number as by looking at all at once: each pair is met in the blocks of both, and the largest of
-/// the ratios does not depend on the order. Nothing where spheres reach too far for blocks.
+/// The same number as by looking at all at once: each pair is met in the block of the smaller, and the
+/// largest of the ratios does not depend on the order. Nothing where spheres reach too far for blocks.
 template <int D>
 std::optional<double> contact_factor_in_blocks(const Spheres<D>& spheres, const Vector<D>& edges) {
   // Of the diameter: so far apart are the closest spheres at most, or others could matter, too.
@@ -95,17 +98,14 @@ std::optional<double> contact_factor_in_blocks(const Spheres<D>& spheres, const 
   Boundary<D> local = of_all;
   for (int k = 0; k < D; ++k)
     if (blocks.is_cut(k)) local.edges[k] = 0;
-  std::vector<Vector<D>> places;
-  for (const std::uint32_t i : blocks.own(0)) places.push_back(spheres.center(i));
-  const double known = contact_factor_among<D>(spheres, blocks.own(0), places, blocks.around(0), local,
-                                               of_all, largest, 2 * largest / edges.minCoeff());
+  const auto factor_in = [&](std::size_t b, double known) {
+    return contact_factor_in<D>(blocks.local(b), blocks.own(b).size(), spheres, blocks.around(b), local,
+                                of_all, largest, known);
+  };
+  const double known = factor_in(0, 2 * largest / edges.minCoeff());
   if (!(known * farthest >= 1) || !std::isfinite(known)) return {};
   std::vector<double> factors(blocks.size(), known);
-  parallel_for(blocks.size(), [&](std::size_t b) {
-    const auto here = blocks.local(b);
-    factors[b] = contact_factor_among<D>(spheres, here.ids, here.places, blocks.around(b), local, of_all,
-                                         largest, known);
-  });
+  parallel_for(1, blocks.size(), [&](std::size_t b) { factors[b] = factor_in(b, known); });
   return std::ranges::max(factors);
 }
 
