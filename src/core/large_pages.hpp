@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace bernal {
@@ -9,6 +10,24 @@ namespace bernal {
 /// time, then needs few entries of the processor's table of pages: measured, a sweep over 10^6 spheres takes
 /// a third less. A wish: nothing changes where the system does not grant it. Cost: a call of the system.
 void prefer_large_pages(void* begin, std::size_t bytes);
+
+/// Memory of its own in such pages, whole ones that nothing has been written to: what a heap hands out may
+/// have been in small pages before, and stays in them. Throws std::bad_alloc. Cost: some calls of the system.
+class LargePages {
+ public:
+  explicit LargePages(std::size_t bytes);
+  ~LargePages();
+  LargePages(LargePages&& other) noexcept
+      : begin_(std::exchange(other.begin_, nullptr)), bytes_(std::exchange(other.bytes_, 0)) {}
+  LargePages& operator=(LargePages&&) = delete;
+
+  void* begin() const { return begin_; }
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  void* begin_ = nullptr;
+  std::size_t bytes_ = 0;
+};
 
 /// Makes these `size` items in such pages, to be overwritten: what they are is what happens to be there. Next
 /// time there may be a few more of them without new memory. Cost: none but for new memory.

@@ -45,8 +45,7 @@ std::array<int, 3> blocks_across(double size, std::size_t spheres, const std::ar
 bool SoftBlocks::suit(std::size_t spheres, const std::array<double, 3>& edges, const SoftSizes& sizes,
                       float skin) {
   const std::array<int, 3> across = blocks_across(usual_size, spheres, edges, sizes, skin);
-  const double full_blocks = static_cast<double>(spheres) / usual_size;
-  return std::min(full_blocks, 1.0 * across[0] * across[1] * across[2]) >= fewest_blocks;
+  return static_cast<double>(spheres) >= fewest_spheres && across[0] * across[1] * across[2] >= fewest_blocks;
 }
 
 void SoftBlocks::cut(std::size_t spheres, const std::array<double, 3>& edges, const SoftSizes& sizes,
