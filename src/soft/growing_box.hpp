@@ -49,26 +49,31 @@ struct GrowingBox {
 /// How far `grow_apart` has come.
 struct BoxGrowth {
   double molr = 1;  ///< the largest overlap ratio
-  double last_molr = 0, growth = 0;
+  double last_molr = 0, least_molr = 1;
+  double growth = 0;
   int cycle = 1, sweeps = 0;  ///< over in this cycle
 };
 
-/// Spheres push each other apart while their box grows, each time by `overlap_of(cycle, molr)` / beta. Where
-/// molr < 0.003, when it falls in proportion with the growth of the box, the next growth is 0.9 of what the
-/// last two predict, at most molr / 6; earlier, prediction costs contacts. `on_growth` is told the factor of
-/// each growth, and molr.
+/// Spheres push each other apart while their box grows, each time by `overlap_of(cycle, least)` / beta, for
+/// the least that molr, the largest overlap ratio, has been: it rises only where some spheres of very many
+/// have come so near each other before they were neighbours, and these part without more room. (Growing by it
+/// takes 0.0004 from the packing fraction of 10^4 to 10^6 spheres, and up to 0.02 where such a pair is met
+/// early.) Where molr < 0.003, when it falls in proportion with the growth of the box, the next growth is 0.9
+/// of what the last two predict, at most molr / 6; earlier, prediction costs contacts. `on_growth` is told
+/// the factor of each growth, and molr.
 template <int D, class Engine, class Stop, class OverlapOf, class OnGrowth>
 StageEnd grow_apart(Engine& packing, const GrowingBox& box, BoxGrowth& so_far, Stop&& stop,
                     OverlapOf&& overlap_of, OnGrowth&& on_growth) {
   constexpr double predictable = 3e-3, share_of_prediction = 0.9, longest_predicted = 1.0 / 6;
-  auto& [molr, last_molr, growth, cycle, sweeps] = so_far;
+  auto& [molr, last_molr, least_molr, growth, cycle, sweeps] = so_far;
   for (;; ++cycle) {
     const std::optional<double> met = sweep_cycle<D>(packing, box.sweeps, sweeps, molr, stop);
     if (!met) return StageEnd::cancelled;
     molr = *met;
     if (molr < box.stop) return StageEnd::converged;
     const double predicted = growth * molr / (last_molr - molr);
-    growth = overlap_of(cycle, molr) / box.beta;
+    least_molr = std::min(least_molr, molr);
+    growth = overlap_of(cycle, least_molr) / box.beta;
     if (molr < predictable && molr < last_molr)
       growth = std::max(growth, std::min(share_of_prediction * predicted, longest_predicted * molr));
     last_molr = molr;
