@@ -240,6 +240,11 @@ class Polish {
       }
       tell();
       const bool moved = region.step(std::max(1e-6, noise) * soft_.elastic_energy());
+      if (region.stopped()) {
+        if (checkpoints) checkpoints->stop();  // which writes one, of what was before the step
+        cancelled_ = true;
+        return false;
+      }
       if (!moved && region.radius() < soft_.length_of(resolution())) break;  // what is left is rounding
     }
     if (too_loose()) return false;  // not before: on its way the box may be smaller than it will be

@@ -60,7 +60,11 @@ void TrustRegion::propose() {
   double border = radius_ / 16;
   double ss = 0, sd = 0, dd = rz;  // products of step and direction in the metric
   for (int i = 0; i < most_products && rz > enough; ++i) {
-    if (i % products_unasked == products_unasked - 1 && monitor_.stop()) break;
+    if (i % products_unasked == products_unasked - 1 && monitor_.stop()) {
+      stopped_ = true;
+      proposals_.clear();
+      return;
+    }
     function_.hessian_times(direction_, h_);
     ++products_;
     const double curvature = direction_.dot(h_);

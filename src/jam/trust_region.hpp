@@ -36,8 +36,7 @@ class SmoothFunction {
 /// (1983); Conn, Gould & Toint, Trust-Region Methods (2000), 7.5.
 class TrustRegion {
  public:
-  /// The equations of a step are solved to `forcing`, relative to the gradient; or as far as they are when
-  /// the monitor says stop.
+  /// The equations of a step are solved to `forcing`, relative to the gradient.
   TrustRegion(SmoothFunction& function, double radius, double forcing, const Monitor& monitor);
 
   /// Length of the gradient.
@@ -45,9 +44,10 @@ class TrustRegion {
 
   /// One step. Call gradient_length() before each. A change of the function below `resolution` may be
   /// lost in its rounding: it is taken from the slopes at both ends. Returns whether something moved; else
-  /// the region has become smaller.
+  /// the region has become smaller, or the monitor said stop meanwhile and all is as before the step.
   bool step(double resolution);
 
+  bool stopped() const { return stopped_; }
   std::uint64_t products() const { return products_; }
   double radius() const { return radius_; }
 
@@ -65,7 +65,7 @@ class TrustRegion {
   double forcing_;
   const Monitor& monitor_;
   std::uint64_t products_ = 0;
-  bool at_border_ = false;
+  bool at_border_ = false, stopped_ = false;
   std::vector<Proposal> proposals_;
   Eigen::VectorXd step_, residual_, direction_, z_, h_;
 };

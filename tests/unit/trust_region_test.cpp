@@ -52,17 +52,19 @@ TEST(TrustRegion, FindsTheMinimumOfALongValleyInOneStep) {
   EXPECT_GT(region.products(), 100u);
 }
 
-TEST(TrustRegion, AsksTheMonitorWithinAStepAndKeepsWhatItHas) {
+TEST(TrustRegion, AsksTheMonitorWithinAStepAndThenLeavesAllAsItWas) {
   Valley valley;
   int asked = 0;
   const Monitor monitor{.on_progress = {}, .cancelled = [&] { return ++asked == 2; }};
   TrustRegion region(valley, 1e6, 1e-9, monitor);
   region.gradient_length();
-  const double from = valley.value();
-  EXPECT_TRUE(region.step(0));
+  const Eigen::VectorXd from = valley.x;
+  EXPECT_FALSE(region.step(0));
+  EXPECT_TRUE(region.stopped());
   EXPECT_EQ(asked, 2);
   EXPECT_LT(region.products(), 40u);
-  EXPECT_LT(valley.value(), from);
+  EXPECT_EQ(valley.x, from);
+  EXPECT_EQ(region.radius(), 1e6);
 }
 
 TEST(TrustRegion, StaysInTheRegion) {
