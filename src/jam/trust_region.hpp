@@ -47,6 +47,7 @@ class TrustRegion {
   /// the region has become smaller, or the monitor said stop meanwhile and all is as before the step.
   bool step(double resolution);
 
+  /// Whether the monitor said stop within a step.
   bool stopped() const { return stopped_; }
   std::uint64_t products() const { return products_; }
   double radius() const { return radius_; }

@@ -50,7 +50,6 @@ class Blocks {
   std::size_t size() const { return start_.empty() ? 1 : start_.size() - 1; }
   bool is_cut(int axis) const { return parts_[axis] > 1; }
   std::span<const std::uint32_t> own(std::size_t block) const { return part(order_, block); }
-  std::span<const Vector<D>> own_places(std::size_t block) const { return part(places_, block); }
   /// Along axes that are not cut, and `reach` beyond its ends along the others.
   Bounds<D> around(std::size_t block) const {
     Bounds<D> bounds{Vector<D>::Zero(), edges_};
@@ -65,7 +64,9 @@ class Blocks {
   }
   /// Its own first.
   Local local(std::size_t block) const {
-    Local local{{own(block).begin(), own(block).end()}, {own_places(block).begin(), own_places(block).end()}};
+    const std::span<const std::uint32_t> ids = own(block);
+    const std::span<const Vector<D>> places = part(places_, block);
+    Local local{{ids.begin(), ids.end()}, {places.begin(), places.end()}};
     const Bounds<D> bounds = around(block);
     const auto at = place_of(block);
     std::array<int, D> step;
@@ -121,7 +122,7 @@ class Blocks {
       if (step[k] > 0 && at[k] + 1 == parts_[k]) shift[k] = edges_[k];
     }
     const std::span<const std::uint32_t> ids = own(number_of(there));
-    const std::span<const Vector<D>> places = own_places(number_of(there));
+    const std::span<const Vector<D>> places = part(places_, number_of(there));
     for (std::size_t n = 0; n < ids.size(); ++n) {
       const Vector<D> image = places[n] + shift;
       if ((image.array() < bounds.lower.array()).any() || (image.array() > bounds.upper.array()).any())
