@@ -73,8 +73,10 @@ CellResult read_cell(const fs::path& folder, const std::string& hash) {
 
 namespace sweep {
 
+fs::path claims_folder(const fs::path& folder) { return folder / "cells" / ".claims"; }
+
 fs::path claim_of_cell(const fs::path& folder, const std::string& hash) {
-  return folder / "cells" / ".claims" / hash;
+  return claims_folder(folder) / hash;
 }
 
 void replace_file(const fs::path& file, const std::string& text) {

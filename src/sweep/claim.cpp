@@ -6,7 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <thread>
 #include <utility>
+#include <vector>
 
 namespace fs = std::filesystem;
 
@@ -19,6 +22,16 @@ bool stands_as(int descriptor, const fs::path& file) {
   }, named{};
   return ::fstat(descriptor, &open) == 0 && ::stat(file.c_str(), &named) == 0 &&
          open.st_ino == named.st_ino && open.st_dev == named.st_dev;
+}
+
+/// Whether the lock is had; who only asks whether a claim is held lets go within microseconds.
+bool lock(int descriptor) {
+  constexpr int most_tries = 10;
+  for (int k = 0; k < most_tries; ++k) {
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || (errno != EWOULDBLOCK && errno != EINTR)) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
 }
 
 }  // namespace
@@ -34,10 +47,7 @@ Claim::Claim(fs::path file) : file_(std::move(file)) {
       ours_ = true;
       return;
     }
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-      ours_ = errno != EWOULDBLOCK && errno != EINTR;
-      return;
-    }
+    if (!lock(descriptor_)) return;
     if (stands_as(descriptor_, file_)) {
       ours_ = true;
       return;
@@ -63,6 +73,15 @@ bool is_claimed(const fs::path& file) {
   const bool free = ::flock(descriptor, LOCK_SH | LOCK_NB) == 0 || errno != EWOULDBLOCK;
   ::close(descriptor);
   return !free;
+}
+
+void remove_abandoned_claims(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator k(folder, ignored), end; !ignored && k != end; k.increment(ignored))
+    files.push_back(k->path());
+  for (const fs::path& file : files) const Claim had_and_let_go(file);
+  fs::remove(folder, ignored);  // where it is empty
 }
 
 }  // namespace bernal::sweep

@@ -82,6 +82,7 @@ class Pool {
       std::this_thread::sleep_for(between_looks);
     }
     write();
+    sweep::remove_abandoned_claims(sweep::claims_folder(folder_));
     if (options_.write) report_.files = results_.files();
     return std::move(report_);
   }

@@ -126,7 +126,9 @@ struct SweepOptions {
 struct SweepReport {
   std::vector<SweepRow> rows;
   int jobs = 0, threads = 0;
-  std::size_t ran = 0;  ///< in this call
+  /// Cells of this call's processes; what two calls start at the same moment counts in both, and is packed
+  /// once.
+  std::size_t ran = 0;
   bool cancelled = false;
   std::vector<std::filesystem::path> files;
 
