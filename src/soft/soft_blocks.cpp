@@ -233,7 +233,7 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
         scratch.found.append(kernels_, task, &scratch.spheres[g * lanes],
                              static_cast<std::uint32_t>(g * lanes), filler, scratch.rows);
 
-  if (!sizes_.equal) leave_out_strangers(block, scratch);
+  leave_out_strangers(block, scratch);
 
   const std::uint16_t* row = rows_.keep(scratch.rows);
   for (NeighborRows<std::uint16_t>& group : scratch.groups) {
@@ -246,7 +246,8 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
   return true;
 }
 
-/// Of the halo those that are nobody's neighbours: most, where it is as wide as a few large spheres need it.
+/// Of the halo those that are nobody's neighbours: a third of equal spheres, and most where it is as wide as a
+/// few large ones need it.
 void SoftBlocks::leave_out_strangers(const Block& block, Scratch& scratch) {
   std::vector<std::uint16_t>& place_of = scratch.place_of;
   place_of.assign(scratch.spheres.size() + 1, 0);

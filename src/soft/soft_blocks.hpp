@@ -30,7 +30,7 @@ class SoftBlocks {
  public:
   /// Spheres in a block that is full: with their halo and their lists they take most of a second-level cache
   /// of 1 MiB. Half as many have a third more of a halo, and take 5 to 15 % longer.
-  static constexpr double usual_size = 12000;
+  static constexpr double usual_size = 14000;
   /// With fewer blocks there are too few of a colour for several threads; of fewer spheres the last levels of
   /// cache hold all.
   static constexpr double fewest_spheres = 27 * usual_size;
