@@ -3,8 +3,59 @@
 #include <algorithm>
 #include <cmath>
 
+#include "neighbors/counting_sort.hpp"
+
 namespace bernal {
 namespace {
+
+/// Cells as wide as two spheres reach, along the axes that have room for a few: so a box that is narrow along
+/// one axis and holds very many spheres is searched no longer than another.
+class WideCells {
+ public:
+  WideCells(const std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges, double reach) {
+    constexpr double fewest = 4;  // with fewer all are side by side
+    for (std::size_t k = 0; k < 3; ++k)
+      if (edges[k] >= fewest * reach) across_[k] = static_cast<std::size_t>(std::min(edges[k] / reach, 1e6));
+    while (count() > std::max<std::size_t>(spheres.size(), 64)) *std::ranges::max_element(across_) /= 2;
+    const auto cell_of = [&](std::size_t p) {
+      if (!(spheres[p].r > 0)) return count();
+      const std::array<std::size_t, 3> at = cell(spheres[p]);
+      return at[0] + across_[0] * (at[1] + across_[1] * at[2]);
+    };
+    sort_into_buckets(spheres.size(), count(), cell_of, order_, start_);
+  }
+
+  /// All in the cells around a sphere and in its own, ascending.
+  const std::vector<std::uint32_t>& around(const SoftSphere& sphere) {
+    const std::array<std::size_t, 3> at = cell(sphere);
+    found_.clear();
+    std::array<std::size_t, 3> steps;
+    for (std::size_t k = 0; k < 3; ++k) steps[k] = std::min<std::size_t>(across_[k], 3);
+    for (std::size_t z = 0; z < steps[2]; ++z)
+      for (std::size_t y = 0; y < steps[1]; ++y)
+        for (std::size_t x = 0; x < steps[0]; ++x) {
+          const auto beside = [&](std::size_t k, std::size_t step) {
+            return (at[k] + across_[k] - 1 + step) % across_[k];
+          };
+          const std::size_t c = beside(0, x) + across_[0] * (beside(1, y) + across_[1] * beside(2, z));
+          found_.insert(found_.end(), order_.begin() + start_[c], order_.begin() + start_[c + 1]);
+        }
+    std::ranges::sort(found_);
+    return found_;
+  }
+
+ private:
+  std::size_t count() const { return across_[0] * across_[1] * across_[2]; }
+  std::array<std::size_t, 3> cell(const SoftSphere& sphere) const {
+    std::array<std::size_t, 3> at;
+    for (std::size_t k = 0; k < 3; ++k)
+      at[k] = std::uint64_t{static_cast<std::uint32_t>(sphere.x[k])} * across_[k] >> 32;
+    return at;
+  }
+
+  std::array<std::size_t, 3> across_{1, 1, 1};
+  std::vector<std::uint32_t> order_, start_, found_;
+};
 
 /// Calls visit(displacement, distance) for the images of `other` but the nearest whose centres are less than
 /// `reach` from `me`, as displacements from them.
@@ -41,9 +92,11 @@ void FarImages::build(const std::vector<SoftSphere>& spheres, const std::array<d
                          [&](const auto&, double) { near = true; });
     return near;
   };
+  WideCells cells(spheres, edges, 2 * (largest + skin));
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     if (!(2 * (spheres[a].r + skin) > half)) continue;
-    for (std::uint32_t b = 0; b < spheres.size(); ++b) {
+    throw_if_interrupted();
+    for (const std::uint32_t b : cells.around(spheres[a])) {
       const bool both_large = 2 * (spheres[b].r + skin) > half;
       if (a == b || (both_large && b < a) || !is_near(a, b)) continue;
       others[a].push_back(b);

@@ -77,11 +77,10 @@ double seconds_in_growing_box(const Relax& options, const Outlook& outlook) {
   const double decades = std::log10(std::clamp(outlook.spheres, 2.0, most_in_cycles));
   const double alpha = options.period ? *options.period / (decades * decades) : options.alpha;
   const double cycles = cycles_at_ends + cycles_of_alpha * alpha;
-  const double loose =
-      outlook.task.packing_fraction > 0 && outlook.task.packing_fraction < loose_box * outlook.task.attainable
-          ? share_in_a_loose_box
-          : 1;
-  const bool wide = is_for_wide_sizes(outlook.task, options);
+  const bool wide = is_for_wide_sizes(outlook.task, options);  // these are packed densely and then parted
+  const double asked = outlook.task.packing_fraction;
+  const bool is_loose = !wide && asked > 0 && asked < loose_box * outlook.task.attainable;
+  const double share_if_loose = is_loose ? share_in_a_loose_box : 1;
   const double h = options.phi0.value_or(0) / outlook.task.attainable;
   const double start = options.phi0 && !wide
                            ? std::clamp(from_loose + cost_of_overlap * (h - loose_start), from_loose, 1.0) *
@@ -89,8 +88,8 @@ double seconds_in_growing_box(const Relax& options, const Outlook& outlook) {
                            : 1;
   const double method = options.method == RelaxMethod::fast ? 1 : reference_factor;
   return method * std::pow(options.beta / default_beta, power_of_beta) *
-         (start > 1 ? loose * start : std::min(loose, start)) * outlook.spheres * decades * decades * cycles *
-         dimension_factor(outlook, wide) *
+         (start > 1 ? share_if_loose * start : std::min(share_if_loose, start)) * outlook.spheres * decades *
+         decades * cycles * dimension_factor(outlook, wide) *
          (wide ? share_of_wide * std::pow(outlook.spread, cost_of_wide_spread)
                : std::pow(outlook.spread, cost_of_spread));
 }

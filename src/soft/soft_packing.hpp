@@ -43,8 +43,7 @@ class SoftPacking {
   static constexpr double most_swelling = 1.05;
 
   /// Centres in [0, edge). `by_octaves` as of `SoftLists`. Precondition: every edge is at least the largest
-  /// diameter, and will be. Below `smallest_edge` of the radii a box costs O(N) more for each sphere larger
-  /// than a quarter of it: fast only where these are few.
+  /// diameter, and will be. Below `smallest_edge` of the radii spheres meet far images, too, see `FarImages`.
   template <int D>
   SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels,
               bool by_octaves = false);

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -73,10 +72,8 @@ CellResult read_cell(const fs::path& folder, const std::string& hash) {
 
 namespace sweep {
 
-fs::path claims_folder(const fs::path& folder) { return folder / "cells" / ".claims"; }
-
 fs::path claim_of_cell(const fs::path& folder, const std::string& hash) {
-  return claims_folder(folder) / hash;
+  return folder / "cells" / ".claims" / hash;
 }
 
 void replace_file(const fs::path& file, const std::string& text) {

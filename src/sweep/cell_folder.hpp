@@ -6,8 +6,7 @@
 
 namespace bernal::sweep {
 
-/// The claims and that of a cell, in the folder of its sweep.
-std::filesystem::path claims_folder(const std::filesystem::path& folder);
+/// The claim of a cell, in the folder of its sweep.
 std::filesystem::path claim_of_cell(const std::filesystem::path& folder, const std::string& hash);
 
 /// Why there is no packing.

@@ -9,7 +9,6 @@
 #include <chrono>
 #include <thread>
 #include <utility>
-#include <vector>
 
 namespace fs = std::filesystem;
 
@@ -42,7 +41,8 @@ Claim::Claim(fs::path file) : file_(std::move(file)) {
     std::error_code problem;
     fs::create_directories(file_.parent_path(), problem);
     descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (descriptor_ < 0 && errno == ENOENT) continue;  // the last one has just removed the folder
+    const bool may_be_made = problem != std::errc::permission_denied;
+    if (descriptor_ < 0 && errno == ENOENT && may_be_made) continue;  // the last has just removed the folder
     if (descriptor_ < 0) {  // a folder that cannot be written to is refused where the result is written
       ours_ = true;
       return;
@@ -75,13 +75,11 @@ bool is_claimed(const fs::path& file) {
   return !free;
 }
 
-void remove_abandoned_claims(const fs::path& folder) {
-  std::error_code ignored;
-  std::vector<fs::path> files;
-  for (fs::directory_iterator k(folder, ignored), end; !ignored && k != end; k.increment(ignored))
-    files.push_back(k->path());
-  for (const fs::path& file : files) const Claim had_and_let_go(file);
-  fs::remove(folder, ignored);  // where it is empty
+void remove_abandoned(const fs::path& file) {
+  std::error_code unknown;
+  const auto kind_of = [&](const fs::path& path) { return fs::symlink_status(path, unknown).type(); };
+  if (kind_of(file.parent_path()) == fs::file_type::directory && kind_of(file) == fs::file_type::regular)
+    const Claim had_and_let_go(file);
 }
 
 }  // namespace bernal::sweep

@@ -24,7 +24,7 @@ class Claim {
 /// Whether another process has it; nothing is made.
 bool is_claimed(const std::filesystem::path& file);
 
-/// Removes from a folder of claims those of processes that were killed, and the folder where it is empty.
-void remove_abandoned_claims(const std::filesystem::path& folder);
+/// Removes the file of a claim that a process which was killed has left; nothing else that has this name.
+void remove_abandoned(const std::filesystem::path& file);
 
 }  // namespace bernal::sweep

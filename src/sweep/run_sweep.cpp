@@ -82,7 +82,8 @@ class Pool {
       std::this_thread::sleep_for(between_looks);
     }
     write();
-    sweep::remove_abandoned_claims(sweep::claims_folder(folder_));
+    for (const SweepRow& row : report_.rows)
+      sweep::remove_abandoned(sweep::claim_of_cell(folder_, row.cell_hash));
     if (options_.write) report_.files = results_.files();
     return std::move(report_);
   }

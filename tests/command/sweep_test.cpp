@@ -237,6 +237,21 @@ TEST(SweepCommand, WhatIsKilledIsRunAgain) {
     EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path() << " is left over";
 }
 
+TEST(SweepCommand, WhatIsNoClaimOfItsOwnStays) {
+  const Swept swept;
+  EXPECT_EQ(swept.report()["ran"], 6);
+  const std::string mine = swept.folder.write("mine", "kept").string(), claims = swept.out + "/cells/.claims";
+  const auto add_link = [&] { fs::create_directory_symlink(swept.folder.path(), claims); };
+  add_link();
+  EXPECT_EQ(swept.report()["ran"], 0);
+  EXPECT_TRUE(fs::exists(mine));
+  fs::remove(claims);
+  fs::create_directory(claims);
+  std::ofstream(claims + "/mine");
+  EXPECT_EQ(swept.report()["ran"], 0);
+  EXPECT_TRUE(fs::exists(claims + "/mine"));
+}
+
 TEST(SweepCommand, ACellThatIsKilledIsRecordedAndTheRestGoesOn) {
   const Swept swept(six_cells, long_bed());
   const Process process = start_bernal(swept.call({"--jobs", "1"}));

@@ -80,6 +80,29 @@ TEST(FarImages, AreMetInBoxesNarrowerThanTwoSpheres) {
   EXPECT_LT(grown.minCoeff(), 4);                    // still narrow
 }
 
+/// Of a box that is narrow along one axis or two and has very many spheres, every one of which has far
+/// images.
+TEST(FarImages, AreMetInWideAndThinBoxes) {
+  for (const Vector<3>& edges : {Vector<3>(14, 15, 2.05), Vector<3>(2.2, 60, 2.1)}) {
+    Random random(5, stream(Stream::test));
+    Spheres<3> spheres;
+    for (int i = 0; i < 60; ++i)
+      spheres.push_back(uniform_point(random, Bounds<3>{Vector<3>::Zero(), edges}), i % 3 == 0 ? 1.0 : 0.5);
+    SoftPacking packing(spheres, edges, soft_kernels().front(), true);
+    double met = 1;
+    for (int cycle = 0; cycle < 600 && met > 1e-5; ++cycle) {
+      for (int k = 0; k < 20; ++k) packing.sweep(5);
+      met = packing.sweep_and_measure(5);
+      packing.grow(1 + met / 30);
+    }
+    Vector<3> grown;
+    packing.write_to(spheres, grown);
+    EXPECT_LE(met, 1e-5);
+    EXPECT_LT(largest_overlap(spheres, grown), 3e-5);
+    EXPECT_LT(grown.minCoeff(), 4);
+  }
+}
+
 TEST(WideSizes, ArePackedDenselyAndStrictlyAlikeForAnyNumberOfThreads) {
   const Plan plan = plan_with(two_sizes(5, 0.2), 2000);
   const auto run_in = [&](int threads) { return run(plan, {.seed = {}, .threads = threads, .monitor = {}}); };
