@@ -246,8 +246,8 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
   return true;
 }
 
-/// Of the halo those that are nobody's neighbours: a third of equal spheres, and most where it is as wide as a
-/// few large ones need it.
+/// Of the halo those that are nobody's neighbours: a third of equal spheres, and most where it is as wide as
+/// a few large ones need it.
 void SoftBlocks::leave_out_strangers(const Block& block, Scratch& scratch) {
   std::vector<std::uint16_t>& place_of = scratch.place_of;
   place_of.assign(scratch.spheres.size() + 1, 0);
