@@ -3,58 +3,42 @@
 #include <algorithm>
 #include <cmath>
 
-#include "neighbors/counting_sort.hpp"
+#include "core/parallel.hpp"
+#include "soft/fixed_point_grid.hpp"
 
 namespace bernal {
 namespace {
 
-/// Cells as wide as two spheres reach, along the axes that have room for a few: so a box that is narrow along
-/// one axis and holds very many spheres is searched no longer than another.
-class WideCells {
+/// For each sphere those within `reach` of it, in a time that does not grow with the box along axes that are
+/// not narrow.
+class Vicinity {
  public:
-  WideCells(const std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges, double reach) {
-    constexpr double fewest = 4;  // with fewer all are side by side
-    for (std::size_t k = 0; k < 3; ++k)
-      if (edges[k] >= fewest * reach) across_[k] = static_cast<std::size_t>(std::min(edges[k] / reach, 1e6));
-    while (count() > std::max<std::size_t>(spheres.size(), 64)) *std::ranges::max_element(across_) /= 2;
-    const auto cell_of = [&](std::size_t p) {
-      if (!(spheres[p].r > 0)) return count();
-      const std::array<std::size_t, 3> at = cell(spheres[p]);
-      return at[0] + across_[0] * (at[1] + across_[1] * at[2]);
-    };
-    sort_into_buckets(spheres.size(), count(), cell_of, order_, start_);
+  Vicinity(const std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges, double reach)
+      : at_(spheres.size()) {
+    places_.reserve(spheres.size());
+    const auto fixed = [](std::int32_t x) { return static_cast<std::uint32_t>(x); };
+    for (const SoftSphere& s : spheres)
+      places_.push_back(FixedPlace<3>{{fixed(s.x[0]), fixed(s.x[1]), fixed(s.x[2]), 0}});
+    const std::vector<std::uint32_t> rank =
+        grid_.sort(Vector<3>(edges[0], edges[1], edges[2]), reach, places_, places_.size());
+    for (std::uint32_t p = 0; p < rank.size(); ++p) at_[rank[p]] = p;
   }
 
-  /// All in the cells around a sphere and in its own, ascending.
-  const std::vector<std::uint32_t>& around(const SoftSphere& sphere) {
-    const std::array<std::size_t, 3> at = cell(sphere);
+  /// And some more; ascending.
+  const std::vector<std::uint32_t>& of(std::uint32_t sphere) {
+    grid_.rows_near(places_[sphere], rows_);
     found_.clear();
-    std::array<std::size_t, 3> steps;
-    for (std::size_t k = 0; k < 3; ++k) steps[k] = std::min<std::size_t>(across_[k], 3);
-    for (std::size_t z = 0; z < steps[2]; ++z)
-      for (std::size_t y = 0; y < steps[1]; ++y)
-        for (std::size_t x = 0; x < steps[0]; ++x) {
-          const auto beside = [&](std::size_t k, std::size_t step) {
-            return (at[k] + across_[k] - 1 + step) % across_[k];
-          };
-          const std::size_t c = beside(0, x) + across_[0] * (beside(1, y) + across_[1] * beside(2, z));
-          found_.insert(found_.end(), order_.begin() + start_[c], order_.begin() + start_[c + 1]);
-        }
+    for (const auto& row : rows_)
+      found_.insert(found_.end(), at_.begin() + row.first, at_.begin() + row.last);
     std::ranges::sort(found_);
     return found_;
   }
 
  private:
-  std::size_t count() const { return across_[0] * across_[1] * across_[2]; }
-  std::array<std::size_t, 3> cell(const SoftSphere& sphere) const {
-    std::array<std::size_t, 3> at;
-    for (std::size_t k = 0; k < 3; ++k)
-      at[k] = std::uint64_t{static_cast<std::uint32_t>(sphere.x[k])} * across_[k] >> 32;
-    return at;
-  }
-
-  std::array<std::size_t, 3> across_{1, 1, 1};
-  std::vector<std::uint32_t> order_, start_, found_;
+  FixedPointGrid<3> grid_;
+  std::vector<FixedPlace<3>> places_;
+  std::vector<std::uint32_t> at_, found_;  // in the order of the grid
+  std::vector<FixedPointGrid<3>::Row> rows_;
 };
 
 /// Calls visit(displacement, distance) for the images of `other` but the nearest whose centres are less than
@@ -92,11 +76,11 @@ void FarImages::build(const std::vector<SoftSphere>& spheres, const std::array<d
                          [&](const auto&, double) { near = true; });
     return near;
   };
-  WideCells cells(spheres, edges, 2 * (largest + skin));
+  Vicinity vicinity(spheres, edges, 2 * (largest + skin));
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     if (!(2 * (spheres[a].r + skin) > half)) continue;
     throw_if_interrupted();
-    for (const std::uint32_t b : cells.around(spheres[a])) {
+    for (const std::uint32_t b : vicinity.of(a)) {
       const bool both_large = 2 * (spheres[b].r + skin) > half;
       if (a == b || (both_large && b < a) || !is_near(a, b)) continue;
       others[a].push_back(b);

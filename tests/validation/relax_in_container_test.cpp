@@ -40,20 +40,18 @@ TEST(RelaxationInContainers, DoesNotDependOnHowTheContainerIsTurned) {
   const Mesh upright = test::l_shape_mesh();
   const double attainable =
       plan_of(in_a_box + "fill = true\nradius = 0.05\n", upright).attainable_packing_fraction;
-  const double beyond = attainable + 0.03;
-  const auto packing_fraction = [&](const std::string& target, const Mesh& mesh) {
-    return certified(plan_of(in_a_box + target + "radius = 0.05\n", mesh)).packing_fraction();
-  };
   // What is likely to be reached by itself, and more than can be: what it then ends at.
-  const std::string as_likely = "fill = true\n";
-  EXPECT_NEAR(packing_fraction(as_likely, upright), attainable, 0.02);
-  const std::string too_much = "packing_fraction = " + std::to_string(beyond) + "\n";
-  EXPECT_GT(packing_fraction(too_much, upright), attainable);
-  EXPECT_LT(packing_fraction(too_much, upright), beyond);
-  for (const std::string& target : {as_likely, too_much}) {
-    const double expected = packing_fraction(target, upright);
-    for (int k = 0; k < 3; ++k)
-      EXPECT_NEAR(packing_fraction(target, turned(upright, random)), expected, 0.01) << target;
+  const double beyond = attainable + 0.03;
+  for (const std::string& target : {std::string(), "packing_fraction = " + std::to_string(beyond) + "\n"}) {
+    const auto packing_fraction = [&](const Mesh& mesh) {
+      return certified(plan_of(in_a_box + target + "radius = 0.05\n", mesh)).packing_fraction();
+    };
+    const double expected = packing_fraction(upright);
+    EXPECT_NEAR(expected, attainable, target.empty() ? 0.02 : 0.023) << target;
+    if (!target.empty()) {
+      EXPECT_GT(expected, attainable);
+    }
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(packing_fraction(turned(upright, random)), expected, 0.01);
   }
 }
 
