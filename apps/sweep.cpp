@@ -99,7 +99,7 @@ int run_here(const SweepCall& call, const Sweep& sweep, std::size_t number) {
                             .monitor = {{}, [] { return told_to_stop.load(); }}};
   const Cell cell = sweep.cell(number);
   try {
-    run_cell(cell, call.folder, options);
+    if (!run_cell(cell, call.folder, options)) return exit_code_left_to_another;
   } catch (const Cancelled&) {
     say(stderr, "bernal: stopped; nothing is kept of cell {}\n", number);
     return exit_code::not_reached;
@@ -278,7 +278,9 @@ Command sweep_command() {
        checked(
            {"--cell", &call->cells, "Only these, by their numbers, and no table: a task of Slurm", "N|M-N"},
            complaint),
-       {"--here", &call->here, "One --cell in this process, as --jobs are run; not kept when stopped"},
+       {"--here", &call->here,
+        "One --cell in this process, as --jobs are run; not kept when stopped. Ends with 4 where another "
+        "process is at it or has done it"},
        {"--as-of", &call->as_of,
         "Refuse where the sweep is no longer that of this digest, as sweep.sbatch says", "DIGEST"},
        json_option(call->json),

@@ -136,18 +136,19 @@ class Pool {
 
   void take(const sweep::Children::Ended& ended) {
     look_at(ended.of);
-    CellResult& result = row(ended.of).result;
+    const bool is_left = ended.signal == 0 && ended.exit_code == exit_code_left_to_another;
+    const CellResult& result = row(ended.of).result;
     const bool is_known = result.state == CellResult::State::crashed ||
                           result.state == CellResult::State::refused || !is_to_be_run(ended.of);
     if (!is_known) {
       if (report_.cancelled || options_.monitor.stop()) return;
-      if (is_claimed(ended.of)) {
+      if (is_left) {
         elsewhere_.push_back(ended.of);
         return;
       }
       crashed(ended);
     }
-    ++report_.ran;
+    if (!is_left) ++report_.ran;
   }
 
   void crashed(const sweep::Children::Ended& ended) {

@@ -2,8 +2,8 @@
 """Slurm runs the job array that bernal sweep writes, and the script that starts an engine:
 tests/clients/with_slurm.py [BERNAL]
 
-Debian: slurm-wlm, munge; for the engine lammps, openmpi-bin. Where no cluster answers, one of this machine alone is started for it, which takes root. Takes
-half a minute.
+Debian: slurm-wlm, munge; for the engine lammps, openmpi-bin. Where no cluster answers, one of this machine alone is
+started for it, which takes root. Takes half a minute.
 """
 import csv
 import os
@@ -148,8 +148,9 @@ def work_on_engine(folder):
     done = by_engine(folder, "together", ["mpirun"])
     expect(done.returncode == 0, f"the same call goes on after the job {done.stderr}")
     run(BERNAL, "verify", "together", folder=folder)
-    # Ranks whose launcher is of another MPI than theirs: each packs everything by itself.
-    done = by_engine(folder, "alone", ["srun", "--mpi=none"])
+    # Ranks that know nothing of their launcher, as where it is of another MPI than theirs: each packs everything by
+    # itself. Debian's Open MPI would not start at all where Slurm's variables tell of a step that has no PMI.
+    done = by_engine(folder, "alone", ["srun", "--mpi=none", "env", "-i", "PATH=/usr/bin:/bin"])
     expect(done.returncode == 3 and "did not find each other" in done.stderr, f"ranks that are alone: {done.stderr.strip()}")
 
 

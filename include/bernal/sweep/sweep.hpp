@@ -106,12 +106,16 @@ struct CellOptions {
 
 /// Runs one cell in this process and writes its folder, whole or not at all, as `bernal pack` does. What the
 /// cell's own input is to blame for is kept there (`failed.toml`) and thrown on; nothing is kept of what was
-/// stopped by its monitor. Returns false, at once, where another process is at the same cell.
+/// stopped by its monitor. Returns false, at once, where another process is at the same cell or has done it.
 bool run_cell(const Cell& cell, const std::filesystem::path& folder, const CellOptions& options);
+
+/// Exit code of a process for one cell that has left it to another.
+inline constexpr int exit_code_left_to_another = 4;
 
 struct SweepOptions {
   /// What runs one cell as a process of its own: program and arguments, without a shell. It must do
-  /// `run_cell`, end soon after SIGTERM, and say in its last line on standard error why it failed.
+  /// `run_cell`, end with `exit_code_left_to_another` where that says false and soon after SIGTERM, and say
+  /// in its last line on standard error why it failed.
   std::function<std::vector<std::string>(std::size_t cell, int threads)> call = {};
   int jobs = 0;     ///< that run at a time; 0: as many as the machine has threads and memory for
   int threads = 0;  ///< of each; 0: the machine's, divided by the jobs
@@ -126,9 +130,7 @@ struct SweepOptions {
 struct SweepReport {
   std::vector<SweepRow> rows;
   int jobs = 0, threads = 0;
-  /// Cells of this call's processes; what two calls start at the same moment counts in both, and is packed
-  /// once.
-  std::size_t ran = 0;
+  std::size_t ran = 0;  ///< cells of this call's processes; of several calls each cell counts in one
   bool cancelled = false;
   std::vector<std::filesystem::path> files;
 
