@@ -1,23 +1,38 @@
 #include "soft/sweep_order.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 #include "neighbors/counting_sort.hpp"
 
 namespace bernal {
 namespace {
 
-/// The share of the spheres, the largest, that is swept alone if the others are smaller.
+/// The share of the spheres, the largest, that is swept apart if the others are smaller.
 constexpr double share_of_large = 0.01;
 /// Where no more than this share of the spheres is smaller than a level, they join it: a level costs a search
 /// for every sphere.
 constexpr double share_of_level = 0.6;
 constexpr std::size_t most_levels = 24;
-constexpr std::size_t pencils_per_chain = 32;
+/// Of the longest pencil, so many make a chain at least: with hardly more than `lanes` not all groups could
+/// be full.
+constexpr double pencils_a_chain = 20;
+/// At least; to sweep them takes about as long as it takes threads to meet.
+constexpr double spheres_a_chain = 2048;
+/// For which pencils are cut, into parts of so many widths.
+constexpr double chains_a_colour = 8, shortest_part = 2;
 /// Spheres whose radii differ by less than this part of an octave are alike.
 constexpr double classes_per_octave = 4;
 constexpr std::size_t most_classes = 64;
+
+float quantile_of_most(std::vector<float> radii) {
+  const auto nth = radii.begin() +
+                   static_cast<std::ptrdiff_t>((1 - share_of_large) * static_cast<double>(radii.size() - 1));
+  std::nth_element(radii.begin(), nth, radii.end());
+  return *nth;
+}
 
 int count_of_parts(double length, double width) {
   return std::max(1, static_cast<int>(std::min(length / width, 1e6)));
@@ -26,11 +41,7 @@ int count_of_parts(double length, double width) {
 }  // namespace
 
 SoftSizes::SoftSizes(const std::vector<float>& radii) {
-  std::vector<float> ascending = radii;
-  const auto nth = ascending.begin() + static_cast<std::ptrdiff_t>((1 - share_of_large) *
-                                                                   static_cast<double>(ascending.size() - 1));
-  std::nth_element(ascending.begin(), nth, ascending.end());
-  large = *nth;
+  large = quantile_of_most(radii);
   const auto [least, most] = std::ranges::minmax(radii);
   largest = most;
   equal = least == most;
@@ -86,9 +97,38 @@ void SweepOrder::find(std::span<const SoftSphere> spheres, const SoftRegion& reg
     if (!octaves[k].empty()) add_pencils(octaves[k], std::ldexp(sizes.largest, -static_cast<int>(k)));
 }
 
-/// Places for the spheres of `order` behind those that there are: in pencils, but for those larger than
-/// `largest`, which come alone.
-void SweepOrder::add_pencils(std::vector<std::uint32_t>& order, float largest) {
+/// Where each of `order` is: in `sorted_` by pencil, those larger than `largest` behind all pencils.
+void SweepOrder::sort_into_pencils(const std::vector<std::uint32_t>& order, float largest,
+                                   const std::array<int, 3>& across) {
+  const auto [x, y, z] = across;
+  const auto pencils = static_cast<std::uint32_t>(x * y * z);
+  place_.resize(order.size());
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    const SoftSphere& s = spheres_[order[n]];
+    place_[n] = s.r > largest
+                    ? pencils
+                    : static_cast<std::uint32_t>((region_.part(s, 0, x) * z + region_.part(s, 2, z)) * y +
+                                                 region_.part(s, 1, y));
+  }
+  counting_sort(place_, pencils + std::size_t{1}, start_);
+  sorted_.resize(order.size());
+  for (std::size_t n = 0; n < order.size(); ++n) sorted_[place_[n]] = order[n];
+}
+
+/// Into how many parts pencils are to be cut, so that every colour has chains enough for threads.
+int SweepOrder::parts_along(std::size_t spheres, std::size_t longest, double width) const {
+  const auto n = static_cast<double>(spheres);
+  const double chains = n / (4 * pencils_a_chain * static_cast<double>(longest));
+  const double wanted = std::min(chains_a_colour, n / (8 * spheres_a_chain));
+  if (chains >= wanted) return 1;
+  const double length = edges_[0] * static_cast<double>(region_.extent[0]) * 0x1p-32;
+  const int most = count_of_parts(length, shortest_part * width) & ~1;
+  return std::max(1, std::min(most, 2 * static_cast<int>(std::ceil(wanted / chains))));
+}
+
+/// Places for the spheres of `order` behind those that there are: in pencils, and those larger than `largest`
+/// after the others, in pencils of their own.
+void SweepOrder::add_pencils(const std::vector<std::uint32_t>& order, float largest) {
   const double width = 2.0 * (largest + skin_);
   // Few spheres in much room do not need more pencils than there are spheres.
   const int most_across = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(order.size()))));
@@ -97,56 +137,104 @@ void SweepOrder::add_pencils(std::vector<std::uint32_t>& order, float largest) {
     const int count = std::min(most_across, count_of_parts(length, width));
     return count > 1 && region_.wraps(k) ? count & ~1 : count;
   };
-  const int across_y = pencils_across(1), across_z = pencils_across(2);
-  const auto pencils = static_cast<std::size_t>(across_y) * static_cast<std::size_t>(across_z);
-  place_.resize(order.size());
-  for (std::size_t n = 0; n < order.size(); ++n) {
-    const SoftSphere& s = spheres_[order[n]];
-    place_[n] = static_cast<std::uint32_t>(s.r > largest
-                                               ? pencils
-                                               : static_cast<std::size_t>(region_.part(s, 2, across_z)) *
-                                                         static_cast<std::size_t>(across_y) +
-                                                     static_cast<std::size_t>(region_.part(s, 1, across_y)));
-  }
-  counting_sort(place_, pencils + 1, start_);
-  sorted_.resize(order.size());
-  for (std::size_t n = 0; n < order.size(); ++n) sorted_[place_[n]] = order[n];
+  std::array<int, 3> across = {1, pencils_across(1), pencils_across(2)};
+  sort_into_pencils(order, largest, across);
+  std::uint32_t longest = 1;
+  for (std::size_t p = 0; p + 2 < start_.size(); ++p) longest = std::max(longest, start_[p + 1] - start_[p]);
+  across[0] = parts_along(order.size(), longest, width);
+  if (across[0] > 1) sort_into_pencils(order, largest, across);
 
-  for (int colour = 0; colour < 4; ++colour) {
-    std::vector<Pencil> all;
-    for (int z = colour / 2; z < across_z; z += 2) {
-      for (int y = colour % 2; y < across_y; y += 2) {
-        const auto p =
-            static_cast<std::size_t>(z) * static_cast<std::size_t>(across_y) + static_cast<std::size_t>(y);
-        all.push_back({start_[p], start_[p + 1]});
+  for (int colour = 0; colour < 8; ++colour) {
+    std::vector<Pencil> pencils;
+    for (int x = colour / 4; x < across[0]; x += 2) {
+      for (int z = colour / 2 % 2; z < across[2]; z += 2) {
+        for (int y = colour % 2; y < across[1]; y += 2) {
+          const auto p = static_cast<std::size_t>((x * across[2] + z) * across[1] + y);
+          if (start_[p] < start_[p + 1]) pencils.push_back({start_[p], start_[p + 1] - start_[p]});
+        }
       }
     }
-    const std::size_t chains = std::max<std::size_t>(1, all.size() / pencils_per_chain);
-    phases_.emplace_back();
-    for (std::size_t c = 0; c < chains; ++c) {
-      const auto part = [&](std::size_t n) {
-        return all.begin() + static_cast<std::ptrdiff_t>(all.size() * n / chains);
-      };
-      add_chain(sorted_, {part(c), part(c + 1)});
-    }
+    add_phase(pencils);
   }
-  phases_.emplace_back();
-  add_chain(sorted_, {{start_[pencils], start_[pencils + 1]}});
-  std::erase_if(phases_, [](const auto& chains) { return chains.empty(); });
+  const std::size_t all = start_.size() - 2;
+  const std::vector<std::uint32_t> larger(sorted_.begin() + start_[all], sorted_.end());
+  if (!larger.empty()) add_pencils(larger, radius_of_most(larger));
 }
 
-void SweepOrder::add_chain(const std::vector<std::uint32_t>& order, std::vector<Pencil> live) {
-  const std::size_t first = sphere_at_.size() / lanes;
-  const auto forget_the_empty = [&] { std::erase_if(live, [](const Pencil& p) { return p.next == p.end; }); };
-  forget_the_empty();
-  while (!live.empty()) {
-    // A turn for every pencil; no pencil twice within a group.
-    if (live.size() < lanes) fill_group();
-    for (Pencil& p : live) sphere_at_.push_back(order[p.next++]);
-    forget_the_empty();
+/// That hardly any of them exceeds.
+float SweepOrder::radius_of_most(const std::vector<std::uint32_t>& order) const {
+  std::vector<float> radii;
+  for (const std::uint32_t i : order) radii.push_back(spheres_[i].r);
+  return quantile_of_most(radii);
+}
+
+/// The pencils of a colour, cut into chains of as many spheres each.
+void SweepOrder::add_phase(const std::vector<Pencil>& pencils) {
+  if (pencils.empty()) return;
+  std::size_t spheres = 0, longest = 0;
+  for (const Pencil& p : pencils) {
+    spheres += p.count;
+    longest = std::max<std::size_t>(longest, p.count);
   }
-  fill_group();
-  if (sphere_at_.size() / lanes > first) phases_.back().push_back({first, sphere_at_.size() / lanes});
+  auto chains = static_cast<std::size_t>(
+      std::max(1.0, static_cast<double>(spheres) /
+                        std::max(spheres_a_chain, pencils_a_chain * static_cast<double>(longest))));
+  // As many for each of two, four or eight threads.
+  chains &= ~(std::bit_floor(std::min<std::size_t>(chains, 8)) - 1);
+  phases_.emplace_back();
+  std::vector<Pencil> chain;
+  std::size_t number = 0, before = 0;
+  for (const Pencil& p : pencils) {
+    const std::size_t its = (2 * before + p.count) * chains / (2 * spheres);
+    if (std::exchange(number, its) < its && !chain.empty()) add_chain(std::exchange(chain, {}));
+    chain.push_back(p);
+    before += p.count;
+  }
+  add_chain(chain);
+}
+
+/// Every pencil is spread evenly over all groups, and so comes to its end with the others. What finds its
+/// group full, or another of its pencil there, waits for the next one; where there is room left, the group
+/// takes some of that.
+void SweepOrder::add_chain(const std::vector<Pencil>& pencils) {
+  const std::size_t first_group = sphere_at_.size() / lanes;
+  std::size_t spheres = 0, groups = 0;
+  for (const Pencil& p : pencils) {
+    spheres += p.count;
+    groups = std::max<std::size_t>(groups, p.count);
+  }
+  groups = std::max(groups, (spheres + lanes - 1) / lanes);
+  place_.clear();
+  for (const Pencil& p : pencils)
+    for (std::size_t k = 0; k < p.count; ++k)
+      place_.push_back(static_cast<std::uint32_t>((2 * k + 1) * groups / (2 * std::size_t{p.count})));
+  counting_sort(place_, groups, due_);
+  turns_.resize(spheres);
+  std::size_t n = 0;
+  for (std::uint32_t p = 0; p < pencils.size(); ++p)
+    for (std::uint32_t k = 0; k < pencils[p].count; ++k)
+      turns_[place_[n++]] = {sorted_[pencils[p].first + k], p};
+
+  std::vector<std::size_t> last_group(pencils.size(), std::size_t{nobody});
+  std::vector<Turn> waiting, still_waiting;
+  n = 0;
+  for (std::size_t g = 0; n < spheres || !waiting.empty(); ++g) {
+    const std::size_t full = sphere_at_.size() + lanes, ahead = due_[std::min(g + 2, groups)];
+    const auto take = [&](const Turn& turn) {
+      if (sphere_at_.size() == full || last_group[turn.pencil] == g) {
+        still_waiting.push_back(turn);
+      } else {
+        sphere_at_.push_back(turn.sphere);
+        last_group[turn.pencil] = g;
+      }
+    };
+    for (const Turn& turn : waiting) take(turn);
+    while (sphere_at_.size() < full && n < ahead) take(turns_[n++]);
+    sphere_at_.resize(full, nobody);
+    waiting.swap(still_waiting);
+    still_waiting.clear();
+  }
+  phases_.back().push_back({first_group, sphere_at_.size() / lanes});
 }
 
 }  // namespace bernal

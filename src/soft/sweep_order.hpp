@@ -13,7 +13,7 @@ inline constexpr std::uint32_t nobody = 0xFFFFFFFF;
 /// Of the radii of all spheres that are swept, as far as it matters to their order and their lists.
 struct SoftSizes {
   float largest = 0;           ///< radius
-  float large = 0;             ///< spheres with larger radii are swept alone: one per cent at most
+  float large = 0;             ///< spheres with larger radii are swept apart: one per cent at most
   bool equal = true;           ///< radii
   std::size_t levels = 1;      ///< of the background grid, each for radii half as large
   double volume_a_sphere = 0;  ///< mean
@@ -35,16 +35,17 @@ struct Chain {
 /// every second pencil on each of the other axes is given the same colour. Spheres of different pencils of
 /// one colour are never neighbours. So a group takes its spheres from as many pencils of a colour, a chain is
 /// a sequence of groups from the same pencils, and the chains of a colour are independent of each other.
-/// Within a pencil spheres of similar radii come together, so that the lists in a group are of similar
+/// Where there are too few pencils for threads they are cut, and colours alternate along the first axis as
+/// well. Within a pencil spheres of similar radii come together, so that the lists in a group are of similar
 /// length; among these the order is along the axis. The few largest spheres, for whose sake pencils would
-/// have to be too wide, are swept alone, after the others.
+/// have to be too wide, come after the others, in wider pencils.
 ///
 /// All this is a function of the places and radii alone, the same for any number of threads.
 class SweepOrder {
  public:
   /// Finds the order of these spheres, all with centres in the region. `by_octaves`: spheres whose radii
   /// differ by more than an octave are swept one kind after the other, each in pencils as wide as it needs,
-  /// the largest last. Cost: some 30 ns a sphere.
+  /// the largest last. Cost: some 60 ns a sphere.
   void find(std::span<const SoftSphere> spheres, const SoftRegion& region, const std::array<double, 3>& edges,
             const SoftSizes& sizes, float skin, bool by_octaves);
 
@@ -54,14 +55,21 @@ class SweepOrder {
   const std::vector<std::vector<Chain>>& phases() const { return phases_; }
 
  private:
-  /// The spheres of one pencil that have not been given a turn yet.
+  /// The spheres of one pencil, in sorted_.
   struct Pencil {
-    std::uint32_t next, end;
+    std::uint32_t first, count;
+  };
+  struct Turn {
+    std::uint32_t sphere, pencil;
   };
 
-  void add_pencils(std::vector<std::uint32_t>& order, float largest);
-  void add_chain(const std::vector<std::uint32_t>& order, std::vector<Pencil> live);
-  void fill_group() { sphere_at_.resize((sphere_at_.size() + lanes - 1) / lanes * lanes, nobody); }
+  void add_pencils(const std::vector<std::uint32_t>& order, float largest);
+  void sort_into_pencils(const std::vector<std::uint32_t>& order, float largest,
+                         const std::array<int, 3>& across);
+  int parts_along(std::size_t spheres, std::size_t longest, double width) const;
+  float radius_of_most(const std::vector<std::uint32_t>& order) const;
+  void add_phase(const std::vector<Pencil>& pencils);
+  void add_chain(const std::vector<Pencil>& pencils);
 
   std::span<const SoftSphere> spheres_;
   SoftRegion region_;
@@ -69,7 +77,8 @@ class SweepOrder {
   float skin_ = 0;
   std::vector<std::uint32_t> sphere_at_;
   std::vector<std::vector<Chain>> phases_;
-  std::vector<std::uint32_t> order_, sorted_, place_, start_;  // of the sorting
+  std::vector<std::uint32_t> order_, sorted_, place_, start_, due_;  // of the sorting
+  std::vector<Turn> turns_;
 };
 
 }  // namespace bernal

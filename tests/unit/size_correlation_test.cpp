@@ -105,33 +105,40 @@ TEST(SizeCorrelation, SpheresFarFromTheOriginAreTheSame) {
   for (std::size_t k = 0; k < a->c.size(); ++k) EXPECT_NEAR(a->c[k], b->c[k], 1e-6);
 }
 
-/// The sum over the bins of (C / error)² is chi-squared where sizes are put on the places by chance.
-void expect_no_correlation(const SizeCorrelation& found, std::size_t n) {
-  double chi_squared = 0, bins = 0;
-  for (std::size_t k = 0; k < found.c.size(); ++k) {
-    if (found.error[k] > 0.1) continue;
-    chi_squared += std::pow((found.c[k] + 1 / static_cast<double>(n - 1)) / found.error[k], 2);
-    ++bins;
+/// The sum over the bins of (C / error)² is chi-squared where sizes are put on the places by chance, and so
+/// is the sum over several deals.
+class NoCorrelation {
+ public:
+  void add(const SizeCorrelation& found, std::size_t n) {
+    for (std::size_t k = 0; k < found.c.size(); ++k) {
+      if (found.error[k] > 0.1) continue;
+      chi_squared_ += std::pow((found.c[k] + 1 / static_cast<double>(n - 1)) / found.error[k], 2);
+      ++bins_;
+    }
+    EXPECT_GT(bins_, 15 * ++deals_);
   }
-  EXPECT_GT(bins, 15);
-  EXPECT_NEAR(chi_squared, bins, 4 * std::sqrt(2 * bins));
-}
+  ~NoCorrelation() { EXPECT_NEAR(chi_squared_, bins_, 4 * std::sqrt(2 * bins_)); }
+
+ private:
+  double chi_squared_ = 0, bins_ = 0, deals_ = 0;
+};
 
 TEST(SizeCorrelation, OfSizesDealtOutByChanceIsNoneWithinItsError) {
   // The places of a jammed packing, whose neighbours are anything but independent.
   const Packing packing = run(testing::plan_of(
       "unit = \"mm\"\n[container]\nkind = \"periodic\"\n[spheres]\ncount = 3000\nradius = { distribution = "
       "\"lognormal\", median = 1.0, sigma = 0.3 }\n"));
+  NoCorrelation of_all, of_some;
   std::mt19937 shuffler(7);
   for (int k = 0; k < 8; ++k) {
     Spheres<dynamic> dealt = packing.spheres;
     std::ranges::shuffle(dealt.r, shuffler);
     const auto found = size_correlation(dealt, packing.domain);
     ASSERT_TRUE(found);
-    expect_no_correlation(*found, dealt.size());
+    of_all.add(*found, dealt.size());
     const auto sampled = size_correlation(dealt, packing.domain, {.work = 3e5});
     EXPECT_LT(sampled->references, dealt.size());
-    expect_no_correlation(*sampled, dealt.size());
+    of_some.add(*sampled, dealt.size());
     const auto all = found->mean_between(1, 5);
     EXPECT_LT(std::abs(all->c + 1 / static_cast<double>(dealt.size() - 1)), 5 * all->error);
   }
