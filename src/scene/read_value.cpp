@@ -1,5 +1,7 @@
 #include "scene/read_value.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -42,7 +44,12 @@ std::optional<schema::Value> value_in(const toml::node& node, bool as_double) {
   if (const auto* flag = node.as_boolean()) return flag->get();
   if (const auto* text = node.as_string()) return text->get();
   if (const auto* number = node.as_integer(); number && !as_double) return number->get();
-  if (node.is_number()) return number_in(node);
+  if (node.is_number()) {
+    const double number = number_in(node);
+    const bool is_whole = number == std::floor(number) && std::abs(number) <= 0x1p53;
+    if (is_whole && !as_double) return static_cast<std::int64_t>(number);
+    return number;
+  }
   const toml::array* array = node.as_array();
   if (!array) return std::nullopt;
   std::vector<double> numbers;

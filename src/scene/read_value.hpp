@@ -13,7 +13,8 @@ namespace bernal {
 /// What the user wrote, short enough for an error of one line.
 std::string written(const toml::node& node);
 
-/// The node as a value, whole numbers as doubles if that is asked for; nothing for tables and dates.
+/// The node as a value, a number as a double if that is asked for, else 1e6 is a whole one too; nothing for
+/// tables and dates.
 std::optional<schema::Value> value_in(const toml::node& node, bool as_double);
 
 /// The node as closed lines of points [x, y], or as one such line; nothing for anything else.

@@ -77,6 +77,12 @@ direction = [1, 0.5, -2]
   EXPECT_EQ(scene.stages[1].locations.whole.line, 15);
 }
 
+TEST(Scene, AWholeNumberMayBeWrittenAsAPower) {
+  const Scene scene = parse_scene(with_spheres("count = 1e6\nradius = 1"), "s.toml");
+  EXPECT_EQ(scene.target.count, 1000000);
+  EXPECT_NE(scene_as_toml(scene).find("count = 1000000\n"), std::string::npos);
+}
+
 TEST(Scene, MeanDiametersNeedNoBasis) {
   const Scene scene =
       parse_scene(with_spheres(R"(diameter = { distribution = "lognormal", d43 = 2, d32 = 0.5 })"), "s.toml");
