@@ -49,7 +49,11 @@ void OutputFile::flush() {
 }
 
 void OutputFile::fail(const char* what) const {
-  throw Error(ErrorCode::cannot_write, std::string(what) + ": " + std::strerror(errno), {path_.string()});
+  const std::string why = std::strerror(errno);
+  std::filesystem::path known_to_users;
+  for (const std::filesystem::path& part : path_)
+    if (!part.string().starts_with(staging_prefix)) known_to_users /= part;
+  throw Error(ErrorCode::cannot_write, std::string(what) + ": " + why, {known_to_users.string()});
 }
 
 }  // namespace bernal

@@ -5,9 +5,12 @@
 
 namespace bernal {
 
+/// How the name of a folder begins in which files stand until all of them are written.
+inline constexpr std::string_view staging_prefix = ".bernal-staging-";
+
 /// A new file that is written front to back, every write checked. Nothing is certain before `close` has
-/// returned: a full disk may show only there. Throws Error{cannot_write} with the path and the system's
-/// words.
+/// returned: a full disk may show only there. Throws Error{cannot_write} with the path, where it is on the
+/// way to another the one that it will have, and the system's words.
 class OutputFile {
  public:
   /// Precondition: the file does not exist.

@@ -42,7 +42,6 @@ bool is_name_in(const fs::path& folder, const fs::path& name) {
 
 namespace {
 
-constexpr std::string_view staging_prefix = ".bernal-staging-";
 /// What the staging folder is called once all is written, while what the files replace moves to
 /// `earlier_name` below it; and then, while they move into their places.
 constexpr const char* complete_name = ".bernal-complete";

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "io/output_file.hpp"
 #include "support/written_files.hpp"
 
 namespace bernal {
@@ -58,6 +59,15 @@ TEST(StagedFolder, WhatOnlyTheEarlierResultHasGoes) {
   expected["mine"] = "0";
   EXPECT_EQ(files_in(folder.path()), expected);
   EXPECT_EQ(entries_in(folder.path()), expected.size());
+}
+
+TEST(StagedFolder, WhatCannotBeWrittenIsNamedAsItWouldBeCalled) {
+  const Folder folder;
+  StagedFolder staged(folder.path());
+  const fs::path there = staged.add("a");
+  fs::create_directory(there);
+  const std::string said = error_of([&] { const OutputFile file(there); }).what();
+  EXPECT_TRUE(said.starts_with((folder / "a").string() + ": cannot be created")) << said;
 }
 
 // Whoever is killed while publishing leaves the earlier result, a part of one of them and never of both, or
