@@ -66,7 +66,9 @@ TEST(CheckpointFuzz, NothingThatStandsThereMakesADifference) {
     ASSERT_EQ(resumed.hash, undisturbed) << k;
     if (changed == last) continue;
     EXPECT_NE(resumed.told.find("passed over"), std::string::npos) << resumed.told;
-    if (!both) EXPECT_EQ(resumed.resumed, 1);
+    if (!both) {
+      EXPECT_EQ(resumed.resumed, 1);
+    }
   }
 }
 

@@ -19,8 +19,8 @@ inline std::vector<std::filesystem::path> example_scenes() {
 /// The scene with at most `count` spheres: everything of it runs, in a blink.
 inline Scene small(Scene scene, std::int64_t count = 300) {
   // In a box that follows from both, its packing fraction goes with the count.
-  const auto* box = std::get_if<PeriodicBox>(&scene.container);
-  const bool scalable = box && box->scalable;
+  const auto* its_box = std::get_if<PeriodicBox>(&scene.container);
+  const bool scalable = its_box && its_box->scalable;
   scene.target = {.count = count,
                   .packing_fraction = scalable ? scene.target.packing_fraction : std::nullopt,
                   .fill = false,

@@ -49,10 +49,10 @@ struct MeasureOptions {
   double gap = 0, wall_gap = 0;
   double contact_gap = 0.002;
   std::vector<double> gaps = {1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
-  RadialOptions radial;
-  SizeCorrelationOptions size_correlation;
-  ChamberOptions chambers;
-  WallOptions walls;
+  RadialOptions radial = {};
+  SizeCorrelationOptions size_correlation = {};
+  ChamberOptions chambers = {};
+  WallOptions walls = {};
   LocalPackingOptions local = {};
   StructureOptions structure = {};
   PoreOptions pores = {};
