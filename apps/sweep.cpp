@@ -96,6 +96,7 @@ int run_here(const SweepCall& call, const Sweep& sweep, std::size_t number) {
   const CellOptions options{.threads = call.threads,
                             .seconds = seconds_a_cell(call),
                             .view = call.view,
+                            .retry = call.retry,
                             .monitor = {{}, [] { return told_to_stop.load(); }}};
   const Cell cell = sweep.cell(number);
   try {
@@ -213,6 +214,7 @@ int sweep(const SweepCall& call) {
                            [&](std::size_t cell, int threads) {
                              std::vector<std::string> words = call_of_cells(call, cells, threads, false);
                              words.insert(words.end(), {"--here", "--quiet", "--cell", std::to_string(cell)});
+                             if (call.retry) words.emplace_back("--retry");
                              return words;
                            },
                        .jobs = call.jobs,

@@ -128,7 +128,7 @@ class AxesReader {
   }
 
   void add_repeats(toml::node& node, std::int64_t seed) {
-    const auto count = node.value_exact<std::int64_t>();
+    const auto count = node.is_number() ? node.value<std::int64_t>() : std::nullopt;
     if (!count || *count < 1 || static_cast<double>(*count) > most_cells)
       fail(node.source(), fmt::format("\"repeats\" must be a whole number from 1 to {:.0f}, not {}",
                                       most_cells, written(node)));

@@ -87,9 +87,10 @@ void replace_file(const fs::path& file, const std::string& text) {
     out.append(text);
     out.close();
     fs::rename(partial, file, problem);
-  } catch (const Error&) {
+  } catch (const Error& error) {
     fs::remove(partial, problem);
-    throw;
+    const std::string said = error.what(), before = partial.string() + ": ";
+    throw Error(error.code(), said.starts_with(before) ? said.substr(before.size()) : said, {file.string()});
   }
   if (!problem) return;
   const std::string why = problem.message();

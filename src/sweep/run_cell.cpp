@@ -38,7 +38,8 @@ bool run_cell(const Cell& cell, const fs::path& folder, const CellOptions& optio
   const sweep::Claim claim(sweep::claim_of_cell(folder, cell.hash));
   if (!claim.is_ours()) return false;
   // Whoever had the claim before may have just done it.
-  if (!sweep::is_to_be_run(read_cell(folder, cell.hash), options.seconds, true)) return false;
+  if (!sweep::is_to_be_run(read_cell(folder, cell.hash), options.seconds, options.retry)) return false;
+  sweep::remove_failure(folder, cell.hash);
   const auto keep = [&](CellResult::State state, const std::string& reason) {
     sweep::write_failure(folder, cell.hash, {.state = state, .exit_code = 2, .reason = reason});
   };

@@ -81,6 +81,7 @@ class Pool {
       if (news && since_written_.seconds() > next_write_) write();
       std::this_thread::sleep_for(between_looks);
     }
+    look_again();
     write();
     for (const SweepRow& row : report_.rows)
       sweep::remove_abandoned(sweep::claim_of_cell(folder_, row.cell_hash));
@@ -122,7 +123,6 @@ class Pool {
         elsewhere_.push_back(k);
         continue;
       }
-      sweep::remove_failure(folder_, row(k).cell_hash);
       if (!children_.start(k, options_.call(row(k).number, report_.threads))) {
         queue_.push_front(k);
         if (children_.size() == 0)
@@ -135,20 +135,34 @@ class Pool {
   }
 
   void take(const sweep::Children::Ended& ended) {
-    look_at(ended.of);
     const bool is_left = ended.signal == 0 && ended.exit_code == exit_code_left_to_another;
+    // Asked before it is looked at: whoever has let go since has left what he did.
+    const bool is_elsewhere = is_claimed(ended.of);
+    look_at(ended.of);
     const CellResult& result = row(ended.of).result;
     const bool is_known = result.state == CellResult::State::crashed ||
                           result.state == CellResult::State::refused || !is_to_be_run(ended.of);
     if (!is_known) {
       if (report_.cancelled || options_.monitor.stop()) return;
-      if (is_left) {
+      if (is_left || is_elsewhere) {
         elsewhere_.push_back(ended.of);
         return;
       }
       crashed(ended);
+    } else if (is_left || ended.signal != 0) {
+      return;  // it was another who did it
     }
-    if (!is_left) ++report_.ran;
+    ++report_.ran;
+  }
+
+  /// What other calls have done since, of cells whose processes have crashed here.
+  void look_again() {
+    for (SweepRow& row : report_.rows) {
+      if (row.result.state != CellResult::State::crashed && row.result.state != CellResult::State::missing)
+        continue;
+      const CellResult now = read_cell(folder_, row.cell_hash);
+      if (now.state == CellResult::State::packed || now.state == CellResult::State::refused) row.result = now;
+    }
   }
 
   void crashed(const sweep::Children::Ended& ended) {

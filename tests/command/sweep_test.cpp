@@ -272,6 +272,27 @@ TEST(SweepCommand, ACellThatIsKilledIsRecordedAndTheRestGoesOn) {
   EXPECT_FALSE(fs::exists(swept.out + "/" + rows.at(0).at("folder") + "/failed.toml"));
 }
 
+TEST(SweepCommand, ACellThatIsKilledAndDoneByAnotherCallIsThatOnes) {
+  const Swept swept(six_cells, long_bed());
+  const Process one = start_bernal(swept.call({"--jobs", "1", "--json"}));
+  std::vector<pid_t> children;
+  for (int k = 0; k < 3000 && children.empty(); ++k) {
+    children = children_of(one.pid());
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  ASSERT_EQ(children.size(), 1u);
+  one.signal(SIGSTOP);
+  kill(children.front(), SIGKILL);
+  const Ended second = start_bernal(swept.call({"--jobs", "1", "--json"})).wait();
+  one.signal(SIGCONT);
+  const Ended first = one.wait();
+  EXPECT_EQ(first.status, 0) << first.err;
+  EXPECT_EQ(second.status, 0) << second.err;
+  EXPECT_EQ(json::parse(first.out)["ran"], 0);
+  EXPECT_EQ(json::parse(second.out)["ran"], 6);
+  for (Row row : swept.rows()) EXPECT_EQ(row["outcome"], "converged");
+}
+
 TEST(SweepCommand, SeveralCallsShareTheWork) {
   const Swept swept;
   const Process one = start_bernal(swept.call({"--jobs", "1", "--json"}));

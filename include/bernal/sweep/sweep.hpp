@@ -101,6 +101,7 @@ struct CellOptions {
   int threads = 0;                ///< 0: as many as the machine has
   std::optional<double> seconds;  ///< it ends then, with what it has, as `cancelled`
   bool view = false;              ///< report.html has a view to turn
+  bool retry = false;             ///< what was refused runs again, too
   Monitor monitor = {};
 };
 
