@@ -45,7 +45,7 @@ class SweepOrder {
  public:
   /// Finds the order of these spheres, all with centres in the region. `by_octaves`: spheres whose radii
   /// differ by more than an octave are swept one kind after the other, each in pencils as wide as it needs,
-  /// the largest last. Cost: some 60 ns a sphere.
+  /// the largest last. Cost: some 50 ns a sphere.
   void find(std::span<const SoftSphere> spheres, const SoftRegion& region, const std::array<double, 3>& edges,
             const SoftSizes& sizes, float skin, bool by_octaves);
 

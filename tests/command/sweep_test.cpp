@@ -251,14 +251,20 @@ TEST(SweepCommand, WhatIsNoClaimOfItsOwnStays) {
   EXPECT_TRUE(fs::exists(claims + "/mine"));
 }
 
-TEST(SweepCommand, ACellThatIsKilledIsRecordedAndTheRestGoesOn) {
-  const Swept swept(six_cells, long_bed());
-  const Process process = start_bernal(swept.call({"--jobs", "1"}));
+/// As soon as there are any.
+std::vector<pid_t> children_once_there(const Process& process) {
   std::vector<pid_t> children;
   for (int k = 0; k < 3000 && children.empty(); ++k) {
     children = children_of(process.pid());
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
+  return children;
+}
+
+TEST(SweepCommand, ACellThatIsKilledIsRecordedAndTheRestGoesOn) {
+  const Swept swept(six_cells, long_bed());
+  const Process process = start_bernal(swept.call({"--jobs", "1"}));
+  const std::vector<pid_t> children = children_once_there(process);
   ASSERT_EQ(children.size(), 1u);
   kill(children.front(), SIGKILL);
   const Ended ended = process.wait();
@@ -275,11 +281,7 @@ TEST(SweepCommand, ACellThatIsKilledIsRecordedAndTheRestGoesOn) {
 TEST(SweepCommand, ACellThatIsKilledAndDoneByAnotherCallIsThatOnes) {
   const Swept swept(six_cells, long_bed());
   const Process one = start_bernal(swept.call({"--jobs", "1", "--json"}));
-  std::vector<pid_t> children;
-  for (int k = 0; k < 3000 && children.empty(); ++k) {
-    children = children_of(one.pid());
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
+  const std::vector<pid_t> children = children_once_there(one);
   ASSERT_EQ(children.size(), 1u);
   one.signal(SIGSTOP);
   kill(children.front(), SIGKILL);
