@@ -1,7 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,7 +21,8 @@ class RegionCells {
 
   /// Good until they are sorted anew.
   SearchTask task() const;
-  std::size_t size() const { return places_.size(); }
+  /// How many spheres there are, once they are sorted.
+  std::size_t size() const { return places_.size() - lanes; }
 
  private:
   void choose_levels(std::span<const SoftSphere> spheres, const SoftSizes& sizes);
@@ -34,26 +35,52 @@ class RegionCells {
   std::vector<std::uint32_t> start_;  // of each cell of all levels
   std::vector<std::int32_t> x_, y_, z_;
   std::vector<float> r_;
-  std::vector<std::uint32_t> places_;
+  std::vector<std::uint32_t> places_;  // these columns have `lanes` more entries that say nothing
 };
 
-/// The neighbours of the spheres of a group, with room for as many as there may be: memory that is never
-/// touched costs nothing.
+/// Of one sphere.
+template <class Index>
+struct NeighborList {
+  const Index* first = nullptr;
+  std::uint32_t size = 0;
+};
+
+/// The neighbours of the spheres in some slots of the cells. They are found in the order of the slots, as
+/// those that are searched one after the other then look into the same cells: in the order of sweeping they
+/// are far from each other.
+template <class Index>
 class FoundNeighbors {
  public:
-  /// Room for so many a sphere.
-  explicit FoundNeighbors(std::size_t most) {
-    for (auto& lane : found_) lane.reset(new std::uint32_t[most + lanes]);
-  }
+  /// Of those in the slots [first, last) whose place is below `own`, which `of_place` then has until this is
+  /// used again. `room` is for as many as there are slots in all, and `lanes` more. Cost: some 80 ns a
+  /// sphere.
+  void find(const SoftKernels& kernels, const SearchTask& task, std::size_t first, std::size_t last,
+            std::size_t own, std::uint32_t* room, std::vector<NeighborList<Index>>& of_place);
 
-  /// Appends the rows of the group that begins at place `first`; `filler` is the place of a gap. Returns how
-  /// many these are. Cost: about 0.1 µs a sphere.
-  template <class Index>
-  std::uint32_t append(const SoftKernels& kernels, const SearchTask& task, const SoftSphere* group,
-                       std::uint32_t first, Index filler, std::vector<Index>& rows);
+  /// What is in the lists.
+  std::span<const Index> all() const { return {all_.data(), used_}; }
 
  private:
-  std::array<std::unique_ptr<std::uint32_t[]>, lanes> found_;
+  void append(const std::uint32_t* found, std::size_t count);
+
+  std::vector<Index> all_;  // with room behind them
+  std::size_t used_ = 0;
+  std::vector<std::size_t> ends_;  // of the lists, by slot
 };
+
+/// Appends the rows of a group with these lists, every place p as name_of(p). `filler` is the name of a gap.
+/// Returns how many these are. Cost: about 1 ns a neighbour.
+template <class Index, class NameOf>
+std::uint32_t append_rows(const NeighborList<Index>* lists, const NameOf& name_of, Index filler,
+                          std::vector<Index>& rows) {
+  std::uint32_t most = 0;
+  for (std::size_t l = 0; l < lanes; ++l) most = std::max(most, lists[l].size);
+  const std::size_t begin = rows.size();
+  rows.resize(begin + most * lanes, filler);
+  Index* const row = rows.data() + begin;
+  for (std::size_t l = 0; l < lanes; ++l)
+    for (std::size_t k = 0; k < lists[l].size; ++k) row[k * lanes + l] = name_of(lists[l].first[k]);
+  return most;
+}
 
 }  // namespace bernal

@@ -141,8 +141,8 @@ bool SoftBlocks::find_orders(const std::vector<SoftSphere>& spheres) {
     if (start_[b + 1] - start_[b] >= most_places) fit = false;
     if (!fit) return;
     Scratch& mine = scratch_.local();
-    mine.spheres.clear();
-    for (std::size_t n = start_[b]; n < start_[b + 1]; ++n) mine.spheres.push_back(spheres[order_[n]]);
+    mine.spheres.resize(start_[b + 1] - start_[b]);
+    for (std::size_t n = 0; n < mine.spheres.size(); ++n) mine.spheres[n] = spheres[order_[start_[b] + n]];
     mine.order.find(mine.spheres, region_of(b), edges_, sizes_, skin_, false);
     const std::vector<std::uint32_t>& sphere_at = mine.order.sphere_at();
     static_assert(static_cast<std::uint16_t>(nobody) == gap);
@@ -169,12 +169,15 @@ void SoftBlocks::find_exports(std::size_t block, const std::vector<SoftSphere>& 
     const SoftSphere& s = spheres[mine.first_place + q];
     if (!(s.r > 0)) continue;
     std::array<int, 3> low{}, high{};
+    bool is_export = false;
     for (std::size_t k = 0; k < 3; ++k) {
       if (region.wraps(k)) continue;
       const std::uint64_t at = region.offset(s, k);
       low[k] = at < halo_width_[k] ? -1 : 0;
       high[k] = at + halo_width_[k] >= region.extent[k] ? 1 : 0;
+      is_export |= low[k] != high[k];
     }
+    if (!is_export) continue;
     for (int z = low[2]; z <= high[2]; ++z)
       for (int y = low[1]; y <= high[1]; ++y)
         for (int x = low[0]; x <= high[0]; ++x)
@@ -224,16 +227,15 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
     around.extent[k] += 2 * halo_width_[k];
   }
   scratch.cells.sort(scratch.spheres, around, edges_, sizes_, skin_);
-  const SearchTask task = scratch.cells.task();
-  const auto filler = static_cast<std::uint16_t>(scratch.spheres.size());
+  scratch.lists.assign(block.places, {});
+  scratch.found.find(kernels_, scratch.cells.task(), 0, scratch.cells.size(), block.places,
+                     scratch.room.get(), scratch.lists);
+  const auto filler = static_cast<std::uint16_t>(name_neighbors(block.places, scratch));
+  const auto name_of = [&](std::uint16_t p) { return scratch.name_of[p]; };
   scratch.rows.clear();
   scratch.groups.resize(block.places / lanes);
   for (std::size_t g = 0; g < scratch.groups.size(); ++g)
-    scratch.groups[g].rows =
-        scratch.found.append(kernels_, task, &scratch.spheres[g * lanes],
-                             static_cast<std::uint32_t>(g * lanes), filler, scratch.rows);
-
-  leave_out_strangers(block, scratch);
+    scratch.groups[g].rows = append_rows(&scratch.lists[g * lanes], name_of, filler, scratch.rows);
 
   const std::uint16_t* row = rows_.keep(scratch.rows);
   for (NeighborRows<std::uint16_t>& group : scratch.groups) {
@@ -246,23 +248,22 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
   return true;
 }
 
-/// Of the halo those that are nobody's neighbours: a third of equal spheres, and most where it is as wide as
-/// a few large ones need it.
-void SoftBlocks::leave_out_strangers(const Block& block, Scratch& scratch) {
-  std::vector<std::uint16_t>& place_of = scratch.place_of;
-  place_of.assign(scratch.spheres.size() + 1, 0);
-  for (const std::uint16_t p : scratch.rows) place_of[p] = 1;
-  std::size_t kept = 0;
+/// Leaves out of the halo those that are nobody's neighbours: a third of equal spheres, and most where it is
+/// as wide as a few large ones need it. `name_of` becomes the place in a visit of each one that remains;
+/// returns that of the gap behind them.
+std::size_t SoftBlocks::name_neighbors(std::size_t own, Scratch& scratch) {
+  std::vector<std::uint16_t>& name_of = scratch.name_of;
+  name_of.assign(scratch.spheres.size(), 0);
+  for (const std::uint16_t p : scratch.found.all()) name_of[p] = 1;
+  std::size_t kept = own;
   for (std::size_t h = 0; h < scratch.halo.size(); ++h) {
-    std::uint16_t& place = place_of[block.places + h];
-    if (place == 0) continue;
-    place = static_cast<std::uint16_t>(block.places + kept);
-    scratch.halo[kept++] = scratch.halo[h];
+    if (name_of[own + h] == 0) continue;
+    name_of[own + h] = static_cast<std::uint16_t>(kept);
+    scratch.halo[kept++ - own] = scratch.halo[h];
   }
-  scratch.halo.resize(kept);
-  for (std::size_t p = 0; p < block.places; ++p) place_of[p] = static_cast<std::uint16_t>(p);
-  place_of.back() = static_cast<std::uint16_t>(block.places + kept);  // the gap
-  for (std::uint16_t& p : scratch.rows) p = place_of[p];
+  scratch.halo.resize(kept - own);
+  for (std::size_t p = 0; p < own; ++p) name_of[p] = static_cast<std::uint16_t>(p);
+  return kept;
 }
 
 float SoftBlocks::visit(const Block& block, const SweepTask& task) const {

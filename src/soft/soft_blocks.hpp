@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/made.hpp"
@@ -73,9 +74,12 @@ class SoftBlocks {
     std::vector<SoftSphere> spheres;
     SweepOrder order;
     RegionCells cells;
-    FoundNeighbors found{most_places + 1};
+    // Memory that is never touched costs nothing.
+    std::unique_ptr<std::uint32_t[]> room{new std::uint32_t[most_places + lanes]};
+    FoundNeighbors<std::uint16_t> found;
+    std::vector<NeighborList<std::uint16_t>> lists;
     std::vector<std::uint32_t> halo;
-    std::vector<std::uint16_t> rows, place_of;
+    std::vector<std::uint16_t> rows, name_of;
     std::vector<NeighborRows<std::uint16_t>> groups;
     std::array<std::vector<std::uint16_t>, 27> exports;
   };
@@ -92,7 +96,7 @@ class SoftBlocks {
   bool find_orders(const std::vector<SoftSphere>& spheres);
   void find_exports(std::size_t block, const std::vector<SoftSphere>& spheres, Scratch& scratch);
   bool find_neighbors(std::size_t block, const std::vector<SoftSphere>& spheres, Scratch& scratch);
-  static void leave_out_strangers(const Block& block, Scratch& scratch);
+  static std::size_t name_neighbors(std::size_t own, Scratch& scratch);
   float visit(const Block& block, const SweepTask& task) const;
 
   Made made_{"relaxation"}, lists_made_{"neighbour lists"};

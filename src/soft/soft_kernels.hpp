@@ -65,11 +65,28 @@ struct SoftRegion {
   std::uint32_t offset(const SoftSphere& s, std::size_t k) const {
     return static_cast<std::uint32_t>(s.x[k]) - origin[k];
   }
-  /// The one of so many equal parts of an axis that the sphere's centre is in: the last for what is beyond.
-  int part(const SoftSphere& s, std::size_t k, int parts) const {
-    const double at = offset(s, k) * (parts / static_cast<double>(extent[k]));
-    return at < parts ? static_cast<int>(at) : parts - 1;
+};
+
+/// So many equal parts of an axis of a region.
+class SoftParts {
+ public:
+  SoftParts(const SoftRegion& region, std::size_t axis, int parts)
+      : axis_(axis),
+        origin_(region.origin[axis]),
+        parts_(parts),
+        parts_a_unit_(parts / static_cast<double>(region.extent[axis])) {}
+
+  /// The one that the sphere's centre is in: the last for what is beyond.
+  int at(const SoftSphere& s) const {
+    const double at = (static_cast<std::uint32_t>(s.x[axis_]) - origin_) * parts_a_unit_;
+    return at < parts_ ? static_cast<int>(at) : parts_ - 1;
   }
+
+ private:
+  std::size_t axis_;
+  std::uint32_t origin_;
+  int parts_;
+  double parts_a_unit_;
 };
 
 /// One level of the background grid of a region: spheres with radii in (largest / 2, largest], sorted by
@@ -77,13 +94,14 @@ struct SoftRegion {
 struct SoftLevel {
   float largest;
   std::array<int, 3> cells;
-  std::size_t first_cell;  ///< in `SearchTask::start`
+  std::array<double, 3> cells_a_unit;    ///< of the coordinates
+  std::array<double, 3> cells_a_length;  ///< in that of the radii
+  std::size_t first_cell;                ///< in `SearchTask::start`
   std::size_t spheres;
 };
 
 struct SearchTask {
   SoftRegion region;  ///< around all that may be searched for; the cells of a level share it equally
-  std::array<double, 3> edges;
   std::array<float, 3> scale;
   float skin;  ///< spheres are neighbours where the gap between them is below twice this
   std::span<const SoftLevel> levels;

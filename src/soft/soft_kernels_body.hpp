@@ -180,17 +180,19 @@ float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std
         const Floats reach = me.r + it.r;
         const Floats d = root((dx * dx + dy * dy) + dz * dz);
         const Ints overlap = (d < reach) & (d > 0.0f);
-        const Floats weight = where(overlap, (it.r + it.r) / reach);
-        const Floats push = where(overlap, weight * (reach / d - 1.0f));
+        const Floats depth = reach - d;
+        const Floats shared = (it.r + it.r) / (reach * d);
+        const Floats weight = where(overlap, shared * d);
+        const Floats push = where(overlap, shared * depth);
         sum_x += push * dx;
         sum_y += push * dy;
         sum_z += push * dz;
         contacts += weight;
         if constexpr (measure) {
-          const Floats ratio = where(overlap, (reach - d) / reach);
+          const Floats ratio = where(overlap, depth / reach);
           worst = ratio > worst ? ratio : worst;
           squares += ratio * ratio;
-          force += where(overlap, weight * (reach - d));
+          force += where(overlap, weight * depth);
         }
       }
       Floats step = task.omega / contacts;
@@ -238,25 +240,31 @@ inline std::uint32_t* search(const SearchTask& task, const SoftSphere& me, std::
                              std::uint32_t* out) {
   const Floats scale_x = all(task.scale[0]), scale_y = all(task.scale[1]), scale_z = all(task.scale[2]);
   const float blown_up = me.r + 2 * task.skin;
+  const Ints my_x = Ints{} + me.x[0], my_y = Ints{} + me.x[1], my_z = Ints{} + me.x[2];
+  const Ints myself = Ints{} + static_cast<int>(self);
+  const Floats my_reach = all(blown_up);
   Ints lane;
   for (int l = 0; l < width; ++l) lane[l] = l;
+  // What is written may be any of these, for all that the compiler knows.
+  const std::int32_t *const xs = task.x, *const ys = task.y, *const zs = task.z;
+  const float* const rs = task.r;
+  const std::uint32_t *const places_of = task.places, *const start = task.start;
 
   const auto ints_at = [](const std::int32_t* from) BERNAL_INLINE_LAMBDA {
     return Ints(*reinterpret_cast<const UnalignedInts*>(from));
   };
   const auto search_run = [&](std::size_t first_cell, std::size_t end_cell) BERNAL_INLINE_LAMBDA {
-    const std::uint32_t end = task.start[end_cell];
-    for (std::uint32_t p = task.start[first_cell]; p < end; p += lanes) {
+    const std::uint32_t end = start[end_cell];
+    for (std::uint32_t p = start[first_cell]; p < end; p += lanes) {
       for (std::uint32_t q = p; q < p + lanes; q += width) {  // a fixed number: no branch to mispredict
-        const Floats dx = to_floats(wrapped_difference(Ints{} + me.x[0], ints_at(task.x + q))) * scale_x;
-        const Floats dy = to_floats(wrapped_difference(Ints{} + me.x[1], ints_at(task.y + q))) * scale_y;
-        const Floats dz = to_floats(wrapped_difference(Ints{} + me.x[2], ints_at(task.z + q))) * scale_z;
-        const Floats reach = Floats(*reinterpret_cast<const UnalignedFloats*>(task.r + q)) + blown_up;
-        const Ints places = *reinterpret_cast<const UnalignedInts*>(task.places + q);
+        const Floats dx = to_floats(wrapped_difference(my_x, ints_at(xs + q))) * scale_x;
+        const Floats dy = to_floats(wrapped_difference(my_y, ints_at(ys + q))) * scale_y;
+        const Floats dz = to_floats(wrapped_difference(my_z, ints_at(zs + q))) * scale_z;
+        const Floats reach = Floats(*reinterpret_cast<const UnalignedFloats*>(rs + q)) + my_reach;
+        const Ints places = *reinterpret_cast<const UnalignedInts*>(places_of + q);
         const Ints near = ((dx * dx + dy * dy) + dz * dz < reach * reach) &
-                          (lane < static_cast<int>(end) - static_cast<int>(q)) &
-                          (places != static_cast<int>(self));
-        out = append(out, task.places + q, mask_of(near));
+                          (lane < static_cast<int>(end) - static_cast<int>(q)) & (places != myself);
+        out = append(out, places_of + q, mask_of(near));
       }
     }
   };
@@ -264,12 +272,10 @@ inline std::uint32_t* search(const SearchTask& task, const SoftSphere& me, std::
   for (const SoftLevel& level : task.levels) {
     if (level.spheres == 0) continue;
     Cells near[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double cells_a_unit = level.cells[k] / static_cast<double>(task.region.extent[k]);
-      const double units = (blown_up + level.largest) / task.edges[k] * 0x1p32;
-      near[k] = cells_near(task.region.offset(me, k) * cells_a_unit, units * cells_a_unit, level.cells[k],
+    for (std::size_t k = 0; k < 3; ++k)
+      near[k] = cells_near(task.region.offset(me, k) * level.cells_a_unit[k],
+                           (blown_up + level.largest) * level.cells_a_length[k], level.cells[k],
                            task.region.wraps(k));
-    }
     for (int a = 0; a < near[2].count; ++a) {
       const int z = near[2].first + a - (near[2].first + a < level.cells[2] ? 0 : level.cells[2]);
       for (int b = 0; b < near[1].count; ++b) {

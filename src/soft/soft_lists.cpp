@@ -4,11 +4,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 
 namespace bernal {
 namespace {
 
-constexpr std::size_t groups_per_block = 64;
+constexpr std::size_t groups_per_block = 64, spheres_per_search = 4096;
 
 }  // namespace
 
@@ -39,19 +41,25 @@ void SoftLists::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_
 
 void SoftLists::find_neighbors(const std::vector<SoftSphere>& spheres) {
   const SearchTask task = cells_.task();
-  const std::size_t groups = spheres.size() / lanes;
+  const std::size_t slots = cells_.size(), groups = spheres.size() / lanes;
   const auto filler = static_cast<std::uint32_t>(groups * lanes);  // the gap behind the last group
+  std::vector<NeighborList<std::uint32_t>> lists(spheres.size());
+  std::vector<FoundNeighbors<std::uint32_t>> found((slots + spheres_per_search - 1) / spheres_per_search);
+  tbb::enumerable_thread_specific<std::unique_ptr<std::uint32_t[]>> rooms(
+      [&] { return std::unique_ptr<std::uint32_t[]>(new std::uint32_t[slots + lanes]); });
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t n) {
+    const std::size_t first = n * spheres_per_search, last = std::min(slots, first + spheres_per_search);
+    found[n].find(kernels_, task, first, last, spheres.size(), rooms.local().get(), lists);
+  });
+
   groups_.resize(groups);
   rows_.resize((groups + groups_per_block - 1) / groups_per_block);
-  tbb::enumerable_thread_specific<FoundNeighbors> of_thread([&] { return FoundNeighbors(cells_.size()); });
   tbb::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t block) {
-    FoundNeighbors& found = of_thread.local();
     const std::size_t first = block * groups_per_block, last = std::min(groups, first + groups_per_block);
     std::vector<std::uint32_t>& rows = rows_[block];
     rows.clear();
     for (std::size_t g = first; g < last; ++g)
-      groups_[g].rows = found.append(kernels_, task, &spheres[g * lanes],
-                                     static_cast<std::uint32_t>(g * lanes), filler, rows);
+      groups_[g].rows = append_rows(&lists[g * lanes], std::identity{}, filler, rows);
     const std::uint32_t* begin = rows.data();
     for (std::size_t g = first; g < last; begin += lanes * groups_[g++].rows) groups_[g].first = begin;
   });

@@ -68,9 +68,10 @@ void SweepOrder::find(std::span<const SoftSphere> spheres, const SoftRegion& reg
   // Along the axis, and in classes where there are sizes: one key for both.
   const double length = edges[0] * static_cast<double>(region.extent[0]) * 0x1p-32;
   const int along = std::min(static_cast<int>(spheres.size()) + 1, count_of_parts(length, 2.0 * sizes.large));
+  const SoftParts parts(region, 0, along);
   place_.resize(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    std::size_t key = static_cast<std::size_t>(region.part(spheres[i], 0, along));
+    std::size_t key = static_cast<std::size_t>(parts.at(spheres[i]));
     if (!sizes.equal) {
       const double octaves = std::log2(sizes.largest / spheres[i].r);
       key += static_cast<std::size_t>(along) *
@@ -102,13 +103,13 @@ void SweepOrder::sort_into_pencils(const std::vector<std::uint32_t>& order, floa
                                    const std::array<int, 3>& across) {
   const auto [x, y, z] = across;
   const auto pencils = static_cast<std::uint32_t>(x * y * z);
+  const SoftParts along_x(region_, 0, x), along_y(region_, 1, y), along_z(region_, 2, z);
   place_.resize(order.size());
   for (std::size_t n = 0; n < order.size(); ++n) {
     const SoftSphere& s = spheres_[order[n]];
     place_[n] = s.r > largest
                     ? pencils
-                    : static_cast<std::uint32_t>((region_.part(s, 0, x) * z + region_.part(s, 2, z)) * y +
-                                                 region_.part(s, 1, y));
+                    : static_cast<std::uint32_t>((along_x.at(s) * z + along_z.at(s)) * y + along_y.at(s));
   }
   counting_sort(place_, pencils + std::size_t{1}, start_);
   sorted_.resize(order.size());
@@ -205,9 +206,18 @@ void SweepOrder::add_chain(const std::vector<Pencil>& pencils) {
   }
   groups = std::max(groups, (spheres + lanes - 1) / lanes);
   place_.clear();
-  for (const Pencil& p : pencils)
-    for (std::size_t k = 0; k < p.count; ++k)
-      place_.push_back(static_cast<std::uint32_t>((2 * k + 1) * groups / (2 * std::size_t{p.count})));
+  for (const Pencil& p : pencils) {
+    // (2k + 1) groups / 2 count, rounded down, for k = 0, 1, … without dividing.
+    const std::size_t parts = 2 * std::size_t{p.count}, step = 2 * groups / parts, more = 2 * groups % parts;
+    std::size_t due = groups / parts, rest = groups % parts;
+    for (std::size_t k = 0; k < p.count; ++k) {
+      place_.push_back(static_cast<std::uint32_t>(due));
+      rest += more;
+      const bool carries = rest >= parts;
+      due += step + carries;
+      rest -= carries ? parts : 0;
+    }
+  }
   counting_sort(place_, groups, due_);
   turns_.resize(spheres);
   std::size_t n = 0;
