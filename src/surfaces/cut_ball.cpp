@@ -49,8 +49,16 @@ CutBall::CutBall(int frequency, double radius, const std::vector<BallPlane>& pla
   for (const auto& [a, b, c] : whole.triangles) faces_.push_back({-1, {a, b, c}});
 }
 
-double CutBall::height(const Corner& corner, const BallPlane& plane) const {
-  return plane.normal.dot(corner.place) - plane.offset;
+double CutBall::height(const Vector<3>& place, const BallPlane& plane) {
+  return plane.normal.dot(place) - plane.offset;
+}
+
+/// Whether it stays on its side of all planes that have been cut and that it does not lie on.
+bool CutBall::may_move(const Corner& from, const Vector<3>& to) const {
+  return std::ranges::all_of(done_, [&](int number) {
+    const BallPlane& plane = planes_[static_cast<std::size_t>(number)];
+    return lies_on(from, number) || height(from.place, plane) * height(to, plane) > 0;
+  });
 }
 
 /// Where the corner comes to lie on all its planes and, if these leave it free, on the sphere. Nothing where
@@ -94,7 +102,7 @@ std::optional<Vector<3>> CutBall::placed(const Corner& corner) const {
 void CutBall::push_in(const BallPlane& plane, bool below) {
   const double side = below ? 1 : -1, limit = -0.25 * least_cap_;
   for (Corner& corner : corners_) {
-    const double over = side * height(corner, plane) - limit;
+    const double over = side * height(corner.place, plane) - limit;
     const bool stays_on = std::ranges::all_of(corner.planes, [&](int on) {
       return on < 0 || planes_[static_cast<std::size_t>(on)].normal.dot(plane.normal) == 0;
     });
@@ -103,32 +111,51 @@ void CutBall::push_in(const BallPlane& plane, bool below) {
 }
 
 /// Corners near the plane come to lie on it, as long as one is left beyond it of a ball that the plane cuts:
-/// the nearest to the pole stands no deeper than the largest triangle leaves. Where on one side nothing is
-/// left of a ball that other planes have cut, those that lie on no other plane go back, a little below it.
+/// the nearest to the pole stands no deeper than the largest triangle leaves. Of a face that would lie in the
+/// plane as a whole, and belong to neither half, the farthest one stays where it is. Where on one side
+/// nothing is left of a ball that other planes have cut, those that lie on no other plane go back, a little
+/// below it.
 void CutBall::snap(int number) {
   const BallPlane& plane = planes_[static_cast<std::size_t>(number)];
   const double cap = radius_ - std::abs(plane.offset), left = least_cap_ / least_cap_share;
   const double near = std::min(snap_distance * edge_, 0.5 * (cap - left));
-  std::vector<std::pair<std::size_t, Vector<3>>> moved_alone;
-  bool any_above = false, any_below = false;
-  for (std::size_t v = 0; v < corners_.size(); ++v) {
+  std::map<std::uint32_t, Corner> moved_from;
+  for (std::uint32_t v = 0; v < corners_.size(); ++v) {
     Corner& corner = corners_[v];
-    const double above = height(corner, plane);
-    std::optional<Corner> moved = std::abs(above) < near ? also_on(corner, number) : std::nullopt;
+    std::optional<Corner> moved =
+        std::abs(height(corner.place, plane)) < near ? also_on(corner, number) : std::nullopt;
     const std::optional<Vector<3>> place = moved ? placed(*moved) : std::nullopt;
-    if (!place || !((*place - corner.place).norm() < 2 * snap_distance * edge_)) {
-      (above > 0 ? any_above : any_below) = true;
+    if (!place || !may_move(*moved, *place) || !((*place - corner.place).norm() < 2 * snap_distance * edge_))
       continue;
-    }
-    if (corner.count() == 0) moved_alone.emplace_back(v, corner.place);
+    moved_from.emplace(v, corner);
     moved->place = *place;
     corner = *moved;
   }
+  for (const Face& face : faces_) {
+    if (!std::ranges::all_of(face.corners, [&](auto v) { return lies_on(corners_[v], number); })) continue;
+    const auto farther = [&](std::uint32_t v, std::uint32_t w) {
+      const auto of = [&](std::uint32_t u) {
+        const auto from = moved_from.find(u);
+        if (from == moved_from.end() || from->second.count() > 0) return -1.0;  // others share it
+        return std::abs(height(from->second.place, plane));
+      };
+      return of(v) < of(w);
+    };
+    const std::uint32_t v = *std::ranges::max_element(face.corners, farther);
+    if (const auto from = moved_from.find(v); from != moved_from.end() && from->second.count() == 0) {
+      corners_[v] = from->second;
+      moved_from.erase(from);
+    }
+  }
+  bool any_above = false, any_below = false;
+  for (const Corner& corner : corners_)
+    if (!lies_on(corner, number)) (height(corner.place, plane) > 0 ? any_above : any_below) = true;
   if (any_above && any_below) return;
   const double side = any_above ? -1 : 1;
-  for (const auto& [v, before] : moved_alone) {
-    corners_[v] = {before};
-    const double over = side * height(corners_[v], plane) + 0.25 * near;
+  for (const auto& [v, before] : moved_from) {
+    if (before.count() > 0) continue;
+    corners_[v] = before;
+    const double over = side * height(before.place, plane) + 0.25 * near;
     if (over > 0) corners_[v].place -= side * over * plane.normal;
   }
 }
@@ -137,13 +164,14 @@ std::uint32_t CutBall::crossing(std::uint32_t from, std::uint32_t to, int number
   const BallPlane& plane = planes_[static_cast<std::size_t>(number)];
   if (comes_before(corners_[to].place, corners_[from].place)) std::swap(from, to);
   const Corner &a = corners_[from], &b = corners_[to];
-  const double above_a = height(a, plane), above_b = height(b, plane);
+  const double above_a = height(a.place, plane), above_b = height(b.place, plane);
   Corner made{a.place + above_a / (above_a - above_b) * (b.place - a.place)};
   std::size_t n = 0;
   for (const int common : a.planes)
     if (common >= 0 && lies_on(b, common) && n < 2) made.planes[n++] = common;
   made = *also_on(made, number);
-  if (const std::optional<Vector<3>> place = placed(made)) made.place = *place;
+  if (const std::optional<Vector<3>> place = placed(made); place && may_move(made, *place))
+    made.place = *place;
   for (int axis = 0; axis < 3; ++axis)
     if (plane.normal == Vector<3>::Unit(axis)) made.place[axis] = plane.offset;
   corners_.push_back(made);
@@ -158,13 +186,15 @@ bool CutBall::cut(int number, bool below) {
       push_in(plane, below);
     else
       faces_.clear();
+    done_.push_back(number);
     return true;
   }
   snap(number);
+  done_.push_back(number);
   const double side = below ? 1 : -1;
   std::vector<int> sides(corners_.size());
   for (std::size_t v = 0; v < corners_.size(); ++v) {
-    const double above = lies_on(corners_[v], number) ? 0 : side * height(corners_[v], plane);
+    const double above = lies_on(corners_[v], number) ? 0 : side * height(corners_[v].place, plane);
     sides[v] = (above > 0) - (above < 0);
   }
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> crossings;

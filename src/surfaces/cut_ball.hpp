@@ -20,9 +20,9 @@ struct BallPlane {
 /// Both halves of a cut have the same polygon in the plane, bit for bit: where an edge crosses is computed
 /// from its ends in an order of their own, and all that is moved is moved by rules that know no side. Corners
 /// near a plane are moved onto it, along the sphere, so that no slivers arise; corners that a cut makes are
-/// moved out onto the sphere, within their planes. So every corner lies on the sphere but those where cuts
-/// meet inside it. A cap that is less high than `least_cap` is not cut off but pushed in, and its other half
-/// is empty.
+/// moved out onto the sphere, within their planes. None is moved across a plane that has been cut. So every
+/// corner lies on the sphere but those where cuts meet inside it, or nearly meet beyond it. A cap that is
+/// less high than `least_cap` is not cut off but pushed in, and its other half is empty.
 class CutBall {
  public:
   /// `radius` of the sphere that the corners lie on; the planes outlive this.
@@ -51,7 +51,8 @@ class CutBall {
   std::vector<std::array<std::uint32_t, 3>> triangles_of(const Face& face) const;
 
  private:
-  double height(const Corner& corner, const BallPlane& plane) const;
+  static double height(const Vector<3>& place, const BallPlane& plane);
+  bool may_move(const Corner& from, const Vector<3>& to) const;
   std::optional<Vector<3>> placed(const Corner& corner) const;
   void push_in(const BallPlane& plane, bool below);
   void snap(int plane);
@@ -60,6 +61,7 @@ class CutBall {
 
   double radius_, edge_, least_cap_;
   const std::vector<BallPlane>& planes_;
+  std::vector<int> done_;  // planes that it has been cut by
   std::vector<Corner> corners_;
   std::vector<Face> faces_;
 };

@@ -98,6 +98,39 @@ PlanesOfSphere planes_of(std::span<const Piece> pieces, const Boundary<3>& bound
   return made;
 }
 
+/// The polygons in which the two halves of a cut meet, at the ends of periods: what one has the other has,
+/// the other way round. Rounding and slivers can have the better of that where several planes cut a ball.
+class MeetingPolygons {
+ public:
+  /// Of a part of the ball; `below` says which half of that plane's cut it is.
+  void add(const CutBall& ball, const CutBall::Face& face, bool below) {
+    for (std::size_t k = 0; k < face.corners.size(); ++k) {
+      Edge edge{face.plane, place_of(ball, face.corners[k]),
+                place_of(ball, face.corners[(k + 1) % face.corners.size()])};
+      if (edge.from == edge.to) continue;
+      if (!below) std::swap(edge.from, edge.to);
+      unmatched_[edge] += below ? 1 : -1;
+    }
+  }
+  bool match() const {
+    return std::ranges::all_of(unmatched_, [](const auto& edge) { return edge.second == 0; });
+  }
+
+ private:
+  using Place = std::array<double, 3>;
+  struct Edge {
+    int plane;
+    Place from, to;
+    auto operator<=>(const Edge&) const = default;
+  };
+  static Place place_of(const CutBall& ball, std::uint32_t corner) {
+    const Vector<3>& p = ball.corners()[corner].place;
+    return {p[0], p[1], p[2]};
+  }
+
+  std::map<Edge, int> unmatched_;
+};
+
 }  // namespace
 
 double single_precision_shift(double largest) {
@@ -145,25 +178,30 @@ void SphereSurfaces::verify(const Piece& piece, const Vector<3>& home, const Flo
   }
 }
 
-bool SphereSurfaces::make_cut(std::size_t sphere, int frequency, std::vector<FloatSurface>& to,
-                              Measured& measured) const {
+SphereSurfaces::Cutting SphereSurfaces::make_cut(std::size_t sphere, int frequency,
+                                                 std::vector<FloatSurface>& to, Measured& measured) const {
   const std::span<const Piece> pieces(pieces_.data() + first_piece_[sphere],
                                       first_piece_[sphere + 1] - first_piece_[sphere]);
   const PlanesOfSphere cuts = planes_of(pieces, boundary_, shift_);
   const Vector<3> home = pieces.front().center;
   to.clear();
   measured = {0, pieces.front().radius};
+  MeetingPolygons polygons;
   for (std::size_t n = 0; n < pieces.size(); ++n) {
     const Piece& piece = pieces[n];
     CutBall ball(frequency, piece.radius - 5 * shift_, cuts.planes);
     for (const auto& [plane, below] : cuts.cuts[n])
-      if (!ball.cut(plane, below)) return false;
+      if (!ball.cut(plane, below)) return Cutting::fails;
     if (ball.empty()) continue;
     FloatSurface made;
     std::vector<std::uint32_t> number(ball.corners().size(), ~0U);
     for (const CutBall::Face& face : ball.faces()) {
       int lies_in = on_sphere;
       if (face.plane >= 0) lies_in = cuts.planes[static_cast<std::size_t>(face.plane)].face;
+      if (lies_in >= 0) {
+        const auto by = std::ranges::find(cuts.cuts[n], face.plane, &std::pair<int, bool>::first);
+        polygons.add(ball, face, by->second);
+      }
       for (Triangle triangle : ball.triangles_of(face)) {
         const auto place = [&](std::size_t k) { return ball.corners()[triangle[k]].place; };
         measured.volume += place(0).dot(place(1).cross(place(2))) / 6;
@@ -198,7 +236,7 @@ bool SphereSurfaces::make_cut(std::size_t sphere, int frequency, std::vector<Flo
     verify(piece, home, made);
     to.push_back(std::move(made));
   }
-  return true;
+  return polygons.match() ? Cutting::closes : Cutting::leaves_gaps;
 }
 
 void SphereSurfaces::make(std::size_t sphere,
@@ -218,12 +256,15 @@ void SphereSurfaces::make(std::size_t sphere,
   }
   std::vector<FloatSurface> made;
   Measured measured;
-  for (int frequency = frequency_; frequency < 2 * frequency_ + 8; ++frequency) {
-    if (!make_cut(sphere, frequency, made, measured)) continue;
-    if (measured.inner - shift_ < (1 - deflection_) * first.radius) continue;
-    for (std::size_t p = 0; p < made.size(); ++p)
-      use(made[p], p == 0 ? measured : Measured{0, measured.inner});
-    return;
+  // If need be with gaps as narrow as a sliver, between the two ends of a period.
+  for (const Cutting wanted : {Cutting::closes, Cutting::leaves_gaps}) {
+    for (int frequency = frequency_; frequency < 2 * frequency_ + 8; ++frequency) {
+      if (make_cut(sphere, frequency, made, measured) < wanted) continue;
+      if (measured.inner - shift_ < (1 - deflection_) * first.radius) continue;
+      for (std::size_t p = 0; p < made.size(); ++p)
+        use(made[p], p == 0 ? measured : Measured{0, measured.inner});
+      return;
+    }
   }
   throw Error(
       ErrorCode::bad_argument,

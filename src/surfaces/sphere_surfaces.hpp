@@ -79,7 +79,9 @@ class SphereSurfaces {
     double volume = 0, inner = 0;  ///< the least distance of a triangle on the sphere from the centre
   };
   void make(std::size_t sphere, const std::function<void(const FloatSurface&, const Measured&)>& use) const;
-  bool make_cut(std::size_t sphere, int frequency, std::vector<FloatSurface>& to, Measured& measured) const;
+  enum class Cutting { fails, leaves_gaps, closes };
+  Cutting make_cut(std::size_t sphere, int frequency, std::vector<FloatSurface>& to,
+                   Measured& measured) const;
   void verify(const Piece& piece, const Vector<3>& home, const FloatSurface& surface) const;
 
   std::vector<Piece> pieces_;

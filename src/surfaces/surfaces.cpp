@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -42,6 +43,38 @@ Spheres<dynamic> wrapped(Spheres<dynamic> spheres, const Domain& domain) {
 Spheres<dynamic> smaller_by(Spheres<dynamic> spheres, double inset) {
   for (double& r : spheres.r) r -= inset;
   return spheres;
+}
+
+/// Of each end, the triangles of spheres that lie in it.
+using Covered = std::array<std::vector<std::array<FloatPoint, 3>>, 6>;
+
+/// Where spheres that lie in the ends of other periods cross the outline of this one, at either end of its
+/// own period: all four lines in which the ends of two periods meet are divided at the same points, also
+/// where of a sphere that just reaches such a line one end has no triangle.
+std::vector<FloatPoint> points_on_outline(const WallSurface::End& end,
+                                          const std::vector<WallSurface::End>& ends, const Covered& covered) {
+  const auto place_of = [](const WallSurface::End& e) {
+    return e.outline.front()[static_cast<std::size_t>(e.axis())];
+  };
+  std::set<FloatPoint> points;
+  for (const WallSurface::End& other : ends) {
+    if (other.axis() == end.axis()) continue;
+    for (const auto& triangle : covered[static_cast<std::size_t>(other.face)]) {
+      for (FloatPoint p : triangle) {
+        float& along = p[static_cast<std::size_t>(end.axis())];
+        const bool meets = std::ranges::any_of(
+            ends, [&](const auto& e) { return e.axis() == end.axis() && along == place_of(e); });
+        if (!meets) continue;
+        along = place_of(end);
+        for (const WallSurface::End& e : ends) {
+          if (e.axis() != other.axis()) continue;
+          p[static_cast<std::size_t>(e.axis())] = place_of(e);
+          points.insert(p);
+        }
+      }
+    }
+  }
+  return {points.begin(), points.end()};
 }
 
 bool may_be_covered(std::int8_t face) { return face >= 0; }
@@ -92,7 +125,7 @@ void Surfaces::make_container() {
     container_ = walls_.closed();
     return;
   }
-  std::array<std::vector<std::array<FloatPoint, 3>>, 6> covered;
+  Covered covered;
   for (std::size_t i = 0; i < spheres_.spheres(); ++i) {
     if (spheres_.is_whole(i)) continue;
     spheres_.visit(i, [&](const FloatSurface& surface) {
@@ -125,7 +158,8 @@ void Surfaces::make_container() {
   for (const WallSurface::End& end : walls_.ends) {
     if (end.is_upper()) continue;
     const auto opposite = std::ranges::find(walls_.ends, end.face + 1, &WallSurface::End::face);
-    const FloatSurface lower = end_between(end, covered[static_cast<std::size_t>(end.face)]);
+    const FloatSurface lower = end_between(end, covered[static_cast<std::size_t>(end.face)],
+                                           points_on_outline(end, walls_.ends, covered));
     add(lower);
     add(moved_to(*opposite, lower));
   }

@@ -201,7 +201,8 @@ WallSurface wall_surface(const Domain& domain, double deflection) {
   return std::visit(MakeWalls{deflection}, domain);
 }
 
-FloatSurface end_between(const WallSurface::End& end, const std::vector<std::array<FloatPoint, 3>>& covered) {
+FloatSurface end_between(const WallSurface::End& end, const std::vector<std::array<FloatPoint, 3>>& covered,
+                         const std::vector<FloatPoint>& on_outline) {
   // Of what is covered the outline: edges that only one triangle has.
   std::map<FloatEdge, int> times;
   for (const auto& [a, b, c] : covered) {
@@ -217,6 +218,7 @@ FloatSurface end_between(const WallSurface::End& end, const std::vector<std::arr
     rim.insert(edge.first);
     rim.insert(edge.second);
   }
+  rim.insert(on_outline.begin(), on_outline.end());
   // The end's own outline, divided where spheres cross it; an edge that both have bounds nothing.
   for (std::size_t k = 0; k < end.outline.size(); ++k) {
     const FloatPoint from = end.outline[k], to = end.outline[(k + 1) % end.outline.size()];

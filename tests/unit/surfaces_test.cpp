@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <numbers>
@@ -258,6 +259,21 @@ TEST(Surfaces, ThePoreSpaceHasOneClosedBoundary) {
     EXPECT_GT(whole, volume_of(of.domain) * (1 - 1e-6));
     EXPECT_LT(whole, volume_of(of.domain) * 1.1);
   }
+}
+
+/// Each with a sphere in the corner, cut into eight, and others near faces and edges.
+TEST(Surfaces, ThePoreSpaceOfAnyPeriodicBoxIsClosed) {
+  const Domain box = bernal::periodic_box(Vector<3>(3, 3.7, 4.1));
+  int open = 0, crossing = 0;
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    const double deflection = std::array{0.05, 0.02, 0.01}[seed % 3];
+    const Surfaces surfaces(touching_in(box, 30, 0.9, seed), box, deflection, SurfaceChoice::pores, nobody);
+    const Mesh mesh = mesh_of(surfaces);
+    open += open_edges(mesh) > 0;
+    crossing += cad::count_self_intersections(mesh) > 0;
+  }
+  EXPECT_EQ(open, 0);
+  EXPECT_EQ(crossing, 0);
 }
 
 TEST(Surfaces, ClaimNothingOfSpheresThatOverlap) {
