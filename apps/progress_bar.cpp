@@ -9,6 +9,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <string>
 #include <string_view>
 
@@ -21,15 +22,31 @@ namespace {
 constexpr double silence = 2, between_redraws = 0.1, between_lines = 10;  ///< seconds
 constexpr std::chrono::milliseconds between_ticks(100);
 
-std::atomic<bool> signalled = false;
-std::atomic<bool> no_message = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may touch nothing else");
+/// Signals that come so soon after the first are the same one: `timeout` sends it to the command and to its
+/// group, a queue to a step and to each of its processes.
+constexpr double at_once = 0.5;  ///< seconds
 
-extern "C" void on_signal(int) {
+std::atomic<bool> signalled = false;
+std::atomic<double> first_signal = 0;  // by the clock below
+std::atomic<bool> no_message = false;
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<double>::is_always_lock_free,
+              "a signal handler may touch nothing else");
+
+double monotonic_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+extern "C" void on_signal(int number) {
+  if (signalled) {
+    if (monotonic_seconds() < first_signal + at_once) return;
+    std::signal(number, SIG_DFL);
+    raise(number);  // kills as soon as this returns
+    return;
+  }
+  first_signal = monotonic_seconds();
   signalled = true;
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-  std::signal(SIGHUP, SIG_DFL);
   constexpr std::string_view message = "\nbernal: stopping at the next safe point; once more kills\n";
   if (!no_message) [[maybe_unused]]
     const auto written = write(STDERR_FILENO, message.data(), message.size());

@@ -10,7 +10,7 @@
 /// Shows on standard error how far a run has come, once it has taken two seconds: one line redrawn in place
 /// on a terminal, else a plain line every ten seconds, whether or not there is news. As soon as somebody has
 /// its monitor, the first SIGINT or SIGTERM only makes `interrupted()` true, so that a run can end with what
-/// it has; the second one kills.
+/// it has; one that comes more than half a second later kills.
 class ProgressBar {
  public:
   /// `silent`: says nothing of an interrupt.

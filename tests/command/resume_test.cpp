@@ -50,6 +50,21 @@ TEST(Resume, GoesOnAfterASignalToTheSameSpheres) {
   EXPECT_EQ(report_of(folder / "whole")["resumed"], 0);
 }
 
+/// `timeout` sends its signal to the command and to the group that this is in.
+TEST(Resume, ASignalThatComesTwiceAtOnceIsOne) {
+  const Folder folder;
+  const std::string scene = folder.write("scene.toml", long_scene);
+  const std::filesystem::path out = folder / "out";
+  const Process run = start_bernal({"pack", scene, "-o", out, "--threads", "1"});
+  ASSERT_TRUE(run.listens_to(SIGTERM));
+  for (int k = 0; k < 20; ++k) {
+    run.signal(SIGTERM);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(run.wait().status, 3);
+  EXPECT_EQ(report_of(out)["outcome"], "cancelled");
+}
+
 TEST(Resume, StartsAnewWhereThereIsNothingAndSaysSo) {
   const Folder folder;
   const std::string scene = folder.write("scene.toml", small_scene);
