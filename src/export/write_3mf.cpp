@@ -11,6 +11,7 @@
 #include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
 #include "export/surface_file.hpp"
+#include "io/output_file.hpp"
 #include "io/palette.hpp"
 
 namespace bernal {
@@ -87,7 +88,7 @@ class ZipWriter {
   }
   [[noreturn]] void fail() const {
     throw Error(ErrorCode::cannot_write, "the archive cannot be written; is the disk full?",
-                {path_.string()});
+                {as_it_will_be(path_).string()});
   }
 
   std::filesystem::path path_;

@@ -13,7 +13,15 @@ namespace {
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 }
 
-OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
+std::filesystem::path as_it_will_be(const std::filesystem::path& path) {
+  std::filesystem::path without;
+  for (const std::filesystem::path& part : path)
+    if (!part.string().starts_with(staging_prefix)) without /= part;
+  return without;
+}
+
+OutputFile::OutputFile(std::filesystem::path path, std::filesystem::path called)
+    : path_(std::move(path)), called_(called.empty() ? as_it_will_be(path_) : std::move(called)) {
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail("cannot be created");
 }
@@ -49,11 +57,7 @@ void OutputFile::flush() {
 }
 
 void OutputFile::fail(const char* what) const {
-  const std::string why = std::strerror(errno);
-  std::filesystem::path known_to_users;
-  for (const std::filesystem::path& part : path_)
-    if (!part.string().starts_with(staging_prefix)) known_to_users /= part;
-  throw Error(ErrorCode::cannot_write, std::string(what) + ": " + why, {known_to_users.string()});
+  throw Error(ErrorCode::cannot_write, std::string(what) + ": " + std::strerror(errno), {called_.string()});
 }
 
 }  // namespace bernal

@@ -345,7 +345,7 @@ std::vector<fs::path> StagedFolder::publish(const std::vector<std::string>& repl
   std::error_code problem;
   fs::create_directory(staging_ / earlier_name, problem);
   if (problem) fail("cannot write here", problem.message(), staging_);
-  OutputFile list(staging_ / replaced_name);
+  OutputFile list(staging_ / replaced_name, folder_);
   for (const std::string& name : replaced) list.append(line_of(name) + "\n");
   list.close();
 

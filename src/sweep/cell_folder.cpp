@@ -83,14 +83,13 @@ void replace_file(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path(), problem);
   fs::remove(partial, problem);
   try {
-    OutputFile out(partial);
+    OutputFile out(partial, file);
     out.append(text);
     out.close();
     fs::rename(partial, file, problem);
-  } catch (const Error& error) {
+  } catch (const Error&) {
     fs::remove(partial, problem);
-    const std::string said = error.what(), before = partial.string() + ": ";
-    throw Error(error.code(), said.starts_with(before) ? said.substr(before.size()) : said, {file.string()});
+    throw;
   }
   if (!problem) return;
   const std::string why = problem.message();
