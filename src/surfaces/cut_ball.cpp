@@ -119,7 +119,7 @@ void CutBall::snap(int number) {
   const BallPlane& plane = planes_[static_cast<std::size_t>(number)];
   const double cap = radius_ - std::abs(plane.offset), left = least_cap_ / least_cap_share;
   const double near = std::min(snap_distance * edge_, 0.5 * (cap - left));
-  std::map<std::uint32_t, Corner> moved_from;
+  std::map<std::uint32_t, Corner> moved_alone;  // from where, of those that lie on no other plane
   for (std::uint32_t v = 0; v < corners_.size(); ++v) {
     Corner& corner = corners_[v];
     std::optional<Corner> moved =
@@ -127,33 +127,27 @@ void CutBall::snap(int number) {
     const std::optional<Vector<3>> place = moved ? placed(*moved) : std::nullopt;
     if (!place || !may_move(*moved, *place) || !((*place - corner.place).norm() < 2 * snap_distance * edge_))
       continue;
-    moved_from.emplace(v, corner);
+    if (corner.count() == 0) moved_alone.emplace(v, corner);
     moved->place = *place;
     corner = *moved;
   }
   for (const Face& face : faces_) {
     if (!std::ranges::all_of(face.corners, [&](auto v) { return lies_on(corners_[v], number); })) continue;
-    const auto farther = [&](std::uint32_t v, std::uint32_t w) {
-      const auto of = [&](std::uint32_t u) {
-        const auto from = moved_from.find(u);
-        if (from == moved_from.end() || from->second.count() > 0) return -1.0;  // others share it
-        return std::abs(height(from->second.place, plane));
-      };
-      return of(v) < of(w);
+    const auto distance = [&](std::uint32_t v) {
+      const auto from = moved_alone.find(v);
+      return from == moved_alone.end() ? -1 : std::abs(height(from->second.place, plane));
     };
-    const std::uint32_t v = *std::ranges::max_element(face.corners, farther);
-    if (const auto from = moved_from.find(v); from != moved_from.end() && from->second.count() == 0) {
-      corners_[v] = from->second;
-      moved_from.erase(from);
-    }
+    const auto from = moved_alone.find(*std::ranges::max_element(face.corners, {}, distance));
+    if (from == moved_alone.end()) continue;
+    corners_[from->first] = from->second;
+    moved_alone.erase(from);
   }
   bool any_above = false, any_below = false;
   for (const Corner& corner : corners_)
     if (!lies_on(corner, number)) (height(corner.place, plane) > 0 ? any_above : any_below) = true;
   if (any_above && any_below) return;
   const double side = any_above ? -1 : 1;
-  for (const auto& [v, before] : moved_from) {
-    if (before.count() > 0) continue;
+  for (const auto& [v, before] : moved_alone) {
     corners_[v] = before;
     const double over = side * height(before.place, plane) + 0.25 * near;
     if (over > 0) corners_[v].place -= side * over * plane.normal;
