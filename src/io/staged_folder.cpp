@@ -110,11 +110,17 @@ fs::path new_staging(const fs::path& folder) {
   return ::mkdtemp(pattern.data()) == nullptr ? fs::path() : fs::path(pattern);
 }
 
+/// The staging folders of all who write there, or did.
+std::vector<fs::path> stagings_in(const fs::path& folder) {
+  std::vector<fs::path> stagings = entries_of(folder);
+  std::erase_if(stagings,
+                [](const fs::path& entry) { return !entry.filename().string().starts_with(staging_prefix); });
+  return stagings;
+}
+
 /// Staging folders whose processes were killed.
 void remove_abandoned(const fs::path& folder) {
-  for (const fs::path& entry : entries_of(folder)) {
-    const std::string name = entry.filename().string();
-    if (!name.starts_with(staging_prefix)) continue;
+  for (const fs::path& entry : stagings_in(folder)) {
     const int lock = locked(entry);
     if (lock < 0) continue;
     std::error_code ignored;
@@ -375,9 +381,13 @@ std::vector<fs::path> StagedFolder::publish(const std::vector<std::string>& repl
 }
 
 void finish_publishing(const fs::path& folder) {
-  if (!stands(folder / complete_name / replaced_name) && !stands(folder / placing_name / replaced_name))
-    return;
-  if (const Turn turn(folder); turn.came()) finish_in_turn(folder);
+  const bool is_begun =
+      stands(folder / complete_name / replaced_name) || stands(folder / placing_name / replaced_name);
+  if (!is_begun && stagings_in(folder).empty()) return;
+  const Turn turn(folder);
+  if (!turn.came()) return;
+  finish_in_turn(folder);
+  remove_abandoned(folder);
 }
 
 }  // namespace bernal

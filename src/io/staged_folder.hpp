@@ -63,8 +63,9 @@ class StagedFolder {
   bool published_ = false;
 };
 
-/// Completes what a process that was killed had begun to publish in the folder, and waits for one that is at
-/// it; does nothing if there is no such thing. Throws Error{cannot_write}.
+/// Completes what a process that was killed had begun to publish in the folder, waits for one that is at it,
+/// and removes staging folders of processes that were killed; does nothing if there is no such thing. Throws
+/// Error{cannot_write}.
 void finish_publishing(const std::filesystem::path& folder);
 
 }  // namespace bernal

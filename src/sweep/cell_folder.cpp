@@ -1,8 +1,5 @@
 #include "sweep/cell_folder.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -10,9 +7,10 @@
 #include "bernal/core/text.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "core/bytes_of_file.hpp"
-#include "io/output_file.hpp"
 #include "io/report_summary.hpp"
+#include "io/staged_folder.hpp"
 #include "scene/toml_text.hpp"
+#include "sweep/claim.hpp"
 
 namespace fs = std::filesystem;
 
@@ -77,24 +75,13 @@ fs::path claim_of_cell(const fs::path& folder, const std::string& hash) {
 }
 
 void replace_file(const fs::path& file, const std::string& text) {
-  const fs::path partial =
-      file.parent_path() / fmt::format(".bernal-{}-{}", ::getpid(), file.filename().string());
+  StagedFolder staged(file.parent_path());
+  const std::string name = file.filename().string();
+  staged.write(name, text);
   std::error_code problem;
-  fs::create_directories(file.parent_path(), problem);
-  fs::remove(partial, problem);
-  try {
-    OutputFile out(partial, file);
-    out.append(text);
-    out.close();
-    fs::rename(partial, file, problem);
-  } catch (const Error&) {
-    fs::remove(partial, problem);
-    throw;
-  }
-  if (!problem) return;
-  const std::string why = problem.message();
-  fs::remove(partial, problem);
-  throw Error(ErrorCode::cannot_write, "cannot be replaced: " + why, {file.string()});
+  fs::rename(staged.written(name), file, problem);
+  if (problem)
+    throw Error(ErrorCode::cannot_write, "cannot be replaced: " + problem.message(), {file.string()});
 }
 
 void write_failure(const fs::path& folder, const std::string& hash, const Failure& failure) {
@@ -107,6 +94,14 @@ void write_failure(const fs::path& folder, const std::string& hash, const Failur
 void remove_failure(const fs::path& folder, const std::string& hash) {
   std::error_code ignored;
   fs::remove(folder / folder_of_cell(hash) / failure_name, ignored);
+}
+
+void tidy_cell(const fs::path& folder, const std::string& hash) {
+  remove_abandoned(claim_of_cell(folder, hash));
+  try {
+    finish_writing(folder / folder_of_cell(hash));
+  } catch (const Error&) {  // the next call that reads it says so
+  }
 }
 
 bool is_to_be_run(const CellResult& result, std::optional<double> seconds, bool retry) {

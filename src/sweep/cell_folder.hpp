@@ -25,6 +25,9 @@ void remove_failure(const std::filesystem::path& folder, const std::string& hash
 /// Writes a file as a whole: in the place of what stands there, or not at all. Throws Error{cannot_write}.
 void replace_file(const std::filesystem::path& file, const std::string& text);
 
+/// Removes what processes that were killed over the cell have left beside its result.
+void tidy_cell(const std::filesystem::path& folder, const std::string& hash);
+
 /// Whether a cell of that result is to be run, with so many seconds for it.
 bool is_to_be_run(const CellResult& result, std::optional<double> seconds, bool retry);
 

@@ -83,8 +83,7 @@ class Pool {
     }
     look_again();
     write();
-    for (const SweepRow& row : report_.rows)
-      sweep::remove_abandoned(sweep::claim_of_cell(folder_, row.cell_hash));
+    for (const SweepRow& row : report_.rows) sweep::tidy_cell(folder_, row.cell_hash);
     if (options_.write) report_.files = results_.files();
     return std::move(report_);
   }

@@ -72,9 +72,14 @@ TEST(SweepCommand, WhatIsKilledIsRunAgain) {
   EXPECT_EQ(process.wait().status, 128 + SIGKILL);
   const auto done = swept.reports();
   EXPECT_LT(done.size(), 6u);
-  // As of one that was killed between its last file and letting go of its claim.
+  // As of those that were killed between their last file and letting go of their claims, or over removing
+  // their own folders, and of the call itself over its table.
   fs::create_directories(swept.out + "/cells/.claims");
-  for (const auto& [name, file] : done) std::ofstream(swept.out + "/cells/.claims/" + name);
+  for (const auto& [name, file] : done) {
+    std::ofstream(swept.out + "/cells/.claims/" + name);
+    fs::create_directories(swept.out + "/cells/" + name + "/.bernal-staging-killed/.earlier");
+  }
+  fs::create_directories(swept.out + "/.bernal-staging-killed");
   EXPECT_EQ(swept.report()["ran"], 6 - done.size());
   const auto all = swept.reports();
   for (const auto& [name, file] : done) EXPECT_EQ(all.at(name), file);

@@ -183,6 +183,18 @@ TEST(StagedFolder, ThoseOfKilledProcessesGoAndThoseOfOthersStay) {
   EXPECT_EQ(entries_in(folder.path()), 0u);
 }
 
+/// As of a run that was killed once all its files were in their places, over removing its own folder.
+TEST(StagedFolder, WhoeverReadsAFolderRemovesThoseOfKilledProcessesToo) {
+  const Folder folder;
+  const StagedFolder other(folder.path());
+  fs::create_directories(folder / ".bernal-staging-killed/.earlier");
+  folder.write(".bernal-staging-killed/.earlier/a", "0");
+  folder.write("result", "1");
+  finish_publishing(folder.path());
+  EXPECT_FALSE(fs::exists(folder / ".bernal-staging-killed"));
+  EXPECT_EQ(entries_in(folder.path()), 2u) << "the result, and the staging folder of who is at work";
+}
+
 TEST(StagedFolder, ALinkThatLeadsNowhereIsNamed) {
   const Folder folder;
   fs::create_symlink("nowhere", folder / "link");
