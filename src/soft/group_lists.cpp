@@ -11,7 +11,7 @@ namespace {
 constexpr double cells_per_sphere = 2;
 /// Of a cell, in the farthest that two spheres of its level may be apart as neighbours. The cells along the
 /// first axis are looked through as one run, `lanes` spheres at a time: few runs, and not much too long.
-constexpr std::array<double, 3> cell_widths = {0.5, 1.5, 1.5};
+constexpr std::array<double, 3> cell_widths = {0.5, 1, 1};
 
 std::size_t level_of(float r, const SoftSizes& sizes) {
   std::size_t l = 0;
@@ -95,21 +95,92 @@ SearchTask RegionCells::task() const {
           x_.data(), y_.data(),        z_.data(), r_.data(), places_.data()};
 }
 
-template <class Index>
-void FoundNeighbors<Index>::find(const SoftKernels& kernels, const SearchTask& task, std::size_t first,
-                                 std::size_t last, std::size_t own, std::uint32_t* room,
-                                 std::vector<NeighborList<Index>>& of_place) {
+namespace {
+
+SoftSphere sphere_in(const SearchTask& task, std::size_t slot) {
+  return {{task.x[slot], task.y[slot], task.z[slot]}, task.r[slot]};
+}
+
+/// Cuts slots into parts that are searched around together: few spheres, and so close together that hardly
+/// more are candidates for all of them than for one.
+class PartsOfSlots {
+ public:
+  explicit PartsOfSlots(const SearchTask& task) : task_(task) {
+    const double least_reach = 2.0 * (task.levels.back().largest + task.skin);
+    const double most_reach = 2.0 * (task.levels.front().largest + task.skin);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double widest = std::min(least_reach, 0.5 * 0x1p32 * task.scale[k] - most_reach);
+      widest_[k] = static_cast<std::uint32_t>(std::max(0.0, widest / task.scale[k]));
+    }
+  }
+
+  /// The next part, from a slot on; returns where it ends.
+  std::size_t take(std::size_t first, std::size_t last, SearchPart& part) const {
+    part.origin = sphere_in(task_, first);
+    std::array<std::uint32_t, 3> low{}, high{};
+    for (std::size_t k = 0; k < 3; ++k) low[k] = high[k] = task_.region.offset(part.origin, k);
+    float largest = part.origin.r;
+    std::size_t end = first + 1;
+    for (; end < std::min(last, first + most); ++end) {
+      const SoftSphere next = sphere_in(task_, end);
+      std::array<std::uint32_t, 3> lower{}, higher{};
+      bool is_close = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t at = task_.region.offset(next, k);
+        lower[k] = std::min(low[k], at);
+        higher[k] = std::max(high[k], at);
+        is_close &= higher[k] - lower[k] <= widest_[k];
+      }
+      if (!is_close) break;
+      low = lower;
+      high = higher;
+      largest = std::max(largest, next.r);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      part.low[k] = low[k];
+      part.high[k] = high[k];
+    }
+    part.reach = largest + 2 * task_.skin;
+    return end;
+  }
+
+ private:
+  static constexpr std::size_t most = 6;
+
+  const SearchTask& task_;
+  std::array<std::uint32_t, 3> widest_;
+};
+
+}  // namespace
+
+void FoundNeighbors::find(const SoftKernels& kernels, const SearchTask& task, std::size_t first,
+                          std::size_t last, std::size_t own, CandidateRoom& room,
+                          std::vector<NeighborList>& of_place) {
   constexpr std::size_t usual = 16;  // neighbours
   used_ = 0;
   all_.resize(std::max(all_.size(), usual * (last - first)));
   ends_.resize(last - first);
-  for (std::size_t slot = first; slot < last; ++slot) {
-    const std::uint32_t place = task.places[slot];
-    if (place < own) {
-      const SoftSphere sphere = {{task.x[slot], task.y[slot], task.z[slot]}, task.r[slot]};
-      append(room, static_cast<std::size_t>(kernels.search(task, sphere, place, room) - room));
+  const PartsOfSlots parts(task);
+  const Candidates candidates = room.candidates();
+  SearchPart part{};
+  for (std::size_t slot = first; slot < last;) {
+    if (task.places[slot] >= own) {
+      ends_[slot++ - first] = used_;
+      continue;
     }
-    ends_[slot - first] = used_;
+    const std::size_t end_of_part = parts.take(slot, last, part);
+    const std::size_t count = kernels.gather(task, part, candidates);
+    const std::size_t most = (end_of_part - slot) * count + lanes;
+    if (all_.size() < used_ + most) all_.resize(2 * (used_ + most));
+    for (; slot < end_of_part; ++slot) {
+      const std::uint32_t place = task.places[slot];
+      if (place < own) {
+        std::uint32_t* const found = all_.data() + used_;
+        used_ += static_cast<std::size_t>(
+            kernels.search(task, part, candidates, count, sphere_in(task, slot), place, found) - found);
+      }
+      ends_[slot - first] = used_;
+    }
   }
   // Now that they stay where they are.
   std::size_t begin = 0;
@@ -120,18 +191,5 @@ void FoundNeighbors<Index>::find(const SoftKernels& kernels, const SearchTask& t
     begin = end;
   }
 }
-
-/// Some more than there are, a fixed number at a time: no branch to mispredict.
-template <class Index>
-void FoundNeighbors<Index>::append(const std::uint32_t* found, std::size_t count) {
-  if (all_.size() < used_ + count + lanes) all_.resize(2 * (used_ + count + lanes));
-  Index* const out = all_.data() + used_;
-  for (std::size_t k = 0; k < count; k += lanes)
-    for (std::size_t l = k; l < k + lanes; ++l) out[l] = static_cast<Index>(found[l]);
-  used_ += count;
-}
-
-template class FoundNeighbors<std::uint16_t>;
-template class FoundNeighbors<std::uint32_t>;
 
 }  // namespace bernal

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -38,32 +39,43 @@ class RegionCells {
   std::vector<std::uint32_t> places_;  // these columns have `lanes` more entries that say nothing
 };
 
+/// For the candidates of searches among so many spheres. Memory that is never touched costs nothing.
+class CandidateRoom {
+ public:
+  explicit CandidateRoom(std::size_t spheres)
+      : size_(spheres + 2 * lanes), columns_(new float[4 * size_]), places_(new std::uint32_t[size_]) {}
+
+  Candidates candidates() {
+    float* const x = columns_.get();
+    return {x, x + size_, x + 2 * size_, x + 3 * size_, places_.get()};
+  }
+
+ private:
+  std::size_t size_;
+  std::unique_ptr<float[]> columns_;
+  std::unique_ptr<std::uint32_t[]> places_;
+};
+
 /// Of one sphere.
-template <class Index>
 struct NeighborList {
-  const Index* first = nullptr;
+  const std::uint32_t* first = nullptr;
   std::uint32_t size = 0;
 };
 
 /// The neighbours of the spheres in some slots of the cells. They are found in the order of the slots, as
-/// those that are searched one after the other then look into the same cells: in the order of sweeping they
-/// are far from each other.
-template <class Index>
+/// those that follow each other lie close together: in the order of sweeping they are far from each other.
 class FoundNeighbors {
  public:
   /// Of those in the slots [first, last) whose place is below `own`, which `of_place` then has until this is
-  /// used again. `room` is for as many as there are slots in all, and `lanes` more. Cost: some 80 ns a
-  /// sphere.
+  /// used again. Cost: some 50 ns a sphere.
   void find(const SoftKernels& kernels, const SearchTask& task, std::size_t first, std::size_t last,
-            std::size_t own, std::uint32_t* room, std::vector<NeighborList<Index>>& of_place);
+            std::size_t own, CandidateRoom& room, std::vector<NeighborList>& of_place);
 
   /// What is in the lists.
-  std::span<const Index> all() const { return {all_.data(), used_}; }
+  std::span<const std::uint32_t> all() const { return {all_.data(), used_}; }
 
  private:
-  void append(const std::uint32_t* found, std::size_t count);
-
-  std::vector<Index> all_;  // with room behind them
+  std::vector<std::uint32_t> all_;  // with room behind them
   std::size_t used_ = 0;
   std::vector<std::size_t> ends_;  // of the lists, by slot
 };
@@ -71,7 +83,7 @@ class FoundNeighbors {
 /// Appends the rows of a group with these lists, every place p as name_of(p). `filler` is the name of a gap.
 /// Returns how many these are. Cost: about 1 ns a neighbour.
 template <class Index, class NameOf>
-std::uint32_t append_rows(const NeighborList<Index>* lists, const NameOf& name_of, Index filler,
+std::uint32_t append_rows(const NeighborList* lists, const NameOf& name_of, Index filler,
                           std::vector<Index>& rows) {
   std::uint32_t most = 0;
   for (std::size_t l = 0; l < lanes; ++l) most = std::max(most, lists[l].size);

@@ -228,10 +228,10 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
   }
   scratch.cells.sort(scratch.spheres, around, edges_, sizes_, skin_);
   scratch.lists.assign(block.places, {});
-  scratch.found.find(kernels_, scratch.cells.task(), 0, scratch.cells.size(), block.places,
-                     scratch.room.get(), scratch.lists);
+  scratch.found.find(kernels_, scratch.cells.task(), 0, scratch.cells.size(), block.places, scratch.room,
+                     scratch.lists);
   const auto filler = static_cast<std::uint16_t>(name_neighbors(block.places, scratch));
-  const auto name_of = [&](std::uint16_t p) { return scratch.name_of[p]; };
+  const auto name_of = [&](std::uint32_t p) { return scratch.name_of[p]; };
   scratch.rows.clear();
   scratch.groups.resize(block.places / lanes);
   for (std::size_t g = 0; g < scratch.groups.size(); ++g)
@@ -254,7 +254,7 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
 std::size_t SoftBlocks::name_neighbors(std::size_t own, Scratch& scratch) {
   std::vector<std::uint16_t>& name_of = scratch.name_of;
   name_of.assign(scratch.spheres.size(), 0);
-  for (const std::uint16_t p : scratch.found.all()) name_of[p] = 1;
+  for (const std::uint32_t p : scratch.found.all()) name_of[p] = 1;
   std::size_t kept = own;
   for (std::size_t h = 0; h < scratch.halo.size(); ++h) {
     if (name_of[own + h] == 0) continue;

@@ -74,10 +74,9 @@ class SoftBlocks {
     std::vector<SoftSphere> spheres;
     SweepOrder order;
     RegionCells cells;
-    // Memory that is never touched costs nothing.
-    std::unique_ptr<std::uint32_t[]> room{new std::uint32_t[most_places + lanes]};
-    FoundNeighbors<std::uint16_t> found;
-    std::vector<NeighborList<std::uint16_t>> lists;
+    CandidateRoom room{most_places};
+    FoundNeighbors found;
+    std::vector<NeighborList> lists;
     std::vector<std::uint32_t> halo;
     std::vector<std::uint16_t> rows, name_of;
     std::vector<NeighborRows<std::uint16_t>> groups;

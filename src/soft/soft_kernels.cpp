@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -67,10 +68,10 @@ std::vector<SoftKernels> runnable_kernels() {
   std::vector<SoftKernels> kernels;
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw"))
-    kernels.push_back({"AVX-512", avx512::sweep, avx512::sweep, avx512::search});
+    kernels.push_back({"AVX-512", avx512::sweep, avx512::sweep, avx512::gather, avx512::search});
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt"))
-    kernels.push_back({"AVX2", avx2::sweep, avx2::sweep, avx2::search});
-  kernels.push_back({"SSE2", sse2::sweep, sse2::sweep, sse2::search});
+    kernels.push_back({"AVX2", avx2::sweep, avx2::sweep, avx2::gather, avx2::search});
+  kernels.push_back({"SSE2", sse2::sweep, sse2::sweep, sse2::gather, sse2::search});
   return kernels;
 }
 

@@ -112,6 +112,20 @@ struct SearchTask {
   const std::uint32_t* places;  ///< of these in the sweep order
 };
 
+/// Some spheres that lie close together, whose neighbours are searched for among the same others.
+struct SearchPart {
+  std::array<double, 3> low, high;  ///< around their centres, from the origin of the region, in its units
+  float reach;                      ///< the largest of their radii, and twice the skin
+  SoftSphere origin;                ///< one of them, which the others are seen from
+};
+
+/// Spheres that may be neighbours of those of a part, from its origin on, in the unit of the radii. There is
+/// room for all spheres of the task and twice `lanes` more.
+struct Candidates {
+  float *x, *y, *z, *r;
+  std::uint32_t* places;
+};
+
 /// The inner loops of the fast relaxation, compiled for several instruction sets. All do the same operations
 /// on the same numbers in the same order, one correctly rounded operation at a time: the same bits.
 struct SoftKernels {
@@ -130,9 +144,15 @@ struct SoftKernels {
                           std::size_t end);
   Sweep<std::uint32_t> sweep;
   Sweep<std::uint16_t> sweep_short;  ///< where there are no more than 2^16 places
-  /// Writes the places of all neighbours of a sphere but itself, `self`, to `out` and returns their end; up
-  /// to `lanes` more entries are scribbled over. Cost: about 10 ns a row of three cells.
-  std::uint32_t* (*search)(const SearchTask&, const SoftSphere&, std::uint32_t self, std::uint32_t* out);
+  /// Finds the candidates of a part, by level and cell, and puts `lanes` behind them that are nobody's
+  /// neighbours; returns how many they are. Precondition: two of the part are nowhere farther apart, along no
+  /// axis, than half of the box less the farthest that neighbours may be apart. Cost: some 100 ns.
+  std::size_t (*gather)(const SearchTask&, const SearchPart&, const Candidates& to);
+  /// Writes the places of all neighbours of a sphere of the part but itself, `self`, among so many candidates
+  /// to `out` and returns their end; up to `lanes` more entries are scribbled over. Cost: about 0.2 ns a
+  /// candidate.
+  std::uint32_t* (*search)(const SearchTask&, const SearchPart&, const Candidates& among, std::size_t count,
+                           const SoftSphere&, std::uint32_t self, std::uint32_t* out);
 };
 
 /// Those that this processor can run, the fastest first; the last is for every x86-64.

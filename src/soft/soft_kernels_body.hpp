@@ -138,6 +138,9 @@ BERNAL_INLINE Floats all(float value) { return Floats{} + value; }
 /// The values where the condition (0 or -1) holds, 0 elsewhere.
 BERNAL_INLINE Floats where(Ints condition, Floats values) { return Floats(Ints(values) & condition); }
 
+BERNAL_INLINE void store(void* to, Ints v) { *static_cast<UnalignedInts*>(to) = v; }
+BERNAL_INLINE void store(float* to, Floats v) { *reinterpret_cast<UnalignedFloats*>(to) = v; }
+
 /// `width` numbers of an array of `lanes`.
 BERNAL_INLINE Floats numbers_at(const std::array<float, lanes>& of, std::size_t first) {
   return *reinterpret_cast<const UnalignedFloats*>(of.data() + first);
@@ -220,72 +223,91 @@ float sweep(const SweepTask& task, const NeighborRows<Index>* groups, std::size_
                       : sweep_groups<false>(task, groups, begin, end);
 }
 
-/// The cells of a level, on one axis, that a cube around a point may meet: `count` of them from `first` on,
-/// going round where the region does.
+/// The cells of a level, on one axis, that what lies between `low` and `high` may reach: `count` of them from
+/// `first` on, going round where the region does.
 struct Cells {
   int first, count;
 };
 
-inline Cells cells_near(double at, double reach, int cells, bool wraps) {
-  const double first = std::floor(at - reach), last = std::floor(at + reach);
+inline Cells cells_near(double low, double high, double reach, int cells, bool wraps) {
+  const double first = std::floor(low - reach), last = std::floor(high + reach);
   if (!wraps) {
-    const int low = first > 0 ? static_cast<int>(first) : 0;
-    return {low, (last < cells ? static_cast<int>(last) + 1 : cells) - low};
+    const int lowest = first > 0 ? static_cast<int>(first) : 0;
+    return {lowest, (last < cells ? static_cast<int>(last) + 1 : cells) - lowest};
   }
   if (last - first + 1 >= cells) return {0, cells};
   return {static_cast<int>(first) + (first < 0 ? cells : 0), static_cast<int>(last - first) + 1};
 }
 
-inline std::uint32_t* search(const SearchTask& task, const SoftSphere& me, std::uint32_t self,
-                             std::uint32_t* out) {
-  const Floats scale_x = all(task.scale[0]), scale_y = all(task.scale[1]), scale_z = all(task.scale[2]);
-  const float blown_up = me.r + 2 * task.skin;
-  const Ints my_x = Ints{} + me.x[0], my_y = Ints{} + me.x[1], my_z = Ints{} + me.x[2];
-  const Ints myself = Ints{} + static_cast<int>(self);
-  const Floats my_reach = all(blown_up);
-  Ints lane;
-  for (int l = 0; l < width; ++l) lane[l] = l;
-  // What is written may be any of these, for all that the compiler knows.
-  const std::int32_t *const xs = task.x, *const ys = task.y, *const zs = task.z;
-  const float* const rs = task.r;
-  const std::uint32_t *const places_of = task.places, *const start = task.start;
+BERNAL_INLINE Ints ints_at(const void* from) { return *static_cast<const UnalignedInts*>(from); }
+BERNAL_INLINE Floats floats_at(const float* from) { return *reinterpret_cast<const UnalignedFloats*>(from); }
 
-  const auto ints_at = [](const std::int32_t* from) BERNAL_INLINE_LAMBDA {
-    return Ints(*reinterpret_cast<const UnalignedInts*>(from));
-  };
-  const auto search_run = [&](std::size_t first_cell, std::size_t end_cell) BERNAL_INLINE_LAMBDA {
-    const std::uint32_t end = start[end_cell];
-    for (std::uint32_t p = start[first_cell]; p < end; p += lanes) {
+inline std::size_t gather(const SearchTask& of, const SearchPart& part, const Candidates& out) {
+  // What is written may be any of these, for all that the compiler knows.
+  const SearchTask task = of;
+  const Candidates to = out;
+  const Floats scale_x = all(task.scale[0]), scale_y = all(task.scale[1]), scale_z = all(task.scale[2]);
+  const Ints x = Ints{} + part.origin.x[0], y = Ints{} + part.origin.x[1], z = Ints{} + part.origin.x[2];
+  std::size_t count = 0;
+  const auto take_run = [&](std::size_t first_cell, std::size_t end_cell) BERNAL_INLINE_LAMBDA {
+    const std::uint32_t begin = task.start[first_cell], end = task.start[end_cell];
+    for (std::uint32_t p = begin; p < end; p += lanes) {
       for (std::uint32_t q = p; q < p + lanes; q += width) {  // a fixed number: no branch to mispredict
-        const Floats dx = to_floats(wrapped_difference(my_x, ints_at(xs + q))) * scale_x;
-        const Floats dy = to_floats(wrapped_difference(my_y, ints_at(ys + q))) * scale_y;
-        const Floats dz = to_floats(wrapped_difference(my_z, ints_at(zs + q))) * scale_z;
-        const Floats reach = Floats(*reinterpret_cast<const UnalignedFloats*>(rs + q)) + my_reach;
-        const Ints places = *reinterpret_cast<const UnalignedInts*>(places_of + q);
-        const Ints near = ((dx * dx + dy * dy) + dz * dz < reach * reach) &
-                          (lane < static_cast<int>(end) - static_cast<int>(q)) & (places != myself);
-        out = append(out, places_of + q, mask_of(near));
+        const std::size_t c = count + (q - begin);
+        store(to.x + c, to_floats(wrapped_difference(ints_at(task.x + q), x)) * scale_x);
+        store(to.y + c, to_floats(wrapped_difference(ints_at(task.y + q), y)) * scale_y);
+        store(to.z + c, to_floats(wrapped_difference(ints_at(task.z + q), z)) * scale_z);
+        store(to.r + c, floats_at(task.r + q));
+        store(to.places + c, ints_at(task.places + q));
       }
     }
+    count += end - begin;
   };
 
   for (const SoftLevel& level : task.levels) {
     if (level.spheres == 0) continue;
     Cells near[3];
     for (std::size_t k = 0; k < 3; ++k)
-      near[k] = cells_near(task.region.offset(me, k) * level.cells_a_unit[k],
-                           (blown_up + level.largest) * level.cells_a_length[k], level.cells[k],
+      near[k] = cells_near(part.low[k] * level.cells_a_unit[k], part.high[k] * level.cells_a_unit[k],
+                           (part.reach + level.largest) * level.cells_a_length[k], level.cells[k],
                            task.region.wraps(k));
     for (int a = 0; a < near[2].count; ++a) {
-      const int z = near[2].first + a - (near[2].first + a < level.cells[2] ? 0 : level.cells[2]);
+      const int z_cell = near[2].first + a - (near[2].first + a < level.cells[2] ? 0 : level.cells[2]);
       for (int b = 0; b < near[1].count; ++b) {
-        const int y = near[1].first + b - (near[1].first + b < level.cells[1] ? 0 : level.cells[1]);
+        const int y_cell = near[1].first + b - (near[1].first + b < level.cells[1] ? 0 : level.cells[1]);
         const std::size_t row =
-            level.first_cell + (static_cast<std::size_t>(z) * level.cells[1] + y) * level.cells[0];
+            level.first_cell + (static_cast<std::size_t>(z_cell) * level.cells[1] + y_cell) * level.cells[0];
         const int beyond = near[0].first + near[0].count - level.cells[0];  // goes round the box
-        search_run(row + near[0].first, row + near[0].first + near[0].count - std::max(0, beyond));
-        if (beyond > 0) search_run(row, row + beyond);
+        take_run(row + near[0].first, row + near[0].first + near[0].count - std::max(0, beyond));
+        if (beyond > 0) take_run(row, row + beyond);
       }
+    }
+  }
+  for (std::size_t q = count; q < count + lanes; q += width)
+    store(to.r + q, all(std::numeric_limits<float>::quiet_NaN()));
+  return count;
+}
+
+inline std::uint32_t* search(const SearchTask& task, const SearchPart& part, const Candidates& among,
+                             std::size_t count, const SoftSphere& me, std::uint32_t self,
+                             std::uint32_t* out) {
+  const auto from_origin = [&](std::size_t k) BERNAL_INLINE_LAMBDA {
+    return all(static_cast<float>(steps_between(part.origin, me, k)) * task.scale[k]);
+  };
+  const Floats x = from_origin(0), y = from_origin(1), z = from_origin(2);
+  const Floats my_reach = all(me.r + 2 * task.skin);
+  const Ints myself = Ints{} + static_cast<int>(self);
+  // What is written may be any of these, for all that the compiler knows.
+  const Candidates from = among;
+  for (std::size_t c = 0; c < count; c += lanes) {
+    for (std::size_t q = c; q < c + lanes; q += width) {
+      const Floats dx = floats_at(from.x + q) - x;
+      const Floats dy = floats_at(from.y + q) - y;
+      const Floats dz = floats_at(from.z + q) - z;
+      const Floats reach = floats_at(from.r + q) + my_reach;
+      const Ints near =
+          ((dx * dx + dy * dy) + dz * dz < reach * reach) & (ints_at(from.places + q) != myself);
+      out = append(out, from.places + q, mask_of(near));
     }
   }
   return out;

@@ -43,13 +43,12 @@ void SoftLists::find_neighbors(const std::vector<SoftSphere>& spheres) {
   const SearchTask task = cells_.task();
   const std::size_t slots = cells_.size(), groups = spheres.size() / lanes;
   const auto filler = static_cast<std::uint32_t>(groups * lanes);  // the gap behind the last group
-  std::vector<NeighborList<std::uint32_t>> lists(spheres.size());
-  std::vector<FoundNeighbors<std::uint32_t>> found((slots + spheres_per_search - 1) / spheres_per_search);
-  tbb::enumerable_thread_specific<std::unique_ptr<std::uint32_t[]>> rooms(
-      [&] { return std::unique_ptr<std::uint32_t[]>(new std::uint32_t[slots + lanes]); });
+  std::vector<NeighborList> lists(spheres.size());
+  std::vector<FoundNeighbors> found((slots + spheres_per_search - 1) / spheres_per_search);
+  tbb::enumerable_thread_specific<CandidateRoom> rooms(slots);
   tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t n) {
     const std::size_t first = n * spheres_per_search, last = std::min(slots, first + spheres_per_search);
-    found[n].find(kernels_, task, first, last, spheres.size(), rooms.local().get(), lists);
+    found[n].find(kernels_, task, first, last, spheres.size(), rooms.local(), lists);
   });
 
   groups_.resize(groups);

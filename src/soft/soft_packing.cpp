@@ -180,15 +180,17 @@ void SoftPacking::exchange(const std::vector<std::uint32_t>& to) {
 }
 
 /// Of most spheres: that of a part of some thousand in which they moved farther than in nine tenths of the
-/// parts, which does not become the larger the more spheres there are.
-SoftPacking::Moves SoftPacking::farthest_moves() const {
-  constexpr std::size_t part = 4096;
+/// parts, which does not become the larger the more spheres there are; of very many parts some tell.
+SoftPacking::Moves SoftPacking::farthest_moves(bool of_all) const {
+  constexpr std::size_t part = 4096, enough_parts = 64;
   constexpr double most = 0.9;
   const std::array<float, 3> scale = scale_of(edges_);
-  std::vector<float> squares((spheres_.size() + part - 1) / part);
+  const std::size_t parts_there = (spheres_.size() + part - 1) / part;
+  const std::size_t step = of_all ? 1 : std::max<std::size_t>(1, parts_there / enough_parts);
+  std::vector<float> squares((parts_there + step - 1) / step);
   const auto look_at = [&](std::size_t n) {
     float largest = 0;
-    for (std::size_t p = n * part; p < std::min(spheres_.size(), (n + 1) * part); ++p) {
+    for (std::size_t p = n * step * part; p < std::min(spheres_.size(), (n * step + 1) * part); ++p) {
       float square = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         const float d = static_cast<float>(steps_between(built_at_[p], spheres_[p], k)) * scale[k];
@@ -246,7 +248,7 @@ void SoftPacking::keep_lists_valid(bool for_all) {
   const double limit = wear_ * skin_;
   double moved = 0, judged = 0;
   if (lists_built_.calls > 0) {
-    const Moves moves = farthest_moves();
+    const Moves moves = farthest_moves(for_all);
     moved = moves.of_most + grown_;
     judged = (for_all ? moves.of_all : moves.of_most) + grown_;
   }

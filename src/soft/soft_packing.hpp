@@ -123,9 +123,9 @@ class SoftPacking {
   void build_again(Archive& a);
   /// Farthest moves since the lists were built.
   struct Moves {
-    double of_most, of_all;
+    double of_most, of_all;  ///< the latter where it is asked for
   };
-  Moves farthest_moves() const;
+  Moves farthest_moves(bool of_all) const;
   std::uint32_t id_at(std::size_t p) const { return id_of_site_[sites_[p]]; }
   std::vector<float> by_id(const std::vector<float>& in_sweep_order) const;
 
