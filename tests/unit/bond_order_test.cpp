@@ -26,10 +26,12 @@ Spheres<3> layer_on_the_floor(int n) {
   return spheres;
 }
 
-/// 2,000 equal spheres at random close packing.
+/// 2,000 equal spheres at random close packing: relaxed for no longer than that takes, as more sweeps order
+/// them, by default 1.4 % of them.
 const Packing& random_packing() {
   static const Packing packing = run(testing::plan_of(
-      "unit = \"mm\"\n[container]\nkind = \"periodic\"\n[spheres]\ncount = 2000\nradius = 1.0\n"));
+      "unit = \"mm\"\n[container]\nkind = \"periodic\"\n[spheres]\ncount = 2000\nradius = 1.0\n"
+      "[[stage]]\ndo = \"relax\"\nalpha = 2\n"));
   return packing;
 }
 
@@ -93,7 +95,7 @@ TEST(BondOrder, MeanQ6IsThatOfSteinhardt) {
 }
 
 TEST(BondOrder, RandomPackingsAreNot) {
-  // Some surroundings look ordered by chance: about 0.5 % here.
+  // Some surroundings look ordered by chance: of 24 such packings 0.6 %, with a deviation of 0.35 %.
   EXPECT_LT(bond_order(random_packing())->all.fraction(), 0.02);
   const Packing gas = testing::periodic_packing<3>(
       testing::ideal_gas<3>(2000, 0.5, 0.5, Vector<3>::Constant(12), 1), Vector<3>::Constant(12));
@@ -116,7 +118,7 @@ TEST(BondOrder, SeesALayerThatAWallHasOrderedUnderARandomPacking) {
       bond_order(packing_of(spheres, {{-1, -1, 0}, size + Vector<3>(2, 2, 0)}), regions).value();
   EXPECT_EQ(order.near_wall->spheres, in_layer);
   EXPECT_GT(order.near_wall->crystalline, 9 * inner / 10);
-  // By chance some 0.5 %, and of those that lie on the layer more.
+  // By chance 0.6 %, and of those that lie on the layer more.
   EXPECT_LT(order.core->fraction(), 0.03);
   EXPECT_EQ(order.all.spheres, spheres.size());
 }

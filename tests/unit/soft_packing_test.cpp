@@ -167,7 +167,9 @@ std::multiset<std::pair<std::uint32_t, std::uint32_t>> listed_pairs(const Crowd<
 }
 
 TEST(SoftLists, HoldEveryNeighbourOnce) {
-  for (const Crowd<3>& crowd : {equal_crowd(600), mixed_crowd(600), mixed_crowd(80)}) {
+  // The last ones in boxes as narrow as neighbours of twice 1.3 radii allow, along all axes and along one.
+  const Crowd<3> narrow = equal_crowd(27), slab(216, 0.8, {1, 4, 2}, 1, 1);
+  for (const Crowd<3>& crowd : {equal_crowd(600), mixed_crowd(600), mixed_crowd(80), narrow, slab}) {
     const double skin = 0.3;
     const Boundary<3> boundary{crowd.edges};
     for (std::size_t n = 0; n < 2 * soft_kernels().size(); ++n) {
