@@ -98,11 +98,11 @@ int pack(const PackCall& call) {
   const Scene scene = scene_of(call);
   const Plan plan = build(scene);
   const std::filesystem::path folder = call.folder.empty() ? call.scene.stem() : call.folder;
+  const Monitor monitor = bar.monitor();  // from here on a signal ends what is in the folder in order
   check_writable(folder, scene, {.with_mesh = call.with_mesh});
   bar.clear();
   if (!call.quiet && scene.file.empty()) say(stdout, "{}", scene_as_toml(scene));
   if (!call.quiet) say(stderr, "{}", describe(plan));  // a wrong unit is seen at once
-  const Monitor monitor = bar.monitor();
   bar.now("prepare");
   CheckpointOptions checkpoints;
   if (call.checkpoint_every > 0) checkpoints.folder = folder;

@@ -58,12 +58,25 @@ constexpr std::chrono::milliseconds between_tries(2);
   throw Error(ErrorCode::cannot_write, what + ": " + why, {path.string()});
 }
 
-/// Of an open folder, for this process; -1 where another one holds it or file systems know no locks.
+/// Of an open folder, for this process; -1 where another one holds it or, as errno then says, file systems
+/// know no locks.
 int locked(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
   if (descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  const int why = errno;
   if (descriptor >= 0) ::close(descriptor);
+  errno = why;
   return -1;
+}
+
+/// Whether nobody is at work with a folder of which a lock cannot be had: file systems know none, and it has
+/// stood for much longer than publishing takes.
+bool is_left(const fs::path& folder) {
+  constexpr std::chrono::seconds long_enough(10);
+  if (errno != ENOLCK && errno != EOPNOTSUPP && errno != ENOSYS) return false;
+  std::error_code unknown;
+  const auto changed = fs::last_write_time(folder, unknown);
+  return !unknown && fs::file_time_type::clock::now() > changed + long_enough;
 }
 
 /// Whoever makes, moves or removes in a folder what others could take for theirs does it in turn. Where file
@@ -236,7 +249,7 @@ void finish_in_turn(const fs::path& folder) {
   for (const char* name : {complete_name, placing_name}) {
     if (!stands(folder / name / replaced_name)) continue;  // it is none of ours
     const int lock = locked(folder / name);
-    if (lock < 0) return;  // it is being done
+    if (lock < 0 && !is_left(folder / name)) return;  // it is being done
     Moves moves;
     std::error_code ignored;
     try {

@@ -10,6 +10,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "cad/file_digest.hpp"
 #include "cad/known_formats.hpp"
+#include "io/staged_folder.hpp"
 #include "run/start.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/spheres_file.hpp"
@@ -33,6 +34,7 @@ void look_into_folder(Scene& scene) {
   Start& start = scene.start;
   std::error_code unknown;
   if (!std::filesystem::is_directory(*start.file, unknown)) return;
+  finish_publishing(*start.file);
   const Scene there = read_scene(*start.file / "scene.toml");
   const double in_our_unit = conversion_factor(there.unit, scene.unit);
   if (const auto* box = std::get_if<PeriodicBox>(&there.container); box && start.box.empty())

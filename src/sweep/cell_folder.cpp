@@ -42,7 +42,7 @@ void take_failure(const fs::path& file, CellResult& result) {
     const toml::table failure = toml::parse_file(file.string());
     const auto state = failure["outcome"].value<std::string>();
     const auto exit_code = failure["exit_code"].value<std::int64_t>();
-    if (!state || !exit_code) return;
+    if (!state || !exit_code || *exit_code < 0 || *exit_code > 255) return;
     result.state = *state == "refused" ? CellResult::State::refused : CellResult::State::crashed;
     result.outcome = *state == "refused" ? "refused" : "crashed";
     result.exit_code = static_cast<int>(*exit_code);

@@ -101,6 +101,24 @@ TEST(SweepCommand, WhatIsNoClaimOfItsOwnStays) {
   EXPECT_TRUE(fs::exists(claims + "/mine"));
 }
 
+TEST(SweepCommand, AReportThatIsNoFileStopsNoOtherCell) {
+  const Swept swept;
+  EXPECT_EQ(swept.report()["ran"], 6);
+  const auto done = swept.reports();
+  const std::string cells = swept.out + "/cells/";
+  const std::string pipe = cells + done.begin()->first + "/report.json";
+  const std::string folder = cells + done.rbegin()->first + "/report.json";
+  fs::remove(pipe);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  fs::remove(folder);
+  fs::create_directory(folder);
+  const Ended ended = swept.run();
+  EXPECT_EQ(ended.status, 3) << ended.err;
+  const std::vector<Row> rows = swept.rows();
+  EXPECT_EQ(std::ranges::count_if(rows, [](Row row) { return row["outcome"] == "converged"; }), 4)
+      << ended.err;
+}
+
 TEST(SweepCommand, ACellThatIsKilledIsRecordedAndTheRestGoesOn) {
   const Swept swept(six_cells, long_bed());
   const Process process = start_bernal(swept.call({"--jobs", "1"}));

@@ -42,8 +42,12 @@ Rule parse_rule(const std::string& text, const std::set<std::string>& all_rooms)
   }
   if (text.starts_with("all but ")) {
     rule.rooms = all_rooms;
-    for (const std::string& room : split(text.substr(8), ',')) {
-      if (rule.rooms.erase(room) == 0) throw std::runtime_error("src/README.md: no room is called " + room);
+    static const std::regex but(R"(([a-z]+)(?: but ([a-z_.]+))?)");
+    for (const std::string& part : split(text.substr(8), ',')) {
+      std::smatch match;
+      if (!std::regex_match(part, match, but) || rule.rooms.erase(match[1]) == 0)
+        throw std::runtime_error("src/README.md: no room is called " + part);
+      if (match[2].matched) rule.files[match[1]].insert(match[2]);
     }
     return rule;
   }

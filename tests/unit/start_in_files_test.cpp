@@ -29,6 +29,22 @@ TEST_F(StartInFiles, OfAResultFolderKnowsItsBox) {
   EXPECT_EQ(again.scene.start.file->filename(), "spheres.csv");
 }
 
+/// Whose files a run that was killed had not put into their places yet.
+TEST_F(StartInFiles, OfAResultFolderIsTheLastResult) {
+  namespace fs = std::filesystem;
+  write_packing(relaxed(3, 60), folder / "before");
+  write_packing(relaxed(3, 70), folder / "theirs");
+  const fs::path placing = folder / "before" / ".bernal-placing";
+  fs::rename(folder / "theirs", placing);
+  std::ofstream(placing / ".replaced") << "scene.toml\nspheres.csv\n";
+  fs::create_directory(placing / ".earlier");
+  for (const char* name : {"scene.toml", "spheres.csv"})
+    fs::rename(folder / "before" / name, placing / ".earlier" / name);
+  const Packing again =
+      packed("[container]\nkind = \"periodic\"\n[spheres]\nstart = \"before\"\n" + stage("relax"));
+  EXPECT_EQ(again.spheres.size(), 70u);
+}
+
 /// The scene that a result carries makes it again, though it now says how large the box has become.
 TEST_F(StartInFiles, IsStatedByTheSceneOfTheResult) {
   const Packing theirs = relaxed(3, 60);
