@@ -145,8 +145,8 @@ struct SoftKernels {
   Sweep<std::uint32_t> sweep;
   Sweep<std::uint16_t> sweep_short;  ///< where there are no more than 2^16 places
   /// Finds the candidates of a part, by level and cell, and puts `lanes` behind them that are nobody's
-  /// neighbours; returns how many they are. Precondition: two of the part are nowhere farther apart, along no
-  /// axis, than half of the box less the farthest that neighbours may be apart. Cost: some 100 ns.
+  /// neighbours; returns how many they are. Precondition: along every axis the part is no longer than
+  /// half of the box less the farthest that neighbours may be apart. Cost: some 100 ns.
   std::size_t (*gather)(const SearchTask&, const SearchPart&, const Candidates& to);
   /// Writes the places of all neighbours of a sphere of the part but itself, `self`, among so many candidates
   /// to `out` and returns their end; up to `lanes` more entries are scribbled over. Cost: about 0.2 ns a
