@@ -71,9 +71,9 @@ int locked(const fs::path& folder) {
 
 /// Whether nobody is at work with a folder of which a lock cannot be had: file systems know none, and it has
 /// stood for much longer than publishing takes.
-bool is_left(const fs::path& folder) {
+bool is_left(const fs::path& folder, int why_no_lock) {
   constexpr std::chrono::seconds long_enough(10);
-  if (errno != ENOLCK && errno != EOPNOTSUPP && errno != ENOSYS) return false;
+  if (why_no_lock != ENOLCK && why_no_lock != EOPNOTSUPP && why_no_lock != ENOSYS) return false;
   std::error_code unknown;
   const auto changed = fs::last_write_time(folder, unknown);
   return !unknown && fs::file_time_type::clock::now() > changed + long_enough;
@@ -248,8 +248,8 @@ void put_in_place(const fs::path& folder, Moves& moves) {
 void finish_in_turn(const fs::path& folder) {
   for (const char* name : {complete_name, placing_name}) {
     if (!stands(folder / name / replaced_name)) continue;  // it is none of ours
-    const int lock = locked(folder / name);
-    if (lock < 0 && !is_left(folder / name)) return;  // it is being done
+    const int lock = locked(folder / name), why = errno;
+    if (lock < 0 && !is_left(folder / name, why)) return;  // it is being done
     Moves moves;
     std::error_code ignored;
     try {
@@ -266,6 +266,11 @@ void finish_in_turn(const fs::path& folder) {
     fs::remove_all(done, ignored);
     ::close(lock);
   }
+}
+
+/// By one of ours.
+bool is_begun(const fs::path& folder) {
+  return stands(folder / complete_name / replaced_name) || stands(folder / placing_name / replaced_name);
 }
 
 bool is_busy(const fs::path& folder) {
@@ -372,9 +377,7 @@ std::vector<fs::path> StagedFolder::publish(const std::vector<std::string>& repl
   if (!turn.came()) fail_busy(folder_);
   finish_in_turn(folder_);
   for (const auto end = std::chrono::steady_clock::now() + longest_wait; is_busy(folder_);) {
-    const bool ours =
-        stands(folder_ / complete_name / replaced_name) || stands(folder_ / placing_name / replaced_name);
-    if (!ours || std::chrono::steady_clock::now() > end) fail_busy(folder_);
+    if (!is_begun(folder_) || std::chrono::steady_clock::now() > end) fail_busy(folder_);
     std::this_thread::sleep_for(between_tries);  // where there are no locks
     finish_in_turn(folder_);
   }
@@ -394,9 +397,7 @@ std::vector<fs::path> StagedFolder::publish(const std::vector<std::string>& repl
 }
 
 void finish_publishing(const fs::path& folder) {
-  const bool is_begun =
-      stands(folder / complete_name / replaced_name) || stands(folder / placing_name / replaced_name);
-  if (!is_begun && stagings_in(folder).empty()) return;
+  if (!is_begun(folder) && stagings_in(folder).empty()) return;
   const Turn turn(folder);
   if (!turn.came()) return;
   finish_in_turn(folder);

@@ -138,13 +138,11 @@ BERNAL_INLINE Floats all(float value) { return Floats{} + value; }
 /// The values where the condition (0 or -1) holds, 0 elsewhere.
 BERNAL_INLINE Floats where(Ints condition, Floats values) { return Floats(Ints(values) & condition); }
 
+// `width` numbers, wherever they begin.
+BERNAL_INLINE Ints ints_at(const void* from) { return *static_cast<const UnalignedInts*>(from); }
+BERNAL_INLINE Floats floats_at(const float* from) { return *reinterpret_cast<const UnalignedFloats*>(from); }
 BERNAL_INLINE void store(void* to, Ints v) { *static_cast<UnalignedInts*>(to) = v; }
 BERNAL_INLINE void store(float* to, Floats v) { *reinterpret_cast<UnalignedFloats*>(to) = v; }
-
-/// `width` numbers of an array of `lanes`.
-BERNAL_INLINE Floats numbers_at(const std::array<float, lanes>& of, std::size_t first) {
-  return *reinterpret_cast<const UnalignedFloats*>(of.data() + first);
-}
 
 template <bool measure, class Index>
 float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std::size_t begin,
@@ -164,14 +162,14 @@ float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std
       const Columns me = load([&](int k) BERNAL_INLINE_LAMBDA { return mine + k; });
       Floats sum_x{}, sum_y{}, sum_z{}, contacts{}, squares{}, force{};
       if (near_wall) {
-        sum_x = numbers_at(at_wall.x, first);
-        sum_y = numbers_at(at_wall.y, first);
-        sum_z = numbers_at(at_wall.z, first);
-        contacts = numbers_at(at_wall.contacts, first);
+        sum_x = floats_at(at_wall.x.data() + first);
+        sum_y = floats_at(at_wall.y.data() + first);
+        sum_z = floats_at(at_wall.z.data() + first);
+        contacts = floats_at(at_wall.contacts.data() + first);
         if constexpr (measure) {
-          squares = numbers_at(at_wall.squares, first);
-          force = numbers_at(at_wall.depth, first);
-          const Floats ratio = numbers_at(at_wall.worst, first);
+          squares = floats_at(at_wall.squares.data() + first);
+          force = floats_at(at_wall.depth.data() + first);
+          const Floats ratio = floats_at(at_wall.worst.data() + first);
           worst = ratio > worst ? ratio : worst;
         }
       }
@@ -205,8 +203,8 @@ float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std
                    wrapped_sum(me.z, to_ints(sum_z * step * inverse_z)), me.r});
       if constexpr (measure) {
         if (task.squeeze) {
-          *reinterpret_cast<UnalignedFloats*>(task.squeeze + lanes * g + first) = squares;
-          *reinterpret_cast<UnalignedFloats*>(task.force + lanes * g + first) = force * me.r;
+          store(task.squeeze + lanes * g + first, squares);
+          store(task.force + lanes * g + first, force * me.r);
         }
       }
     }
@@ -238,9 +236,6 @@ inline Cells cells_near(double low, double high, double reach, int cells, bool w
   if (last - first + 1 >= cells) return {0, cells};
   return {static_cast<int>(first) + (first < 0 ? cells : 0), static_cast<int>(last - first) + 1};
 }
-
-BERNAL_INLINE Ints ints_at(const void* from) { return *static_cast<const UnalignedInts*>(from); }
-BERNAL_INLINE Floats floats_at(const float* from) { return *reinterpret_cast<const UnalignedFloats*>(from); }
 
 inline std::size_t gather(const SearchTask& of, const SearchPart& part, const Candidates& out) {
   // What is written may be any of these, for all that the compiler knows.

@@ -32,8 +32,7 @@ Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path
 Spheres<dynamic> read_columns_of(const Scene& scene, const std::filesystem::path& file);
 
 /// Completes what a run that was killed had begun to put into the folder, and removes what it had not; most
-/// often there is no such thing.
-/// Throws Error{cannot_write}.
+/// often there is no such thing. Throws Error{cannot_write}.
 void finish_writing(const std::filesystem::path& folder);
 
 /// What stands in scene.toml and spheres.csv, or spheres.npy, of a folder that `write_packing` made, or that
