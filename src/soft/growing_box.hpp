@@ -25,9 +25,8 @@ inline double least_overlap(const Relax& options, double allowed) {
 /// Sweeps of a cycle, at the pace for spheres of that largest overlap ratio, of which `done` are over; it is
 /// 0 again in the end. After each but the last, asks whether to stop. Returns what the last of them met, or
 /// nothing where stopped; `each`: that tells about each sphere too.
-template <int D, class Engine, class Stop>
-std::optional<double> sweep_cycle(Engine& packing, int sweeps, int& done, double molr, Stop&& stop,
-                                  bool each = false) {
+template <int D, bool each = false, class Engine, class Stop>
+std::optional<double> sweep_cycle(Engine& packing, int sweeps, int& done, double molr, Stop&& stop) {
   const Pace pace = pace_for(molr);
   packing.wear_lists(pace.wear);
   const float omega = pace.omega * D / 3;
@@ -37,7 +36,10 @@ std::optional<double> sweep_cycle(Engine& packing, int sweeps, int& done, double
     if (stop()) return std::nullopt;
   }
   done = 0;
-  return each ? packing.sweep_and_measure(omega) : packing.sweep_to_overlap(omega);
+  if constexpr (each)
+    return packing.sweep_and_measure(omega);
+  else
+    return packing.sweep_to_overlap(omega);
 }
 
 struct GrowingBox {

@@ -10,6 +10,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "core/close_packing.hpp"
 #include "jam/polish.hpp"
+#include "soft/device_packing.hpp"
 #include "soft/exchange_in_box.hpp"
 #include "soft/ground.hpp"
 #include "soft/growing_box.hpp"
@@ -33,38 +34,6 @@ constexpr int most_starts_in_a_loose_box = 20;
 constexpr double least_saved = 5e-4;
 /// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
 constexpr double first_jitter = 1e-6;
-
-/// The paper's phi0, and in other than three dimensions what is as far above random close packing.
-constexpr double dense_start[] = {1.34, 1.13, 0.86, 0.62, 0.42, 0.27, 0.16, 0.093};
-
-constexpr StageTraits traits = {.in_bed = true,
-                                .in_box = true,
-                                .box_between_walls = true,
-                                .prefers_bed = true,
-                                .keeps_sizes = true,
-                                .places_expected = true,
-                                .leaves_overlap = true,
-                                .frees_bed = true,
-                                .frees_box = true,
-                                .joins_start = true,
-                                .is_default = true,
-                                .reaches = Reaches::close_packing};
-
-/// What comes first from a start, or from an engine, begins at the packing fraction that it has there.
-void complete_relax(Relax& relax, Scene& scene, const schema::Section&) {
-  if ((scene.start.file || scene.engine) && scene.stages.front().as<Relax>() == &relax) return;
-  if (!relax.phi0 && !traits.stands_in_bed(scene)) relax.phi0 = dense_start[scene.dimension() - 1];
-}
-
-/// By exchange, of a thousand of the sizes.
-double gain_of_relaxation(const Relax& options, const SizeDistribution& radii, int dimension,
-                          bool has_walls) {
-  if (!options.exchange || dimension == 1) return 1;
-  constexpr int sizes = 1000;
-  std::vector<double> some;
-  for (int k = 0; k < sizes; ++k) some.push_back(radii.quantile((k + 0.5) / sizes));
-  return gain_by_exchange(SizeExchange(some, dimension).spread(), has_walls);
-}
 
 bool is_loose(const Work& work) {
   return work.target_edges && work.volume_of_spheres() < loose * random_close_packing[work.dimension() - 1] *
@@ -94,14 +63,14 @@ bool is_done(const Spheres<D>& spheres, const Vector<D>& edges, const Work& work
 bool begins_from_largest(const Work& work, const Relax& options) {
   const bool there = work.placed || work.begun > 0;
   return is_for_wide_sizes(work.fill_task, options) && !there && !is_loose(work) &&
-         options.phi0.value_or(1) >= std::min(dense_start[work.dimension() - 1], work.fill_task.attainable);
+         options.phi0.value_or(1) >= std::min(dense_start(work.dimension()), work.fill_task.attainable);
 }
 
 /// Those they begin in, or of phi0, or about those that are asked for; never so small that a sphere overlaps
 /// its own image.
 Vector<dynamic> edges_to_start_from(const Work& work, const Relax& options) {
   const int dimension = work.dimension();
-  const double usual = dense_start[dimension - 1];
+  const double usual = dense_start(dimension);
   double phi0 = options.phi0.value_or(usual);
   if (phi0 == usual && begins_from_largest(work, options)) phi0 = wide_start(work.fill_task);
   const auto with_volume = [&](double volume) -> Vector<dynamic> {
@@ -159,6 +128,29 @@ void have_places(Spheres<D>& spheres) {
   spheres.resize(spheres.r.size());
 }
 
+template <int D, class Packing>
+StageEnd let_box_grow(Packing& packing, Spheres<D>& spheres, Vector<D>& edges, Work& work,
+                      const Relax& options, double overlap) {
+  forget_places(spheres.x);  // which the engine has
+  const GrowingBox box{.stop = least_overlap(options, work.allowed_overlap),
+                       .sweeps = sweeps_a_cycle(options, std::min(spheres.size(), enough_for_sweeps)),
+                       .beta = options.beta};
+  BoxGrowth growth{.molr = overlap};
+  const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
+  GrowthTeller teller(work, box.stop, box.sweeps);
+  const auto stop = [&] {
+    teller.swept(growth);
+    return work.stop();
+  };
+  const StageEnd end = grow_apart<D>(
+      packing, box, growth, stop, [](int, double molr) { return molr; },
+      [&](double factor, double molr) { teller.grown(factor, molr); });
+  work.effects["neighbour lists"] += packing.lists_built();
+  have_places(spheres);
+  packing.write_to(spheres, edges);
+  return end;
+}
+
 /// The published relaxation on sorted arrays, with neighbour lists and over-relaxed steps: some hundred times
 /// as fast as the loop of the paper, and a little denser. It differs from that in six things.
 ///  - A sphere moves by min(omega / n, 1) times the sum of its n overlaps, omega about 5. The paper's 1 / n
@@ -180,27 +172,16 @@ void have_places(Spheres<D>& spheres) {
 template <int D>
 StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
   have_places(spheres);
+  if constexpr (D == 3)
+    if (options.device == RelaxDevice::gpu) {
+      DevicePacking packing(spheres, edges, spheres_on_gpu());
+      const StageEnd end = let_box_grow<D>(packing, spheres, edges, work, options, overlap);
+      work.account = "on " + packing.device_name();
+      return end;
+    }
   SoftEngine<D> packing(spheres, edges, 1, work.walls);
-  forget_places(spheres.x);  // which the engine has
-  const GrowingBox box{.stop = least_overlap(options, work.allowed_overlap),
-                       .sweeps = sweeps_a_cycle(options, std::min(spheres.size(), enough_for_sweeps)),
-                       .beta = options.beta};
-  BoxGrowth growth{.molr = overlap};
-  const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
-  GrowthTeller teller(work, box.stop, box.sweeps);
-  const auto stop = [&] {
-    teller.swept(growth);
-    return work.stop();
-  };
-  const StageEnd end = grow_apart<D>(
-      packing, box, growth, stop, [](int, double molr) { return molr; },
-      [&](double factor, double molr) { teller.grown(factor, molr); });
-  work.effects["neighbour lists"] += packing.lists_built();
-  have_places(spheres);
-  packing.write_to(spheres, edges);
-  return end;
+  return let_box_grow<D>(packing, spheres, edges, work, options, overlap);
 }
-
 /// `overlap` is the largest overlap ratio to begin with, where the fast engine has brought them to it.
 template <int D>
 StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options,
@@ -311,89 +292,6 @@ StageEnd relax(Work& work, const Relax& options) {
   EffectTimer timer(work.effects["relaxation"]);
   return with_dimension(work.dimension(), EveryDimension{},
                         [&](auto dimension) { return relax_in<decltype(dimension)::value>(work, options); });
-}
-
-template <>
-const StageEntry& entry_of<Relax>() {
-  using namespace schema;
-  static const StageEntry entry = {
-      .table = stage_table<Relax>(
-          {.name = "relax",
-           .help =
-               "start with overlaps; push spheres apart, in a periodic box while it grows, in a container "
-               "off the walls too, and stir what is stuck",
-           .keys = joined(
-               joined(
-                   acting(
-                       Acts::in_box,
-                       {buys_accuracy({1, 2, 5, 17, 60, 200},
-                                      number(&Relax::alpha, "alpha",
-                                             "sweeps between two growths of the box, in units of (log10 N)^2",
-                                             above(0, 1e6))),
-                        buys_accuracy(
-                            {10, 20, 50, 150, 500, 2000},
-                            integer(&Relax::period, "period",
-                                    "sweeps between two growths of the box, however many spheres, in place "
-                                    "of alpha",
-                                    {1, 1e6})),
-                        buys_accuracy({3, 10, 30, 100},
-                                      number(&Relax::beta, "beta",
-                                             "the box grows by the largest overlap ratio divided by this",
-                                             {0.01, 1e6})),
-                        number(&Relax::phi0, "phi0",
-                               "packing fraction of the overlapping spheres at the start; if absent 0.86, in "
-                               "other than three dimensions 1.34 of random close packing, of wide sizes 1.06 "
-                               "of what is expected, also if it is 0.86; of spheres that come dense from a "
-                               "file what they have there",
-                               above(0, 10)),
-                        buys_accuracy(
-                            {1e-2, 1e-3, 2e-4, 1e-5, 1e-6},
-                            number(&Relax::stop, "stop",
-                                   "largest overlap ratio that counts as none; the box then grows by it",
-                                   {1e-12, 0.5})),
-                        word(&Relax::method, "method",
-                             "fast; reference: the published loop as it stands, on linked lists, a hundred "
-                             "times slower; reference-sorted: the same to the bit, on sorted arrays",
-                             {"fast", "reference", "reference-sorted"}),
-                        flag(&Relax::settle, "settle",
-                             "reference: what touches nothing moves to touch its nearest neighbour")}),
-                   acting(
-                       Acts::in_bed,
-                       {buys_accuracy(
-                            {0, 1, 3, 12, 40, 120},
-                            integer(&Relax::patience, "patience",
-                                    "how often what is stuck is stirred before some spheres are taken out",
-                                    {0, 1e6})),
-                        buys_accuracy_as_limit({10000, 40000, 160000, 640000},
-                                               integer(&Relax::sweeps, "sweeps",
-                                                       "of all spheres, after which it stops", {1, 1e9})),
-                        number(
-                            &Relax::seconds, "seconds",
-                            "after which it stops, and then one seed need not give one packing; 0: any time",
-                            {0, 1e9})})),
-               {flag(&Relax::exchange, "exchange",
-                     "spheres exchange their sizes on the way: some 7 % denser, disordered but optimised, "
-                     "not what pouring makes"),
-                polish_key<Relax>()}),
-           .choices = {{{"alpha"}, {"period"}}},
-           .complete = completion(complete_relax)},
-          traits),
-      .act_in_bed = act(relax_in_container),
-      .act_in_box = act(relax),
-      .may_bring = {"insertion", "neighbour lists", "relaxation", "exchange", "polish"},
-      .effects = of_options(effects_of_relaxation),
-      .require =
-          [](const void*, const Domain& container, double smallest_radius, const FillTask& task) {
-            const bool is_dilute =
-                task.packing_fraction > 0 && task.packing_fraction <= dilute * task.attainable;
-            if (!is_dilute)
-              require_resolution(0x1p-32 * bounds_of<3>(container).size().maxCoeff() / smallest_radius);
-          },
-      .reached = of_options(+[](const Relax& options) {
-        return options.polish > 0 || options.exchange ? 1 : options.phi0.value_or(1);
-      }),
-      .gain = of_options(gain_of_relaxation)};
-  return entry;
 }
 
 }  // namespace bernal

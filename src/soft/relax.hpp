@@ -9,6 +9,12 @@ namespace bernal {
 /// Spheres that fill less than this share of what is likely to fit find places free of overlap by themselves.
 inline constexpr double dilute = 0.3;
 
+/// The paper's phi0, and in other than three dimensions what is as far above random close packing.
+inline double dense_start(int dimension) {
+  constexpr double by_dimension[] = {1.34, 1.13, 0.86, 0.62, 0.42, 0.27, 0.16, 0.093};
+  return by_dimension[dimension - 1];
+}
+
 /// What it brings with it, with its price.
 std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook& outlook);
 /// Lists and relaxation that take so long together.

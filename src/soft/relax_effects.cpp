@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "bernal/core/error.hpp"
 #include "jam/polish.hpp"
 #include "soft/relax.hpp"
@@ -109,6 +111,18 @@ double seconds_in_bed(const Relax& options, const Outlook& outlook) {
   return std::min({seconds, most, options.seconds > 0 ? options.seconds : seconds});
 }
 
+/// Throws Error{bad_argument} for what only the processor does.
+void require_gpu_suits(const Relax& options, const Outlook& outlook) {
+  const auto refuse = [](const char* what) {
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("on a GPU relax {}; leave \"device\" out, and the processor packs", what));
+  };
+  if (outlook.in_bed || outlook.task.has_walls) refuse("knows no walls");
+  if (outlook.task.dimension != 3) refuse("knows three dimensions only");
+  if (options.method != RelaxMethod::fast) refuse("knows no \"method\" but fast");
+  if (is_for_wide_sizes(outlook.task, options)) refuse("knows no sizes as wide as these");
+}
+
 }  // namespace
 
 std::vector<PlanItem> effects_of_pushing(double seconds, const Outlook& outlook, std::string what) {
@@ -152,6 +166,7 @@ std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook&
         wide && !outlook.placed ? "sizes are wide: the largest are relaxed first, the others come into what "
                                   "they leave; then all push while the box grows by the mean overlap"
         : wide                  ? "sizes are wide: the box grows by the mean overlap while they push"
+        : options.device == RelaxDevice::gpu  ? "spheres push each other apart on a GPU while the box grows"
         : options.method == RelaxMethod::fast ? "spheres push each other apart while the box grows"
         : options.method == RelaxMethod::reference
             ? "the published loop while the box grows, on linked lists in cells"
@@ -163,6 +178,7 @@ std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook&
     else if (!wide && outlook.task.dimension <= 3 && !outlook.task.has_walls && outlook.width < surely_wide)
       items.front().if_needed = true;  // as the published loop does, which may take the place of the fast one
   }
+  if (options.device == RelaxDevice::gpu) require_gpu_suits(options, outlook);
   if (options.exchange && options.method != RelaxMethod::fast)
     throw Error(ErrorCode::bad_argument,
                 "the reference method of relax knows no exchange of sizes; leave \"method\" out");

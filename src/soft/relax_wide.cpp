@@ -99,8 +99,8 @@ StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, co
   int cycle = 0, done = 0;
   const Resumable part(work, "kind", [&](Archive& a) { a(largest, mean, cycle, done, packing); });
   for (; cycle < most_cycles_of_kind; ++cycle) {
-    const std::optional<double> met = sweep_cycle<D>(
-        packing, sweeps, done, largest, [&] { return work.stop(); }, true);
+    const std::optional<double> met =
+        sweep_cycle<D, true>(packing, sweeps, done, largest, [&] { return work.stop(); });
     if (!met) end = StageEnd::cancelled;
     if (!met) break;
     largest = *met;

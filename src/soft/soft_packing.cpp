@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/large_pages.hpp"
 #include "core/parallel.hpp"
@@ -14,18 +15,8 @@ namespace {
 /// In mean radii. Larger ones make lists that last longer and are longer; from 0.3 to 0.5 it makes no
 /// difference.
 constexpr double relative_skin = 0.4;
-/// Of lists, in sweeps: with half of the skin a sweep costs a quarter less, and a build as much as ten
-/// sweeps.
-constexpr int long_life = 80, short_life = 30;
-/// Skin, in the thickest.
-constexpr float thinnest = 0.25f;
-constexpr int longest_patience = 16;
 /// With fewer spheres a second thread does not pay.
 constexpr std::size_t worth_threads = 20000;
-
-double skin_for(const std::vector<double>& radii) {
-  return relative_skin * std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
-}
 
 std::vector<float> as_floats(const std::vector<double>& values, double factor = 1) {
   std::vector<float> floats;
@@ -47,8 +38,7 @@ SoftPacking::SoftPacking(const std::vector<double>& radii, double most, int dime
       count_(radii.size()),
       dimension_(dimension),
       sizes_(as_floats(radii, most)),
-      skin_(static_cast<float>(skin_for(radii))),
-      thickest_skin_(skin_),
+      life_(static_cast<float>(usual_skin(radii))),
       lists_(kernels, by_octaves),
       by_octaves_(by_octaves),
       spheres_(radii.size(), SoftSphere{}),
@@ -91,8 +81,12 @@ SoftPacking::SoftPacking(const Spheres<3>& spheres, const Container& container, 
   for (std::size_t i = 0; i < count_; ++i) set_place(spheres_[i], spheres.center(i));
 }
 
+double SoftPacking::usual_skin(const std::vector<double>& radii) {
+  return relative_skin * std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
+}
+
 double SoftPacking::smallest_edge(const std::vector<double>& radii) {
-  return 4.001 * (std::ranges::max(radii) + skin_for(radii));
+  return 4.001 * (std::ranges::max(radii) + usual_skin(radii));
 }
 
 float SoftPacking::move_all(float omega, bool measure, bool each) {
@@ -110,7 +104,7 @@ float SoftPacking::move_all(float omega, bool measure, bool each) {
                        .squeeze = each ? squeeze_.data() : nullptr,
                        .force = each ? force_.data() : nullptr};
   if (walls_) walls_->look_anew(measure);
-  ++sweeps_;
+  life_.swept();
   if (in_blocks_) return blocks_->sweep(task);
   const bool in_threads = count_ >= worth_threads;
   if (walls_ && !in_threads) walls_->push_ahead(spheres_);
@@ -122,17 +116,17 @@ float SoftPacking::move_all(float omega, bool measure, bool each) {
 void SoftPacking::sweep(float omega) { move_all(omega, false, false); }
 
 double SoftPacking::measure(float omega, bool each) {
-  patience_ = 0;  // what is measured is measured on lists that are known to be good
+  life_.look_soon();  // what is measured is measured on lists that are known to be good
   return move_all(omega, true, each);
 }
 
 void SoftPacking::grow(double factor) {
   for (int k = 0; k < dimension_; ++k) edges_[static_cast<std::size_t>(k)] *= factor;
-  if (factor < 1) stale_ = true;  // spheres that were not near each other may be now
+  if (factor < 1) life_.end();  // spheres that were not near each other may be now
 }
 
 void SoftPacking::swell(double factor) {
-  if (factor > static_cast<double>(swelling_)) stale_ = true;  // who was not near may be now
+  if (factor > static_cast<double>(swelling_)) life_.end();  // who was not near may be now
   swelling_ = static_cast<float>(factor);
   for (std::size_t p = 0; p < spheres_.size(); ++p)
     if (spheres_[p].r > 0) spheres_[p].r = swelling_ * radii_[id_at(p)];
@@ -148,7 +142,7 @@ void SoftPacking::put(const std::vector<Move>& moves) {
     if (lists_built_.calls > 0) built_at_[p] = spheres_[p];
     walls_->forget(sites_[p]);
   }
-  stale_ = true;
+  life_.end();
 }
 
 template <int D>
@@ -175,15 +169,12 @@ void SoftPacking::exchange(const std::vector<std::uint32_t>& to) {
     most = std::max(most, r - spheres_[p].r);
     spheres_[p].r = r;
   }
-  grown_ += most;
-  patience_ = 0;  // what radii grew is looked at before the next sweep
+  life_.radii_grew(most);
 }
 
-/// Of most spheres: that of a part of some thousand in which they moved farther than in nine tenths of the
-/// parts, which does not become the larger the more spheres there are; of very many parts some tell.
-SoftPacking::Moves SoftPacking::farthest_moves(bool of_all) const {
-  constexpr std::size_t part = 4096, enough_parts = 64;
-  constexpr double most = 0.9;
+/// Of very many parts some tell.
+FarthestMoves SoftPacking::farthest_moves(bool of_all) const {
+  constexpr std::size_t part = FarthestMoves::part, enough_parts = 64;
   const std::array<float, 3> scale = scale_of(edges_);
   const std::size_t parts_there = (spheres_.size() + part - 1) / part;
   const std::size_t step = of_all ? 1 : std::max<std::size_t>(1, parts_there / enough_parts);
@@ -205,11 +196,7 @@ SoftPacking::Moves SoftPacking::farthest_moves(bool of_all) const {
   } else {
     parallel_for(squares.size(), look_at);
   }
-  const double all = std::sqrt(std::ranges::max(squares));
-  const auto parts = static_cast<double>(squares.size());
-  const auto nth = squares.begin() + static_cast<std::ptrdiff_t>(std::min(parts - 1, most * parts));
-  std::ranges::nth_element(squares, nth);
-  return {std::sqrt(*nth), all};
+  return FarthestMoves::of_parts(std::move(squares));
 }
 
 void SoftPacking::remember_places() {
@@ -221,70 +208,43 @@ void SoftPacking::remember_places() {
   });
 }
 
-/// Where lists last long, shorter ones that do not last so long cost less.
-void SoftPacking::choose_skin() {
-  const float skin = skin_;
-  if (age_ > long_life) skin_ = std::max(thinnest * thickest_skin_, 0.5f * skin);
-  if (age_ < short_life) skin_ = std::min(thickest_skin_, 2 * skin);
-}
-
 /// In the box of that time; what is in `spare` is lost.
 void SoftPacking::build_lists(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& sites,
                               std::vector<SoftSphere>& spare) {
-  in_blocks_ = !by_octaves_ && SoftBlocks::suit(count_, edges_then_, sizes_, skin_);
+  in_blocks_ = !by_octaves_ && SoftBlocks::suit(count_, edges_then_, sizes_, life_.skin());
   if (in_blocks_) {
     if (!blocks_) blocks_ = std::make_unique<SoftBlocks>(kernels_);
-    in_blocks_ = blocks_->build(spheres, sites, spare, count_, edges_then_, sizes_, skin_);
+    in_blocks_ = blocks_->build(spheres, sites, spare, count_, edges_then_, sizes_, life_.skin());
   }
-  if (!in_blocks_) lists_.build(spheres, sites, edges_then_, sizes_, skin_);
-  if (!walls_) far_images_.build(spheres, edges_then_, dimension_, wear_then_ * skin_);
+  if (!in_blocks_) lists_.build(spheres, sites, edges_then_, sizes_, life_.skin());
+  if (!walls_) far_images_.build(spheres, edges_then_, dimension_, wear_then_ * life_.skin());
 }
 
-/// Looks at what has moved only as often as the speed of the last sweeps suggests, and unless `for_all` not
-/// at the few that moved farthest. A pair that is missed for some sweeps overlaps for so much longer, no
-/// more.
 void SoftPacking::keep_lists_valid(bool for_all) {
-  if (!stale_ && sweeps_ < patience_) return;
-  const double limit = wear_ * skin_;
-  double moved = 0, judged = 0;
-  if (lists_built_.calls > 0) {
-    const Moves moves = farthest_moves(for_all);
-    moved = moves.of_most + grown_;
-    judged = (for_all ? moves.of_all : moves.of_most) + grown_;
-  }
-  // Nothing is known before the first sweep, when the spheres are at their fastest.
-  const double speed = stale_ ? limit : std::max((moved - moved_) / std::max(1, sweeps_), 1e-9);
-  if (stale_ || judged > limit) {
-    if (walls_ && lists_built_.calls > 0) walls_->stop_strays(spheres_, built_at_, sites_);
-    const EffectTimer timer(lists_built_);
-    choose_skin();
-    sites_then_ = sites_;
-    edges_then_ = edges_;
-    wear_then_ = wear_;
-    build_lists(spheres_, sites_, built_at_);
-    if (walls_) walls_->build(spheres_, sites_, skin_);
-    remember_places();
-    grown_ = 0;
-    age_ = 0;
-    stale_ = false;
-    moved = 0;
-  }
-  moved_ = moved;
-  age_ += sweeps_;
-  sweeps_ = 0;
-  patience_ = static_cast<int>(std::clamp(0.5 * (limit - moved) / speed, 1.0, double{longest_patience}));
+  const bool are_there = lists_built_.calls > 0;
+  life_.keep(
+      for_all, are_there, [&] { return farthest_moves(for_all); },
+      [&] {
+        if (walls_ && are_there) walls_->stop_strays(spheres_, built_at_, sites_);
+        const EffectTimer timer(lists_built_);
+        sites_then_ = sites_;
+        edges_then_ = edges_;
+        wear_then_ = life_.wear();
+        build_lists(spheres_, sites_, built_at_);
+        if (walls_) walls_->build(spheres_, sites_, life_.skin());
+        remember_places();
+      });
 }
 
 void SoftPacking::archive(Archive& a) {
-  a(edges_, skin_, spheres_, sites_, id_of_site_, squeeze_, force_, swelling_, stale_, lists_built_, grown_,
-    moved_, wear_, age_, sweeps_, patience_);
+  a(edges_, life_, spheres_, sites_, id_of_site_, squeeze_, force_, swelling_, lists_built_);
   if (walls_) a(*walls_);
   if (lists_built_.calls > 0) build_again(a);
 }
 
 void SoftPacking::build_again(Archive& a) {
   a(built_at_, sites_then_, edges_then_, wear_then_);
-  if (!a.reads() || stale_) return;  // they are built before they are used
+  if (!a.reads() || life_.is_over()) return;  // they are built before they are used
   std::vector<SoftSphere> at_site(count_), spheres, spare;
   for (std::size_t p = 0; p < built_at_.size(); ++p)
     if (built_at_[p].r > 0) at_site[sites_[p]] = built_at_[p];

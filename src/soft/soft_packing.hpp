@@ -9,6 +9,7 @@
 #include "bernal/domain/container.hpp"
 #include "core/archive.hpp"
 #include "soft/far_images.hpp"
+#include "soft/list_life.hpp"
 #include "soft/soft_blocks.hpp"
 #include "soft/soft_lists.hpp"
 #include "soft/soft_walls.hpp"
@@ -52,12 +53,14 @@ class SoftPacking {
   /// `most_swelling` times the `smallest_edge` of the radii.
   SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels);
 
+  /// That of lists, at most, in the unit of the radii.
+  static double usual_skin(const std::vector<double>& radii);
   /// The least edge in which no two images of a sphere are neighbours of one.
   static double smallest_edge(const std::vector<double>& radii);
 
   /// Lists are built anew when a sphere has moved by `wear` skins. Above 1, neighbours may be missed until
   /// then. 0.9 where nothing is said.
-  void wear_lists(double wear) { wear_ = wear; }
+  void wear_lists(double wear) { life_.wear(wear); }
 
   /// Every sphere is moved once, by min(omega / n, 1) times the sum of its n overlaps. Parallel where there
   /// are many spheres; the same bits for any number of threads.
@@ -115,17 +118,12 @@ class SoftPacking {
   double measure(float omega, bool each);
   template <int D>
   void set_place(SoftSphere& sphere, const Vector<D>& center) const;
-  void choose_skin();
   void keep_lists_valid(bool for_all);
   void build_lists(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& sites,
                    std::vector<SoftSphere>& spare);
   void remember_places();
   void build_again(Archive& a);
-  /// Farthest moves since the lists were built.
-  struct Moves {
-    double of_most, of_all;  ///< the latter where it is asked for
-  };
-  Moves farthest_moves(bool of_all) const;
+  FarthestMoves farthest_moves(bool of_all) const;
   std::uint32_t id_at(std::size_t p) const { return id_of_site_[sites_[p]]; }
   std::vector<float> by_id(const std::vector<float>& in_sweep_order) const;
 
@@ -135,7 +133,7 @@ class SoftPacking {
   std::array<double, 3> edges_;
   Vector<3> corner_ = Vector<3>::Zero();
   SoftSizes sizes_;
-  float skin_, thickest_skin_;
+  ListLife life_;
   SoftLists lists_;
   bool by_octaves_;
   std::unique_ptr<SoftBlocks> blocks_;  // where there are so many spheres that they are worth them
@@ -148,18 +146,11 @@ class SoftPacking {
   std::vector<float> squeeze_, force_;
   std::vector<float> radii_;               // as given, by id
   float swelling_ = 1;                     // of these
-  bool stale_ = true;                      // the lists
   std::vector<SoftSphere> built_at_;       // where they were when the lists were built
   std::vector<std::uint32_t> sites_then_;  // in the order in which they came to that
   std::array<double, 3> edges_then_{};
   double wear_then_ = 0;
   Effect lists_built_{"neighbour lists", 0, 0};
-  double grown_ = 0;  // at most, by exchanges since then
-  double moved_ = 0;  // most of them since then, when it was last looked at
-  double wear_ = 0.9;
-  int age_ = 0;       // of the lists, in sweeps, when it was last looked at
-  int sweeps_ = 0;    // since it was last looked at
-  int patience_ = 0;  // sweeps until it is looked at again
 };
 
 }  // namespace bernal

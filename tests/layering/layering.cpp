@@ -161,7 +161,7 @@ std::vector<std::string> violations(const fs::path& root, const std::map<std::st
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const fs::path& file = entry.path();
-      if (file.extension() != ".hpp" && file.extension() != ".cpp") continue;
+      if (file.extension() != ".hpp" && file.extension() != ".cpp" && file.extension() != ".cu") continue;
       const fs::path below_root = fs::relative(file, root);
       const Place place = place_of(below_root);
       const auto rule = rules.find(place.room);

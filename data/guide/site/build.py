@@ -48,7 +48,7 @@ SECTIONS = [
      [(f"results/{name}", f"data/results/{name}.md", title) for name, title in (
          ("methods", "Methods, priced"), ("effects", "Effects, one by one"), ("arithmetic", "The arithmetic, priced"),
          ("exchange", "Exchange of sizes"), ("loose", "Loose packings"), ("lists", "Lists and arrays"),
-         ("engines", "Engines over MPI"), ("packers", "Against public packers"),
+         ("engines", "Engines over MPI"), ("scale", "How relaxation scales"), ("gpu", "Relaxation on a GPU"), ("packers", "Against public packers"),
          ("hard", "Hard cases"), ("starts", "Packings of others"))] +
      [(f"results/{name}", f"data/results/papers/{name}/{name}.md", title) for name, title in (
          ("zhao2007", "Zhao et al. 2007"), ("han2005", "Han et al. 2005"), ("farr2013", "Farr 2013"))] +

@@ -9,6 +9,12 @@ enum class RelaxMethod {
   reference_sorted,  ///< the same to the bit, on sorted arrays in place of linked lists
 };
 
+/// Where spheres push each other.
+enum class RelaxDevice {
+  processor,
+  gpu,  ///< an NVIDIA GPU, where bernal was built for it; the spheres in another order
+};
+
 /// Spheres start with overlaps and push each other apart (Zhao, Li & Liu 2007). In a periodic box the box
 /// grows meanwhile; in a container the walls push too, and what is stuck is stirred.
 struct Relax {
@@ -21,6 +27,7 @@ struct Relax {
   std::optional<double> phi0 = {};
   double stop = 2e-4;  ///< largest overlap ratio that counts as none
   RelaxMethod method = RelaxMethod::fast;
+  RelaxDevice device = RelaxDevice::processor;
   bool settle = false;  ///< reference: what touches nothing moves to touch its nearest neighbour
   // in both
   /// Spheres exchange their sizes while they push each other, which makes disordered packings of the same
