@@ -9,6 +9,7 @@
 #include "bernal/hard/grow.hpp"
 #include "core/archive.hpp"
 #include "core/event_clock.hpp"
+#include "core/large_pages.hpp"
 #include "core/made.hpp"
 #include "hard/calendar.hpp"
 #include "hard/collision_kernels.hpp"
@@ -130,7 +131,7 @@ class HardSpheres {
   }
 
   const Made made_{"growth"};
-  std::vector<FlyingSphere<D>> spheres_;
+  LargePageVector<FlyingSphere<D>> spheres_;
   std::vector<Id> original_;  // the place of each in the caller's order
   Vector<D> edges_;
   CollisionKernel<D> kernel_;
@@ -148,7 +149,7 @@ class HardSpheres {
   double freedom_;             // radius of the shells
   double largest_listed_ = 0;  // size up to which the lists hold
   double now_ = 0;
-  std::size_t prefetched_ = 0;  // bins of the calendar for which the memory was asked
+  std::size_t prefetched_day_ = 0, prefetched_ = 0;  // the memory was asked for so many of that day's events
 
   FlightTimes times_;
   FlightPeriod period_;                                          // the last one, or the one at hand
