@@ -18,7 +18,7 @@ namespace bernal {
 /// for their neighbours as often, when nothing of it is in the caches.
 ///
 /// Level l holds the points with reaches in (R_l / 2, R_l], R_l = R / 2^l, in cells of edge 2 R_l or more.
-/// Cost: `insert` and `move` O(1), a query the points of some 3^D cells a level. Memory: 8 (4 D + 8) + 16
+/// Cost: `insert` and `move` O(1), a query the points of some 3^D cells a level. Memory: 4 (4 D + 8) + 16
 /// bytes a cell, of which there are at most as many as points on each level.
 template <int D>
 class HomeGrid {

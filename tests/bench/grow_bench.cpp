@@ -1,8 +1,10 @@
 #include <benchmark/benchmark.h>
 #include <malloc.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -21,17 +23,20 @@ using testing::equal_radii;
 using testing::Gas;
 using testing::lognormal_radii;
 
-/// What the heap holds.
-double allocated() {
-  const struct mallinfo2 info = mallinfo2();
-  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+/// Bytes that the process holds in memory.
+double resident() {
+  std::ifstream pages("/proc/self/statm");
+  double all = 0, in_memory = 0;
+  pages >> all >> in_memory;
+  return in_memory * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
 /// A fluid at packing fraction 0.49, grown there from 0.2. Events: collisions, departures, and spheres that
 /// look again.
 void collide(benchmark::State& state, const std::vector<double>& radii) {
   const Gas<3> gas(radii, 0.2);
-  const double before = allocated();
+  malloc_trim(0);
+  const double before = resident();
   HardSpheres<3> flight(gas.spheres, gas.edges, Random(1, stream(Stream::test, 2)));
   const double size = std::cbrt(0.49 / 0.2);
   while (flight.size() < size) flight.fly(0.1, size);
@@ -48,7 +53,7 @@ void collide(benchmark::State& state, const std::vector<double>& radii) {
   state.counters["collisions_per_second"] = benchmark::Counter(all, benchmark::Counter::kIsRate);
   state.counters["events_per_second"] = benchmark::Counter(
       static_cast<double>(predictions - periods * radii.size()) - all, benchmark::Counter::kIsRate);
-  state.counters["bytes_a_sphere"] = (allocated() - before) / static_cast<double>(radii.size());
+  state.counters["bytes_a_sphere"] = (resident() - before) / static_cast<double>(radii.size());
   state.counters["scans_a_collision"] = static_cast<double>(predictions) / all;
   state.counters["departures_a_collision"] = static_cast<double>(departures) / all;
 }
