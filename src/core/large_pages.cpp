@@ -8,7 +8,7 @@
 namespace bernal {
 namespace {
 
-constexpr std::uintptr_t page = std::uintptr_t{2} << 20;
+constexpr std::uintptr_t page = large_page;
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/large_pages.hpp"
 #include "core/made.hpp"
 #include "hard/prefetch.hpp"
 
@@ -12,15 +13,18 @@ namespace bernal {
 
 /// The events to come of a number of things, one for each: a calendar queue over one period.
 ///
-/// The period [0, horizon) is cut into bins of equal length, each a doubly linked list without order; the
-/// earliest event is found among the few of the first bin that is not empty. Events at or beyond the horizon
+/// The period [0, horizon) is cut into days of equal length. Of a day to come only the ids are noted that
+/// have been scheduled for it, one behind the other; those that are scheduled anew stay noted where they
+/// were, and are passed over there. When a day comes, its events are sorted; what is scheduled for that same
+/// day later on waits in a heap. So scheduling writes to the ends of days soon to come, which caches keep
+/// however many things there are, and what comes up next is known far ahead. Events at or beyond the horizon
 /// are remembered and never come up: who starts the next period asks for all events anew. Events at the same
 /// time come up in the order of their ids.
 ///
-/// Cost: O(1) to schedule, and for `next` as long as there are about as many bins as events come up in the
-/// period, or half as many, and these are spread evenly: 40 ns an event with 10,000 things, where a binary
-/// heap takes more than three times as long (tests/bench/grow_bench.cpp). Memory: 24 bytes a thing, 4 a bin.
-/// Source: Paul, J. Comput. Phys. 221, 615 (2007), without its heap.
+/// Cost: O(1) to schedule, and O(log d) for `next`, d being the events of a day, as long as about as many
+/// come up in the period as expected, spread evenly; O(log n) however they lie. Memory: 16 bytes a thing, and
+/// about 16 for what is noted, at most 40. Source: Paul, J. Comput. Phys. 221, 615 (2007), without its linked
+/// lists.
 class Calendar {
  public:
   using Id = std::uint32_t;
@@ -28,12 +32,18 @@ class Calendar {
   static constexpr double never = std::numeric_limits<double>::infinity();
 
   /// Forgets all events.
-  void start_period(std::size_t ids, double horizon, std::size_t bins) {
+  void start_period(std::size_t ids, double horizon, std::size_t expected_events) {
     events_.assign(ids, Event{});
-    bins_.assign(std::max<std::size_t>(1, bins), none);
+    const std::size_t events_a_day = std::clamp(ids / days_a_round, least_a_day, most_a_day);
+    days_.assign(expected_events / events_a_day + 1, Day{});
+    notes_.clear();
+    free_ = none;
+    noted_ = 0;
+    today_.clear();
+    late_.clear();
+    at_ = begun_ = 0;
     horizon_ = horizon;
-    bins_per_time_ = static_cast<double>(bins_.size()) / horizon;
-    current_ = 0;
+    days_per_time_ = static_cast<double>(days_.size()) / horizon;
   }
 
   double time(Id id) const { return events_[id].time; }
@@ -42,63 +52,160 @@ class Calendar {
 
   /// Replaces the event of `id`. Precondition: time is not before that of the event which came up last.
   void schedule(Id id, double time, Id what) {
-    Event& event = events_[id];
-    unlink(event);
-    event.time = time;
-    event.what = what;
-    if (time < horizon_) link(id, event);
+    events_[id] = {time, what};
+    if (!(time < horizon_)) return;
+    const std::size_t day = day_of(time);
+    if (day >= begun_) return note(days_[day], id);
+    late_.push_back({time, id});
+    std::ranges::push_heap(late_, later);
+    if (late_.size() > most_noted * (events_.size() + least_a_day)) drop_what_fell_today();
   }
   /// The event stays where it is and becomes another.
   void change(Id id, Id what) { events_[id].what = what; }
 
-  /// The bin of the event that came up last, and one of those in a later bin, or `none`: for who wants to ask
-  /// the memory for what they will need.
-  std::size_t bin() const { return current_; }
-  Id one_of(std::size_t bin) const { return bin < bins_.size() ? bins_[bin] : none; }
-  void prefetch(Id id) const { bernal::prefetch(&events_[id]); }
-
   /// Whose event is the earliest, or `none` if there is none before the horizon. It stays scheduled.
   Id next() {
-    while (current_ < bins_.size() && bins_[current_] == none) ++current_;
-    if (current_ == bins_.size()) return none;
-    Id earliest = bins_[current_];
-    for (Id id = events_[earliest].next; id != none; id = events_[id].next) {
-      const double time = events_[id].time, best = events_[earliest].time;
-      if (time < best || (time == best && id < earliest)) earliest = id;
+    for (;;) {
+      while (at_ < today_.size() && !stands(today_[at_])) ++at_;
+      while (!late_.empty() && !stands(late_.front())) {
+        std::ranges::pop_heap(late_, later);
+        late_.pop_back();
+      }
+      const bool any = at_ < today_.size();
+      if (!late_.empty() && (!any || later(today_[at_], late_.front()))) return late_.front().id;
+      if (any) return today_[at_].id;
+      if (begun_ == days_.size()) return none;
+      begin_day();
     }
-    return earliest;
   }
 
+  /// That it has at the moment.
+  std::size_t bytes() const {
+    return events_.capacity() * sizeof(Event) + days_.capacity() * sizeof(Day) +
+           notes_.capacity() * sizeof(Note) + (today_.capacity() + late_.capacity()) * sizeof(Entry) +
+           noted_today_.capacity() * sizeof(Id);
+  }
+
+  /// For who wants to ask the memory for what the next events will need: how many days have begun, how many
+  /// of today's events are over, and the one that comes up as the k-th of today unless something comes in
+  /// between, or `none`.
+  std::size_t day() const { return begun_; }
+  std::size_t over() const { return at_; }
+  Id of_today(std::size_t k) const { return k < today_.size() ? today_[k].id : none; }
+  void prefetch(Id id) const { bernal::prefetch(&events_[id]); }
+
  private:
-  static constexpr std::uint32_t unlinked = 0xFFFFFFFF;
+  /// Events of a day: few, so that they stay in the first cache while they are sorted and few are scheduled
+  /// for the day at hand; and not so few that the ends of all days that are written to leave the second one.
+  static constexpr std::size_t days_a_round = 32, least_a_day = 16, most_a_day = 512;
+  /// Of all noted ids, for each thing: with more, those that no longer stand are dropped.
+  static constexpr std::size_t most_noted = 6;
+
   struct Event {
     double time = never;
     Id what = none;
-    Id next = none, previous = none;
-    std::uint32_t bin = unlinked;
+  };
+  struct Entry {
+    double time;
+    Id id;
+  };
+  static constexpr std::uint32_t ids_a_note = 15;
+  struct alignas(64) Note {
+    Id ids[ids_a_note];
+    std::uint32_t next;
+  };
+  struct Day {
+    std::uint32_t note = none;
+    std::uint32_t free = 0;  // places in that note
   };
 
-  void unlink(Event& event) {
-    if (event.bin == unlinked) return;
-    (event.previous == none ? bins_[event.bin] : events_[event.previous].next) = event.next;
-    if (event.next != none) events_[event.next].previous = event.previous;
-    event.bin = unlinked;
+  static bool later(const Entry& a, const Entry& b) {
+    return a.time > b.time || (a.time == b.time && a.id > b.id);
   }
-  void link(Id id, Event& event) {
-    const auto bin = static_cast<std::size_t>(event.time * bins_per_time_);
-    event.bin = static_cast<std::uint32_t>(std::clamp(bin, current_, bins_.size() - 1));
-    event.previous = none;
-    event.next = bins_[event.bin];
-    if (event.next != none) events_[event.next].previous = id;
-    bins_[event.bin] = id;
+  bool stands(const Entry& entry) const { return events_[entry.id].time == entry.time; }
+  std::size_t day_of(double time) const {
+    return std::min(static_cast<std::size_t>(time * days_per_time_), days_.size() - 1);
+  }
+
+  void note(Day& day, Id id) {
+    if (day.free == 0) {
+      if (noted_ > most_noted * events_.size() + ids_a_note * days_.size()) drop_what_fell();
+      std::uint32_t fresh = free_;
+      if (fresh != none) {
+        free_ = notes_[fresh].next;
+      } else {
+        fresh = static_cast<std::uint32_t>(notes_.size());
+        notes_.emplace_back();
+      }
+      notes_[fresh].next = day.note;
+      day = {fresh, ids_a_note};
+      noted_ += ids_a_note;
+    }
+    notes_[day.note].ids[--day.free] = id;
+  }
+  /// Calls visit(id) for what is noted for a day, whose notes become free.
+  template <class Visit>
+  void take_notes(Day& day, Visit&& visit) {
+    std::uint32_t used = day.free;
+    for (std::uint32_t at = day.note; at != none; used = 0) {
+      Note& note = notes_[at];
+      for (std::uint32_t k = used; k < ids_a_note; ++k) visit(note.ids[k]);
+      noted_ -= ids_a_note;
+      const std::uint32_t next = note.next;
+      note.next = free_;
+      free_ = at;
+      at = next;
+    }
+    day = {};
+  }
+  void begin_day() {
+    const std::size_t day = begun_++;
+    today_.clear();
+    at_ = 0;
+    noted_today_.clear();
+    take_notes(days_[day], [&](Id id) { noted_today_.push_back(id); });
+    constexpr std::size_t ahead = 16;
+    for (std::size_t k = 0; k < noted_today_.size(); ++k) {
+      if (k + ahead < noted_today_.size()) prefetch(noted_today_[k + ahead]);
+      const Id id = noted_today_[k];
+      const double time = events_[id].time;
+      if (time < horizon_ && day_of(time) == day) today_.push_back({time, id});
+    }
+    std::ranges::sort(today_, [](const Entry& a, const Entry& b) { return later(b, a); });
+  }
+  void drop_what_fell() {
+    std::vector<Id> standing;
+    for (std::size_t day = begun_; day < days_.size(); ++day) {
+      standing.clear();
+      take_notes(days_[day], [&](Id id) {
+        const double time = events_[id].time;
+        if (time < horizon_ && day_of(time) == day) standing.push_back(id);
+      });
+      std::ranges::sort(standing);
+      standing.erase(std::ranges::unique(standing).begin(), standing.end());
+      for (const Id id : standing) note(days_[day], id);
+    }
+  }
+
+  /// What is sorted is a heap.
+  void drop_what_fell_today() {
+    std::erase_if(late_, [&](const Entry& entry) { return !stands(entry); });
+    std::ranges::sort(late_, [](const Entry& a, const Entry& b) { return later(b, a); });
+    const auto same = [](const Entry& a, const Entry& b) { return a.time == b.time && a.id == b.id; };
+    late_.erase(std::ranges::unique(late_, same).begin(), late_.end());
   }
 
   const Made made_{"collisions"};
-  std::vector<Event> events_;
-  std::vector<Id> bins_;
+  LargePageVector<Event> events_;
+  std::vector<Day> days_;
+  LargePageVector<Note> notes_;
+  std::uint32_t free_ = none;        // the first note that is no day's
+  std::size_t noted_ = 0;            // places in the notes of all days
+  std::vector<Entry> today_, late_;  // sorted; a heap
+  std::vector<Id> noted_today_;
+  std::size_t at_ = 0, begun_ = 0;  // in today_; the days that have begun, the last of which is today
   double horizon_ = 0;
-  double bins_per_time_ = 0;
-  std::size_t current_ = 0;
+  double days_per_time_ = 0;
 };
 
 }  // namespace bernal

@@ -33,8 +33,9 @@ constexpr std::uint64_t events_a_look = 4096;
 constexpr double least_kick = 1e-14;
 /// Events in the calendar for each collision: spheres that look again, spheres that leave.
 constexpr double events_a_collision = 1.8;
-constexpr double events_a_bin = 1;
-/// Bins of the calendar between two steps of asking the memory for what events will need.
+/// So few the caches hold; of more the memory is asked for what events will need, in steps with so many
+/// events between them.
+constexpr std::size_t few_spheres = 3000;
 constexpr std::size_t step_ahead = 2;
 
 /// Of the mean diameter: the shells to begin with, and their limits.
@@ -146,7 +147,7 @@ void HardSpheres<D>::sort_along_curve() {
   for (Id i = 0; i < count(); ++i)
     places[i] = {place_on_curve<D>(boundary.wrap(spheres_[i].position()), edges_), i};
   std::ranges::sort(places);
-  const std::vector<FlyingSphere<D>> spheres = spheres_;
+  const LargePageVector<FlyingSphere<D>> spheres = spheres_;
   const std::vector<Id> original = original_;
   for (Id i = 0; i < count(); ++i) {
     spheres_[i] = spheres[places[i].second];
@@ -195,13 +196,13 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
       period_.time > 0
           ? static_cast<double>(period_.collisions + period_.reflections) * horizon_ / period_.time
           : static_cast<double>(count());
-  calendar_.start_period(count(), horizon_,
-                         static_cast<std::size_t>(expected_collisions * events_a_collision / events_a_bin +
-                                                  static_cast<double>(count()) / 4));
+  calendar_.start_period(
+      count(), horizon_,
+      static_cast<std::size_t>(expected_collisions * events_a_collision + static_cast<double>(count()) / 4));
   period_ = {.builds = rebuild};
   virial_ = 0;
   now_ = 0;
-  prefetched_ = 0;
+  prefetched_day_ = prefetched_ = 0;
   scan_.size = size_;
   scan_.growth = growth_;
   for (Id i = 0; i < count(); ++i) predict(i);
@@ -219,7 +220,7 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
     }
     const Id what = calendar_.what(i);
     const EventClock::Event event(clock_of(what));
-    prefetch();
+    if (count() > few_spheres) prefetch();
     now_ = calendar_.time(i);
     spheres_[i].fly_to(now_);
     if (is_partner(what)) {
@@ -257,40 +258,51 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   return period_;
 }
 
-/// With many spheres most of the time goes into waiting for the memory; what the next events will need can be
-/// known some events ahead, in steps, as each step tells where the next one finds its data.
+/// With many spheres most of the time goes into waiting for the memory. What the events of today will need is
+/// asked for some events ahead, in steps, as each step tells where the next one finds its data.
 template <int D>
 void HardSpheres<D>::prefetch() {
+  if (prefetched_day_ != calendar_.day()) {
+    prefetched_day_ = calendar_.day();
+    prefetched_ = 0;
+  }
+  // Both partners of a collision have it for an event, one behind the other.
+  const auto ahead = [&](std::size_t steps) {
+    const Id id = prefetched_ < steps * step_ahead ? Calendar::none
+                                                   : calendar_.of_today(prefetched_ - steps * step_ahead);
+    if (id == Calendar::none) return id;
+    const Id what = calendar_.what(id);
+    return is_partner(what) && what < id ? Calendar::none : id;
+  };
   const auto prefetch_neighbors = [&](Id i) {
     for (const Id j : shells_.neighbors(i)) {
       calendar_.prefetch(j);
       bernal::prefetch(&spheres_[j]);
     }
   };
-  for (; prefetched_ <= calendar_.bin(); ++prefetched_) {
-    if (const Id id = calendar_.one_of(prefetched_ + 4 * step_ahead); id != Calendar::none) {
-      calendar_.prefetch(id);
+  for (; prefetched_ <= calendar_.over() + 4 * step_ahead; ++prefetched_) {
+    if (const Id id = calendar_.of_today(prefetched_); id != Calendar::none) calendar_.prefetch(id);
+    if (const Id id = ahead(1); id != Calendar::none) {
       bernal::prefetch(&spheres_[id]);
       shells_.prefetch(id);
-    }
-    if (const Id id = calendar_.one_of(prefetched_ + 3 * step_ahead); id != Calendar::none) {
-      shells_.prefetch_list(id);
       if (const Id what = calendar_.what(id); is_partner(what)) {
-        calendar_.prefetch(what);
         bernal::prefetch(&spheres_[what]);
         shells_.prefetch(what);
+      }
+    }
+    if (const Id id = ahead(2); id != Calendar::none) {
+      shells_.prefetch_list(id);
+      if (const Id what = calendar_.what(id); is_partner(what)) {
+        shells_.prefetch_list(what);
       } else if (what == leave) {
         FlyingSphere<D> s = spheres_[id];
         s.fly_to(calendar_.time(id));
         shells_.prefetch_settling(id, Boundary<D>{edges_}.wrap(s.position()));
       }
     }
-    if (const Id id = calendar_.one_of(prefetched_ + 2 * step_ahead); id != Calendar::none) {
+    if (const Id id = ahead(3); id != Calendar::none) {
       prefetch_neighbors(id);
-      if (const Id partner = calendar_.what(id); is_partner(partner)) shells_.prefetch_list(partner);
-    }
-    if (const Id id = calendar_.one_of(prefetched_ + step_ahead); id != Calendar::none) {
-      if (const Id partner = calendar_.what(id); is_partner(partner)) prefetch_neighbors(partner);
+      if (const Id what = calendar_.what(id); is_partner(what)) prefetch_neighbors(what);
     }
   }
 }

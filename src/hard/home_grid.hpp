@@ -8,6 +8,7 @@
 
 #include "bernal/core/vector.hpp"
 #include "core/archive.hpp"
+#include "core/large_pages.hpp"
 #include "hard/prefetch.hpp"
 
 namespace bernal {
@@ -17,7 +18,7 @@ namespace bernal {
 /// for their neighbours as often, when nothing of it is in the caches.
 ///
 /// Level l holds the points with reaches in (R_l / 2, R_l], R_l = R / 2^l, in cells of edge 2 R_l or more.
-/// Cost: `insert` and `move` O(1), a query the points of some 3^D cells a level. Memory: 8 (4 D + 8) + 16
+/// Cost: `insert` and `move` O(1), a query the points of some 3^D cells a level. Memory: 4 (4 D + 8) + 16
 /// bytes a cell, of which there are at most as many as points on each level.
 template <int D>
 class HomeGrid {
@@ -75,7 +76,7 @@ class HomeGrid {
  private:
   static constexpr std::size_t most_levels = 30;
   static constexpr double cells_a_point = 1;
-  static constexpr std::uint32_t room = 8;  // of a cell, to begin with
+  static constexpr std::uint32_t room = 4;  // of a cell, to begin with
   /// What a reach is longer by, of the sum of all edges: more than rounding to single precision takes from
   /// the distance and from the reach.
   static constexpr double rounding = 1.2e-7;
@@ -202,9 +203,9 @@ class HomeGrid {
   double most_ = 0;
   double margin_ = 0;  // in all reaches
   std::vector<Level> levels_;
-  std::vector<Cell> cells_;
-  std::vector<Point> points_;
-  std::vector<std::uint32_t> cell_of_;
+  LargePageVector<Cell> cells_;
+  LargePageVector<Point> points_;
+  LargePageVector<std::uint32_t> cell_of_;
 };
 
 }  // namespace bernal

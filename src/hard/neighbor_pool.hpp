@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/archive.hpp"
+#include "core/large_pages.hpp"
 #include "hard/prefetch.hpp"
 
 namespace bernal {
@@ -84,8 +85,8 @@ class NeighborPool {
     list = {begin, list.count, 2 * list.room};
   }
 
-  std::vector<List> lists_;
-  std::vector<Line> pool_;
+  LargePageVector<List> lists_;
+  LargePageVector<Line> pool_;
   std::size_t longest_ = 0;
 };
 

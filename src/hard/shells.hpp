@@ -5,6 +5,7 @@
 
 #include "bernal/core/vector.hpp"
 #include "core/archive.hpp"
+#include "core/large_pages.hpp"
 #include "core/made.hpp"
 #include "hard/home_grid.hpp"
 #include "hard/neighbor_pool.hpp"
@@ -57,8 +58,8 @@ class Shells {
   };
 
   const Made made_{"neighbour shells"};
-  std::vector<Place> places_;
-  std::vector<double> reaches_;  // radius and freedom
+  LargePageVector<Place> places_;
+  LargePageVector<double> reaches_;  // radius and freedom
   NeighborPool lists_;
   HomeGrid<D> grid_;
   std::vector<Id> before_, after_;  // neighbours of the one that settles, sorted

@@ -1,7 +1,10 @@
 #include <benchmark/benchmark.h>
+#include <malloc.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -20,22 +23,37 @@ using testing::equal_radii;
 using testing::Gas;
 using testing::lognormal_radii;
 
-/// A fluid at packing fraction 0.49, grown there from 0.2.
+/// Bytes that the process holds in memory.
+double resident() {
+  std::ifstream pages("/proc/self/statm");
+  double all = 0, in_memory = 0;
+  pages >> all >> in_memory;
+  return in_memory * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+/// A fluid at packing fraction 0.49, grown there from 0.2. Events: collisions, departures, and spheres that
+/// look again.
 void collide(benchmark::State& state, const std::vector<double>& radii) {
   const Gas<3> gas(radii, 0.2);
+  malloc_trim(0);
+  const double before = resident();
   HardSpheres<3> flight(gas.spheres, gas.edges, Random(1, stream(Stream::test, 2)));
   const double size = std::cbrt(0.49 / 0.2);
   while (flight.size() < size) flight.fly(0.1, size);
   for (int k = 0; k < 12; ++k) flight.fly(0);  // shells find their size
-  std::uint64_t collisions = 0, departures = 0, predictions = 0;
+  std::uint64_t collisions = 0, departures = 0, predictions = 0, periods = 0;
   for (auto _ : state) {
     const FlightPeriod period = flight.fly(0);
     collisions += period.collisions;
     departures += period.departures;
     predictions += period.predictions;
+    ++periods;
   }
   const auto all = static_cast<double>(collisions);
   state.counters["collisions_per_second"] = benchmark::Counter(all, benchmark::Counter::kIsRate);
+  state.counters["events_per_second"] = benchmark::Counter(
+      static_cast<double>(predictions - periods * radii.size()) - all, benchmark::Counter::kIsRate);
+  state.counters["bytes_a_sphere"] = (resident() - before) / static_cast<double>(radii.size());
   state.counters["scans_a_collision"] = static_cast<double>(predictions) / all;
   state.counters["departures_a_collision"] = static_cast<double>(departures) / all;
 }
@@ -43,7 +61,11 @@ void collide(benchmark::State& state, const std::vector<double>& radii) {
 void collide_equal(benchmark::State& state) {
   collide(state, equal_radii(static_cast<std::size_t>(state.range(0))));
 }
-BENCHMARK(collide_equal)->Arg(1000)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond)->MinTime(1);
+BENCHMARK(collide_equal)
+    ->RangeMultiplier(10)
+    ->Range(1000, 1000000)
+    ->Unit(benchmark::kMillisecond)
+    ->MinTime(1);
 
 void collide_lognormal(benchmark::State& state) {
   collide(state, lognormal_radii(static_cast<std::size_t>(state.range(0)), 0.5));

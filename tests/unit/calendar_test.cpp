@@ -12,13 +12,13 @@ namespace calendar_test {
 /// The oracle is a sorted set. Events are replaced as collisions replace them: two or three for each that
 /// comes up.
 TEST(Calendar, BringsEventsUpInOrder) {
-  for (const std::size_t bins : {std::size_t{1}, std::size_t{7}, std::size_t{3000}}) {
-    SCOPED_TRACE(bins);
+  for (const std::size_t expected : {std::size_t{1}, std::size_t{70}, std::size_t{3000}}) {
+    SCOPED_TRACE(expected);
     Random random(5, stream(Stream::test));
     constexpr Calendar::Id count = 200;
     constexpr double horizon = 10;
     Calendar calendar;
-    calendar.start_period(count, horizon, bins);
+    calendar.start_period(count, horizon, expected);
     std::set<std::pair<double, Calendar::Id>> oracle;
     const auto schedule = [&](Calendar::Id id, double time) {
       oracle.erase({calendar.time(id), id});
@@ -63,6 +63,89 @@ TEST(Calendar, ChangesWhatWithoutWhen) {
   EXPECT_EQ(calendar.next(), 1u);
   EXPECT_EQ(calendar.what(1), 8u);
   EXPECT_EQ(calendar.time(1), 0.25);
+}
+
+/// One pair that collides ever again, and forgets each time what it had to do in many days to come, and in
+/// one. The calendar drops what no longer stands, and keeps what does: the far events of all others come up.
+TEST(Calendar, KeepsWhatStandsAmongMuchThatFell) {
+  constexpr Calendar::Id count = 64;
+  Random random(6, stream(Stream::test));
+  Calendar calendar;
+  calendar.start_period(count, 1, 20 * count);
+  for (Calendar::Id id = 2; id < count; ++id) calendar.schedule(id, 0.5 + 0.4 * random.uniform(), id);
+  const std::size_t before = calendar.bytes();
+  for (int k = 0; k < 100000; ++k) {
+    calendar.schedule(0, 0.95, 0);
+    calendar.schedule(1, 0.5 + 0.4 * random.uniform(), 1);
+  }
+  // 4 bytes for each of 15 noted ids, and for the note's next: 6 noted for each thing and a note for each
+  // day.
+  EXPECT_LT(calendar.bytes() - before, 2 * 64 * (6 * count / 15 + 20 * count / 16 + 2));
+  double now = 0;
+  std::set<Calendar::Id> came_up;
+  for (Calendar::Id id; (id = calendar.next()) != Calendar::none;) {
+    EXPECT_GE(calendar.time(id), now);
+    now = calendar.time(id);
+    EXPECT_TRUE(came_up.insert(id).second) << id;
+    calendar.schedule(id, Calendar::never, id);
+  }
+  EXPECT_EQ(came_up.size(), count);
+}
+
+/// The same within the day at hand, of which there is one.
+TEST(Calendar, KeepsWhatStandsAmongMuchThatFellToday) {
+  Random random(8, stream(Stream::test));
+  Calendar calendar;
+  calendar.start_period(3, 1, 1);
+  calendar.schedule(0, 0.1, 0);
+  EXPECT_EQ(calendar.next(), 0u);
+  const std::size_t before = calendar.bytes();
+  for (int k = 0; k < 100000; ++k) {
+    calendar.schedule(0, 0.95, 0);
+    calendar.schedule(1, random.uniform(0.2, 0.9), 1);
+    calendar.schedule(2, 0.97, 2);
+  }
+  EXPECT_LT(calendar.bytes() - before, 8000u);
+  for (const Calendar::Id id : {1u, 0u, 2u}) {
+    EXPECT_EQ(calendar.next(), id);
+    calendar.schedule(id, Calendar::never, id);
+  }
+  EXPECT_EQ(calendar.next(), Calendar::none);
+}
+
+/// What is foreseen for today is what comes up, as long as nothing is scheduled in between.
+TEST(Calendar, TellsWhatComesUpToday) {
+  constexpr Calendar::Id count = 300;
+  Random random(7, stream(Stream::test));
+  Calendar calendar;
+  calendar.start_period(count, 1, count);
+  for (Calendar::Id id = 0; id < count; ++id) calendar.schedule(id, random.uniform(), id);
+  std::size_t day = 0, foreseen = 0;
+  for (Calendar::Id id; (id = calendar.next()) != Calendar::none; ++foreseen) {
+    EXPECT_EQ(calendar.of_today(calendar.over()), id);
+    day = calendar.day();
+    calendar.schedule(id, Calendar::never, id);
+  }
+  EXPECT_EQ(foreseen, count);
+  EXPECT_GT(day, 10u);
+  EXPECT_EQ(calendar.of_today(calendar.over()), Calendar::none);
+}
+
+/// All at one time, as of spheres that touch from the start: a sorted list that is made by insertion, or one
+/// that is searched through for each event, would take some 10^10 steps here.
+TEST(Calendar, TakesManyEventsAtOneTime) {
+  constexpr Calendar::Id count = 200000;
+  Calendar calendar;
+  calendar.start_period(count, 1, count);
+  for (Calendar::Id id = 0; id < count; ++id) calendar.schedule(count - 1 - id, 0, 0);
+  for (Calendar::Id id = 0; id < count; ++id) {
+    ASSERT_EQ(calendar.next(), id);
+    calendar.schedule(id, 0, 1);  // it comes up again, at once
+    ASSERT_EQ(calendar.next(), id);
+    ASSERT_EQ(calendar.what(id), 1u);
+    calendar.schedule(id, 2, 0);
+  }
+  EXPECT_EQ(calendar.next(), Calendar::none);
 }
 
 }  // namespace calendar_test

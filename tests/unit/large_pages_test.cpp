@@ -36,6 +36,26 @@ TEST(LargePages, HaveOneOwner) {
 
 TEST(LargePages, SayWhereThereIsNoMemory) { EXPECT_THROW(LargePages(std::size_t{1} << 60), std::bad_alloc); }
 
+/// Short ones and long ones, through all their growth.
+TEST(LargePageVectors, AreVectorsThatAreAlignedWhereTheyAreLong) {
+  LargePageVector<std::uint64_t> items;
+  for (std::uint64_t k = 0; k < 700'000; ++k) {
+    items.push_back(k);
+    if (items.size() * sizeof(items[0]) < page) continue;
+    ASSERT_EQ(reinterpret_cast<std::uintptr_t>(items.data()) % page, 0u);
+  }
+  for (std::uint64_t k = 0; k < items.size(); ++k) ASSERT_EQ(items[k], k);
+  LargePageVector<std::uint64_t> others = std::move(items);
+  others.resize(3);
+  others.shrink_to_fit();
+  EXPECT_EQ(others, (LargePageVector<std::uint64_t>{0, 1, 2}));
+  struct alignas(64) Line {
+    char bytes[64];
+  };
+  const LargePageVector<Line> lines(3);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(lines.data()) % 64, 0u);
+}
+
 // Short arrays and one that is longer than a piece, twice over: the second time in the same memory.
 TEST(RowArena, KeepsWhatItIsGivenUntilItIsCleared) {
   RowArena<std::uint32_t> arena;
