@@ -37,7 +37,9 @@ std::optional<double> sweep_cycle(Engine& packing, int sweeps, int& done, double
     if (stop()) return std::nullopt;
   }
   done = 0;
-  return each ? packing.sweep_and_measure(omega) : packing.sweep_to_overlap(omega);
+  if constexpr (requires { packing.sweep_and_measure(omega); })
+    if (each) return packing.sweep_and_measure(omega);
+  return packing.sweep_to_overlap(omega);
 }
 
 struct GrowingBox {
