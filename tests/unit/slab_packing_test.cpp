@@ -72,6 +72,29 @@ std::vector<std::pair<double, double>> near(const Spheres<3>& spheres, const Vec
   return found;
 }
 
+/// Of every slab's own spheres all that are within `width`, as by brute force. Returns how many spheres
+/// are held at most.
+std::size_t expect_all_around(const SlabStore& store, const Vector<3>& edges, double width) {
+  const Whole whole = taken(store, edges);
+  std::size_t i = 0, held = 0;  // as they are taken
+  for (int s = 0; s < store.size(); ++s) {
+    const SlabSurroundings here = surroundings(store, s, edges, width);
+    EXPECT_EQ(here.own, store.spheres(s));
+    held = std::max(held, here.spheres.size());
+    for (std::size_t own = 0; own < here.own; ++own, ++i) {
+      const auto expected = near(whole.spheres, edges, i, width);
+      const auto found = near(here.spheres, here.edges, own, width);
+      EXPECT_EQ(found.size(), expected.size()) << store.size() << " slabs, width " << width;
+      for (std::size_t k = 0; k < std::min(found.size(), expected.size()); ++k) {
+        EXPECT_NEAR(found[k].first, expected[k].first, 1e-9);
+        EXPECT_EQ(found[k].second, expected[k].second);
+      }
+    }
+  }
+  EXPECT_EQ(i, whole.spheres.size());
+  return held;
+}
+
 TEST(SlabStore, KnowsWhoIsAroundASlab) {
   const Whole whole = at_random(700, {1, 2, 1}, 0.7, 1.3);
   const Folder folder;
@@ -79,29 +102,17 @@ TEST(SlabStore, KnowsWhoIsAroundASlab) {
     for (const double width : {2.0, 4.0, 6.0}) {
       SlabStore store(folder / "slabs", slabs, 1);
       put(whole, store);
-      std::size_t seen = 0, held = 0;
-      for (int s = 0; s < slabs; ++s) {
-        const SlabSurroundings here = surroundings(store, s, whole.edges, width);
-        ASSERT_EQ(here.own, store.spheres(s));
-        held = std::max(held, here.spheres.size());
-        std::size_t own = 0;
-        store.for_each(s, [&](const SlabSphere& sphere) {
-          const Vector<3> c = Vector<3>(sphere.at[0], sphere.at[1], sphere.at[2]).cwiseProduct(whole.edges);
-          std::size_t i = 0;
-          while ((whole.spheres.center(i) - c).norm() > 1e-9) ++i;
-          const auto expected = near(whole.spheres, whole.edges, i, width);
-          const auto found = near(here.spheres, here.edges, own++, width);
-          ASSERT_EQ(found.size(), expected.size()) << slabs << " slabs, width " << width;
-          for (std::size_t k = 0; k < found.size(); ++k) {
-            EXPECT_NEAR(found[k].first, expected[k].first, 1e-9);
-            EXPECT_EQ(found[k].second, expected[k].second);
-          }
-          ++seen;
-        });
-      }
-      EXPECT_EQ(seen, whole.spheres.size());
+      const std::size_t held = expect_all_around(store, whole.edges, width);
       if (slabs == 5 && width == 2)
         EXPECT_LT(held, whole.spheres.size() / 2) << "the others stay on the disk";
+      // And when they have gone where they were not put, all down, or all up by most of half a slab.
+      for (const double most : {-0.4, 0.8}) {
+        for (int s = 0; s < slabs; ++s)
+          store.rewrite(s, [&](std::uint64_t k, SlabSphere& sphere) {
+            sphere.at[1] += most / slabs * std::abs(std::sin(static_cast<double>(k)));
+          });
+        expect_all_around(store, whole.edges, width);
+      }
     }
 }
 
@@ -125,6 +136,23 @@ TEST(SlabStore, KeepsWhatIsPutElsewhere) {
       EXPECT_NEAR(moved[0], (k % 2 == 0 ? 0.1 : -0.1) * whole.edges[0], 1e-9);
     }
   EXPECT_LT(store.extent(0).lower, -1.0 / 6 - 0.05);
+}
+
+TEST(SlabPacking, LeavesSpheresWhereNothingPushesThem) {
+  const Whole whole = at_random(1200, {1, 1, 3}, 1, 1);
+  const Folder folder;
+  SlabStore store(folder / "slabs", 3, 2);
+  put(whole, store);
+  const Whole before = taken(store, whole.edges);
+  SlabPacking packing(store, whole.edges, 1, 1, [] {});
+  for (int sweep = 0; sweep < 100; ++sweep) packing.sweep(0);
+  // By steps of nothing it measures what there is.
+  const double overlap = packing.sweep_to_overlap(0);
+  EXPECT_NEAR(1 / (1 - overlap), contact_factor<3>(whole.spheres, whole.edges), 1e-3);
+  const Whole after = taken(store, whole.edges);
+  const Boundary<3> boundary{whole.edges};
+  for (std::size_t i = 0; i < before.spheres.size(); ++i)
+    EXPECT_LT(boundary.minimum_image(after.spheres.center(i) - before.spheres.center(i)).norm(), 1e-6);
 }
 
 TEST(SlabPacking, PushesSpheresApartUntilNoneOverlaps) {
