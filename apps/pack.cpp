@@ -17,6 +17,7 @@
 #include "bernal/io/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "bernal/slabs/pack_in_slabs.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
@@ -79,10 +80,11 @@ std::vector<std::string> scene_and_mesh_endings() {
   return endings;
 }
 
-void print_result(const Packing& packing, const WrittenPacking& written) {
+void print_result(const Packing& packing, std::uint64_t spheres, double packing_fraction,
+                  const WrittenPacking& written) {
   say(stderr, "packed     {}, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
-      packing.spheres.size() == 1 ? "1 sphere" : grouped(packing.spheres.size()) + " spheres",
-      packing.packing_fraction(), packing.expected_packing_fraction, packing.seconds);
+      spheres == 1 ? "1 sphere" : grouped(spheres) + " spheres", packing_fraction,
+      packing.expected_packing_fraction, packing.seconds);
   say(stderr, "outcome    {}: {}\n", name_of(packing.outcome), packing.reason);
   say(stderr, "proof      {}\n", written.certificate.statement);
   for (std::size_t i = 0; i < written.files.size(); ++i)
@@ -90,6 +92,36 @@ void print_result(const Packing& packing, const WrittenPacking& written) {
   for (std::size_t i = 0; i < written.notes.size(); ++i)
     say(stderr, "output     {}: {}\n", plain_text(packing.scene.outputs[i].file.string(), 5000),
         written.notes[i]);
+}
+
+/// Says a result that is not certified; the exit code of a run that was not stopped.
+int concluded(const Packing& packing, const Certificate& certificate) {
+  if (!certificate.certified) {
+    say(stderr, "bernal: the result is not certified, which is a bug of bernal: {}\n", certificate.statement);
+    return exit_code::not_reached;
+  }
+  return packing.outcome == Outcome::converged ? exit_code::done : exit_code::not_reached;
+}
+
+int pack_slabs(const PackCall& call, const Plan& plan, const std::filesystem::path& folder, ProgressBar& bar,
+               const Monitor& monitor) {
+  if (call.resume)
+    say(stderr, "bernal: slabs have no checkpoints; with keep = true the engine's result is one\n");
+  try {
+    const PackedInSlabs result =
+        pack_in_slabs(plan, folder, {call.seed, call.threads, monitor, folder / "engine"});
+    bar.clear();
+    if (!call.quiet) {
+      print_result(result.packing, result.spheres, result.packing_fraction, result.written);
+      say(stderr, "measured   {}\n", result.not_measured);
+    }
+    return concluded(result.packing, result.written.certificate);
+  } catch (const Cancelled&) {
+    bar.clear();
+    say(stderr, "bernal: stopped by the user; no result is written{}\n",
+        plan.scene.engine->process().keep ? ", and the same call goes on from the engine's" : "");
+    return exit_code::not_reached;
+  }
 }
 
 int pack(const PackCall& call) {
@@ -104,6 +136,7 @@ int pack(const PackCall& call) {
   if (!call.quiet && scene.file.empty()) say(stdout, "{}", scene_as_toml(scene));
   if (!call.quiet) say(stderr, "{}", describe(plan));  // a wrong unit is seen at once
   bar.now("prepare");
+  if (is_in_slabs(plan.scene)) return pack_slabs(call, plan, folder, bar, monitor);
   CheckpointOptions checkpoints;
   if (call.checkpoint_every > 0) checkpoints.folder = folder;
   checkpoints.every = call.checkpoint_every;
@@ -131,13 +164,8 @@ int pack(const PackCall& call) {
 
   if (!stopped) remove_checkpoints(folder);
 
-  if (!call.quiet) print_result(packing, written);
-  if (!written.certificate.certified) {
-    say(stderr, "bernal: the result is not certified, which is a bug of bernal: {}\n",
-        written.certificate.statement);
-    return exit_code::not_reached;
-  }
-  return packing.outcome == Outcome::converged ? exit_code::done : exit_code::not_reached;
+  if (!call.quiet) print_result(packing, packing.spheres.size(), packing.packing_fraction(), written);
+  return concluded(packing, written.certificate);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "bernal/io/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "bernal/slabs/pack_in_slabs.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
@@ -91,22 +92,30 @@ void print(const Certificate& c, const Domain& domain, std::string_view unit) {
   say(stdout, "{}\n", c.statement);
 }
 
+/// Of a result in slabs, which is certified without holding it.
+bool is_streamed(const VerifyCall& call, const Scene& scene) {
+  return is_folder(call.target) && is_in_slabs(scene) && spheres_of_result(call.target).extension() == ".npy";
+}
+
 int verify(const VerifyCall& call) {
   if (is_folder(call.target)) finish_writing(call.target);
   const Scene scene = read_scene(scene_file(call));
-  const Spheres<dynamic> spheres = is_folder(call.target)  // before another result replaces both
+  const bool streamed = is_streamed(call, scene);
+  const Spheres<dynamic> spheres = streamed ? Spheres<dynamic>()
+                                   : is_folder(call.target)  // before another result replaces both
                                        ? read_spheres_of(scene, call.target)
                                        : read_columns_of(scene, call.target);
   const Domain domain = packed_domain_of(scene);
 
   ProgressBar bar(call.json, true);
-  Certificate certificate = certify(spheres, domain,
-                                    {.allowed_overlap = scene.overlap,
-                                     .gap = scene.gap,
-                                     .wall_gap = scene.wall_gap,
-                                     .list = listed(call.list),
-                                     .threads = call.threads,
-                                     .monitor = bar.monitor()});
+  const CertifyOptions options{.allowed_overlap = scene.overlap,
+                               .gap = scene.gap,
+                               .wall_gap = scene.wall_gap,
+                               .list = listed(call.list),
+                               .threads = call.threads,
+                               .monitor = bar.monitor()};
+  Certificate certificate = streamed ? certify_in_slabs(scene, spheres_of_result(call.target), options)
+                                     : certify(spheres, domain, options);
   certificate.statement += certified_walls(scene);
   bar.clear();
   if (call.json)

@@ -20,6 +20,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/settle/insert.hpp"
 #include "bernal/settle/refill.hpp"
+#include "bernal/slabs/pack_in_slabs.hpp"
 #include "bernal/soft/relax.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "bernal/version.hpp"

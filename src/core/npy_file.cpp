@@ -65,12 +65,19 @@ NpyFile::NpyFile(const std::filesystem::path& file, std::function<void(std::stri
   stream_.open(file, std::ios::binary);
   if (!stream_) fail(fmt::format("cannot be read: {}", std::strerror(errno)));
   read_header();
-  const auto begin = static_cast<std::uintmax_t>(stream_.tellg());
-  const std::uintmax_t there = std::filesystem::file_size(file) - begin;
+  begin_ = static_cast<std::uintmax_t>(stream_.tellg());
+  const std::uintmax_t there = std::filesystem::file_size(file) - begin_;
   const bool holds = row_bytes_ == 0 || rows_ <= there / row_bytes_;
   if (!holds || rows_ * row_bytes_ != there)
     fail(fmt::format("its header says {} rows of {} bytes, and {} bytes follow: it {}", rows_, row_bytes_,
                      there, holds ? "holds something else too" : "was cut off"));
+}
+
+std::optional<std::uintmax_t> NpyFile::doubles_from() const {
+  const bool are_doubles = std::ranges::all_of(
+      fields_, [](const Field& field) { return field.bytes == sizeof(double) && !field.big_endian; });
+  if (!are_doubles || !names_.empty() || by_columns_) return std::nullopt;
+  return begin_;
 }
 
 void NpyFile::read_header() {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,6 +33,8 @@ class NpyFile {
   std::size_t columns() const { return fields_.size(); }
   /// Of the structures' members; none where there are none.
   const std::vector<std::string>& names() const { return names_; }
+  /// The byte where its numbers begin, if they are doubles as this machine has them, row by row; else nothing.
+  std::optional<std::uintmax_t> doubles_from() const;
 
   /// Tells all numbers in pieces of columns: `count` of column k from row `first` on. In C order pieces of
   /// all columns follow each other. Once. Memory: about a megabyte.
@@ -60,6 +63,7 @@ class NpyFile {
   std::vector<Field> fields_;
   std::vector<std::string> names_;
   std::size_t rows_ = 0, row_bytes_ = 0;
+  std::uintmax_t begin_ = 0;
   bool by_columns_ = false;
 };
 

@@ -61,20 +61,19 @@ const Dialect& dialect_of(const SceneEngine& engine) {
 }
 
 void write_data(const std::filesystem::path& path, const EngineTask& task, const Dialect& dialect) {
-  const SizeClasses classes = size_classes(task.spheres.r);
+  const SizeClasses& classes = task.spheres.classes;
   const Bounds<3> region = region_of(task);
   NewFile file(path);
-  file.add("# {} spheres\n\n{} atoms\n{} atom types\n\n", task.spheres.size(), task.spheres.size(),
+  file.add("# {} spheres\n\n{} atoms\n{} atom types\n\n", task.spheres.count, task.spheres.count,
            classes.count + dialect.wall_types);
   for (int k = 0; k < 3; ++k)
     file.add("{} {} {}lo {}hi\n", region.lower[k], region.upper[k], "xyz"[k], "xyz"[k]);
   file.add("\n{}\n\n", dialect.atoms);
-  const auto& [x, r] = task.spheres;
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    const double density = task.mass(r[i]) / (4.0 / 3 * std::numbers::pi * r[i] * r[i] * r[i]);
-    file.add("{} {} {} {} {} {} {}\n", i + 1, classes.of[i] + 1, 2 * r[i], density, x[0][i], x[1][i],
-             x[2][i]);
-  }
+  std::uint64_t id = 0;
+  task.spheres.for_each([&](const Vector<3>& c, double r) {
+    const double density = task.mass(r) / (4.0 / 3 * std::numbers::pi * r * r * r);
+    file.add("{} {} {} {} {} {} {}\n", ++id, classes.of(r) + 1, 2 * r, density, c[0], c[1], c[2]);
+  });
   file.close();
 }
 

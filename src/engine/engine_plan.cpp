@@ -54,6 +54,38 @@ void require_stages(const Scene& scene, const Refusal& refuse) {
               "with an [engine] relax begins where that ends; leave \"phi0\" out");
 }
 
+/// What is done slab by slab is a relaxation in a box that follows, and no more.
+void require_slabs_fit(const Scene& scene, const Refusal& refuse) {
+  const Location where = scene.engine->locations.of("slabs");
+  const auto* box = std::get_if<PeriodicBox>(&scene.container);
+  if (!box || !box->walls.empty() || !box->scalable)
+    refuse.at(where,
+              "\"slabs\" are those of a box that repeats itself along all axes and whose size is the result: "
+              "leave \"slabs\" out, or make the container such a box");
+  if (!scene.target.count || scene.target.has_packing_fraction())
+    refuse.at(where,
+              "\"slabs\" need a \"count\" in [spheres], and no packing fraction; give that, or leave "
+              "\"slabs\" out");
+  if (scene.asks_for_gaps()) refuse.at(where, "\"slabs\" know no gaps; leave the gap out, or \"slabs\"");
+  for (const Output& output : scene.outputs)
+    refuse.at(output.locations.whole,
+              "an [[output]] needs all spheres at once, and the engine's \"slabs\" are there so that nobody "
+              "holds them; leave it out, for bernal export");
+  const Relax* relax = scene.stages.size() == 1 ? scene.stages.front().as<Relax>() : nullptr;
+  if (!relax)
+    refuse.at(
+        scene.stages.back().locations.whole,
+        "with the engine's \"slabs\" there is one stage, \"relax\"; leave the others out, or \"slabs\"");
+  for (const auto& [key, is_asked] : {std::pair{"exchange", relax->exchange},
+                                      {"polish", relax->polish > 0},
+                                      {"settle", relax->settle},
+                                      {"method", relax->method != RelaxMethod::fast}})
+    if (is_asked)
+      refuse.at(
+          scene.stages.front().locations.of(key),
+          fmt::format("\"{}\" needs all spheres at once; leave it out, or the engine's \"slabs\"", key));
+}
+
 }  // namespace
 
 void require_engine_fits(const Scene& scene, const Domain& domain) {
@@ -67,6 +99,7 @@ void require_engine_fits(const Scene& scene, const Domain& domain) {
         scene.locations.of("start"),
         "\"start\" and [engine] exclude each other: both say where the spheres begin; give one of them");
   require_stages(scene, refuse);
+  if (scene.engine->process().slabs > 1) require_slabs_fit(scene, refuse);
   if (const auto* box = std::get_if<PeriodicBox>(&scene.container)) {
     if (box->scalable && !box->walls.empty())
       refuse.of_kind("engines know no box between walls whose size follows; give it \"size\" or \"edge\"");
@@ -100,6 +133,11 @@ PlanItem planned_engine(const Scene& scene, double spheres) {
       if (const std::string place = error.location().text(); !place.empty()) why.erase(0, place.size() + 2);
       what += "; it would fail here: " + why;
     }
+  if (process.slabs > 1)
+    what += fmt::format(
+        "; what it leaves is freed of overlap and certified in {} slabs on the disk, of which "
+        "one at a time is in memory",
+        process.slabs);
   return {.name = engine_effect,
           .what = what,
           .cost = "O(N) a step",

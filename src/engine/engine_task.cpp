@@ -2,46 +2,55 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <memory>
+#include <utility>
 
 namespace bernal::engine {
 namespace {
 
-/// So many classes at most; the last takes all that is larger.
-constexpr int most_classes = 24;
 /// Room beyond walls, in largest diameters.
 constexpr double beyond_walls = 1.5;
 
 }  // namespace
 
-double EngineTask::mean_radius() const {
-  return std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / static_cast<double>(spheres.size());
-}
-
 double EngineTask::mass(double r) const { return std::max(1.0, r * r); }
 
-SizeClasses size_classes(const std::vector<double>& radii) {
-  SizeClasses classes;
-  const double least = std::ranges::min(radii);
-  std::vector<int> octaves;
-  octaves.reserve(radii.size());
-  for (const double r : radii)
-    octaves.push_back(
-        std::min(most_classes - 1, static_cast<int>(std::log(r / least) / std::log(class_width))));
-  std::vector<int> numbers(most_classes, -1);  // of those that occur
-  for (const int octave : octaves) numbers[static_cast<std::size_t>(octave)] = 0;
+std::size_t SizeClasses::octave(double r) const {
+  return std::min(most - 1, static_cast<std::size_t>(std::log(r / least) / std::log(class_width)));
+}
+
+TaskSpheres told(TaskSpheres::Tell tell) {
+  TaskSpheres spheres{.least = std::numeric_limits<double>::infinity(), .for_each = std::move(tell)};
+  double sum = 0;
+  spheres.for_each([&](const Vector<3>&, double r) {
+    ++spheres.count;
+    spheres.least = std::min(spheres.least, r);
+    spheres.largest = std::max(spheres.largest, r);
+    sum += r;
+  });
+  spheres.mean = sum / static_cast<double>(spheres.count);
+  SizeClasses& classes = spheres.classes;
+  classes.least = spheres.least;
+  if (spheres.least == spheres.largest) return spheres;
+  std::array<bool, SizeClasses::most> occurs{};
+  spheres.for_each([&](const Vector<3>&, double r) { occurs[classes.octave(r)] = true; });
   classes.count = 0;
-  for (int& number : numbers)
-    if (number == 0) number = classes.count++;
-  classes.of.reserve(radii.size());
-  for (const int octave : octaves)
-    classes.of.push_back(static_cast<std::uint8_t>(numbers[static_cast<std::size_t>(octave)]));
-  return classes;
+  for (std::size_t k = 0; k < occurs.size(); ++k)
+    if (occurs[k]) classes.numbers[k] = classes.count++;
+  return spheres;
+}
+
+TaskSpheres told(Spheres<3> spheres) {
+  return told(
+      [held = std::make_shared<const Spheres<3>>(std::move(spheres))](const TaskSpheres::Visit& visit) {
+        for (std::size_t i = 0; i < held->size(); ++i) visit(held->center(i), held->r[i]);
+      });
 }
 
 Bounds<3> region_of(const EngineTask& task) {
   Bounds<3> region = bounds_of(task.domain);
-  const double margin = beyond_walls * 2 * std::ranges::max(task.spheres.r);
+  const double margin = beyond_walls * 2 * task.spheres.largest;
   const Box* box = std::get_if<Box>(&task.domain);
   const Cylinder* cylinder = std::get_if<Cylinder>(&task.domain);
   for (int k = 0; k < 3; ++k) {

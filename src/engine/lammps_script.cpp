@@ -49,8 +49,8 @@ struct LammpsWalls {
 }  // namespace
 
 std::string lammps_script(const EngineTask& task) {
-  const bool wide = size_classes(task.spheres.r).count > 1;
-  const double reach = std::ranges::max(task.spheres.r) / std::ranges::min(task.spheres.r);
+  const bool wide = task.spheres.classes.count > 1;
+  const double reach = task.spheres.largest / task.spheres.least;
   const long most = neighbours_of_one(reach);
   std::string text = fmt::format(
       "{}\n"
@@ -70,10 +70,11 @@ std::string lammps_script(const EngineTask& task) {
       "thermo {}\nthermo_style custom step atoms ke press vol\nthermo_modify flush yes lost error norm no\n",
       longest_move(task), steps_a_report(task));
   text += runs_of(task);
+  const auto [names, format] = columns_of_result(task);
   return text + fmt::format(
-                    "write_dump all custom {} id x y z modify format line \"%d %.17g %.17g %.17g\"\n"
+                    "write_dump all custom {} {} modify format line \"{}\"\n"
                     "print \"{}\"\n",
-                    places_name, last_words);
+                    places_name, names, format, last_words);
 }
 
 }  // namespace bernal::engine

@@ -59,7 +59,7 @@ std::string of_pairs(int types, double spheres, double walls) {
 
 std::string liggghts_script(const EngineTask& task) {
   // Its lists by classes of sizes miss neighbours: all sizes are looked for in the same cells.
-  const int types = size_classes(task.spheres.r).count + 1;
+  const int types = task.spheres.classes.count + 1;
   std::string text = fmt::format(
       "{}\n"
       "units si\natom_style granular\natom_modify map array\nboundary {}\nnewton off\n"
@@ -85,11 +85,12 @@ std::string liggghts_script(const EngineTask& task) {
       "thermo {}\nthermo_style custom step atoms ke vol\nthermo_modify flush yes lost error norm no\n",
       longest_move(task), steps_a_report(task));
   text += runs_of(task);
+  const auto [names, format] = columns_of_result(task);
   return text + fmt::format(
-                    "dump places all custom 1 {} id x y z\n"
-                    "dump_modify places format \"%d %.17g %.17g %.17g\"\nrun 0\nundump places\n"
+                    "dump places all custom 1 {} {}\n"
+                    "dump_modify places format \"{}\"\nrun 0\nundump places\n"
                     "print \"{}\"\n",
-                    places_name, last_words);
+                    places_name, names, format, last_words);
 }
 
 }  // namespace bernal::engine

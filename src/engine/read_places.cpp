@@ -1,9 +1,11 @@
 #include "engine/read_places.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -64,44 +66,60 @@ class DumpReader {
 
 }  // namespace
 
-Places read_places(const std::filesystem::path& file, const std::vector<double>& radii) {
+void read_places(const std::filesystem::path& file, std::uint64_t count, bool tells_radii,
+                 const std::function<void(const Bounds<3>& box, const PlacedByEngine&)>& take) {
   DumpReader in(file);
-  Places places;
-  const std::size_t n = radii.size();
   in.require_heading("ITEM: TIMESTEP");
   in.require("the step");
   in.require_heading("ITEM: NUMBER OF ATOMS");
   in.require("the number of spheres");
-  if (const double there = in.numbers<1>()[0]; there != static_cast<double>(n))
+  if (const double there = in.numbers<1>()[0]; there != static_cast<double>(count))
     in.fail(
         fmt::format("the engine has lost spheres: {:.0f} of {} are left; give fewer \"ranks\", or another "
                     "\"seed\"",
-                    there, n));
+                    there, count));
   in.require_heading("ITEM: BOX BOUNDS");
+  Bounds<3> box;
   for (int k = 0; k < 3; ++k) {
     in.require("the box");
     const auto [lower, upper] = in.numbers<2>();
     if (!(lower < upper)) in.fail("the engine's box is empty");
-    places.box.lower[k] = lower;
-    places.box.upper[k] = upper;
+    box.lower[k] = lower;
+    box.upper[k] = upper;
   }
-  in.require_heading("ITEM: ATOMS id x y z");
-  places.spheres.resize(n);
-  places.spheres.r = radii;
-  std::vector<bool> there(n, false);
-  for (std::size_t count = 0; count < n; ++count) {
-    in.require(fmt::format("sphere {} of {}", count + 1, n));
-    const auto [id, x, y, z] = in.numbers<4>();
-    const bool is_known = id >= 1 && id <= static_cast<double>(n) && id == std::floor(id);
+  in.require_heading(tells_radii ? "ITEM: ATOMS id x y z radius" : "ITEM: ATOMS id x y z");
+  std::vector<bool> there(count, false);
+  for (std::uint64_t n = 0; n < count; ++n) {
+    in.require(fmt::format("sphere {} of {}", n + 1, count));
+    std::array<double, 5> row{};
+    if (tells_radii) {
+      row = in.numbers<5>();
+    } else {
+      const auto places = in.numbers<4>();
+      std::ranges::copy(places, row.begin());
+      row[4] = std::numeric_limits<double>::quiet_NaN();
+    }
+    const double id = row[0];
+    const bool is_known = id >= 1 && id <= static_cast<double>(count) && id == std::floor(id);
     if (!is_known || there[static_cast<std::size_t>(id) - 1])
       in.fail(
           fmt::format("the engine's result has a sphere {:.0f} {}", id, is_known ? "twice" : "that is none"));
     const std::size_t i = static_cast<std::size_t>(id) - 1;
     there[i] = true;
-    places.spheres.set_center(i, {x, y, z});
-    if (count + 1 == n && !in.is_whole())
+    take(box, {i, {row[1], row[2], row[3]}, row[4]});
+    if (n + 1 == count && !in.is_whole())
       in.fail("the engine's result ends within its last line: it was cut off");
   }
+}
+
+Places read_places(const std::filesystem::path& file, const std::vector<double>& radii) {
+  Places places;
+  places.spheres.resize(radii.size());
+  places.spheres.r = radii;
+  read_places(file, radii.size(), false, [&](const Bounds<3>& box, const PlacedByEngine& sphere) {
+    places.box = box;
+    places.spheres.set_center(sphere.number, sphere.center);
+  });
   return places;
 }
 

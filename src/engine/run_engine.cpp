@@ -88,9 +88,9 @@ std::string mark_of(const SceneEngine& engine, const EngineTask& task, const std
     hash.absorb(std::string_view("\n"));
   }
   hash.absorb(script);
-  for (const auto& column : task.spheres.x)
-    for (const double x : column) hash.absorb(x);
-  for (const double r : task.spheres.r) hash.absorb(r);
+  task.spheres.for_each([&](const Vector<3>& c, double r) {
+    for (const double x : {c[0], c[1], c[2], r}) hash.absorb(x);
+  });
   if (const Mesh* mesh = std::get_if<Mesh>(&task.domain))
     for (const auto& triangle : mesh->triangles)
       for (const std::uint32_t corner : triangle)
@@ -98,40 +98,37 @@ std::string mark_of(const SceneEngine& engine, const EngineTask& task, const std
   return fmt::format("{:016x}\n", hash.hash());
 }
 
+using ReadDump = std::function<void(const std::filesystem::path& dump)>;
+
 class EngineRun {
  public:
   EngineRun(const SceneEngine& engine, const EngineTask& task, const std::filesystem::path& folder,
-            const Monitor& monitor)
+            const Monitor& monitor, const ReadDump& read)
       : engine_(engine),
         dialect_(dialect_of(engine)),
         task_(task),
         folder_(folder),
         monitor_(monitor),
+        read_(read),
         script_(dialect_.script_of(task)),
         mark_(mark_of(engine, task, script_)) {}
 
-  Places go() {
+  void go() {
     const bool by_slurm = engine_.process().launcher == EngineLauncher::slurm;
     const bool is_there = bytes_of_file(folder_.file(mark_name)) == mark_ && folder_.has(places_name);
     if (by_slurm && !is_there) submit();
-    if (by_slurm) return kept_or_gone(read());
+    if (by_slurm) return read();
     if (is_there) try {
-        return kept_or_gone(read());
+        return read();
       } catch (const EngineError&) {  // of what is not whole it begins again
       }
     const std::vector<std::string> words = found_words(engine_);
     prepare();
     start(words);
-    return kept_or_gone(read());
+    read();
   }
 
  private:
-  Places kept_or_gone(Places places) const {
-    if (!engine_.process().keep)
-      for (const char* name : {data_name, places_name, walls_name, mark_name}) folder_.remove(name);
-    return places;
-  }
-
   void prepare() {
     for (const std::string_view name : {dialect_.script, std::string_view(data_name), dialect_.log,
                                         std::string_view(places_name), std::string_view(output_name)})
@@ -196,7 +193,7 @@ class EngineRun {
     if (wrong) refuse(*wrong, folder_.path());
   }
 
-  Places read() const {
+  void read() const {
     const std::string log = tail_of(folder_.file(dialect_.log), longest_tail);
     const auto wrong = what_is_wrong(dialect_, {}, log, tail_of(folder_.file(output_name), longest_tail));
     if (wrong) refuse(*wrong, folder_.path());
@@ -208,7 +205,9 @@ class EngineRun {
                       engine_.process().ranks, dialect_.title),
           folder_.path());
     monitor_.report({dialect_.title, 1, "its places are read"});
-    return read_places(folder_.file(places_name), task_.spheres.r);
+    read_(folder_.file(places_name));
+    if (!engine_.process().keep)
+      for (const char* name : {data_name, places_name, walls_name, mark_name}) folder_.remove(name);
   }
 
   /// Of logs, which are long only where something has gone wrong.
@@ -219,14 +218,23 @@ class EngineRun {
   const EngineTask& task_;
   const EngineFolder folder_;
   const Monitor& monitor_;
+  const ReadDump& read_;
   const std::string script_, mark_;
 };
 
 }  // namespace
 
-Places run_engine(const SceneEngine& engine, const EngineTask& task, const std::filesystem::path& folder,
-                  const Monitor& monitor) {
-  return EngineRun(engine, task, folder, monitor).go();
+void run_engine(const SceneEngine& engine, const EngineTask& task, const std::filesystem::path& folder,
+                const Monitor& monitor, const ReadDump& read) {
+  EngineRun(engine, task, folder, monitor, read).go();
+}
+
+Places run_engine(const SceneEngine& engine, const EngineTask& task, const std::vector<double>& radii,
+                  const std::filesystem::path& folder, const Monitor& monitor) {
+  Places places;
+  run_engine(engine, task, folder, monitor,
+             [&](const std::filesystem::path& dump) { places = read_places(dump, radii); });
+  return places;
 }
 
 }  // namespace bernal::engine

@@ -1,5 +1,7 @@
 #pragma once
 #include <filesystem>
+#include <functional>
+#include <vector>
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/scene/scene.hpp"
@@ -20,7 +22,13 @@ namespace bernal::engine {
 ///
 /// The same task, ranks and engine on the same machine give the same places; with another number of ranks
 /// sums are made in another order, and soft spheres come to lie elsewhere.
-Places run_engine(const SceneEngine& engine, const EngineTask& task, const std::filesystem::path& folder,
-                  const Monitor& monitor);
+///
+/// `read` is given the dump, and throws EngineError where it is not whole; then, of a result that stood
+/// there, it is given that of another run.
+void run_engine(const SceneEngine& engine, const EngineTask& task, const std::filesystem::path& folder,
+                const Monitor& monitor, const std::function<void(const std::filesystem::path& dump)>& read);
+/// The places, of spheres with these radii.
+Places run_engine(const SceneEngine& engine, const EngineTask& task, const std::vector<double>& radii,
+                  const std::filesystem::path& folder, const Monitor& monitor);
 
 }  // namespace bernal::engine

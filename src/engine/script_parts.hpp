@@ -20,7 +20,7 @@ inline constexpr const char* script_mark = "# bernal: ";
 inline std::string about_script(const EngineTask& task) {
   return script_mark +
          fmt::format("{} soft spheres push each other apart; the mean radius is {:.3g}, stiffness is 1",
-                     task.spheres.size(), task.mean_radius());
+                     task.spheres.count, task.spheres.mean);
 }
 
 /// "p p f"
@@ -38,8 +38,8 @@ inline std::string boundary_words(const Domain& domain) {
 }
 
 /// Of neighbour lists: they last some tens of steps while spheres push hard, and hundreds at the end.
-inline double skin_of(const EngineTask& task) { return 0.6 * task.mean_radius(); }
-inline double longest_move(const EngineTask& task) { return 0.2 * task.mean_radius(); }
+inline double skin_of(const EngineTask& task) { return 0.6 * task.spheres.mean; }
+inline double longest_move(const EngineTask& task) { return 0.2 * task.spheres.mean; }
 inline int steps_a_report(const EngineTask& task) { return std::max(1, task.steps / 100); }
 
 /// As many small spheres as may be in reach of a large one that is `ratio` times as large, while they
@@ -54,7 +54,7 @@ inline std::string guards(const EngineTask& task,
   if (std::holds_alternative<Box>(task.domain)) return {};
   const std::string repeats = boundary_words(task.domain);
   const Bounds<3> bounds = bounds_of(task.domain);
-  const double give = std::ranges::max(task.spheres.r);
+  const double give = task.spheres.largest;
   std::string lines;
   for (int k = 0; k < 3; ++k)
     if (repeats[static_cast<std::size_t>(2 * k)] == 'f')
@@ -68,6 +68,15 @@ inline std::string runs_of(const EngineTask& task) {
       "run {0}\nfix growth all deform 1 x scale {1} y scale {1} z scale {1} remap x\nrun {2}\n"
       "unfix growth\nrun {3}\n",
       task.steps_before(), task.growth, task.steps_of_growth(), task.steps_after());
+}
+
+/// What the result says of each sphere.
+struct ColumnsOfResult {
+  std::string_view names, format;
+};
+inline ColumnsOfResult columns_of_result(const EngineTask& task) {
+  if (task.tells_radii) return {"id x y z radius", "%d %.17g %.17g %.17g %.17g"};
+  return {"id x y z", "%d %.17g %.17g %.17g"};
 }
 
 }  // namespace bernal::engine

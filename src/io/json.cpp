@@ -329,33 +329,30 @@ std::vector<std::string> sources_in(const std::string& report) {
   return files;
 }
 
-std::string json_of(const Report& report) {
+namespace {
+
+Json run_json(const Packing& packing, std::uint64_t spheres, double packing_fraction) {
+  return {{"version", packing.version},
+          {"seed", packing.seed},
+          {"threads", packing.threads},
+          {"outcome", name_of(packing.outcome)},
+          {"reason", packing.reason},
+          {"n", spheres},
+          {"dimension", packing.spheres.dimension()},
+          {"unit", name_of(packing.scene.unit)},
+          {"phi", packing_fraction},
+          {"expected_phi", packing.expected_packing_fraction},
+          {"expected_phi_of_sizes", packing.expected_of_sizes},
+          {"size_scale", packing.size_scale}};
+}
+
+/// What comes behind all that is measured, of either kind of report.
+template <class AnyReport>
+void add_proof(Json& json, const AnyReport& report) {
   const Packing& packing = report.packing;
   const Certificate& certificate = report.certificate;
   const Json of_certificate = certificate;
-  Json json = {{"version", packing.version},
-               {"seed", packing.seed},
-               {"threads", packing.threads},
-               {"outcome", name_of(packing.outcome)},
-               {"reason", packing.reason},
-               {"n", packing.spheres.size()},
-               {"dimension", packing.spheres.dimension()},
-               {"unit", name_of(packing.scene.unit)},
-               {"phi", packing.packing_fraction()},
-               {"expected_phi", packing.expected_packing_fraction},
-               {"expected_phi_of_sizes", packing.expected_of_sizes},
-               {"size_scale", packing.size_scale}};
-  json.update(contacts_json(report.measured, report.measured.contacts));
-  json.update({{"held_from_gap", report.measured.held_from},
-               {"crystalline", report.measured.order},
-               {"size_correlation", report.measured.size_correlation},
-               {"chambers", report.measured.chambers},
-               {"walls", report.measured.walls},
-               {"local_packing", report.measured.local},
-               {"structure_factor", report.measured.structure},
-               {"pores", report.measured.pores},
-               {"sizes", figures_of(report.measured.sizes)},
-               {"max_overlap", certificate.max_overlap},
+  json.update({{"max_overlap", certificate.max_overlap},
                {"min_wall_gap", of_certificate.at("min_wall_gap")},
                {"gap", certificate.gap},
                {"wall_gap", certificate.wall_gap},
@@ -375,6 +372,31 @@ std::string json_of(const Report& report) {
     json["files"][name] = sha256.empty() ? Json() : Json(sha256);
   if (const auto* mesh = std::get_if<MeshFile>(&packing.scene.container))
     json["container"].update({{"file", mesh->file.filename().string()}, {"sha256", mesh->sha256}});
+}
+
+}  // namespace
+
+std::string json_of(const Report& report) {
+  const Packing& packing = report.packing;
+  Json json = run_json(packing, packing.spheres.size(), packing.packing_fraction());
+  json.update(contacts_json(report.measured, report.measured.contacts));
+  json.update({{"held_from_gap", report.measured.held_from},
+               {"crystalline", report.measured.order},
+               {"size_correlation", report.measured.size_correlation},
+               {"chambers", report.measured.chambers},
+               {"walls", report.measured.walls},
+               {"local_packing", report.measured.local},
+               {"structure_factor", report.measured.structure},
+               {"pores", report.measured.pores},
+               {"sizes", figures_of(report.measured.sizes)}});
+  add_proof(json, report);
+  return text_of(json);
+}
+
+std::string json_of(const StreamedReport& report) {
+  Json json = run_json(report.packing, report.spheres, report.packing_fraction);
+  json["not_measured"] = report.not_measured;
+  add_proof(json, report);
   return text_of(json);
 }
 

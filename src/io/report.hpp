@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
@@ -21,6 +22,18 @@ struct Report {
   std::vector<std::string> made_from = {};        ///< files that were read, relative to the result's folder
 };
 
+/// The same of a packing whose spheres nobody holds; `packing` has none of them.
+struct StreamedReport {
+  const Packing& packing;
+  std::uint64_t spheres;
+  double packing_fraction;
+  const Certificate& certificate;
+  std::string not_measured;  ///< what is not, and why: a sentence
+  std::string hash;
+  std::map<std::string, std::string> files = {};
+  std::vector<std::string> made_from = {};
+};
+
 /// What report.json says of the files of its result; empty where the text is none of bernal's.
 std::map<std::string, std::string> manifest_in(const std::string& report);
 
@@ -31,6 +44,8 @@ std::vector<std::string> sources_in(const std::string& report);
 /// not finite become null. Which keys there are does not depend on the packing, except that there is either
 /// `container` or `box`, see `domain_json`; `min_wall_gap` is null where no sphere is near a wall.
 std::string json_of(const Report& report);
+/// The keys of that, but for those that are measured, and `not_measured`.
+std::string json_of(const StreamedReport& report);
 
 /// SVG, and what `view_data` makes; empty where there is none.
 struct Pictures {

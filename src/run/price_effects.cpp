@@ -144,8 +144,12 @@ void price_effects(Plan& plan) {
   const double written = plan.expected_count < very_many
                              ? bytes_written + bytes_written_an_axis * scene.dimension()
                              : bytes_of_very_many;
+  // Of slabs one is held, with what is around it.
+  constexpr double with_surroundings = 1.5;
+  const int slabs = scene.engine ? scene.engine->process().slabs : 1;
+  const double held = slabs > 1 ? std::min(1.0, with_surroundings / slabs) : 1;
   plan.expected_memory_bytes = program + (scene.dimension() == 3 ? tables : 0) + before_stages +
-                               std::max(of_stages, written * plan.expected_count);
+                               held * std::max(of_stages, written * plan.expected_count);
   for (const PlanItem& item : plan.items)
     if (!item.part) plan.expected_seconds += item.seconds;
 }

@@ -385,6 +385,11 @@ class Run {
 }  // namespace
 
 Packing run(const Plan& plan, const RunOptions& options) {
+  if (plan.scene.engine && plan.scene.engine->process().slabs > 1)
+    throw Error(ErrorCode::bad_scene,
+                "spheres in \"slabs\" are packed into files, by bernal pack, and nobody holds them; leave "
+                "\"slabs\" out to have them all",
+                plan.scene.engine->locations.of("slabs"));
   Packing packing;
   packing.domain = plan.domain;
   packing.container = plan.container;

@@ -8,6 +8,7 @@
 #include "bernal/core/text.hpp"
 #include "engine/engine_plan.hpp"
 #include "engine/run_engine.hpp"
+#include "run/engine_box.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
 #include "work/clear_place.hpp"
@@ -15,13 +16,8 @@
 namespace bernal {
 namespace {
 
-/// Packing fractions between which a periodic box grows, in shares of what the sizes are likely to reach, and
-/// how far above one that is asked for: equal spheres from 0.70 to 0.64, just below which they jam.
-constexpr double ends_at = 0.9955, begins_at = 1.088, above_asked = 1.03;
-/// Below this share of what they reach spheres come free without a box that grows.
-constexpr double comes_free = 0.9;
-/// Of edges, over the largest diameter: no sphere reaches around the box.
-constexpr double least_edge = 1.05;
+/// A periodic box grows so far above the packing fraction that is asked for.
+constexpr double above_asked = 1.03;
 /// More than what is likely to fit is not put between walls.
 constexpr double most_of_attainable = 1.1;
 
@@ -53,10 +49,11 @@ class FolderOfEngine {
 };
 
 engine::Places run_in_folder(const Plan& plan, const std::filesystem::path& folder,
-                             const engine::EngineTask& task, const Work& work) {
+                             const engine::EngineTask& task, const std::vector<double>& radii,
+                             const Work& work) {
   FolderOfEngine at(folder);
   try {
-    return engine::run_engine(*plan.scene.engine, task, at.path(), work.monitor);
+    return engine::run_engine(*plan.scene.engine, task, radii, at.path(), work.monitor);
   } catch (const Error&) {
     std::error_code gone;
     const bool is_empty = std::filesystem::is_empty(at.path(), gone);
@@ -65,11 +62,10 @@ engine::Places run_in_folder(const Plan& plan, const std::filesystem::path& fold
   }
 }
 
-/// A power of two, such that the mean radius is between 1 and 2 of it.
 double unit_of(const std::vector<double>& radii) {
   double sum = 0;
   for (const double r : radii) sum += r;
-  return std::exp2(std::floor(std::log2(sum / static_cast<double>(radii.size()))));
+  return unit_of_engine(sum / static_cast<double>(radii.size()));
 }
 
 std::string name_of_engine(const Plan& plan) {
@@ -79,26 +75,24 @@ std::string name_of_engine(const Plan& plan) {
 void take_engine_in_box(const Plan& plan, const std::filesystem::path& folder, Work& work) {
   const std::vector<double>& radii = work.spheres.r;
   const double volume = work.volume_of_spheres(), unit = unit_of(radii);
-  double last = ends_at * work.attainable;
-  if (work.target_edges) last = std::min(last, above_asked * volume / work.target_edges->prod());
-  const double first = last < comes_free * work.attainable ? last : last * begins_at / ends_at;
-  const double needed = least_edge * 2 * std::ranges::max(radii) / work.edges.minCoeff();
-  const auto scale_to = [&](double fraction) {
-    return std::max(needed, std::cbrt(volume / fraction / work.edges.prod()));
-  };
+  std::optional<double> most;
+  if (work.target_edges) most = above_asked * volume / work.target_edges->prod();
   const Vector<3> proportions = work.edges;
-  const Vector<3> edges = proportions * (scale_to(first) / unit);
-  engine::EngineTask task{.spheres = {},
-                          .domain = Box{Vector<3>::Zero().eval(), edges, {true, true, true}},
-                          .growth = scale_to(last) / scale_to(first),
-                          .steps = plan.scene.engine->process().steps};
+  const EngineBox scale = engine_box(proportions, volume, std::ranges::max(radii), work.attainable, most);
+  const Vector<3> edges = proportions * (scale.first / unit);
   Random random = work.random(Stream::insert);
-  task.spheres.reserve(radii.size());
+  Spheres<3> spheres;
+  spheres.reserve(radii.size());
   for (const double r : radii)
-    task.spheres.push_back(uniform_point<3>(random, {Vector<3>::Zero(), edges}), r / unit);
+    spheres.push_back(uniform_point<3>(random, {Vector<3>::Zero(), edges}), r / unit);
+  const std::vector<double> told_radii = spheres.r;
+  const engine::EngineTask task{.spheres = engine::told(std::move(spheres)),
+                                .domain = Box{Vector<3>::Zero().eval(), edges, {true, true, true}},
+                                .growth = scale.last / scale.first,
+                                .steps = plan.scene.engine->process().steps};
 
-  const engine::Places places = run_in_folder(plan, folder, task, work);
-  const Vector<3> box = places.box.size(), end = proportions * scale_to(last);
+  const engine::Places places = run_in_folder(plan, folder, task, told_radii, work);
+  const Vector<3> box = places.box.size(), end = proportions * scale.last;
   for (int k = 0; k < 3; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     const double factor = end[k] / box[k];
@@ -141,17 +135,19 @@ void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, W
   const std::vector<double> radii(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
   const double unit = unit_of(radii);
   const Turn turn(work.domain);
-  engine::EngineTask task{.spheres = {},
-                          .domain = to_local(turn.domain, Frame{.scale = unit}),
-                          .steps = plan.scene.engine->process().steps};
   Random random = work.random(Stream::insert);
   const auto place_for = [&](double r) {
     return clear_place(r, container, work.bed().places(), random, work.monitor);
   };
-  task.spheres.reserve(count);
-  for (const double r : radii) task.spheres.push_back(turn.there(place_for(r)) / unit, r / unit);
+  Spheres<3> begin;
+  begin.reserve(count);
+  for (const double r : radii) begin.push_back(turn.there(place_for(r)) / unit, r / unit);
+  const std::vector<double> told_radii = begin.r;
+  const engine::EngineTask task{.spheres = engine::told(std::move(begin)),
+                                .domain = to_local(turn.domain, Frame{.scale = unit}),
+                                .steps = plan.scene.engine->process().steps};
 
-  const engine::Places places = run_in_folder(plan, folder, task, work);
+  const engine::Places places = run_in_folder(plan, folder, task, told_radii, work);
   Spheres<3> spheres;
   spheres.reserve(count);
   std::size_t put_back = 0;

@@ -3,7 +3,7 @@
 namespace bernal::schema {
 namespace {
 
-constexpr int most_ranks = 1'000'000;
+constexpr int most_ranks = 1'000'000, most_slabs = 4096;
 
 std::vector<Key> keys_of_process() {
   return {
@@ -24,7 +24,11 @@ std::vector<Key> keys_of_process() {
               "of the motion that pushes spheres apart; more make a periodic box denser", {10, 1e9}),
       flag(&EngineProcess::keep, "keep",
            "true: what the engine read and wrote stays in the folder \"engine\" of the result, and the "
-           "same scene takes it up again; its script and logs stay anyway")};
+           "same scene takes it up again; its script and logs stay anyway"),
+      integer(&EngineProcess::slabs, "slabs",
+              "so many, across the longest axis of a periodic box whose size follows, are freed of overlap "
+              "and certified one after the other, so that bernal holds only the spheres of one",
+              {1, most_slabs})};
 }
 
 void engine_rule(const EngineProcess& process, const Section& section) {

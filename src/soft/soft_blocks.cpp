@@ -100,13 +100,13 @@ void SoftBlocks::sort_into_blocks(const std::vector<SoftSphere>& spheres) {
 
 bool SoftBlocks::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& ids,
                        std::vector<SoftSphere>& spare, std::size_t count, const std::array<double, 3>& edges,
-                       const SoftSizes& sizes, float skin) {
+                       const SoftSizes& sizes, float skin, std::uint32_t movers) {
   cut(count, edges, sizes, skin);
   rows_.clear();
   halos_.clear();
   groups_.clear();
   sort_into_blocks(spheres);
-  if (!find_orders(spheres)) return false;
+  if (!find_orders(spheres, ids, movers)) return false;
 
   const std::size_t places = blocks_.back().first_place + blocks_.back().places;
   resize_anew(spare, places + 1);
@@ -133,21 +133,32 @@ bool SoftBlocks::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32
   return fits;
 }
 
-/// Within each block. Returns whether none has too many places.
-bool SoftBlocks::find_orders(const std::vector<SoftSphere>& spheres) {
+/// Within each block; those that rest come last. Returns whether none has too many places.
+bool SoftBlocks::find_orders(const std::vector<SoftSphere>& spheres, const std::vector<std::uint32_t>& ids,
+                             std::uint32_t movers) {
   drafts_.resize(blocks_.size());
   std::atomic<bool> fit = true;
   parallel_for(blocks_.size(), [&](std::size_t b) {
     if (start_[b + 1] - start_[b] >= most_places) fit = false;
     if (!fit) return;
     Scratch& mine = scratch_.local();
-    mine.spheres.resize(start_[b + 1] - start_[b]);
-    for (std::size_t n = 0; n < mine.spheres.size(); ++n) mine.spheres[n] = spheres[order_[start_[b] + n]];
+    mine.spheres.clear();
+    mine.moving.clear();
+    mine.resting.clear();
+    for (std::size_t n = 0; n < start_[b + 1] - start_[b]; ++n) {
+      const std::uint32_t p = order_[start_[b] + n];
+      const bool rests = ids[p] >= movers;
+      (rests ? mine.resting : mine.moving).push_back(static_cast<std::uint16_t>(n));
+      if (!rests) mine.spheres.push_back(spheres[p]);
+    }
     mine.order.find(mine.spheres, region_of(b), edges_, sizes_, skin_, false);
-    const std::vector<std::uint32_t>& sphere_at = mine.order.sphere_at();
-    static_assert(static_cast<std::uint16_t>(nobody) == gap);
-    drafts_[b].from.assign(sphere_at.begin(), sphere_at.end());
-    blocks_[b].places = sphere_at.size();
+    std::vector<std::uint16_t>& from = drafts_[b].from;
+    from.clear();
+    for (const std::uint32_t k : mine.order.sphere_at()) from.push_back(k == nobody ? gap : mine.moving[k]);
+    blocks_[b].swept = from.size();
+    from.insert(from.end(), mine.resting.begin(), mine.resting.end());
+    from.resize((from.size() + lanes - 1) / lanes * lanes, gap);
+    blocks_[b].places = from.size();
     if (blocks_[b].places >= most_places) fit = false;
   });
   std::size_t places = 0;
@@ -227,13 +238,13 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
     around.extent[k] += 2 * halo_width_[k];
   }
   scratch.cells.sort(scratch.spheres, around, edges_, sizes_, skin_);
-  scratch.lists.assign(block.places, {});
-  scratch.found.find(kernels_, scratch.cells.task(), 0, scratch.cells.size(), block.places, scratch.room,
+  scratch.lists.assign(block.swept, {});
+  scratch.found.find(kernels_, scratch.cells.task(), 0, scratch.cells.size(), block.swept, scratch.room,
                      scratch.lists);
   const auto filler = static_cast<std::uint16_t>(name_neighbors(block.places, scratch));
   const auto name_of = [&](std::uint32_t p) { return scratch.name_of[p]; };
   scratch.rows.clear();
-  scratch.groups.resize(block.places / lanes);
+  scratch.groups.resize(block.swept / lanes);
   for (std::size_t g = 0; g < scratch.groups.size(); ++g)
     scratch.groups[g].rows = append_rows(&scratch.lists[g * lanes], name_of, filler, scratch.rows);
 
@@ -267,7 +278,7 @@ std::size_t SoftBlocks::name_neighbors(std::size_t own, Scratch& scratch) {
 }
 
 float SoftBlocks::visit(const Block& block, const SweepTask& task) const {
-  if (block.places == 0) return 0;
+  if (block.swept == 0) return 0;
   thread_local std::vector<SoftSphere> here_and_around;
   const std::size_t size = block.places + block.halo_size + 1;
   if (here_and_around.size() < size) here_and_around.resize(size + size / 4);
@@ -279,7 +290,7 @@ float SoftBlocks::visit(const Block& block, const SweepTask& task) const {
   SweepTask here_task = task;
   here_task.spheres = spheres;
   here_task.first_group = block.first_place / lanes;
-  const std::size_t last = here_task.first_group + block.places / lanes;
+  const std::size_t last = here_task.first_group + block.swept / lanes;
   const float largest = kernels_.sweep_short(here_task, block.groups, here_task.first_group, last);
   std::memcpy(own, spheres, block.places * sizeof(SoftSphere));
   return largest;
@@ -297,7 +308,7 @@ std::size_t SoftBlocks::bytes_a_sweep() const {
   for (const Block& block : blocks_) {
     bytes += 2 * block.places * sizeof(SoftSphere);
     bytes += block.halo_size * (sizeof(SoftSphere) + sizeof(std::uint32_t));
-    for (std::size_t g = 0; g < block.places / lanes; ++g)
+    for (std::size_t g = 0; g < block.swept / lanes; ++g)
       bytes += sizeof(block.groups[g]) + lanes * block.groups[g].rows * sizeof(std::uint16_t);
   }
   return bytes;

@@ -48,7 +48,7 @@ class SoftBlocks {
   /// order.
   bool build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& ids,
              std::vector<SoftSphere>& spare, std::size_t count, const std::array<double, 3>& edges,
-             const SoftSizes& sizes, float skin);
+             const SoftSizes& sizes, float skin, std::uint32_t movers = nobody);
 
   /// Every sphere once, in threads. Returns what `SoftKernels::sweep` does.
   float sweep(const SweepTask& task) const;
@@ -65,12 +65,14 @@ class SoftBlocks {
 
   struct Block {
     std::size_t first_place = 0, places = 0;              // in all; its own, a whole number of groups
+    std::size_t swept = 0;                                // of these, the first groups; others rest
     const NeighborRows<std::uint16_t>* groups = nullptr;  // whose places count from the first of the block
     const std::uint32_t* halo = nullptr;                  // places in all
     std::uint32_t halo_size = 0;
   };
   struct Scratch {
     std::vector<SoftSphere> spheres;
+    std::vector<std::uint16_t> moving, resting;  // numbers of a block's spheres
     SweepOrder order;
     RegionCells cells;
     CandidateRoom room{most_places};
@@ -91,7 +93,8 @@ class SoftBlocks {
   void cut(std::size_t spheres, const std::array<double, 3>& edges, const SoftSizes& sizes, float skin);
   SoftRegion region_of(std::size_t block) const;
   void sort_into_blocks(const std::vector<SoftSphere>& spheres);
-  bool find_orders(const std::vector<SoftSphere>& spheres);
+  bool find_orders(const std::vector<SoftSphere>& spheres, const std::vector<std::uint32_t>& ids,
+                   std::uint32_t movers);
   void find_exports(std::size_t block, const std::vector<SoftSphere>& spheres, Scratch& scratch);
   bool find_neighbors(std::size_t block, const std::vector<SoftSphere>& spheres, Scratch& scratch);
   static std::size_t name_neighbors(std::size_t own, Scratch& scratch);

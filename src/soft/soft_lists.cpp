@@ -15,15 +15,17 @@ constexpr std::size_t groups_per_block = 64, spheres_per_search = 4096;
 }  // namespace
 
 void SoftLists::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& ids,
-                      const std::array<double, 3>& edges, const SoftSizes& sizes, float skin) {
-  std::vector<SoftSphere> compact;
-  std::vector<std::uint32_t> compact_ids;
+                      const std::array<double, 3>& edges, const SoftSizes& sizes, float skin,
+                      std::uint32_t movers) {
+  std::vector<SoftSphere> compact, resting;
+  std::vector<std::uint32_t> compact_ids, resting_ids;
   compact.reserve(spheres.size());
   compact_ids.reserve(spheres.size());
   for (std::size_t p = 0; p < spheres.size(); ++p) {
     if (!(spheres[p].r > 0)) continue;
-    compact.push_back(spheres[p]);
-    compact_ids.push_back(ids[p]);
+    const bool rests = ids[p] >= movers;
+    (rests ? resting : compact).push_back(spheres[p]);
+    (rests ? resting_ids : compact_ids).push_back(ids[p]);
   }
   order_.find(compact, SoftRegion{}, edges, sizes, skin, by_octaves_);
   const std::vector<std::uint32_t>& sphere_at = order_.sphere_at();
@@ -35,20 +37,22 @@ void SoftLists::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_
     spheres[p] = compact[i];
     ids[p] = compact_ids[i];
   }
+  spheres.insert(spheres.end(), resting.begin(), resting.end());
+  ids.insert(ids.end(), resting_ids.begin(), resting_ids.end());
   cells_.sort(spheres, SoftRegion{}, edges, sizes, skin);
-  find_neighbors(spheres);
+  find_neighbors(sphere_at.size());
 }
 
-void SoftLists::find_neighbors(const std::vector<SoftSphere>& spheres) {
+void SoftLists::find_neighbors(std::size_t swept) {
   const SearchTask task = cells_.task();
-  const std::size_t slots = cells_.size(), groups = spheres.size() / lanes;
-  const auto filler = static_cast<std::uint32_t>(groups * lanes);  // the gap behind the last group
-  std::vector<NeighborList> lists(spheres.size());
+  const std::size_t slots = cells_.size(), groups = swept / lanes;
+  const auto filler = static_cast<std::uint32_t>(swept);  // the gap behind the last group
+  std::vector<NeighborList> lists(swept);
   std::vector<FoundNeighbors> found((slots + spheres_per_search - 1) / spheres_per_search);
   tbb::enumerable_thread_specific<CandidateRoom> rooms(slots);
   tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t n) {
     const std::size_t first = n * spheres_per_search, last = std::min(slots, first + spheres_per_search);
-    found[n].find(kernels_, task, first, last, spheres.size(), rooms.local(), lists);
+    found[n].find(kernels_, task, first, last, swept, rooms.local(), lists);
   });
 
   groups_.resize(groups);

@@ -53,8 +53,9 @@ SoftPacking::SoftPacking(const std::vector<double>& radii, double most, int dime
 
 template <int D>
 SoftPacking::SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels,
-                         bool by_octaves)
+                         bool by_octaves, std::size_t resting)
     : SoftPacking(spheres.r, 1, D, kernels, by_octaves) {
+  if (resting > 0) movers_ = static_cast<std::uint32_t>(count_ - resting);
   for (std::size_t k = 0; k < D; ++k) edges_[k] = edges[static_cast<int>(k)];
   for (std::size_t i = 0; i < count_; ++i) set_place(spheres_[i], spheres.center(i));
 }
@@ -87,6 +88,10 @@ double SoftPacking::usual_skin(const std::vector<double>& radii) {
 
 double SoftPacking::smallest_edge(const std::vector<double>& radii) {
   return 4.001 * (std::ranges::max(radii) + usual_skin(radii));
+}
+
+double SoftPacking::farthest_neighbor(double largest, double mean) {
+  return 2 * (largest + relative_skin * mean);
 }
 
 float SoftPacking::move_all(float omega, bool measure, bool each) {
@@ -214,9 +219,9 @@ void SoftPacking::build_lists(std::vector<SoftSphere>& spheres, std::vector<std:
   in_blocks_ = !by_octaves_ && SoftBlocks::suit(count_, edges_then_, sizes_, life_.skin());
   if (in_blocks_) {
     if (!blocks_) blocks_ = std::make_unique<SoftBlocks>(kernels_);
-    in_blocks_ = blocks_->build(spheres, sites, spare, count_, edges_then_, sizes_, life_.skin());
+    in_blocks_ = blocks_->build(spheres, sites, spare, count_, edges_then_, sizes_, life_.skin(), movers_);
   }
-  if (!in_blocks_) lists_.build(spheres, sites, edges_then_, sizes_, life_.skin());
+  if (!in_blocks_) lists_.build(spheres, sites, edges_then_, sizes_, life_.skin(), movers_);
   if (!walls_) far_images_.build(spheres, edges_then_, dimension_, wear_then_ * life_.skin());
 }
 
@@ -275,9 +280,10 @@ void SoftPacking::write_to(Spheres<D>& spheres) const {
   }
 }
 
-#define BERNAL_INSTANTIATE(D)                                                                       \
-  template SoftPacking::SoftPacking(const Spheres<D>&, const Vector<D>&, const SoftKernels&, bool); \
-  template void SoftPacking::write_to(Spheres<D>&) const;                                           \
+#define BERNAL_INSTANTIATE(D)                                                                      \
+  template SoftPacking::SoftPacking(const Spheres<D>&, const Vector<D>&, const SoftKernels&, bool, \
+                                    std::size_t);                                                  \
+  template void SoftPacking::write_to(Spheres<D>&) const;                                          \
   template void SoftPacking::write_to(Spheres<D>&, Vector<D>&) const;
 BERNAL_INSTANTIATE(1)
 BERNAL_INSTANTIATE(2)

@@ -45,9 +45,11 @@ class SoftPacking {
 
   /// Centres in [0, edge). `by_octaves` as of `SoftLists`. Precondition: every edge is at least the largest
   /// diameter, and will be. Below `smallest_edge` of the radii spheres meet far images, too, see `FarImages`.
+  /// The last `resting` spheres are neighbours of the others, push them, and stay where they are.
+  /// Preconditions: some move; where some rest, every edge is at least the `smallest_edge`.
   template <int D>
   SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels,
-              bool by_octaves = false);
+              bool by_octaves = false, std::size_t resting = 0);
 
   /// Precondition: all centres are inside the container, which outlives this; its periods are at least
   /// `most_swelling` times the `smallest_edge` of the radii.
@@ -57,6 +59,8 @@ class SoftPacking {
   static double usual_skin(const std::vector<double>& radii);
   /// The least edge in which no two images of a sphere are neighbours of one.
   static double smallest_edge(const std::vector<double>& radii);
+  /// How far apart the centres of two neighbours may be, of spheres with this largest and mean radius.
+  static double farthest_neighbor(double largest, double mean);
 
   /// Lists are built anew when a sphere has moved by `wear` skins. Above 1, neighbours may be missed until
   /// then. 0.9 where nothing is said.
@@ -129,6 +133,7 @@ class SoftPacking {
 
   const SoftKernels& kernels_;
   std::size_t count_;
+  std::uint32_t movers_ = nobody;  // the first so many, where others rest
   int dimension_;
   std::array<double, 3> edges_;
   Vector<3> corner_ = Vector<3>::Zero();

@@ -16,6 +16,7 @@
 #include "bernal/core/text.hpp"
 #include "verify/judge.hpp"
 #include "verify/slabs.hpp"
+#include "verify/streamed_slabs.hpp"
 
 namespace bernal {
 namespace {
@@ -26,7 +27,7 @@ std::string counted(std::uint64_t n, std::string_view one, std::string_view many
 }
 std::string counted_spheres(std::uint64_t n) { return counted(n, "sphere", "spheres"); }
 
-void check_arguments(const Spheres<dynamic>& spheres, const Domain& domain, const CertifyOptions& options) {
+void check_arguments(int dimension, const Domain& domain, const CertifyOptions& options) {
   const double allowed_overlap = options.allowed_overlap;
   for (const double gap : {options.gap, options.wall_gap})
     if (!(std::isfinite(gap) && gap >= 0))
@@ -36,13 +37,9 @@ void check_arguments(const Spheres<dynamic>& spheres, const Domain& domain, cons
   if (has_inset(std::get_if<Mesh>(&domain)) || has_inset(std::get_if<Polygon>(&domain)))
     throw Error(ErrorCode::bad_argument, "the domain has an inset; certify with a wall_gap instead");
 
-  if (spheres.dimension() != dimension_of(domain))
+  if (dimension != dimension_of(domain))
     throw Error(ErrorCode::bad_argument, fmt::format("the spheres have {} coordinates, the domain has {}",
-                                                     spheres.dimension(), dimension_of(domain)));
-  for (const auto& column : spheres.x)
-    if (column.size() != spheres.size())
-      throw Error(ErrorCode::bad_argument, fmt::format("a column of coordinates has {} entries for {} radii",
-                                                       column.size(), spheres.size()));
+                                                     dimension, dimension_of(domain)));
   if (options.at_once == 0)
     throw Error(ErrorCode::bad_argument, "no spheres are to be looked at at once; leave at_once as it is");
   if (!(allowed_overlap >= 0 && allowed_overlap < 1))
@@ -50,7 +47,45 @@ void check_arguments(const Spheres<dynamic>& spheres, const Domain& domain, cons
                 fmt::format("the allowed overlap ratio is {}; it must be in [0, 1)", allowed_overlap));
 }
 
-/// Why there is nothing to prove: the spheres that are none.
+void check_columns(const Spheres<dynamic>& spheres) {
+  for (const auto& column : spheres.x)
+    if (column.size() != spheres.size())
+      throw Error(ErrorCode::bad_argument, fmt::format("a column of coordinates has {} entries for {} radii",
+                                                       column.size(), spheres.size()));
+}
+void check_columns(const SphereRows&) {}
+
+int dimension_of_spheres(const Spheres<dynamic>& spheres) { return spheres.dimension(); }
+int dimension_of_spheres(const SphereRows& spheres) { return spheres.dimension; }
+std::uint64_t count_of(const Spheres<dynamic>& spheres) { return spheres.size(); }
+std::uint64_t count_of(const SphereRows& spheres) { return spheres.count; }
+
+/// Nothing is proven about spheres that are none.
+std::string complaint(std::uint64_t bad, std::uint64_t first, std::span<const double> center, double r) {
+  return fmt::format(
+      "Not certified: {} without a finite centre and a positive finite radius (first: sphere {} at {} with "
+      "radius {}); nothing else was tested.",
+      counted_spheres(bad), first, fmt::join(center, ", "), r);
+}
+
+/// Why there is nothing to prove.
+std::optional<std::string> complaint_about(const SphereRows& spheres) {
+  constexpr std::uint64_t piece = 4096;
+  std::uint64_t bad = 0, first_bad = 0;
+  std::vector<double> worst;
+  const auto width = static_cast<std::size_t>(spheres.dimension) + 1;
+  verify::for_each_piece(spheres, piece, [&](std::uint64_t first, std::span<const double> values) {
+    for (std::size_t n = 0; n < values.size() / width; ++n) {
+      const std::span<const double> row = values.subspan(n * width, width);
+      if (row.back() > 0 && std::ranges::all_of(row, [](double x) { return std::isfinite(x); })) continue;
+      if (bad++ > 0) continue;
+      first_bad = first + n;
+      worst.assign(row.begin(), row.end());
+    }
+  });
+  if (bad == 0) return std::nullopt;
+  return complaint(bad, first_bad, std::span<const double>(worst).first(width - 1), worst.back());
+}
 std::optional<std::string> complaint_about(const Spheres<dynamic>& spheres) {
   std::uint64_t bad = 0, first = spheres.size();
   std::mutex adding;
@@ -66,18 +101,24 @@ std::optional<std::string> complaint_about(const Spheres<dynamic>& spheres) {
   });
   if (bad == 0) return std::nullopt;
   const Vector<dynamic> c = spheres.center(first);
-  return fmt::format(
-      "Not certified: {} without a finite centre and a positive finite radius (first: sphere {} at {} with "
-      "radius {}); nothing else was tested.",
-      counted_spheres(bad), first, fmt::join(c, ", "), spheres.r[first]);
+  return complaint(bad, first, {c.data(), static_cast<std::size_t>(c.size())}, spheres.r[first]);
+}
+
+template <int D, class Space>
+verify::Slabs<D> slabs_of(const Spheres<dynamic>& spheres, const Space& space, std::size_t at_once) {
+  return {spheres, space, at_once};
+}
+template <int D, class Space>
+verify::StreamedSlabs<D> slabs_of(const SphereRows& spheres, const Space& space, std::size_t at_once) {
+  return {spheres, space, at_once};
 }
 
 /// Slab by slab, each with what reaches into it of those that follow.
-template <int D, class Space>
-verify::Tally judge_in(const Space& space, const Spheres<dynamic>& spheres, const Domain& domain,
+template <int D, class Space, class Source>
+verify::Tally judge_in(const Space& space, const Source& spheres, const Domain& domain,
                        const verify::Course& course) {
   const verify::Walls<D> walls = verify::walls_of<D>(domain);
-  const verify::Slabs<D> slabs(spheres, space, course.options().at_once);
+  const auto slabs = slabs_of<D>(spheres, space, course.options().at_once);
   const double known = verify::distances_known_up_to(course.options().gap);
   verify::Tally tally(course.options().list);
   std::vector<verify::Ball<D>> next = slabs.balls(0, space);
@@ -98,7 +139,8 @@ verify::Tally judge_in(const Space& space, const Spheres<dynamic>& spheres, cons
   return tally;
 }
 
-verify::Tally judge(const Spheres<dynamic>& spheres, const Domain& domain, const verify::Course& course) {
+template <class Source>
+verify::Tally judge(const Source& spheres, const Domain& domain, const verify::Course& course) {
   const Vector<dynamic> periods = verify::periods_of(domain);
   const bool repeats = (periods.array() < verify::Box<1>::infinity).any();
   if (!repeats && periods.size() == 3) return judge_in<3>(verify::OpenSpace<3>(), spheres, domain, course);
@@ -173,20 +215,16 @@ std::string statement_of(const Certificate& c, const Domain& domain) {
 
 }  // namespace
 
-std::string pair_text(const std::array<std::uint64_t, 2>& pair) {
-  const auto [first, second] = pair;
-  return first == second ? fmt::format("{} and its own image", first)
-                         : fmt::format("{} and {}", first, second);
-}
+namespace {
 
-std::string worst_pair_text(const Certificate& c) { return c.worst_pair ? pair_text(*c.worst_pair) : "none"; }
-
-Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, const CertifyOptions& options) {
+template <class Source>
+Certificate certificate_of(const Source& spheres, const Domain& domain, const CertifyOptions& options) {
   const Stopwatch watch;
-  check_arguments(spheres, domain, options);
+  check_columns(spheres);
+  check_arguments(dimension_of_spheres(spheres), domain, options);
 
   Certificate result;
-  result.spheres = spheres.size();
+  result.spheres = count_of(spheres);
   result.allowed_overlap = options.allowed_overlap;
   result.gap = options.gap;
   result.wall_gap = options.wall_gap;
@@ -228,5 +266,22 @@ Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, const
   result.seconds = watch.seconds();
   return result;
 }
+
+}  // namespace
+
+Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain, const CertifyOptions& options) {
+  return certificate_of(spheres, domain, options);
+}
+Certificate certify(const SphereRows& spheres, const Domain& domain, const CertifyOptions& options) {
+  return certificate_of(spheres, domain, options);
+}
+
+std::string pair_text(const std::array<std::uint64_t, 2>& pair) {
+  const auto [first, second] = pair;
+  return first == second ? fmt::format("{} and its own image", first)
+                         : fmt::format("{} and {}", first, second);
+}
+
+std::string worst_pair_text(const Certificate& c) { return c.worst_pair ? pair_text(*c.worst_pair) : "none"; }
 
 }  // namespace bernal

@@ -12,6 +12,15 @@
 
 namespace bernal::verify {
 
+/// Of an axis; empty until something is in it.
+struct Range {
+  double lower = Box<1>::infinity, upper = -Box<1>::infinity;
+  void include(double from, double to) {
+    lower = std::min(lower, from);
+    upper = std::max(upper, to);
+  }
+};
+
 /// The balls of a packing in slabs across the longest axis, so that only some of them have to be looked at
 /// together: at most so many a slab, unless more have one coordinate.
 ///
@@ -55,14 +64,6 @@ class Slabs {
 
  private:
   static constexpr std::size_t grain = 4096, bins_a_slab = 64;
-
-  struct Range {
-    double lower = Box<D>::infinity, upper = -Box<D>::infinity;
-    void include(double from, double to) {
-      lower = std::min(lower, from);
-      upper = std::max(upper, to);
-    }
-  };
 
   /// Calls body(chunk, i) for all spheres, chunks in parallel.
   template <class Body>

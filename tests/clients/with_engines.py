@@ -80,6 +80,18 @@ def shapes(folder):
             expect(packed(folder / "few.toml", folder / "few")["n"] == count, f"{count} in a periodic box")
 
 
+def slabs(folder):
+    """As dense as all at once, in any number of slabs, of equal sizes and of others."""
+    for sizes, least in (("diameter = 1.0", 0.63),
+                         ('diameter = { distribution = "lognormal", median = 1.0, sigma = 0.3, max = 2.5 }', 0.65)):
+        for count in (2, 3):
+            (folder / "slabs.toml").write_text(f'[container]\nkind = "periodic"\n[spheres]\ncount = 10000\n{sizes}\n'
+                                               f'[engine]\nkind = "lammps"\nkeep = true\nslabs = {count}\n')
+            report = packed(folder / "slabs.toml", folder / "slabs")
+            expect(report["certified"] and report["phi"] >= least,
+                   f"{count} slabs, {sizes}: packing fraction {report['phi']:.4f}")
+
+
 def interrupted(folder):
     """Ctrl-C ends the engine's processes too."""
     (folder / "long.toml").write_text('[container]\nkind = "periodic"\n[spheres]\ncount = 20000\nradius = 1\n'
@@ -109,6 +121,7 @@ def work(folder):
     examples(folder)
     if LMP:
         one_seed(folder)
+        slabs(folder)
     shapes(folder)
     if LMP and MPIRUN:
         interrupted(folder)

@@ -42,6 +42,16 @@ RUNS = {
                     '[[output]]\nformat = "lammps"\n[[output]]\nformat = "extxyz"\n'),
 }
 
+IDLE_ENGINE = r"""#!/bin/bash
+awk '/^[0-9]+ atoms/ { n = $1 }
+     /[xyz]lo/ { box = box $1 " " $2 "\n" }
+     /^Atoms/ { atoms = 1
+                printf "ITEM: TIMESTEP\n1\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS pp pp pp\n%s", n, box
+                print "ITEM: ATOMS id x y z radius" }
+     atoms && NF == 7 { printf "%s %s %s %s %.17g\n", $1, $5, $6, $7, $3 / 2 }' spheres.data > places.dump
+echo "bernal: all places are written" > log.lammps
+"""
+
 
 def keys_in(schema, path=""):
     """Every object of a schema that names its keys."""
@@ -108,6 +118,20 @@ class Reports(unittest.TestCase):
                 run = self.run_bernal("pack", f"{name}.toml", "-o", name, "--threads", "1")
                 self.assertIn(run.returncode, (0, 3), run.stderr)
                 self.check_result(name, outcome)
+
+    def test_slabs(self):
+        """An engine that leaves every sphere where it was put."""
+        engine = self.folder / "engine"
+        engine.write_text(IDLE_ENGINE)
+        engine.chmod(0o755)
+        (self.folder / "slabs.toml").write_text(
+            '[container]\nkind = "periodic"\nsize = [4, 1, 1]\nscalable = true\n[spheres]\ncount = 400\nradius = 1\n'
+            f'[engine]\nkind = "lammps"\nexecutable = "{engine}"\nslabs = 3\n')
+        run = self.run_bernal("pack", "slabs.toml", "-o", "slabs")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("bernal measure", run.stderr)
+        report = self.check_result("slabs", "converged")
+        self.assertIn("3 slabs", report["not_measured"])
 
     def test_imported_with_overlaps(self):
         (self.folder / "theirs.csv").write_text("x,y,z,r\n0,0,0,1\n1,0,0,1\n5,5,5,1\n")

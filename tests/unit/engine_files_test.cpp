@@ -24,10 +24,10 @@ using testing::Folder;
 using testing::text_of;
 
 EngineTask task_in(Domain domain, std::vector<double> radii = {1, 1, 1}) {
-  EngineTask task{.spheres = {}, .domain = std::move(domain)};
+  Spheres<3> spheres;
   for (std::size_t i = 0; i < radii.size(); ++i)
-    task.spheres.push_back({1.0 + static_cast<double>(i), 0.5, 0.25}, radii[i]);
-  return task;
+    spheres.push_back({1.0 + static_cast<double>(i), 0.5, 0.25}, radii[i]);
+  return {.spheres = told(std::move(spheres)), .domain = std::move(domain)};
 }
 Box periodic_cube(double edge) {
   return {Vector<3>::Zero().eval(), Vector<3>::Constant(edge).eval(), {true, true, true}};

@@ -25,6 +25,16 @@ void expect_same(const Certificate& a, const Certificate& b, std::size_t at_once
   EXPECT_EQ(a.least_wall_distance, b.least_wall_distance);
 }
 
+/// Told row by row, as a file would.
+SphereRows rows_of(const Spheres<dynamic>& spheres) {
+  return {spheres.size(), spheres.dimension(), [&spheres](std::uint64_t first, std::span<double> rows) {
+            for (std::size_t at = 0; at < rows.size(); ++first) {
+              for (const auto& column : spheres.x) rows[at++] = column[first];
+              rows[at++] = spheres.r[first];
+            }
+          }};
+}
+
 void expect_same_in_slabs(const Spheres<dynamic>& spheres, const Domain& domain,
                           CertifyOptions options = {}) {
   options.list = CertifyOptions::all;
@@ -34,7 +44,10 @@ void expect_same_in_slabs(const Spheres<dynamic>& spheres, const Domain& domain,
        {std::size_t{1}, std::size_t{2}, spheres.size() / 7 + 1, spheres.size() / 2 + 1, spheres.size() - 1}) {
     options.at_once = at_once;
     expect_same(whole, certify(spheres, domain, options), at_once);
+    expect_same(whole, certify(rows_of(spheres), domain, options), at_once);
   }
+  options.at_once = spheres.size();
+  expect_same(whole, certify(rows_of(spheres), domain, options), options.at_once);
 }
 
 /// Of radii up to so many times the least, anywhere in [-1, 11) along every axis.
@@ -150,6 +163,41 @@ TEST(SlabCertificate, TellsHowFarItIs) {
                        {}}});
   EXPECT_FALSE(falls);
   EXPECT_GT(last, 0);
+}
+
+TEST(SlabCertificate, ReadsRowsThatAreSortedAFewTimes) {
+  // Along y, although the box is longest along x: it is the order that tells what to cut across.
+  constexpr std::size_t count = 20'000;
+  Random random(3, stream(Stream::test));
+  std::vector<Vector<3>> centers;
+  const Domain domain = Box{Vector<3>::Zero().eval(), Vector<3>(300, 100, 50), {true, true, true}};
+  for (std::size_t i = 0; i < count; ++i)
+    centers.push_back(uniform_point(random, Bounds<3>{Vector<3>::Zero(), Vector<3>(300, 100, 50)}));
+  std::ranges::sort(centers, {}, [](const Vector<3>& c) { return c[1]; });
+  Spheres<dynamic> spheres(3);
+  for (const Vector<3>& c : centers) spheres.push_back(c, 0.3);
+  SphereRows rows = rows_of(spheres);
+  std::size_t read = 0, most = 0;
+  rows.read = [&, inner = rows.read](std::uint64_t first, std::span<double> values) {
+    inner(first, values);
+    read += values.size() / 4;
+    most = std::max(most, values.size() / 4);
+  };
+  const Certificate whole = certify(spheres, domain), streamed = certify(rows, domain, {.at_once = 1000});
+  expect_same(whole, streamed, 1000);
+  EXPECT_LT(read, 8 * count);
+  EXPECT_LE(most, 4096u) << "a piece";
+}
+
+TEST(SlabCertificate, SaysOfRowsWhichIsNoSphere) {
+  Spheres<dynamic> spheres = anywhere(3, 5000, 0.1, 2, 1);
+  spheres.r[4200] = 0;
+  spheres.x[1][4300] = std::nan("");
+  const Certificate whole = certify(spheres, box(3, true)), rows = certify(rows_of(spheres), box(3, true));
+  EXPECT_FALSE(rows.certified);
+  EXPECT_EQ(rows.statement, whole.statement);
+  EXPECT_THROW(certify(rows_of(spheres), box(2, true)), Error);
+  EXPECT_TRUE(certify(SphereRows{}, box(3, true)).certified) << "of none there is nothing to prove";
 }
 
 }  // namespace slab_certificate_test

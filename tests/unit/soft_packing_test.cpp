@@ -218,11 +218,13 @@ struct BlockSweeps {
   std::vector<float> squeeze, force;  // by place
   bool fits;
 
-  BlockSweeps(const Crowd<3>& crowd, double size, float step, int sweeps, const SoftKernels& kernels)
+  BlockSweeps(const Crowd<3>& crowd, double size, float step, int sweeps, const SoftKernels& kernels,
+              std::uint32_t movers = nobody)
       : soft(crowd) {
     std::vector<SoftSphere> spare;
     SoftBlocks blocks(kernels, size);
-    fits = blocks.build(soft.spheres, soft.ids, spare, crowd.spheres.size(), soft.edges, soft.sizes, 0.1f);
+    fits = blocks.build(soft.spheres, soft.ids, spare, crowd.spheres.size(), soft.edges, soft.sizes, 0.1f,
+                        movers);
     squeeze.resize(soft.spheres.size());
     force.resize(soft.spheres.size());
     for (int k = 0; k < sweeps && fits; ++k)
@@ -291,6 +293,120 @@ TEST(SoftBlocks, SuitManySpheresInAWideBox) {
   EXPECT_FALSE(suits({60, 60, 60}, 30000, 1));      // fit into a cache
   EXPECT_TRUE(suits({1e6, 3, 3}, 1000000, 1));      // a line is cut along one axis
   EXPECT_TRUE(suits({2000, 2000, 3}, 1000000, 1));  // a sheet is cut along two axes
+}
+
+/// Movers that touch nothing but what rests, so that the order of a sweep does not matter: a grid of cells,
+/// each with one mover among three that rest. Ids: movers first.
+Crowd<3> movers_among_resting(int across, double r_min, double r_max) {
+  Crowd<3> crowd(0, 1, {1, 1, 1}, 1, 1);
+  crowd.edges = Vector<3>::Constant(8.0 * across);
+  Random random(11, stream(Stream::test));
+  const std::size_t cells = static_cast<std::size_t>(across * across * across);
+  for (std::size_t n = 0; n < 4 * cells; ++n) {
+    const auto cell = static_cast<int>(n % cells);
+    const Vector<3> middle(8 * (cell % across) + 4, 8 * (cell / across % across) + 4,
+                           8 * (cell / across / across) + 4);
+    const double r = r_min + (r_max - r_min) * random.uniform();
+    const Vector<3> off = 0.9 * (uniform_point(random, Bounds<3>{Vector<3>::Zero(), Vector<3>::Ones()}) * 2 -
+                                 Vector<3>::Ones());
+    crowd.spheres.push_back(n < cells ? middle : Vector<3>(middle + off * 1.4), r);
+  }
+  return crowd;
+}
+
+/// By equations 3 and 4 of the paper, see SoftKernels::sweep, in double.
+Vector<3> after_a_sweep(const Crowd<3>& crowd, std::size_t mover) {
+  const Boundary<3> boundary{crowd.edges};
+  Vector<3> push = Vector<3>::Zero();
+  double n = 0;
+  const double ri = crowd.spheres.r[mover];
+  for (std::size_t j = 0; j < crowd.spheres.size(); ++j) {
+    const Vector<3> away = boundary.minimum_image(crowd.spheres.center(mover) - crowd.spheres.center(j));
+    const double d = away.norm(), rj = crowd.spheres.r[j];
+    if (j == mover || d >= ri + rj) continue;
+    const double weight = 2 * rj / (ri + rj);
+    push += weight * (ri + rj - d) / d * away;
+    n += weight;
+  }
+  return n > 0 ? Vector<3>(crowd.spheres.center(mover) + std::min(double{omega} / n, 1.0) * push)
+               : crowd.spheres.center(mover);
+}
+
+TEST(SoftPacking, MovesTheFirstWhileTheLastRest) {
+  for (const Crowd<3>& crowd : {movers_among_resting(6, 1, 1), movers_among_resting(6, 0.5, 1)}) {
+    const std::size_t movers = crowd.spheres.size() / 4;
+    SoftPacking packing(crowd.spheres, crowd.edges, soft_kernels().front(), false,
+                        crowd.spheres.size() - movers);
+    packing.sweep_to_overlap(omega);
+    Spheres<3> after = crowd.spheres;
+    packing.write_to(after);
+    const Boundary<3> boundary{crowd.edges};
+    int moved = 0;
+    for (std::size_t i = 0; i < crowd.spheres.size(); ++i) {
+      const Vector<3> expected = i < movers ? after_a_sweep(crowd, i) : crowd.spheres.center(i);
+      EXPECT_LT(boundary.minimum_image(after.center(i) - expected).norm(), i < movers ? 1e-5 : 1e-7) << i;
+      moved += (after.center(i) - crowd.spheres.center(i)).norm() > 0.01;
+    }
+    EXPECT_GT(moved, 100);
+    // And so for good: what rests is where it was to the bit.
+    Spheres<3> later = after;
+    for (int k = 0; k < 50; ++k) packing.sweep(omega);
+    packing.write_to(later);
+    for (std::size_t i = movers; i < crowd.spheres.size(); ++i) EXPECT_EQ(later.center(i), after.center(i));
+  }
+}
+
+TEST(SoftLists, HoldTheNeighboursOfThoseThatMove) {
+  const Crowd<3> crowd = mixed_crowd(600);
+  const Boundary<3> boundary{crowd.edges};
+  constexpr std::uint32_t movers = 250;
+  constexpr float skin = 0.3f;
+  SoftCrowd soft(crowd);
+  SoftLists lists(soft_kernels().front());
+  std::multiset<std::pair<std::uint32_t, std::uint32_t>> listed;
+  for (int built = 0; built < 2; ++built) {  // what rests is told from what moves again
+    lists.build(soft.spheres, soft.ids, soft.edges, soft.sizes, skin, movers);
+    listed.clear();
+    std::size_t groups = 0;
+    while (soft.ids[groups * lanes] < movers) ++groups;
+    for (std::size_t g = 0; g < groups; ++g)
+      for (std::size_t e = 0; e < lanes * lists.groups()[g].rows; ++e) {
+        const std::uint32_t i = soft.ids[g * lanes + e % lanes], j = soft.ids[lists.groups()[g].first[e]];
+        if (j != nobody) listed.insert({i, j});
+      }
+  }
+  for (std::uint32_t i = 0; i < crowd.spheres.size(); ++i)
+    for (std::uint32_t j = 0; j < crowd.spheres.size(); ++j) {
+      const double d = boundary.minimum_image(crowd.spheres.center(i) - crowd.spheres.center(j)).norm();
+      const bool near = d - crowd.spheres.r[i] - crowd.spheres.r[j] < 2 * skin - 1e-5;
+      if (i != j && near) EXPECT_EQ(listed.count({i, j}), i < movers ? 1u : 0u) << i << " " << j;
+    }
+}
+
+TEST(SoftBlocks, LetSpheresRest) {
+  const Crowd<3> crowd = mixed_crowd(6000);
+  const std::vector<double> expected = squeezes(crowd);
+  constexpr std::uint32_t movers = 2500;
+  for (const double size : {100, 700}) {
+    const BlockSweeps known(crowd, size, 0, 1, soft_kernels().front(), movers);
+    ASSERT_TRUE(known.fits);
+    std::size_t found = 0;
+    for (std::size_t p = 0; p < known.soft.ids.size(); ++p) {
+      if (known.soft.ids[p] == nobody) continue;
+      const double sum = known.soft.ids[p] < movers ? expected[known.soft.ids[p]] : 0;
+      EXPECT_NEAR(known.squeeze[p], sum, 2e-5 * (1 + sum));
+      ++found;
+    }
+    EXPECT_EQ(found, crowd.spheres.size());
+    const auto before = known.places(),
+               after = BlockSweeps(crowd, size, omega, 5, soft_kernels().front(), movers).places();
+    std::size_t moved = 0;
+    for (std::size_t i = 0; i < crowd.spheres.size(); ++i) {
+      if (i >= movers) EXPECT_EQ(after[i], before[i]);
+      moved += after[i] != before[i];
+    }
+    EXPECT_GT(moved, movers / 2);
+  }
 }
 
 }  // namespace soft_packing_test

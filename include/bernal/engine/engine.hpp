@@ -20,6 +20,9 @@ struct EngineProcess {
   std::vector<std::string> slurm = {};       ///< lines "#SBATCH …" of the script, such as "--time=02:00:00"
   int steps = 1000;                          ///< of its motion, in all
   bool keep = false;  ///< what it read and wrote stays beside the result, and is taken up again
+  /// Across the longest axis of a periodic box, one after the other in memory while its spheres are freed of
+  /// overlap and certified; 1: all of them at once.
+  int slabs = 1;
 };
 
 /// LAMMPS, with the package GRANULAR: periodic boxes, boxes, cylinders and spheres.

@@ -2,8 +2,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -124,6 +126,21 @@ struct CertifyOptions {
 /// up to 48 n bytes a thread.
 Certificate certify(const Spheres<dynamic>& spheres, const Domain& domain,
                     const CertifyOptions& options = {});
+
+/// Spheres that nobody has to hold, such as those of a file.
+struct SphereRows {
+  std::uint64_t count = 0;
+  int dimension = 3;
+  /// The rows from `first` on, as many as there is room for, one a sphere: its coordinates and its radius.
+  /// Called from one thread, for all rows several times, and says the same every time.
+  std::function<void(std::uint64_t first, std::span<double> rows)> read = {};
+};
+
+/// The same certificate of spheres that are read in pieces, with no more of them in memory than three times
+/// `at_once` and 0.2 bytes for each of the others: slabs are read one after the other. Cost: that of the
+/// other, and of reading all rows some six times if they come in the order of one coordinate, and else once
+/// for each slab.
+Certificate certify(const SphereRows& spheres, const Domain& domain, const CertifyOptions& options = {});
 
 /// "3 and 7" or "3 and its own image".
 std::string pair_text(const std::array<std::uint64_t, 2>& pair);
