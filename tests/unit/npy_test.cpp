@@ -13,6 +13,7 @@
 #include "bernal/io/read_packing.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "core/npy_file.hpp"
+#include "core/npy_rows.hpp"
 #include "io/write_spheres.hpp"
 #include "scene/read_npy_spheres.hpp"
 #include "scene/read_spheres.hpp"
@@ -210,6 +211,24 @@ TEST(Npy, ABinaryResultHoldsTheSamePacking) {
   EXPECT_EQ(read_packing(folder / "text").spheres, packing.spheres);
   write_packing(packing, folder / "text", {.most_as_text = packing.spheres.size()});
   EXPECT_TRUE(fs::exists(folder / "text/spheres.csv"));
+}
+
+TEST(Npy, RowsAreReadInAnyOrder) {
+  const Folder folder;
+  NpyRows array(folder.write("c.npy", described("'<f8'", "False", "2, 4") + bytes_of<double>(rows)));
+  ASSERT_EQ(array.rows(), 2u);
+  ASSERT_EQ(array.columns(), 4u);
+  std::vector<double> last(4), all(8);
+  array.read(1, last);
+  array.read(0, all);
+  EXPECT_EQ(last, std::vector<double>(rows.begin() + 4, rows.end()));
+  EXPECT_EQ(all, rows);
+  EXPECT_EQ(error_of([&] { array.read(1, all); }).code(), ErrorCode::bad_packing) << "beyond the end";
+  // What a row cannot be copied out of.
+  for (const std::string& text : {described("'<f8'", "True", "2, 4") + bytes_of<double>(columns),
+                                  described("'>f8'", "False", "2, 4") + bytes_of<double>(rows, true),
+                                  described("'<f4'", "False", "2, 4") + bytes_of<float>(rows)})
+    EXPECT_EQ(error_of([&] { NpyRows(folder.write("other.npy", text)); }).code(), ErrorCode::bad_packing);
 }
 
 TEST(Npy, AFileOfTheUsersIsNotReplaced) {
