@@ -33,7 +33,8 @@ class NpyFile {
   std::size_t columns() const { return fields_.size(); }
   /// Of the structures' members; none where there are none.
   const std::vector<std::string>& names() const { return names_; }
-  /// The byte where its numbers begin, if they are doubles as this machine has them, row by row; else nothing.
+  /// The byte where its numbers begin, if they are doubles as this machine has them, row by row; else
+  /// nothing.
   std::optional<std::uintmax_t> doubles_from() const;
 
   /// Tells all numbers in pieces of columns: `count` of column k from row `first` on. In C order pieces of
