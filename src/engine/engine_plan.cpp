@@ -79,7 +79,8 @@ void require_slabs_fit(const Scene& scene, const Refusal& refuse) {
   for (const auto& [key, is_asked] : {std::pair{"exchange", relax->exchange},
                                       {"polish", relax->polish > 0},
                                       {"settle", relax->settle},
-                                      {"method", relax->method != RelaxMethod::fast}})
+                                      {"method", relax->method != RelaxMethod::fast},
+                                      {"device", relax->device != RelaxDevice::processor}})
     if (is_asked)
       refuse.at(
           scene.stages.front().locations.of(key),

@@ -184,7 +184,9 @@ TEST(DevicePacking, IsTheSameOnAGpuToTheBit) {
   for (int k = 0; k < 60; ++k) {
     there.sweep(5);
     here.sweep(5);
-    if (k % 10 == 9) EXPECT_EQ(there.sweep_to_overlap(4), here.sweep_to_overlap(4));
+    if (k % 10 == 9) {
+      EXPECT_EQ(there.sweep_to_overlap(4), here.sweep_to_overlap(4));
+    }
     if (k % 7 == 6) there.grow(1.003), here.grow(1.003);
   }
   EXPECT_EQ(places_of(there, box), places_of(here, box));

@@ -174,7 +174,7 @@ constexpr const char* dump_head =
 
 TEST(ReadPlaces, PutsSpheresInTheirOrder) {
   const Folder folder;
-  const Places places =
+  const engine::Places places =
       read_places(folder.write("d", std::string(dump_head) + "2 4 5 6\n1 1 2.5 3e-1\n"), {0.5, 0.75});
   EXPECT_EQ(places.spheres.center(0), Vector<3>(1, 2.5, 0.3));
   EXPECT_EQ(places.spheres.center(1), Vector<3>(4, 5, 6));
