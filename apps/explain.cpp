@@ -7,6 +7,7 @@
 #include "bernal/io/json.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "bernal/slabs/pack_in_slabs.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
 
@@ -23,6 +24,7 @@ int explain(const ExplainCall& call) {
   ProgressBar bar(call.json);
   bar.now("estimate");
   const Plan plan = build(read_scene(call.scene));
+  if (is_in_slabs(plan.scene)) check_slabs(plan);
   bar.clear();
   fmt::print("{}", call.json ? plan_as_json(plan) : bernal::explain(plan));
   return exit_code::done;

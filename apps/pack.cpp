@@ -105,7 +105,7 @@ int concluded(const Packing& packing, const Certificate& certificate) {
 
 int pack_slabs(const PackCall& call, const Plan& plan, const std::filesystem::path& folder, ProgressBar& bar,
                const Monitor& monitor) {
-  if (call.resume)
+  if (call.resume && !call.quiet)
     say(stderr, "bernal: slabs have no checkpoints; with keep = true the engine's result is one\n");
   try {
     const PackedInSlabs result =
@@ -119,7 +119,9 @@ int pack_slabs(const PackCall& call, const Plan& plan, const std::filesystem::pa
   } catch (const Cancelled&) {
     bar.clear();
     say(stderr, "bernal: stopped by the user; no result is written{}\n",
-        plan.scene.engine->process().keep ? ", and the same call goes on from the engine's" : "");
+        plan.scene.engine->process().keep
+            ? ", and the same call goes on from what the engine has left, if it has ended"
+            : "");
     return exit_code::not_reached;
   }
 }

@@ -13,7 +13,10 @@ namespace bernal {
 NpyRows::NpyRows(const std::filesystem::path& file) : file_(file) {
   const NpyFile table(file);
   const auto begin = table.doubles_from();
-  if (!begin) table.fail("is no array of doubles, little-endian and in C order, which are read row by row");
+  if (!begin)
+    table.fail(
+        "is no array of doubles, little-endian and in C order, as slabs are read; save it as \"<f8\" in C "
+        "order, or take \"slabs\" out of scene.toml, to hold all of it");
   rows_ = table.rows();
   columns_ = table.columns();
   begin_ = *begin;

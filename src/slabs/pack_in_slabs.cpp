@@ -30,8 +30,8 @@ namespace {
 
 /// Growths of the box until it is given up: an engine's result takes some tens.
 constexpr int most_growths = 400;
-/// Of a sphere, in a slab and in the result.
-constexpr std::uint64_t bytes_on_disk = 2 * 32;
+/// Of a sphere: in a slab and in the result, and about those of the texts that the engine reads and writes.
+constexpr std::uint64_t bytes_on_disk = 2 * 32 + 180;
 /// More than the model has been found above packings that have room enough and time.
 constexpr double loose_below = 0.05;
 
@@ -215,6 +215,12 @@ class SlabRun {
 }  // namespace
 
 bool is_in_slabs(const Scene& scene) { return scene.engine && scene.engine->process().slabs > 1; }
+
+void check_slabs(const Plan& plan) {
+  PackedInSlabs none;
+  none.packing.seed = plan.scene.seed;
+  SlabRun(plan, {}, {}, none);
+}
 
 PackedInSlabs pack_in_slabs(const Plan& plan, const std::filesystem::path& folder,
                             const SlabOptions& options) {

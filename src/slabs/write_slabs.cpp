@@ -91,8 +91,9 @@ Certificate certify_in_slabs(const Scene& scene, const std::filesystem::path& sp
                 {spheres.string()});
   const auto slabs = static_cast<std::uint64_t>(scene.engine->process().slabs);
   options.allowed_overlap = scene.overlap;
+  constexpr std::uint64_t least = 1 << 14;  // fewer at once save no memory to speak of
   options.at_once =
-      std::clamp<std::uint64_t>((rows->rows() + slabs - 1) / slabs, 1, CertifyOptions().at_once);
+      std::clamp<std::uint64_t>((rows->rows() + slabs - 1) / slabs, least, CertifyOptions().at_once);
   return certify(
       SphereRows{rows->rows(), 3,
                  [rows](std::uint64_t first, std::span<double> values) { rows->read(first, values); }},

@@ -5,11 +5,16 @@
 namespace bernal {
 
 #if !BERNAL_CUDA
-std::unique_ptr<DeviceSpheres> spheres_on_gpu() {
+void require_gpu() {
   throw Error(
       ErrorCode::bad_scene,
       "this bernal was built without CUDA and packs on no GPU; leave \"device\" out, and the processor "
       "packs, or build bernal with -DBERNAL_CUDA=ON");
+}
+
+std::unique_ptr<DeviceSpheres> spheres_on_gpu() {
+  require_gpu();
+  return nullptr;
 }
 #endif
 

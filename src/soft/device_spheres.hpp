@@ -46,6 +46,8 @@ class DeviceSpheres {
   static constexpr int fewest_cells = 4;
 };
 
+/// Throws Error{bad_scene} where `spheres_on_gpu` would.
+void require_gpu();
 /// On the first NVIDIA GPU. Throws Error{bad_scene} where bernal was built without CUDA, or none is there.
 std::unique_ptr<DeviceSpheres> spheres_on_gpu();
 

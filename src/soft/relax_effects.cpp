@@ -7,6 +7,7 @@
 
 #include "bernal/core/error.hpp"
 #include "jam/polish.hpp"
+#include "soft/device_spheres.hpp"
 #include "soft/relax.hpp"
 #include "soft/relax_wide.hpp"
 #include "soft/soft_blocks.hpp"
@@ -114,7 +115,7 @@ double seconds_in_bed(const Relax& options, const Outlook& outlook) {
   return std::min({seconds, most, options.seconds > 0 ? options.seconds : seconds});
 }
 
-/// Throws Error{bad_argument} for what only the processor does.
+/// Throws Error for what only the processor does, and where there is no GPU.
 void require_gpu_suits(const Relax& options, const Outlook& outlook) {
   const auto refuse = [](const char* what) {
     throw Error(ErrorCode::bad_argument,
@@ -124,6 +125,7 @@ void require_gpu_suits(const Relax& options, const Outlook& outlook) {
   if (outlook.task.dimension != 3) refuse("knows three dimensions only");
   if (options.method != RelaxMethod::fast) refuse("knows no \"method\" but fast");
   if (is_for_wide_sizes(outlook.task, options)) refuse("knows no sizes as wide as these");
+  require_gpu();
 }
 
 }  // namespace

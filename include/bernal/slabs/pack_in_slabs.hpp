@@ -13,6 +13,10 @@ namespace bernal {
 /// Whether a scene's engine leaves its spheres to be freed of overlap slab by slab: `[engine] slabs`.
 bool is_in_slabs(const Scene& scene);
 
+/// Throws Error{bad_scene} where the box of a plan whose scene `is_in_slabs` is too narrow for so many. Cost:
+/// that of drawing its spheres.
+void check_slabs(const Plan& plan);
+
 struct SlabOptions {
   std::optional<std::uint64_t> seed = {};  ///< the scene's own if absent
   int threads = 0;                         ///< 0: as many as the machine has
@@ -40,7 +44,7 @@ struct PackedInSlabs {
 /// many slabs, Error{cannot_write}, and Cancelled once the monitor says stop: then nothing is written but
 /// what the engine keeps.
 ///
-/// On the disk: 64 bytes a sphere beside the engine's files.
+/// On the disk: 64 bytes a sphere, and some 180 in the engine's files; so much has to be free.
 PackedInSlabs pack_in_slabs(const Plan& plan, const std::filesystem::path& folder,
                             const SlabOptions& options);
 

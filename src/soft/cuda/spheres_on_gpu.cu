@@ -153,6 +153,7 @@ class Gpu {
 
 }  // namespace
 
+void require_gpu() { Gpu gpu; }
 std::unique_ptr<DeviceSpheres> spheres_on_gpu() { return std::make_unique<ColouredSpheres<Gpu>>(); }
 
 }  // namespace bernal
