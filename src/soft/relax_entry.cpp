@@ -84,13 +84,14 @@ const StageEntry& entry_of<Relax>() {
                              "fast; reference: the published loop as it stands, on linked lists, a hundred "
                              "times slower; reference-sorted: the same to the bit, on sorted arrays",
                              {"fast", "reference", "reference-sorted"}),
-                        unless("processor", word(&Relax::device, "device",
-                                                 "where spheres push each other in a periodic box: "
-                                                 "processor; gpu: an NVIDIA GPU, "
-                                                 "where bernal was built for it: another packing of the same "
-                                                 "kind, the same on "
-                                                 "every GPU",
-                                                 {"processor", "gpu"})),
+                        unless("\"processor\"",
+                               word(&Relax::device, "device",
+                                    "where spheres push each other in a periodic box: "
+                                    "processor; gpu: an NVIDIA GPU, "
+                                    "where bernal was built for it: another packing of the same "
+                                    "kind, the same on "
+                                    "every GPU",
+                                    {"processor", "gpu"})),
                         flag(&Relax::settle, "settle",
                              "reference: what touches nothing moves to touch its nearest neighbour")}),
                    acting(
