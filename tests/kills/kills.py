@@ -87,12 +87,13 @@ def main():
         print(f"undisturbed: {seconds:.1f} s, {whole['hash']}", flush=True)
         seconds = min(seconds, 1.3 * whole["seconds"])  # measuring may take longer than packing
         out = folder / "out"
-        kills, resume = 0, False
+        kills, resume, ended = 0, False, False
         while kills < options.kills:
             wait = moments.uniform(0, seconds if options.apart else 2.5 * seconds / options.kills)
             if not runs.killed_after(wait, out, resume):
                 if not options.apart:
-                    break  # it has come to its end
+                    ended = True
+                    break
                 shutil.rmtree(out)
                 continue
             kills += 1
@@ -111,7 +112,7 @@ def main():
                     fail(f"left {left_in(out)}")
                 shutil.rmtree(out)
         if not options.apart:
-            report, more = runs.to_the_end(out, True)
+            report = json.loads((out / "report.json").read_text()) if ended else runs.to_the_end(out, True)[0]
             print(f"went on {report['resumed']} times, in all {report['seconds']:.1f} s, to {report['hash']}")
             if report["hash"] != whole["hash"]:
                 fail("that is another packing")
