@@ -169,7 +169,8 @@ TEST_F(EngineOfSlabs, RefuseWhatNeedsAllSpheres) {
   const std::string box = std::string(long_box) + equal;
   EXPECT_TRUE(holds(refusal(box + "gap = 0.1\n" + engine(2)), "know no gaps"));
   EXPECT_TRUE(holds(refusal(box + engine(2) + "[[output]]\nformat = \"xyz\"\n"), "[[output]]"));
-  EXPECT_TRUE(holds(refusal(box + engine(2) + "[[stage]]\ndo = \"relax\"\ndevice = \"gpu\"\n"), "\"device\""));
+  EXPECT_TRUE(
+      holds(refusal(box + engine(2) + "[[stage]]\ndo = \"relax\"\ndevice = \"gpu\"\n"), "\"device\""));
   EXPECT_TRUE(holds(refusal(box + engine(2) + "[[stage]]\ndo = \"relax\"\npolish = 1e-9\n"), "\"polish\""));
   EXPECT_TRUE(
       holds(refusal(box + engine(2) + "[[stage]]\ndo = \"relax\"\nexchange = true\n"), "\"exchange\""));
