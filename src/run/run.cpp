@@ -6,15 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/version.hpp"
 #include "core/parallel.hpp"
+#include "run/begin_packing.hpp"
 #include "run/checkpoint_owner.hpp"
 #include "run/conclude.hpp"
 #include "run/estimate.hpp"
@@ -390,17 +389,10 @@ Packing run(const Plan& plan, const RunOptions& options) {
                 "spheres in \"slabs\" are packed into files, by bernal pack, and nobody holds them; leave "
                 "\"slabs\" out to have them all",
                 plan.scene.engine->locations.of("slabs"));
-  Packing packing;
+  Packing packing = begin_packing(plan, options.seed, options.threads);
   packing.domain = plan.domain;
   packing.container = plan.container;
   packing.volume = volume_of(plan.domain);
-  packing.expected_packing_fraction = plan.expected_packing_fraction;
-  packing.scene = plan.scene;
-  packing.seed = options.seed.value_or(plan.scene.seed);
-  packing.scene.seed = packing.seed;
-  packing.threads =
-      options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  packing.version = version();
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(std::max(1, packing.threads)));
   Run(plan, options, packing).go();

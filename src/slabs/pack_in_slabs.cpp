@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,11 +12,11 @@
 #include "bernal/core/text.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "bernal/engine/engine_error.hpp"
-#include "bernal/version.hpp"
 #include "core/parallel.hpp"
 #include "engine/engine_plan.hpp"
 #include "engine/run_engine.hpp"
 #include "io/staged_folder.hpp"
+#include "run/begin_packing.hpp"
 #include "run/engine_box.hpp"
 #include "slabs/drawn_spheres.hpp"
 #include "slabs/slab_relaxation.hpp"
@@ -224,16 +223,9 @@ void check_slabs(const Plan& plan) {
 
 PackedInSlabs pack_in_slabs(const Plan& plan, const std::filesystem::path& folder,
                             const SlabOptions& options) {
-  PackedInSlabs result;
+  PackedInSlabs result{.packing = begin_packing(plan, options.seed, options.threads)};
   Packing& packing = result.packing;
   packing.spheres = Spheres<dynamic>(3);
-  packing.expected_packing_fraction = plan.expected_packing_fraction;
-  packing.scene = plan.scene;
-  packing.seed = options.seed.value_or(plan.scene.seed);
-  packing.scene.seed = packing.seed;
-  packing.threads =
-      options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  packing.version = version();
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(std::max(1, packing.threads)));
   const Interruptible listening(options.monitor);
