@@ -25,12 +25,14 @@ Key word(const Member& member, std::string_view name, std::string_view help,
   return made;
 }
 
+std::optional<Value> Key::of(const void* options) const {
+  if (!member.get) return std::nullopt;
+  std::optional<Value> value = member.get(options);
+  return value && !unsaid.empty() && toml_text(*value) == unsaid ? std::nullopt : value;
+}
+
 Key unless(std::string otherwise, Key key) {
-  key.member.get = [get = key.member.get,
-                    otherwise = std::move(otherwise)](const void* options) -> std::optional<Value> {
-    const std::optional<Value> value = get(options);
-    return value && toml_text(*value) == otherwise ? std::nullopt : value;
-  };
+  key.unsaid = std::move(otherwise);
   return key;
 }
 

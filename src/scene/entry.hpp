@@ -136,11 +136,11 @@ struct Key {
   /// Of a key that buys accuracy with time: values from the cheapest to the dearest. Of a length: in units of
   /// the one that the scene has.
   std::vector<Value> ladder = {};
-  bool is_limit = false;  ///< it buys that only where a run ends at it
+  bool is_limit = false;    ///< it buys that only where a run ends at it
+  std::string unsaid = {};  ///< the value, as TOML, that is not written; none if empty
 
-  std::optional<Value> of(const void* options) const {
-    return member.get ? member.get(options) : std::nullopt;
-  }
+  /// What is written of it, nothing where it goes without saying.
+  std::optional<Value> of(const void* options) const;
   bool acts_here(bool in_bed) const { return acts == Acts::everywhere || (acts == Acts::in_bed) == in_bed; }
 };
 

@@ -40,8 +40,12 @@ std::string sample(const Key& key, int choice) {
       return choice == 0 ? "0.1" : "0.30000000000000004";
     case Type::length:  // keys come in the order min, max and d43, d32
       return key.name == "max" || key.name == "d43" ? "2.5e3" : "0.1";
-    case Type::word:  // none that goes without saying
-      return fmt::format("\"{}\"", key.words[(choice + (key.name == "up" ? 1 : 0)) % key.words.size()]);
+    case Type::word: {
+      std::vector<std::string> said;
+      for (const std::string_view word : key.words) said.push_back(fmt::format("\"{}\"", word));
+      std::erase(said, key.unsaid);
+      return said[choice % said.size()];
+    }
     case Type::file:
       return choice == 0 ? "\"part.stl\"" : "'''/tmp/a \"strange\" \\ name.stl'''";
     case Type::direction:  // along an axis, as columns need it
