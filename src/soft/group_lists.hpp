@@ -39,11 +39,16 @@ class RegionCells {
   std::vector<std::uint32_t> places_;  // these columns have `lanes` more entries that say nothing
 };
 
-/// For the candidates of searches among so many spheres. Memory that is never touched costs nothing.
+/// For the candidates of searches. Memory that is never touched costs nothing.
 class CandidateRoom {
  public:
-  explicit CandidateRoom(std::size_t spheres)
-      : size_(spheres + 2 * lanes), columns_(new float[4 * size_]), places_(new std::uint32_t[size_]) {}
+  /// Among so many spheres, at least.
+  void reserve(std::size_t spheres) {
+    if (size_ >= spheres + 2 * lanes) return;
+    size_ = spheres + 2 * lanes;
+    columns_.reset(new float[4 * size_]);
+    places_.reset(new std::uint32_t[size_]);
+  }
 
   Candidates candidates() {
     float* const x = columns_.get();
@@ -51,7 +56,7 @@ class CandidateRoom {
   }
 
  private:
-  std::size_t size_;
+  std::size_t size_ = 0;
   std::unique_ptr<float[]> columns_;
   std::unique_ptr<std::uint32_t[]> places_;
 };

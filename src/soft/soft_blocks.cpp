@@ -239,6 +239,7 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
   }
   scratch.cells.sort(scratch.spheres, around, edges_, sizes_, skin_);
   scratch.lists.assign(block.swept, {});
+  scratch.room.reserve(most_places);
   scratch.found.find(kernels_, scratch.cells.task(), 0, scratch.cells.size(), block.swept, scratch.room,
                      scratch.lists);
   const auto filler = static_cast<std::uint16_t>(name_neighbors(block.places, scratch));

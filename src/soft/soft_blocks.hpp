@@ -75,7 +75,7 @@ class SoftBlocks {
     std::vector<std::uint16_t> moving, resting;  // numbers of a block's spheres
     SweepOrder order;
     RegionCells cells;
-    CandidateRoom room{most_places};
+    CandidateRoom room;
     FoundNeighbors found;
     std::vector<NeighborList> lists;
     std::vector<std::uint32_t> halo;

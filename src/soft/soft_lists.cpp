@@ -1,6 +1,5 @@
 #include "soft/soft_lists.hpp"
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -17,28 +16,28 @@ constexpr std::size_t groups_per_block = 64, spheres_per_search = 4096;
 void SoftLists::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& ids,
                       const std::array<double, 3>& edges, const SoftSizes& sizes, float skin,
                       std::uint32_t movers) {
-  std::vector<SoftSphere> compact, resting;
-  std::vector<std::uint32_t> compact_ids, resting_ids;
-  compact.reserve(spheres.size());
-  compact_ids.reserve(spheres.size());
+  for (Part* part : {&moving_, &resting_}) {
+    part->spheres.clear();
+    part->ids.clear();
+  }
   for (std::size_t p = 0; p < spheres.size(); ++p) {
     if (!(spheres[p].r > 0)) continue;
-    const bool rests = ids[p] >= movers;
-    (rests ? resting : compact).push_back(spheres[p]);
-    (rests ? resting_ids : compact_ids).push_back(ids[p]);
+    Part& part = ids[p] >= movers ? resting_ : moving_;
+    part.spheres.push_back(spheres[p]);
+    part.ids.push_back(ids[p]);
   }
-  order_.find(compact, SoftRegion{}, edges, sizes, skin, by_octaves_);
+  order_.find(moving_.spheres, SoftRegion{}, edges, sizes, skin, by_octaves_);
   const std::vector<std::uint32_t>& sphere_at = order_.sphere_at();
   spheres.assign(sphere_at.size() + 1, no_sphere);
   ids.assign(sphere_at.size() + 1, nobody);
   for (std::size_t p = 0; p < sphere_at.size(); ++p) {
     const std::uint32_t i = sphere_at[p];
     if (i == nobody) continue;
-    spheres[p] = compact[i];
-    ids[p] = compact_ids[i];
+    spheres[p] = moving_.spheres[i];
+    ids[p] = moving_.ids[i];
   }
-  spheres.insert(spheres.end(), resting.begin(), resting.end());
-  ids.insert(ids.end(), resting_ids.begin(), resting_ids.end());
+  spheres.insert(spheres.end(), resting_.spheres.begin(), resting_.spheres.end());
+  ids.insert(ids.end(), resting_.ids.begin(), resting_.ids.end());
   cells_.sort(spheres, SoftRegion{}, edges, sizes, skin);
   find_neighbors(sphere_at.size());
 }
@@ -47,12 +46,13 @@ void SoftLists::find_neighbors(std::size_t swept) {
   const SearchTask task = cells_.task();
   const std::size_t slots = cells_.size(), groups = swept / lanes;
   const auto filler = static_cast<std::uint32_t>(swept);  // the gap behind the last group
-  std::vector<NeighborList> lists(swept);
-  std::vector<FoundNeighbors> found((slots + spheres_per_search - 1) / spheres_per_search);
-  tbb::enumerable_thread_specific<CandidateRoom> rooms(slots);
-  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t n) {
+  found_of_.assign(swept, {});
+  found_.resize((slots + spheres_per_search - 1) / spheres_per_search);
+  tbb::parallel_for(std::size_t{0}, found_.size(), [&](std::size_t n) {
     const std::size_t first = n * spheres_per_search, last = std::min(slots, first + spheres_per_search);
-    found[n].find(kernels_, task, first, last, swept, rooms.local(), lists);
+    CandidateRoom& room = rooms_.local();
+    room.reserve(slots);
+    found_[n].find(kernels_, task, first, last, swept, room, found_of_);
   });
 
   groups_.resize(groups);
@@ -62,7 +62,7 @@ void SoftLists::find_neighbors(std::size_t swept) {
     std::vector<std::uint32_t>& rows = rows_[block];
     rows.clear();
     for (std::size_t g = first; g < last; ++g)
-      groups_[g].rows = append_rows(&lists[g * lanes], std::identity{}, filler, rows);
+      groups_[g].rows = append_rows(&found_of_[g * lanes], std::identity{}, filler, rows);
     const std::uint32_t* begin = rows.data();
     for (std::size_t g = first; g < last; begin += lanes * groups_[g++].rows) groups_[g].first = begin;
   });
