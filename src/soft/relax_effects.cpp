@@ -67,7 +67,7 @@ constexpr double exchange_in_box = 680 * microsecond, exchange_in_bed = 3000 * m
 constexpr double least_of_exchange = 1.5, spheres_of_least = 300, power_of_exchange = 0.6;
 /// To walls, of a sphere.
 constexpr double questions = 6;
-constexpr double bytes_a_sphere = 130, bytes_of_lists = 130;
+constexpr double bytes_a_sphere = 130, bytes_of_lists = 200;
 /// In blocks, in which the places are sorted.
 constexpr double bytes_in_blocks = 85, bytes_of_lists_in_blocks = 75;
 
