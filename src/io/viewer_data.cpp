@@ -28,7 +28,10 @@ std::string json_number(double value) { return std::isfinite(value) ? fmt::forma
 
 std::string json_list(std::span<const double> values) {
   std::string text = "[";
-  for (const double value : values) text += (text.size() > 1 ? "," : "") + json_number(value);
+  for (const double value : values) {
+    if (text.size() > 1) text += ',';
+    text += json_number(value);
+  }
   return text + "]";
 }
 std::string json_list(const Vector<3>& v) { return json_list(std::span(v.data(), 3)); }

@@ -185,10 +185,10 @@ struct SweepColour {
 
   SoftSphere* spheres;  // the one behind the last is `no_sphere`
   ColouredCells cells;
-  std::uint32_t colour, first_pair;  // of layers
+  std::uint32_t colour = 0, first_pair = 0;  // of layers
   const std::uint32_t *start, *first_unit;
   const NeighborUnit* units;
-  float scale[3], inverse[3];
+  float scale[3] = {}, inverse[3] = {};
   float omega;
   float* worst;
 

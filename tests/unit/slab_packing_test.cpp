@@ -103,8 +103,9 @@ TEST(SlabStore, KnowsWhoIsAroundASlab) {
       SlabStore store(folder / "slabs", slabs, 1);
       put(whole, store);
       const std::size_t held = expect_all_around(store, whole.edges, width);
-      if (slabs == 5 && width == 2)
+      if (slabs == 5 && width == 2) {
         EXPECT_LT(held, whole.spheres.size() / 2) << "the others stay on the disk";
+      }
       // And when they have gone where they were not put, all down, or all up by most of half a slab.
       for (const double most : {-0.4, 0.8}) {
         for (int s = 0; s < slabs; ++s)

@@ -29,8 +29,8 @@ struct PackedInSlabs {
   Packing packing;  ///< without its spheres
   std::uint64_t spheres = 0;
   double packing_fraction = 0;
-  WrittenPacking written;
-  std::string not_measured;  ///< why there are no figures of its structure: a sentence
+  WrittenPacking written = {};
+  std::string not_measured = {};  ///< why there are no figures of its structure: a sentence
 };
 
 /// Runs and writes a plan whose scene `is_in_slabs`: draws the spheres one after the other into the engine's
