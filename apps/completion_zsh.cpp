@@ -29,7 +29,7 @@ std::string action(const Option& option) {
   if (files.folders_only) return "_files -/";
   if (files.endings.empty()) return "_files";
   std::vector<std::string> endings;
-  for (const std::string& ending : files.endings) endings.push_back(ending.substr(1));
+  for (const std::string& dotted : files.endings) endings.push_back(dotted.substr(1));
   return fmt::format("_files -g \"(#i)*.({})(-.)\"", fmt::join(endings, "|"));
 }
 
