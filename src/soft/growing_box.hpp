@@ -87,13 +87,14 @@ StageEnd grow_apart(Engine& packing, const GrowingBox& box, BoxGrowth& so_far, S
 /// Tells a run how its box grows.
 class GrowthTeller {
  public:
-  /// Once `stop` is the largest overlap ratio it is over; `sweeps` are between two growths.
-  GrowthTeller(Work& work, double stop, int sweeps) : work_(work), stop_(stop), sweeps_(sweeps) {}
+  /// Once `stop` is the largest overlap ratio it is over; `sweeps` are between two growths. Radii stay. O(N).
+  GrowthTeller(Work& work, double stop, int sweeps)
+      : work_(work), volume_(work.volume_of_spheres()), stop_(stop), sweeps_(sweeps) {}
 
   /// To be called on growth.
   void grown(double factor, double molr) {
     work_.edges *= factor;
-    work_.milestone("relax", std::min(most, share(molr)), molr);
+    work_.box_milestone("relax", volume_, std::min(most, share(molr)), molr);
     told_ = watch_.seconds();
   }
   /// To be called after sweeps: of very many spheres some take minutes until the box grows.
@@ -101,7 +102,7 @@ class GrowthTeller {
     if (watch_.seconds() < told_ + between) return;
     told_ = watch_.seconds();
     const double done = share(growth.molr) + share_of_a_growth * growth.sweeps / sweeps_;
-    work_.milestone("relax", std::clamp(done, 0.0, most), growth.molr, false);
+    work_.box_milestone("relax", volume_, std::clamp(done, 0.0, most), growth.molr, false);
   }
 
  private:
@@ -110,6 +111,7 @@ class GrowthTeller {
   double share(double molr) const { return std::log(molr) / std::log(stop_); }
 
   Work& work_;
+  const double volume_;  // of the spheres
   const double stop_;
   const int sweeps_;
   const Stopwatch watch_;

@@ -157,11 +157,16 @@ void Work::milestone(std::string_view stage) const {
              .potential = bed().potential(-Vector<3>::Unit(bed().dimension() - 1))});
 }
 
-void Work::milestone(std::string_view stage, double done, double max_overlap, bool for_history) const {
+void Work::milestone(std::string_view stage, double done, double max_overlap) const {
+  if (on_course) box_milestone(stage, volume_of_spheres(), done, max_overlap);
+}
+
+void Work::box_milestone(std::string_view stage, double volume, double done, double max_overlap,
+                         bool for_history) const {
   if (!on_course) return;
   on_course({.stage = stage,
              .spheres = placed_share < 1 ? placed_count : spheres.size(),
-             .packing_fraction = placed_share * volume_of_spheres() / edges.prod(),
+             .packing_fraction = placed_share * volume / edges.prod(),
              .max_overlap = max_overlap,
              .done = done,
              .for_history = for_history});

@@ -171,7 +171,10 @@ struct Work {
   /// To be called some hundred times a stage at most: of the bed; of the box, where `done` says how far the
   /// stage has come; and of spheres that are in neither, because they overlap or are still to grow.
   void milestone(std::string_view stage) const;
-  void milestone(std::string_view stage, double done, double max_overlap, bool for_history = true) const;
+  void milestone(std::string_view stage, double done, double max_overlap) const;
+  /// The same for who knows the volume of all spheres, which takes O(N) to add up.
+  void box_milestone(std::string_view stage, double volume, double done, double max_overlap,
+                     bool for_history = true) const;
   void crowd_milestone(std::string_view stage, std::size_t count, double volume, double max_overlap,
                        double done) const;
 
