@@ -65,9 +65,9 @@ struct HardSphereOptions {
 /// Invariant: at the end of a period no two spheres overlap by more than rounding, about 1e-15 edges.
 /// Precondition: `has_room`, no period may start without; there are spheres.
 /// Cost: for 10,000 equal spheres 0.8 µs a collision in a fluid, 0.5 near jamming; twice that for lognormal
-/// sizes of sigma 0.5. 100,000 spheres cost 1.4 times as much, 10^6 some twice: events come up
-/// at places in no order, and all that they read has to come from the memory, however early it is asked for.
-/// Memory about 350 bytes a sphere.
+/// sizes of sigma 0.5. 100,000 spheres cost 1.4 times as much, 10^6 some 2.3 times: events come up at places
+/// in no order, and all that they read has to come from the memory, however early it is asked for. Memory
+/// about 350 bytes a sphere.
 /// One thread; the same bits on every x86-64.
 template <int D>
 class HardSpheres {

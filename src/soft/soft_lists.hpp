@@ -46,8 +46,8 @@ class SoftLists {
   RegionCells cells_;
   std::vector<NeighborRows<std::uint32_t>> groups_;
   std::vector<std::vector<std::uint32_t>> rows_;  // a block for some groups
-  // Of the building alone. Kept: to get their memory from the system each time takes 10^5 spheres 70 ns each,
-  // half as long as the rest.
+  // Of the building alone. Kept: to get their memory from the system each time took 10^5 spheres 60 ns each,
+  // and the rest of building 160.
   struct Part {
     std::vector<SoftSphere> spheres;
     std::vector<std::uint32_t> ids;
