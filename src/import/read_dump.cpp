@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cctype>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -26,7 +27,8 @@ std::uint64_t read_claimed(ForeignLines& lines) {
 int count_frames(const Reading& reading) {
   ForeignLines lines(reading);
   int frames = 0;
-  std::optional<std::uint64_t> claimed;
+  constexpr std::uint64_t any_number = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t claimed = any_number;
   bool in_atoms = false;
   for (std::uint64_t rows = 0; lines.next();) {
     const std::string_view line = lines.line();
@@ -34,13 +36,13 @@ int count_frames(const Reading& reading) {
       in_atoms = line.starts_with(atoms_item);
       rows = 0;
       frames += line.starts_with(step_item);
-      if (line.starts_with(step_item)) claimed.reset();
+      if (line.starts_with(step_item)) claimed = any_number;
       if (line.starts_with(count_item)) claimed = read_claimed(lines);
-    } else if (in_atoms && claimed && !line.empty() && ++rows > *claimed && !lines.words().empty()) {
+    } else if (in_atoms && !line.empty() && ++rows > claimed && !lines.words().empty()) {
       lines.fail(
           fmt::format("frame {} says that it has {} spheres, and here is more; if it is a sphere, "
                       "correct the number below \"{}\", else take the line out",
-                      frames, *claimed, count_item));
+                      frames, claimed, count_item));
     }
   }
   if (frames == 0) lines.fail(fmt::format("there is no line \"{}\"", step_item));
