@@ -60,8 +60,6 @@ class Calendar {
     std::ranges::push_heap(late_, later);
     if (late_.size() > most_noted * (events_.size() + least_a_day)) drop_what_fell_today();
   }
-  /// The event stays where it is and becomes another.
-  void change(Id id, Id what) { events_[id].what = what; }
 
   /// Whose event is the earliest, or `none` if there is none before the horizon. It stays scheduled.
   Id next() {

@@ -32,15 +32,15 @@ struct OneByOne {
     double* __restrict columns = task.columns;
     for (std::size_t m = 0; m < padded; ++m) {
       const FlyingSphere<D>& other = task.spheres[task.neighbors[m < task.count ? m : task.count - 1]];
-      for (int k = 0; k < D; ++k) columns[static_cast<std::size_t>(k) * stride + m] = other.x[k];
+      for (int k = 0; k < D; ++k) columns[static_cast<std::size_t>(k) * stride + m] = other.x0[k];
       for (int k = 0; k < D; ++k) columns[static_cast<std::size_t>(D + k) * stride + m] = other.v[k];
-      columns[2 * D * stride + m] = other.time;
-      columns[(2 * D + 1) * stride + m] = other.r;
+      columns[2 * D * stride + m] = other.r;
     }
   }
 };
 
-/// The same in three dimensions, where a sphere is eight numbers: eight spheres are transposed in registers.
+/// The same in three dimensions, where a sphere is eight numbers, of which nobody reads the last here: eight
+/// spheres are transposed in registers.
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")
 struct EightByEight {
@@ -50,7 +50,7 @@ struct EightByEight {
     for (std::size_t m = 0; m < padded; m += 8) {
       const auto row = [&](std::size_t k) __attribute__((always_inline)) {
         const std::size_t at = m + k < task.count ? m + k : task.count - 1;
-        return _mm512_load_pd(task.spheres[task.neighbors[at]].x);
+        return _mm512_load_pd(task.spheres[task.neighbors[at]].x0);
       };
       const __m512d r0 = row(0), r1 = row(1), r2 = row(2), r3 = row(3), r4 = row(4), r5 = row(5), r6 = row(6),
                     r7 = row(7);
@@ -82,17 +82,19 @@ template <int D>
   double* __restrict delays = task.delays;
   const double size = task.size + task.growth * task.now, growth = task.growth, now = task.now;
   const FlyingSphere<D> self = *task.self;
-  double edges[D], inverse_edges[D];
-  for (int k = 0; k < D; ++k) edges[k] = task.edges[k], inverse_edges[k] = task.inverse_edges[k];
+  double edges[D], inverse_edges[D], place[D];
+  for (int k = 0; k < D; ++k) {
+    edges[k] = task.edges[k], inverse_edges[k] = task.inverse_edges[k];
+    place[k] = self.x0[k] + self.v[k] * now;
+  }
 #pragma GCC ivdep
   for (std::size_t m = 0; m < padded; ++m) {
-    const double flight = now - columns[2 * D * stride + m];
-    const double radii = self.r + columns[(2 * D + 1) * stride + m];
+    const double radii = self.r + columns[2 * D * stride + m];
     const double s = radii * size, s_growth = radii * growth;
     double dd = 0, dw = 0, ww = 0;
     for (int k = 0; k < D; ++k) {
       const double v = columns[static_cast<std::size_t>(D + k) * stride + m];
-      double d = columns[static_cast<std::size_t>(k) * stride + m] + v * flight - self.x[k];
+      double d = columns[static_cast<std::size_t>(k) * stride + m] + v * now - place[k];
       d -= edges[k] * nearest(d * inverse_edges[k]);
       const double w = v - self.v[k];
       dd += d * d;

@@ -12,7 +12,7 @@ namespace bernal {
 template <int D>
 struct CollisionScan {
   const FlyingSphere<D>* spheres;
-  const FlyingSphere<D>* self;  ///< where it is `now`: self->time == now
+  const FlyingSphere<D>* self;
   const std::uint32_t* neighbors;
   std::size_t count;
   double now;

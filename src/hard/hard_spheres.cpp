@@ -22,6 +22,9 @@ constexpr double fastest_change_of_duration = 4;
 /// Of the first period, a mean diameter, for each sphere: a few collisions in all, so that it hardly matters
 /// to spheres that are jammed from the start, but not so short that a single collision looks like pressure.
 constexpr double first_duration = 1;
+/// Of a period, in shortest edges at thermal speed: where spheres hardly meet, courses of many edges would
+/// cost digits.
+constexpr double longest_flight = 4;
 /// Of the size, in a period.
 constexpr double most_growth = 0.1;
 /// Of a sphere, some thirty times what a period is made for: few spheres that jam in the midst of one would
@@ -69,7 +72,7 @@ HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, R
     s.r = spheres.r[i];
     const double speed = 1 / std::sqrt(mass(s.r));
     for (int k = 0; k < D; ++k) {
-      s.x[k] = spheres.x[static_cast<std::size_t>(k)][i];
+      s.x0[k] = spheres.x[static_cast<std::size_t>(k)][i];
       s.v[k] = speed * random.uniform(-1, 1);
       momentum[k] += mass(s.r) * s.v[k];
     }
@@ -107,7 +110,7 @@ template <int D>
 void HardSpheres<D>::write_to(Spheres<D>& spheres) const {
   const Boundary<D> boundary{edges_};
   for (std::size_t i = 0; i < spheres_.size(); ++i)
-    spheres.set_center(original_[i], boundary.wrap(spheres_[i].position()));
+    spheres.set_center(original_[i], boundary.wrap(spheres_[i].position(0)));
 }
 
 template <int D>
@@ -121,6 +124,7 @@ double HardSpheres<D>::duration(double growth, double largest) const {
     time = std::clamp(time, period_.time / fastest_change_of_duration,
                       period_.time * fastest_change_of_duration);
   }
+  time = std::min(time, longest_flight * edges_.minCoeff());
   if (growth > 0)
     time = std::min(
         {time, (largest - size_) * mean_diameter_ / growth, most_growth * size_ * mean_diameter_ / growth});
@@ -145,7 +149,7 @@ void HardSpheres<D>::sort_along_curve() {
   const Boundary<D> boundary{edges_};
   std::vector<std::pair<std::uint64_t, Id>> places(count());
   for (Id i = 0; i < count(); ++i)
-    places[i] = {place_on_curve<D>(boundary.wrap(spheres_[i].position()), edges_), i};
+    places[i] = {place_on_curve<D>(boundary.wrap(spheres_[i].position(0)), edges_), i};
   std::ranges::sort(places);
   const LargePageVector<FlyingSphere<D>> spheres = spheres_;
   const std::vector<Id> original = original_;
@@ -169,8 +173,8 @@ void HardSpheres<D>::build_shells(double freedom, double largest) {
   const double most = (edges_.minCoeff() / 2 - 2 * largest_radius_ * largest_listed_) / 4;
   const Boundary<D> boundary{edges_};
   for (std::size_t i = 0; i < count(); ++i) {
-    homes[i] = boundary.wrap(spheres_[i].position());
-    for (int k = 0; k < D; ++k) spheres_[i].x[k] = homes[i][k];
+    homes[i] = boundary.wrap(spheres_[i].position(0));
+    spheres_[i].set_course(0, homes[i], spheres_[i].velocity());
     radii[i] = spheres_[i].r * largest_listed_;
     freedoms[i] = std::min(most, freedom_ / std::sqrt(2 * spheres_[i].r / mean_diameter_));
   }
@@ -218,20 +222,19 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
       period_.stopped = true;
       break;
     }
-    const Id what = calendar_.what(i);
+    Id what = calendar_.what(i);
+    if (is_partner(what) && !is_mutual(i, what)) what = look_again;
     const EventClock::Event event(clock_of(what));
     if (count() > few_spheres) prefetch();
     now_ = calendar_.time(i);
-    spheres_[i].fly_to(now_);
     if (is_partner(what)) {
-      spheres_[what].fly_to(now_);
       collide(i, what);
-      calendar_.schedule(i, infinite, look_again);
-      calendar_.schedule(what, infinite, look_again);
+      schedule(i, infinite, look_again);
+      schedule(what, infinite, look_again);
     } else if (what == leave) {
       ++period_.departures;
-      const Vector<D> home = Boundary<D>{edges_}.wrap(spheres_[i].position());
-      for (int k = 0; k < D; ++k) spheres_[i].x[k] = home[k];
+      const Vector<D> home = Boundary<D>{edges_}.wrap(spheres_[i].position(now_));
+      spheres_[i].set_course(now_, home, spheres_[i].velocity());
       shells_.settle(i, home);
       if (!walls_.empty()) walls_.settle(i, home, spheres_[i].r * largest_listed_ + shells_.freedom(i));
     } else if (what == touch_wall) {
@@ -242,8 +245,8 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
   }
 
   for (FlyingSphere<D>& s : spheres_) {
-    s.fly_to(horizon_);
-    s.time = 0;
+    s.set_course(0, s.position(horizon_), s.velocity());
+    s.event = infinite;
   }
   size_ += growth_ * horizon_;
   if (growth > 0 && size_ > largest * (1 - 4 * tolerance::roundoff)) size_ = largest;
@@ -272,16 +275,14 @@ void HardSpheres<D>::prefetch() {
                                                    : calendar_.of_today(prefetched_ - steps * step_ahead);
     if (id == Calendar::none) return id;
     const Id what = calendar_.what(id);
-    return is_partner(what) && what < id ? Calendar::none : id;
+    return is_partner(what) && what < id && is_mutual(id, what) ? Calendar::none : id;
   };
   const auto prefetch_neighbors = [&](Id i) {
-    for (const Id j : shells_.neighbors(i)) {
-      calendar_.prefetch(j);
-      bernal::prefetch(&spheres_[j]);
-    }
+    for (const Id j : shells_.neighbors(i)) bernal::prefetch(&spheres_[j]);
   };
   for (; prefetched_ <= calendar_.over() + 4 * step_ahead; ++prefetched_) {
-    if (const Id id = calendar_.of_today(prefetched_); id != Calendar::none) calendar_.prefetch(id);
+    if (const Id id = calendar_.of_today(prefetched_); id != Calendar::none)
+      if (const Id what = calendar_.what(id); is_partner(what)) calendar_.prefetch(what);
     if (const Id id = ahead(1); id != Calendar::none) {
       bernal::prefetch(&spheres_[id]);
       shells_.prefetch(id);
@@ -295,9 +296,8 @@ void HardSpheres<D>::prefetch() {
       if (const Id what = calendar_.what(id); is_partner(what)) {
         shells_.prefetch_list(what);
       } else if (what == leave) {
-        FlyingSphere<D> s = spheres_[id];
-        s.fly_to(calendar_.time(id));
-        shells_.prefetch_settling(id, Boundary<D>{edges_}.wrap(s.position()));
+        const Vector<D> then = spheres_[id].position(calendar_.time(id));
+        shells_.prefetch_settling(id, Boundary<D>{edges_}.wrap(then));
       }
     }
     if (const Id id = ahead(3); id != Calendar::none) {
@@ -309,33 +309,19 @@ void HardSpheres<D>::prefetch() {
 
 template <int D>
 double HardSpheres<D>::time_to_leave(Id i) const {
-  const FlyingSphere<D>& s = spheres_[i];
-  const Vector<D>& home = shells_.home(i);
-  const double freedom = shells_.freedom(i);
-  double qq = 0, qv = 0, vv = 0;
-  for (int k = 0; k < D; ++k) {
-    const double q = s.x[k] - home[k];
-    qq += q * q;
-    qv += q * s.v[k];
-    vv += s.v[k] * s.v[k];
-  }
-  const double c = qq - freedom * freedom;
+  const Vector<D> v = spheres_[i].velocity(), q = spheres_[i].position(now_) - shells_.home(i);
+  const double freedom = shells_.freedom(i), qv = q.dot(v), vv = v.squaredNorm();
+  const double c = q.squaredNorm() - freedom * freedom;
   const double root = std::sqrt(std::max(0.0, qv * qv - vv * c));
   return std::max(0.0, qv > 0 ? -c / (qv + root) : (root - qv) / vv);
 }
 
-template <int D>
-void HardSpheres<D>::forget_partner(Id i) {
-  const Id partner = calendar_.what(i);
-  if (is_partner(partner) && calendar_.what(partner) == i) calendar_.change(partner, look_again);
-}
-
-/// The next event of sphere i, which is where it is now. A collision is only taken if the other has nothing
-/// earlier to do: otherwise that comes first, and then the other looks again.
+/// The next event of sphere i. A collision is only taken if the other has nothing earlier to do: otherwise
+/// that comes first, and then the other looks again. So does whom the other was to meet, when that comes up:
+/// it is found out there, as it would have to be looked up here.
 template <int D>
 void HardSpheres<D>::predict(Id i) {
   ++period_.predictions;
-  forget_partner(i);
   const std::span<const Id> neighbors = shells_.neighbors(i);
   if (scratch_.size() < (2 * D + 3) * (shells_.longest_list() + 2 * widest)) {
     scan_.stride = (shells_.longest_list() + 2 * widest) / widest * widest;
@@ -347,20 +333,21 @@ void HardSpheres<D>::predict(Id i) {
   scan_.self = &spheres_[i];
   scan_.neighbors = neighbors.data();
   scan_.count = neighbors.size();
+  period_.scanned += neighbors.size();
   scan_.now = now_;
   const double leaves = time_to_leave(i);
   const FlyingSphere<D>& me = spheres_[i];
   const double touches = walls_.empty()
                              ? infinite
-                             : walls_.time_to_touch(i, me, me.r * (size_ + growth_ * now_), me.r * growth_);
+                             : walls_.time_to_touch(i, me.position(now_), me.velocity(),
+                                                    me.r * (size_ + growth_ * now_), me.r * growth_);
   const double limit = std::min(std::min(leaves, horizon_ - now_), touches);
   for (FirstCollision first = kernel_.scan(scan_); first.delay < limit;) {
     const Id j = neighbors[first.neighbor];
     const double time = now_ + first.delay;
-    if (time <= calendar_.time(j)) {
-      forget_partner(j);
-      calendar_.schedule(j, time, i);
-      calendar_.schedule(i, time, j);
+    if (time <= spheres_[j].event) {
+      schedule(j, time, i);
+      schedule(i, time, j);
       return;
     }
     scan_.delays[first.neighbor] = infinite;
@@ -368,23 +355,19 @@ void HardSpheres<D>::predict(Id i) {
     first = {*next, static_cast<std::size_t>(next - scan_.delays)};
   }
   if (touches < leaves)
-    calendar_.schedule(i, now_ + touches, touch_wall);
+    schedule(i, now_ + touches, touch_wall);
   else
-    calendar_.schedule(i, now_ + leaves, leave);
+    schedule(i, now_ + leaves, leave);
 }
 
 template <int D>
 void HardSpheres<D>::collide(Id i, Id j) {
   FlyingSphere<D>&a = spheres_[i], &b = spheres_[j];
   const double radii = a.r + b.r;
-  double d[D], squared = 0, dw = 0;
-  for (int k = 0; k < D; ++k) {
-    d[k] = b.x[k] - a.x[k];
-    d[k] -= edges_[k] * std::nearbyint(d[k] * scan_.inverse_edges[k]);
-    squared += d[k] * d[k];
-    dw += d[k] * (b.v[k] - a.v[k]);
-  }
-  const double distance = std::sqrt(squared);
+  const Vector<D> at_a = a.position(now_), at_b = b.position(now_);
+  Vector<D> d = at_b - at_a;
+  for (int k = 0; k < D; ++k) d[k] -= edges_[k] * std::nearbyint(d[k] * scan_.inverse_edges[k]);
+  const double distance = d.norm(), dw = d.dot(b.velocity() - a.velocity());
   // Half the change of the relative velocity: above 0 exactly where the scan saw them come closer, and never
   // so small that it gets lost in the velocities.
   const double contact = radii * (size_ + growth_ * now_);
@@ -392,18 +375,19 @@ void HardSpheres<D>::collide(Id i, Id j) {
   const double mass_a = mass(a.r), mass_b = mass(b.r), share_a = 2 * mass_b / (mass_a + mass_b),
                share_b = 2 * mass_a / (mass_a + mass_b);
   ++period_.collisions;
-  for (int k = 0; k < D; ++k) {
-    const double along = kick * d[k] / distance;
-    a.v[k] -= share_a * along;
-    b.v[k] += share_b * along;
-  }
+  const Vector<D> along = kick / distance * d;
+  a.set_course(now_, at_a, a.velocity() - share_a * along);
+  b.set_course(now_, at_b, b.velocity() + share_b * along);
   virial_ += mass_a * share_a * kick * distance;
 }
 
 template <int D>
 void HardSpheres<D>::reflect(Id i) {
   FlyingSphere<D>& s = spheres_[i];
-  const double kick = walls_.reflect(i, s, s.r * growth_, 2 * least_kick);
+  const Vector<D> at = s.position(now_);
+  Vector<D> v = s.velocity();
+  const double kick = walls_.reflect(i, at, v, s.r * growth_, 2 * least_kick);
+  s.set_course(now_, at, v);
   ++period_.reflections;
   period_.wall_momentum += mass(s.r) * kick;
   virial_ += mass(s.r) * kick * s.r * (size_ + growth_ * now_);

@@ -26,6 +26,7 @@ struct FlightPeriod {
   std::uint64_t departures = 0;   ///< of spheres from their shells
   std::uint64_t builds = 0;       ///< of the lists of all spheres
   std::uint64_t predictions = 0;  ///< scans of all neighbours of a sphere
+  std::uint64_t scanned = 0;      ///< neighbours in all of them
   /// P V / N k T by the temperature at the start, from the virial theorem: 1 + Σ q b / 2 E t over all
   /// momenta q that were exchanged, along b: the line of centres of a pair, the radius at a wall. On average
   /// it is the pressure on the walls, but scatters less.
@@ -65,9 +66,9 @@ struct HardSphereOptions {
 /// Invariant: at the end of a period no two spheres overlap by more than rounding, about 1e-15 edges.
 /// Precondition: `has_room`, no period may start without; there are spheres.
 /// Cost: for 10,000 equal spheres 0.8 µs a collision in a fluid, 0.5 near jamming; twice that for lognormal
-/// sizes of sigma 0.5. 100,000 spheres cost 1.4 times as much, 10^6 some 2.3 times: events come up at places
-/// in no order, and all that they read has to come from the memory, however early it is asked for. Memory
-/// about 350 bytes a sphere.
+/// sizes of sigma 0.5. 10^6 cost some 1.5 times as much: events come up at places in no order, so all that they
+/// read, some 46 lines of 64 bytes a collision, has to come from the memory, however early it is asked for.
+/// Memory about 350 bytes a sphere.
 /// One thread; the same bits on every x86-64.
 template <int D>
 class HardSpheres {
@@ -116,7 +117,14 @@ class HardSpheres {
   void build_shells(double freedom, double largest);
   void prefetch();
   void predict(Id i);
-  void forget_partner(Id i);
+  void schedule(Id i, double time, Id what) {
+    calendar_.schedule(i, time, what);
+    spheres_[i].event = time;
+  }
+  /// Whether i and its partner are still to meet: the other may have found an earlier one.
+  bool is_mutual(Id i, Id partner) const {
+    return calendar_.what(partner) == i && calendar_.time(partner) == calendar_.time(i);
+  }
   double time_to_leave(Id i) const;
   void collide(Id i, Id j);
   void reflect(Id i);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "bernal/core/vector.hpp"
@@ -13,198 +15,241 @@
 
 namespace bernal {
 
-/// A background grid of a periodic box that keeps, unlike `CellGrid`, the points and reaches themselves, cell
-/// by cell in one piece of memory and in single precision: for points that move now and then and are asked
-/// for their neighbours as often, when nothing of it is in the caches.
+/// A background grid of a periodic box that keeps, unlike `CellGrid`, the points and reaches themselves,
+/// those of a cell in one line of the cache: for points that move now and then and are asked for their
+/// neighbours as often, when nothing of it is in the caches. For that it rounds them: places to 2^-16 of a
+/// cell's edge, reaches up to 2^-16 of the cells' largest.
 ///
 /// Level l holds the points with reaches in (R_l / 2, R_l], R_l = R / 2^l, in cells of edge 2 R_l or more.
-/// Cost: `insert` and `move` O(1), a query the points of some 3^D cells a level. Memory: 4 (4 D + 8) + 16
-/// bytes a cell, of which there are at most as many as points on each level.
+/// Cost: `insert` and `move` O(1), a query the points of some 3^D cells a level. Memory: 64 bytes a cell, of
+/// which a level has at most half as many as points, and for each further line of a crowded one; 4 a point.
 template <int D>
 class HomeGrid {
  public:
   using Id = std::uint32_t;
 
-  /// Without points. Ids are below `count`, reaches in [least, most].
-  void start(const Vector<D>& edges, double least, double most, std::size_t count) {
+  /// For points to come: of each the reach.
+  void start(const Vector<D>& edges, std::span<const double> reaches) {
     edges_ = edges;
     for (int k = 0; k < D; ++k) inverse_edges_[k] = 1 / edges[k];
-    most_ = most;
-    margin_ = rounding * edges.sum();
-    cell_of_.assign(count, 0);
+    const auto [least, most] = std::ranges::minmax(reaches);
+    cell_of_.assign(reaches.size(), 0);
     levels_.clear();
+    do levels_.push_back({.largest = std::ldexp(most, -static_cast<int>(levels_.size()))});
+    while (levels_.back().largest / 2 >= least && levels_.size() < most_levels);
+    for (const double reach : reaches) ++level_of(reach).points;
     std::size_t cells = 0;
-    for (double largest = most;; largest /= 2) {
-      levels_.push_back(make_level(largest, count, cells));
-      if (largest / 2 < least || levels_.size() == most_levels) break;
-    }
-    cells_.resize(cells);
-    for (std::size_t c = 0; c < cells; ++c) cells_[c] = {c * room, 0, room};
-    points_.resize(cells * room);
+    for (Level& level : levels_) cells += divide(level, cells);
+    lines_.assign(cells, {});
+    free_ = 0;
   }
 
-  void archive(Archive& a) { a(edges_, inverse_edges_, most_, margin_, levels_, cells_, points_, cell_of_); }
+  void archive(Archive& a) { a(edges_, inverse_edges_, levels_, lines_, free_, cell_of_); }
 
-  void insert(Id id, const Vector<D>& home, double reach) {
-    Level& level = level_of(reach);
-    ++level.points;
-    append(id, cell_at(level, home), home, reach);
-  }
+  void insert(Id id, const Vector<D>& home, double reach) { append(id, level_of(reach), home, reach); }
   void move(Id id, const Vector<D>& home, double reach) {
-    Cell& cell = cells_[cell_of_[id]];
-    Point* const begin = points_.data() + cell.begin;
-    Point* const at = std::find_if(begin, begin + cell.count, [&](const Point& p) { return p.id == id; });
-    *at = begin[cell.count - 1];
-    --cell.count;
-    append(id, cell_at(level_of(reach), home), home, reach);
+    remove(id, cell_of_[id]);
+    append(id, level_of(reach), home, reach);
   }
 
   /// Appends every point whose distance, minimum image, is less than the sum of the two reaches, and none
-  /// that is farther by more than 3e-7 of the sum of all edges.
+  /// that is farther by more than `coarseness` cells' edges.
   void find_near(const Vector<D>& home, double reach, std::vector<Id>& found) const {
-    for_each_cell_near(home, reach, [&](std::size_t c) { find_in(cells_[c], home, reach, found); });
+    std::size_t count = found.size();
+    for_each_cell_near(home, reach,
+                       [&](const Level& level, std::size_t c, const auto& corner, bool all_around) {
+                         if (all_around)
+                           find_in<true>(level, c, corner, reach, found, count);
+                         else
+                           find_in<false>(level, c, corner, reach, found, count);
+                       });
+    found.resize(count);
   }
   /// Asks the memory for all that such a query will look at.
   void prefetch_near(const Vector<D>& home, double reach) const {
-    for_each_cell_near(home, reach, [&](std::size_t c) {
-      bernal::prefetch(&cells_[c]);
-      bernal::prefetch(&points_[c * room]);
-      bernal::prefetch(&points_[c * room + 3]);
-    });
+    for_each_cell_near(home, reach,
+                       [&](const Level&, std::size_t c, const auto&, bool) { bernal::prefetch(&lines_[c]); });
   }
+
+  static constexpr double coarseness = 5.0 / (1 << 16);
 
  private:
   static constexpr std::size_t most_levels = 30;
-  static constexpr double cells_a_point = 1;
-  static constexpr std::uint32_t room = 4;  // of a cell, to begin with
-  /// What a reach is longer by, of the sum of all edges: more than rounding to single precision takes from
-  /// the distance and from the reach.
-  static constexpr double rounding = 1.2e-7;
+  static constexpr double cells_a_point = 0.5;
+  static constexpr double steps = 1 << 16, reach_steps = steps - 2;  // of a cell's edge, of the largest reach
+  static constexpr std::uint32_t a_line = 60 / (2 * D + 6);
 
-  struct Point {
-    float x[D];
-    float reach;
-    Id id;
+  /// Points of a cell. More than it has room for stand in further lines, all of them full, that are chained
+  /// to the cell's own.
+  struct alignas(64) Line {
+    std::uint32_t count : 3 = 0, next : 29 = 0;  // next: 0 if none
+    Id ids[a_line] = {};
+    std::uint16_t x[a_line][D] = {};
+    std::uint16_t reach[a_line] = {};
   };
-  struct Cell {
-    std::size_t begin = 0;
-    std::uint32_t count = 0, room = 0;
-  };
+  static_assert(sizeof(Line) == 64);
+
   struct Level {
     double largest;
-    std::array<int, D> cells;
-    std::array<double, D> inverse;
-    std::size_t begin;
     std::size_t points = 0;
+    std::array<int, D> cells = {};
+    std::array<double, D> inverse = {}, width = {};  // of a cell's edge
+    double margin = 0;  // what the sum of two reaches is longer by: places are rounded
+    std::size_t begin = 0;
   };
 
-  Level make_level(double largest, std::size_t count, std::size_t& cells) const {
-    const double most_cells = std::max(64.0, cells_a_point * static_cast<double>(count));
-    Level level{.largest = largest, .cells = {}, .inverse = {}, .begin = cells};
-    for (double edge = 2 * largest;; edge *= 1.25) {
-      double all = 1;
+  /// Into cells, which are numbered from `begin` on. Returns how many.
+  std::size_t divide(Level& level, std::size_t begin) const {
+    const double most_cells = std::max(64.0, cells_a_point * static_cast<double>(level.points));
+    level.begin = begin;
+    for (double edge = 2 * level.largest;; edge *= 1.25) {
+      double all = 1, squared = 0;
       for (int k = 0; k < D; ++k) {
         level.cells[k] = static_cast<int>(std::clamp(std::floor(edges_[k] / edge), 1.0, 1e6));
         level.inverse[k] = level.cells[k] / edges_[k];
+        level.width[k] = edges_[k] / level.cells[k];
+        squared += level.width[k] * level.width[k];
         all *= level.cells[k];
       }
       if (all > most_cells) continue;
-      cells += static_cast<std::size_t>(all);
-      return level;
+      level.margin = std::sqrt(squared) / steps;  // twice half a step, to have room for rounding
+      return static_cast<std::size_t>(all);
     }
   }
   Level& level_of(double reach) {
     std::size_t l = 0;
-    for (double largest = most_ / 2; reach <= largest && l + 1 < levels_.size(); largest /= 2) ++l;
+    while (l + 1 < levels_.size() && reach <= levels_[l + 1].largest) ++l;
     return levels_[l];
   }
-  std::size_t cell_at(const Level& level, const Vector<D>& home) const {
-    std::size_t index = 0;
+
+  void append(Id id, const Level& level, const Vector<D>& home, double reach) {
+    std::size_t c = 0;
+    std::array<std::uint16_t, D> x;
     for (int k = D - 1; k >= 0; --k) {
-      const int at = std::clamp(static_cast<int>(home[k] * level.inverse[k]), 0, level.cells[k] - 1);
-      index = index * static_cast<std::size_t>(level.cells[k]) + static_cast<std::size_t>(at);
+      const double place = home[k] * level.inverse[k];
+      const int at = std::clamp(static_cast<int>(place), 0, level.cells[k] - 1);
+      c = c * static_cast<std::size_t>(level.cells[k]) + static_cast<std::size_t>(at);
+      x[k] = static_cast<std::uint16_t>(std::clamp((place - at) * steps, 0.0, steps - 1));
     }
-    return level.begin + index;
-  }
-  void append(Id id, std::size_t c, const Vector<D>& home, double reach) {
-    Cell& cell = cells_[c];
-    if (cell.count == cell.room) {
-      const std::size_t begin = points_.size();
-      points_.resize(begin + 2 * std::size_t{cell.room});
-      std::copy_n(points_.begin() + static_cast<std::ptrdiff_t>(cell.begin), cell.count,
-                  points_.begin() + static_cast<std::ptrdiff_t>(begin));
-      cell = {begin, cell.count, 2 * cell.room};
+    c += level.begin;
+    if (lines_[c].count == a_line) {
+      const std::uint32_t chained = take_line();
+      lines_[chained] = lines_[c];
+      lines_[c] = {.count = 0, .next = chained};
     }
-    Point& point = points_[cell.begin + cell.count++];
-    for (int k = 0; k < D; ++k) point.x[k] = static_cast<float>(home[k]);
-    point.reach = static_cast<float>(reach + margin_);
-    point.id = id;
+    Line& line = lines_[c];
+    line.ids[line.count] = id;
+    std::copy_n(x.begin(), D, line.x[line.count]);
+    line.reach[line.count] = static_cast<std::uint16_t>(reach / level.largest * reach_steps + 1);
+    ++line.count;
     cell_of_[id] = static_cast<std::uint32_t>(c);
   }
-  /// Calls visit(c) for all cells that such points may lie in, row by row.
+  /// The last point of the cell's own line takes its place.
+  void remove(Id id, std::size_t c) {
+    Line& line = lines_[c];
+    const std::uint32_t last = line.count - 1;
+    for (Line* at = &line;; at = &lines_[at->next]) {
+      const Id* const found = std::find(at->ids, at->ids + at->count, id);
+      if (found == at->ids + at->count) continue;
+      const auto m = found - at->ids;
+      at->ids[m] = line.ids[last];
+      std::copy_n(line.x[last], D, at->x[m]);
+      at->reach[m] = line.reach[last];
+      break;
+    }
+    line.count = last;
+    if (last > 0 || line.next == 0) return;
+    const std::uint32_t chained = line.next;
+    line = lines_[chained];
+    lines_[chained].next = free_;
+    free_ = chained;
+  }
+  std::uint32_t take_line() {
+    if (free_ == 0) {
+      lines_.emplace_back();
+      return static_cast<std::uint32_t>(lines_.size() - 1);
+    }
+    return std::exchange(free_, std::uint32_t{lines_[free_].next});
+  }
+  /// Calls visit(level, c, corner, all_around) for all cells that such points may lie in, row by row. The
+  /// corner is the lower one as seen from home, in the image of the cell that is near it. If the cells go all
+  /// around the box along some axis there may be two of these; else a point has no other that is near.
   template <class Visit>
   void for_each_cell_near(const Vector<D>& home, double reach, Visit&& visit) const {
     for (const Level& level : levels_) {
       if (level.points == 0) continue;
-      const double half = reach + level.largest;
-      std::array<int, D> first, count, at, step{};
+      const double half = reach + level.largest + level.margin;
+      bool all_around = false;
+      std::array<int, D> count, start, at, step{};
+      std::array<double, D> lowest, corner;
       for (int k = 0; k < D; ++k) {
         const int n = level.cells[k];
         const double from = std::floor((home[k] - half) * level.inverse[k]);
         const double to = std::floor((home[k] + half) * level.inverse[k]);
+        all_around |= to - from + 1 >= n;
         count[k] = to - from + 1 < n ? static_cast<int>(to - from) + 1 : n;
-        first[k] = to - from + 1 < n ? static_cast<int>(from - n * std::floor(from / n)) : 0;
-        at[k] = first[k];
+        at[k] = start[k] = static_cast<int>(from - n * std::floor(from / n));
+        corner[k] = lowest[k] = from * level.width[k] - home[k];
       }
-      const int beyond = first[0] + count[0] - level.cells[0];
       for (;;) {
         std::size_t row = 0;
         for (int k = D - 1; k > 0; --k)
           row = (row + static_cast<std::size_t>(at[k])) * static_cast<std::size_t>(level.cells[k - 1]);
         row += level.begin;
-        for (int m = first[0]; m < std::min(first[0] + count[0], level.cells[0]); ++m)
-          visit(row + static_cast<std::size_t>(m));
-        for (int m = 0; m < beyond; ++m) visit(row + static_cast<std::size_t>(m));
+        corner[0] = lowest[0];
+        for (int m = 0, x = start[0]; m < count[0]; ++m, corner[0] += level.width[0]) {
+          visit(level, row + static_cast<std::size_t>(x), corner, all_around);
+          if (++x == level.cells[0]) x = 0;
+        }
         int k = 1;
         for (; k < D; ++k) {
           if (++step[k] < count[k]) {
+            corner[k] = lowest[k] + step[k] * level.width[k];
             if (++at[k] == level.cells[k]) at[k] = 0;
             break;
           }
           step[k] = 0;
-          at[k] = first[k];
+          corner[k] = lowest[k];
+          at[k] = start[k];
         }
         if (k == D) break;
       }
     }
   }
-  /// Without a branch for each point: about half of them are near.
-  void find_in(const Cell& cell, const Vector<D>& home, double reach, std::vector<Id>& found) const {
+  /// Puts the near ones of a cell behind the `count` that are found. Without a branch for each point: about
+  /// half of them are near.
+  template <bool all_around>
+  void find_in(const Level& level, std::size_t c, const std::array<double, D>& corner, double reach,
+               std::vector<Id>& found, std::size_t& count) const {
     constexpr double shift = 0x1.8p52;  // rounds to the nearest whole number
-    std::size_t count = found.size();
-    found.resize(count + cell.count);
-    for (std::size_t m = cell.begin; m < cell.begin + cell.count; ++m) {
-      const Point& point = points_[m];
-      double squared = 0;
-      for (int k = 0; k < D; ++k) {
-        double d = double{point.x[k]} - home[k];
-        d -= edges_[k] * ((d * inverse_edges_[k] + shift) - shift);
-        squared += d * d;
-      }
-      const double near = reach + point.reach;
-      found[count] = point.id;
-      count += squared < near * near ? 1 : 0;
+    const double longer = reach + level.margin, reach_step = level.largest / reach_steps;
+    std::array<double, D> step, from;  // from: the middle of the first step
+    for (int k = 0; k < D; ++k) {
+      step[k] = level.width[k] / steps;
+      from[k] = corner[k] + 0.5 * step[k];
     }
-    found.resize(count);
+    for (const Line* line = &lines_[c];; line = &lines_[line->next]) {
+      if (found.size() < count + a_line) found.resize(2 * count + 64);
+      for (std::uint32_t m = 0; m < line->count; ++m) {
+        double squared = 0;
+        for (int k = 0; k < D; ++k) {
+          double d = from[k] + line->x[m][k] * step[k];
+          if constexpr (all_around) d -= edges_[k] * ((d * inverse_edges_[k] + shift) - shift);
+          squared += d * d;
+        }
+        const double near = longer + line->reach[m] * reach_step;
+        found[count] = line->ids[m];
+        count += squared < near * near ? 1 : 0;
+      }
+      if (line->next == 0) break;
+    }
   }
 
   Vector<D> edges_ = Vector<D>::Zero();
   std::array<double, D> inverse_edges_{};
-  double most_ = 0;
-  double margin_ = 0;  // in all reaches
   std::vector<Level> levels_;
-  LargePageVector<Cell> cells_;
-  LargePageVector<Point> points_;
+  LargePageVector<Line> lines_;  // of all cells, then further ones
+  std::uint32_t free_ = 0;       // of the further ones, chained; 0: none
   LargePageVector<std::uint32_t> cell_of_;
 };
 

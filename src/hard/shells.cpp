@@ -24,38 +24,46 @@ template <int D>
 void Shells<D>::build(const std::vector<Vector<D>>& homes, const std::vector<double>& radii,
                       const std::vector<double>& freedoms, const Vector<D>& edges) {
   const std::size_t n = homes.size();
-  places_.resize(n);
-  reaches_.resize(n);
+  lists_.start(n, mean_list());
+  shells_.resize(n);
+  std::vector<double> reaches(n);
   for (std::size_t i = 0; i < n; ++i) {
-    places_[i] = {homes[i], freedoms[i]};
-    reaches_[i] = radii[i] + freedoms[i];
+    reaches[i] = radii[i] + freedoms[i];
+    shells_[i] = {homes[i], freedoms[i], reaches[i], lists_.make()};
   }
-  lists_.start(n, lists_.mean());
-  grid_.start(edges, std::ranges::min(reaches_), std::ranges::max(reaches_), n);
+  grid_.start(edges, reaches);
   for (Id i = 0; i < n; ++i) {
     after_.clear();
-    grid_.find_near(homes[i], reaches_[i], after_);
-    lists_.replace(i, after_);
-    for (const Id j : after_) lists_.append(j, i);
-    grid_.insert(i, homes[i], reaches_[i]);
+    grid_.find_near(homes[i], shells_[i].reach, after_);
+    lists_.replace(shells_[i].list, after_);
+    for (const Id j : after_) lists_.append(shells_[j].list, i);
+    grid_.insert(i, homes[i], shells_[i].reach);
   }
+}
+
+template <int D>
+double Shells<D>::mean_list() const {
+  if (shells_.empty()) return 0;
+  std::size_t sum = 0;
+  for (const Shell& shell : shells_) sum += shell.list.count;
+  return static_cast<double>(sum) / static_cast<double>(shells_.size());
 }
 
 /// Most neighbours stay neighbours: only the lists of those that come or go are touched.
 template <int D>
 void Shells<D>::settle(Id i, const Vector<D>& home) {
-  const double reach = reaches_[i];
-  places_[i].home = home;
-  grid_.move(i, home, reach);
-  before_.assign(lists_.of(i).begin(), lists_.of(i).end());
+  Shell& shell = shells_[i];
+  shell.home = home;
+  grid_.move(i, home, shell.reach);
+  before_.assign(neighbors(i).begin(), neighbors(i).end());
   after_.clear();
-  grid_.find_near(home, reach, after_);
+  grid_.find_near(home, shell.reach, after_);
   std::ranges::sort(before_);
   std::ranges::sort(after_);
   after_.erase(std::ranges::lower_bound(after_, i));
-  lists_.replace(i, after_);
-  for_each_only_in(before_, after_, [&](Id j) { lists_.remove(j, i); });
-  for_each_only_in(after_, before_, [&](Id j) { lists_.append(j, i); });
+  lists_.replace(shell.list, after_);
+  for_each_only_in(before_, after_, [&](Id j) { lists_.remove(shells_[j].list, i); });
+  for_each_only_in(after_, before_, [&](Id j) { lists_.append(shells_[j].list, i); });
 }
 
 #define BERNAL_INSTANTIATE(D) template class Shells<D>;

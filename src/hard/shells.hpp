@@ -20,7 +20,7 @@ namespace bernal {
 ///
 /// Invariant: two spheres are neighbours, each in the list of the other, if their homes are nearer than the
 /// sum of their radii and freedoms, minimum image, and only if they are not farther than that by more than
-/// rounding to single precision. Cost: `build` and `settle` about 1 µs a sphere where sizes are alike; memory
+/// what `HomeGrid` rounds. Cost: `build` and `settle` about 1 µs a sphere where sizes are alike; memory
 /// about 300 bytes a sphere. Source: Donev, Torquato & Stillinger, J. Comput. Phys. 202, 737 (2005), with
 /// shells of their own size.
 template <int D>
@@ -32,34 +32,33 @@ class Shells {
   void build(const std::vector<Vector<D>>& homes, const std::vector<double>& radii,
              const std::vector<double>& freedoms, const Vector<D>& edges);
 
-  std::span<const Id> neighbors(Id i) const { return lists_.of(i); }
+  std::span<const Id> neighbors(Id i) const { return lists_.of(shells_[i].list); }
   std::size_t longest_list() const { return lists_.longest(); }
-  const Vector<D>& home(Id i) const { return places_[i].home; }
-  double freedom(Id i) const { return places_[i].freedom; }
+  const Vector<D>& home(Id i) const { return shells_[i].home; }
+  double freedom(Id i) const { return shells_[i].freedom; }
 
-  /// Ask the memory for where sphere i and its list are described, and then for the list.
-  void prefetch(Id i) const {
-    bernal::prefetch(&places_[i]);
-    lists_.prefetch(i);
-  }
-  void prefetch_list(Id i) const { lists_.prefetch_list(i); }
+  /// Ask the memory for the shell of sphere i, and then for its list.
+  void prefetch(Id i) const { bernal::prefetch(&shells_[i]); }
+  void prefetch_list(Id i) const { lists_.prefetch(shells_[i].list); }
   /// Ask it for what `settle` will look at.
-  void prefetch_settling(Id i, const Vector<D>& home) const { grid_.prefetch_near(home, reaches_[i]); }
+  void prefetch_settling(Id i, const Vector<D>& home) const { grid_.prefetch_near(home, shells_[i].reach); }
 
   /// A new home, in [0, edge).
   void settle(Id i, const Vector<D>& home);
 
-  void archive(Archive& a) { a(places_, reaches_, lists_, grid_); }
+  void archive(Archive& a) { a(shells_, lists_, grid_); }
 
  private:
-  struct alignas(D == 3 ? 32 : 16) Place {
+  struct alignas(D == 3 ? 64 : 16) Shell {
     Vector<D> home;
-    double freedom;
+    double freedom, reach;  // reach: radius and freedom
+    NeighborPool::List list;
   };
 
+  double mean_list() const;
+
   const Made made_{"neighbour shells"};
-  LargePageVector<Place> places_;
-  LargePageVector<double> reaches_;  // radius and freedom
+  LargePageVector<Shell> shells_;
   NeighborPool lists_;
   HomeGrid<D> grid_;
   std::vector<Id> before_, after_;  // neighbours of the one that settles, sorted

@@ -24,6 +24,8 @@ template <int D>
 void Walls<D>::start(std::size_t count, double most) {
   if (!made_) made_.emplace("reflections");
   near_.start(count, 0);
+  lists_.resize(count);
+  for (NeighborPool::List& list : lists_) list = near_.make();
   next_.assign(count, 0);
   if (most <= reach_) return;
   reach_ = spare_reach * most;
@@ -68,14 +70,14 @@ void Walls<D>::settle(Id i, const Vector<D>& home, double reach) {
   found_.clear();
   for (const Id w : cells_[place_on_curve<D>(home, edges_) >> (63 / D - levels_) * D])
     if (walls_[w].clearance(home) < reach) found_.push_back(w);
-  near_.replace(i, found_);
+  near_.replace(lists_[i], found_);
 }
 
 template <int D>
-double Walls<D>::time_to_touch(Id i, const FlyingSphere<D>& sphere, double radius, double growth) {
+double Walls<D>::time_to_touch(Id i, const Vector<D>& p, const Vector<D>& v, double radius, double growth) {
   double first = std::numeric_limits<double>::infinity();
-  for (const Id w : near_.of(i)) {
-    const double time = walls_[w].time_to_touch(sphere.position(), sphere.velocity(), radius, growth);
+  for (const Id w : near_.of(lists_[i])) {
+    const double time = walls_[w].time_to_touch(p, v, radius, growth);
     if (time < first) {
       first = time;
       next_[i] = w;
@@ -85,10 +87,10 @@ double Walls<D>::time_to_touch(Id i, const FlyingSphere<D>& sphere, double radiu
 }
 
 template <int D>
-double Walls<D>::reflect(Id i, FlyingSphere<D>& sphere, double growth, double least) const {
-  const Vector<D> n = walls_[next_[i]].outward(sphere.position());
-  const double kick = std::max(least, 2 * (n.dot(sphere.velocity()) + growth));
-  for (int k = 0; k < D; ++k) sphere.v[k] -= kick * n[k];
+double Walls<D>::reflect(Id i, const Vector<D>& p, Vector<D>& v, double growth, double least) const {
+  const Vector<D> n = walls_[next_[i]].outward(p);
+  const double kick = std::max(least, 2 * (n.dot(v) + growth));
+  v -= kick * n;
   return kick;
 }
 

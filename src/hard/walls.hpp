@@ -85,16 +85,16 @@ class Walls {
   void start(std::size_t count, double most);
   void settle(Id i, const Vector<D>& home, double reach);
 
-  /// The time until sphere i, with this radius and growth of it, touches the first of its near walls, which
-  /// is remembered; infinite if there is none.
-  double time_to_touch(Id i, const FlyingSphere<D>& sphere, double radius, double growth);
-  /// Sphere i touches the wall that it was last found to meet and is reflected from it, elastically with
-  /// respect to its growing surface: v_n -> -v_n - 2 r', v_n being its velocity out of the region. Returns
-  /// the momentum that the wall takes, at least `least`; the mass is 1.
-  double reflect(Id i, FlyingSphere<D>& sphere, double growth, double least) const;
+  /// The time until sphere i, at p with velocity v, with this radius and growth of it, touches the first of
+  /// its near walls, which is remembered; infinite if there is none.
+  double time_to_touch(Id i, const Vector<D>& p, const Vector<D>& v, double radius, double growth);
+  /// Sphere i, at p, touches the wall that it was last found to meet and is reflected from it, elastically
+  /// with respect to its growing surface: v_n -> -v_n - 2 r', v_n being its velocity out of the region.
+  /// Returns the momentum that the wall takes, at least `least`; the mass is 1.
+  double reflect(Id i, const Vector<D>& p, Vector<D>& v, double growth, double least) const;
 
   /// What it knows of spheres, of the same walls.
-  void archive(Archive& a) { a(reach_, levels_, cells_, near_, next_); }
+  void archive(Archive& a) { a(reach_, levels_, cells_, near_, lists_, next_); }
 
  private:
   void fill_cells(const Vector<D>& lower, const Vector<D>& size, int level, std::size_t first,
@@ -107,6 +107,7 @@ class Walls {
   int levels_ = 0;                      // of cells: 2^levels_ along each edge
   std::vector<std::vector<Id>> cells_;  // walls nearer to a cell than reach_
   NeighborPool near_;
+  std::vector<NeighborPool::List> lists_;  // in near_, of each sphere
   std::vector<Id> found_;
   std::vector<Id> next_;  // the wall that a sphere meets
 };

@@ -55,16 +55,6 @@ TEST(Calendar, BreaksTiesById) {
   EXPECT_EQ(calendar.time(0), 2);
 }
 
-TEST(Calendar, ChangesWhatWithoutWhen) {
-  Calendar calendar;
-  calendar.start_period(2, 1, 4);
-  calendar.schedule(1, 0.25, 7);
-  calendar.change(1, 8);
-  EXPECT_EQ(calendar.next(), 1u);
-  EXPECT_EQ(calendar.what(1), 8u);
-  EXPECT_EQ(calendar.time(1), 0.25);
-}
-
 /// One pair that collides ever again, and forgets each time what it had to do in many days to come, and in
 /// one. The calendar drops what no longer stands, and keeps what does: the far events of all others come up.
 TEST(Calendar, KeepsWhatStandsAmongMuchThatFell) {

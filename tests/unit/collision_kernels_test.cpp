@@ -13,7 +13,7 @@ namespace collision_kernels_test {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// Spheres in a box of edge 10, at times of their own, and what a scan of all of them needs.
+/// Spheres in a box of edge 10, and what a scan of all of them needs.
 template <int D>
 struct Swarm {
   std::vector<FlyingSphere<D>> spheres;
@@ -27,11 +27,10 @@ struct Swarm {
     for (std::size_t i = 0; i < n; ++i) {
       FlyingSphere<D> s;
       for (int k = 0; k < D; ++k) {
-        s.x[k] = random.uniform(0, spread);
+        s.x0[k] = random.uniform(0, spread);
         s.v[k] = random.uniform(-1, 1);
       }
       s.r = random.uniform(0.1, 0.6);
-      s.time = i == 0 ? scan.now : random.uniform(0, scan.now);
       spheres.push_back(s);
       if (i > 0) neighbors.push_back(static_cast<std::uint32_t>(i));
     }
@@ -52,14 +51,11 @@ struct Swarm {
   /// Between the centres of sphere 0 and sphere j at `delay` after now.
   double distance(std::uint32_t j, double delay) const {
     const double t = scan.now + delay;
-    FlyingSphere<D> a = spheres[0], b = spheres[j];
+    const FlyingSphere<D>&a = spheres[0], &b = spheres[j];
     const Boundary<D> boundary{Vector<D>::Constant(10)};
-    b.fly_to(scan.now);
-    const Vector<D> shift =
-        boundary.minimum_image(b.position() - a.position()) - (b.position() - a.position());
-    a.fly_to(t);
-    b.fly_to(t);
-    return (b.position() + shift - a.position()).norm();
+    const Vector<D> now = b.position(scan.now) - a.position(scan.now);
+    const Vector<D> shift = boundary.minimum_image(now) - now;
+    return (b.position(t) + shift - a.position(t)).norm();
   }
   double gap(std::uint32_t j, double delay) const {
     const double size = scan.size + scan.growth * (scan.now + delay);
@@ -117,20 +113,19 @@ TYPED_TEST(CollisionKernels, FindWhenTheGapCloses) {
 TEST(CollisionKernels, CollideNowWhatOverlapsAndComesCloser) {
   Swarm<3> swarm(2, 0, 1);
   for (int k = 0; k < 3; ++k)
-    swarm.spheres[0].x[k] = 5, swarm.spheres[1].x[k] = 5, swarm.spheres[1].v[k] = swarm.spheres[0].v[k] = 0;
+    swarm.spheres[0].x0[k] = swarm.spheres[1].x0[k] = 5, swarm.spheres[1].v[k] = swarm.spheres[0].v[k] = 0;
   swarm.spheres[0].r = swarm.spheres[1].r = 0.5 / 0.9;
-  swarm.spheres[1].x[0] = 6 * (1 - 1e-15);
-  swarm.spheres[1].v[0] = -1;
-  swarm.spheres[1].time = swarm.scan.now;
+  swarm.spheres[1].set_course(swarm.scan.now, {6 * (1 - 2e-15), 5, 5}, {-1, 0, 0});
   EXPECT_EQ(collision_kernels<3>().front().scan(swarm.scan).delay, 0);
-  swarm.spheres[1].v[0] = 1;  // it parts: never
+  swarm.spheres[1].set_course(swarm.scan.now, {6 * (1 - 2e-15), 5, 5}, {1, 0, 0});  // it parts: never
   EXPECT_EQ(collision_kernels<3>().front().scan(swarm.scan).delay, never);
 }
 
 TEST(CollisionKernels, SeeThePartnerAcrossTheFace) {
   Swarm<3> swarm(2, 0, 1);
-  swarm.spheres[0] = {.x = {0.5, 5, 5}, .v = {-1, 0, 0}, .time = swarm.scan.now, .r = 0.5 / 0.9};
-  swarm.spheres[1] = {.x = {8.5, 5, 5}, .v = {0, 0, 0}, .time = swarm.scan.now, .r = 0.5 / 0.9};
+  for (FlyingSphere<3>& sphere : swarm.spheres) sphere.r = 0.5 / 0.9;
+  swarm.spheres[0].set_course(swarm.scan.now, {0.5, 5, 5}, {-1, 0, 0});
+  swarm.spheres[1].set_course(swarm.scan.now, {8.5, 5, 5}, {0, 0, 0});
   EXPECT_NEAR(collision_kernels<3>().front().scan(swarm.scan).delay, 1.0, 1e-14);
 }
 
