@@ -41,8 +41,10 @@ constexpr double events_a_collision = 1.8;
 constexpr std::size_t few_spheres = 3000;
 constexpr std::size_t step_ahead = 2;
 
-/// Of the mean diameter: the shells to begin with, and their limits.
+/// Of the mean diameter: the shells to begin with, and their limits; none where the lists are so short that
+/// longer ones would cost nothing.
 constexpr double first_freedom = 0.15, least_freedom = 0.02, most_freedom = 1.0;
+constexpr double short_list = 4;
 /// Departures for each collision between which the shells are as large as they should be.
 constexpr double few_departures = 0.06, many_departures = 0.15;
 constexpr double change_of_freedom = 1.3;
@@ -134,10 +136,14 @@ double HardSpheres<D>::duration(double growth, double largest) const {
 /// Shells that are left too often cost renewals, those that are hardly left cost long lists.
 template <int D>
 double HardSpheres<D>::wanted_freedom() const {
-  if (2 * listed_collisions_ < count()) return freedom_;
+  if (2 * (listed_collisions_ + listed_departures_) < count()) return freedom_;
   const double departures = static_cast<double>(listed_departures_) / static_cast<double>(listed_collisions_);
-  if (departures > many_departures)
-    return std::min(freedom_ * change_of_freedom, most_freedom * mean_diameter_);
+  if (departures > many_departures) {
+    const double larger = std::min(freedom_ * change_of_freedom, edges_.minCoeff());
+    return shells_.mean_list() < short_list
+               ? larger
+               : std::max(freedom_, std::min(larger, most_freedom * mean_diameter_));
+  }
   if (departures < few_departures)
     return std::max(freedom_ / change_of_freedom, least_freedom * mean_diameter_);
   return freedom_;

@@ -34,6 +34,7 @@ class Shells {
 
   std::span<const Id> neighbors(Id i) const { return lists_.of(shells_[i].list); }
   std::size_t longest_list() const { return lists_.longest(); }
+  double mean_list() const;
   const Vector<D>& home(Id i) const { return shells_[i].home; }
   double freedom(Id i) const { return shells_[i].freedom; }
 
@@ -54,8 +55,6 @@ class Shells {
     double freedom, reach;  // reach: radius and freedom
     NeighborPool::List list;
   };
-
-  double mean_list() const;
 
   const Made made_{"neighbour shells"};
   LargePageVector<Shell> shells_;
