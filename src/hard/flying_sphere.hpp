@@ -21,7 +21,7 @@ struct alignas(D == 3 ? 64 : 16) FlyingSphere {
   double r = 0;
   double event = std::numeric_limits<double>::infinity();  ///< when its next event comes
 
-  Vector<D> position(double t) const { return course_at_0() + velocity() * t; }
+  Vector<D> position(double t) const { return Eigen::Map<const Vector<D>>(x0) + velocity() * t; }
   Vector<D> velocity() const { return Eigen::Map<const Vector<D>>(v); }
   /// At time t it is at p and flies with `velocity` from then on.
   void set_course(double t, const Vector<D>& p, const Vector<D>& velocity) {
@@ -30,9 +30,6 @@ struct alignas(D == 3 ? 64 : 16) FlyingSphere {
       x0[k] = p[k] - velocity[k] * t;
     }
   }
-
- private:
-  Vector<D> course_at_0() const { return Eigen::Map<const Vector<D>>(x0); }
 };
 
 }  // namespace bernal

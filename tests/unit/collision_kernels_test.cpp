@@ -115,9 +115,9 @@ TEST(CollisionKernels, CollideNowWhatOverlapsAndComesCloser) {
   for (int k = 0; k < 3; ++k)
     swarm.spheres[0].x0[k] = swarm.spheres[1].x0[k] = 5, swarm.spheres[1].v[k] = swarm.spheres[0].v[k] = 0;
   swarm.spheres[0].r = swarm.spheres[1].r = 0.5 / 0.9;
-  swarm.spheres[1].set_course(swarm.scan.now, {6 * (1 - 2e-15), 5, 5}, {-1, 0, 0});
+  swarm.spheres[1].set_course(swarm.scan.now, {6 * (1 - 1e-15), 5, 5}, {-1, 0, 0});
   EXPECT_EQ(collision_kernels<3>().front().scan(swarm.scan).delay, 0);
-  swarm.spheres[1].set_course(swarm.scan.now, {6 * (1 - 2e-15), 5, 5}, {1, 0, 0});  // it parts: never
+  swarm.spheres[1].set_course(swarm.scan.now, {6 * (1 - 1e-15), 5, 5}, {1, 0, 0});  // it parts: never
   EXPECT_EQ(collision_kernels<3>().front().scan(swarm.scan).delay, never);
 }
 
