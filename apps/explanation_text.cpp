@@ -42,7 +42,7 @@ std::string as_lines(const std::vector<Entry>& entries) {
   const std::string below = "\n" + std::string(column, ' ');
   std::string text;
   for (const Entry& entry : entries) {
-    std::string before = "  " + entry.name;
+    std::string before = fmt::format("  {}", entry.name);
     const std::size_t own = characters(before);
     before += own + 2 > column ? below : std::string(column - own, ' ');
     if (entry.what.empty()) before = "  " + entry.name;
@@ -65,11 +65,13 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t width
       if (part.empty()) continue;
       const std::size_t length = characters(part);
       if (!begins && column + 1 + length > width) {
-        lines += "\n" + std::string(indent, ' ');
+        lines += '\n';
+        lines.append(indent, ' ');
         column = indent;
         begins = true;
       }
-      lines += (begins ? "" : " ") + std::string(part);
+      if (!begins) lines += ' ';
+      lines += part;
       column += length + (begins ? 0 : 1);
       begins = false;
     }

@@ -75,7 +75,7 @@ std::vector<Entry> entries_of_formats() {
   std::vector<Entry> entries;
   for (const ExportFormat& format : export_formats()) {
     std::string options;
-    for (const std::string& key : format.keys) options += " " + option_of(key);
+    for (const std::string& key : format.keys) options += fmt::format(" {}", option_of(key));
     entries.push_back(
         {format.name, fmt::format("{}\nlengths in {}{}, {}; {} dimensions;{}", format.what, format.unit,
                                   format.unit == "the scene's" ? " unit" : "",

@@ -90,7 +90,7 @@ std::string entries(const std::vector<Entry>& all) {
   for (const Entry& entry : all) {
     std::string what = entry.what;
     for (std::size_t at = 0; (at = what.find('\n', at)) != std::string::npos; at += 2) what.insert(at, "\n");
-    roff += ".TP\n" + bold(entry.name) + "\n" + paragraphs(what, ".br\n");
+    roff += fmt::format(".TP\n{}\n{}", bold(entry.name), paragraphs(what, ".br\n"));
   }
   return roff;
 }

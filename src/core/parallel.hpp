@@ -47,6 +47,23 @@ void parallel_for(std::size_t n, const Body& body) {
   parallel_for(0, n, body);
 }
 
+/// The two above, or in this thread alone where not `in_threads`: so in a piece of a loop that keeps memory
+/// by thread, as a thread that waits for its own pieces may be given another one of that loop.
+template <class Body>
+void parallel_ranges_if(bool in_threads, std::size_t n, std::size_t grain, const Body& body) {
+  if (in_threads) {
+    parallel_ranges(n, grain, body);
+  } else {
+    body(std::size_t{0}, n);
+  }
+}
+template <class Body>
+void parallel_for_if(bool in_threads, std::size_t n, const Body& body) {
+  parallel_ranges_if(in_threads, n, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) body(k);
+  });
+}
+
 /// Calls both.
 void parallel_both(const std::function<void()>& one, const std::function<void()>& other);
 

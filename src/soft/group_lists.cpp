@@ -4,9 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.hpp"
+
 namespace bernal {
 namespace {
 
+/// Of spheres that a thread takes at a time, at most.
+constexpr std::size_t spheres_a_piece = 16384;
 /// Cells for each sphere of a level, at most.
 constexpr double cells_per_sphere = 2;
 /// Of a cell, in the farthest that two spheres of its level may be apart as neighbours. The cells along the
@@ -21,7 +25,8 @@ std::size_t level_of(float r, const SoftSizes& sizes) {
 
 }  // namespace
 
-void RegionCells::choose_levels(std::span<const SoftSphere> spheres, const SoftSizes& sizes) {
+/// Returns how many cells they have.
+std::size_t RegionCells::choose_levels(std::span<const SoftSphere> spheres, const SoftSizes& sizes) {
   levels_.assign(sizes.levels, SoftLevel{});
   for (const SoftSphere& s : spheres)
     if (s.r > 0) ++levels_[sizes.levels == 1 ? 0 : level_of(s.r, sizes)].spheres;
@@ -45,49 +50,43 @@ void RegionCells::choose_levels(std::span<const SoftSphere> spheres, const SoftS
     }
     cells += static_cast<std::size_t>(count);
   }
-  start_.assign(cells + 1, 0);
+  return cells;
 }
 
 void RegionCells::sort(std::span<const SoftSphere> spheres, const SoftRegion& region,
-                       const std::array<double, 3>& edges, const SoftSizes& sizes, float skin) {
+                       const std::array<double, 3>& edges, const SoftSizes& sizes, float skin,
+                       bool in_threads) {
   region_ = region;
   edges_ = edges;
   skin_ = skin;
-  choose_levels(spheres, sizes);
+  const auto cells = static_cast<std::uint32_t>(choose_levels(spheres, sizes));
   cell_.resize(spheres.size());
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    const SoftSphere& s = spheres[i];
-    if (!(s.r > 0)) continue;
-    const std::size_t l = sizes.levels == 1 ? 0 : level_of(s.r, sizes);
-    const SoftLevel& level = levels_[l];
+  const auto cell_of = [&](const SoftSphere& s) {
+    if (!(s.r > 0)) return cells;
+    const SoftLevel& level = levels_[sizes.levels == 1 ? 0 : level_of(s.r, sizes)];
     const auto at = [&](std::size_t k) {
       const int cell = static_cast<int>(region.offset(s, k) * level.cells_a_unit[k]);
       return static_cast<std::size_t>(std::min(cell, level.cells[k] - 1));
     };
     const auto n = [&](std::size_t k) { return static_cast<std::size_t>(level.cells[k]); };
-    cell_[i] = static_cast<std::uint32_t>(level.first_cell + (at(2) * n(1) + at(1)) * n(0) + at(0));
-    ++start_[cell_[i]];
-    ++count;
-  }
-  // Ends first: they become the starts while the spheres go in from behind.
-  for (std::size_t c = 0, sum = 0; c < start_.size(); ++c) {
-    sum += start_[c];
-    start_[c] = static_cast<std::uint32_t>(sum);
-  }
-  for (auto* column : {&x_, &y_, &z_}) column->resize(count + lanes);
-  r_.resize(count + lanes);
-  places_.resize(count + lanes);
-  for (std::size_t i = spheres.size(); i-- > 0;) {
+    return static_cast<std::uint32_t>(level.first_cell + (at(2) * n(1) + at(1)) * n(0) + at(0));
+  };
+  parallel_ranges_if(in_threads, spheres.size(), spheres_a_piece, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) cell_[i] = cell_of(spheres[i]);
+  });
+  for (auto* column : {&x_, &y_, &z_}) column->resize(spheres.size() + lanes);
+  r_.resize(spheres.size() + lanes);
+  places_.resize(spheres.size() + lanes);
+  const auto put = [&](std::uint32_t slot, std::size_t i) {
     const SoftSphere& s = spheres[i];
-    if (!(s.r > 0)) continue;
-    const std::uint32_t slot = --start_[cell_[i]];
     x_[slot] = s.x[0];
     y_[slot] = s.x[1];
     z_[slot] = s.x[2];
     r_[slot] = s.r;
     places_[slot] = static_cast<std::uint32_t>(i);
-  }
+  };
+  put_into_buckets(
+      spheres.size(), cells, [&](std::size_t i) { return cell_[i]; }, put, start_, counts_, in_threads);
 }
 
 SearchTask RegionCells::task() const {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "neighbors/counting_sort.hpp"
 #include "soft/soft_kernels.hpp"
 #include "soft/sweep_order.hpp"
 
@@ -18,15 +19,15 @@ class RegionCells {
   /// Sorts the spheres of the region, each named by its index here; those with a radius of NaN are left out.
   /// Cost: some 10 ns a sphere.
   void sort(std::span<const SoftSphere> spheres, const SoftRegion& region, const std::array<double, 3>& edges,
-            const SoftSizes& sizes, float skin);
+            const SoftSizes& sizes, float skin, bool in_threads = false);
 
   /// Good until they are sorted anew.
   SearchTask task() const;
   /// How many spheres there are, once they are sorted.
-  std::size_t size() const { return places_.size() - lanes; }
+  std::size_t size() const { return start_.back(); }
 
  private:
-  void choose_levels(std::span<const SoftSphere> spheres, const SoftSizes& sizes);
+  std::size_t choose_levels(std::span<const SoftSphere> spheres, const SoftSizes& sizes);
 
   SoftRegion region_;
   std::array<double, 3> edges_{};
@@ -34,6 +35,7 @@ class RegionCells {
   std::vector<SoftLevel> levels_;
   std::vector<std::uint32_t> cell_;   // of each sphere
   std::vector<std::uint32_t> start_;  // of each cell of all levels
+  BucketCounts counts_;               // of the sorting
   std::vector<std::int32_t> x_, y_, z_;
   std::vector<float> r_;
   std::vector<std::uint32_t> places_;  // these columns have `lanes` more entries that say nothing

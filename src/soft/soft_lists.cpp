@@ -4,42 +4,54 @@
 
 #include <algorithm>
 #include <functional>
-#include <memory>
+#include <utility>
+
+#include "core/parallel.hpp"
 
 namespace bernal {
 namespace {
 
-constexpr std::size_t groups_per_block = 64, spheres_per_search = 4096;
+constexpr std::size_t groups_per_block = 64, spheres_per_search = 4096, spheres_a_piece = 16384;
 
 }  // namespace
 
 void SoftLists::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& ids,
                       const std::array<double, 3>& edges, const SoftSizes& sizes, float skin,
                       std::uint32_t movers) {
-  for (Part* part : {&moving_, &resting_}) {
-    part->spheres.clear();
-    part->ids.clear();
-  }
-  for (std::size_t p = 0; p < spheres.size(); ++p) {
-    if (!(spheres[p].r > 0)) continue;
-    Part& part = ids[p] >= movers ? resting_ : moving_;
-    part.spheres.push_back(spheres[p]);
-    part.ids.push_back(ids[p]);
-  }
-  order_.find(moving_.spheres, SoftRegion{}, edges, sizes, skin, by_octaves_);
+  const bool in_threads = spheres.size() >= worth_threads;
+  spheres.swap(before_.spheres);
+  ids.swap(before_.ids);
+  take_resting_out(movers);
+  order_.find(before_.spheres, SoftRegion{}, edges, sizes, skin, by_octaves_, in_threads);
   const std::vector<std::uint32_t>& sphere_at = order_.sphere_at();
-  spheres.assign(sphere_at.size() + 1, no_sphere);
-  ids.assign(sphere_at.size() + 1, nobody);
-  for (std::size_t p = 0; p < sphere_at.size(); ++p) {
-    const std::uint32_t i = sphere_at[p];
-    if (i == nobody) continue;
-    spheres[p] = moving_.spheres[i];
-    ids[p] = moving_.ids[i];
-  }
+  spheres.resize(sphere_at.size() + 1);
+  ids.resize(sphere_at.size() + 1);
+  const auto put_in_order = [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      const std::uint32_t i = sphere_at[p];
+      spheres[p] = i == nobody ? no_sphere : before_.spheres[i];
+      ids[p] = i == nobody ? nobody : before_.ids[i];
+    }
+  };
+  parallel_ranges_if(in_threads, sphere_at.size(), spheres_a_piece, put_in_order);
+  spheres.back() = no_sphere;
+  ids.back() = nobody;
   spheres.insert(spheres.end(), resting_.spheres.begin(), resting_.spheres.end());
   ids.insert(ids.end(), resting_.ids.begin(), resting_.ids.end());
-  cells_.sort(spheres, SoftRegion{}, edges, sizes, skin);
+  cells_.sort(spheres, SoftRegion{}, edges, sizes, skin, in_threads);
   find_neighbors(sphere_at.size());
+}
+
+/// Of those that are to be sorted: they leave gaps.
+void SoftLists::take_resting_out(std::uint32_t movers) {
+  resting_.spheres.clear();
+  resting_.ids.clear();
+  if (movers == nobody) return;
+  for (std::size_t p = 0; p < before_.spheres.size(); ++p) {
+    if (!(before_.spheres[p].r > 0) || before_.ids[p] < movers) continue;
+    resting_.spheres.push_back(std::exchange(before_.spheres[p], no_sphere));
+    resting_.ids.push_back(before_.ids[p]);
+  }
 }
 
 void SoftLists::find_neighbors(std::size_t swept) {

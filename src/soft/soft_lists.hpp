@@ -15,6 +15,9 @@ namespace bernal {
 /// What each sphere of a box may meet until it has moved by the skin, for sweeps in the `SweepOrder` of all.
 class SoftLists {
  public:
+  /// With fewer spheres a second thread does not pay.
+  static constexpr std::size_t worth_threads = 20000;
+
   explicit SoftLists(const SoftKernels& kernels, bool by_octaves = false)
       : kernels_(kernels), by_octaves_(by_octaves) {}
 
@@ -37,6 +40,7 @@ class SoftLists {
   const NeighborRows<std::uint32_t>* groups() const { return groups_.data(); }
 
  private:
+  void take_resting_out(std::uint32_t movers);
   void find_neighbors(std::size_t swept);
 
   Made made_{"relaxation"}, lists_made_{"neighbour lists"};
@@ -52,7 +56,7 @@ class SoftLists {
     std::vector<SoftSphere> spheres;
     std::vector<std::uint32_t> ids;
   };
-  Part moving_, resting_;
+  Part before_, resting_;
   std::vector<NeighborList> found_of_;  // of each place
   std::vector<FoundNeighbors> found_;
   tbb::enumerable_thread_specific<CandidateRoom> rooms_;

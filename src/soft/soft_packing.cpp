@@ -15,8 +15,6 @@ namespace {
 /// In mean radii. Larger ones make lists that last longer and are longer; from 0.3 to 0.5 it makes no
 /// difference.
 constexpr double relative_skin = 0.4;
-/// With fewer spheres a second thread does not pay.
-constexpr std::size_t worth_threads = 20000;
 
 std::vector<float> as_floats(const std::vector<double>& values, double factor = 1) {
   std::vector<float> floats;
@@ -111,7 +109,7 @@ float SoftPacking::move_all(float omega, bool measure, bool each) {
   if (walls_) walls_->look_anew(measure);
   life_.swept();
   if (in_blocks_) return blocks_->sweep(task);
-  const bool in_threads = count_ >= worth_threads;
+  const bool in_threads = count_ >= SoftLists::worth_threads;
   if (walls_ && !in_threads) walls_->push_ahead(spheres_);
   const float near = lists_.sweep(task, in_threads);
   if (far_images_.empty()) return near;
@@ -196,7 +194,7 @@ FarthestMoves SoftPacking::farthest_moves(bool of_all) const {
     }
     squares[n] = largest;
   };
-  if (count_ < worth_threads) {
+  if (count_ < SoftLists::worth_threads) {
     for (std::size_t n = 0; n < squares.size(); ++n) look_at(n);
   } else {
     parallel_for(squares.size(), look_at);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "neighbors/counting_sort.hpp"
+#include "core/parallel.hpp"
 
 namespace bernal {
 namespace {
@@ -26,6 +26,10 @@ constexpr double chains_a_colour = 8, shortest_part = 2;
 /// Spheres whose radii differ by less than this part of an octave are alike.
 constexpr double classes_per_octave = 4;
 constexpr std::size_t most_classes = 64;
+/// That a thread sorts at a time, at most.
+constexpr std::size_t items_a_piece = 16384;
+
+bool is_there(const SoftSphere& s) { return s.r > 0; }
 
 float quantile_of_most(std::vector<float> radii) {
   const auto nth = radii.begin() +
@@ -54,34 +58,46 @@ SoftSizes::SoftSizes(const std::vector<float>& radii) {
   volume_a_sphere *= 4.18879020478639 / static_cast<double>(radii.size());
 }
 
+/// Calls put(place, i) for the items 0 to n - 1 with their places by key_of(i), but for those with key number
+/// `keys`; `start_` becomes where every key begins.
+template <class KeyOf, class Put>
+void SweepOrder::sort(std::size_t n, std::size_t keys, const KeyOf& key_of, const Put& put) {
+  key_.resize(n);
+  parallel_ranges_if(in_threads_, n, items_a_piece, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) key_[i] = static_cast<std::uint32_t>(key_of(i));
+  });
+  put_into_buckets(
+      n, keys, [&](std::size_t i) { return key_[i]; }, put, start_, counts_, in_threads_);
+}
+
 void SweepOrder::find(std::span<const SoftSphere> spheres, const SoftRegion& region,
-                      const std::array<double, 3>& edges, const SoftSizes& sizes, float skin,
-                      bool by_octaves) {
+                      const std::array<double, 3>& edges, const SoftSizes& sizes, float skin, bool by_octaves,
+                      bool in_threads) {
   spheres_ = spheres;
   region_ = region;
   edges_ = edges;
   skin_ = skin;
+  in_threads_ = in_threads;
   phases_.clear();
   sphere_at_.clear();
-  sphere_at_.reserve(spheres.size() + spheres.size() / 8);
 
   // Along the axis, and in classes where there are sizes: one key for both.
+  const auto count = static_cast<std::size_t>(std::ranges::count_if(spheres, is_there));
   const double length = edges[0] * static_cast<double>(region.extent[0]) * 0x1p-32;
-  const int along = std::min(static_cast<int>(spheres.size()) + 1, count_of_parts(length, 2.0 * sizes.large));
-  const SoftParts parts(region, 0, along);
-  place_.resize(spheres.size());
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    std::size_t key = static_cast<std::size_t>(parts.at(spheres[i]));
-    if (!sizes.equal) {
-      const double octaves = std::log2(sizes.largest / spheres[i].r);
-      key += static_cast<std::size_t>(along) *
-             std::min(most_classes - 1, static_cast<std::size_t>(classes_per_octave * octaves));
-    }
-    place_[i] = static_cast<std::uint32_t>(key);
-  }
-  counting_sort(place_, static_cast<std::size_t>(along) * (sizes.equal ? 1 : most_classes), start_);
-  order_.resize(spheres.size());
-  for (std::size_t i = 0; i < spheres.size(); ++i) order_[place_[i]] = static_cast<std::uint32_t>(i);
+  const std::size_t along =
+      std::min(count + 1, static_cast<std::size_t>(count_of_parts(length, 2.0 * sizes.large)));
+  const std::size_t keys = along * (sizes.equal ? 1 : most_classes);
+  const SoftParts parts(region, 0, static_cast<int>(along));
+  const auto key_of = [&](std::size_t i) {
+    if (!is_there(spheres[i])) return keys;
+    const auto part = static_cast<std::size_t>(parts.at(spheres[i]));
+    if (sizes.equal) return part;
+    const double octaves = std::log2(sizes.largest / spheres[i].r);
+    return part + along * std::min(most_classes - 1, static_cast<std::size_t>(classes_per_octave * octaves));
+  };
+  order_.resize(count);
+  sort(spheres.size(), keys, key_of,
+       [&](std::uint32_t place, std::size_t i) { order_[place] = static_cast<std::uint32_t>(i); });
 
   if (!by_octaves) {
     add_pencils(order_, sizes.large);
@@ -102,18 +118,16 @@ void SweepOrder::find(std::span<const SoftSphere> spheres, const SoftRegion& reg
 void SweepOrder::sort_into_pencils(const std::vector<std::uint32_t>& order, float largest,
                                    const std::array<int, 3>& across) {
   const auto [x, y, z] = across;
-  const auto pencils = static_cast<std::uint32_t>(x * y * z);
+  const auto pencils = static_cast<std::size_t>(x * y * z);
   const SoftParts along_x(region_, 0, x), along_y(region_, 1, y), along_z(region_, 2, z);
-  place_.resize(order.size());
-  for (std::size_t n = 0; n < order.size(); ++n) {
+  const auto pencil_of = [&, y = y, z = z](std::size_t n) {
     const SoftSphere& s = spheres_[order[n]];
-    place_[n] = s.r > largest
-                    ? pencils
-                    : static_cast<std::uint32_t>((along_x.at(s) * z + along_z.at(s)) * y + along_y.at(s));
-  }
-  counting_sort(place_, pencils + std::size_t{1}, start_);
+    return s.r > largest ? pencils
+                         : static_cast<std::size_t>((along_x.at(s) * z + along_z.at(s)) * y + along_y.at(s));
+  };
   sorted_.resize(order.size());
-  for (std::size_t n = 0; n < order.size(); ++n) sorted_[place_[n]] = order[n];
+  sort(order.size(), pencils + 1, pencil_of,
+       [&](std::uint32_t place, std::size_t n) { sorted_[place] = order[n]; });
 }
 
 /// Into how many parts pencils are to be cut, so that every colour has chains enough for threads.
@@ -145,6 +159,7 @@ void SweepOrder::add_pencils(const std::vector<std::uint32_t>& order, float larg
   across[0] = parts_along(order.size(), longest, width);
   if (across[0] > 1) sort_into_pencils(order, largest, across);
 
+  drafted_ = 0;
   for (int colour = 0; colour < 8; ++colour) {
     std::vector<Pencil> pencils;
     for (int x = colour / 4; x < across[0]; x += 2) {
@@ -155,8 +170,10 @@ void SweepOrder::add_pencils(const std::vector<std::uint32_t>& order, float larg
         }
       }
     }
-    add_phase(pencils);
+    draft_phase(pencils);
   }
+  parallel_for_if(in_threads_, drafted_, [&](std::size_t d) { put_together(drafts_[d]); });
+  add_drafts();
   const std::size_t all = start_.size() - 2;
   const std::vector<std::uint32_t> larger(sorted_.begin() + start_[all], sorted_.end());
   if (!larger.empty()) add_pencils(larger, radius_of_most(larger));
@@ -170,7 +187,7 @@ float SweepOrder::radius_of_most(const std::vector<std::uint32_t>& order) const 
 }
 
 /// The pencils of a colour, cut into chains of as many spheres each.
-void SweepOrder::add_phase(const std::vector<Pencil>& pencils) {
+void SweepOrder::draft_phase(const std::vector<Pencil>& pencils) {
   if (pencils.empty()) return;
   std::size_t spheres = 0, longest = 0;
   for (const Pencil& p : pencils) {
@@ -183,68 +200,87 @@ void SweepOrder::add_phase(const std::vector<Pencil>& pencils) {
   // As many for each of two, four or eight threads.
   chains &= ~(std::bit_floor(std::min<std::size_t>(chains, 8)) - 1);
   phases_.emplace_back();
-  std::vector<Pencil> chain;
   std::size_t number = 0, before = 0;
+  Draft* chain = &new_draft();
   for (const Pencil& p : pencils) {
     const std::size_t its = (2 * before + p.count) * chains / (2 * spheres);
-    if (std::exchange(number, its) < its && !chain.empty()) add_chain(std::exchange(chain, {}));
-    chain.push_back(p);
+    if (std::exchange(number, its) < its && !chain->pencils.empty()) chain = &new_draft();
+    chain->pencils.push_back(p);
     before += p.count;
   }
-  add_chain(chain);
+}
+
+/// Of the last phase, without pencils.
+SweepOrder::Draft& SweepOrder::new_draft() {
+  if (drafted_ == drafts_.size()) drafts_.emplace_back();
+  Draft& draft = drafts_[drafted_++];
+  draft.phase = phases_.size() - 1;
+  draft.pencils.clear();
+  return draft;
 }
 
 /// Every pencil is spread evenly over all groups, and so comes to its end with the others. What finds its
 /// group full, or another of its pencil there, waits for the next one; where there is room left, the group
 /// takes some of that.
-void SweepOrder::add_chain(const std::vector<Pencil>& pencils) {
-  const std::size_t first_group = sphere_at_.size() / lanes;
+void SweepOrder::put_together(Draft& chain) const {
+  const std::vector<Pencil>& pencils = chain.pencils;
+  std::vector<std::uint32_t>& sphere_at = chain.sphere_at;
   std::size_t spheres = 0, groups = 0;
   for (const Pencil& p : pencils) {
     spheres += p.count;
     groups = std::max<std::size_t>(groups, p.count);
   }
   groups = std::max(groups, (spheres + lanes - 1) / lanes);
-  place_.clear();
+  chain.place.clear();
   for (const Pencil& p : pencils) {
     // (2k + 1) groups / 2 count, rounded down, for k = 0, 1, … without dividing.
     const std::size_t parts = 2 * std::size_t{p.count}, step = 2 * groups / parts, more = 2 * groups % parts;
     std::size_t due = groups / parts, rest = groups % parts;
     for (std::size_t k = 0; k < p.count; ++k) {
-      place_.push_back(static_cast<std::uint32_t>(due));
+      chain.place.push_back(static_cast<std::uint32_t>(due));
       rest += more;
       const bool carries = rest >= parts;
       due += step + carries;
       rest -= carries ? parts : 0;
     }
   }
-  counting_sort(place_, groups, due_);
-  turns_.resize(spheres);
+  counting_sort(chain.place, groups, chain.due);
+  chain.turns.resize(spheres);
   std::size_t n = 0;
   for (std::uint32_t p = 0; p < pencils.size(); ++p)
     for (std::uint32_t k = 0; k < pencils[p].count; ++k)
-      turns_[place_[n++]] = {sorted_[pencils[p].first + k], p};
+      chain.turns[chain.place[n++]] = {sorted_[pencils[p].first + k], p};
 
   std::vector<std::size_t> last_group(pencils.size(), std::size_t{nobody});
   std::vector<Turn> waiting, still_waiting;
+  sphere_at.clear();
   n = 0;
   for (std::size_t g = 0; n < spheres || !waiting.empty(); ++g) {
-    const std::size_t full = sphere_at_.size() + lanes, ahead = due_[std::min(g + 2, groups)];
+    const std::size_t full = sphere_at.size() + lanes, ahead = chain.due[std::min(g + 2, groups)];
     const auto take = [&](const Turn& turn) {
-      if (sphere_at_.size() == full || last_group[turn.pencil] == g) {
+      if (sphere_at.size() == full || last_group[turn.pencil] == g) {
         still_waiting.push_back(turn);
       } else {
-        sphere_at_.push_back(turn.sphere);
+        sphere_at.push_back(turn.sphere);
         last_group[turn.pencil] = g;
       }
     };
     for (const Turn& turn : waiting) take(turn);
-    while (sphere_at_.size() < full && n < ahead) take(turns_[n++]);
-    sphere_at_.resize(full, nobody);
+    while (sphere_at.size() < full && n < ahead) take(chain.turns[n++]);
+    sphere_at.resize(full, nobody);
     waiting.swap(still_waiting);
     still_waiting.clear();
   }
-  phases_.back().push_back({first_group, sphere_at_.size() / lanes});
+}
+
+/// The chains that have been put together, behind those that there are.
+void SweepOrder::add_drafts() {
+  for (std::size_t d = 0; d < drafted_; ++d) {
+    const std::vector<std::uint32_t>& sphere_at = drafts_[d].sphere_at;
+    const std::size_t first = sphere_at_.size() / lanes;
+    sphere_at_.insert(sphere_at_.end(), sphere_at.begin(), sphere_at.end());
+    phases_[drafts_[d].phase].push_back({first, first + sphere_at.size() / lanes});
+  }
 }
 
 }  // namespace bernal

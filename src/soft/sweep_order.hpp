@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "neighbors/counting_sort.hpp"
 #include "soft/soft_kernels.hpp"
 
 namespace bernal {
@@ -43,11 +44,11 @@ struct Chain {
 /// All this is a function of the places and radii alone, the same for any number of threads.
 class SweepOrder {
  public:
-  /// Finds the order of these spheres, all with centres in the region. `by_octaves`: spheres whose radii
-  /// differ by more than an octave are swept one kind after the other, each in pencils as wide as it needs,
-  /// the largest last. Cost: some 50 ns a sphere.
+  /// Finds the order of these spheres, all with centres in the region, but for gaps, those with a radius of
+  /// NaN. `by_octaves`: spheres whose radii differ by more than an octave are swept one kind after the other,
+  /// each in pencils as wide as it needs, the largest last. Cost: some 50 ns a sphere.
   void find(std::span<const SoftSphere> spheres, const SoftRegion& region, const std::array<double, 3>& edges,
-            const SoftSizes& sizes, float skin, bool by_octaves);
+            const SoftSizes& sizes, float skin, bool by_octaves, bool in_threads = false);
 
   /// For every place, a whole number of groups of them, which of the spheres has it, or `nobody`.
   const std::vector<std::uint32_t>& sphere_at() const { return sphere_at_; }
@@ -62,23 +63,39 @@ class SweepOrder {
   struct Turn {
     std::uint32_t sphere, pencil;
   };
+  /// A chain to be, by itself: chains are put together at the same time.
+  struct Draft {
+    std::size_t phase = 0;
+    std::vector<Pencil> pencils;
+    std::vector<std::uint32_t> sphere_at;   // whole groups
+    std::vector<std::uint32_t> place, due;  // of the sorting by group
+    std::vector<Turn> turns;
+  };
 
+  template <class KeyOf, class Put>
+  void sort(std::size_t n, std::size_t keys, const KeyOf& key_of, const Put& put);
   void add_pencils(const std::vector<std::uint32_t>& order, float largest);
   void sort_into_pencils(const std::vector<std::uint32_t>& order, float largest,
                          const std::array<int, 3>& across);
   int parts_along(std::size_t spheres, std::size_t longest, double width) const;
   float radius_of_most(const std::vector<std::uint32_t>& order) const;
-  void add_phase(const std::vector<Pencil>& pencils);
-  void add_chain(const std::vector<Pencil>& pencils);
+  void draft_phase(const std::vector<Pencil>& pencils);
+  Draft& new_draft();
+  void put_together(Draft& chain) const;
+  void add_drafts();
 
   std::span<const SoftSphere> spheres_;
   SoftRegion region_;
   std::array<double, 3> edges_{};
   float skin_ = 0;
+  bool in_threads_ = false;
   std::vector<std::uint32_t> sphere_at_;
   std::vector<std::vector<Chain>> phases_;
-  std::vector<std::uint32_t> order_, sorted_, place_, start_, due_;  // of the sorting
-  std::vector<Turn> turns_;
+  // Of the sorting, kept for the next time.
+  std::vector<std::uint32_t> order_, sorted_, key_, start_;
+  BucketCounts counts_;
+  std::vector<Draft> drafts_;  // the first so many:
+  std::size_t drafted_ = 0;
 };
 
 }  // namespace bernal
