@@ -232,6 +232,7 @@ void SweepOrder::put_together(Draft& chain) const {
   }
   groups = std::max(groups, (spheres + lanes - 1) / lanes);
   chain.place.clear();
+  chain.place.reserve(spheres);
   for (const Pencil& p : pencils) {
     // (2k + 1) groups / 2 count, rounded down, for k = 0, 1, … without dividing.
     const std::size_t parts = 2 * std::size_t{p.count}, step = 2 * groups / parts, more = 2 * groups % parts;
@@ -254,6 +255,7 @@ void SweepOrder::put_together(Draft& chain) const {
   std::vector<std::size_t> last_group(pencils.size(), std::size_t{nobody});
   std::vector<Turn> waiting, still_waiting;
   sphere_at.clear();
+  sphere_at.reserve(groups * lanes);
   n = 0;
   for (std::size_t g = 0; n < spheres || !waiting.empty(); ++g) {
     const std::size_t full = sphere_at.size() + lanes, ahead = chain.due[std::min(g + 2, groups)];
