@@ -150,5 +150,27 @@ TEST(SweepOrder, FillsItsGroupsAndSharesThemOut) {
   }
 }
 
+TEST(SweepOrder, IsTheSameInThreads) {
+  for (const std::vector<float>& radii : {equal(100000), lognormal(100000, 0.3), with_giants(100000)}) {
+    Bed bed(radii, Vector<3>(1, 1, 1));
+    const SoftSizes sizes = bed.sizes();
+    for (std::size_t i = 5; i < bed.spheres.size(); i += 1000) bed.spheres[i] = no_sphere;
+    for (const bool by_octaves : {false, true}) {
+      std::array<SweepOrder, 2> orders;
+      for (const bool in_threads : {false, true})
+        for (int time = 0; time < 2; ++time)  // memory of before is used again
+          orders[in_threads].find(bed.spheres, SoftRegion{}, bed.edges, sizes, skin, by_octaves, in_threads);
+      EXPECT_EQ(orders[0].sphere_at(), orders[1].sphere_at());
+      EXPECT_EQ(std::ranges::count_if(orders[0].sphere_at(), [](std::uint32_t i) { return i != nobody; }),
+                bed.spheres.size() - 100);
+      ASSERT_EQ(orders[0].phases().size(), orders[1].phases().size());
+      for (std::size_t p = 0; p < orders[0].phases().size(); ++p)
+        EXPECT_TRUE(std::ranges::equal(
+            orders[0].phases()[p], orders[1].phases()[p],
+            [](const Chain& a, const Chain& b) { return a.first == b.first && a.last == b.last; }));
+    }
+  }
+}
+
 }  // namespace sweep_order_test
 }  // namespace bernal
