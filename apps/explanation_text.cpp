@@ -39,13 +39,12 @@ std::string as_lines(const std::vector<Entry>& entries) {
   for (const Entry& entry : entries)
     if (const std::size_t own = characters(entry.name); own <= widest_name)
       column = std::max(column, own + 4);
-  const std::string below = "\n" + std::string(column, ' ');
+  const std::string below = fmt::format("\n{}", std::string(column, ' '));
   std::string text;
   for (const Entry& entry : entries) {
-    std::string before = fmt::format("  {}", entry.name);
+    std::string before = "  " + entry.name;
     const std::size_t own = characters(before);
-    before += own + 2 > column ? below : std::string(column - own, ' ');
-    if (entry.what.empty()) before = "  " + entry.name;
+    if (!entry.what.empty()) before += own + 2 > column ? below : std::string(column - own, ' ');
     for (const std::string_view what : split(entry.what, "\n")) {
       text += before + wrapped(what, column, 110, column);
       before = below;

@@ -21,12 +21,12 @@ inline void counting_sort(std::vector<std::uint32_t>& bucket, std::size_t bucket
   for (std::uint32_t& b : bucket) b = next[b]++;
 }
 
-/// How many of each bucket are in each part of the items, while they are sorted. Kept by who sorts often: to
-/// get memory from the system can take longer than to sort.
+/// How many of each bucket are in each part of the items, while they are sorted.
 using BucketCounts = std::vector<std::vector<std::uint32_t>>;
 
 /// Calls put(place, i) for the items 0 to n - 1 with their places as above, but for those in bucket number
-/// `buckets`, which are left out. It calls bucket_of(i) twice for each. Cost: O(n + buckets).
+/// `buckets`, which are left out; `start` is as above. It calls bucket_of(i) twice for each. Cost:
+/// O(n + buckets).
 template <class BucketOf, class Put>
 void put_into_buckets(std::size_t n, std::size_t buckets, const BucketOf& bucket_of, const Put& put,
                       std::vector<std::uint32_t>& start, BucketCounts& next, bool in_threads) {
@@ -51,6 +51,27 @@ void put_into_buckets(std::size_t n, std::size_t buckets, const BucketOf& bucket
   parallel_for_if(in_threads, parts, [&](std::size_t part) {
     for_each(part, [&](std::uint32_t& place, std::size_t i) { put(place++, i); });
   });
+}
+
+/// What sorting needs besides. Kept by who sorts often: to get memory from the system can take longer than to
+/// sort.
+struct BucketRoom {
+  std::vector<std::uint32_t> bucket;  // of each item
+  BucketCounts counts;
+};
+
+/// The same, but calls bucket_of(i) once for each.
+template <class BucketOf, class Put>
+void put_into_buckets(std::size_t n, std::size_t buckets, const BucketOf& bucket_of, const Put& put,
+                      std::vector<std::uint32_t>& start, BucketRoom& room, bool in_threads) {
+  constexpr std::size_t items_a_piece = 16384;
+  std::vector<std::uint32_t>& bucket = room.bucket;
+  bucket.resize(n);
+  parallel_ranges_if(in_threads, n, items_a_piece, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) bucket[i] = static_cast<std::uint32_t>(bucket_of(i));
+  });
+  const auto found = [&](std::size_t i) { return bucket[i]; };
+  put_into_buckets(n, buckets, found, put, start, room.counts, in_threads);
 }
 
 /// The items 0 to n - 1 by the bucket_of(i) that each is in, equals in their order, but for those in bucket

@@ -4,13 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/parallel.hpp"
-
 namespace bernal {
 namespace {
 
-/// Of spheres that a thread takes at a time, at most.
-constexpr std::size_t spheres_a_piece = 16384;
 /// Cells for each sphere of a level, at most.
 constexpr double cells_per_sphere = 2;
 /// Of a cell, in the farthest that two spheres of its level may be apart as neighbours. The cells along the
@@ -59,9 +55,9 @@ void RegionCells::sort(std::span<const SoftSphere> spheres, const SoftRegion& re
   region_ = region;
   edges_ = edges;
   skin_ = skin;
-  const auto cells = static_cast<std::uint32_t>(choose_levels(spheres, sizes));
-  cell_.resize(spheres.size());
-  const auto cell_of = [&](const SoftSphere& s) {
+  const std::size_t cells = choose_levels(spheres, sizes);
+  const auto cell_of = [&](std::size_t i) {
+    const SoftSphere& s = spheres[i];
     if (!(s.r > 0)) return cells;
     const SoftLevel& level = levels_[sizes.levels == 1 ? 0 : level_of(s.r, sizes)];
     const auto at = [&](std::size_t k) {
@@ -69,11 +65,8 @@ void RegionCells::sort(std::span<const SoftSphere> spheres, const SoftRegion& re
       return static_cast<std::size_t>(std::min(cell, level.cells[k] - 1));
     };
     const auto n = [&](std::size_t k) { return static_cast<std::size_t>(level.cells[k]); };
-    return static_cast<std::uint32_t>(level.first_cell + (at(2) * n(1) + at(1)) * n(0) + at(0));
+    return level.first_cell + (at(2) * n(1) + at(1)) * n(0) + at(0);
   };
-  parallel_ranges_if(in_threads, spheres.size(), spheres_a_piece, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) cell_[i] = cell_of(spheres[i]);
-  });
   for (auto* column : {&x_, &y_, &z_}) column->resize(spheres.size() + lanes);
   r_.resize(spheres.size() + lanes);
   places_.resize(spheres.size() + lanes);
@@ -85,8 +78,7 @@ void RegionCells::sort(std::span<const SoftSphere> spheres, const SoftRegion& re
     r_[slot] = s.r;
     places_[slot] = static_cast<std::uint32_t>(i);
   };
-  put_into_buckets(
-      spheres.size(), cells, [&](std::size_t i) { return cell_[i]; }, put, start_, counts_, in_threads);
+  put_into_buckets(spheres.size(), cells, cell_of, put, start_, room_, in_threads);
 }
 
 SearchTask RegionCells::task() const {

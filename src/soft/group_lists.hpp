@@ -33,9 +33,8 @@ class RegionCells {
   std::array<double, 3> edges_{};
   float skin_ = 0;
   std::vector<SoftLevel> levels_;
-  std::vector<std::uint32_t> cell_;   // of each sphere
   std::vector<std::uint32_t> start_;  // of each cell of all levels
-  BucketCounts counts_;               // of the sorting
+  BucketRoom room_;
   std::vector<std::int32_t> x_, y_, z_;
   std::vector<float> r_;
   std::vector<std::uint32_t> places_;  // these columns have `lanes` more entries that say nothing

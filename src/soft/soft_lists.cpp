@@ -11,7 +11,7 @@
 namespace bernal {
 namespace {
 
-constexpr std::size_t groups_per_block = 64, spheres_per_search = 4096, spheres_a_piece = 16384;
+constexpr std::size_t groups_per_block = 64, spheres_a_piece = 4096;
 
 }  // namespace
 
@@ -59,9 +59,9 @@ void SoftLists::find_neighbors(std::size_t swept) {
   const std::size_t slots = cells_.size(), groups = swept / lanes;
   const auto filler = static_cast<std::uint32_t>(swept);  // the gap behind the last group
   found_of_.assign(swept, {});
-  found_.resize((slots + spheres_per_search - 1) / spheres_per_search);
+  found_.resize((slots + spheres_a_piece - 1) / spheres_a_piece);
   tbb::parallel_for(std::size_t{0}, found_.size(), [&](std::size_t n) {
-    const std::size_t first = n * spheres_per_search, last = std::min(slots, first + spheres_per_search);
+    const std::size_t first = n * spheres_a_piece, last = std::min(slots, first + spheres_a_piece);
     CandidateRoom& room = rooms_.local();
     room.reserve(slots);
     found_[n].find(kernels_, task, first, last, swept, room, found_of_);

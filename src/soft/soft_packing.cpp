@@ -194,11 +194,7 @@ FarthestMoves SoftPacking::farthest_moves(bool of_all) const {
     }
     squares[n] = largest;
   };
-  if (count_ < SoftLists::worth_threads) {
-    for (std::size_t n = 0; n < squares.size(); ++n) look_at(n);
-  } else {
-    parallel_for(squares.size(), look_at);
-  }
+  parallel_for_if(count_ >= SoftLists::worth_threads, squares.size(), look_at);
   return FarthestMoves::of_parts(std::move(squares));
 }
 

@@ -26,8 +26,6 @@ constexpr double chains_a_colour = 8, shortest_part = 2;
 /// Spheres whose radii differ by less than this part of an octave are alike.
 constexpr double classes_per_octave = 4;
 constexpr std::size_t most_classes = 64;
-/// That a thread sorts at a time, at most.
-constexpr std::size_t items_a_piece = 16384;
 
 bool is_there(const SoftSphere& s) { return s.r > 0; }
 
@@ -58,18 +56,6 @@ SoftSizes::SoftSizes(const std::vector<float>& radii) {
   volume_a_sphere *= 4.18879020478639 / static_cast<double>(radii.size());
 }
 
-/// Calls put(place, i) for the items 0 to n - 1 with their places by key_of(i), but for those with key number
-/// `keys`; `start_` becomes where every key begins.
-template <class KeyOf, class Put>
-void SweepOrder::sort(std::size_t n, std::size_t keys, const KeyOf& key_of, const Put& put) {
-  key_.resize(n);
-  parallel_ranges_if(in_threads_, n, items_a_piece, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) key_[i] = static_cast<std::uint32_t>(key_of(i));
-  });
-  put_into_buckets(
-      n, keys, [&](std::size_t i) { return key_[i]; }, put, start_, counts_, in_threads_);
-}
-
 void SweepOrder::find(std::span<const SoftSphere> spheres, const SoftRegion& region,
                       const std::array<double, 3>& edges, const SoftSizes& sizes, float skin, bool by_octaves,
                       bool in_threads) {
@@ -96,8 +82,8 @@ void SweepOrder::find(std::span<const SoftSphere> spheres, const SoftRegion& reg
     return part + along * std::min(most_classes - 1, static_cast<std::size_t>(classes_per_octave * octaves));
   };
   order_.resize(count);
-  sort(spheres.size(), keys, key_of,
-       [&](std::uint32_t place, std::size_t i) { order_[place] = static_cast<std::uint32_t>(i); });
+  const auto put = [&](std::uint32_t place, std::size_t i) { order_[place] = static_cast<std::uint32_t>(i); };
+  put_into_buckets(spheres.size(), keys, key_of, put, start_, room_, in_threads_);
 
   if (!by_octaves) {
     add_pencils(order_, sizes.large);
@@ -126,8 +112,8 @@ void SweepOrder::sort_into_pencils(const std::vector<std::uint32_t>& order, floa
                          : static_cast<std::size_t>((along_x.at(s) * z + along_z.at(s)) * y + along_y.at(s));
   };
   sorted_.resize(order.size());
-  sort(order.size(), pencils + 1, pencil_of,
-       [&](std::uint32_t place, std::size_t n) { sorted_[place] = order[n]; });
+  const auto put = [&](std::uint32_t place, std::size_t n) { sorted_[place] = order[n]; };
+  put_into_buckets(order.size(), pencils + 1, pencil_of, put, start_, room_, in_threads_);
 }
 
 /// Into how many parts pencils are to be cut, so that every colour has chains enough for threads.

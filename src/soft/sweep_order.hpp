@@ -72,8 +72,6 @@ class SweepOrder {
     std::vector<Turn> turns;
   };
 
-  template <class KeyOf, class Put>
-  void sort(std::size_t n, std::size_t keys, const KeyOf& key_of, const Put& put);
   void add_pencils(const std::vector<std::uint32_t>& order, float largest);
   void sort_into_pencils(const std::vector<std::uint32_t>& order, float largest,
                          const std::array<int, 3>& across);
@@ -92,8 +90,8 @@ class SweepOrder {
   std::vector<std::uint32_t> sphere_at_;
   std::vector<std::vector<Chain>> phases_;
   // Of the sorting, kept for the next time.
-  std::vector<std::uint32_t> order_, sorted_, key_, start_;
-  BucketCounts counts_;
+  std::vector<std::uint32_t> order_, sorted_, start_;
+  BucketRoom room_;
   std::vector<Draft> drafts_;  // the first so many:
   std::size_t drafted_ = 0;
 };
