@@ -109,8 +109,8 @@ bool SoftBlocks::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32
   if (!find_orders(spheres, ids, movers)) return false;
 
   const std::size_t places = blocks_.back().first_place + blocks_.back().places;
-  resize_anew(spare, places + 1);
-  resize_anew(spare_ids_, places + 1);
+  resize_anew(spare, places);
+  resize_anew(spare_ids_, places);
   parallel_for(blocks_.size(), [&](std::size_t b) {
     const std::vector<std::uint16_t>& from = drafts_[b].from;
     for (std::size_t q = 0; q < from.size(); ++q) {
@@ -121,8 +121,6 @@ bool SoftBlocks::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32
     }
     find_exports(b, spare, scratch_.local());
   });
-  spare.back() = no_sphere;
-  spare_ids_.back() = nobody;
   spheres.swap(spare);
   ids.swap(spare_ids_);
 
@@ -242,12 +240,12 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
   scratch.room.reserve(most_places);
   scratch.found.find(kernels_, scratch.cells.task(), 0, scratch.cells.size(), block.swept, scratch.room,
                      scratch.lists);
-  const auto filler = static_cast<std::uint16_t>(name_neighbors(block.places, scratch));
+  name_neighbors(block.places, scratch);
   const auto name_of = [&](std::uint32_t p) { return scratch.name_of[p]; };
   scratch.rows.clear();
   scratch.groups.resize(block.swept / lanes);
   for (std::size_t g = 0; g < scratch.groups.size(); ++g)
-    scratch.groups[g].rows = append_rows(&scratch.lists[g * lanes], name_of, filler, scratch.rows);
+    scratch.groups[g].rows = append_rows(&scratch.lists[g * lanes], g * lanes, name_of, scratch.rows);
 
   const std::uint16_t* row = rows_.keep(scratch.rows);
   for (NeighborRows<std::uint16_t>& group : scratch.groups) {
@@ -261,9 +259,8 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
 }
 
 /// Leaves out of the halo those that are nobody's neighbours: a third of equal spheres, and most where it is
-/// as wide as a few large ones need it. `name_of` becomes the place in a visit of each one that remains;
-/// returns that of the gap behind them.
-std::size_t SoftBlocks::name_neighbors(std::size_t own, Scratch& scratch) {
+/// as wide as a few large ones need it. `name_of` becomes the place in a visit of each one that remains.
+void SoftBlocks::name_neighbors(std::size_t own, Scratch& scratch) {
   std::vector<std::uint16_t>& name_of = scratch.name_of;
   name_of.assign(scratch.spheres.size(), 0);
   for (const std::uint32_t p : scratch.found.all()) name_of[p] = 1;
@@ -275,19 +272,17 @@ std::size_t SoftBlocks::name_neighbors(std::size_t own, Scratch& scratch) {
   }
   scratch.halo.resize(kept - own);
   for (std::size_t p = 0; p < own; ++p) name_of[p] = static_cast<std::uint16_t>(p);
-  return kept;
 }
 
 float SoftBlocks::visit(const Block& block, const SweepTask& task) const {
   if (block.swept == 0) return 0;
   thread_local std::vector<SoftSphere> here_and_around;
-  const std::size_t size = block.places + block.halo_size + 1;
+  const std::size_t size = block.places + block.halo_size;
   if (here_and_around.size() < size) here_and_around.resize(size + size / 4);
   SoftSphere* const spheres = here_and_around.data();
   SoftSphere* const own = task.spheres + block.first_place;
   std::memcpy(spheres, own, block.places * sizeof(SoftSphere));
   for (std::uint32_t h = 0; h < block.halo_size; ++h) spheres[block.places + h] = task.spheres[block.halo[h]];
-  spheres[size - 1] = no_sphere;
   SweepTask here_task = task;
   here_task.spheres = spheres;
   here_task.first_group = block.first_place / lanes;

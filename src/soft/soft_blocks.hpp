@@ -58,7 +58,7 @@ class SoftBlocks {
   std::size_t bytes_a_sweep() const;
 
  private:
-  /// Of a visit, the gap behind them among them.
+  /// Of a visit.
   static constexpr std::size_t most_places = 65535;
   /// In place of the number of a sphere.
   static constexpr std::uint16_t gap = 65535;
@@ -97,7 +97,7 @@ class SoftBlocks {
                    std::uint32_t movers);
   void find_exports(std::size_t block, const std::vector<SoftSphere>& spheres, Scratch& scratch);
   bool find_neighbors(std::size_t block, const std::vector<SoftSphere>& spheres, Scratch& scratch);
-  static std::size_t name_neighbors(std::size_t own, Scratch& scratch);
+  static void name_neighbors(std::size_t own, Scratch& scratch);
   float visit(const Block& block, const SweepTask& task) const;
 
   Made made_{"relaxation"}, lists_made_{"neighbour lists"};

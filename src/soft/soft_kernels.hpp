@@ -47,6 +47,8 @@ struct SweepTask {
   SoftSphere* spheres;
   std::size_t first_group;
   std::array<float, 3> scale;  ///< edge / 2^32 on each axis
+  /// Where all spheres and all edges are alike and there are no walls: the diameter, in edges / 2^32; else 0.
+  float diameter;
   float omega;       ///< over-relaxation: the step is min(omega / contacts, 1) times the sum of overlaps
   SoftWalls* walls;  ///< of a container; null in a periodic box
   bool measure;      ///< the largest overlap ratio, and what has to be filled of these:
@@ -128,6 +130,8 @@ struct Candidates {
 
 /// The inner loops of the fast relaxation, compiled for several instruction sets. All do the same operations
 /// on the same numbers in the same order, one correctly rounded operation at a time: the same bits.
+/// Where `SweepTask::diameter` is given and nothing is measured, a sweep has a sixth of its operations less:
+/// it needs no radii, and one unit for all axes.
 struct SoftKernels {
   std::string_view name;
 

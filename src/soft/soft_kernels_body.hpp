@@ -144,6 +144,12 @@ BERNAL_INLINE Floats floats_at(const float* from) { return *reinterpret_cast<con
 BERNAL_INLINE void store(void* to, Ints v) { *static_cast<UnalignedInts*>(to) = v; }
 BERNAL_INLINE void store(float* to, Floats v) { *reinterpret_cast<UnalignedFloats*>(to) = v; }
 
+/// Without contacts omega / contacts is infinite, and the sums are 0.
+BERNAL_INLINE Floats step_of(const SweepTask& task, Floats contacts) {
+  const Floats step = task.omega / contacts;
+  return step < 1.0f ? step : all(1);
+}
+
 template <bool measure, class Index>
 float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std::size_t begin,
                    std::size_t end) {
@@ -196,8 +202,7 @@ float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std
           force += where(overlap, weight * depth);
         }
       }
-      Floats step = task.omega / contacts;
-      step = step < 1.0f ? step : all(1);  // without contacts it is infinite, and the sums are 0
+      const Floats step = step_of(task, contacts);
       store(mine, {wrapped_sum(me.x, to_ints(sum_x * step * inverse_x)),
                    wrapped_sum(me.y, to_ints(sum_y * step * inverse_y)),
                    wrapped_sum(me.z, to_ints(sum_z * step * inverse_z)), me.r});
@@ -215,10 +220,45 @@ float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std
   return largest;
 }
 
+/// Spheres of one size in a cube without walls, in units of the coordinates.
+template <class Index>
+void sweep_alike(const SweepTask& task, const NeighborRows<Index>* groups, std::size_t begin,
+                 std::size_t end) {
+  const Floats diameter = all(task.diameter);
+  for (std::size_t g = begin; g < end; ++g) {
+    SoftSphere* const group = task.spheres + lanes * (g - task.first_group);
+    const Index* const rows = groups[g - task.first_group].first;
+    const Index* const rows_end = rows + lanes * groups[g - task.first_group].rows;
+    for (std::size_t first = 0; first < lanes; first += width) {
+      SoftSphere* const mine = group + first;
+      const Columns me = load([&](int k) BERNAL_INLINE_LAMBDA { return mine + k; });
+      Floats sum_x{}, sum_y{}, sum_z{}, contacts{};
+      for (const Index* places = rows + first; places < rows_end; places += lanes) {
+        const Columns it = load([&](int k) BERNAL_INLINE_LAMBDA { return task.spheres + places[k]; });
+        const Floats dx = to_floats(wrapped_difference(me.x, it.x));
+        const Floats dy = to_floats(wrapped_difference(me.y, it.y));
+        const Floats dz = to_floats(wrapped_difference(me.z, it.z));
+        const Floats d = root((dx * dx + dy * dy) + dz * dz);
+        const Ints overlap = (d < diameter) & (d > 0.0f);
+        const Floats push = where(overlap, (diameter - d) / d);
+        sum_x += push * dx;
+        sum_y += push * dy;
+        sum_z += push * dz;
+        contacts += where(overlap, all(1));
+      }
+      const Floats step = step_of(task, contacts);
+      store(mine, {wrapped_sum(me.x, to_ints(sum_x * step)), wrapped_sum(me.y, to_ints(sum_y * step)),
+                   wrapped_sum(me.z, to_ints(sum_z * step)), me.r});
+    }
+  }
+}
+
 template <class Index>
 float sweep(const SweepTask& task, const NeighborRows<Index>* groups, std::size_t begin, std::size_t end) {
-  return task.measure ? sweep_groups<true>(task, groups, begin, end)
-                      : sweep_groups<false>(task, groups, begin, end);
+  if (task.measure) return sweep_groups<true>(task, groups, begin, end);
+  if (task.diameter == 0) return sweep_groups<false>(task, groups, begin, end);
+  sweep_alike(task, groups, begin, end);
+  return 0;
 }
 
 /// The cells of a level, on one axis, that what lies between `low` and `high` may reach: `count` of them from

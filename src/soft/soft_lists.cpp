@@ -24,8 +24,8 @@ void SoftLists::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_
   take_resting_out(movers);
   order_.find(before_.spheres, SoftRegion{}, edges, sizes, skin, by_octaves_, in_threads);
   const std::vector<std::uint32_t>& sphere_at = order_.sphere_at();
-  spheres.resize(sphere_at.size() + 1);
-  ids.resize(sphere_at.size() + 1);
+  spheres.resize(sphere_at.size());
+  ids.resize(sphere_at.size());
   const auto put_in_order = [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
       const std::uint32_t i = sphere_at[p];
@@ -34,8 +34,6 @@ void SoftLists::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_
     }
   };
   parallel_ranges_if(in_threads, sphere_at.size(), spheres_a_piece, put_in_order);
-  spheres.back() = no_sphere;
-  ids.back() = nobody;
   spheres.insert(spheres.end(), resting_.spheres.begin(), resting_.spheres.end());
   ids.insert(ids.end(), resting_.ids.begin(), resting_.ids.end());
   cells_.sort(spheres, SoftRegion{}, edges, sizes, skin, in_threads);
@@ -57,7 +55,6 @@ void SoftLists::take_resting_out(std::uint32_t movers) {
 void SoftLists::find_neighbors(std::size_t swept) {
   const SearchTask task = cells_.task();
   const std::size_t slots = cells_.size(), groups = swept / lanes;
-  const auto filler = static_cast<std::uint32_t>(swept);  // the gap behind the last group
   found_of_.assign(swept, {});
   found_.resize((slots + spheres_a_piece - 1) / spheres_a_piece);
   tbb::parallel_for(std::size_t{0}, found_.size(), [&](std::size_t n) {
@@ -74,7 +71,7 @@ void SoftLists::find_neighbors(std::size_t swept) {
     std::vector<std::uint32_t>& rows = rows_[block];
     rows.clear();
     for (std::size_t g = first; g < last; ++g)
-      groups_[g].rows = append_rows(&found_of_[g * lanes], std::identity{}, filler, rows);
+      groups_[g].rows = append_rows(&found_of_[g * lanes], g * lanes, std::identity{}, rows);
     const std::uint32_t* begin = rows.data();
     for (std::size_t g = first; g < last; begin += lanes * groups_[g++].rows) groups_[g].first = begin;
   });

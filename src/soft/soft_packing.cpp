@@ -92,6 +92,12 @@ double SoftPacking::farthest_neighbor(double largest, double mean) {
   return 2 * (largest + relative_skin * mean);
 }
 
+/// In edges / 2^32, where all spheres and edges are alike and there are no walls; else 0.
+float SoftPacking::diameter_of_all() const {
+  const bool alike = sizes_.equal && edges_[0] == edges_[1] && edges_[1] == edges_[2];
+  return alike && !walls_ ? 2 * swelling_ * radii_[0] / scale_of(edges_)[0] : 0;
+}
+
 float SoftPacking::move_all(float omega, bool measure, bool each) {
   keep_lists_valid(measure);
   if (each) {
@@ -101,6 +107,7 @@ float SoftPacking::move_all(float omega, bool measure, bool each) {
   const SweepTask task{.spheres = spheres_.data(),
                        .first_group = 0,
                        .scale = scale_of(edges_),
+                       .diameter = diameter_of_all(),
                        .omega = omega,
                        .walls = walls_.get(),
                        .measure = measure,

@@ -118,6 +118,7 @@ class SoftPacking {
   SoftPacking(const std::vector<double>& radii, double most, int dimension, const SoftKernels& kernels,
               bool by_octaves);
 
+  float diameter_of_all() const;
   float move_all(float omega, bool measure, bool each);
   double measure(float omega, bool each);
   template <int D>
