@@ -22,12 +22,11 @@ class SoftLists {
       : kernels_(kernels), by_octaves_(by_octaves) {}
 
   /// Sorts the spheres anew and finds their neighbours. `spheres` and `ids` are in sweep order, with gaps
-  /// where the radius is NaN, before and after; the sphere behind the last group is such a gap. Of several
-  /// images of a sphere that are neighbours of one, as there may be where an edge is less than 4 (largest
-  /// radius + skin), the nearest counts. `skin` is in the unit of the radii. Parallel. Cost: about 0.2 µs a
-  /// sphere on one core.
+  /// where the radius is NaN, before and after. Of several images of a sphere that are neighbours of one, as
+  /// there may be where an edge is less than 4 (largest radius + skin), the nearest counts. `skin` is in the
+  /// unit of the radii. Parallel. Cost: about 0.2 µs a sphere on one core.
   ///
-  /// Those whose id is `movers` or larger rest: they stand behind that gap, where others find them as
+  /// Those whose id is `movers` or larger rest: they stand behind the last group, where others find them as
   /// neighbours and no sweep comes. Precondition: some move.
   void build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& ids,
              const std::array<double, 3>& edges, const SoftSizes& sizes, float skin,
