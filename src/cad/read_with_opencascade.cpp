@@ -1,9 +1,3 @@
-#include <dlfcn.h>
-
-#include <algorithm>
-#include <initializer_list>
-#include <vector>
-
 #include "cad/caged_reader.hpp"
 #include "cad/known_formats.hpp"
 #include "cad/opencascade/read_shapes.hpp"
@@ -30,40 +24,6 @@ std::optional<ShapeFormat> shape_format(const std::filesystem::path& file) {
 }
 
 }  // namespace
-
-namespace {
-
-/// Where the module may be: under its name alone where this was built, which the program's RUNPATH knows; beside
-/// the program where both are installed; where packages put it. A folder that anybody may write to is not among
-/// them.
-std::vector<std::filesystem::path> places_of_module() {
-  std::error_code unknown;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  std::vector<std::filesystem::path> places;
-  for (const std::filesystem::path module : std::initializer_list<const char*>{BERNAL_OPENCASCADE_MODULES})
-    places.push_back(module.has_parent_path() ? program.parent_path() / module : module);
-  return places;
-}
-
-}  // namespace
-
-void* opencascade_function(const char* name) {
-  for (const std::filesystem::path& module : places_of_module())
-    if (void* loaded = dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL))
-      if (void* symbol = dlsym(loaded, name)) return symbol;
-  return nullptr;
-}
-
-std::string opencascade_remedy() {
-  const auto places = places_of_module();
-  if (places.empty()) return "install it and build again";
-  std::error_code unknown;
-  const bool is_there = std::ranges::any_of(places, [&](const std::filesystem::path& module) {
-    return module.has_parent_path() && std::filesystem::exists(module, unknown);
-  });
-  return is_there ? "install its libraries, on Debian by apt install " BERNAL_OPENCASCADE_PACKAGE
-                  : "install " + places.front().string() + ", which the Debian package bernal has";
-}
 
 bool opencascade_reads(const std::filesystem::path& file) { return shape_format(file).has_value(); }
 

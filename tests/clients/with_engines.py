@@ -83,7 +83,7 @@ def shapes(folder):
 def slabs(folder):
     """As dense as all at once, in any number of slabs, of equal sizes and of others."""
     for sizes, least in (("diameter = 1.0", 0.63),
-                         ('diameter = { distribution = "lognormal", median = 1.0, sigma = 0.3, max = 2.5 }', 0.65)):
+                         ('diameter = { distribution = "lognormal", median = 1.0, sigma = 0.3, max = 1.8 }', 0.65)):
         for count in (2, 3):
             (folder / "slabs.toml").write_text(f'[container]\nkind = "periodic"\n[spheres]\ncount = 10000\n{sizes}\n'
                                                f'[engine]\nkind = "lammps"\nkeep = true\nslabs = {count}\n')

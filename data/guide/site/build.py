@@ -36,6 +36,7 @@ SECTIONS = [
         ("engines", "Engines on many machines"),
         ("density", "How dense can it be"), ("settle", "Settle a bed"), ("measure", "Look and measure"),
         ("cost", "Accuracy, time and cost"), ("sweep", "Many scenes at once"),
+        ("checkpoints", "Runs that are ended and go on"),
         ("python", "From Python"))]),
     ("To know more", [(f"guide/{name}", f"data/guide/{name}.md", title) for name, title in (
         ("scene", "The scene file"), ("certificate", "What the certificate means"), ("files", "The files of a result"),
@@ -47,7 +48,8 @@ SECTIONS = [
     ("Results", [("results/reaches", "data/guide/reaches.md", "What it reaches")] +
      [(f"results/{name}", f"data/results/{name}.md", title) for name, title in (
          ("methods", "Methods, priced"), ("effects", "Effects, one by one"), ("arithmetic", "The arithmetic, priced"),
-         ("exchange", "Exchange of sizes"), ("loose", "Loose packings"), ("lists", "Lists and arrays"),
+         ("exchange", "Exchange of sizes"), ("loose", "Loose packings"), ("containers", "Many spheres in CAD parts"),
+         ("large", "Large packings"), ("lists", "Lists and arrays"),
          ("engines", "Engines over MPI"), ("scale", "How relaxation scales"), ("gpu", "Relaxation on a GPU"), ("packers", "Against public packers"),
          ("hard", "Hard cases"), ("starts", "Packings of others"))] +
      [(f"results/{name}", f"data/results/papers/{name}/{name}.md", title) for name, title in (
@@ -92,6 +94,13 @@ class Site:
         self.of_file = {}  # file of the source: address
         self.copied = set()
         self.problems = []
+
+    def look_for_forgotten_pages(self):
+        """A page of the guide or of the results that no section names would be reached by nobody."""
+        for folder in ("data/guide", "data/results"):
+            for file in sorted((SOURCE / folder).glob("*.md")):
+                if (name := str(file.relative_to(SOURCE))) not in self.of_file:
+                    self.problems.append(f"{name} is in none of SECTIONS, in data/guide/site/build.py")
 
     def link(self, link, source, address):
         """Where a link of a file of the source leads to from a page."""
@@ -219,6 +228,20 @@ def front_page(site):
     site.add("index", "bernal", html_of_markdown((SOURCE / "data/guide/index.md").read_text()), "data/guide/index.md")
 
 
+def tidied(folder):
+    """What tidy says of the pages that are made here; nothing where it is not installed."""
+    if not shutil.which("tidy"):
+        return []
+    def complaints(page):
+        said = subprocess.run(["tidy", "-quiet", "-errors", "--show-warnings", "yes", "--drop-empty-elements", "no",
+                               "--warn-proprietary-attributes", "no", page], capture_output=True, text=True).stderr
+        return [f"{page}: {line}" for line in said.splitlines()]
+
+    pages = sorted(page for page in folder.rglob("*.html") if "files" not in page.relative_to(folder).parts)
+    with ThreadPoolExecutor() as pool:
+        return sum(pool.map(complaints, pages), [])
+
+
 def main():
     shutil.rmtree(OUT, ignore_errors=True)
     OUT.mkdir(parents=True)
@@ -228,6 +251,7 @@ def main():
     for header in (SOURCE / "include/bernal").glob("*/*.hpp"):
         path = str(header.relative_to(SOURCE / "include/bernal"))
         site.of_file[f"include/bernal/{path}"] = "reference/cpp/" + path.removesuffix(".hpp").replace("/", "_")
+    site.look_for_forgotten_pages()
     with ThreadPoolExecutor() as pool:
         bodies = list(pool.map(lambda page: html_of_markdown((SOURCE / page[1]).read_text()), written))
     for (address, source, title), body in zip(written, bodies):
@@ -244,7 +268,7 @@ def main():
         site.pages["reference/python"] = ("Python module", python_reference.page_of(stub), "README.md")
     front_page(site)
     site.write()
-    problems = site.problems + check.problems_of(OUT)
+    problems = site.problems + check.problems_of(OUT) + tidied(OUT)
     print("\n".join(problems) or f"{len(site.pages)} pages in {OUT}, every link leads somewhere")
     sys.exit(bool(problems))
 

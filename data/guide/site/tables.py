@@ -55,6 +55,7 @@ def scene_keys(reference):
              "container": ("Containers", "[container], chosen by <code>kind</code>"),
              "diameter": ("Sizes", "<code>radius</code> or <code>diameter</code> in [spheres], chosen by "
                           "<code>distribution</code>; a plain length is one size"),
+             "engine": ("Engines", "[engine], chosen by <code>kind</code>"),
              "stage": ("Stages", "[[stage]], in the order in which they stand, chosen by <code>do</code>"),
              "output": ("Files for other programs", "[[output]], chosen by <code>format</code>")}
     parts = ["<h1>Every key of a scene</h1>",
