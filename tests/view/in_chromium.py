@@ -304,10 +304,10 @@ def main():
         empty = without_spheres(full, folder / "empty")
 
         with chromium.Browser() as page:
-            for name, result, columns in [("part", part, ["radius", "contacts", "gap", "wall"]),
-                                          ("box", box, ["radius", "contacts", "gap"]),
-                                          ("far", far, ["radius", "contacts", "gap", "wall"]),
-                                          ("discs", discs, ["radius", "contacts", "gap", "wall"])]:
+            for name, result, columns in [("part", part, ["radius", "contacts", "gap", "wall", "local"]),
+                                          ("box", box, ["radius", "contacts", "gap", "local"]),
+                                          ("far", far, ["radius", "contacts", "gap", "wall", "local"]),
+                                          ("discs", discs, ["radius", "contacts", "gap", "wall", "local"])]:
                 shown = Shown(page, result)
                 flat = name == "discs"
                 page.screenshot(pictures / f"{name}.png")
