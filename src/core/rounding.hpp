@@ -4,13 +4,19 @@
 
 namespace bernal {
 
-/// The least double that is not below a + b, and the largest that is not above it: the sum itself where it is
-/// a double. The rounding error of a sum is a double and found without error (Møller 1965; Knuth, The Art of
-/// Computer Programming 2, section 4.2.2). Precondition: no overflow.
-inline double sum_rounded_up(double a, double b) {
+/// a + b less its rounding to a double: itself a double and found without error (Møller 1965; Knuth, The Art
+/// of Computer Programming 2, section 4.2.2). Precondition, here and below: no overflow.
+inline double rounding_of_sum(double a, double b) {
   const double sum = a + b, of_b = sum - a;
-  const double error = (a - (sum - of_b)) + (b - of_b);
-  return error > 0 ? std::nextafter(sum, std::numeric_limits<double>::infinity()) : sum;
+  return (a - (sum - of_b)) + (b - of_b);
+}
+inline bool is_exact_sum(double a, double b) { return rounding_of_sum(a, b) == 0; }
+
+/// The least double that is not below a + b, and the largest that is not above it: the sum itself where it is
+/// a double.
+inline double sum_rounded_up(double a, double b) {
+  const double sum = a + b;
+  return rounding_of_sum(a, b) > 0 ? std::nextafter(sum, std::numeric_limits<double>::infinity()) : sum;
 }
 inline double sum_rounded_down(double a, double b) { return -sum_rounded_up(-a, -b); }
 

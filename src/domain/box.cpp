@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/rounding.hpp"
 #include "domain/analytic.hpp"
 #include "domain/exact_analytic.hpp"
 #include "domain/free_path.hpp"
@@ -23,13 +24,16 @@ class BoxContainer final : public Container {
         ends_.upper[axis] = std::numeric_limits<double>::infinity();
         continue;
       }
-      ends_.lower[axis] = bounds_.lower[axis];
-      ends_.upper[axis] = bounds_.upper[axis];
+      const double lower_end = shape.corner[axis], size = shape.size[axis];
+      ends_.lower[axis] = lower_end;
+      ends_.upper[axis] = sum_rounded_down(lower_end, size);
+      error_ = std::max(error_, roundings * (sum_rounded_up(lower_end, size) - ends_.upper[axis]));
       const bool upper = side % 2 == 1;
       Facet& f = facets_.emplace_back();
       f.kind = Facet::Kind::plane;
       f.id = static_cast<std::uint32_t>(side);
       f.a = upper ? bounds_.upper : bounds_.lower;
+      if (upper) f.a[axis] = ends_.upper[axis];
       f.b = Vector<3>::Unit(axis) * (upper ? -1.0 : 1.0);
     }
   }
@@ -46,8 +50,8 @@ class BoxContainer final : public Container {
 
   bool contains(const Vector<3>& c, double r) const override {
     // Inside, the clearance is one difference of doubles. Rounding never carries it across another double, so
-    // it is wrong about r only where it equals r.
-    return decide_contains(arithmetic(), clearance(c), r, 0.0,
+    // it is wrong about r only where it equals r, or where the walls are not doubles.
+    return decide_contains(arithmetic(), clearance(c), r, error_,
                            [&] { return contains_exactly(walls_, c, r); });
   }
 
@@ -61,9 +65,14 @@ class BoxContainer final : public Container {
   }
 
  private:
+  /// Of the distance between the doubles on both sides of a wall, what the rounding of it and of the
+  /// clearance stays below.
+  static constexpr double roundings = 4;
+
   Box shape_;
   Bounds<3> bounds_;
-  Bounds<3> ends_;  // infinite along an axis that has none
+  Bounds<3> ends_;  // infinite along an axis that has none; an upper one is the next double inside
+  double error_ = 0;
   std::vector<AnalyticWall> walls_;
   std::vector<Facet> facets_;
 };

@@ -2,17 +2,22 @@
 
 #include <algorithm>
 
+#include "core/rounding.hpp"
 #include "domain/exact_way.hpp"
 
 namespace bernal {
 
+/// Where the upper corner is no double, its walls stand a size behind the lower one, seen from above.
 std::vector<AnalyticWall> walls_of(const Box& shape) {
   const Bounds<3> bounds = bounds_of(shape);
   std::vector<AnalyticWall> walls;
   for (int k = 0; k < shape.dimension(); ++k) {
     if (shape.repeats(k)) continue;
     walls.push_back({Facet::Kind::plane, bounds.lower, Vector<3>::Unit(k), 0});
-    walls.push_back({Facet::Kind::plane, bounds.upper, -Vector<3>::Unit(k), 0});
+    if (is_exact_sum(shape.corner[k], shape.size[k]))
+      walls.push_back({Facet::Kind::plane, bounds.upper, -Vector<3>::Unit(k), 0});
+    else
+      walls.push_back({Facet::Kind::plane, bounds.lower, -Vector<3>::Unit(k), shape.size[k]});
   }
   return walls;
 }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
@@ -16,12 +15,10 @@ struct WithWallsMoved {
   Domain operator()(Box box) const {
     for (int k = 0; k < box.dimension(); ++k) {
       if (!box.has_wall(k)) continue;
-      const double upper = sum_rounded_down(box.corner[k] + box.size[k], -by);
       double& lower = box.corner[k];
+      const double upper = sum_rounded_down(sum_rounded_down(lower, box.size[k]), -by);
       lower = sum_rounded_up(lower, by);
       box.size[k] = sum_rounded_down(upper, -lower);
-      while (lower + box.size[k] > upper)  // which is rounded where the box is asked for its bounds
-        box.size[k] = std::nextafter(box.size[k], -std::numeric_limits<double>::infinity());
     }
     return box;
   }

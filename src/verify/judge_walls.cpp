@@ -49,29 +49,27 @@ class PieceJudge {
 template <int D>
 class BoxWall {
  public:
-  explicit BoxWall(const bernal::Box& box) : box_(box), lower_(box.corner), upper_(box.corner + box.size) {
+  explicit BoxWall(const bernal::Box& box) : box_(box) {
     for (int k = 0; k < D; ++k)
-      require(
-          !box.has_wall(k) || (std::isfinite(lower_[k]) && std::isfinite(upper_[k]) && lower_[k] < upper_[k]),
-          "a box needs a finite corner and a positive finite size");
+      require(!box.has_wall(k) || (std::isfinite(box.corner[k]) && positive(box.size[k]) &&
+                                   std::isfinite(box.corner[k] + box.size[k])),
+              "a box needs a finite corner and a positive finite size");
   }
 
   Stand stand_of(const Ball<D>& ball, const CertifyOptions& options, Tally& tally) const {
     PieceJudge judge(ball, options, tally);
     for (int k = 0; k < D; ++k) {
       if (!box_.has_wall(k)) continue;
-      const double c = ball.c[k], lower = lower_[k], upper = upper_[k];
+      const double c = ball.c[k], lower = box_.corner[k], size = box_.size[k];
       const Reach& r = judge.reach();
       judge.piece(c - lower, [&]<class Number>() { return above<Number>(c, r, lower); });
-      judge.piece(upper - c, [&]<class Number>() { return below<Number>(c, r, upper); });
+      judge.piece(lower + size - c, [&]<class Number>() { return below<Number>(c, r, lower, size); });
     }
     return judge.stand();
   }
 
  private:
   const bernal::Box& box_;
-  Vector<D> lower_;
-  Vector<D> upper_;
 };
 
 class SphereWall {

@@ -72,10 +72,10 @@ template <class Number>
 Truth above(double c, const Reach& r, double lower) {
   return at_least(Number(c) - r.as<Number>(), Number(lower));
 }
-/// c + r <= upper, in one coordinate.
+/// c + r <= lower + size, in one coordinate.
 template <class Number>
-Truth below(double c, const Reach& r, double upper) {
-  return at_least(Number(upper), Number(c) + r.as<Number>());
+Truth below(double c, const Reach& r, double lower, double size) {
+  return at_least(Number(lower) + Number(size), Number(c) + r.as<Number>());
 }
 
 /// The ball lies in the ball of radius R around `center`: |c - center| <= R - r.
