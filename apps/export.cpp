@@ -17,6 +17,7 @@
 #include "commands.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
+#include "say_unpublished.hpp"
 
 using namespace bernal;
 
@@ -37,6 +38,7 @@ int export_result(const ExportCall& call) try {
   const Monitor monitor = bar.monitor();
   bar.now("read");
   const Packing packing = read_packing(call.folder);
+  say_if_unpublished(call.folder);
   if (interrupted()) throw Cancelled();
   bar.now("write");
   const WrittenExport written = write_export(packing, output, call.file, monitor);
@@ -115,8 +117,8 @@ Command export_command() {
   Command command{
       "export",
       "Write a result as other programs read it",
-      {folder(required({"RESULT", &call->folder,
-                        "What bernal pack wrote: its spheres and scene.toml are read", "DIR"})),
+      {folder(required(
+           {"RESULT", &call->folder, "What bernal pack wrote: its spheres and scene.toml are read", "DIR"})),
        offering(required({"--to", &call->format, "The format, one of those below", "FORMAT"}),
                 names_of_formats()),
        required({"-o,--output", &call->file, "The file; those that go with it stand beside it", "FILE"})},

@@ -20,6 +20,7 @@
 #include "commands.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
+#include "say_unpublished.hpp"
 #include "structure_text.hpp"
 
 using namespace bernal;
@@ -43,7 +44,9 @@ int draw_section(const MeasureCall& call) {
   if (call.json)
     throw Error(ErrorCode::bad_argument,
                 "--section draws a picture, and --json prints measurements; ask for one");
-  write_section(read_packing(call.folder), *call.plane, call.picture);
+  const Packing packing = read_packing(call.folder);
+  say_if_unpublished(call.folder);
+  write_section(packing, *call.plane, call.picture);
   say(stdout, "{}\n", plain_text(call.picture.string(), 5000));
   return exit_code::done;
 }
@@ -298,6 +301,7 @@ int measure_folder(const MeasureCall& call) {
   ProgressBar bar(call.json);
   bar.now("measure");
   const Packing packing = read_packing(call.folder);
+  say_if_unpublished(call.folder);
   const Measurements measured = measured_of(packing, call);
   bar.clear();
   if (!call.local.empty()) {

@@ -19,6 +19,7 @@
 #include "commands.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
+#include "say_unpublished.hpp"
 
 using namespace bernal;
 
@@ -49,9 +50,9 @@ bool is_folder(const std::filesystem::path& target) {
   return std::filesystem::is_directory(target, unknown);
 }
 
-std::filesystem::path scene_file(const VerifyCall& call) {
-  if (!call.scene.empty()) return call.scene;
-  if (is_folder(call.target)) return call.target / "scene.toml";
+Scene scene_of(const VerifyCall& call) {
+  if (!call.scene.empty()) return read_scene(call.scene);
+  if (is_folder(call.target)) return scene_of_result(call.target);
   std::error_code unknown;
   if (!std::filesystem::exists(call.target, unknown))
     throw Error(ErrorCode::bad_argument, "no such file or folder", {call.target.string()});
@@ -98,8 +99,8 @@ bool is_streamed(const VerifyCall& call, const Scene& scene) {
 }
 
 int verify(const VerifyCall& call) {
-  if (is_folder(call.target)) finish_writing(call.target);
-  const Scene scene = read_scene(scene_file(call));
+  const Scene scene = scene_of(call);
+  say_if_unpublished(call.target);
   const bool streamed = is_streamed(call, scene);
   const Spheres<dynamic> spheres = streamed ? Spheres<dynamic>()
                                    : is_folder(call.target)  // before another result replaces both

@@ -9,13 +9,13 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "bernal/core/error.hpp"
 #include "cad/known_formats.hpp"
 #include "core/file_kind.hpp"
+#include "core/input_file.hpp"
 
 namespace bernal {
 
@@ -45,7 +45,7 @@ std::string sha256_of_all(std::span<const fs::path> files) {
   std::vector<char> block(1 << 16);
   for (const fs::path& file : files) {
     errno = 0;
-    std::ifstream in(file, std::ios::binary);
+    InputFile in(file);
     while (in.read(block.data(), std::ssize(block)) || in.gcount() > 0)
       hash.add({block.data(), static_cast<std::size_t>(in.gcount())});
     if (!in.eof())
@@ -75,7 +75,7 @@ std::string sha256_of(const fs::path& file) { return sha256_of_all(std::array{fi
 std::vector<fs::path> files_of_part(const fs::path& file) {
   std::vector<fs::path> files{file};
   if (cad::extension_of(file) != ".gltf" || kind_of_file(file) != FileKind::regular) return files;
-  std::ifstream in(file, std::ios::binary);
+  InputFile in(file);
   using Event = nlohmann::json::parse_event_t;
   const auto is_kept = [](int depth, Event event, const nlohmann::json& parsed) {
     return event != Event::key || depth != 1 || parsed == "buffers";  // the rest may be large

@@ -14,6 +14,7 @@
 #include "bernal/core/unit.hpp"
 #include "core/csv_headings.hpp"
 #include "core/file_kind.hpp"
+#include "core/input_file.hpp"
 #include "core/next_line.hpp"
 
 namespace bernal {
@@ -73,7 +74,7 @@ CsvLines::CsvLines(const std::filesystem::path& file, CsvReading how)
   errno = 0;
   bytes_.see = std::move(how.see);
   bytes_.pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-  if (!bytes_.open(file, std::ios::in | std::ios::binary)) cannot_read(std::strerror(errno));
+  if (!open_to_read(bytes_, file)) cannot_read(std::strerror(errno));
 }
 
 bool CsvLines::next() {

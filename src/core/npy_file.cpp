@@ -39,7 +39,7 @@ double number_in(const char* bytes, bool big_endian) {
 
 bool is_npy_file(const std::filesystem::path& file) {
   if (kind_of_file(file) != FileKind::regular) return false;
-  std::ifstream in(file, std::ios::binary);
+  InputFile in(file);
   char begin[magic.size()] = {};
   return in.read(begin, sizeof begin) && std::string_view(begin, sizeof begin) == magic;
 }
@@ -62,7 +62,7 @@ NpyFile::NpyFile(const std::filesystem::path& file, std::function<void(std::stri
   if (kind == FileKind::folder) fail("cannot be read: it is a folder");
   if (kind == FileKind::other) fail("cannot be read: it is a pipe or a device");
   errno = 0;
-  stream_.open(file, std::ios::binary);
+  stream_.open(file);
   if (!stream_) fail(fmt::format("cannot be read: {}", std::strerror(errno)));
   read_header();
   begin_ = static_cast<std::uintmax_t>(stream_.tellg());

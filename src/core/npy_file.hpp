@@ -2,13 +2,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/input_file.hpp"
 
 namespace bernal {
 
@@ -60,7 +61,7 @@ class NpyFile {
 
   std::string name_;
   std::function<void(std::string_view)> see_;
-  std::ifstream stream_;
+  InputFile stream_;
   std::vector<Field> fields_;
   std::vector<std::string> names_;
   std::size_t rows_ = 0, row_bytes_ = 0;

@@ -20,7 +20,7 @@ NpyRows::NpyRows(const std::filesystem::path& file) : file_(file) {
   rows_ = table.rows();
   columns_ = table.columns();
   begin_ = *begin;
-  stream_.open(file, std::ios::binary);
+  stream_.open(file);
 }
 
 void NpyRows::read(std::uint64_t first, std::span<double> values) {

@@ -1,8 +1,9 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <span>
+
+#include "core/input_file.hpp"
 
 namespace bernal {
 
@@ -21,7 +22,7 @@ class NpyRows {
   std::filesystem::path file_;
   std::uint64_t rows_ = 0, begin_ = 0;
   std::size_t columns_ = 0;
-  std::ifstream stream_;
+  InputFile stream_;
 };
 
 }  // namespace bernal

@@ -1,13 +1,13 @@
 #include "bernal/cost/bench.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "core/input_file.hpp"
 #include "core/parallel.hpp"
 #include "cost/bench_tables.hpp"
 #include "io/staged_folder.hpp"
@@ -55,7 +55,7 @@ BenchOptions part_of(const BenchOptions& options, double from, double to) {
 }
 
 std::string first_line_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
+  InputFile in(file);
   std::string line;
   std::getline(in, line);
   return line;

@@ -13,6 +13,7 @@
 #include "cost/search.hpp"
 #include "cost/verdict.hpp"
 #include "cost/write_cost.hpp"
+#include "io/put_in_place.hpp"
 #include "io/staged_folder.hpp"
 
 namespace bernal {

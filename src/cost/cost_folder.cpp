@@ -1,10 +1,10 @@
 #include "cost/cost_folder.hpp"
 
 #include <algorithm>
-#include <fstream>
 
 #include "bernal/core/error.hpp"
 #include "cad/file_digest.hpp"
+#include "core/input_file.hpp"
 #include "io/output_file.hpp"
 #include "io/staged_folder.hpp"
 
@@ -60,7 +60,7 @@ void check_outputs(const fs::path& folder, const Scene& scene, const TrialRecord
 }
 
 void write_beside(const fs::path& file, const std::string& text, TrialRecord& record) {
-  std::ifstream in(file, std::ios::binary);
+  InputFile in(file);
   const std::string there{std::istreambuf_iterator<char>(in), {}};
   if (!in.bad() && there == text && stands(file)) return;
   check_output(file, record);

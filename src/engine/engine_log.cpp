@@ -4,11 +4,11 @@
 #include <charconv>
 #include <csignal>
 #include <cstring>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "core/input_file.hpp"
 #include "engine/script_parts.hpp"
 
 namespace bernal::engine {
@@ -73,7 +73,7 @@ std::string remedy_for(std::string_view error) {
 }  // namespace
 
 std::optional<std::int64_t> LogWatch::new_step() {
-  std::ifstream in(log_, std::ios::binary);
+  InputFile in(log_);
   if (!in) return std::nullopt;
   in.seekg(static_cast<std::streamoff>(read_));
   std::string more(most_of_log, '\0');
@@ -132,7 +132,7 @@ std::string tail_of(const std::filesystem::path& file, std::uintmax_t most) {
   std::error_code missing;
   const std::uintmax_t size = std::filesystem::file_size(file, missing);
   if (missing) return {};
-  std::ifstream in(file, std::ios::binary);
+  InputFile in(file);
   in.seekg(static_cast<std::streamoff>(size > most ? size - most : 0));
   std::string text(static_cast<std::size_t>(std::min(size, most)), '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -13,13 +12,14 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/engine/engine_error.hpp"
+#include "core/input_file.hpp"
 
 namespace bernal::engine {
 namespace {
 
 class DumpReader {
  public:
-  explicit DumpReader(const std::filesystem::path& file) : name_(file.string()), in_(file, std::ios::binary) {
+  explicit DumpReader(const std::filesystem::path& file) : name_(file.string()), in_(file) {
     if (!in_) throw EngineError("the engine has left no places: see its log", {name_});
   }
 
@@ -59,7 +59,7 @@ class DumpReader {
 
  private:
   std::string name_;
-  std::ifstream in_;
+  InputFile in_;
   std::string line_;
   int line_number_ = 0;
 };

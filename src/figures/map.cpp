@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 
 #include "bernal/core/error.hpp"
 #include "bernal/predict/mixtures.hpp"
-#include "core/file_kind.hpp"
+#include "core/input_file.hpp"
 #include "core/parallel.hpp"
 #include "figures/contours.hpp"
 #include "figures/drawing.hpp"
@@ -70,8 +69,7 @@ void require_own(const std::filesystem::path& folder) {
   std::error_code unknown;
   if (!std::filesystem::exists(csv, unknown) && !std::filesystem::exists(svg, unknown)) return;
   std::string head(head_of_map.size(), ' ');
-  if (kind_of_file(csv) == FileKind::regular)
-    std::ifstream(csv, std::ios::binary).read(head.data(), std::ssize(head));
+  InputFile(csv).read(head.data(), std::ssize(head));
   if (head != head_of_map)
     throw Error(ErrorCode::cannot_write,
                 "holds a map.csv or map.svg that is none of a map; take another folder", {folder.string()});

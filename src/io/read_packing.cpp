@@ -4,7 +4,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/run/run.hpp"
-#include "bernal/scene/read_scene.hpp"
+#include "io/unpublished.hpp"
 #include "scene/read_npy_spheres.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/spheres_file.hpp"
@@ -42,11 +42,13 @@ Spheres<dynamic> read_columns_of(const Scene& scene, const std::filesystem::path
 }
 
 std::filesystem::path spheres_of_result(const std::filesystem::path& folder) {
-  return spheres_file_in(folder);
+  return where_it_stands(spheres_file_in(folder));
 }
 
+Scene scene_of_result(const std::filesystem::path& folder) { return scene_in(folder); }
+
 Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder) {
-  const std::filesystem::path file = spheres_file_in(folder);
+  const std::filesystem::path file = spheres_of_result(folder);
   if (file.filename() == spheres_as_array) return of_the_scene(scene, file, {read_npy_spheres(file), {}});
   return read_csv_of(scene, file);
 }
@@ -57,15 +59,14 @@ Packing read_packing(const std::filesystem::path& folder) {
     throw Error(ErrorCode::bad_packing, "is no folder; give the one that bernal pack wrote",
                 {folder.string()});
   }
-  finish_writing(folder);
   Packing packing;
-  packing.scene = read_scene(folder / "scene.toml");
+  packing.scene = scene_in(folder);
   packing.spheres = read_spheres_of(packing.scene, folder);  // before another result replaces both
   packing.domain = packed_domain_of(packing.scene);
   packing.volume = volume_of(packing.domain);
   packing.seed = packing.scene.seed;
   if (const auto& start = packing.scene.start.file;
-      start && std::filesystem::equivalent(*start, spheres_file_in(folder), unknown))
+      start && std::filesystem::equivalent(where_it_stands(*start), spheres_of_result(folder), unknown))
     packing.outcome = Outcome::imported;  // only such a result begins from itself
   return packing;
 }

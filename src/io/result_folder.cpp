@@ -15,8 +15,8 @@
 #include "cad/known_formats.hpp"
 #include "core/bytes_of_file.hpp"
 #include "io/report.hpp"
+#include "io/unpublished.hpp"
 #include "scene/output_table.hpp"
-#include "scene/spheres_file.hpp"
 
 namespace fs = std::filesystem;
 
@@ -91,12 +91,12 @@ bool holds_only(const fs::path& below, const fs::path& folder, const std::vector
 }  // namespace
 
 Manifest manifest_of(const fs::path& folder) {
-  const fs::path report = folder / "report.json";
+  const fs::path report = where_it_stands(folder / "report.json");
   return is_regular(report) ? manifest_in(bytes_of_file(report)) : Manifest();
 }
 
 std::vector<std::string> sources_of_result(const fs::path& folder) {
-  const fs::path report = folder / "report.json";
+  const fs::path report = where_it_stands(folder / "report.json");
   return is_regular(report) ? sources_in(bytes_of_file(report)) : std::vector<std::string>();
 }
 
@@ -128,7 +128,7 @@ Scene scene_as_run(const Packing& packing, StagedFolder& staged, const fs::path&
     if (!manifest.contains(name)) {
       const fs::path there = staged.add(name);
       std::error_code problem;
-      fs::copy_file(file, there, problem);
+      fs::copy_file(where_it_stands(file), there, problem);
       if (problem) refuse(file, "cannot be copied: " + problem.message());
       if (sha256_of(there) != sha256) refuse(file, "has changed while it was packed into");
       manifest[name] = sha256;
@@ -143,8 +143,6 @@ bool is_in_place_of_result(const fs::path& file, const fs::path& folder) {
   const std::string name = fs::weakly_canonical(fs::absolute(file), unknown).filename().string();
   return std::ranges::find(names_of_result, name) != std::end(names_of_result) && stands_in(file, folder);
 }
-
-void finish_writing(const fs::path& folder) { finish_publishing(folder); }
 
 void check_writable(const fs::path& folder) {
   StagedFolder staged(folder);

@@ -1,11 +1,11 @@
 #include "io/seal.hpp"
 
-#include <fstream>
 #include <iterator>
 #include <system_error>
 
 #include "cad/file_digest.hpp"
 #include "core/bytes_of_file.hpp"
+#include "core/input_file.hpp"
 
 namespace fs = std::filesystem;
 
@@ -32,9 +32,8 @@ std::string answer_for(const fs::path& file) {
 std::string end_of(const fs::path& file) {
   constexpr std::uintmax_t end_with_seal = 1024;
   std::error_code unknown;
-  if (!fs::is_regular_file(file, unknown)) return {};  // a pipe would be waited for
   const std::uintmax_t size = fs::file_size(file, unknown);
-  std::ifstream in(file, std::ios::binary);
+  InputFile in(file);
   if (unknown || !in) return {};
   if (size > end_with_seal) in.seekg(-static_cast<std::streamoff>(end_with_seal), std::ios::end);
   return {std::istreambuf_iterator<char>(in), {}};

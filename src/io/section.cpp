@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 
 #include "bernal/core/error.hpp"
@@ -13,6 +12,7 @@
 #include "cad/known_formats.hpp"
 #include "cad/plane_cut.hpp"
 #include "core/csv_headings.hpp"
+#include "core/input_file.hpp"
 #include "io/disc_picture.hpp"
 #include "io/result_folder.hpp"
 #include "io/section_outline.hpp"
@@ -223,7 +223,7 @@ void write_section(const Packing& packing, std::string_view plane, const std::fi
   const std::string svg = section_svg(section, packing.spheres, name_of(packing.scene.unit));
   const auto is_picture = [&] {
     std::string head(4, ' ');
-    std::ifstream(file, std::ios::binary).read(head.data(), 4);
+    InputFile(file).read(head.data(), 4);
     return head == "<svg";
   };
   if (cad::extension_of(file) != ".svg")

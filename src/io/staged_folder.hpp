@@ -19,10 +19,11 @@ bool is_name_in(const std::filesystem::path& folder, const std::filesystem::path
 /// They are written into a staging folder inside the target, where they are on the same file system and
 /// `rename` is atomic. `publish` gives it the name of what is complete, moves the files of the earlier result
 /// out of the way and the new ones into their places, and takes that back if one of these fails. Whoever is
-/// killed before has changed nothing; whoever is killed after leaves what `finish_publishing` completes, and
-/// never a new file beside an old one. Whoever else publishes in the same folder meanwhile waits for its
-/// turn, which is a lock of the folder. A file of somebody else that stands in a place is kept under another
-/// name. Names may lead into folders below, "case/system/controlDict": those that are missing are made, and
+/// killed before has changed nothing; whoever is killed after leaves what the next who writes there completes
+/// (`io/put_in_place.hpp`) and who reads there takes for the result (`io/unpublished.hpp`), never a new file
+/// beside an old one. Whoever else publishes in the same folder meanwhile waits for its turn, which is a lock
+/// of the folder. A file of somebody else that stands in a place is kept under another name. Names may lead
+/// into folders below, "case/system/controlDict": those that are missing are made, no link is followed, and
 /// those of an earlier result that are empty then go. What is left of the staging goes with the object, and
 /// so do folders that only it needed, and staging folders of processes that were killed. Throws
 /// Error{cannot_write} with the path and the system's words.
@@ -62,10 +63,5 @@ class StagedFolder {
   std::vector<std::string> names_;
   bool published_ = false;
 };
-
-/// Completes what a process that was killed had begun to publish in the folder, waits for one that is at it,
-/// and removes staging folders of processes that were killed; does nothing if there is no such thing. Throws
-/// Error{cannot_write}.
-void finish_publishing(const std::filesystem::path& folder);
 
 }  // namespace bernal

@@ -2,12 +2,12 @@
 
 #include <array>
 #include <charconv>
-#include <fstream>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "core/input_file.hpp"
 #include "io/output_file.hpp"
 #include "io/result_folder.hpp"
 #include "io/staged_folder.hpp"
@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view heading_of_local = "packing_fraction,cell_volume,neighbours";
 
 bool is_local_table(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
+  InputFile in(file);
   std::string unit(200, ' '), heading(heading_of_local.size() + 2, ' ');
   in.getline(unit.data(), static_cast<std::streamsize>(unit.size()));
   in.getline(heading.data(), static_cast<std::streamsize>(heading.size()));

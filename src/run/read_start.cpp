@@ -7,13 +7,11 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
-#include "bernal/scene/read_scene.hpp"
 #include "cad/file_digest.hpp"
 #include "cad/known_formats.hpp"
-#include "io/staged_folder.hpp"
+#include "io/unpublished.hpp"
 #include "run/start.hpp"
 #include "scene/read_spheres.hpp"
-#include "scene/spheres_file.hpp"
 #include "scene/stage_table.hpp"
 #include "sizes/volume_carriers.hpp"
 
@@ -34,8 +32,7 @@ void look_into_folder(Scene& scene) {
   Start& start = scene.start;
   std::error_code unknown;
   if (!std::filesystem::is_directory(*start.file, unknown)) return;
-  finish_publishing(*start.file);
-  const Scene there = read_scene(*start.file / "scene.toml");
+  const Scene there = scene_in(*start.file);
   const double in_our_unit = conversion_factor(there.unit, scene.unit);
   if (const auto* box = std::get_if<PeriodicBox>(&there.container); box && start.box.empty())
     for (const double edge : edges_of(*box)) start.box.push_back(in_our_unit * edge);
@@ -110,7 +107,8 @@ StartSpheres read_start(Scene& scene) {
   look_into_folder(scene);
   Start& start = scene.start;
   Sha256 digest;  // of the very bytes that the spheres come from
-  NamedColumns read = read_spheres(*start.file, [&](std::string_view bytes) { digest.add(bytes); });
+  NamedColumns read =
+      read_spheres(where_it_stands(*start.file), [&](std::string_view bytes) { digest.add(bytes); });
   const std::string file = start.file->string();
   if (!read.unit.empty() && start.unit && read.unit != name_of(*start.unit))
     refuse(scene, "start_unit",

@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include "core/csv_headings.hpp"
 #include "core/csv_lines.hpp"
 #include "core/file_kind.hpp"
+#include "core/input_file.hpp"
 #include "core/next_line.hpp"
 #include "scene/toml_text.hpp"
 
@@ -64,7 +64,7 @@ std::array<std::vector<double>, 2> read_columns(const std::filesystem::path& fil
                                           ? fmt::format("{} is a folder", name)
                                           : fmt::format("{} is a pipe or a device", name));
   }
-  std::ifstream in(file, std::ios::binary);
+  InputFile in(file);
   if (!in) throw Error(ErrorCode::bad_scene, fmt::format("{} cannot be read", toml_string(file.string())));
 
   std::array<std::vector<double>, 2> columns;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include "core/file_kind.hpp"
+#include "core/input_file.hpp"
 
 namespace bernal {
 namespace {
@@ -47,7 +47,7 @@ std::string read_toml_text(const std::filesystem::path& file, std::string_view c
   if (kind == FileKind::missing) fail(fmt::format("no such {} file", called));
   if (kind == FileKind::folder) fail(fmt::format("this is a folder, not a {} file", called));
   if (kind == FileKind::other) fail(fmt::format("this is a pipe or a device, not a {} file", called));
-  std::ifstream in(file, std::ios::binary);
+  InputFile in(file);
   if (!in) fail(fmt::format("the {} file cannot be opened for reading", called));
   std::string text(static_cast<std::size_t>(largest + 1), '\0');
   in.read(text.data(), largest + 1);

@@ -5,10 +5,17 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/io/read_packing.hpp"
+#include "bernal/measure/measure.hpp"
+#include "cad/file_digest.hpp"
 #include "core/bytes_of_file.hpp"
+#include "core/file_kind.hpp"
+#include "io/put_in_place.hpp"
+#include "io/report.hpp"
 #include "io/report_summary.hpp"
+#include "io/result_folder.hpp"
 #include "io/staged_folder.hpp"
+#include "io/unpublished.hpp"
+#include "scene/read_spheres.hpp"
 #include "scene/toml_text.hpp"
 #include "sweep/claim.hpp"
 
@@ -37,6 +44,25 @@ void take_report(const ReportSummary& report, CellResult& result) {
   result.version = report.version;
 }
 
+/// What is wrong with the files beside a report; empty where they are those that it describes.
+std::string complaint_about(const fs::path& folder, const std::string& report, const ReportSummary& summary) {
+  const auto is_regular = [](const fs::path& file) { return kind_of_file(file) == FileKind::regular; };
+  const fs::path scene = where_it_stands(folder / "scene.toml"),
+                 spheres = where_it_stands(spheres_file_in(folder));
+  try {
+    if (!is_regular(spheres)) return "its spheres are not there";
+    const Manifest files = manifest_in(report);
+    const auto said = files.find("scene.toml");
+    if (!is_regular(scene) ||
+        (said != files.end() && !said->second.empty() && sha256_of(scene) != said->second))
+      return "its scene.toml is not the one that its report describes";
+    if (hash_of(read_spheres(spheres).spheres) == summary.hash) return {};
+    return "its spheres are not those that its report describes";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
 void take_failure(const fs::path& file, CellResult& result) {
   try {
     const toml::table failure = toml::parse_file(file.string());
@@ -60,11 +86,13 @@ CellResult read_cell(const fs::path& folder, const std::string& hash) {
   CellResult result;
   std::error_code unknown;
   if (!fs::is_directory(there, unknown)) return result;
-  finish_writing(there);
-  if (const auto report = summary_of_report(bytes_of_file(there / "report.json")))
-    take_report(*report, result);
-  else if (fs::is_regular_file(there / failure_name, unknown))
+  const std::string report = bytes_of_file(where_it_stands(there / "report.json"));
+  if (const auto summary = summary_of_report(report)) {
+    result.reason = complaint_about(there, report, *summary);
+    if (result.reason.empty()) take_report(*summary, result);
+  } else if (fs::is_regular_file(there / failure_name, unknown)) {
     take_failure(there / failure_name, result);
+  }
   return result;
 }
 
@@ -72,6 +100,16 @@ namespace sweep {
 
 fs::path claim_of_cell(const fs::path& folder, const std::string& hash) {
   return folder / "cells" / ".claims" / hash;
+}
+
+void require_no_links(const fs::path& folder, const std::string& hash) {
+  const fs::path claims = claim_of_cell(folder, hash).parent_path();
+  for (const fs::path& into : {folder / "cells", folder / folder_of_cell(hash), claims}) {
+    std::error_code unknown;
+    if (fs::is_symlink(into, unknown))
+      throw Error(ErrorCode::cannot_write,
+                  "is a link, and files of the sweep would go where it leads; remove it", {into.string()});
+  }
 }
 
 void replace_file(const fs::path& file, const std::string& text) {
@@ -99,7 +137,7 @@ void remove_failure(const fs::path& folder, const std::string& hash) {
 void tidy_cell(const fs::path& folder, const std::string& hash) {
   remove_abandoned(claim_of_cell(folder, hash));
   try {
-    finish_writing(folder / folder_of_cell(hash));
+    finish_publishing(folder / folder_of_cell(hash));
   } catch (const Error&) {  // the next call that reads it says so
   }
 }

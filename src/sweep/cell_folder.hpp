@@ -9,6 +9,9 @@ namespace bernal::sweep {
 /// The claim of a cell, in the folder of its sweep.
 std::filesystem::path claim_of_cell(const std::filesystem::path& folder, const std::string& hash);
 
+/// Throws Error{cannot_write} where a link stands in the place of a folder that the cell's files go into.
+void require_no_links(const std::filesystem::path& folder, const std::string& hash);
+
 /// Why there is no packing.
 struct Failure {
   CellResult::State state = CellResult::State::crashed;  ///< or refused

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <set>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "core/bytes_of_file.hpp"
+#include "core/input_file.hpp"
 #include "io/seal.hpp"
 #include "io/staged_folder.hpp"
 #include "sweep/cell_folder.hpp"
@@ -56,7 +56,7 @@ bool is_regular(const fs::path& file) {
 
 bool is_table_of_ours(const fs::path& file) {
   if (!is_regular(file)) return false;
-  std::ifstream in(file, std::ios::binary);
+  InputFile in(file);
   std::string first;
   std::getline(in, first);
   return first.starts_with("cell,") && first.find(mark_of_table) != first.npos;

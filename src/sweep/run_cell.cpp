@@ -35,6 +35,7 @@ void pack_cell(const Cell& cell, const fs::path& folder, const CellOptions& opti
 }  // namespace
 
 bool run_cell(const Cell& cell, const fs::path& folder, const CellOptions& options) {
+  sweep::require_no_links(folder, cell.hash);
   const sweep::Claim claim(sweep::claim_of_cell(folder, cell.hash));
   if (!claim.is_ours()) return false;
   // Whoever had the claim before may have just done it.

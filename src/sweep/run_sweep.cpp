@@ -15,6 +15,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "bernal/sweep/sweep.hpp"
+#include "core/parallel.hpp"
 #include "sweep/cell_folder.hpp"
 #include "sweep/check_cells.hpp"
 #include "sweep/children.hpp"
@@ -43,15 +44,22 @@ std::string about(double seconds) {
   return fmt::format("about {:.0f} h", seconds / 3600);
 }
 
+/// How all cells stand, in threads, as of each the spheres are read.
+void look_at_all(std::vector<SweepRow>& rows, const fs::path& folder) {
+  parallel_for(rows.size(), [&](std::size_t k) { rows[k].result = read_cell(folder, rows[k].cell_hash); });
+}
+
 /// The queue of a call, and who works it off.
 class Pool {
  public:
   Pool(const Sweep& sweep, const fs::path& folder, const SweepOptions& options, sweep::CheckedCells checked)
       : folder_(folder), options_(options), results_(sweep, folder, options.plot) {
     report_.rows = std::move(checked.rows);
+    look_at_all(report_.rows, folder_);
     for (std::size_t k = 0; k < report_.rows.size(); ++k) {
-      look_at(k);
-      if (is_to_be_run(k)) queue_.push_back(k);
+      if (!is_to_be_run(k)) continue;
+      sweep::require_no_links(folder_, row(k).cell_hash);
+      queue_.push_back(k);
     }
     share_machine(checked.most_memory);
   }
@@ -264,7 +272,7 @@ SweepReport collect_sweep(const Sweep& sweep, const fs::path& folder, const Swee
     report.cancelled = true;
     return report;
   }
-  for (SweepRow& row : report.rows) row.result = read_cell(folder, row.cell_hash);
+  look_at_all(report.rows, folder);
   if (!options.write) return report;
   sweep::ResultFiles results(sweep, folder, options.plot);
   results.write(report.rows);

@@ -12,6 +12,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "cad/file_digest.hpp"
+#include "io/unpublished.hpp"
 #include "scene/read_value.hpp"
 #include "scene/scene_of_table.hpp"
 #include "scene/toml_file.hpp"
@@ -124,7 +125,8 @@ std::string Sweep::Read::hash_of(const Scene& whole) {
       of = digest_of_part(of) + of.extension().string();
       return;
     }
-    of = digest_of_part(of / "spheres.csv") + digest_of_part(of / "scene.toml");
+    of = digest_of_part(where_it_stands(spheres_file_in(of))) +
+         digest_of_part(where_it_stands(of / "scene.toml"));
   };
   if (auto* mesh = std::get_if<MeshFile>(&named.container)) {
     by_bytes(mesh->file);

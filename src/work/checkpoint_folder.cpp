@@ -73,11 +73,16 @@ class Descriptor {
   int number_;
 };
 
+/// Whatever has that name goes: a link or a pipe would lead elsewhere.
+int new_file(const fs::path& path) {
+  std::error_code ignored;
+  fs::remove(path, ignored);
+  return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+}
+
 class FileWriter final : public Archive {
  public:
-  explicit FileWriter(const fs::path& path)
-      : path_(path),
-        file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666)) {
+  explicit FileWriter(const fs::path& path) : path_(path), file_(new_file(path)) {
     if (file_.number() < 0) fail_to_write(path);
     buffer_.reserve(block_bytes);
   }

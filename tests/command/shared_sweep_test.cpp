@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "bernal/sweep/sweep.hpp"
 #include "swept.hpp"
 
 namespace bernal::testing {
@@ -117,6 +118,64 @@ TEST(SweepCommand, AReportThatIsNoFileStopsNoOtherCell) {
   const std::vector<Row> rows = swept.rows();
   EXPECT_EQ(std::ranges::count_if(rows, [](Row row) { return row["outcome"] == "converged"; }), 4)
       << ended.err;
+}
+
+// What a report says of files that are not there any more, or are those of another cell, is believed by
+// nobody.
+TEST(SweepCommand, ACellIsDoneWhereItsFilesAreThoseOfItsReport) {
+  const Swept swept;
+  EXPECT_EQ(swept.report()["ran"], 6);
+  const auto done = swept.reports();
+  std::vector<fs::path> cells;
+  for (const auto& [hash, report] : done) cells.push_back(fs::path(swept.out) / "cells" / hash);
+  const std::string first = text_of(cells[0] / "spheres.csv"), third = text_of(cells[2] / "spheres.csv");
+  fs::remove(cells[0] / "spheres.csv");
+  fs::copy_file(cells[3] / "spheres.csv", cells[1] / "spheres.csv", fs::copy_options::overwrite_existing);
+  std::ofstream(cells[2] / "spheres.csv") << third.substr(0, third.rfind('\n', third.size() - 2) + 1);
+  fs::copy_file(cells[4] / "scene.toml", cells[3] / "scene.toml", fs::copy_options::overwrite_existing);
+  fs::remove(cells[4] / "spheres.csv");
+  ASSERT_EQ(mkfifo((cells[4] / "spheres.csv").c_str(), 0600), 0);
+
+  const Ended collected = swept.run({"--collect"});
+  std::size_t missing = 0;
+  for (Row row : swept.rows()) missing += row["outcome"] == "missing" && row["certified"].empty();
+  EXPECT_EQ(missing, 5u) << collected.err;
+  EXPECT_EQ(swept.reports(), done) << "who only looks changes nothing";
+
+  swept.run();
+  EXPECT_EQ(text_of(cells[0] / "spheres.csv"), first) << "one seed, one packing";
+  EXPECT_EQ(text_of(cells[2] / "spheres.csv"), third);
+  std::size_t converged = 0;
+  for (Row row : swept.rows()) converged += row["outcome"] == "converged";
+  EXPECT_GE(converged, 4u) << "a scene or a pipe that somebody put there may be in the way";
+}
+
+TEST(SweepCommand, StartsFromAResultThatIsAnArray) {
+  const Folder folder;
+  const std::string bed = folder.write("bed.toml", tiny_bed).string(), start = (folder / "start").string();
+  ASSERT_EQ(bernal({"pack", bed, "-o", start, "--binary", "--quiet"}).status, 0);
+  ASSERT_TRUE(fs::exists(start + "/spheres.npy"));
+  folder.write("again.toml",
+               "unit = \"mm\"\n[container]\nkind = \"periodic\"\n[spheres]\nstart = \"start\"\n[[stage]]\n"
+               "do = \"relax\"\n");
+  const std::string sweep = folder.write("sweep.toml", "scene = \"again.toml\"\nrepeats = 2\n").string();
+  const Ended ended = bernal({"sweep", sweep, "-o", (folder / "out").string(), "--quiet"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+}
+
+// A folder of somebody else may lead elsewhere.
+TEST(SweepCommand, WritesThroughNoLink) {
+  for (const char* link : {"cells", "cells/.claims", "cells/HASH"}) {
+    const Swept swept("scene = \"bed.toml\"\nrepeats = 1\n");
+    const Folder home;
+    std::string name = link;
+    if (const std::size_t at = name.find("HASH"); at != name.npos)
+      name.replace(at, 4, Sweep::read(swept.sweep).cell(1).hash);
+    fs::create_directories((fs::path(swept.out) / name).parent_path());
+    fs::create_directory_symlink(home.path(), fs::path(swept.out) / name);
+    expect_refused(swept.run(), {name, "is a link"});
+    EXPECT_TRUE(fs::is_empty(home.path())) << link;
+  }
 }
 
 TEST(SweepCommand, ACellThatIsKilledIsRecordedAndTheRestGoesOn) {

@@ -173,6 +173,16 @@ TEST_F(EngineOfScripts, ThatFailSayWhyAndLeaveTheirFiles) {
                     "scene.toml:8: there is no program \"no-such-engine\""));
 }
 
+// Nobody writes into the pipes: whoever opened them to read would wait for ever.
+TEST_F(EngineOfScripts, ThatLeavePipesAreNotWaitedFor) {
+  const auto said = [&](const std::string& script) { return error_of(in_periodic_box + engine(script)); };
+  const std::string idle = idle_engine;
+  EXPECT_TRUE(holds(said(idle + "rm places.dump\nmkfifo places.dump\n"), "has left no places"));
+  EXPECT_TRUE(holds(said(idle + "rm log.lammps\nmkfifo log.lammps\n"), "before its script did"));
+  EXPECT_TRUE(
+      holds(said("#!/bin/bash\nmkfifo log.lammps places.dump\nsleep 0.1\n"), "before its script did"));
+}
+
 TEST_F(EngineOfScripts, ThatFailInAPassingFolderLeaveItThere) {
   const Plan plan = build(parse_scene(in_periodic_box + engine("#!/bin/bash\nexit 4\n"), "scene.toml"));
   std::string said;

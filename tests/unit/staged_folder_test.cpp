@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "io/output_file.hpp"
+#include "io/put_in_place.hpp"
+#include "support/staged_files.hpp"
 #include "support/written_files.hpp"
 
 namespace bernal {
@@ -22,30 +24,11 @@ using testing::error_of;
 using testing::Folder;
 using testing::text_of;
 
-using Files = std::map<std::string, std::string>;
-
-Files files_in(const fs::path& folder) {
-  Files files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file()) files[entry.path().filename()] = text_of(entry.path());
-  return files;
-}
-
-std::size_t entries_in(const fs::path& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
-std::vector<std::string> names_of(const Files& files) {
-  std::vector<std::string> names;
-  for (const auto& [name, text] : files) names.push_back(name);
-  return names;
-}
-
-void publish(const fs::path& folder, const Files& files, const Files& replaced) {
-  StagedFolder staged(folder);
-  for (const auto& [name, text] : files) staged.write(name, text);
-  staged.publish(names_of(replaced));
-}
+using testing::entries_in;
+using testing::Files;
+using testing::files_in;
+using testing::names_of;
+using testing::publish;
 
 const Files earlier = {{"a", "1"}, {"b", "1"}, {"c", "1"}, {"picture", "1"}};
 const Files later = {{"a", "2"}, {"b", "2"}, {"c", "2"}, {"d", "2"}};
@@ -184,7 +167,7 @@ TEST(StagedFolder, ThoseOfKilledProcessesGoAndThoseOfOthersStay) {
 }
 
 /// As of a run that was killed once all its files were in their places, over removing its own folder.
-TEST(StagedFolder, WhoeverReadsAFolderRemovesThoseOfKilledProcessesToo) {
+TEST(StagedFolder, WhoeverFinishesRemovesThoseOfKilledProcessesToo) {
   const Folder folder;
   const StagedFolder other(folder.path());
   fs::create_directories(folder / ".bernal-staging-killed/.earlier");

@@ -21,7 +21,8 @@ SpheresFile read_csv(const std::filesystem::path& file);
 /// where their unit or dimension is not the scene's.
 Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file);
 
-/// Which file of a result's folder holds its spheres: spheres.csv, or spheres.npy where only that is there.
+/// Which file of a result's folder holds its spheres: spheres.csv, or spheres.npy where only that is there;
+/// where it can be read, see `is_unpublished`.
 std::filesystem::path spheres_of_result(const std::filesystem::path& folder);
 /// Those spheres. Throws as `read_csv_of`. Memory: for the spheres once.
 Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder);
@@ -31,14 +32,17 @@ Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path
 /// rest.
 Spheres<dynamic> read_columns_of(const Scene& scene, const std::filesystem::path& file);
 
-/// Completes what a run that was killed had begun to put into the folder, and removes what it had not; most
-/// often there is no such thing. Throws Error{cannot_write}.
-void finish_writing(const std::filesystem::path& folder);
+/// Its scene. Throws as `read_scene`.
+Scene scene_of_result(const std::filesystem::path& folder);
+
+/// Whether a run was killed over putting its result into the folder. All that is read here is read from where
+/// that run left it, and nothing is changed; the next run that writes there puts it into its place.
+bool is_unpublished(const std::filesystem::path& folder);
 
 /// What stands in scene.toml and spheres.csv, or spheres.npy, of a folder that `write_packing` made, or that
 /// has files of that form. How the run went is not among it: effects, history, seconds and version are empty;
-/// the outcome says whether another program made it. Throws as `finish_writing`, `read_scene`,
-/// `packed_domain_of` and `read_csv_of` do.
+/// the outcome says whether another program made it. Throws as `read_scene`, `packed_domain_of` and
+/// `read_csv_of` do.
 Packing read_packing(const std::filesystem::path& folder);
 
 }  // namespace bernal

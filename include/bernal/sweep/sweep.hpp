@@ -64,7 +64,7 @@ class Sweep {
 /// How a cell of a sweep stands in its folder.
 struct CellResult {
   enum class State {
-    missing,  ///< nothing is known
+    missing,  ///< nothing is known, or the files are not those that their report describes
     packed,   ///< the folder holds a packing, whether or not it is what was asked for
     refused,  ///< bad input, which only shows when it is run: a part that is no container
     crashed,  ///< a signal ended it, memory or the disk were full: the next call tries again
@@ -94,7 +94,9 @@ struct SweepRow {
 /// Where a cell's result stands in the folder of a sweep: "cells/3f9a…".
 std::filesystem::path folder_of_cell(const std::string& hash);
 
-/// What stands there. Completes what a run that was killed had begun to put there. Cost: reading a report.
+/// What stands there. A packing does where its scene and its spheres are those that its report describes;
+/// else the cell is missing, and the reason says why. Changes nothing. Cost: reading the report and the
+/// spheres, about 0.25 µs each.
 CellResult read_cell(const std::filesystem::path& folder, const std::string& hash);
 
 struct CellOptions {
