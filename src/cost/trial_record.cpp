@@ -1,7 +1,9 @@
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
-#include <fstream>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -10,6 +12,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/version.hpp"
 #include "core/fnv.hpp"
+#include "core/input_file.hpp"
 #include "cost/rounds.hpp"
 #include "io/staged_folder.hpp"
 
@@ -19,8 +22,8 @@ namespace {
 constexpr std::string_view header =
     "key,setting,seed,threads,outcome,reason,cut_off,spheres,packing_fraction,packed_fraction,size_scale,"
     "certified,max_overlap,early_overlap,protrusion,wall_gap,held_from,contact_ratio,rattlers,coordination,"
-    "hash,seconds,cpu_seconds,prepare_seconds,peak_bytes,effects";
-constexpr std::size_t columns = 26;
+    "hash,seconds,cpu_seconds,prepare_seconds,peak_bytes,effects,seal";
+constexpr std::size_t columns = 27;
 /// With which the record of any version begins.
 constexpr std::string_view begin_of_header = "key,setting,seed,threads,";
 /// Of a line that names a file and its digest.
@@ -130,15 +133,28 @@ class Cells {
   std::size_t next_ = 0;
 };
 
+/// Of all that stands before it in the line of a trial: whoever changes a figure breaks it.
+std::string seal_of(std::string_view line) { return hash_of_text(line); }
+
 std::string line_of(const std::string& key, const std::string& name, const Trial& t) {
   const auto flag = [](bool value) { return value ? "yes" : "no"; };
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", key,
-                     in_quotes(name), t.seed, t.threads, name_of(t.outcome), in_quotes(t.reason),
-                     flag(t.cut_off), t.spheres, t.packing_fraction, t.packed_fraction, t.size_scale,
-                     flag(t.certified), t.max_overlap, t.early_overlap, t.protrusion, text_of(t.wall_gap),
-                     text_of(t.held_from), text_of(t.contact_ratio), t.rattlers, t.coordination, t.hash,
-                     t.seconds, t.cpu_seconds, t.prepare_seconds, text_of(t.peak_bytes),
-                     in_quotes(text_of(t.effects)));
+  std::string line = fmt::format(
+      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},", key, in_quotes(name),
+      t.seed, t.threads, name_of(t.outcome), in_quotes(t.reason), flag(t.cut_off), t.spheres,
+      t.packing_fraction, t.packed_fraction, t.size_scale, flag(t.certified), t.max_overlap, t.early_overlap,
+      t.protrusion, text_of(t.wall_gap), text_of(t.held_from), text_of(t.contact_ratio), t.rattlers,
+      t.coordination, t.hash, t.seconds, t.cpu_seconds, t.prepare_seconds, text_of(t.peak_bytes),
+      in_quotes(text_of(t.effects)));
+  return line + seal_of(line) + '\n';
+}
+
+/// Throws where the line of a trial is not as it was written.
+void require_sealed(std::string_view line) {
+  const std::size_t end = line.rfind(',') + 1;
+  if (line.substr(end) != seal_of(line.substr(0, end)))
+    throw Error(ErrorCode::bad_argument,
+                "this line is not as bernal cost wrote it; remove it, and the trial is made again, or name "
+                "another folder");
 }
 
 Trial trial_of(Cells& cells) {
@@ -196,7 +212,7 @@ std::string whole_text(const std::filesystem::path& file) {
     throw Error(ErrorCode::cannot_write,
                 "is a folder, and a file is to be written there; remove it, or name another folder with -o",
                 {file.string()});
-  std::ifstream in(file, std::ios::binary);
+  InputFile in(file);
   if (!in && stands(file))
     throw Error(ErrorCode::cannot_write, "cannot be read; remove it, or name another folder with -o",
                 {file.string()});
@@ -217,7 +233,9 @@ TrialRecord::TrialRecord(std::filesystem::path file, bool afresh) : file_(std::m
   const std::string whole = whole_text(file_);
   const std::size_t end = read_whole(whole, afresh);
   const auto cut = [&](std::size_t size) {
-    if (::truncate(file_.c_str(), static_cast<off_t>(size)) != 0)
+    std::error_code problem;
+    if (std::filesystem::is_symlink(file_, problem) ||
+        ::truncate(file_.c_str(), static_cast<off_t>(size)) != 0)
       throw Error(ErrorCode::cannot_write, "cannot be written", {file_.string()});
   };
   // What was cut off in the middle would run into the next line.
@@ -233,8 +251,18 @@ TrialRecord::TrialRecord(std::filesystem::path file, bool afresh) : file_(std::m
 }
 
 void TrialRecord::append(const std::string& text) const {
-  std::ofstream out(file_, std::ios::app);
-  if (!(out << text << std::flush))
+  // No link is followed, and no pipe waited for.
+  const int descriptor =
+      ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+  struct stat facts {};
+  bool whole = descriptor >= 0 && ::fstat(descriptor, &facts) == 0 && S_ISREG(facts.st_mode);
+  for (std::string_view left = text; whole && !left.empty();) {
+    const ssize_t written = ::write(descriptor, left.data(), left.size());
+    if (written > 0) left.remove_prefix(static_cast<std::size_t>(written));
+    whole = written > 0 || (written < 0 && errno == EINTR);
+  }
+  if (descriptor >= 0) ::close(descriptor);
+  if (!whole)
     throw Error(ErrorCode::cannot_write, "cannot be written to; make it writable, or name another folder",
                 {file_.string()});
 }
@@ -269,6 +297,7 @@ std::size_t TrialRecord::read_whole(const std::string& whole, bool afresh) {
     if (afresh) continue;
     try {
       Cells cells(cells_of(line));
+      require_sealed(line);
       const std::string key = cells.text();
       cells.text();  // the name that the setting had
       const Trial trial = trial_of(cells);

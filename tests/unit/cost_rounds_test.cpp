@@ -1,5 +1,6 @@
 // Trials of scenes: what is measured is what the run wrote, is kept, and is not measured again.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -190,7 +191,10 @@ TEST(Rounds, RefuseNumbersThatNoRunGives) {
     if (good[k] == ',' && !inside) commas.push_back(k);
   }
   const auto with = [&](std::size_t column, const std::string& cell) {
-    return good.substr(0, commas[column - 1] + 1) + cell + good.substr(commas[column]);
+    const std::string changed = good.substr(line, commas[column - 1] + 1 - line) + cell +
+                                good.substr(commas[column], commas.back() + 1 - commas[column]);
+    const std::string rest = good.substr(good.find('\n', commas.back()));
+    return good.substr(0, line) + changed + hash_of_text(changed) + rest;  // sealed as if a run had given it
   };
   const std::size_t phi = 8, cpu_seconds = 22;
   for (const auto& [column, cell] : {std::pair(phi, "7"), std::pair(phi, "nan"), std::pair(phi, "-0.1"),
@@ -203,10 +207,33 @@ TEST(Rounds, RefuseNumbersThatNoRunGives) {
       EXPECT_EQ(error.location().line, 2) << cell;
     }
   }
+  std::string changed = good;  // by one digit, a figure that may be
+  char& digit = changed[commas[phi - 1] + 3];
+  digit = digit == '5' ? '6' : '5';
+  std::ofstream(file) << changed;
+  try {
+    TrialRecord record(file);
+    ADD_FAILURE() << "a figure that somebody changed is believed";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.location().line, 2);
+    EXPECT_NE(std::string(error.what()).find("remove it"), std::string::npos) << error.what();
+  }
   std::ofstream(file) << good;
   EXPECT_EQ(TrialRecord(file).size(), 1u);
   EXPECT_EQ(TrialRecord(file, true).size(), 0u);
   EXPECT_TRUE(TrialRecord(file).names_file("cost.md", "0123")) << "what was written stays known";
+}
+
+// In a folder of somebody else.
+TEST(Rounds, WriteThroughNoLinkAndWaitForNoPipe) {
+  const testing::Folder folder;
+  const auto file = folder.path() / "trials.csv";
+  std::filesystem::create_symlink("elsewhere", file);
+  EXPECT_THROW(TrialRecord{file}, Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "elsewhere"));
+  std::filesystem::remove(file);
+  ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+  EXPECT_THROW(TrialRecord{file}, Error);
 }
 
 TEST(Spread, IsTheMedianAndHalfTheRange) {
