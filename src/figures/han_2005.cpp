@@ -52,9 +52,12 @@ double radius_of(int spheres) {
   return std::cbrt(volume / (4 * std::numbers::pi / 3));
 }
 
+/// The end of a compression as the paper has it, by energy.
+constexpr double tolerance = 1e-2;
+
 std::vector<Stage> stages_of(const Protocol& p) {
   std::vector<Stage> stages = {Insert{}};
-  const Compress compress{.tilt = p.tilt};
+  const Compress compress{.tilt = p.tilt, .tolerance = tolerance, .max_iterations = 400};
   if (p.compress) stages.push_back(compress);
   if (p.shakes > 0) stages.push_back(Shake{.rounds = p.refill ? 2 : p.shakes, .compress = compress});
   if (p.refill) stages.push_back(Refill{.shake = {.rounds = p.shakes, .compress = compress}});

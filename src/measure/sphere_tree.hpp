@@ -94,6 +94,20 @@ class SphereTree {
     for_each_shift([&](const Vector<D>& shift) { collect(bounds, shift, 0, visit); });
   }
 
+  /// Calls visit(place, center) at least for every image of a sphere that a ball of radius r overlaps on its
+  /// way from p along the unit vector u, 0 <= t <= limit; roughly the first it meets come first. What `visit`
+  /// returns is the limit from then on. Of an axis with a period the images next to the one that p is in are
+  /// looked at.
+  template <class Visit>
+  void for_each_on_way(const Vector<D>& p, double r, const Vector<D>& u, double limit, Visit&& visit) const {
+    if (nodes_.empty()) return;
+    const Vector<D> in_period = boundary_.wrap(p), back = p - in_period;
+    for_each_shift([&](const Vector<D>& shift) {
+      follow(Way{in_period - shift, u, r}, limit,
+             [&](std::uint32_t k) { limit = visit(k, Vector<D>(centers_[k] + shift + back)); });
+    });
+  }
+
  private:
   static constexpr std::size_t leaf = 8;
 
@@ -168,6 +182,50 @@ class SphereTree {
       Waiting near{node.children, least<Measure>(nodes_[node.children], p)};
       Waiting far{node.children + 1, least<Measure>(nodes_[node.children + 1], p)};
       if (far.least < near.least) std::swap(near, far);
+      stack[waiting++] = far;
+      stack[waiting++] = near;
+    }
+  }
+
+  struct Way {
+    Vector<D> p, u;
+    double r;
+  };
+
+  /// From which t on the moving ball may touch spheres of a node; infinite where it does not before `limit`.
+  static double entry(const Node& node, const Way& way, double limit) {
+    const double reach = way.r + node.largest;
+    double first = 0, last = limit;
+    for (int k = 0; k < D; ++k) {
+      const double to_lower = node.bounds.lower[k] - reach - way.p[k],
+                   to_upper = node.bounds.upper[k] + reach - way.p[k];
+      if (way.u[k] == 0) {
+        if (to_lower > 0 || to_upper < 0) return std::numeric_limits<double>::infinity();
+        continue;
+      }
+      const auto [near, far] = std::minmax({to_lower / way.u[k], to_upper / way.u[k]});
+      first = std::max(first, near);
+      last = std::min(last, far);
+    }
+    return first <= last ? first : std::numeric_limits<double>::infinity();
+  }
+
+  template <class Visit>
+  void follow(const Way& way, const double& limit, Visit&& visit) const {
+    std::array<std::pair<std::uint32_t, double>, 80> stack;  // one a level
+    std::size_t waiting = 0;
+    stack[waiting++] = {0, entry(nodes_[0], way, limit)};
+    while (waiting > 0) {
+      const auto [at, first] = stack[--waiting];
+      if (!(first <= limit) || std::isinf(first)) continue;
+      const Node& node = nodes_[at];
+      if (node.children == 0) {
+        for (std::uint32_t k = node.first; k < node.last; ++k) visit(k);
+        continue;
+      }
+      std::pair near(node.children, entry(nodes_[node.children], way, limit));
+      std::pair far(node.children + 1, entry(nodes_[node.children + 1], way, limit));
+      if (far.second < near.second) std::swap(near, far);
       stack[waiting++] = far;
       stack[waiting++] = near;
     }

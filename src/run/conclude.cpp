@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/measure/hanging.hpp"
 #include "run/room_for_gaps.hpp"
 #include "run/shortfall.hpp"
+#include "settle/compress.hpp"
 
 namespace bernal {
 namespace {
@@ -109,7 +111,10 @@ Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, const 
   const std::size_t n = packing.spheres.size();
   if (!work.missed.empty())
     return {Outcome::hit_limit, fmt::format("{} {} placed; {}", counted(n), are(n), work.missed)};
-  if (!target.is_open() && work.supply->exhausted()) return {Outcome::converged, all_placed(n)};
+  if (!target.is_open() && work.supply->exhausted()) {
+    if (!ending.pressed || end != StageEnd::hit_limit) return {Outcome::converged, all_placed(n)};
+    return {Outcome::hit_limit, all_placed(n) + ", but the last stage reached its limit"};
+  }
   if (end == StageEnd::hit_limit) return limit_reached(n);
   if (target.is_open()) return of_open_target(packing, work, end, ending);
   if (target.count)
@@ -119,6 +124,21 @@ Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, const 
       packing.packing_fraction() / std::pow(packing.size_scale, packing.scene.dimension());
   return {Outcome::full, fmt::format("packing fraction {:.4f} of {} is reached with {}; {}", as_drawn,
                                      *packing.scene.target.packing_fraction, counted(n), why_no_more(end))};
+}
+
+/// A bed that was pressed last is what it was meant to be only where nothing hangs.
+void admit_hanging(Conclusion& conclusion, const Packing& packing, const Compress& pressed) {
+  const Scene& scene = packing.scene;
+  const Hanging hanging = measure_hanging(packing.spheres, packing.domain, direction_of(pressed), scene.gap,
+                                          scene.wall_gap, packing.container);
+  if (hanging.spheres == 0) return;
+  if (conclusion.outcome == Outcome::converged) conclusion.outcome = Outcome::hit_limit;
+  conclusion.reason +=
+      fmt::format("; {} {} {:.3g} {}: {}", counted(hanging.spheres),
+                  hanging.spheres == 1 ? "hangs, and could fall" : "hang, and the farthest could fall",
+                  hanging.farthest, name_of(scene.unit),
+                  pressed.tolerance ? "leave \"tolerance\" out of the stages that settle, or make it smaller"
+                                    : "let the stages that settle do more, by \"max_iterations\"");
 }
 
 std::string resized(double size_scale) {
@@ -165,6 +185,7 @@ void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& en
   const bool in_bed = work.stands_in_bed();
   Conclusion conclusion = in_bed ? of_bed(packing, work, end, ending) : of_box(packing, work, end, ending);
   if (!in_bed && end != StageEnd::cancelled) admit_shortfall(conclusion, packing, ending.plan);
+  if (ending.pressed && end != StageEnd::cancelled) admit_hanging(conclusion, packing, *ending.pressed);
   if (end == StageEnd::cancelled) {
     const bool short_of = !in_bed && packing.spheres.size() < work.supply->wanted();
     conclusion = {Outcome::cancelled,

@@ -19,6 +19,7 @@
 #include "run/estimate.hpp"
 #include "run/exact_place.hpp"
 #include "run/fitting.hpp"
+#include "run/last_pressed.hpp"
 #include "run/room_for_gaps.hpp"
 #include "run/run_record.hpp"
 #include "run/shortfall.hpp"
@@ -117,12 +118,13 @@ class Run {
   Ending ending() const {
     const bool packs = any_stage(scene_, &StageTraits::reaches, Reaches::close_packing) ||
                        any_stage(scene_, &StageTraits::reaches, Reaches::settled);
+    const bool close = packs && any_in_bed_ && scene_.target.is_open();
     return {.plan = stated_,
             .places_expected = table_of(scene_.stages.back()).traits.places_expected,
             .unit = frame_.scale,
             .attainable = plan_.attainable_packing_fraction,
-            .close_packing =
-                packs && any_in_bed_ && scene_.target.is_open() ? random_close_packing_of(plan_) : 0};
+            .close_packing = close ? random_close_packing_of(plan_) : 0,
+            .pressed = pressed_};
   }
 
   /// The drawn sequence, the frame that follows from it, and no sphere in its place.
@@ -232,10 +234,12 @@ class Run {
     std::size_t n = 0;            // stages that are over
     std::string facts;            // as the present one began
     std::optional<Keepsake> bed;  // in a box all may have to start anew
+    LastPressed pressed(scene_);
     work_ = &work;
     const Checkpoints::Part part(checkpoints_, "stages", [&](Archive& a) {
       bool in_bed = work.stands_in_bed();
       a(n, end, facts, in_bed, bed);
+      pressed.archive(a);
       if (a.reads()) {
         ArchiveFromBytes then(facts);
         work.archive_facts(then);
@@ -257,6 +261,7 @@ class Run {
         facts.clear();
         ArchiveToBytes now(facts);
         work.archive_facts(now);
+        pressed.before_stage(work);
       }
       const Keepsake before(work);
       end = run_stage(stage, work);
@@ -266,6 +271,7 @@ class Run {
       work.begun = 0;
       work.may_overlap = false;
       work.crowded_start = {};
+      pressed.after_stage(n, work);
       if (in_bed) work.milestone(stage.name());
       if (end == StageEnd::cancelled) break;
     }
@@ -275,10 +281,9 @@ class Run {
       work.archive_facts(now);
       checkpoints_.write_if_long();
     }
+    pressed_ = pressed.by();
+    end = leave_out_tail(work, end, pressed_);
     work_ = nullptr;
-    Supply& supply = *work.supply;
-    if (work.stands_in_bed() && supply.passed_over() > 0 && supply.trimming_is_cheap())
-      work.bed().remove_tags_from(supply.first_missing());
     return end;
   }
 
@@ -374,7 +379,8 @@ class Run {
   Packing& packing_;
   const bool any_in_bed_;
   RunRecord record_;
-  Work* work_ = nullptr;  // while stages act on it
+  Work* work_ = nullptr;               // while stages act on it
+  const Compress* pressed_ = nullptr;  // the spheres, last, by a stage that settles
   Frame frame_;
   double share_ = 1;  // of packing fractions, that is left without coats
   ExactPlace exact_place_;

@@ -25,6 +25,12 @@ constexpr double moving = 0.02;
 constexpr double few_neighbors = 20;
 /// Sweeps along local directions between two buildings of the lists.
 constexpr int local_sweeps = 10;
+/// A bed at rest is looked at in so many layers, or fewer, of so many spheres at least: while local
+/// directions stir it, single spheres always fall, by up to the room in their boxes, and only the mean of
+/// many tells whether the bed as a whole sinks.
+constexpr std::size_t most_layers = 16, least_of_layer = 64;
+/// And once they do not, no sphere moves farther than this in an iteration, in radii.
+constexpr double still = 1e-3;
 /// A sphere that moves less than this, in radii, rests; one that moves more wakes its neighbours.
 constexpr double resting = 1e-4;
 constexpr double waking = 1e-3;
@@ -72,6 +78,41 @@ class GlobalSweeps {
   Vector<3> direction_;
   std::vector<char> awake_;
   double ways_ = 0;  // summed over the spheres since settle began
+};
+
+/// How far spheres have moved since some moment at which they were enclosed, in their own radii.
+class Moved {
+ public:
+  void start(const Bed& bed) {
+    start_.resize(bed.size());
+    for (Bed::Id i = 0; i < bed.size(); ++i) start_[i] = bed[i].center;
+  }
+
+  double farthest(const Bed& bed) const {
+    double most = 0;
+    for (Bed::Id i = 0; i < bed.size(); ++i)
+      most = std::max(most, (bed[i].center - start_[i]).norm() / bed[i].r);
+    return most;
+  }
+
+  /// Along the direction, the mean of the layer that sank most. Layers are as many spheres each, in the order
+  /// in which they are.
+  double layer_farthest_along(const Vector<3>& direction, const Bed& bed) const {
+    const std::size_t n = bed.size();
+    const std::size_t layers = std::clamp<std::size_t>(n / least_of_layer, 1, most_layers);
+    double most = 0;
+    for (std::size_t k = 0; k < layers; ++k) {
+      const auto first = static_cast<Bed::Id>(k * n / layers),
+                 last = static_cast<Bed::Id>((k + 1) * n / layers);
+      double sum = 0;
+      for (Bed::Id i = first; i < last; ++i) sum += direction.dot(bed[i].center - start_[i]) / bed[i].r;
+      most = std::max(most, sum / (last - first));
+    }
+    return most;
+  }
+
+ private:
+  std::vector<Vector<3>> start_;
 };
 
 /// The lowest height against `direction` in the container's bounds: where potential energy counts from.
@@ -130,55 +171,72 @@ StageEnd compress(Work& work, const Compress& options) {
   Random random = work.random(Stream::compress);
   double box = options.buffer * radius;
   int iteration = 0;
-  const Resumable part(work, "compress", [&](Archive& a) { a(radius, random, box, iteration); });
+  bool stirs = options.tilt > 0;
+  const Resumable part(work, "compress", [&](Archive& a) { a(radius, random, box, iteration, stirs); });
   if (!part.resumed()) bed.sort_by_height(direction);
   GlobalSweeps global(bed, direction);
+  Moved moved;
 
   for (; iteration < options.max_iterations; ++iteration) {
     if (work.stop()) return StageEnd::cancelled;
     box = bed.enclose(box);
     global.wake_all();  // the ends of the old boxes held some
+    moved.start(bed);
     const double before = bed.potential(direction);
     const double way = global.settle();
     const bool resting_bed = way < at_rest * radius;
     const double factor = bed.mean_neighbors() < few_neighbors ? 2 : 0.5;
     const double least_box = options.buffer * radius;
     box = way > moving * box ? std::max(least_box, factor * box) : least_box;
-    if (resting_bed && options.tilt > 0) {
+    if (resting_bed && stirs) {
       for (int k = 0; k < local_sweeps; ++k) {
         sweep_at_random(bed, direction, options.tilt, Vector<3>::Zero(), 2 * radius, random);
       }
       global.wake_all();
       global.settle();
     }
-    const double after = bed.potential(direction);
     work.milestone("compress");
-    if (resting_bed && before - after < options.tolerance * (before - floor)) return StageEnd::converged;
+    if (options.tolerance) {
+      const double fall = before - bed.potential(direction);
+      if (resting_bed && fall < *options.tolerance * (before - floor)) return StageEnd::converged;
+    } else if (stirs) {
+      stirs = !resting_bed || moved.layer_farthest_along(direction, bed) > options.rest;
+    } else if (moved.farthest(bed) <= std::min(options.rest, still)) {
+      return StageEnd::converged;
+    }
   }
   return StageEnd::hit_limit;
 }
 
 std::vector<schema::Key> compression_keys() {
   using namespace schema;
-  return {key(Type::push, &Compress::direction, "direction",
-              "where the spheres are pushed; its length is of no matter"),
-          number(&Compress::tilt, "tilt",
-                 "how far a sphere's own direction leaves the common one; 0: not at all", {0, 100}),
-          buys_accuracy({0.3, 0.1, 1e-2, 1e-3, 1e-4},
-                        number(&Compress::tolerance, "tolerance",
-                               "relative fall of the potential energy in an iteration that counts as none",
-                               between(0, 1))),
-          integer(&Compress::max_iterations, "max_iterations", "after which it stops unconverged", {1, 1e9}),
-          number(&Compress::buffer, "buffer", "room in a sphere's bounding box on each side, in mean radii",
-                 {0.01, 10})};
+  return {
+      key(Type::push, &Compress::direction, "direction",
+          "where the spheres are pushed; its length is of no matter"),
+      number(&Compress::tilt, "tilt", "how far a sphere's own direction leaves the common one; 0: not at all",
+             {0, 100}),
+      buys_accuracy({0.5, 0.2, 0.1, 0.03, 1e-2, 1e-3},
+                    number(&Compress::rest, "rest",
+                           "how far a bed at rest may still sink in an iteration, in radii", above(0, 1))),
+      buys_accuracy({0.3, 0.1, 1e-2, 1e-3, 1e-4},
+                    number(&Compress::tolerance, "tolerance",
+                           "in place of it, as the paper: relative fall of the potential energy in an "
+                           "iteration that counts as none",
+                           between(0, 1))),
+      integer(&Compress::max_iterations, "max_iterations", "after which it stops unconverged", {1, 1e9}),
+      number(&Compress::buffer, "buffer", "room in a sphere's bounding box on each side, in mean radii",
+             {0.01, 10})};
 }
+
+std::vector<schema::Choice> ends_of_compression() { return {{{"rest"}, {"tolerance"}}}; }
 
 template <>
 const StageEntry& entry_of<Compress>() {
   static const StageEntry entry = {
       .table = stage_table<Compress>({.name = "compress",
                                       .help = "move every sphere along a direction until it touches",
-                                      .keys = compression_keys()},
+                                      .keys = compression_keys(),
+                                      .choices = ends_of_compression()},
                                      {.in_bed = true, .in_plane = true, .only_moves = true}),
       .act_in_bed = act(compress),
       .may_bring = {"neighbour lists", "compression"},

@@ -12,8 +12,10 @@ namespace bernal {
 /// direction to first touch, its neighbours being taken as static, and slides on along its contacts. Once the
 /// bed is at rest along the global direction, chains of spheres that support each other are broken by sweeps
 /// in which every sphere moves along a *local* direction of its own, drawn at random about the global one.
-/// Converged when the potential energy along the direction has stopped falling. The direction leads across
-/// the axes that repeat themselves (else see `require_support`), so that this energy is that of all images.
+/// Converged when no layer sinks any more, and then, along the global direction alone, no sphere moves (see
+/// Compress::rest); or, where a tolerance is given, when the potential energy along the direction has stopped
+/// falling. The direction leads across the axes that repeat themselves (else see `require_support`), so that
+/// this energy is that of all images. Whether spheres hang all the same is judged elsewhere, by the run.
 ///
 /// What is ours in it: sliding along contacts, which along the global direction alone fills Han's cylinder to
 /// a packing fraction of 0.527 and with local directions to 0.58; the sleeping of spheres whose surroundings
@@ -23,8 +25,8 @@ StageEnd compress(Work& work, const Compress& options);
 
 /// Shaking (Han, Feng & Owen 2005): arches that hold against the compression direction are broken by
 /// iterations in which every sphere moves along a random local direction *perpendicular* to the global one,
-/// to first touch and on along its contacts; then the bed is compressed again. Cost: 10 sweeps a round, and
-/// those of the compression.
+/// to first touch and on along its contacts; then the bed is compressed again, and the last of these
+/// compressions says how it ends. Cost: 10 sweeps a round, and those of the compression.
 StageEnd shake(Work& work, const Shake& options);
 
 /// Throws Error{bad_scene} if spheres that are pressed along `direction` would fall for ever: it must have no
@@ -34,6 +36,7 @@ void require_support(const Boundary<3>& boundary, const Vector<3>& direction);
 Vector<3> direction_of(const Compress& options);
 /// What every stage has that ends with a compression: its keys, and its item of the plan.
 std::vector<schema::Key> compression_keys();
+std::vector<schema::Choice> ends_of_compression();
 
 /// What they bring with them, with their prices.
 std::vector<PlanItem> effects_of_compression(const Compress& options, const Outlook& outlook);

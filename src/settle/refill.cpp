@@ -113,9 +113,11 @@ StageEnd refill(Work& work, const Refill& options) {
       step = Step::compress;
     }
     if (step == Step::compress) {
-      if (compress(work, options.shake.compress) == StageEnd::cancelled) return StageEnd::cancelled;
-      if (work.supply->exhausted()) return StageEnd::converged;
-      if (after - before <= options.patience * after) return StageEnd::full;
+      const StageEnd end = compress(work, options.shake.compress);
+      if (end == StageEnd::cancelled) return end;
+      if (work.supply->exhausted()) return end;
+      if (after - before <= options.patience * after)
+        return end == StageEnd::hit_limit ? end : StageEnd::full;
       step = Step::shake;
     }
     if (shake(work, options.shake) == StageEnd::cancelled) return StageEnd::cancelled;
@@ -149,7 +151,8 @@ const StageEntry& entry_of<Refill>() {
                                                     "rounds of shaking after each refilling", {0, 1e9})),
                               number(&Shake::amplitude, "amplitude",
                                      "longest way in one sweep of shaking, in mean radii", above(0, 100))},
-                             inside(&Shake::compress, compression_keys()))))},
+                             inside(&Shake::compress, compression_keys())))),
+           .choices = ends_of_compression()},
           {.in_bed = true, .in_plane = true, .reaches = Reaches::settled}),
       .act_in_bed = act(refill),
       .may_bring = {"refilling", "neighbour lists", "compression", "shaking"},

@@ -13,7 +13,8 @@ StageEnd shake(Work& work, const Shake& options) {
   require_support(bed.container().boundary(), direction);
   int round = 0;
   bool compressing = false;
-  const Resumable part(work, "shake", [&](Archive& a) { a(round, compressing); });
+  StageEnd end = StageEnd::converged;
+  const Resumable part(work, "shake", [&](Archive& a) { a(round, compressing, end); });
   for (; round < options.rounds; ++round) {
     if (!compressing) {
       if (work.stop()) return StageEnd::cancelled;
@@ -27,12 +28,12 @@ StageEnd shake(Work& work, const Shake& options) {
       }
     }
     compressing = true;
-    const StageEnd end = compress(work, options.compress);
+    end = compress(work, options.compress);
     compressing = false;
     work.milestone("shake");
     if (end == StageEnd::cancelled) return end;
   }
-  return StageEnd::converged;
+  return end;
 }
 
 template <>
@@ -46,7 +47,8 @@ const StageEntry& entry_of<Shake>() {
                {buys_accuracy({1, 2, 5, 10, 20}, integer(&Shake::rounds, "rounds", "how often", {1, 1e9})),
                 number(&Shake::amplitude, "amplitude", "longest way in one sweep, in mean radii",
                        above(0, 100))},
-               inside(&Shake::compress, compression_keys()))},
+               inside(&Shake::compress, compression_keys())),
+           .choices = ends_of_compression()},
           {.in_bed = true, .in_plane = true, .only_moves = true}),
       .act_in_bed = act(shake),
       .may_bring = {"neighbour lists", "shaking", "compression"},

@@ -1,0 +1,152 @@
+#include "bernal/measure/hanging.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "bernal/cad/mesh_container.hpp"
+#include "core/parallel.hpp"
+#include "measure/localised.hpp"
+#include "measure/sphere_tree.hpp"
+
+namespace bernal {
+namespace {
+
+/// A way that keeps less than this of the fall is no fall any more, but rolling.
+constexpr double least_share = 0.5;
+/// More walls at once, all of them upright, leave no way.
+constexpr std::size_t most_upright = 8;
+/// A sphere that is passed with this much or less of its surface's slope (sine) in the way is not met: so
+/// much rounding may do to one that stands beside.
+constexpr double beside = 1e-6;
+/// A sphere that is known to hang falls past walls as a ball that is smaller by this share, or the ones that
+/// are upright but for a rounding would stop it.
+constexpr double grazing = 1e-3;
+/// Of walls whose normals enclose a smaller angle (1 - cosine) one is enough.
+constexpr double same_normal = 1e-6;
+constexpr double rounding_of_normals = 1e-9;
+
+using Normals = std::vector<Vector<3>>;  // unit, from walls to the sphere
+
+/// The unit vector that falls most of those that lead into none of the walls; zero if there is none.
+Vector<3> way_past(const Vector<3>& direction, const Normals& normals) {
+  Vector<3> best = Vector<3>::Zero();
+  const auto offer = [&](const Vector<3>& way) {
+    if (!(way.norm() > rounding_of_normals)) return;
+    const Vector<3> u = way.normalized();
+    if (direction.dot(u) > direction.dot(best) &&
+        std::ranges::all_of(normals, [&](const auto& n) { return n.dot(u) > -rounding_of_normals; }))
+      best = u;
+  };
+  offer(direction);
+  for (std::size_t a = 0; a < normals.size(); ++a) {
+    offer(direction - direction.dot(normals[a]) * normals[a]);
+    for (std::size_t b = 0; b < a; ++b) {
+      const Vector<3> line = normals[a].cross(normals[b]);
+      offer(line.dot(direction) * line);
+    }
+  }
+  return best;
+}
+
+/// The spheres between their walls, in the frame of these.
+class SpheresInWalls {
+ public:
+  SpheresInWalls(const Spheres<3>& spheres, const Boundary<3>& boundary, const Container& container,
+                 const Vector<3>& direction)
+      : spheres_(spheres), tree_(spheres, boundary), container_(container), direction_(direction) {}
+
+  bool hangs(std::size_t i) const { return !way_down(i).isZero(0); }
+
+  /// Of one that hangs: how far it could fall.
+  double fall(std::size_t i) const {
+    const double r = spheres_.r[i], start = Hanging::least_fall * r;
+    const Vector<3> p = spheres_.center(i) + start * way_down(i);
+    const double limit = first_sphere(i, p, direction_, container_.bounds().size().norm());
+    const double wall = container_.free_path(p, (1 - grazing) * r, direction_, limit + grazing * r);
+    return start + std::clamp(wall - grazing * r, 0.0, limit);
+  }
+
+ private:
+  /// How far sphere i, put at p, may move along u until it meets another one; at most `limit`.
+  double first_sphere(std::size_t i, const Vector<3>& p, const Vector<3>& u, double limit) const {
+    const double r = spheres_.r[i];
+    tree_.for_each_on_way(p, r, u, limit, [&](std::uint32_t place, const Vector<3>& center) {
+      if (tree_.id(place) == i) return limit;
+      const Vector<3> to = center - p;
+      const double sum = r + tree_.radius(place), along = to.dot(u);
+      const double squared_slope = 1 - (to - along * u).squaredNorm() / (sum * sum);
+      if (along > 0 && squared_slope > beside * beside)
+        limit = std::clamp(along - sum * std::sqrt(squared_slope), 0.0, limit);
+      return limit;
+    });
+    return limit;
+  }
+
+  /// The unit vector along which sphere i can move, past walls that are upright; zero where it cannot.
+  Vector<3> way_down(std::size_t i) const {
+    const double step = Hanging::least_fall * spheres_.r[i];
+    Normals upright;
+    while (upright.size() < most_upright) {
+      const Vector<3> u = way_past(direction_, upright);
+      if (u.dot(direction_) < least_share || first_sphere(i, spheres_.center(i), u, step) < step) break;
+      const std::size_t known = upright.size();
+      if (wall_supports(i, u, upright)) break;
+      if (upright.size() == known) return u;
+    }
+    return Vector<3>::Zero();
+  }
+
+  /// Whether a wall supports sphere i, moved along u; if not, what other walls it then overlaps is added.
+  bool wall_supports(std::size_t i, const Vector<3>& u, Normals& upright) const {
+    const double r = spheres_.r[i];
+    const Vector<3> p = spheres_.center(i) + Hanging::least_fall * r * u;
+    thread_local std::vector<NearFacet> near;
+    near.clear();
+    container_.facets_near(p, r, near);
+    for (const NearFacet& n : near) {
+      const Vector<3> away = p - closest_point(n.facet, p);
+      const Vector<3> normal = away.norm() > 0 ? away.normalized() : Vector<3>(-direction_);
+      if (normal.dot(direction_) < -Hanging::upright) return true;
+      const auto is_known = [&](const Vector<3>& other) { return other.dot(normal) > 1 - same_normal; };
+      if (normal.dot(u) < 0 && std::ranges::none_of(upright, is_known)) upright.push_back(normal);
+    }
+    return false;
+  }
+
+  const Spheres<3>& spheres_;
+  SphereTree<3> tree_;
+  const Container& container_;
+  Vector<3> direction_;
+};
+
+Hanging hanging_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
+                   const std::shared_ptr<const Container>& made) {
+  Hanging hanging;
+  if (spheres.empty()) return hanging;
+  const Frame frame = frame_of(domain);
+  const std::shared_ptr<const Container> container = local_container(domain, made);
+  const Spheres<3> local = localised(spheres, frame);
+  const SpheresInWalls bed(local, container->boundary(), *container, direction.normalized());
+  std::vector<double> falls(local.size(), 0);
+  parallel_ranges(local.size(), 256, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
+      if (bed.hangs(i)) falls[i] = bed.fall(i);
+  });
+  hanging.spheres = static_cast<std::uint64_t>(std::ranges::count_if(falls, [](double f) { return f > 0; }));
+  hanging.farthest = frame.scale * std::ranges::max(falls);
+  return hanging;
+}
+
+}  // namespace
+
+Hanging measure_hanging(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
+                        double gap, double wall_gap, const std::shared_ptr<const Container>& made) {
+  if (gap == 0 && wall_gap == 0) return hanging_in(spheres, domain, direction, made);
+  Spheres<dynamic> with_coats = spheres;
+  for (double& r : with_coats.r) r += 0.5 * gap;
+  return hanging_in(with_coats, with_walls_moved(domain, wall_gap - 0.5 * gap), direction, {});
+}
+
+}  // namespace bernal

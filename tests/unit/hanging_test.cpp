@@ -1,0 +1,221 @@
+#include "bernal/measure/hanging.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "bernal/cad/mesh_container.hpp"
+#include "bernal/settle/compress.hpp"
+#include "support/meshes.hpp"
+#include "support/plans.hpp"
+
+// Which spheres hang, against cases by hand and against a walk of each in small steps past all others.
+namespace bernal {
+namespace hanging_test {
+
+const Vector<3> down(0, 0, -1);
+
+Spheres<dynamic> spheres_at(const std::vector<Vector<3>>& centers, double r = 1) {
+  Spheres<3> spheres;
+  for (const Vector<3>& c : centers) spheres.push_back(c, r);
+  return Spheres<dynamic>(std::move(spheres));
+}
+
+const Box box{Vector<3>::Zero(), Vector<3>(10, 10, 20)};
+
+TEST(Hanging, OneAboveTheFloorByMoreThanAHundredthOfItsRadius) {
+  EXPECT_EQ(measure_hanging(spheres_at({{5, 5, 1}}), box, down).spheres, 0u);
+  EXPECT_EQ(measure_hanging(spheres_at({{5, 5, 1.009}}), box, down).spheres, 0u);
+  const Hanging high = measure_hanging(spheres_at({{5, 5, 1.011}}), box, down);
+  EXPECT_EQ(high.spheres, 1u);
+  EXPECT_NEAR(high.farthest, 0.011, 1e-12);
+  // The other way it hangs under the lid, and so it does from a wall.
+  EXPECT_NEAR(measure_hanging(spheres_at({{5, 5, 1}}), box, -down).farthest, 18, 1e-12);
+  EXPECT_NEAR(measure_hanging(spheres_at({{5, 5, 1}}), box, {3, 0, 0}).farthest, 4, 1e-12);
+  EXPECT_EQ(measure_hanging(Spheres<dynamic>(3), box, down).spheres, 0u);
+}
+
+TEST(Hanging, WhatTouchesOnlyBesideSupportsNothing) {
+  // Of three in a row the outer ones touch walls, and all of them hang; a rounding more or less is no
+  // support.
+  const Box narrow{Vector<3>::Zero(), Vector<3>(6, 10, 20)};
+  for (const double rounding : {0.0, 1e-15, -1e-15}) {
+    const Hanging row =
+        measure_hanging(spheres_at({{1, 5, 10}, {3 + rounding, 5, 10}, {5, 5, 10 + rounding}}), narrow, down);
+    EXPECT_EQ(row.spheres, 3u) << rounding;
+    EXPECT_NEAR(row.farthest, 9, 1e-6) << rounding;
+  }
+  // One that stands a little lower does, however steep; and the lower one rests.
+  const double low = 10 - 0.01, apart = std::sqrt(4 - 0.01 * 0.01);
+  EXPECT_EQ(measure_hanging(spheres_at({{3, 5, 10}, {3 + apart, 5, low}}), box, down).spheres, 1u);
+}
+
+TEST(Hanging, BetweenAWallAndASphereOnTheFloor) {
+  const double height = std::sqrt(4 - 1.5 * 1.5);
+  EXPECT_EQ(measure_hanging(spheres_at({{2.5, 5, 1}, {1, 5, 1 + height}}), box, down).spheres, 0u);
+  // Above nothing but the edge of another it falls past by a hair.
+  EXPECT_EQ(measure_hanging(spheres_at({{3.0, 5, 1}, {1 - 1e-9, 5, 5}}), box, down).spheres, 1u);
+}
+
+TEST(Hanging, InATubeThatIsAsWideAsItIs) {
+  const Cylinder tube{.radius = 1, .height = 12};
+  const Hanging snug = measure_hanging(spheres_at({{0, 0, 5}, {0, 0, 1}}), tube, down);
+  EXPECT_EQ(snug.spheres, 1u);
+  EXPECT_NEAR(snug.farthest, 2, 1e-6);
+}
+
+TEST(Hanging, WallsThatAreUprightButForTheRoundingOfAFileSupportNothing) {
+  Mesh leaning = test::box_mesh(Vector<3>::Zero(), Vector<3>::Constant(10));
+  for (Vector<3>& v : leaning.vertices)
+    if (v[2] < 5) v[0] += v[0] < 5 ? 3e-6 : -3e-6;  // narrower below
+  const Hanging beside = measure_hanging(spheres_at({{1 + 3e-6, 5, 5}, {9 - 3e-6, 1, 5}}), leaning, down);
+  EXPECT_EQ(beside.spheres, 2u);
+  EXPECT_GT(beside.farthest, 3.9);
+  // A funnel does.
+  Mesh funnel = test::box_mesh(Vector<3>::Zero(), Vector<3>::Constant(10));
+  for (Vector<3>& v : funnel.vertices)
+    if (v[2] < 5) v[0] += v[0] < 5 ? 1 : -1;
+  EXPECT_EQ(measure_hanging(spheres_at({{0.5 + std::sqrt(1.01), 5, 5}}), funnel, down).spheres, 0u);
+}
+
+TEST(Hanging, OnTheNextPeriod) {
+  const Box slab{Vector<3>::Zero(), Vector<3>(8, 8, 20), {true, true, false}};
+  const double height = std::sqrt(4 - 1.2 * 1.2);
+  EXPECT_EQ(measure_hanging(spheres_at({{7.5, 4, 1}, {0.7, 4, 1 + height}}), slab, down).spheres, 0u);
+  EXPECT_EQ(measure_hanging(spheres_at({{7.5, 4, 1}, {0.7, 4, 1.02 + height}}), slab, down).spheres, 1u);
+  // Centres may lie anywhere along it.
+  EXPECT_EQ(measure_hanging(spheres_at({{7.5, 4, 1}, {0.7 + 24, 4 - 8, 1 + height}}), slab, down).spheres,
+            0u);
+}
+
+TEST(Hanging, ThatKeepGapsStandOnThose) {
+  const auto two = spheres_at({{5, 5, 1.3}, {5, 5, 3.8}});
+  EXPECT_EQ(measure_hanging(two, box, down, 0.5, 0.3).spheres, 0u);
+  EXPECT_EQ(measure_hanging(two, box, down).spheres, 2u);
+}
+
+/// The same by brute force: each sphere walks along the direction in small steps, past all images of all.
+struct Walked {
+  std::uint64_t spheres = 0;
+  double farthest = 0;
+};
+
+Walked walked(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction) {
+  const Frame frame = frame_of(domain);
+  const auto container = make_local_container(domain, frame, WallArithmetic::filtered);
+  const Boundary<3>& boundary = container->boundary();
+  const Vector<3> u = direction.normalized();
+  std::vector<Vector<3>> at;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    Vector<3> c = Vector<3>::Zero();
+    c.head(spheres.dimension()) = spheres.center(i);
+    at.push_back(frame.to_local(c));
+  }
+  Walked result;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const double r = spheres.r[i] / frame.scale;
+    const auto is_free = [&](double t) {
+      const Vector<3> p = at[i] + t * u;
+      for (std::size_t j = 0; j < spheres.size(); ++j) {
+        const double sum = r + spheres.r[j] / frame.scale;
+        if (j == i || boundary.minimum_image(at[j] - p).norm() >= sum) continue;
+        if (boundary.minimum_image(at[j] - p).dot(u) > 0) return false;
+      }
+      return container->contains(p, r);
+    };
+    double t = 0;
+    for (const double step = 5e-4 * r; t < 0.02 * r && is_free(t + step);) t += step;
+    if (t < 0.02 * r) {
+      for (double step = 5e-4 * r; step > 1e-9 * r; step /= 2)
+        if (is_free(t + step)) t += step;
+    } else {
+      for (const double step = 0.05 * r; is_free(t + step);) t += step;
+    }
+    if (t < Hanging::least_fall * r) continue;
+    ++result.spheres;
+    result.farthest = std::max(result.farthest, t * frame.scale);
+  }
+  return result;
+}
+
+void expect_as_walked(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction) {
+  const Walked expected = walked(spheres, domain, direction);
+  const Hanging found = measure_hanging(spheres, domain, direction);
+  EXPECT_EQ(found.spheres, expected.spheres);
+  EXPECT_NEAR(found.farthest, expected.farthest, 0.05 * std::ranges::max(spheres.r));
+}
+
+std::string stages(int iterations, const std::string& direction) {
+  return "[[stage]]\ndo = \"insert\"\npacking_fraction = 0.25\n[[stage]]\ndo = \"compress\"\nmax_iterations "
+         "= " +
+         std::to_string(iterations) + "\ndirection = " + direction + "\n";
+}
+
+TEST(Hanging, AsManyAsAWalkInSmallStepsFinds) {
+  const std::string wide = "radius = { distribution = \"uniform\", min = 0.1, max = 1.0 }\ncount = 70\n";
+  const std::string equal = "radius = 0.5\ncount = 70\n";
+  struct Case {
+    const char* name;
+    std::string container, spheres, direction;
+  };
+  const Case cases[] = {
+      {"box", "kind = \"box\"\nsize = [8.0, 7.0, 12.0]\n", wide, "[0, 0, -1]"},
+      {"box, oblique", "kind = \"box\"\nsize = [8.0, 7.0, 12.0]\n", equal, "[1, -2, 3]"},
+      {"tilted cylinder", "kind = \"cylinder\"\nradius = 4.0\nheight = 12.0\naxis = [1.0, 2.0, 3.0]\n", wide,
+       "[0, 0, -1]"},
+      {"sphere", "kind = \"sphere\"\nradius = 5.0\n", equal, "[0, 1, 0]"},
+      {"column without end", "kind = \"cylinder\"\nradius = 4.0\nheight = 8.0\nperiodic = true\n", equal,
+       "[1, 0, 0]"},
+      {"slab", "kind = \"periodic\"\nsize = [8.0, 8.0, 9.0]\nwalls = [2]\n", equal, "[0, 0, 1]"},
+      {"discs", "kind = \"box\"\nsize = [14.0, 16.0]\n", equal, "[0, -1]"},
+      {"discs in a polygon",
+       "kind = \"polygon\"\nvertices = [[0.0, 0.0], [14.0, 2.0], [16.0, 16.0], [1.0, 14.0]]\n", wide,
+       "[1, -4]"}};
+  for (const Case& c : cases)
+    for (const int iterations : {2, 40}) {
+      SCOPED_TRACE(std::string(c.name) + ", " + std::to_string(iterations));
+      const Packing packing = run(testing::plan_of("[container]\n" + c.container + "[spheres]\n" + c.spheres +
+                                                   stages(iterations, c.direction)));
+      const Compress options = *packing.scene.stages[1].as<Compress>();
+      Vector<3> direction = Vector<3>::Zero();
+      direction.head(options.direction.size()) = options.direction;
+      expect_as_walked(packing.spheres, packing.domain, direction);
+    }
+}
+
+TEST(Hanging, AsManyInAMesh) {
+  Plan plan = testing::plan_of(
+      "[container]\nkind = \"cylinder\"\nradius = 4.0\nheight = 12.0\n[spheres]\nradius = 0.5\ncount = "
+      "120\n" +
+      stages(5, "[0, 0, -1]"));
+  plan.domain = test::prism_mesh(16, 4, 12);
+  plan.container = nullptr;
+  const Packing packing = run(plan);
+  ASSERT_GT(packing.spheres.size(), 60u);
+  expect_as_walked(packing.spheres, packing.domain, down);
+}
+
+TEST(Hanging, FarFromTheOriginAndInAnyUnitIsTheSame) {
+  const Packing packing =
+      run(testing::plan_of("[container]\nkind = \"cylinder\"\nradius = 4.0\nheight = 12.0\n[spheres]\nradius "
+                           "= 0.5\ncount = 120\n" +
+                           stages(6, "[0, 0, -1]")));
+  const Hanging here = measure_hanging(packing.spheres, packing.domain, down);
+  ASSERT_GT(here.spheres, 0u);
+  Spheres<dynamic> far = packing.spheres;
+  for (auto* column : {&far.x[0], &far.x[1], &far.x[2]})
+    for (double& x : *column) x = 1024 * (x + 4096);
+  for (double& r : far.r) r *= 1024;
+  const Domain there =
+      testing::shifted(testing::scaled(packing.domain, 1024), Vector<3>::Constant(1024.0 * 4096));
+  const Hanging found = measure_hanging(far, there, down);
+  EXPECT_EQ(found.spheres, here.spheres);
+  EXPECT_NEAR(found.farthest, 1024 * here.farthest, 1e-3 * found.farthest);
+}
+
+}  // namespace hanging_test
+}  // namespace bernal
