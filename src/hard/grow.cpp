@@ -160,7 +160,8 @@ StageEnd grow_in(Work& work, const Grow& options) {
           work.milestone("grow", std::clamp(done, 0.0, 0.99), 0);
         }).end;
   free_of_overlap<D>(spheres, edges, work);
-  if (end != StageEnd::cancelled && stands_in_asked_box<D>(spheres, edges, work)) return StageEnd::converged;
+  if (end != StageEnd::cancelled && stands_in_asked_box<D>(spheres, edges, work))
+    return end_in_larger_box(StageEnd::converged, options.polish, work);
   grown = true;
   return finish();
 }

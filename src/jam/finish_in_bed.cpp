@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/tolerance.hpp"
+#include "jam/held.hpp"
 #include "jam/polish.hpp"
 
 namespace bernal {
@@ -43,9 +44,10 @@ StageEnd finish_in_bed(StageEnd end, double polish, Work& work) {
   std::vector<std::uint32_t> tags;
   for (Bed::Id i = 0; i < bed.size(); ++i) tags.push_back(bed.tag(i));
   std::ranges::sort(tags);
+  const double closest = std::max(least_overlap, share_of_solver * polish);
+  const int symmetries = symmetries_of(work.domain);
   const Jammed jammed = polish_in_container(
-      spheres, bed.container(), symmetries_of(work.domain), std::max(least_overlap, share_of_solver * polish),
-      work.monitor,
+      spheres, bed.container(), symmetries, closest, work.monitor,
       [&](double done, double overlap) {
         work.crowd_milestone("polish", spheres.size(), volume_of(spheres), overlap, done);
       },
@@ -60,22 +62,25 @@ StageEnd finish_in_bed(StageEnd end, double polish, Work& work) {
   }
   const double skin = bed.skin() / work.supply->smallest();
   for (int k = 0; k < most_tries; ++k) {
-    const double size = jammed.growth * (1 - std::ldexp(skin, k));
+    const double room = std::ldexp(skin, k);  // for the skin
+    const double size = jammed.growth * (1 - room);
     const std::shared_ptr<Bed> polished = bed_of(jammed.spheres, tags, size, work);
     if (!polished) continue;
     work.supply->multiply_by(size);
     work.size_scale *= size;
     work.bed_ = polished;
-    if (jammed.end == StageEnd::hit_limit)
-      work.missed = fmt::format("the contacts could not be closed to {:g}", polish);
-    else if (2 * jammed.held < spheres.size())
+    if (jammed.held_volume < 0.5) {
       work.missed = fmt::format(
           "only {} of {} spheres hold each other: some are wedged in, mostly where the container is about as "
           "narrow as they are large, before sizes have grown so far that the others touch",
           jammed.held, spheres.size());
-    else
-      return end;
-    return StageEnd::hit_limit;
+      return StageEnd::hit_limit;
+    }
+    const double gap = std::max(polish, closest + 2 * room);
+    const Spheres<3> now = polished->spheres();
+    const std::optional<std::string> open =
+        what_is_open(gap, 3, now.size(), symmetries, contacts_at(gap, now, polished->container()));
+    return end_of_polish(jammed.end == StageEnd::converged ? end : jammed.end, polish, open, work);
   }
   work.missed = "the spheres could not be polished";
   return StageEnd::hit_limit;

@@ -82,6 +82,7 @@ class JammingEnergy final : public SmoothFunction {
   }
 
   std::size_t size() const { return radius_.size(); }
+  double radius(std::size_t i) const { return radius_[i]; }
   Eigen::Index unknowns() const override { return static_cast<Eigen::Index>(D * size() + 1); }
   const Vector<D>& edges() const { return state_.edges; }
   /// Of the box and its walls, in what they were at first.

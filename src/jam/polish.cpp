@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 
 #include "bernal/core/tolerance.hpp"
 #include "core/every_dimension.hpp"
+#include "jam/held.hpp"
 #include "jam/jamming_energy.hpp"
 #include "jam/trust_region.hpp"
 #include "work/free_of_overlap.hpp"
@@ -42,9 +44,6 @@ constexpr int most_steps_when_held = 20;
 constexpr double seconds_between_reports = 0.25;
 /// Up to this imbalance the end counts as equilibrium.
 constexpr double balanced = 1e-2;
-/// Room beside a container in the periodic box around it, in largest diameters, along axes that do not repeat
-/// themselves: no sphere meets an image of another.
-constexpr double margin = 3;
 
 /// What is polished, and for whom.
 struct Task {
@@ -71,32 +70,36 @@ class Polish {
 
   StageEnd run() {
     double overlap = 0;
+    bool is_settled = false;  // at this overlap
     std::optional<Checkpoints::Part> part;
     if (task_.checkpoints)
       part.emplace(*task_.checkpoints, "polish", [&](Archive& a) {
-        a(overlap, soft_, start_, imbalance_, overlap_, done_, unfinished_, climbs_);
+        a(overlap, is_settled, soft_, start_, imbalance_, overlap_, done_, unfinished_, climbs_);
       });
     if (!part || !part->resumed()) {
       soft_.set_level(task_.start, 0);
       overlap = start_ = std::clamp(soft_.largest_overlap(), task_.start, hardest_start);
     }
-    for (;;) {
-      unfinished_ = false;
-      if (!settle({.overlap = overlap, .smoothing = overlap, .balance = balance_, .is_resumable = true}))
-        break;
+    for (;; is_settled = false) {
+      if (!is_settled) {
+        unfinished_ = false;
+        if (!settle({.overlap = overlap, .smoothing = overlap, .balance = balance_, .is_resumable = true}))
+          break;
+        report();
+      }
       if (overlap > settled_) {
         overlap =
             unfinished_ && may_climb() ? climb(overlap) : std::max(settled_, overlap * fall_of_pressure);
         continue;
       }
-      if (!sharpen(overlap) || soft_.largest_overlap() <= task_.tolerance) break;
-      const bool slides = unfinished_;
-      if (close_contacts(overlap)) break;
-      if (slides && may_climb()) {
+      is_settled = true;
+      if (close(overlap) || cancelled_ || too_loose()) break;
+      if (unfinished_ && may_climb()) {
         overlap = climb(overlap);
         continue;
       }
-      if (overlap * fall_of_pressure < resolution()) break;  // the coordinates allow no better
+      // What is in equilibrium there has no more contacts at less, and the coordinates allow no better.
+      if (soft_.largest_overlap() <= task_.tolerance || overlap * fall_of_pressure < resolution()) break;
       overlap *= fall_of_pressure;
     }
     return result();
@@ -106,7 +109,17 @@ class Polish {
   /// How many spheres are no rattlers.
   std::size_t held() {
     count_contacts();
-    return soft_.size() - rattlers_;
+    return backbone_.spheres;
+  }
+  /// Their share of the volume, as they were counted last.
+  double held_volume() const {
+    double all = 0, held = 0;
+    for (std::size_t i = 0; i < soft_.size(); ++i) {
+      const double volume = ball_volume(D, soft_.radius(i));
+      all += volume;
+      if (backbone_.has[i]) held += volume;
+    }
+    return held / all;
   }
   /// Under a load overlaps make it smaller than it will be: of spheres that two contacts hold by D times the
   /// overlap of those that 2 D hold.
@@ -130,7 +143,21 @@ class Polish {
     return std::min(start_, overlap * rise_of_pressure);
   }
 
-  /// Takes the smoothing away. Returns false if cancelled.
+  /// Takes the smoothing away and closes the contacts. It has no state of its own: cut short, it leaves all
+  /// as it was, and so does a checkpoint. Returns whether they are closed.
+  bool close(double overlap) {
+    const auto before = std::tuple(soft_, imbalance_, overlap_, done_, unfinished_);
+    const bool closed = sharpen(overlap) && (is_closed() || close_contacts(overlap));
+    if (cancelled_) {
+      std::tie(soft_, imbalance_, overlap_, done_, unfinished_) = before;
+      milestones_.clear();
+      if (task_.checkpoints) task_.checkpoints->stop();
+    }
+    report();
+    return closed;
+  }
+
+  /// Takes the smoothing away. Returns false if cancelled or too loose.
   bool sharpen(double overlap) {
     for (const double smoothing : {0.1, 0.01, 0.0})
       if (!settle({overlap, smoothing * overlap, 0.1 * balance_})) return false;
@@ -144,19 +171,18 @@ class Polish {
     count_contacts();
     if (excess() < 0 || excess() > most_let_go) return false;
     std::ptrdiff_t spare = excess();
-    const JammingEnergy<D> before = soft_;
-    const double imbalance = imbalance_;
+    const auto before = std::tuple(soft_, imbalance_, unfinished_);
     const auto give_up = [&] {
-      soft_ = before;
-      imbalance_ = imbalance;
+      std::tie(soft_, imbalance_, unfinished_) = before;
       return false;
     };
     const double fall = 0.5 * task_.tolerance / soft_.largest_overlap();
-    soft_.hold(bears_);
+    soft_.hold(backbone_.has);
     for (;;) {
       const JammingEnergy<D> held = soft_;
-      settle({overlap * fall, 0, 0.1 * balance_, held_way, 1e-4, most_steps_when_held});
-      if (imbalance_ >= balanced) return give_up();
+      if (!settle({overlap * fall, 0, 0.1 * balance_, held_way, 1e-4, most_steps_when_held}) ||
+          imbalance_ >= balanced)
+        return give_up();
       const auto first = first_to_pull(held.contacts(), soft_.contacts());
       if (first < 0) break;
       soft_ = held;
@@ -164,23 +190,28 @@ class Polish {
       soft_.let_go(static_cast<std::size_t>(first));
     }
     soft_.release();
-    make_room_for_rattlers();
+    if (!make_room_for_rattlers()) return give_up();
     soft_.set_level(overlap * fall, 0);
-    count_contacts();
-    if (excess() >= 0 && soft_.largest_overlap() <= task_.tolerance && imbalance_ < balanced) return true;
-    return give_up();
+    return is_closed() || give_up();
   }
 
-  /// Moves rattlers that the others have come to overlap back into their cages.
-  void make_room_for_rattlers() {
+  /// Whether nothing overlaps by more than is asked for, forces balance, and as many contacts bear them as it
+  /// takes to hold the spheres.
+  bool is_closed() {
+    if (soft_.largest_overlap() > task_.tolerance || !(imbalance_ < balanced)) return false;
+    count_contacts();
+    return backbone_.spheres > 0 && excess() >= 0;
+  }
+
+  /// Moves rattlers that the others have come to overlap back into their cages. Returns false if cancelled.
+  bool make_room_for_rattlers() {
     const double imbalance = imbalance_;
-    soft_.fix(bears_);
-    for (double gap = room; gap > 1e-3 * task_.tolerance; gap *= 1e-2) {
-      settle({gap, gap, loose_balance});
-      if (soft_.largest_overlap() <= task_.tolerance) break;
-    }
+    soft_.fix(backbone_.has);
+    for (double gap = room; gap > 1e-3 * task_.tolerance; gap *= 1e-2)
+      if (!settle({gap, gap, loose_balance}) || soft_.largest_overlap() <= task_.tolerance) break;
     soft_.release();
     imbalance_ = imbalance;
+    return !cancelled_;
   }
 
   /// Of the same contacts at two levels of pressure: which one's force, linear in between, is the first to
@@ -203,12 +234,12 @@ class Polish {
 
   /// Contacts beyond the isostatic number.
   std::ptrdiff_t excess() const {
-    return static_cast<std::ptrdiff_t>(contacts_) -
-           (static_cast<std::ptrdiff_t>(D * (soft_.size() - rattlers_)) - task_.symmetries + 1);
+    return static_cast<std::ptrdiff_t>(backbone_.holds) -
+           isostatic_number(D, backbone_.spheres, task_.symmetries);
   }
 
   /// Minimises at one level of pressure. Returns false if cancelled or too loose.
-  bool settle(const Level& level) {
+  [[nodiscard]] bool settle(const Level& level) {
     const double overlap = overlap_ = level.overlap;
     std::optional<TrustRegion> made;
     double radius = 0;
@@ -249,8 +280,14 @@ class Polish {
     }
     if (too_loose()) return false;  // not before: on its way the box may be smaller than it will be
     done_ = std::clamp(std::log(overlap / start_) / std::log(0.1 * task_.tolerance / start_), done_, 0.99);
-    task_.report(done_, soft_.largest_overlap());
+    milestones_.emplace_back(done_, soft_.largest_overlap());
     return true;
+  }
+
+  /// Of levels, once nothing can take them back.
+  void report() {
+    for (const auto& [done, overlap] : milestones_) task_.report(done, overlap);
+    milestones_.clear();
   }
 
   /// Within a level, now and then.
@@ -265,35 +302,17 @@ class Polish {
   /// An overlap ratio that is lost in the rounding of coordinates.
   double resolution() const { return 2 * tolerance::roundoff * task_.slenderness; }
 
-  StageEnd result() const {
+  StageEnd result() {
     if (cancelled_) return StageEnd::cancelled;
-    const bool closed = soft_.largest_overlap() <= task_.tolerance && imbalance_ < balanced;
-    return closed && !too_loose() ? StageEnd::converged : StageEnd::hit_limit;
+    return is_closed() && !too_loose() ? StageEnd::converged : StageEnd::hit_limit;
   }
 
-  /// Spheres that bear no force: fewer than D + 1 contacts, removed until none is left.
+  /// Those that bear force.
   void count_contacts() {
-    std::vector<int> held(soft_.size(), D + 1);
-    bears_.assign(soft_.size(), 1);
-    for (std::size_t loose = 1; loose > 0;) {
-      const std::vector<int> last = held;
-      std::ranges::fill(held, 0);
-      contacts_ = 0;
-      for (const auto& c : soft_.contacts()) {
-        if (last[c.first] <= D || (c.is_pair() && last[c.second] <= D) || !(c.tension > 0)) continue;
-        ++held[c.first];
-        if (c.is_pair()) ++held[c.second];
-        ++contacts_;
-      }
-      loose = 0;
-      rattlers_ = 0;
-      for (std::size_t i = 0; i < held.size(); ++i) {
-        if (held[i] > D) continue;
-        ++rattlers_;
-        bears_[i] = 0;
-        if (last[i] > D) ++loose;
-      }
-    }
+    std::vector<Hold> holds;
+    for (const auto& c : soft_.contacts())
+      if (c.tension > 0) holds.push_back({c.first, c.is_pair() ? c.second : Hold::wall});
+    backbone_ = backbone_of(D, soft_.size(), holds);
   }
 
   JammingEnergy<D> soft_;
@@ -304,12 +323,11 @@ class Polish {
   double overlap_ = 0;  // of the present level
   double done_ = 0;
   Stopwatch since_told_;
-  bool unfinished_ = false;  // a level ended far from equilibrium
+  std::vector<std::pair<double, double>> milestones_;  // that are still to be told
+  bool unfinished_ = false;                            // a level ended far from equilibrium
   int climbs_ = 0;
   bool cancelled_ = false;
-  std::vector<char> bears_;  // force, by place in soft_
-  std::size_t rattlers_ = 0;
-  std::size_t contacts_ = 0;  // that bear force between the others and with walls
+  Backbone backbone_;  // by place in soft_
 };
 
 }  // namespace
@@ -339,14 +357,10 @@ StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& w
 Jammed polish_in_container(const Spheres<3>& spheres, const Container& container, int symmetries,
                            double tolerance, const Monitor& monitor,
                            const std::function<void(double, double)>& report, Checkpoints* checkpoints) {
-  const Boundary<3>& boundary = container.boundary();
-  const Vector<3> extent = container.bounds().size();
-  Vector<3> edges = extent.array() + margin * 2 * std::ranges::max(spheres.r);
-  for (int k = 0; k < 3; ++k)
-    if (boundary.repeats(k)) edges[k] = boundary.edges[k];
+  const Vector<3> edges = edges_around(container, std::ranges::max(spheres.r));
   Polish<3> act({spheres, edges, std::make_shared<Enclosure<3>>(container)},
                 {.tolerance = tolerance,
-                 .slenderness = extent.maxCoeff() / std::ranges::min(spheres.r),
+                 .slenderness = container.bounds().size().maxCoeff() / std::ranges::min(spheres.r),
                  .symmetries = symmetries,
                  .start = loose_start,
                  .most_steps = most_steps_when_loose,
@@ -356,39 +370,13 @@ Jammed polish_in_container(const Spheres<3>& spheres, const Container& container
                  .report = report,
                  .checkpoints = checkpoints});
   const StageEnd end = act.run();
-  Jammed jammed{end, spheres, 1, act.too_loose(), act.held()};
+  Jammed jammed{end, spheres, 1, act.too_loose(), act.held(), act.held_volume()};
   act.soft().write_to_scale(jammed.spheres);
   jammed.growth = (1 - act.soft().largest_overlap()) / act.soft().scale();
   return jammed;
 }
 
-template <int D>
-bool lies_within(const Spheres<D>& spheres, const Vector<D>& edges, const Vector<D>& target) {
-  const double rounding = tolerance::growth(target.maxCoeff() / std::ranges::min(spheres.r));
-  return (target.array() >= edges.array() * (1 + rounding)).all();
-}
-
-template <int D>
-StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish_to,
-                                Work& work) {
-  if (polish_to > 0 && end == StageEnd::converged) {
-    const EffectTimer timer(work.effects["polish"]);
-    end = polish<D>(spheres, edges, polish_to, work);
-    free_of_overlap<D>(spheres, edges, work);
-  }
-  work.needed_volume = edges.prod();
-  if (work.target_edges && lies_within<D>(spheres, edges, *work.target_edges))
-    resize_box<D>(spheres, edges, *work.target_edges);
-  work.spheres = std::move(spheres);
-  work.edges = edges;
-  work.placed = true;
-  return end;
-}
-
-#define BERNAL_INSTANTIATE(D)                                                                  \
-  template StageEnd polish<D>(Spheres<D>&, Vector<D>&, double, Work&);                         \
-  template StageEnd finish_in_periodic_box<D>(Spheres<D>, Vector<D>, StageEnd, double, Work&); \
-  template bool lies_within<D>(const Spheres<D>&, const Vector<D>&, const Vector<D>&);
+#define BERNAL_INSTANTIATE(D) template StageEnd polish<D>(Spheres<D>&, Vector<D>&, double, Work&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

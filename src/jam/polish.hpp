@@ -1,5 +1,7 @@
 #pragma once
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "bernal/domain/container.hpp"
@@ -24,10 +26,11 @@ namespace bernal {
 ///
 /// Where rounding of the coordinates allows no better, `tolerance` is not reached: 1e-15 edges over the
 /// smallest radius. Precondition: overlaps and gaps of neighbours are below about 1e-2; no two centres
-/// coincide. Returns hit_limit if `tolerance` was not reached, or equilibrium not to 1e-2. Cost: the
-/// Newton steps are many and short rather than hard to solve, as contacts change along the way: seconds for
-/// 1,000 spheres, more than half a minute for 3,000, more than a minute for 10,000. Cancelled, it ends within
-/// a step. Memory about 1 kB a sphere. One thread; the same bits each time.
+/// coincide. Returns hit_limit if `tolerance` was not reached, equilibrium not to 1e-2, or fewer contacts
+/// bear force than hold the spheres. Cost: the Newton steps are many and short rather than hard to solve, as
+/// contacts change along the way: seconds for 1,000 spheres, more than half a minute for 3,000, more than a
+/// minute for 10,000. Cancelled, it ends within a step. Memory about 1 kB a sphere. One thread; the same bits
+/// each time.
 ///
 /// Along axes on which the box ends at walls, by `work.walls`, these are contacts like any other, and dilate
 /// with the box. In equilibrium the forces of C contacts balance D (N - rattlers) times, of which as many
@@ -63,6 +66,7 @@ struct Jammed {
   double growth;     ///< by which all radii have to be multiplied so that contacts close and nothing overlaps
   bool too_loose;    ///< it gave up because that would be more than `most_growth`
   std::size_t held;  ///< spheres that are no rattlers
+  double held_volume;  ///< their share of the volume of all
 };
 
 /// The same in a container, which stays as it is: neither can it dilate nor are there fewer or more spheres,
@@ -80,14 +84,25 @@ Jammed polish_in_container(const Spheres<3>& spheres, const Container& container
 /// `work.size_scale` holds, for the stages to come too. Returns `end`, or why polishing ended; what is too
 /// loose to be polished stays as it is, and `work.missed` says so. So it does where a few spheres, wedged in
 /// between walls, keep the sizes from growing until the others hold each other too: the rest is loose.
+/// What is said to be closed is counted by the spheres as they lie (`what_is_open`).
 StageEnd finish_in_bed(StageEnd end, double polish, Work& work);
 
 /// The end of every stage that lets a periodic box follow from the packing: polishes contacts to the overlap
 /// ratio `polish`, if that is above 0; grows or shrinks the box until nothing overlaps more than is allowed;
 /// moves the spheres apart in proportion where the scene asks for a larger box; and hands all of it to
-/// `work`. Returns `end`, or why polishing ended. Cost: a look at all near pairs, and `polish`.
+/// `work`. Returns `end`, or why polishing ended, and `work.missed` says what is open: by the spheres
+/// as they lie (`what_is_open`), or because the larger box opened it again. Cost: a look at all near pairs,
+/// and `polish`.
 template <int D>
 StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish, Work& work);
+
+/// The end of a stage that polished to `polish` and came to `end`, where `open` says what was found open:
+/// what holds no spheres is not converged, whatever the solver says. `work.missed` tells.
+StageEnd end_of_polish(StageEnd end, double polish, const std::optional<std::string>& open, Work& work);
+
+/// The end of a stage whose spheres stand in a box that is larger than they need: contacts were to be closed
+/// and are open, which `work.missed` says, where `polish` is above 0.
+StageEnd end_in_larger_box(StageEnd end, double polish, Work& work);
 
 /// Whether the target edges have room for a box of these edges, and for the rounding of moving to them.
 template <int D>

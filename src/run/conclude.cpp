@@ -91,6 +91,7 @@ Conclusion of_box(const Packing& packing, const Work& work, StageEnd end, const 
             fmt::format("{} {} a box {} the one asked for; this is the box that {}", counted(n),
                         n == 1 ? "needs" : "need", larger(work.edges.prod() / work.target_edges->prod()),
                         n == 1 ? "it needs" : "they need")};
+  if (!work.missed.empty()) return {Outcome::hit_limit, fmt::format("{}; {}", all_placed(n), work.missed)};
   if (end == StageEnd::hit_limit) return limit_reached(n);
   if (from_bed) return of_open_target(packing, work, end, ending);
   return {Outcome::converged, all_placed(n) + account};

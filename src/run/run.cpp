@@ -258,6 +258,7 @@ class Run {
         bed.reset();
         if (!in_bed && work.stands_in_bed()) bed.emplace(work);
         in_bed ? work.stand_in_bed() : work.stand_in_box();
+        work.missed.clear();
         facts.clear();
         ArchiveToBytes now(facts);
         work.archive_facts(now);

@@ -246,8 +246,9 @@ StageEnd relax_in(Work& work, const Relax& options) {
     step = Step::finish;
     const double polish_to = loose_box ? 0 : options.polish;
     // While it is polished, a checkpoint has what that began with.
-    return finish_in_periodic_box<D>(polish_to > 0 ? spheres : std::move(spheres), edges, end, polish_to,
-                                     work);
+    end =
+        finish_in_periodic_box<D>(polish_to > 0 ? spheres : std::move(spheres), edges, end, polish_to, work);
+    return loose_box ? end_in_larger_box(end, options.polish, work) : end;
   };
   Vector<D> start = edges;
   const Resumable part(work, "relax", [&](Archive& a) {

@@ -127,6 +127,42 @@ TEST_P(AtEverySafePoint, ComesToTheSameBits) {
   }
 }
 
+/// Whoever ends a run does so at any question, not at safe points alone: within a step of a solver, or of
+/// work that has no state of its own. What it then leaves must not be taken for the end of that work.
+class EndedAtAnyQuestion : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(, EndedAtAnyQuestion,
+                         ::testing::Values("relax_3d_polished", "relax_cylinder_polished",
+                                           "grow_2d_polished"),
+                         [](const auto& scene) { return std::string(scene.param); });
+
+Ended run_to_question(std::uint64_t end, const Plan& plan, const std::filesystem::path& folder, bool resume) {
+  Ended ended;
+  RunOptions options;
+  options.threads = 1;
+  options.monitor.cancelled = [&] { return ++ended.safe_points >= end; };
+  options.checkpoints.folder = folder;
+  options.checkpoints.resume = resume;
+  options.checkpoints.due = [] { return false; };
+  ended.packing = run(plan, options);
+  return ended;
+}
+
+TEST_P(EndedAtAnyQuestion, GoesOnToTheSameBits) {
+  const Plan plan = plan_of_scene(GetParam());
+  const testing::Folder folder;
+  const Ended undisturbed = run_to_question(never, plan, folder.path(), false);
+  const std::uint64_t questions = undisturbed.safe_points, moments = 12;
+  ASSERT_GT(questions, moments);
+  for (std::uint64_t k = 1; k <= moments; ++k) {
+    const std::uint64_t end = questions - (questions * (k - 1)) / (4 * moments);  // in the last quarter
+    const Ended cut = run_to_question(end, plan, folder.path(), false);
+    EXPECT_EQ(cut.packing.outcome, Outcome::cancelled) << end;
+    const Ended resumed = run_to_question(never, plan, folder.path(), true);
+    EXPECT_EQ(resumed.packing.resumed, 1) << end;
+    expect_the_same(resumed.packing, undisturbed.packing);
+  }
+}
+
 /// The relaxation after it has few of the safe points, at the end: spheres that have their places only in its
 /// engine, and sizes that are dealt already.
 TEST(ResumedAfterExchange, ComesToTheSameBits) {
