@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <type_traits>
+#include <vector>
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/soft/relax.hpp"
@@ -24,8 +26,8 @@ inline double least_overlap(const Relax& options, double allowed) {
 
 /// Sweeps of a cycle, at the pace for spheres of that largest overlap ratio, of which `done` are over; it is
 /// 0 again in the end. After each but the last, asks whether to stop. Returns what the last of them met, or
-/// nothing where stopped; `each`: that tells about each sphere too.
-template <int D, bool each = false, class Engine, class Stop>
+/// nothing where stopped; `each`: the engine's `squeeze` then tells about each sphere too.
+template <int D, bool each, class Engine, class Stop>
 std::optional<double> sweep_cycle(Engine& packing, int sweeps, int& done, double molr, Stop&& stop) {
   const Pace pace = pace_for(molr);
   packing.wear_lists(pace.wear);
@@ -42,10 +44,15 @@ std::optional<double> sweep_cycle(Engine& packing, int sweeps, int& done, double
     return packing.sweep_to_overlap(omega);
 }
 
+/// Largest overlap ratio below which growths of the box are predicted: they are few then.
+inline constexpr double predictable = 3e-3;
+
 struct GrowingBox {
   double stop;  ///< largest overlap ratio to end with
   int sweeps;   ///< between two growths
   double beta;
+  /// By which it grows, about, when growths begin to be predicted.
+  double last_overlap = predictable;
 };
 
 /// How far `grow_apart` has come.
@@ -53,10 +60,26 @@ struct BoxGrowth {
   double molr = 1;  ///< the largest overlap ratio
   double last_molr = 0, least_molr = 1;
   double growth = 0;
-  int cycle = 1, sweeps = 0;  ///< over in this cycle
+  int cycle = 1, sweeps = 0;              ///< over in this cycle
+  double first_overlap = 0, overlap = 0;  ///< by which it grew at first and last, before prediction
 };
 
-/// Spheres push each other apart while their box grows, each time by `overlap_of(cycle, least)` / beta, for
+/// The share of the work that is over: about as much for each factor by which the overlap falls, until
+/// growths are predicted.
+inline double share_of_work(const BoxGrowth& growth, const GrowingBox& box) {
+  constexpr double before_prediction = 0.9, power = 0.6, until_next = 0.03;
+  if (growth.overlap == 0) return 0;
+  const auto way = [](double from, double at, double to) {
+    return from > to ? std::clamp(std::log(from / at) / std::log(from / to), 0.0, 1.0) : 1;
+  };
+  if (growth.molr < predictable)
+    return before_prediction + (1 - before_prediction) * way(predictable, growth.molr, box.stop);
+  return before_prediction * std::pow(way(growth.first_overlap, growth.overlap, box.last_overlap), power) +
+         until_next * growth.sweeps / box.sweeps;
+}
+
+/// Spheres push each other apart while their box grows, each time by `overlap_of(cycle, least)` / beta, or
+/// `overlap_of(cycle, least, squeeze)`, which is told of each sphere what the engine's `squeeze` is, for
 /// the least that molr, the largest overlap ratio, has been: it rises only where some spheres of very many
 /// have come so near each other before they were neighbours, and these part without more room. (Growing by it
 /// takes 0.0004 from the packing fraction of 10^4 to 10^6 spheres, 0.0012 where such a pair is met early, and
@@ -66,16 +89,22 @@ struct BoxGrowth {
 template <int D, class Engine, class Stop, class OverlapOf, class OnGrowth>
 StageEnd grow_apart(Engine& packing, const GrowingBox& box, BoxGrowth& so_far, Stop&& stop,
                     OverlapOf&& overlap_of, OnGrowth&& on_growth) {
-  constexpr double predictable = 3e-3, share_of_prediction = 0.9, longest_predicted = 1.0 / 6;
-  auto& [molr, last_molr, least_molr, growth, cycle, sweeps] = so_far;
+  constexpr bool each = std::is_invocable_v<OverlapOf&, int, double, const std::vector<float>&>;
+  constexpr double share_of_prediction = 0.9, longest_predicted = 1.0 / 6;
+  auto& [molr, last_molr, least_molr, growth, cycle, sweeps, first_overlap, overlap] = so_far;
   for (;; ++cycle) {
-    const std::optional<double> met = sweep_cycle<D>(packing, box.sweeps, sweeps, molr, stop);
+    const std::optional<double> met = sweep_cycle<D, each>(packing, box.sweeps, sweeps, molr, stop);
     if (!met) return StageEnd::cancelled;
     molr = *met;
     if (molr < box.stop) return StageEnd::converged;
     const double predicted = growth * molr / (last_molr - molr);
     least_molr = std::min(least_molr, molr);
-    growth = overlap_of(cycle, least_molr) / box.beta;
+    if constexpr (each)
+      overlap = overlap_of(cycle, least_molr, packing.squeeze());
+    else
+      overlap = overlap_of(cycle, least_molr);
+    if (first_overlap == 0) first_overlap = overlap;
+    growth = overlap / box.beta;
     if (molr < predictable && molr < last_molr)
       growth = std::max(growth, std::min(share_of_prediction * predicted, longest_predicted * molr));
     last_molr = molr;
@@ -87,35 +116,37 @@ StageEnd grow_apart(Engine& packing, const GrowingBox& box, BoxGrowth& so_far, S
 /// Tells a run how its box grows.
 class GrowthTeller {
  public:
-  /// Once `stop` is the largest overlap ratio it is over; `sweeps` are between two growths. Radii stay. O(N).
-  GrowthTeller(Work& work, double stop, int sweeps)
-      : work_(work), volume_(work.volume_of_spheres()), stop_(stop), sweeps_(sweeps) {}
+  /// `growth` is how far that has come, in a run of which the share `before` was over when it began. Radii
+  /// stay. O(N).
+  GrowthTeller(Work& work, const GrowingBox& box, const BoxGrowth& growth, double before = 0)
+      : work_(work), volume_(work.volume_of_spheres()), box_(box), growth_(growth), before_(before) {}
 
   /// To be called on growth.
-  void grown(double factor, double molr) {
+  void grown(double factor) {
     work_.edges *= factor;
-    work_.box_milestone("relax", volume_, std::min(most, share(molr)), molr);
-    told_ = watch_.seconds();
+    tell(true);
   }
   /// To be called after sweeps: of very many spheres some take minutes until the box grows.
-  void swept(const BoxGrowth& growth) {
-    if (watch_.seconds() < told_ + between) return;
-    told_ = watch_.seconds();
-    const double done = share(growth.molr) + share_of_a_growth * growth.sweeps / sweeps_;
-    work_.box_milestone("relax", volume_, std::clamp(done, 0.0, most), growth.molr, false);
+  void swept() {
+    if (watch_.seconds() >= told_ + between) tell(false);
   }
 
  private:
-  static constexpr double most = 0.99, share_of_a_growth = 0.04, between = 0.5;  // seconds
+  static constexpr double most = 0.99, between = 0.5;  // seconds
 
-  double share(double molr) const { return std::log(molr) / std::log(stop_); }
+  void tell(bool for_history) {
+    told_ = watch_.seconds();
+    done_ = std::max(done_, before_ + (1 - before_) * share_of_work(growth_, box_));
+    work_.box_milestone("relax", volume_, std::min(most, done_), growth_.molr, for_history);
+  }
 
   Work& work_;
   const double volume_;  // of the spheres
-  const double stop_;
-  const int sweeps_;
+  const GrowingBox& box_;
+  const BoxGrowth& growth_;
+  const double before_;
   const Stopwatch watch_;
-  double told_ = 0;
+  double told_ = 0, done_ = 0;
 };
 
 }  // namespace bernal

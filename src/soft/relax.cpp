@@ -137,14 +137,14 @@ StageEnd let_box_grow(Packing& packing, Spheres<D>& spheres, Vector<D>& edges, W
                        .beta = options.beta};
   BoxGrowth growth{.molr = overlap};
   const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
-  GrowthTeller teller(work, box.stop, box.sweeps);
+  GrowthTeller teller(work, box, growth);
   const auto stop = [&] {
-    teller.swept(growth);
+    teller.swept();
     return work.stop();
   };
   const StageEnd end = grow_apart<D>(
       packing, box, growth, stop, [](int, double molr) { return molr; },
-      [&](double factor, double molr) { teller.grown(factor, molr); });
+      [&](double factor, double) { teller.grown(factor); });
   work.effects["neighbour lists"] += packing.lists_built();
   have_places(spheres);
   packing.write_to(spheres, edges);
@@ -188,7 +188,8 @@ StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
                     std::optional<double> overlap = {}) {
   if constexpr (D == 2 || D == 3)
     if (is_for_wide_sizes(work.fill_task, options))
-      return relax_wide<D>(spheres, edges, work, options, overlap.value_or(1));
+      return relax_wide<D>(spheres, edges, work, options, overlap.value_or(1),
+                           !overlap && begins_from_largest(work, options) ? share_of_placing : 0);
   const bool engine_works = overlap || D > 3 || !work.walls.empty() || SoftEngine<D>::is_wide(spheres, edges);
   return options.method == RelaxMethod::fast && engine_works
              ? relax_fast<D>(spheres, edges, work, options, overlap.value_or(1))

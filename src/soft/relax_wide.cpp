@@ -36,6 +36,10 @@ constexpr std::size_t spheres_in_starts = 1000, most_starts_of_few = 20;
 constexpr double start_of_few = 0.75;
 /// Few spheres have the sweeps of so many: they cost nothing.
 constexpr std::size_t sweeps_grow_from = 1000;
+/// Cycles of a kind and of a start of few, as they usually are.
+constexpr double usual_cycles_of_kind = 4, usual_cycles_of_few = 60;
+/// Mean overlap when growths begin to be predicted.
+constexpr double last_mean = 5e-4;
 /// Of that many cycles the largest overlap ratio decides; with a power of it before.
 constexpr double cycles_of_means = 200, power_of_cycles = 4;
 
@@ -44,12 +48,11 @@ int sweeps_of_wide(const Relax& options, std::size_t spheres) {
   return std::max(1, static_cast<int>(std::lround(share_of_cycle * sweeps)));
 }
 
-/// The mean over the spheres, or over their volume if that is larger, of the root of the sum of squared
-/// overlap ratios.
+/// The mean over the spheres, or over their volume if that is larger, of the root of `squeeze`, the sum of
+/// squared overlap ratios.
 template <int D>
-double mean_overlap(const SoftPacking& packing, const std::vector<double>& radii) {
+double mean_overlap(const std::vector<float>& squeeze, const std::vector<double>& radii) {
   double sum = 0, weighted = 0, volume = 0;
-  const std::vector<float> squeeze = packing.squeeze();
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const double overlap = std::sqrt(squeeze[i]), weight = std::pow(radii[i], D);
     sum += overlap;
@@ -89,9 +92,57 @@ void place_between(Spheres<D>& spheres, std::size_t first, const Vector<D>& edge
   }
 }
 
+/// Where the spheres of each kind end, sorted by radius, the largest first: octaves of sizes.
+std::vector<std::size_t> ends_of_kinds(const std::vector<double>& descending) {
+  std::vector<std::size_t> ends;
+  const std::size_t count = descending.size();
+  for (std::size_t first = 0, last = 0; first < count; first = last) {
+    while (last < count && descending[last] > 0.5 * descending[first]) ++last;
+    if (static_cast<double>(count - last) <= least_of_kind * static_cast<double>(count)) last = count;
+    ends.push_back(last);
+  }
+  return ends;
+}
+
+std::size_t starts_of(std::size_t few) {
+  return std::clamp<std::size_t>(spheres_in_starts / few, 1, most_starts_of_few);
+}
+
+/// Tells a run how far the kinds are, by the cycles of sweeps of all that are there that are usual.
+class KindsTeller {
+ public:
+  KindsTeller(Work& work, const std::vector<std::size_t>& ends) : work_(work) {
+    if (ends.front() < spheres_in_starts)
+      of_starts_ = usual_cycles_of_few * static_cast<double>(starts_of(ends.front()) * ends.front());
+    all_ = before_ = of_starts_;
+    for (const std::size_t end : ends) all_ += usual_cycles_of_kind * static_cast<double>(end);
+  }
+
+  /// So many of the starts of few are over.
+  void started(std::size_t starts, std::size_t of_all, double largest) {
+    tell(of_starts_ * static_cast<double>(starts) / static_cast<double>(of_all), largest);
+  }
+  /// So many cycles of a kind, with whom so many are there.
+  void cycled(int cycles, std::size_t spheres, double largest) {
+    tell(before_ + std::min<double>(cycles, usual_cycles_of_kind) * static_cast<double>(spheres), largest);
+  }
+  void settled(std::size_t spheres) { before_ += usual_cycles_of_kind * static_cast<double>(spheres); }
+
+ private:
+  void tell(double cycles, double largest) {
+    work_.milestone("relax", share_of_placing * cycles / all_, largest);
+  }
+
+  Work& work_;
+  // Cycles, times the spheres that are swept.
+  double of_starts_ = 0, all_ = 0;
+  double before_ = 0;  // the kind that is settled
+};
+
 /// Sweeps in a box of fixed size until that no longer helps.
 template <int D>
-StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, const Relax& options) {
+StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, const Relax& options,
+                     KindsTeller& teller) {
   SoftPacking packing(spheres, edges, soft_kernels().front(), true);
   const int sweeps = sweeps_of_wide(options, spheres.size());
   StageEnd end = StageEnd::converged;
@@ -105,8 +156,8 @@ StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, co
     if (!met) break;
     largest = *met;
     const double before = mean;
-    mean = mean_overlap<D>(packing, spheres.r);
-    work.milestone("relax", 0, largest);
+    mean = mean_overlap<D>(packing.squeeze(), spheres.r);
+    teller.cycled(cycle + 1, spheres.size(), largest);
     if (mean > helps * before || largest < settled) break;
   }
   work.effects["neighbour lists"] += packing.lists_built();
@@ -114,27 +165,32 @@ StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, co
   return end;
 }
 
+GrowingBox box_of_wide(const Relax& options, std::size_t spheres, double stop) {
+  return {.stop = stop,
+          .sweeps = sweeps_of_wide(options, spheres),
+          .beta = options.beta,
+          .last_overlap = last_mean};
+}
+
 /// The spheres push each other apart while the box grows.
 template <int D, class Stop, class OnGrowth>
-StageEnd grow_by_means(SoftPacking& packing, const std::vector<double>& radii, BoxGrowth& growth,
-                       double overlap, const Relax& options, Stop&& stop, OnGrowth&& on_growth) {
-  const auto overlap_of = [&](int cycle, double largest) {
+StageEnd grow_by_means(SoftPacking& packing, const std::vector<double>& radii, const GrowingBox& box,
+                       BoxGrowth& growth, Stop&& stop, OnGrowth&& on_growth) {
+  const auto overlap_of = [&](int cycle, double largest, const std::vector<float>& squeeze) {
     const double share = std::min(1.0, std::pow(cycle / cycles_of_means, power_of_cycles));
-    return std::min(largest, std::max(mean_overlap<D>(packing, radii), share * largest));
+    return std::min(largest, std::max(mean_overlap<D>(squeeze, radii), share * largest));
   };
-  const GrowingBox box{
-      .stop = overlap, .sweeps = sweeps_of_wide(options, radii.size()), .beta = options.beta};
   return grow_apart<D>(packing, box, growth, stop, overlap_of, on_growth);
 }
 
 /// Few spheres, in the densest of some packings of them, spread out or squeezed into the box.
 template <int D>
 StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, const Relax& options,
-                   Random& random) {
+                   Random& random, KindsTeller& teller) {
   double factor = std::pow(volume_of(spheres) / (start_of_few * edges.prod()), 1.0 / D);
   factor = std::max(factor, 2.0001 * std::ranges::max(spheres.r) / edges.minCoeff());
-  const std::size_t starts =
-      std::clamp<std::size_t>(spheres_in_starts / spheres.size(), 1, most_starts_of_few);
+  const std::size_t starts = starts_of(spheres.size());
+  const GrowingBox growing = box_of_wide(options, spheres.size(), options.stop);
   Spheres<D> start = spheres;
   double least = std::numeric_limits<double>::infinity();
   StageEnd end = StageEnd::converged;
@@ -144,8 +200,8 @@ StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, cons
     SoftPacking packing(start, box, soft_kernels().front(), true);
     BoxGrowth growth;
     end = grow_by_means<D>(
-        packing, start.r, growth, options.stop, options, [&] { return work.monitor.stop(); },
-        [](double, double) {});
+        packing, start.r, growing, growth, [&] { return work.monitor.stop(); }, [](double, double) {});
+    teller.started(n + 1, starts, growth.molr);
     work.effects["neighbour lists"] += packing.lists_built();
     packing.write_to(start, box);
     if (!(box.prod() < least)) continue;
@@ -173,41 +229,44 @@ StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& w
   Spheres<D> descending;
   for (const std::size_t i : order) descending.push_back(Vector<D>::Zero(), spheres.r[i]);
 
+  const std::vector<std::size_t> ends = ends_of_kinds(descending.r);
+  KindsTeller teller(work, ends);
   StageEnd end = StageEnd::converged;
-  std::size_t first = 0, last = 0;
-  const Resumable part(work, "from the largest", [&](Archive& a) { a(first, last, descending, random); });
-  for (bool goes_on = part.resumed(); first < count; first = last) {
-    while (last < count && descending.r[last] > 0.5 * descending.r[first]) ++last;
-    if (static_cast<double>(count - last) <= least_of_kind * static_cast<double>(count)) last = count;
+  std::size_t first = 0, kind = 0;
+  const Resumable part(work, "from the largest", [&](Archive& a) { a(first, kind, descending, random); });
+  for (std::size_t k = 0; k < kind; ++k) teller.settled(ends[k]);
+  for (bool goes_on = part.resumed(); kind < ends.size(); first = ends[kind++]) {
     Spheres<D> there = descending;
-    there.resize(last);
-    const bool are_few = first == 0 && last < spheres_in_starts;
+    there.resize(ends[kind]);
+    const bool are_few = first == 0 && there.size() < spheres_in_starts;
     if (std::exchange(goes_on, false))
       ;  // they have their places
     else if (are_few)
-      end = place_few(there, edges, work, options, random);
+      end = place_few(there, edges, work, options, random, teller);
     else
       place_between(there, first, edges, random, work.monitor);
-    if (end == StageEnd::converged) end = settle_kind<D>(there, edges, work, options);
-    for (std::size_t i = 0; i < last; ++i) descending.set_center(i, there.center(i));
+    if (end == StageEnd::converged) end = settle_kind<D>(there, edges, work, options, teller);
+    teller.settled(there.size());
+    for (std::size_t i = 0; i < there.size(); ++i) descending.set_center(i, there.center(i));
   }
   for (std::size_t i = 0; i < count; ++i) spheres.set_center(order[i], descending.center(i));
   return end;
 }
 
 template <int D>
-StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
+StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap,
+                    double before) {
   SoftPacking packing(spheres, edges, soft_kernels().front(), true);
-  const double stop = least_overlap(options, work.allowed_overlap);
+  const GrowingBox box = box_of_wide(options, spheres.size(), least_overlap(options, work.allowed_overlap));
   BoxGrowth growth{.molr = overlap};
   const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
-  GrowthTeller teller(work, stop, sweeps_of_wide(options, spheres.size()));
+  GrowthTeller teller(work, box, growth, before);
   const auto stops = [&] {
-    teller.swept(growth);
+    teller.swept();
     return work.stop();
   };
-  const StageEnd end = grow_by_means<D>(packing, spheres.r, growth, stop, options, stops,
-                                        [&](double factor, double molr) { teller.grown(factor, molr); });
+  const StageEnd end = grow_by_means<D>(packing, spheres.r, box, growth, stops,
+                                        [&](double factor, double) { teller.grown(factor); });
   work.effects["neighbour lists"] += packing.lists_built();
   packing.write_to(spheres, edges);
   return end;
@@ -215,7 +274,7 @@ StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
 
 #define BERNAL_INSTANTIATE(D)                                                               \
   template StageEnd place_from_largest(Spheres<D>&, const Vector<D>&, Work&, const Relax&); \
-  template StageEnd relax_wide(Spheres<D>&, Vector<D>&, Work&, const Relax&, double);
+  template StageEnd relax_wide(Spheres<D>&, Vector<D>&, Work&, const Relax&, double, double);
 BERNAL_INSTANTIATE(2)
 BERNAL_INSTANTIATE(3)
 #undef BERNAL_INSTANTIATE

@@ -15,6 +15,9 @@ bool is_for_wide_sizes(const FillTask& task, const Relax& options);
 /// Share of `sweeps_a_cycle` that passes between two growths of the box where sizes are wide.
 inline constexpr double share_of_cycle = 0.4;
 
+/// Share of the work until the box grows, where spheres are placed from the largest on.
+inline constexpr double share_of_placing = 0.45;
+
 /// Packing fraction at the start where nothing but the default is asked for: nearer to what can be reached
 /// than that of equal spheres, and above it, however dense that is.
 inline double wide_start(const FillTask& task) { return 1.06 * task.attainable; }
@@ -40,9 +43,10 @@ StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& w
 ///
 /// Preconditions and results: as of `relax_by_the_book`, but that every edge is at least the largest
 /// diameter. Cost: about 20 ns a sphere and sweep, lists included.
-/// `overlap` is the largest overlap ratio to begin with, if that is known.
+/// `overlap` is the largest overlap ratio to begin with, 1 if that is not known; the share `before` of the
+/// work was over then.
 template <int D>
-StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options,
-                    double overlap = 1);
+StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap,
+                    double before);
 
 }  // namespace bernal

@@ -1,9 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-
+#include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -107,6 +108,33 @@ TEST(WideSizes, ArePackedDenselyAndStrictlyAlikeForAnyNumberOfThreads) {
   EXPECT_GT(packing.packing_fraction(), 0.765);
   EXPECT_LT(packing.packing_fraction(), plan.expected_packing_fraction + 0.01);
   EXPECT_EQ(hash_of(packing.spheres), hash_of(run_in(3).spheres));
+  for (const Effect& effect : packing.effects)
+    if (effect.name == "neighbour lists") {
+      EXPECT_LT(effect.calls, 1500u) << "5,400 where the box does not grow by the mean";
+    }
+}
+
+/// The monitor is asked after each sweep of all.
+TEST(WideSizes, TellHowFarTheyAreInProportionToTheSweeps) {
+  const Plan plan = plan_with(two_sizes(5, 0.2), 1000);
+  double sweeps = 0, all_before = 0, told = 0;
+  std::vector<std::array<double, 2>> course;  // sweeps of all spheres, share of the work
+  Monitor monitor;
+  monitor.cancelled = [&] {
+    ++sweeps;
+    return false;
+  };
+  monitor.on_progress = [&](const Progress& progress) {
+    EXPECT_GE(progress.fraction, told) << "goes back";
+    told = progress.fraction;
+    if (told <= share_of_placing)
+      all_before = sweeps;
+    else
+      course.push_back({sweeps - all_before, (told - share_of_placing) / (1 - share_of_placing)});
+  };
+  run(plan, {.seed = {}, .threads = 1, .monitor = monitor});
+  ASSERT_GT(course.size(), 20u);
+  for (const auto& [over, share] : course) EXPECT_NEAR(share, over / course.back()[0], 0.15);
 }
 
 TEST(WideSizes, ArePackedInBoxesThatHoldAFewOfTheLargest) {
