@@ -29,6 +29,7 @@ class CsvLines {
   bool next();
   std::string_view line() const { return line_; }
   int number() const { return number_; }
+  const std::string& file() const { return file_; }
   /// Of a field of the line. Throws where it is no finite double.
   double read_number(std::string_view field, std::string_view column) const;
   /// Whether the line is a remark that says the unit, which is put into `unit`, as `take_unit` does.

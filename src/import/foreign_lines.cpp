@@ -54,9 +54,33 @@ std::span<const std::string_view> ForeignLines::words_before(char mark) {
 }
 
 double ForeignLines::number(std::string_view field, std::string_view column) const {
-  field = unquoted(field);
+  field = stripped(field, " ");
+  for (const char mark : {'"', '\''}) {
+    if (!field.starts_with(mark) && !field.ends_with(mark)) continue;
+    if (field.size() < 2 || !field.starts_with(mark) || !field.ends_with(mark))
+      fail(fmt::format("{} = {} has a quotation mark at one end alone; close it, or take it out", column,
+                       bernal::quoted(field)));
+    field = stripped(field.substr(1, field.size() - 2), " ");
+  }
   if (field.size() > 1 && field[0] == '+' && field[1] != '-') field.remove_prefix(1);
   return read_number(field, column);
+}
+
+bool ForeignLines::is_row_left_out(std::span<const std::string_view> fields, std::size_t in_row) const {
+  constexpr std::string_view marks = "#%!/";
+  if (fields.empty() || in_row < 2) return false;
+  const std::string_view first = stripped(fields[0], " \t");
+  const std::string_view behind = first.substr(std::min(first.find_first_not_of(marks), first.size()));
+  const auto rest = fields.subspan(1);
+  const auto numbers = static_cast<std::size_t>(std::ranges::count_if(rest, is_number));
+  const std::size_t all = rest.size() + (behind.empty() ? 0 : 1);
+  if (all != in_row || numbers == 0) return false;
+  if (numbers == rest.size() && (behind.empty() || is_number(stripped(behind, " \t")))) return true;
+  if (behind.empty() || behind.starts_with(' ') || behind.starts_with('\t')) return false;
+  fail(fmt::format(
+      "this row begins with {}, which is no number; mend the row, or if it is a remark put a blank "
+      "behind its mark",
+      bernal::quoted(first)));
 }
 
 std::uint64_t ForeignLines::whole(std::string_view field, std::string_view column) const {
@@ -66,6 +90,10 @@ std::uint64_t ForeignLines::whole(std::string_view field, std::string_view colum
   if (problem != std::errc{} || stop != end)
     fail(fmt::format("{} = {} is not a whole number", column, bernal::quoted(field)));
   return value;
+}
+
+void ForeignLines::take_unit_remark(std::optional<Unit>& unit) const {
+  take_unit_of_remark(line(), unit, {file(), number()});
 }
 
 void ForeignLines::expect_rows(std::uint64_t said, std::uint64_t found) const {
@@ -118,9 +146,9 @@ void Identities::sort(Spheres<dynamic>& spheres, const Reading& reading) const {
   for (std::size_t i = 1; i < order.size(); ++i)
     if (id[order[i]] == id[order[i - 1]])
       throw Error(ErrorCode::bad_packing,
-                  fmt::format("the number {} has a sphere in line {} already; leave one of them out",
-                              id[order[i]], line[order[i - 1]]),
-                  {reading.file.string(), line[order[i]]});
+                  fmt::format("the number {} has a sphere in {} {} already; leave one of them out",
+                              id[order[i]], what, line[order[i - 1]]),
+                  {reading.file.string(), what == "line" ? line[order[i]] : 0});
 }
 
 }  // namespace bernal

@@ -27,10 +27,16 @@ class ForeignLines : public CsvLines {
   /// The same of what stands before a mark, such as '#'.
   std::span<const std::string_view> words_before(char mark);
 
-  /// In quotation marks or not, with a plus or not. Throws as `read_number`.
+  /// In quotation marks or not, with a plus or not. Throws as `read_number`, and for a quotation mark at one
+  /// end alone.
   double number(std::string_view field, std::string_view column) const;
   /// Throws where it is no whole number.
   std::uint64_t whole(std::string_view field, std::string_view column) const;
+  /// Whether the line, a remark whose parts these are, is a row of so many numbers behind a mark. Throws
+  /// where it is a row that a program gave up: "#N/A 2 3 0.5".
+  bool is_row_left_out(std::span<const std::string_view> fields, std::size_t in_row) const;
+  /// `take_unit_of_remark` of the line.
+  void take_unit_remark(std::optional<Unit>& unit) const;
   /// Throws where it is not so many.
   void expect_rows(std::uint64_t said, std::uint64_t found) const;
 
@@ -70,8 +76,12 @@ void add_row(const ForeignLines& lines, const SphereColumns& columns, std::span<
 /// Throws Error{bad_packing} for a coordinate or a size that no sphere has.
 void check_coordinate(const CsvLines& lines, double x, std::string_view column);
 
-/// The numbers of spheres, with the lines where they stand.
+/// The axis that a column's name means: "x", "x0" and "Points:0" the first.
+std::optional<std::size_t> axis_named(std::string_view name);
+
+/// The numbers of spheres, with the lines where they stand, or which points of a file they are.
 struct Identities {
+  std::string_view what = "line";
   std::vector<std::uint64_t> id;
   std::vector<int> line;
   /// Puts the spheres into the order of their numbers. Throws where two have one.

@@ -1,7 +1,6 @@
 #include "import/numpy_array.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 
 #include <fmt/format.h>
@@ -9,6 +8,7 @@
 #include "core/csv_headings.hpp"
 #include "core/csv_lines.hpp"
 #include "import/binary_file.hpp"
+#include "import/raw_numbers.hpp"
 
 namespace bernal {
 namespace {
@@ -22,9 +22,8 @@ std::string_view value_behind(std::string_view header, std::string_view key, con
 }
 
 struct NumpyHeader {
-  char kind = 'f';
-  int bytes = 8;
-  bool is_swapped = false, is_fortran = false;
+  RawNumber number;
+  bool is_fortran = false;
   std::vector<std::uint64_t> shape;
 };
 
@@ -39,10 +38,12 @@ NumpyHeader parse_header(std::string_view text, const BinaryFile& file) {
   if (!is_plain)
     file.fail(fmt::format("has elements {}; save plain numbers: np.save(file, a.astype(float))",
                           bernal::quoted(type.substr(0, type.find(", 'fortran")))));
-  header.kind = word[2];
-  header.bytes = word[3] - '0';
-  header.is_swapped = word[1] == '>';
-  header.is_fortran = value_behind(text, "'fortran_order'", file).starts_with("True");
+  header.number = {word[2], word[3] - '0', word[1] == '>'};
+  const std::string_view order = value_behind(text, "'fortran_order'", file);
+  header.is_fortran = order.starts_with("True");
+  if (!header.is_fortran && !order.starts_with("False"))
+    file.fail(fmt::format("has the fortran_order {}, which is neither True nor False",
+                          bernal::quoted(order.substr(0, order.find(',')))));
   std::string_view shape = value_behind(text, "'shape'", file);
   if (!shape.starts_with('(')) file.fail("has no shape in its header");
   shape = shape.substr(1, shape.find(')') - 1);
@@ -59,43 +60,22 @@ NumpyHeader parse_header(std::string_view text, const BinaryFile& file) {
   return header;
 }
 
-template <class T>
-T swapped_bytes(T value) {
-  char bytes[sizeof(T)];
-  std::memcpy(bytes, &value, sizeof(T));
-  std::reverse(bytes, bytes + sizeof(T));
-  std::memcpy(&value, bytes, sizeof(T));
-  return value;
-}
-
-template <class T>
-std::vector<double> as_doubles(BinaryFile& file, std::uint64_t at, std::uint64_t count, bool is_swapped) {
-  std::vector<double> values(count);
+std::vector<double> numbers_in(BinaryFile& file, std::uint64_t at, std::uint64_t count, RawNumber how) {
+  std::vector<double> values;
+  values.reserve(count);
   constexpr std::uint64_t at_once = 1 << 16;
+  const auto bytes = static_cast<std::uint64_t>(how.bytes);
   for (std::uint64_t from = 0; from < count; from += at_once) {
-    const std::vector<T> part = file.many<T>(at + from * sizeof(T), std::min(at_once, count - from));
-    for (std::size_t i = 0; i < part.size(); ++i)
-      values[from + i] = static_cast<double>(is_swapped ? swapped_bytes(part[i]) : part[i]);
+    const std::vector<char> part =
+        file.many<char>(at + from * bytes, std::min(at_once, count - from) * bytes);
+    append_raw_numbers({part.data(), part.size()}, how, values);
   }
   return values;
-}
-
-std::vector<double> numbers_in(BinaryFile& file, std::uint64_t at, std::uint64_t count,
-                               const NumpyHeader& h) {
-  if (h.kind == 'f')
-    return h.bytes == 8 ? as_doubles<double>(file, at, count, h.is_swapped)
-                        : as_doubles<float>(file, at, count, h.is_swapped);
-  if (h.kind == 'i')
-    return h.bytes == 8 ? as_doubles<std::int64_t>(file, at, count, h.is_swapped)
-                        : as_doubles<std::int32_t>(file, at, count, h.is_swapped);
-  return h.bytes == 8 ? as_doubles<std::uint64_t>(file, at, count, h.is_swapped)
-                      : as_doubles<std::uint32_t>(file, at, count, h.is_swapped);
 }
 
 }  // namespace
 
 NumpyArray read_numpy_array(const std::filesystem::path& path) {
-  static_assert(std::endian::native == std::endian::little);
   BinaryFile file(path);
   std::string magic(numpy_magic.size(), '\0');
   file.read(0, magic.data(), magic.size());
@@ -116,7 +96,7 @@ NumpyArray read_numpy_array(const std::filesystem::path& path) {
   NumpyArray array{.rows = header.shape[0], .is_list = header.shape.size() == 1, .values = {}};
   if (!array.is_list) array.columns = header.shape[1];
   const std::uint64_t begin = from + length,
-                      in_row = array.columns * static_cast<std::uint64_t>(header.bytes);
+                      in_row = array.columns * static_cast<std::uint64_t>(header.number.bytes);
   constexpr std::uint64_t most_columns = 4096;
   if (array.columns == 0 || array.columns > most_columns)
     file.fail(fmt::format("has {} columns; x, y, z and perhaps r are expected", array.columns));
@@ -126,7 +106,7 @@ NumpyArray read_numpy_array(const std::filesystem::path& path) {
   if (const std::uint64_t left = file.size() - begin - array.rows * in_row; left > 0)
     file.fail(
         fmt::format("has {} bytes behind its {} rows; save one array alone, with np.save", left, array.rows));
-  const std::vector<double> values = numbers_in(file, begin, array.rows * array.columns, header);
+  const std::vector<double> values = numbers_in(file, begin, array.rows * array.columns, header.number);
   if (!header.is_fortran || array.is_list) {
     array.values = values;
     return array;

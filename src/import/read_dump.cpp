@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <limits>
 
 #include <fmt/format.h>
@@ -56,12 +55,16 @@ FileBox read_bounds(const Reading& reading, ForeignLines& lines) {
   std::size_t axis = 0;
   for (std::size_t k = 3; k < words.size(); ++k) {
     if (words[k] == "abc" || words[k] == "origin") refuse_skewed(reading.file, lines.number());
-    if (words[k].size() != 2 || words[k].find_first_not_of("pfsm") != std::string_view::npos || axis == 3)
-      continue;
-    box.ends[axis++] = words[k] == "pp"   ? AxisEnd::period
-                       : words[k] == "ff" ? AxisEnd::wall
-                                          : AxisEnd::wrapped;
+    if (words[k] == "xy" || words[k] == "xz" || words[k] == "yz") continue;
+    const bool is_period = words[k] == "pp";
+    if (axis == 3 || words[k].size() != 2 ||
+        (!is_period && words[k].find_first_not_of("fsm") != words[k].npos))
+      lines.fail(
+          fmt::format("{} is no end of an axis, of which there are three; pp, ff, fs and such are known",
+                      bernal::quoted(words[k])));
+    box.ends[axis++] = is_period ? AxisEnd::period : words[k] == "ff" ? AxisEnd::wall : AxisEnd::wrapped;
   }
+  if (axis != 0 && axis != 3) lines.fail("the ends of three axes are expected, such as pp pp ff");
   for (std::size_t k = 0; k < 3; ++k) {
     lines.require_next("the box");
     const auto bounds = lines.words();
@@ -152,10 +155,12 @@ FileContents read_dump(const Reading& reading) {
     } else if (lines.line().starts_with(units_item)) {
       lines.require_next("the units");
       const auto words = lines.words();
-      if (!words.empty()) contents.unit = unit_of_style(words[0]);
+      if (!words.empty()) contents.unit = unit_of_style(words[0], lines);
     } else if (here && lines.line().starts_with(count_item)) {
+      if (claimed) lines.fail(fmt::format("a second \"{}\" in frame {}", count_item, frame));
       claimed = read_claimed(lines);
     } else if (here && lines.line().starts_with(box_item)) {
+      if (contents.box) lines.fail(fmt::format("a second \"{}\" in frame {}", box_item, frame));
       contents.box = read_bounds(reading, lines);
     } else if (here && lines.line().starts_with(atoms_item)) {
       if (!claimed) lines.fail(fmt::format("\"{}\" does not stand before the atoms", count_item));

@@ -48,10 +48,16 @@ FileContents read_esys(const Reading& reading) {
   for (std::vector<double>* bound : {&box.lower, &box.upper})
     for (int k = 0; k < 3; ++k) bound->push_back(words.number("BoundingBox"));
   words.expect("PeriodicBoundaries");
-  for (int k = 0; k < 3; ++k)
-    box.ends.push_back(words.number("PeriodicBoundaries") != 0 ? AxisEnd::period : AxisEnd::wall);
+  for (int k = 0; k < 3; ++k) {
+    const double repeats = words.number("PeriodicBoundaries");
+    if (repeats != 0 && repeats != 1) lines.fail("PeriodicBoundaries are three of 0 and 1");
+    box.ends.push_back(repeats == 1 ? AxisEnd::period : AxisEnd::wall);
+  }
   words.expect("Dimension");
-  contents.is_flat = words.next("Dimension") == "2D";
+  const std::string dimension = words.next("Dimension");
+  if (dimension != "2D" && dimension != "3D")
+    lines.fail(fmt::format("Dimension is {}; 2D and 3D are known", bernal::quoted(dimension)));
+  contents.is_flat = dimension == "2D";
   words.expect("BeginParticles");
   words.expect("Simple");
   const std::string count = words.next("the number of particles");
@@ -63,10 +69,13 @@ FileContents read_esys(const Reading& reading) {
     if (!row.empty() && row[0] == "EndParticles") lines.expect_rows(claimed, i);
     add_row(lines, columns, row, contents.spheres);
   }
-  while (lines.next()) {
+  for (bool is_past_end = false; lines.next();) {
     const auto row = lines.words();
     if (row.empty()) continue;
-    if (row[0] == "EndParticles") break;
+    if (row[0] == "BeginParticles")
+      lines.fail("a second section BeginParticles; only one is read, so take one of them out");
+    is_past_end = is_past_end || row[0] == "EndParticles";
+    if (is_past_end) continue;
     lines.fail(
         fmt::format("the file says that it has {} spheres, and here is more; if it is a sphere, correct "
                     "the number below \"Simple\", else take the line out",

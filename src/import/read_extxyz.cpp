@@ -20,12 +20,15 @@ std::string lower_case_of(std::string_view text) {
   return lower;
 }
 
-/// key=value, key="value" and words without a value, by keys in lower case.
-Keys keys_in(std::string_view line) {
+/// key=value, key="value" and words without a value, by keys in lower case. Throws for a quotation mark that
+/// stays open and for a key that stands twice with two values.
+Keys keys_in(const ForeignLines& lines) {
+  std::string_view line = lines.line();
   Keys keys;
   while (!(line = stripped(line, " \t")).empty()) {
     const std::size_t sign = line.find_first_of("= \t");
-    std::string& value = keys[lower_case_of(line.substr(0, sign))];
+    const auto [place, is_new] = keys.try_emplace(lower_case_of(line.substr(0, sign)));
+    std::string& value = place->second;
     if (sign == line.npos) break;
     const bool has_value = line[sign] == '=';
     line.remove_prefix(sign + 1);
@@ -35,7 +38,13 @@ Keys keys_in(std::string_view line) {
     const bool is_quoted = open == '"' || open == '\'' || open == '{' || open == '[';
     const std::size_t from = is_quoted ? 1 : 0;
     const std::size_t end = is_quoted ? line.find(close, 1) : line.find_first_of(" \t");
-    value = line.substr(from, end == line.npos ? line.npos : end - from);
+    if (is_quoted && end == line.npos)
+      lines.fail(fmt::format("{} is not closed behind {}; close it, or take it out",
+                             bernal::quoted(std::string_view(&open, 1)), bernal::quoted(place->first)));
+    const std::string_view said = line.substr(from, end == line.npos ? line.npos : end - from);
+    if (!is_new && value != said)
+      lines.fail(fmt::format("{} stands twice in this line, with two values", bernal::quoted(place->first)));
+    value = said;
     line.remove_prefix(end == line.npos ? line.size() : end + from);
   }
   return keys;
@@ -58,7 +67,15 @@ constexpr double rounding_of_edge = 1e-12;
 std::optional<FileBox> lattice_box(const Keys& keys, const Reading& reading, const ForeignLines& lines) {
   const std::vector<double> lattice = numbers_of(keys, "lattice", lines);
   std::vector<double> origin = numbers_of(keys, "origin", lines);
-  if (lattice.empty()) return {};
+  const auto pbc = keys.find("pbc");
+  if (lattice.empty()) {
+    const bool is_asked =
+        pbc != keys.end() && lower_case_of(pbc->second).find_first_of("t1") != std::string::npos;
+    const ImportOptions& options = reading.options;
+    if (is_asked && options.box.empty() && !options.container)
+      lines.fail("pbc says that axes repeat themselves, and no Lattice says how long they are; give --box");
+    return {};
+  }
   if (lattice.size() != 9) lines.fail("Lattice needs nine numbers");
   if (origin.empty()) origin.resize(3);
   if (origin.size() != 3) lines.fail("Origin needs three numbers");
@@ -69,16 +86,34 @@ std::optional<FileBox> lattice_box(const Keys& keys, const Reading& reading, con
     if (k % 4 != 0 && std::abs(lattice[k]) > rounding_of_edge * std::abs(edge))
       refuse_skewed(reading.file, lines.number());
   }
-  if (const auto pbc = keys.find("pbc"); pbc != keys.end()) {
+  if (pbc != keys.end()) {
     std::vector<std::string_view> words;
     split_at(pbc->second, " \t,", words);
     if (words.size() != 3) lines.fail("pbc needs three letters, T or F");
     for (std::size_t k = 0; k < 3; ++k) {
-      const char letter = words[k][0];
-      box.ends[k] = letter == 'T' || letter == 't' || letter == '1' ? AxisEnd::period : AxisEnd::wall;
+      const std::string word = lower_case_of(words[k]);
+      const bool is_true = word == "t" || word == "true" || word == "1";
+      if (!is_true && word != "f" && word != "false" && word != "0")
+        lines.fail(fmt::format("pbc has {}, which is neither T nor F", bernal::quoted(words[k])));
+      box.ends[k] = is_true ? AxisEnd::period : AxisEnd::wall;
     }
   }
   return box;
+}
+
+/// Of the key "unit" or "units".
+std::optional<Unit> unit_of_keys(const Keys& keys, const ForeignLines& lines) {
+  std::optional<Unit> unit;
+  for (const std::string_view key : {"unit", "units"}) {
+    const auto said = keys.find(key);
+    if (said == keys.end()) continue;
+    const std::string_view name = unit_in_letters(said->second);
+    if (const std::string complaint = complaint_of_unit(name); !complaint.empty())
+      lines.fail(complaint + "; convert the file, or take the key out and give --unit");
+    if (unit && *unit != unit_named(name)) lines.fail("unit and units say two units");
+    unit = unit_named(name);
+  }
+  return unit;
 }
 
 /// The columns that "species:S:1:pos:R:3:radius:R:1" names, one by one.
@@ -139,10 +174,8 @@ FileContents read_extxyz(const Reading& reading) {
     for (std::uint64_t k = 0; k <= count; ++k) lines.next();
   lines.require_next("the line that says what the columns are");
   FileContents contents;
-  const Keys keys = keys_in(lines.line());
-  if (const auto said = keys.find("unit"); said != keys.end())
-    if (const std::string_view unit = unit_in_letters(said->second); complaint_of_unit(unit).empty())
-      contents.unit = unit_named(unit);
+  const Keys keys = keys_in(lines);
+  contents.unit = unit_of_keys(keys, lines);
   contents.box = lattice_box(keys, reading, lines);
   const std::vector<std::string> names = property_columns(keys, lines);
   const SphereColumns columns = sphere_columns({}, names, lines);
@@ -150,7 +183,7 @@ FileContents read_extxyz(const Reading& reading) {
   for (std::uint64_t k = 0; k < count; ++k) {
     lines.require_next("an atom");
     const auto row = lines.words();
-    if (row.size() < names.size())
+    if (row.size() < names.size() || (row.size() > names.size() && keys.contains("properties")))
       lines.fail(fmt::format("{} columns, but Properties names {}", row.size(), names.size()));
     add_row(lines, columns, row, contents.spheres);
   }

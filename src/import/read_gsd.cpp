@@ -132,9 +132,14 @@ FileContents read_gsd(const Reading& reading) {
   if (gsd.frames() == 0) gsd.file().fail("there are no spheres in it");
   const int wanted = frame_of(reading, gsd.frames()), frame = wanted - 1;
   FileContents contents;
-  contents.unit = unit_in_title(gsd.application());
-  if (const GsdEntry* entry = gsd.chunk("configuration/dimensions", frame); entry && entry->type == as_uint8)
-    contents.is_flat = gsd.file().get<std::uint8_t>(static_cast<std::uint64_t>(entry->location)) == 2;
+  take_unit_of_remark(gsd.application(), contents.unit, {reading.file.string()});
+  if (const GsdEntry* entry = gsd.chunk("configuration/dimensions", frame)) {
+    const int dimensions = entry->type != as_uint8
+                               ? 0
+                               : gsd.file().get<std::uint8_t>(static_cast<std::uint64_t>(entry->location));
+    if (dimensions != 2 && dimensions != 3) gsd.file().fail("has neither two nor three dimensions");
+    contents.is_flat = dimensions == 2;
+  }
   contents.box = box_of_frame(gsd, reading, frame, contents.is_flat);
 
   std::uint64_t count = 0;

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cctype>
+#include <ranges>
 #include <span>
 
 #include <fmt/format.h>
@@ -62,14 +62,22 @@ struct DataHead {
   /// "10 atoms", "0 3 xlo xhi"; others are of no matter.
   void take(std::span<const std::string_view> words, const Reading& reading, const ForeignLines& lines) {
     if (words.size() == 2 && words[1] == "atoms") {
-      atoms = lines.whole(words[0], "atoms");
+      const std::uint64_t said = lines.whole(words[0], "atoms");
+      if (has_atoms && said != atoms) lines.fail("a line before this one says another number of atoms");
+      atoms = said;
       has_atoms = true;
     }
+    for (const std::string_view other : {"ellipsoids", "lines", "triangles", "bodies"})
+      if (words.size() == 2 && words[1] == other && lines.whole(words[0], other) > 0)
+        lines.fail(fmt::format("some of the atoms are {}, and only spheres are known", other));
     for (std::size_t k = 0; k < 3 && words.size() == 4; ++k) {
       const char axis = "xyz"[k];
       if (words[2] != fmt::format("{}lo", axis) || words[3] != fmt::format("{}hi", axis)) continue;
-      box.lower[k] = lines.number(words[0], words[2]);
-      box.upper[k] = lines.number(words[1], words[3]);
+      const double lower = lines.number(words[0], words[2]), upper = lines.number(words[1], words[3]);
+      if (has_axis[k] && (lower != box.lower[k] || upper != box.upper[k]))
+        lines.fail("a line before this one says other bounds of this axis");
+      box.lower[k] = lower;
+      box.upper[k] = upper;
       has_axis[k] = true;
     }
     const bool is_general = words.size() == 4 && words[3].ends_with("vec");
@@ -80,17 +88,48 @@ struct DataHead {
   }
 };
 
-/// "# … boundary p p f; …", "… units = si", "…; lengths in mm": what a first line or a remark may tell.
-void take_remark(std::string_view line, FileContents& contents, DataHead& head) {
-  if (!contents.unit) contents.unit = unit_in_title(line);
-  if (const std::size_t at = line.find("units = "); at != line.npos && !contents.unit) {
-    const std::string_view style = line.substr(at + 8);
-    contents.unit = unit_of_style(style.substr(0, style.find_first_of(" ,;")));
+/// Of a clause "boundary p p f" or "boundary pp pp ff". Prose that begins with the word says nothing.
+void take_boundary(std::string_view clause, FileBox& box, const ForeignLines& lines) {
+  std::vector<std::string_view> words;
+  split_at(clause, " \t", words);
+  if (std::ranges::any_of(words | std::views::drop(1), [](std::string_view word) { return word.size() > 2; }))
+    return;
+  std::vector<AxisEnd> ends;
+  for (const std::string_view word : words | std::views::drop(1)) {
+    const bool is_period = word == "p" || word == "pp";
+    if (!is_period && word.find_first_not_of("fsm") != word.npos)
+      lines.fail(fmt::format("{} is no end of an axis; write p, f, s or m", bernal::quoted(word)));
+    ends.push_back(is_period ? AxisEnd::period : AxisEnd::wall);
   }
-  if (line.find("; dimension 2;") != line.npos) contents.is_flat = true;
-  if (const std::size_t at = line.find("boundary "); at != line.npos && line.size() >= at + 14)
-    for (std::size_t k = 0; k < 3; ++k)
-      head.box.ends[k] = line[at + 9 + 2 * k] == 'p' ? AxisEnd::period : AxisEnd::wall;
+  if (ends.size() != 3) lines.fail("boundary needs the ends of three axes, such as \"boundary p p f\"");
+  if (box.ends[0] != AxisEnd::unsaid && box.ends != ends)
+    lines.fail("this line says other boundaries than one before it");
+  box.ends = ends;
+}
+
+/// "# …; boundary p p f; …", "…, units = si", "…; lengths in mm": what a first line or a remark may tell,
+/// each in a clause of its own.
+void take_remark(const ForeignLines& lines, FileContents& contents, DataHead& head) {
+  lines.take_unit_remark(contents.unit);
+  constexpr std::string_view of_units = "units = ", of_ends = "boundary ";
+  for (const std::string_view clause : clauses_of(lines.line())) {
+    if (clause.starts_with(of_units)) {
+      const std::optional<Unit> unit = unit_of_style(clause.substr(of_units.size()), lines);
+      if (unit && contents.unit && unit != contents.unit)
+        lines.fail(fmt::format("this line says that the unit is {}, and it or one before it says {}",
+                               name_of(*unit), name_of(*contents.unit)));
+      if (unit) contents.unit = unit;
+    }
+    if (clause == "dimension 2") contents.is_flat = true;
+    if (clause.starts_with(of_ends)) take_boundary(clause, head.box, lines);
+  }
+}
+
+/// Whether the line is a heading of another section, "Velocities" or "Pair Coeffs": words without a number.
+bool is_heading(std::span<const std::string_view> words) {
+  return std::ranges::none_of(words, [](std::string_view word) {
+    return word.find_first_of("0123456789") != word.npos || is_number(word);
+  });
 }
 
 void read_atoms(std::string_view said, std::uint64_t claimed, const Reading& reading, ForeignLines& lines,
@@ -100,9 +139,15 @@ void read_atoms(std::string_view said, std::uint64_t claimed, const Reading& rea
   Identities identities;
   std::size_t in_row = 0;
   while (lines.next()) {
+    if (lines.line().starts_with('#') && style) lines.is_row_left_out(lines.words(), in_row);
     const auto row = lines.words_before('#');
     if (row.empty()) continue;
-    if (!is_number(row.front())) break;  // another section
+    if (!is_number(row.front())) {
+      if (is_heading(row)) break;
+      lines.fail(
+          fmt::format("a row of Atoms begins with {}, which is no number; mend it, or take the row out",
+                      bernal::quoted(row.front())));
+    }
     if (!style) {
       style = &style_of_atoms(said, row.size(), lines);
       columns = sphere_columns({}, style->columns, lines);
@@ -117,7 +162,18 @@ void read_atoms(std::string_view said, std::uint64_t claimed, const Reading& rea
   }
   lines.expect_rows(claimed, contents.size());
   identities.sort(contents.spheres, reading);
-  if (style) contents.note = fmt::format("atom_style {}", style->names.front());
+  if (style)
+    contents.note = fmt::format("atom_style {}{}", style->names.front(),
+                                said.empty() ? fmt::format(", by its {} columns", in_row) : "");
+}
+
+/// The other sections, of which none may have atoms once more.
+void read_to_end(ForeignLines& lines) {
+  do {
+    const auto words = lines.words_before('#');
+    if (!words.empty() && words[0] == "Atoms")
+      lines.fail("a second section Atoms; leave one of them in the file");
+  } while (lines.next());
 }
 
 FileContents read_lammps_data(const Reading& reading) {
@@ -125,10 +181,10 @@ FileContents read_lammps_data(const Reading& reading) {
   FileContents contents;
   DataHead head;
   lines.require_next("the first line, a remark,");
-  take_remark(lines.line(), contents, head);
+  take_remark(lines, contents, head);
   for (;;) {
     lines.require_next("the section Atoms");
-    if (lines.line().starts_with('#')) take_remark(lines.line(), contents, head);
+    if (lines.line().starts_with('#')) take_remark(lines, contents, head);
     const std::size_t mark = lines.line().find('#');
     const auto words = lines.words_before('#');
     if (words.empty()) continue;
@@ -143,7 +199,12 @@ FileContents read_lammps_data(const Reading& reading) {
     if (mark != std::string_view::npos) split_at(lines.line().substr(mark + 1), " \t", style);
     contents.box = head.box;
     const std::string said(style.empty() ? std::string_view() : style.front());
+    if (words.size() > 1)
+      lines.fail(
+          fmt::format("{} stands behind Atoms; write the style behind a mark, such as \"Atoms # sphere\"",
+                      bernal::quoted(words[1])));
     read_atoms(said, head.atoms, reading, lines, contents);
+    read_to_end(lines);
     return contents;
   }
 }

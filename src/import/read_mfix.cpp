@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/csv_lines.hpp"
 #include "import/foreign_lines.hpp"
 
 namespace bernal {
@@ -29,6 +30,12 @@ void take_variable(std::span<const std::string_view> words, MfixHead& head, cons
     add(head.dimension);
   } else if (name == "Phase_ID" || name == "Density" || name == "Temperature") {
     add(1);
+  } else if (is_column && name != "Species" && !name.starts_with("User_") &&
+             !name.starts_with("Rotational")) {
+    lines.fail(
+        fmt::format("the variable {} is not known, and so not what stands in the columns; known are {}",
+                    bernal::quoted(name),
+                    "Coordinates, Phase_ID, Diameter, Density, Velocity, Temperature, Species, User_Scalar"));
   }  // species and scalars come last, and are of no matter
 }
 
@@ -42,12 +49,14 @@ FileContents read_mfix(const Reading& reading) {
     lines.require_next("the first particle");
     const auto words = lines.words();
     if (words.empty()) continue;
-    if (words[0] == "Dimension:" && words.size() == 2) {
+    if ((words[0] == "Dimension:" || words[0] == "Particles:") && words.size() != 2)
+      lines.fail(fmt::format("one number is expected behind {}", words[0]));
+    if (words[0] == "Dimension:") {
       const std::uint64_t dimension = lines.whole(words[1], "Dimension");
       if (dimension != 2 && dimension != 3) lines.fail("Dimension must be 2 or 3");
       head.dimension = static_cast<int>(dimension);
     }
-    if (words[0] == "Particles:" && words.size() == 2) head.particles = lines.whole(words[1], "Particles");
+    if (words[0] == "Particles:") head.particles = lines.whole(words[1], "Particles");
     if (words.size() > 1 && (words[1] == "T" || words[1] == "F")) {
       take_variable(words, head, lines);
       in_variables = true;
@@ -56,9 +65,20 @@ FileContents read_mfix(const Reading& reading) {
   }
   columns = sphere_columns({}, head.columns, lines);
   contents.spheres = columns.no_spheres();
-  for (bool found = true; found && contents.size() < head.particles; found = lines.next()) {
+  std::size_t in_row = 0;
+  for (bool found = true; found; found = lines.next()) {
     const auto row = lines.words();
-    if (!row.empty()) add_row(lines, columns, row, contents.spheres);
+    if (row.empty()) continue;
+    if (contents.size() == head.particles)
+      lines.fail(fmt::format(
+          "the file says that it has {} particles, and here is more; if it is a particle, correct "
+          "the number behind \"Particles:\", else take the line out",
+          head.particles));
+    if (in_row == 0) in_row = row.size();
+    if (row.size() != in_row)
+      lines.fail(fmt::format("{} columns, but the first particle has {}; was the line cut off?", row.size(),
+                             in_row));
+    add_row(lines, columns, row, contents.spheres);
   }
   lines.expect_rows(head.particles, contents.size());
   if (head.diameter && contents.spheres.r.empty()) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/csv_lines.hpp"
 #include "import/foreign_lines.hpp"
 
 namespace bernal {
@@ -19,9 +20,22 @@ FileBox domain_extent(std::span<const std::string_view> words, const ForeignLine
   if (box.lower.size() != 2 && box.lower.size() != 3)
     lines.fail("the extent has not two numbers for each axis");
   box.ends.assign(box.lower.size(), AxisEnd::wall);
-  if (at < words.size() && words[at] == "condition")
-    for (std::size_t k = 0; k < box.ends.size() && ++at < words.size(); ++k)
-      if (words[at] == "periodic") box.ends[k] = AxisEnd::period;
+  if (at == words.size()) return box;
+  if (words[at] != "condition")
+    lines.fail(fmt::format("{} is not understood; condition is expected behind the extent, or nothing",
+                           bernal::quoted(words[at])));
+  const std::size_t said = words.size() - at - 1;
+  if (said != 1 && said != box.ends.size())
+    lines.fail("one condition is expected, for all axes, or one for each");
+  for (std::size_t k = 0; k < box.ends.size(); ++k) {
+    const std::string_view word = words[at + 1 + (said == 1 ? 0 : k)];
+    if (word == "periodic") {
+      box.ends[k] = AxisEnd::period;
+    } else if (word != "stop" && word != "reflect" && word != "destroy") {
+      lines.fail(fmt::format("{} is no condition; stop, reflect, destroy and periodic are known",
+                             bernal::quoted(word)));
+    }
+  }
   return box;
 }
 
@@ -33,16 +47,26 @@ FileContents read_pfc(const Reading& reading) {
   while (lines.next()) {
     const std::string_view line = lines.line();
     if (line.starts_with(';')) {
-      if (!contents.unit) contents.unit = unit_in_title(line);
+      lines.take_unit_remark(contents.unit);
       continue;
     }
     split_at(line.substr(0, line.find(';')), " \t(),", words);
-    if (words.size() > 3 && words[0] == "model" && words[1] == "domain" && words[2] == "extent") {
+    if (words.size() > 1 && words[0] == "model" && words[1] == "domain") {
+      if (words.size() < 4 || words[2] != "extent")
+        lines.fail("\"model domain extent\" with two numbers for each axis is expected, then the condition");
+      if (contents.box) lines.fail("a second \"model domain\"; leave one of them in the file");
       contents.box = domain_extent(words, lines);
       dimension = contents.box->lower.size();
       if (contents.size() == 0) contents.spheres = Spheres<dynamic>(static_cast<int>(dimension));
     }
-    if (words.size() < 3 || words[0] != "ball" || words[1] != "create") continue;
+    if (words.empty() || words[0] != "ball") continue;
+    for (const std::string_view other : {"generate", "distribute", "delete", "import"})
+      if (words.size() > 1 && words[1] == other)
+        lines.fail(
+            fmt::format("\"ball {}\" makes or takes balls in a way that only PFC knows; save them from it as "
+                        "\"ball create\", or as a table",
+                        other));
+    if (words.size() < 2 || words[1] != "create") continue;
     const auto radius = std::ranges::find(words, "radius"), place = std::ranges::find(words, "position");
     if (words.end() - radius < 2 || words.end() - place < static_cast<std::ptrdiff_t>(dimension) + 1)
       lines.fail(fmt::format("a ball needs \"radius\" with a number and \"position\" with {}", dimension));

@@ -20,7 +20,7 @@ FileContents read_povray(const Reading& reading) {
     const std::string_view line = lines.line();
     if (line.starts_with("//")) {
       is_swapped = is_swapped || line.find(swap_mark) != line.npos;
-      if (!contents.unit) contents.unit = unit_in_title(line);
+      lines.take_unit_remark(contents.unit);
     }
     if (!line.starts_with(ball_mark)) continue;
     split_at(line.substr(ball_mark.size()), "<,> ", parts);

@@ -35,6 +35,15 @@ struct TableHead {
   }
 };
 
+/// The names of a line, without empty ones where it ends in a delimiter.
+Headings named_columns(std::string_view line) {
+  Headings headings = headings_in(line);
+  while (headings.columns.size() > 1 && headings.columns.back().name.empty() &&
+         headings.columns.back().unit.empty())
+    headings.columns.pop_back();
+  return headings;
+}
+
 /// Whether a remark names at least a first coordinate: then it is a header and no text for people.
 bool names_coordinates(const Headings& headings) {
   for (const Heading& heading : headings.columns)
@@ -42,10 +51,26 @@ bool names_coordinates(const Headings& headings) {
   return false;
 }
 
-void split_row(std::string_view line, char separator, std::vector<std::string_view>& fields) {
-  if (separator == ' ') return split_at(line, " \t", fields);
-  split_fields(line, separator, fields);
-  if (fields.size() > 1 && fields.back().empty()) fields.pop_back();  // some end lines with one
+/// Throws where a field begins with a quotation mark and does not end with one.
+void split_row(const ForeignLines& lines, char separator, std::vector<std::string_view>& fields) {
+  const std::string_view line = stripped(lines.line(), " \t");
+  if (separator == ' ') {
+    split_at(line, " \t", fields);
+  } else {
+    split_fields(line, separator, fields);
+  }
+  for (const std::string_view field : fields)
+    if (field.starts_with('"') && (field.size() < 2 || !field.ends_with('"')))
+      lines.fail(
+          fmt::format("{} opens a quotation mark that its column does not close; close it, or take it out",
+                      bernal::quoted(field)));
+}
+
+/// Without the empty ones at the end, since some programs end every line with a delimiter or several.
+std::size_t filled(std::span<const std::string_view> fields) {
+  std::size_t count = fields.size();
+  while (count > 0 && fields[count - 1].empty()) --count;
+  return count;
 }
 
 TableHead read_head(ForeignLines& lines, std::string& unit) {
@@ -57,17 +82,17 @@ TableHead read_head(ForeignLines& lines, std::string& unit) {
     if (is_comment(line)) {
       std::string_view remark = stripped(line, "#%!/ \t");
       if (const std::size_t label = remark.find(": "); label != remark.npos) remark.remove_prefix(label + 2);
-      if (Headings headings = headings_in(remark); names_coordinates(headings))
+      if (Headings headings = named_columns(remark); names_coordinates(headings))
         remarked = std::move(headings);
       continue;
     }
     head.separator = separator_of(line);
     std::vector<std::string_view> fields;
-    split_row(line, head.separator, fields);
+    split_row(lines, head.separator, fields);
     head.is_row = is_number(fields.front());
     if (!head.is_row) {
-      head.take(headings_in(line));
-    } else if (remarked && remarked->columns.size() == fields.size()) {
+      head.take(named_columns(line));
+    } else if (remarked && remarked->columns.size() == filled(fields)) {
       const char separator = head.separator;
       head.take(*remarked);
       head.separator = separator;
@@ -105,13 +130,22 @@ FileContents read_table(const Reading& reading) {
   take_units_of(columns, head, lines, unit);
   FileContents contents{.spheres = columns.no_spheres()};
   std::vector<std::string_view> fields;
-  std::size_t in_row = head.names.size();
+  std::size_t in_row = head.names.size(), least = in_row, left_out = 0;
+  int first_left_out = 0;
   for (bool found = head.is_row || lines.next(); found; found = lines.next()) {
     const std::string_view line = stripped(lines.line(), " \t");
-    if (line.empty() || is_comment(line)) continue;
-    split_row(line, head.separator, fields);
-    if (in_row == 0) in_row = fields.size();
-    if (fields.size() != in_row)
+    if (line.empty() || (is_comment(line) && lines.says_unit(unit))) continue;
+    split_row(lines, head.separator, fields);
+    if (is_comment(line)) {
+      if (lines.is_row_left_out(std::span(fields).first(filled(fields)), least) && ++left_out == 1)
+        first_left_out = lines.number();
+      continue;
+    }
+    if (in_row == 0) {
+      in_row = fields.size();
+      least = filled(fields);
+    }
+    if (fields.size() < least || filled(fields) > in_row)
       lines.fail(fmt::format("{} {}, but {} {}", fields.size(), fields.size() == 1 ? "field" : "fields",
                              head.names.empty() ? "the first row has" : "the header names", in_row));
     add_row(lines, columns, fields, contents.spheres);
@@ -119,6 +153,10 @@ FileContents read_table(const Reading& reading) {
   if (contents.size() == 0) lines.fail("there are no spheres in it");
   if (!unit.empty()) contents.unit = unit_named(unit);
   contents.note = columns.in_words();
+  if (left_out > 0)
+    contents.note +=
+        fmt::format("; {} {} behind a mark {} left out, the first in line {}", left_out,
+                    left_out == 1 ? "row" : "rows", left_out == 1 ? "is" : "are", first_left_out);
   return contents;
 }
 

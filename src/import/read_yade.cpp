@@ -26,19 +26,25 @@ FileContents read_yade(const Reading& reading) {
   FileContents contents;
   std::vector<std::string> names = {"x", "y", "z", "r"};  // as textExt takes it, if nothing is said
   std::optional<SphereColumns> columns;
-  std::size_t in_row = 0;
+  std::size_t in_row = 0, left_out = 0;
   std::vector<std::string_view> row;
   while (lines.next()) {
     const std::string_view line = stripped(lines.line(), " \t");
     if (line.empty()) continue;
-    if (line.starts_with(format_mark) && !columns) {
+    if (line.starts_with(format_mark)) {
+      if (columns) lines.fail("a second #format stands among the rows; import one table at a time");
       std::vector<std::string_view> words;
       split_at(line.substr(format_mark.size()), "_ \t", words);
       names.assign(words.begin(), words.end());
     }
     if (line.starts_with('#')) {
-      if (!contents.unit) contents.unit = unit_in_title(line);
-      if (auto box = cell_in(lines)) contents.box = std::move(box);
+      lines.take_unit_remark(contents.unit);
+      if (auto box = cell_in(lines)) {
+        if (contents.box && contents.box->upper != box->upper) lines.fail("a second cell, and another one");
+        contents.box = std::move(box);
+      }
+      split_at(line, " \t,", row);
+      if (columns && lines.is_row_left_out(row, in_row)) ++left_out;
       continue;
     }
     if (!columns) {
@@ -52,6 +58,7 @@ FileContents read_yade(const Reading& reading) {
     add_row(lines, *columns, row, contents.spheres);
   }
   if (contents.size() == 0) lines.fail("there are no spheres in it");
+  if (left_out > 0) contents.note = fmt::format("rows behind a mark are left out, {} of them", left_out);
   return contents;
 }
 

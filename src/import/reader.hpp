@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bernal/core/error.hpp"
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/unit.hpp"
@@ -61,8 +62,12 @@ std::span<const PackingReader* const> packing_readers();
 /// has not.
 const PackingReader& reader_of(const std::filesystem::path& file, const ImportOptions& options);
 
-/// That of "…; lengths in mm, …", as bernal's own files say it.
-std::optional<Unit> unit_in_title(std::string_view text);
+/// The clauses of a remark: what stands between its marks, semicolons and commas. What a remark says counts
+/// where it is a clause of its own: of "bond lengths in nm" nothing follows.
+std::vector<std::string_view> clauses_of(std::string_view remark);
+/// `unit` becomes that of a clause "lengths in mm" or "unit: mm", as bernal's own files say it. Throws
+/// Error{bad_packing} for one that is unknown and where `unit` is another already.
+void take_unit_of_remark(std::string_view remark, std::optional<Unit>& unit, const Location& where);
 /// Throws Error{bad_packing} for a box that is no cuboid.
 [[noreturn]] void refuse_skewed(const std::filesystem::path& file, int line);
 /// Which of so many frames is meant, from 1. Throws Error{bad_argument} for one that there is not.

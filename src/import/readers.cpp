@@ -7,6 +7,9 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "core/csv_headings.hpp"
+#include "core/csv_lines.hpp"
+#include "import/foreign_lines.hpp"
 #include "import/reader.hpp"
 
 namespace bernal {
@@ -23,12 +26,13 @@ const PackingReader& mfix_reader();
 const PackingReader& pfc_reader();
 const PackingReader& povray_reader();
 const PackingReader& extxyz_reader();
+const PackingReader& vtk_reader();
 const PackingReader& table_reader();
 
 /// A line a format, in the order in which files are held against them: the last takes any.
-constexpr std::array all_readers = {gsd_reader,    openmc_reader, npy_reader,    dump_reader,
-                                    lammps_reader, yade_reader,   esys_reader,   mfix_reader,
-                                    pfc_reader,    povray_reader, extxyz_reader, table_reader};
+constexpr std::array all_readers = {gsd_reader,    openmc_reader, npy_reader,  vtk_reader,  dump_reader,
+                                    lammps_reader, yade_reader,   esys_reader, mfix_reader, pfc_reader,
+                                    povray_reader, extxyz_reader, table_reader};
 
 std::span<const PackingReader* const> packing_readers() {
   static const auto readers = [] {
@@ -150,15 +154,48 @@ const PackingReader& reader_of(const std::filesystem::path& file, const ImportOp
   return *reader;
 }
 
-std::optional<Unit> unit_in_title(std::string_view text) {
-  constexpr std::string_view mark = "lengths in ";
-  const std::size_t at = text.find(mark);
-  if (at == text.npos) return {};
-  text.remove_prefix(at + mark.size());
-  text = text.substr(0, text.find_first_not_of("abcdefghijklmnopqrstuvwxyz"));
-  const auto known = unit_names();
-  if (std::ranges::find(known, text) == known.end()) return {};
-  return unit_named(text);
+std::vector<std::string_view> clauses_of(std::string_view remark) {
+  std::vector<std::string_view> clauses;
+  constexpr std::string_view between = ";,\n", around = " \t\r#%!/.";
+  for (std::size_t at = 0; (at = remark.find_first_not_of(between, at)) != remark.npos;) {
+    const std::size_t end = std::min(remark.find_first_of(between, at), remark.size());
+    if (const std::string_view clause = stripped(remark.substr(at, end - at), around); !clause.empty())
+      clauses.push_back(clause);
+    at = end;
+  }
+  return clauses;
+}
+
+namespace {
+
+/// "mm" of "lengths in mm" and "unit: mm"; "1000 mm" of "lengths in 1000 mm". None of other clauses.
+std::optional<std::string_view> unit_in_clause(std::string_view clause) {
+  for (const std::string_view mark : {"lengths in ", "unit: ", "units: "}) {
+    if (!clause.starts_with(mark)) continue;
+    const std::string_view rest = stripped(clause.substr(mark.size()), " \t");
+    const bool is_text = rest.find_first_of(" \t") != rest.npos && !is_number(rest);
+    if (!is_text) return rest;
+  }
+  return {};
+}
+
+}  // namespace
+
+void take_unit_of_remark(std::string_view remark, std::optional<Unit>& unit, const Location& where) {
+  for (const std::string_view clause : clauses_of(remark)) {
+    const auto word = unit_in_clause(clause);
+    if (!word) continue;
+    const std::string_view name = unit_in_letters(*word);
+    if (const std::string complaint = complaint_of_unit(name); !complaint.empty())
+      throw Error(ErrorCode::bad_packing,
+                  complaint + "; convert the file, or take this remark out and give --unit", where);
+    if (unit && *unit != unit_named(name))
+      throw Error(
+          ErrorCode::bad_packing,
+          fmt::format("this line says that the unit is {}, and one before it says {}", name, name_of(*unit)),
+          where);
+    unit = unit_named(name);
+  }
 }
 
 void refuse_skewed(const std::filesystem::path& file, int line) {

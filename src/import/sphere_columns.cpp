@@ -20,8 +20,20 @@ std::string name_in_lower_case(std::string_view text) {
   return lower;
 }
 
-/// The axis that a word names: "x" and "x0" the first.
-std::optional<std::size_t> axis_named(std::string_view word) {
+bool names_radius(std::string_view word) {
+  return word == "r" || word == "radius" || word == "radii" || word == "rad" || word == "particle_radius" ||
+         word == "particle radius";
+}
+bool names_diameter(std::string_view word) {
+  return word == "d" || word == "diameter" || word == "diam" || word == "diameters" ||
+         word == "particle_diameter" || word == "particle diameter";
+}
+
+}  // namespace
+
+std::optional<std::size_t> axis_named(std::string_view name) {
+  const std::string lower = name_in_lower_case(name);
+  const std::string_view word = lower;
   if (word.size() == 1 && word[0] >= 'x' && word[0] <= 'z') return static_cast<std::size_t>(word[0] - 'x');
   for (const std::string_view stem : {"x", "points:", "points_"}) {  // the latter are ParaView's
     if (!word.starts_with(stem) || word.size() != stem.size() + 1) continue;
@@ -30,12 +42,7 @@ std::optional<std::size_t> axis_named(std::string_view word) {
   }
   return {};
 }
-bool names_radius(std::string_view word) {
-  return word == "r" || word == "radius" || word == "radii" || word == "rad";
-}
-bool names_diameter(std::string_view word) {
-  return word == "d" || word == "diameter" || word == "diam" || word == "diameters";
-}
+namespace {
 
 /// Takes places for roles, one by one.
 struct Choice {

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -8,11 +10,14 @@
 
 namespace bernal {
 
+inline constexpr std::string_view base64_digits =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
 /// Numbers as base64 of their bytes, least first. Cost: O(n).
 template <class T>
 std::string base64_of(std::span<const T> numbers) {
   static_assert(std::is_arithmetic_v<T> && std::endian::native == std::endian::little);
-  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr std::string_view digits = base64_digits;
   const std::size_t n = numbers.size_bytes();
   const auto* const bytes = reinterpret_cast<const unsigned char*>(numbers.data());
   std::string text;
@@ -27,6 +32,44 @@ std::string base64_of(std::span<const T> numbers) {
     text += k + 2 < n ? digits[three & 63] : '=';
   }
   return text;
+}
+
+/// The first bytes, as many at most, that base64 stands for; blanks and line feeds are passed over. What was
+/// encoded in several parts, each with its own padding, comes one behind the other. Ends at what is no
+/// base64. Cost: O(most).
+inline std::string bytes_of_base64(std::string_view text, std::size_t most) {
+  constexpr auto values = [] {
+    std::array<signed char, 256> made{};
+    made.fill(-1);
+    for (std::size_t k = 0; k < base64_digits.size(); ++k)
+      made[static_cast<unsigned char>(base64_digits[k])] = static_cast<signed char>(k);
+    return made;
+  }();
+  std::string bytes;
+  bytes.reserve(std::min(most, text.size() / 4 * 3 + 3));
+  std::uint32_t four = 0;
+  int digits = 0;
+  for (const char c : text) {
+    if (bytes.size() >= most) break;
+    if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
+    const bool is_padding = c == '=';
+    const int digit = is_padding ? 0 : values[static_cast<unsigned char>(c)];
+    if (digit < 0) break;
+    if (is_padding && digits < 2) {  // of a part whose last byte is out already
+      digits = 0;
+      continue;
+    }
+    four = four << 6 | static_cast<std::uint32_t>(digit);
+    ++digits;
+    if (!is_padding && digits < 4) continue;
+    const int whole = is_padding ? digits - 2 : 3;
+    four <<= 6 * (4 - digits);
+    for (int k = 0; k < whole; ++k) bytes += static_cast<char>(four >> (16 - 8 * k) & 255);
+    four = 0;
+    digits = 0;
+  }
+  if (bytes.size() > most) bytes.resize(most);
+  return bytes;
 }
 
 }  // namespace bernal

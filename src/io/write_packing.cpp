@@ -91,7 +91,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   write_spheres(spheres, packing.spheres, name_of(packing.scene.unit), as_array);
   if (!as_array) {
     OutputFile file(staged.add("spheres.vtp"));
-    write_vtp(file, packing.spheres);
+    write_vtp(file, packing.spheres, name_of(packing.scene.unit));
     file.close();
   }
   Certificate certificate = certify_written(spheres, packing, options);

@@ -20,7 +20,7 @@ void append_raw(OutputFile& file, T value) {
 
 }  // namespace
 
-void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres) {
+void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres, std::string_view unit) {
   const std::uint64_t n = spheres.size();
   // Each array of the appended data is led by its length in bytes; offsets count from the underscore.
   std::uint64_t offset = 0;
@@ -41,6 +41,7 @@ void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres) {
                     offsets = data_array("Int64", "offsets");
   file.append(fmt::format(R"(<?xml version="1.0"?>
 <VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+  <!-- {5}dimension {6} -->
   <PolyData>
     <Piece NumberOfPoints="{0}" NumberOfVerts="{0}" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">
       <PointData Scalars="radius">
@@ -53,7 +54,8 @@ void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres) {
   </PolyData>
   <AppendedData encoding="raw">
 _)",
-                          n, point_data, points, connectivity, offsets));
+                          n, point_data, points, connectivity, offsets,
+                          unit.empty() ? std::string() : fmt::format("lengths in {}; ", unit), dimension));
 
   const auto append_column = [&](const std::vector<double>& column) {
     append_raw(file, 8 * n);

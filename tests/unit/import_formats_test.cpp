@@ -65,7 +65,20 @@ TEST(ImportTable, AnyTableIsReadThatSaysItsColumns) {
            {"a.csv", "a,b,c,e\n1,2,3,1\n4,5,6,0.5\n", with("x,y,z,d")},
            {"a.csv", "\"Points:0\",\"Points:1\",\"Points:2\",\"radius\"\n1,2,3,0.5\n4,5,6,0.25\n", mm},
            {"a.txt", "# x y z r\n1 2 3 0.5\n4 5 6 0.25\n", mm},
-           {"a.csv", "1,2,3,0.5,\n4,5,6,0.25,\n", with("x,y,z,r")}}) {
+           {"a.csv", "1,2,3,0.5,\n4,5,6,0.25,\n", with("x,y,z,r")},
+           // Lines that end in a delimiter, or in several, the header or the rows alone, too.
+           {"a.csv", "x;y;z;r;\n1;2;3;0.5;\n4;5;6;0.25;\n", mm},
+           {"a.csv", "x;y;z;r;\r\n1;2;3;0.5;\r\n4;5;6;0.25;\r\n", mm},
+           {"a.csv", "x,y,z,r\n1,2,3,0.5,\n4,5,6,0.25,\n", mm},
+           {"a.csv", "x,y,z,r,\n1,2,3,0.5\n4,5,6,0.25\n", mm},
+           {"a.csv", "x,y,z,r,,,\n1,2,3,0.5,,,\n4,5,6,0.25\n", mm},
+           {"a.txt", "x\ty\tz\tr\t\n1\t2\t3\t0.5\t\n4\t5\t6\t0.25\t\n", mm},
+           {"a.txt", "x y z r \n1 2 3 0.5 \n4 5 6 0.25 \n", mm},
+           {"a.csv", "\"x\",\"y\",\"z\",\"r\",\n\"1\",\"2\",\"3\",\"0.5\",\n4, 5, 6, 0.25 ,\n", mm},
+           {"a.csv", "x,y,z,r,note\n1,2,3,0.5,\n4,5,6,0.25,small\n", mm},
+           {"a.csv", "# x, y, z, r,\n1, 2, 3, 0.5,\n4, 5, 6, 0.25,\n", mm},
+           {"a.csv", "x [mm]; y [mm]; z [mm]; d [mm];\n1; 2; 3; 1;\n4; 5; 6; 0.5;\n"},
+           {"a.csv", "9;1;2;3;0.5;\n9;4;5;6;0.25;\n", with("-,x,y,z,r")}}) {
     SCOPED_TRACE(of.text);
     expect_two(packing_of(of));
   }
@@ -90,6 +103,8 @@ TEST(ImportTable, IsRefusedInOneLine) {
   expect_refusal({"a.csv", "x,y,z,r\n1,2,3,-0.5\n", mm}, {"a.csv:2", "radius -0.5"});
   expect_refusal({"a.csv", "x,y,z,d\n1,2,3,0\n", mm}, {"a.csv:2", "diameter 0"});
   expect_refusal({"a.csv", "x,y,z,r\n1,2,3,0.5\n4,5,6\n", mm}, {"a.csv:3", "3 fields", "4"});
+  expect_refusal({"a.csv", "x;y;z;r;\n1;2;3;0.5;7;\n", mm}, {"a.csv:2", "fields", "4"});
+  expect_refusal({"a.csv", "x;y;z;r;\n1;2;3;\n", mm}, {"a.csv:2"});
   expect_refusal({"a.csv", "x,y,z,r,d\n1,2,3,4,5\n", mm}, {"a.csv:1", "--columns x=3"});
   expect_refusal({"a.csv", "x,y,q,r\n1,2,3,4\n", with("x,y,z,r")}, {"a.csv", "no column \"z\""});
   expect_refusal({"a.txt", "1 2 3 4\n", with("x,y,zz,r")}, {"\"zz\"", "x, y, z and r or d"});

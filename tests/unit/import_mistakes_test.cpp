@@ -211,6 +211,153 @@ TEST(ImportMistakes, ALatticeIsUprightToRounding) {
   expect_refusal(with("1e6 0 0 1e-9 10 0 0 0 10"), {"triclinic"});  // of its own edge
 }
 
+/// A LAMMPS data file of one atom with that first line.
+File data_file(const std::string& title, const std::string& more = "", const ImportOptions& options = {}) {
+  return {"a.data",
+          title +
+              "\n\n1 atoms\n1 atom types\n\n0 6 xlo xhi\n0 6 ylo yhi\n0 6 zlo zhi\n\nAtoms # sphere\n\n"
+              "1 1 2 2500 1 1 1\n" +
+              more,
+          options};
+}
+
+// What a remark says counts where it is a clause of its own.
+TEST(ImportMistakes, ProseSaysNeitherUnitNorWalls) {
+  const ImportOptions mm{.unit = Unit::mm};
+  for (const char* prose : {"Fe grain boundary model", "bond lengths in nm", "boundary layer of glass",
+                            "all lengths in mm of the lab", "the boundary p p f was tried",
+                            "old units = si, now mm", "LAMMPS, periodic boundary f"}) {
+    const Packing packing = imported(data_file(prose, "", mm)).packing;
+    EXPECT_FALSE(has_walls(packing.domain)) << prose;
+    EXPECT_EQ(packing.scene.unit, Unit::mm) << prose;
+    expect_refusal(data_file(prose), {"a.data", "--unit"});
+  }
+  for (const auto& [title, unit] : {std::pair("# lengths in nm", Unit::nm),
+                                    {"LAMMPS data file, units = si", Unit::m},
+                                    {"by hand; lengths in um; dense", Unit::um},
+                                    {"units = cgs", Unit::cm}})
+    EXPECT_EQ(imported(data_file(title)).packing.scene.unit, unit) << title;
+  const Packing walls = imported(data_file("bed; boundary p f f; lengths in mm")).packing;
+  EXPECT_EQ(std::get<Box>(walls.domain).periodic, (std::vector<bool>{true, false, false}));
+  EXPECT_TRUE(imported(data_file("boundary ff ff ff; lengths in mm")).packing.domain.index() ==
+              walls.domain.index());
+  expect_refusal(data_file("bed; boundary p p q"), {"a.data:1", "\"q\""});
+  expect_refusal(data_file("bed; boundary p p"), {"a.data:1", "three axes"});
+  expect_refusal(data_file("bed; lengths in angstrom", "", mm), {"a.data:1", "\"angstrom\"", "--unit"});
+  expect_refusal(data_file("lengths in 1000 mm", "", mm), {"a.data:1", "\"1000 mm\""});
+  expect_refusal(data_file("bed, units = ls", "", mm), {"a.data:1", "\"ls\""});
+  expect_refusal(data_file("lengths in mm, units = si"), {"a.data:1", "mm"});
+  const std::string rows = "1 2 3 0.5\n4 5 6 0.25\n";
+  expect_refusal({"a", "#format x_y_z_r\n# bond lengths in nm\n" + rows}, {"--unit"});
+  expect_refusal({"a", "#format x_y_z_r\n# lengths in mm\n# lengths in cm\n" + rows}, {"a:3", "mm"});
+  EXPECT_EQ(imported({"a", "#format x_y_z_r\n# bed; lengths in mm\n" + rows}).packing.scene.unit, Unit::mm);
+}
+
+// What a file has twice, and what it has that is none of what is known.
+TEST(ImportMistakes, NoSecondSectionIsPassedOver) {
+  const ImportOptions mm{.unit = Unit::mm};
+  const std::string atoms = "\nAtoms # sphere\n\n1 1 2 2500 4 4 4\n";
+  expect_refusal(data_file("x", "\nVelocities\n\n1 0 0 0\n" + atoms, mm),
+                 {"a.data:18", "second section Atoms"});
+  expect_refusal(data_file("x", atoms, mm), {"a.data:14", "second"});
+  EXPECT_EQ(imported(data_file("x", "\nVelocities\n\n1 0 0 0 0 0 0\n\nPair Coeffs\n\n1 2\n", mm))
+                .packing.spheres.size(),
+            1U);
+  expect_refusal(data_file("x", "N/A 1 2 2500 4 4 4\n", mm), {"a.data:13", "\"N/A\""});
+  expect_refusal(data_file("x", "#N/A 1 2 2500 4 4 4\n", mm), {"a.data:13", "\"#N/A\""});
+  expect_refusal(data_file("x\n\n2 atoms", "", mm), {"a.data:5", "another number"});
+  expect_refusal(data_file("x\n\n0 7 xlo xhi", "", mm), {"a.data:8", "other bounds"});
+  expect_refusal(data_file("x\n\n3 ellipsoids", "", mm), {"a.data:3", "ellipsoids"});
+
+  const std::string mfix =
+      "Version 2.0\n====\nDimension:    3\nParticles:    1\n====\nCoordinates  T  Must be T\nPhase_ID  F  1\n"
+      "Diameter  T\nDensity  F  2500\n====\n1 1 1 0.5\n";
+  EXPECT_EQ(imported({"particle_input.dat", mfix}).packing.spheres.size(), 1U);
+  expect_refusal({"particle_input.dat", mfix + "2 2 2 0.5\n"},
+                 {"particle_input.dat:12", "1 particles", "Particles:"});
+  expect_refusal({"particle_input.dat", mfix + "\n\n#N/A 2 2 0.5\n"}, {"particle_input.dat:14"});
+  std::string other = mfix;
+  other.replace(other.find("Phase_ID  F  1"), 14, "Wetness   T   ");
+  expect_refusal({"particle_input.dat", other}, {"particle_input.dat:7", "\"Wetness\""});
+
+  const std::string geometry =
+      "LSMGeometry 1.2\nBoundingBox 0 0 0 9 9 9\nPeriodicBoundaries 0 0 0\nDimension "
+      "3D\nBeginParticles\nSimple\n1\n"
+      "1 1 1 .5 4 0\nEndParticles\nBeginConnect\n0\nEndConnect\n";
+  EXPECT_EQ(imported({"a.geo", geometry, mm}).packing.spheres.size(), 1U);
+  expect_refusal({"a.geo", geometry + "BeginParticles\nSimple\n1\n2 2 2 .5 5 0\nEndParticles\n", mm},
+                 {"a.geo:13"});
+  const auto with = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  expect_refusal({"a.geo", with(geometry, "Boundaries 0 0 0", "Boundaries 0 2 0"), mm},
+                 {"a.geo:3", "0 and 1"});
+  expect_refusal({"a.geo", with(geometry, "3D", "4D"), mm}, {"a.geo:4", "\"4D\""});
+
+  const std::string frame = frame_of(1, "1 1 1 1 .5\n");
+  expect_refusal({"a.dump", with(frame, "pp pp pp", "pp qq pp"), mm}, {"a.dump:5", "\"qq\""});
+  expect_refusal({"a.dump", with(frame, "pp pp pp", "pp pp"), mm}, {"a.dump:5", "three axes"});
+  expect_refusal({"a.dump", with(frame, "pp pp pp", "pp pf pp"), mm}, {"a.dump:5", "\"pf\""});
+  expect_refusal({"a.dump", "ITEM: UNITS\nSI\n" + frame, mm}, {"a.dump:2", "\"SI\""});
+
+  const std::string ball = "ball create radius 1 position 2 2 2\n";
+  expect_refusal({"a.dat", "model domain extent 0 9 0 9 0 9 condition periodical\n" + ball, mm},
+                 {"a.dat:1", "\"periodical\""});
+  expect_refusal({"a.dat", "model domain condition periodic extent 0 9 0 9 0 9\n" + ball, mm}, {"a.dat:1"});
+  expect_refusal({"a.dat", ball + "ball create\n", mm}, {"a.dat:2"});
+  expect_refusal({"a.dat", ball + "ball generate number 100\n", mm}, {"a.dat:2", "ball generate"});
+  const std::string repeats = "model domain extent 0 9 0 9 0 9 condition periodic\n";
+  EXPECT_EQ(std::get<Box>(imported({"a.dat", repeats + ball, mm}).packing.domain).periodic,
+            (std::vector<bool>{true, true, true}));
+}
+
+TEST(ImportMistakes, NoRowOfATableIsTakenForARemark) {
+  const ImportOptions mm{.unit = Unit::mm};
+  const std::string head = "x,y,z,r\n1,2,3,0.5\n";
+  for (const char* row :
+       {"#N/A,5,6,0.25", "#VALUE!,5,6,0.25", "#DIV/0!,#N/A,6,0.25", "#WERT!,5,6,1", "#NV,5,6,1,"})
+    expect_refusal({"a.csv", head + row + "\n", mm}, {"a.csv:3", "no number"});
+  expect_refusal({"a.txt", "x y z r\n1 2 3 0.5\n#N/A 5 6 0.25\n", mm}, {"a.txt:3", "\"#N/A\""});
+  expect_refusal({"a.csv", head + "4,5,#N/A,0.25\n", mm}, {"a.csv:3", "z = \"#N/A\""});
+  // Text for people is passed over, a row that somebody left out is counted.
+  const ImportedPacking some = imported(
+      {"a.csv", head + "# step 2, at 17:30\n# the rest: 4 to 5\n#7,8,9,0.5\n4,5,6,0.25\n# 7,8,9,1\n", mm});
+  EXPECT_EQ(some.packing.spheres.size(), 2U);
+  EXPECT_NE(some.notes.front().text.find("2 rows behind a mark are left out, the first in line 5"),
+            std::string::npos)
+      << some.notes.front().text;
+  expect_refusal({"a.csv", "# unit: mm\n" + head + "# unit: cm\n4,5,6,0.25\n"}, {"a.csv:4", "cm", "mm"});
+  expect_refusal({"a.csv", head + "# unit: cm\n4,5,6,0.25\n", mm}, {"in cm", "--unit"});
+  EXPECT_EQ(imported({"a.csv", head + "# unit: cm\n4,5,6,0.25\n"}).packing.scene.unit, Unit::cm);
+}
+
+TEST(ImportMistakes, AnOpenQuotationMarkIsRefused) {
+  const ImportOptions mm{.unit = Unit::mm};
+  for (const char* row :
+       {"\"1,2,3,0.5", "1,2\",3,0.5", "1,2,3,\"0.5", "'1,2,3,0.5", "1,2,3,0.5'", "\",2,3,0.5"})
+    expect_refusal({"a.csv", "x,y,z,r\n" + std::string(row) + "\n", mm}, {"a.csv:2"});
+  expect_refusal({"a.csv", "x,y,\"z,r\n1,2,3,0.5\n", mm}, {"a.csv:1", "close"});
+  expect_refusal({"a.csv", "x,y,z,r,name\n1,2,3,0.5,\"glass\n", mm}, {"a.csv:2", "close"});
+  EXPECT_EQ(imported({"a.csv", "x,y,z,r,name\n'1',\"2\",3,0.5,5\" ball\n", mm}).packing.spheres.size(), 1U);
+
+  const auto xyz = [&](const std::string& line) {
+    return File{"a.xyz", "1\n" + line + "\nX 1 2 3\n", {.radius = 1, .unit = Unit::mm}};
+  };
+  const std::string lattice = "Lattice=\"9 0 0 0 9 0 0 0 9\" ";
+  expect_refusal(xyz("Lattice=\"9 0 0 0 9 0 0 0 9"), {"a.xyz:2", "not closed"});
+  expect_refusal(xyz(lattice + "pbc='T T T"), {"a.xyz:2", "not closed"});
+  for (const char* pbc : {"maybe", "\"maybe maybe maybe\"", "\"T T yes\"", "\"T T\"", "\"2 0 0\""})
+    expect_refusal(xyz(lattice + "pbc=" + pbc), {"a.xyz:2", "pbc"});
+  expect_refusal(xyz("pbc=\"T T T\""), {"a.xyz:2", "--box"});
+  EXPECT_TRUE(has_walls(imported(xyz("pbc=\"F F F\"")).packing.domain));
+  EXPECT_EQ(std::get<Box>(imported(xyz(lattice + "pbc=\"true False 1\"")).packing.domain).periodic,
+            (std::vector<bool>{true, false, true}));
+  expect_refusal(xyz(lattice + "Lattice=\"8 0 0 0 9 0 0 0 9\""), {"a.xyz:2", "twice"});
+  expect_refusal(xyz(lattice + "unit=parsec"), {"a.xyz:2", "\"parsec\"", "--unit"});
+  expect_refusal({"a.xyz", "1\nProperties=species:S:1:pos:R:3\nX 1 2 3 4\n", {.radius = 1, .unit = Unit::mm}},
+                 {"a.xyz:3", "5 columns"});
+}
+
 TEST(ImportMistakes, ALinkThatLeadsNowhereIsSaid) {
   const Folder folder;
   std::filesystem::create_symlink("loop", folder / "loop");

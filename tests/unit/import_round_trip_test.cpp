@@ -120,6 +120,11 @@ TEST(ImportRoundTrip, AResultComesBackToTheBit) {
     EXPECT_EQ(imported.packing.scene.unit, packing.scene.unit);
     EXPECT_EQ(name_of(imported.packing.domain), name_of(packing.domain));
     EXPECT_EQ(imported.packing.volume, packing.volume);
+    // The same from what ParaView reads, which says unit and dimension, too.
+    const ImportedPacking points =
+        import_packing(folder / "out/spheres.vtp", {.container = folder / "out/scene.toml"});
+    EXPECT_EQ(points.packing.spheres, packing.spheres);
+    EXPECT_EQ(import_packing(folder / "out/spheres.vtp").packing.scene.unit, packing.scene.unit);
   }
 }
 
