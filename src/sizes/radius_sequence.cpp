@@ -9,6 +9,7 @@ double RadiusSequence::next() {
     return r;
   }
   if (!even_) return sizes_.sample(random_);
+  if (!classes_->empty()) return classes_->next(random_);
   constexpr std::uint64_t golden = 0x9E3779B97F4A7C15;  // 2^64 / φ, odd: no two of 2^64 numbers are alike
   const double u = static_cast<double>(next_ >> 11) * 0x1p-53;
   next_ += golden;

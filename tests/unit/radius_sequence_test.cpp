@@ -59,6 +59,51 @@ TEST(RadiusSequence, OfQuantilesIsEvenInEveryPrefix) {
   }
 }
 
+/// How far the number of any class is off its share of a prefix, at most.
+double farthest_off(const SizeDistribution& sizes, std::size_t n, std::uint64_t seed) {
+  RadiusSequence sequence(sizes, seed, Draw::quantiles);
+  const std::vector<double> atoms = sizes.atoms();
+  std::vector<double> counts(atoms.size()), shares;
+  for (const double r : atoms)
+    shares.push_back(sizes.cumulative(r) - sizes.cumulative(std::nextafter(r, 0.0)));
+  double farthest = 0;
+  for (std::size_t drawn = 1; drawn <= n; ++drawn) {
+    const auto found = std::ranges::lower_bound(atoms, sequence.next());
+    ++counts[static_cast<std::size_t>(found - atoms.begin())];
+    for (std::size_t k = 0; k < atoms.size(); ++k)
+      farthest = std::max(farthest, std::abs(counts[k] - shares[k] * static_cast<double>(drawn)));
+  }
+  return farthest;
+}
+
+TEST(RadiusSequence, OfQuantilesHasEveryClassWithinOneOfItsShareInEveryPrefix) {
+  const auto equal = [](std::size_t k) {
+    std::vector<double> radii(k);
+    for (std::size_t i = 0; i < k; ++i) radii[i] = 1 + static_cast<double>(i);
+    return make_classes(radii, std::vector<double>(k, 1.0), Basis::number);
+  };
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    std::vector<double> five = first(*equal(5), 5, Draw::quantiles, seed);
+    std::ranges::sort(five);
+    EXPECT_EQ(five, (std::vector<double>{1, 2, 3, 4, 5})) << seed;
+  }
+  EXPECT_NE(first(*equal(5), 5, Draw::quantiles, 1), first(*equal(5), 5, Draw::quantiles, 2));
+  for (const std::size_t k : {2u, 3u, 7u, 30u}) EXPECT_LT(farthest_off(*equal(k), 2000, 3), 1) << k;
+  const std::vector<std::vector<double>> unequal = {
+      {1, 1, 1, 2, 5}, {0.3, 0.7}, {97, 1, 1, 1}, {1, 2, 3, 4, 5, 6, 7}, {1e-6, 1}, {3, 1e-3, 2, 1e-2, 1, 1}};
+  for (const std::vector<double>& shares : unequal) {
+    std::vector<double> radii(shares.size());
+    for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = 0.5 + static_cast<double>(i);
+    for (const Basis basis : {Basis::number, Basis::volume})
+      for (const std::uint64_t seed : {1, 2})
+        EXPECT_LT(farthest_off(*make_classes(radii, shares, basis), 20'000, seed), 1) << shares.size();
+  }
+  std::vector<std::unique_ptr<SizeDistribution>> parts;
+  parts.push_back(make_constant(2));
+  parts.push_back(equal(3));
+  EXPECT_LT(farthest_off(*make_mixture(std::move(parts), {1, 1}, Basis::number), 2000, 1), 1);
+}
+
 TEST(RadiusSequence, OfQuantilesHasTheMeanVolumeOfTheDistribution) {
   // Koksma: off by at most the discrepancy times the range of r³.
   constexpr std::size_t n = 10'000;

@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "bernal/core/random.hpp"
+#include "bernal/sizes/even_classes.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
@@ -16,7 +18,8 @@ enum class Draw {
 /// The radii of a packing, one after the other, without end: a function of distribution, seed and `Draw`.
 ///
 /// `quantiles` takes the k-th radius at u_k = frac(u_0 + k/φ), φ the golden ratio and u_0 the seed's: the
-/// first N of them are as even as N points can be, for every N. So the share of spheres up to any radius, and
+/// first N of them are as even as N points can be, for every N. Of size classes each comes in every N within
+/// one of its share, see `EvenClasses`. So the share of spheres up to any radius, and
 /// the mean of r³ where r is bounded, are those of the distribution up to O(log N / N); random draws leave
 /// O(1/√N). Their order is not random: neighbours in the sequence differ. The distribution must outlive the
 /// sequence, and so must radii that come `first`, before any is drawn.
@@ -25,7 +28,9 @@ class RadiusSequence {
   RadiusSequence(const SizeDistribution& sizes, std::uint64_t seed, Draw draw,
                  std::span<const double> first = {})
       : sizes_(sizes), first_(first), random_(seed, stream(Stream::radii)), even_(draw == Draw::quantiles) {
-    if (even_) next_ = random_();
+    if (!even_) return;
+    next_ = random_();
+    classes_ = EvenClasses(sizes);
   }
 
   double next();
@@ -35,7 +40,8 @@ class RadiusSequence {
   std::span<const double> first_;
   Random random_;
   bool even_;
-  std::uint64_t next_ = 0;  ///< u_k in units of 2^-64
+  std::uint64_t next_ = 0;              ///< u_k in units of 2^-64
+  std::optional<EvenClasses> classes_;  ///< of `quantiles`
 };
 
 }  // namespace bernal
