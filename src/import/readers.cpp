@@ -87,6 +87,15 @@ bool is_binary_dump(std::string_view bytes) {
   return start.find("dumpcustom") != start.npos || start.find("dumpatom") != start.npos;
 }
 
+/// Text that is no table, by its first bytes.
+constexpr Wrapping no_tables[] = {
+    {"<", "is XML or HTML, and none that is known; save a table, such as CSV, or VTK points (.vtp)"},
+    {"{", "is JSON, which is not read; save a table, such as CSV"},
+    {"solid ", "is a surface (STL), and no packing; as a container it is for bernal inspect and for scenes"},
+    {"ply\n", "is a surface or points in PLY, which is not read; save a table, such as CSV"},
+    {"OFF\n", "is a surface (OFF), and no packing; as a container it is for bernal inspect and for scenes"},
+};
+
 void require_readable(const FileBeginning& file) {
   const auto refuse = [&](std::string_view words) {
     throw Error(ErrorCode::bad_packing, std::string(words), {file.file.string()});
@@ -147,6 +156,9 @@ const PackingReader& reader_of(const std::filesystem::path& file, const ImportOp
           "holds bytes that are no text, and is of no binary format that is known; write it as text, such as "
           "a CSV or a text dump",
           {file.string()});
+    for (const Wrapping& other : no_tables)
+      if (reader == packing_readers().back() && beginning.begins(other.bytes))
+        throw Error(ErrorCode::bad_packing, std::string(other.words), {file.string()});
   }
   if (!options.columns.empty()) require_option(*reader, "columns");
   if (options.frame) require_option(*reader, "frame");

@@ -154,6 +154,9 @@ TEST(ImportMistakes, WhatIsNoTextIsNamedWithARemedy) {
                  {"binary dump", "as text"});
   expect_refusal({"a.dat", bytes("x,y\0\x01\x02"sv), mm}, {"no text", "CSV"});
   expect_refusal({"a.csv", "x,y,z,r\r1,2,3,0.5\r4,5,6,0.5\r", mm}, {"CR alone", "tr "});
+  expect_refusal({"a.html", "<html><body>1 2 3</body></html>\n", mm}, {"XML or HTML", "CSV"});
+  expect_refusal({"a.json", "{\"x\": [1, 2]}\n", mm}, {"JSON", "CSV"});
+  expect_refusal({"a.stl", "solid part\nfacet normal 0 0 1\n", mm}, {"STL", "inspect"});
   EXPECT_EQ(
       imported({"a.txt", "1 2 3 .5\r", {.columns = "x,y,z,r", .unit = Unit::mm}}).packing.spheres.size(), 1U);
 }
