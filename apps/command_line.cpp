@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
@@ -133,7 +134,12 @@ Option within(Option option, int least, int most) {
 }
 Option within(Option option, double least, double most) {
   option.range = fmt::format("{} to {}", least, most);
-  return demanding(std::move(option), CLI::Range(least, most));
+  const auto complaint = [](const std::string& word) {  // which no comparison finds
+    double value = 0;
+    return CLI::detail::lexical_cast(word, value) && std::isnan(value) ? word + " is not a number"
+                                                                       : std::string();
+  };
+  return demanding(checked(std::move(option), complaint), CLI::Range(least, most));
 }
 Option one_of(Option option, const std::vector<std::string>& words) {
   return demanding(offering(std::move(option), words), CLI::IsMember(words));

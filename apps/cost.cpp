@@ -95,17 +95,39 @@ void print_words(const CostReport& report, bool quiet) {
   for (const auto& file : report.files) say(stdout, "{}\n", plain_text(file.string(), 5000));
 }
 
+/// The topmost folder that has to be made for this one to be there; empty where it is.
+std::filesystem::path to_be_made(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  std::filesystem::path top = std::filesystem::absolute(folder).lexically_normal();
+  if (std::filesystem::exists(top, unknown)) return {};
+  while (top.has_relative_path() && !std::filesystem::exists(top.parent_path(), unknown))
+    top = top.parent_path();
+  return top;
+}
+
+/// What is refused leaves no folder behind that was not there before.
+CostReport measured(const CostCall& call, ProgressBar& bar) {
+  const Scene scene = read_scene(call.scene);
+  const std::filesystem::path made = to_be_made(call.folder);
+  try {
+    check_writable(call.folder);
+    return measure_cost(scene, call.folder,
+                        {.seconds = *seconds_of(call.time),
+                         .seeds = call.seeds,
+                         .threads = call.threads,
+                         .fresh = call.fresh,
+                         .monitor = bar.monitor()});
+  } catch (const Error&) {
+    std::error_code unknown;
+    if (!made.empty()) std::filesystem::remove_all(made, unknown);
+    throw;
+  }
+}
+
 int cost(const CostCall& call) {
   ProgressBar bar(call.quiet);
   bar.now("read");
-  const Scene scene = read_scene(call.scene);
-  check_writable(call.folder);
-  const CostReport report = measure_cost(scene, call.folder,
-                                         {.seconds = *seconds_of(call.time),
-                                          .seeds = call.seeds,
-                                          .threads = call.threads,
-                                          .fresh = call.fresh,
-                                          .monitor = bar.monitor()});
+  const CostReport report = measured(call, bar);
   bar.clear();
   if (report.rows.empty()) {
     say(stderr, "bernal: stopped before the scene as it is was measured; what is known stands in {}\n",

@@ -73,6 +73,31 @@ TEST(CostCommand, RefusesAbsurdInputInOneLine) {
   EXPECT_EQ(text_of(out + "/trials.csv"), "x,y,z,r\n") << "neither is what somebody else wrote removed";
 }
 
+TEST(CostCommand, WhatIsRefusedLeavesNoFolder) {
+  const Folder folder;
+  const std::string scene = folder.write("tiny.toml", tiny_box).string(),
+                    bad = folder
+                              .write("bad.toml",
+                                     "[container]\nkind = \"box\"\nsize = [1, 1, 1]\n[spheres]\nradius = 9\n")
+                              .string();
+  const std::string out = (folder / "a/b").string();
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{scene, "-o", out, "--time", "0.0001s"},
+        {scene, "-o", out, "--seeds", "0"},
+        {scene, "-o", out, "--threads", "2000"},
+        {bad, "-o", out},
+        {(folder / "none.toml").string(), "-o", out}}) {
+    std::vector<std::string> call = {"cost"};
+    call.insert(call.end(), words.begin(), words.end());
+    const Ended ended = bernal(call);
+    EXPECT_EQ(ended.status, 2) << ended.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "a")) << ended.err;
+  }
+  std::filesystem::create_directories(out);  // what was there stays
+  EXPECT_EQ(bernal({"cost", bad, "-o", out}).status, 2);
+  EXPECT_TRUE(std::filesystem::exists(out));
+}
+
 TEST(CostCommand, RefusesToReplaceWhatItDidNotWrite) {
   const Folder folder;
   const std::string scene = folder.write("tiny.toml", tiny_box).string(), out = (folder / "out").string();

@@ -32,6 +32,13 @@ TEST(Usage, AnUnknownCommandNamesTheNearest) {
   expect_refused_in_one_line(bernal({"qqqqqqqq"}), {"known: \"pack\", \"verify\""});
 }
 
+TEST(Usage, NumbersThatAreNoneAreRefused) {
+  for (const char* word : {"nan", "-nan", "NaN", "inf", "-1", "1e300"})
+    expect_refused_in_one_line(bernal({"pack", "none.toml", "--checkpoint-every", word}),
+                               {"--checkpoint-every"});
+  expect_refused_in_one_line(bernal({"pack", "none.toml", "--threads", "1000000"}), {"--threads"});
+}
+
 TEST(Usage, KeysSaysWhatASceneMayHold) {
   const Ended all = bernal({"keys"}), one = bernal({"keys", "relax"});
   EXPECT_EQ(all.status, 0);

@@ -191,7 +191,7 @@ class Refusals(InFolder):
         p, at = bernal.pack(small(count=5)), [[1.0, 1, 1]]
         for message, call in {
             "threads is a whole number": lambda: bernal.pack(small(), threads=None),
-            "at most 2147483647": lambda: bernal.pack(small(), threads=2**63 - 1),
+            "at most 1024": lambda: bernal.pack(small(), threads=2**63 - 1),
             "list is a whole number": lambda: bernal.verify(p, list=1.5),
             "radius is a finite number": lambda: bernal.inspect(HELIX, radius="a"),
             "gap is a finite number": lambda: bernal.measure(p, gap="a"),
@@ -200,6 +200,9 @@ class Refusals(InFolder):
             "box is a list of numbers": lambda: bernal.from_arrays(at, 1, unit="mm", box=5),
             "give box too, such as box=[10,10,10]": lambda: bernal.from_arrays(at, 1, unit="mm", periodic="x"),
             "not finite": lambda: bernal.from_arrays([[1, 1, np.nan]], 1, unit="mm"),
+            "not exact as doubles": lambda: bernal.from_arrays(np.array([[2**53 + 1, 1, 1]], np.uint64), 1, unit="mm"),
+            "beyond 2^53": lambda: bernal.from_arrays(np.array([[-(2**60), 1, 1]]), 1, unit="mm"),
+            "progress is True, False, None": lambda: bernal.pack(small(), progress=5),
             "not (3,)": lambda: bernal.from_arrays([1, 2, 3], 1, unit="mm"),
             "masked": lambda: bernal.from_arrays(np.ma.masked_equal(at, 1), 1, unit="mm"),
             "not an array of complex128": lambda: bernal.from_arrays(at, 1j, unit="mm"),

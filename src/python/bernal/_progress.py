@@ -10,6 +10,8 @@ import time
 from collections.abc import Callable
 from typing import Any, Union
 
+from . import _errors
+
 Progress = Union[bool, None, Callable[[str, Union[float, None], str], Any]]
 """True: always shown; None: where somebody looks, a terminal or a notebook; False: not at all. A function is called
 with the activity ("relax"), the fraction that is done, None where nobody knows, and a detail in words."""
@@ -173,6 +175,8 @@ def _notebook() -> Callable[..., Any] | None:
 def display_of(progress: Progress) -> Silent:
     if callable(progress):
         return Told(progress)
+    if progress is not None and not isinstance(progress, bool):
+        raise _errors.InputError("bad_argument", f"progress is True, False, None or a function, not {progress!r:.80}")
     if progress is False:
         return Silent()
     notebook = _notebook()

@@ -70,6 +70,8 @@ def doubles(values: Any, name: str, shape: str) -> NDArray[np.float64]:
         _refuse(f"{name} are an array of numbers of shape {shape}, not {what}")
     if not np.isfinite(array).all():
         _refuse(f"there are {name} that are not finite")
+    if array.dtype.kind in "iu" and array.size and max(int(array.max()), -int(array.min())) > 2**53:
+        _refuse(f"there are {name} beyond 2^53, which are not exact as doubles; give them as floats")
     return array.astype(float, copy=False)
 
 

@@ -266,7 +266,7 @@ def from_arrays(
 
 
 def _threads(threads: Any) -> int:
-    return _toml.whole(threads, "threads", _toml.INT)
+    return _toml.whole(threads, "threads", 1024)
 
 
 def _rods(rods: Any) -> int:
