@@ -25,6 +25,7 @@ int explain(const ExplainCall& call) {
   bar.now("estimate");
   const Plan plan = build(read_scene(call.scene));
   if (is_in_slabs(plan.scene)) check_slabs(plan);
+  check_start(plan);
   bar.clear();
   fmt::print("{}", call.json ? plan_as_json(plan) : bernal::explain(plan));
   return exit_code::done;

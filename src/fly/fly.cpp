@@ -152,7 +152,7 @@ const StageEntry& entry_of<Fly>() {
                         "at once, pushed apart",
                         {std::begin(methods), std::end(methods)}),
                     number(&Fly::packing_fraction, "packing_fraction",
-                           "where [spheres] does not say it: the one to fill the box to", between(0, 1)),
+                           "where [spheres] does not say it: the one to fill the box to", packing_fractions()),
                     integer(&Fly::batch, "batch",
                             "flight, patent: new spheres tried between two steps; 0: half of all, for the "
                             "patent's procedure a tenth",

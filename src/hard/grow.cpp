@@ -260,12 +260,13 @@ const StageEntry& entry_of<Grow>() {
                             "that a "
                             "sphere of thermal speed takes across the box, or for the cube root of the "
                             "container's volume; if absent see rate",
-                            above(0, 100))),
-                 number(&Grow::phi_init, "phi_init",
-                        "packing fraction of the random insertion at the start, in a container half of it "
-                        "where spheres find no places; if absent 0.2, in other than three dimensions half of "
-                        "what insertion reaches",
-                        above(0, 0.5)),
+                            {1e-3, 100})),
+                 number(
+                     &Grow::phi_init, "phi_init",
+                     "packing fraction of the random insertion at the start, in a container half of it "
+                     "where spheres find no places; if absent 0.2, in other than three dimensions half of "
+                     "what insertion reaches",
+                     {thinnest, 0.5}),
                  buys_accuracy(
                      {0.3, 0.1, 0.03, 0.01, 0.003, 0.001},
                      number(&Grow::rate, "rate",

@@ -48,7 +48,7 @@ std::filesystem::path spheres_of_result(const std::filesystem::path& folder) {
 Scene scene_of_result(const std::filesystem::path& folder) { return scene_in(folder); }
 
 Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder) {
-  const std::filesystem::path file = spheres_of_result(folder);
+  const std::filesystem::path file = where_it_stands(only_spheres_file_in(folder));
   if (file.filename() == spheres_as_array) return of_the_scene(scene, file, {read_npy_spheres(file), {}});
   return read_csv_of(scene, file);
 }

@@ -5,6 +5,9 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "core/bytes_of_file.hpp"
@@ -39,11 +42,27 @@ fs::path where_it_stands(const fs::path& file) {
   return file;
 }
 
-fs::path spheres_file_in(const fs::path& folder) {
+namespace {
+
+bool stands(const fs::path& file) {
   std::error_code unknown;
+  return fs::exists(where_it_stands(file), unknown);
+}
+
+}  // namespace
+
+fs::path spheres_file_in(const fs::path& folder) {
   const fs::path text = folder / spheres_as_text, array = folder / spheres_as_array;
-  const auto stands = [&](const fs::path& file) { return fs::exists(where_it_stands(file), unknown); };
   return !stands(text) && stands(array) ? array : text;
+}
+
+fs::path only_spheres_file_in(const fs::path& folder) {
+  if (stands(folder / spheres_as_text) && stands(folder / spheres_as_array))
+    throw Error(ErrorCode::bad_packing,
+                fmt::format("holds {} and {}, and a result has one of them; remove the one that is not meant",
+                            spheres_as_text, spheres_as_array),
+                {folder.string()});
+  return spheres_file_in(folder);
 }
 
 Scene scene_in(const fs::path& folder) {

@@ -38,6 +38,7 @@ JobPointer explain_job(const Scene& scene) {
   return job([scene](const Monitor& monitor) -> Job::Finish {
     monitor.report({"estimate", -1, {}});
     const Plan plan = build(scene);
+    check_start(plan);
     return [json = plan_as_json(plan), words = explain(plan)]() -> py::object {
       return py::make_tuple(json, words);
     };

@@ -9,14 +9,15 @@
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/voxels/voxels.hpp"
 #include "engine/engine_plan.hpp"
+#include "run/caution.hpp"
 #include "run/estimate.hpp"
-#include "run/few_large.hpp"
 #include "run/fitting.hpp"
 #include "run/price_effects.hpp"
 #include "run/room_for_gaps.hpp"
 #include "run/sizes_at_hand.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
+#include "scene/entry.hpp"
 #include "scene/output_table.hpp"
 #include "sizes/cut_above.hpp"
 #include "sizes/volume_carriers.hpp"
@@ -120,6 +121,9 @@ void expect_in_container(Plan& plan) {
   const double volume = volume_of(container);
   double attainable = plan.attainable_packing_fraction =
       ask_container(plan, [&] { return expected_packing_fraction(scene, container, radii, made); });
+  // Where nothing is likely to fit, what one sphere would fill: nothing can be divided by an expectation of
+  // 0.
+  if (!(attainable > 0)) attainable = plan.attainable_packing_fraction = std::min(1.0, mean_volume / volume);
   resolve_predicted(plan);
   if (scene.target.packing_fraction) attainable = std::min(attainable, *scene.target.packing_fraction);
   plan.expected_count = attainable * volume / mean_volume;
@@ -274,6 +278,30 @@ void expect_in_periodic_box(Plan& plan) {
   choose_draw(plan, radii);
 }
 
+/// Throws where the domain reaches, or a box that follows from the packing would reach, farther than what is
+/// written could be read back.
+void require_readable_places(const Plan& plan) {
+  constexpr double uncertain = 10;  // a box that has not been packed yet
+  const Bounds<dynamic> bounds = bounds_of<dynamic>(plan.domain);
+  const double farthest = std::max(bounds.upper.cwiseAbs().maxCoeff(), bounds.lower.cwiseAbs().maxCoeff());
+  const double most = schema::largest_length / (plan.box_follows ? uncertain : 1);
+  if (farthest <= most) return;
+  const std::string_view unit = name_of(plan.scene.unit);
+  if (plan.box_follows)
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("so many of these sizes at such a packing fraction and with such gaps need a box about "
+                    "{:.3g} {} long, and more than {:.0e} is not: check the units",
+                    farthest, unit, most),
+        plan.scene.asks_for_gaps() ? plan.scene.locations.of("gap") : plan.scene.target.where);
+  throw Error(
+      ErrorCode::bad_scene,
+      fmt::format("the container reaches {:.3g} {} from the origin, and farther than {:.0e} no place may be: "
+                  "move it, or check the units",
+                  farthest, unit, most),
+      plan.scene.container.locations.whole);
+}
+
 /// What is there from the start is what can be expected at least.
 void expect_start(Plan& plan) {
   const Spheres<dynamic>& spheres = plan.start.spheres;
@@ -299,6 +327,7 @@ void expect(Plan& plan) {
   } else {
     expect_in_container(plan);
   }
+  require_readable_places(plan);
   expect_start(plan);
   plan.caution = caution_of(plan);
   require_overlap(plan);

@@ -7,6 +7,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/measure/hanging.hpp"
+#include "run/caution.hpp"
 #include "run/room_for_gaps.hpp"
 #include "run/shortfall.hpp"
 #include "settle/compress.hpp"
@@ -195,8 +196,12 @@ void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& en
     if (!in_bed && work.target_edges && work.edges.prod() > work.target_edges->prod())
       conclusion.reason += fmt::format(", which stand in a box {} the one asked for",
                                        larger(work.edges.prod() / work.target_edges->prod()));
-  } else if (packing.spheres.empty() && conclusion.outcome == Outcome::converged) {
-    conclusion = {Outcome::full, "no sphere has found a place; use smaller ones or check the units"};
+  } else if (packing.spheres.empty()) {
+    conclusion = {
+        conclusion.outcome == Outcome::hit_limit ? Outcome::hit_limit : Outcome::full,
+        fmt::format("no sphere has found a place; {}: use smaller ones or check the units",
+                    largest_in_words(ending.plan, has_walls(ending.plan.domain) ? packing.scene.wall_gap
+                                                                                : coat_of(packing.scene)))};
   }
   packing.outcome = conclusion.outcome;
   packing.reason =

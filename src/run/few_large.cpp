@@ -13,9 +13,6 @@ namespace bernal {
 namespace {
 
 constexpr double enough_carriers = 30, enough_across = 3;
-/// Of what is attainable: a box that is filled to less has room to spare, whatever is in it.
-constexpr double closely = 0.9;
-
 /// In one packing.
 constexpr double most_spheres = 0x1p31;
 
@@ -59,17 +56,6 @@ std::string remedy_of(const FewLarge& few, double count, const Scene& scene, con
   const double wider = std::pow(few.factor, 1.0 / static_cast<double>(edges.size()));
   return fmt::format("a shortest edge of {:.3g} {} would be enough", rounded_up(wider * edges.minCoeff()),
                      name_of(scene.unit));
-}
-
-std::string caution_of(const Plan& plan) {
-  const Box* box = std::get_if<Box>(&plan.domain);
-  const bool packs_closely = plan.expected_packing_fraction > closely * plan.attainable_packing_fraction;
-  if (!box || box->has_walls() || any_in_bed(plan.scene) || !packs_closely) return {};
-  const Vector<dynamic> edges = box->size;
-  const std::optional<FewLarge> few = few_large(*plan.radii, plan.expected_count, edges);
-  if (!few) return {};
-  return fmt::format("{}: too few to pack at random; {}", in_words(*few),
-                     remedy_of(*few, plan.expected_count, plan.scene, edges));
 }
 
 }  // namespace bernal

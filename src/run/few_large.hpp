@@ -25,7 +25,4 @@ std::string in_words(const FewLarge&);
 /// "11,000 spheres would be enough", or how wide a box of given size that has `edges` would have to be.
 std::string remedy_of(const FewLarge&, double count, const Scene& scene, const Vector<dynamic>& edges);
 
-/// The plan's caution: its box and its count are known.
-std::string caution_of(const Plan& plan);
-
 }  // namespace bernal

@@ -31,6 +31,8 @@ constexpr double negligible = 1e-3;
 constexpr double filled = 0.8;
 /// Of the mean thickness V / A of a mesh or polygon: spheres up to this fit somewhere, without a look.
 constexpr double surely_fitting = 0.5;
+/// That a mesh is looked at in where it is open whether a sphere fits: half a second.
+constexpr int many_cells = 200'000;
 /// Of a mesh's largest sphere, what rounding may hide.
 constexpr double hidden = 1e-9;
 
@@ -72,11 +74,11 @@ namespace {
 struct Largest {
   double known, bound;
 };
-Largest largest_in(const Domain& shape, const std::shared_ptr<const Container>& made) {
+Largest largest_in(const Domain& shape, const std::shared_ptr<const Container>& made, int most_cells = 4000) {
   const double bound = largest_fitting_radius(shape);
   if (!is_faceted(shape)) return {bound, bound};
   const Frame frame = frame_of(shape);
-  const LargestRoom room = largest_room(*local_container(shape, made));
+  const LargestRoom room = largest_room(*local_container(shape, made), most_cells);
   return {room.radius * frame.scale, std::min(bound, (1 + hidden) * room.bound * frame.scale)};
 }
 
@@ -87,6 +89,8 @@ void require_fitting(const Scene& scene, const Domain& container,
   Largest largest{largest_fitting_radius(container), largest_fitting_radius(container)};
   if (is_faceted(container) && radius > surely_fitting * volume_of(container) / area_of(container))
     largest = largest_in(container, made);
+  if (radius > largest.known && radius <= largest.bound)  // in thin walls all cells have to become small
+    largest = largest_in(container, made, many_cells);
   if (radius <= largest.bound) return;
   const double shown = scene.sizes_are_diameters ? 2 : 1;
   const auto [one, many] =
@@ -107,6 +111,10 @@ void require_fitting(const Scene& scene, const Domain& container,
           "a sphere of {} {} does not fit into the {}{}, which takes {} up to {}: {} or check the units", one,
           text(radius), name_of(container), gaps, many, text(largest.known), remedy),
       scene.sizes.locations.whole);
+}
+
+double largest_known_radius(const Domain& container, const std::shared_ptr<const Container>& made) {
+  return largest_in(container, made).known;
 }
 
 void refuse_thin_container() {

@@ -14,13 +14,16 @@ namespace bernal {
 /// a mesh an upper bound from its bounds and its volume.
 double largest_fitting_radius(const Domain& shape);
 
+/// The largest sphere that is known to fit. Cost: of meshes some milliseconds.
+double largest_known_radius(const Domain& container, const std::shared_ptr<const Container>& made);
+
 /// Throws Error{bad_scene} at the scene's container if it repeats itself so often that spheres of that
 /// radius, in a bed, would meet two images of others.
 void require_long_periods(const Scene& scene, const Domain& container, double radius);
 
 /// Throws Error{bad_scene} at the scene's sizes, with the remedy or to check the units, if a sphere of that
-/// radius cannot fit. Cost in a mesh that is not much thicker than the sphere: some milliseconds, and what
-/// its container costs if it is not made.
+/// radius cannot fit. Cost in a mesh that is not much thicker than the sphere: some milliseconds, half a
+/// second where it hardly fits, and what its container costs if it is not made.
 void require_fitting(const Scene& scene, const Domain& container,
                      const std::shared_ptr<const Container>& made, double radius,
                      std::string_view remedy = "use smaller ones");

@@ -37,7 +37,7 @@ void look_into_folder(Scene& scene) {
   if (const auto* box = std::get_if<PeriodicBox>(&there.container); box && start.box.empty())
     for (const double edge : edges_of(*box)) start.box.push_back(in_our_unit * edge);
   if (!start.unit) start.unit = there.unit;
-  *start.file = spheres_file_in(*start.file);
+  *start.file = only_spheres_file_in(*start.file);
 }
 
 /// The box that the spheres lie in, where it repeats itself.

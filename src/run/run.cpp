@@ -28,6 +28,7 @@
 #include "run/take_coats_off.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/counted_container.hpp"
+#include "work/exact_fit.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
@@ -80,6 +81,9 @@ class Run {
                                                         : checkpoint_owner(plan.scene, packing.seed),
                      [this](Archive& a) { record_.archive(a, work_); }) {}
 
+  /// As far as the first stage begins.
+  void check() { start(any_in_bed_ ? Supply::densest : plan_.expected_packing_fraction, false); }
+
   void go() {
     try {
       attempt();
@@ -128,7 +132,7 @@ class Run {
   }
 
   /// The drawn sequence, the frame that follows from it, and no sphere in its place.
-  Work start(double fraction) {
+  Work start(double fraction, bool with_engine = true) {
     const Interruptible listening(monitor_);
     Work work{.spheres = Spheres<dynamic>(dimension_of(plan_.domain)),
               .edges = bounds_of<dynamic>(plan_.domain).size(),
@@ -170,7 +174,7 @@ class Run {
       work.exact_place = [this](const Vector<3>& place, double r) { return exact_place_.near(place, r); };
     if (scene_.is_periodic()) put_into_box(work);
     take_start(plan_, frame_, work);
-    if (scene_.engine) take_engine(plan_, engine_folder_, work);
+    if (scene_.engine && with_engine) take_engine(plan_, engine_folder_, work);
     if (with_room_)
       share_ = share_of_drawn(*work.supply, work.dimension()) * volume_of(plan_.domain) /
                volume_of(stated_.domain);
@@ -277,6 +281,7 @@ class Run {
       if (end == StageEnd::cancelled) break;
     }
     if (end != StageEnd::cancelled) {
+      if (!work.stands_in_bed() && work.spheres.size() == work.supply->wanted()) fit_exactly(work);
       facts.clear();
       ArchiveToBytes now(facts);
       work.archive_facts(now);
@@ -404,6 +409,15 @@ Packing run(const Plan& plan, const RunOptions& options) {
                                             static_cast<std::size_t>(std::max(1, packing.threads)));
   Run(plan, options, packing).go();
   return packing;
+}
+
+void check_start(const Plan& plan) {
+  if (plan.start.spheres.empty()) return;
+  Packing packing = begin_packing(plan, {}, 0);
+  packing.domain = plan.domain;
+  packing.container = plan.container;
+  const RunOptions options;
+  Run(plan, options, packing).check();
 }
 
 void remove_checkpoints(const std::filesystem::path& folder) { CheckpointFolder::remove_from(folder); }

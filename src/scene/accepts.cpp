@@ -10,9 +10,6 @@
 namespace bernal::schema {
 namespace {
 
-constexpr double smallest_length = 1e-30;
-constexpr double largest_length = 1e30;
-
 std::string number_range(const Range& range) {
   const bool from = std::isfinite(range.min), to = std::isfinite(range.max);
   const std::string lower = fmt::format("{} {}", range.above_min ? "above" : "of at least", range.min);

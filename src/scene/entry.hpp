@@ -61,6 +61,12 @@ struct Range {
 inline Range above(double min, double max) { return {min, max, true}; }
 inline Range between(double min, double max) { return {min, max, true, true}; }
 
+/// What lengths and coordinates may be in any unit, and volumes still neither overflow nor vanish.
+inline constexpr double smallest_length = 1e-30, largest_length = 1e30;
+/// Of packing fractions, so thin that a box of one sphere is some 10^12 radii long at most.
+inline constexpr double thinnest = 1e-12;
+inline Range packing_fractions() { return {thinnest, 1, false, true}; }
+
 /// A member as a value; nothing where it is an empty optional or vector.
 template <class M>
 std::optional<Value> value_of(const M& m) {
@@ -251,7 +257,7 @@ auto completion(void (*fill_in)(T&, Scene&, const Section&)) {
 std::string expectation(const Key&, const std::optional<Value>& given = {});
 
 /// Whether a value is one that the key accepts. Lengths and coordinates beyond 1e±30 are
-/// not: volumes must neither overflow nor vanish.
+/// not.
 bool accepts(const Key&, const Value&);
 
 }  // namespace bernal::schema

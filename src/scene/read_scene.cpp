@@ -175,9 +175,11 @@ class Reader {
       if (std::ranges::find(known, key.str()) != known.end()) continue;
       if (!unknown || key.source().begin < unknown->source().begin) unknown = &key;
     }
-    if (unknown)
-      fail(unknown->source(), "unknown key {} in {}{}", toml_string(unknown->str()), where,
-           remedy(unknown->str(), known));
+    if (!unknown) return;
+    const auto number = [&](std::string_view key) { return table[key].value<double>(); };
+    const std::string instead = schema::instead_of(entry, unknown->str(), number);
+    fail(unknown->source(), "unknown key {} in {}{}", toml_string(unknown->str()), where,
+         instead.empty() ? remedy(unknown->str(), known) : instead);
   }
 
   /// Which of several names a table has under `selector`, by its place among them.

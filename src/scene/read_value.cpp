@@ -46,7 +46,7 @@ std::optional<schema::Value> value_in(const toml::node& node, bool as_double) {
   if (const auto* number = node.as_integer(); number && !as_double) return number->get();
   if (node.is_number()) {
     const double number = number_in(node);
-    const bool is_whole = number == std::floor(number) && std::abs(number) < 0x1p63;
+    const bool is_whole = number == std::floor(number) && std::abs(number) <= 0x1p53;
     if (is_whole && !as_double) return static_cast<std::int64_t>(number);
     return number;
   }

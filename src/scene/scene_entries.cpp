@@ -220,16 +220,16 @@ const Entry& spheres_entry() {
                  number(packing_fraction(), "packing_fraction",
                         "stop when the spheres fill this fraction of the container; \"predicted\": as "
                         "much as is predicted, less the error of that",
-                        between(0, 1)),
+                        packing_fractions()),
                  flag(fill(), "fill", "true: as many spheres as the stages can place", {1, 1}),
                  key(Type::distribution, sizes(false), "radius", "lengths are radii"),
                  key(Type::distribution, sizes(true), "diameter", "lengths are diameters"),
                  number(&Scene::gap, "gap",
                         "least distance between the surfaces of two spheres, and of a sphere and its own "
                         "image",
-                        {0}),
+                        {0, largest_length}),
                  number(&Scene::wall_gap, "wall_gap", "least distance of a sphere's surface from the walls",
-                        {0}),
+                        {0, largest_length}),
                  word(&Scene::draw, "draw",
                       "sizes at random, or quantiles: evenly over the distribution; if absent quantiles "
                       "where relax or grow packs a container, and wherever few spheres carry much of the "
@@ -330,8 +330,8 @@ const std::vector<Entry>& container_entries() {
                     names(&MeshFile::cap, "cap",
                           "planes that close open ends, \"z = 1.1\" or \"x < 0.5\": what they cut off is "
                           "outside"),
-                    key(Type::number, &MeshFile::fill_level, "fill_level",
-                        "what lies higher than this z is outside"),
+                    number(&MeshFile::fill_level, "fill_level", "what lies higher than this z is outside",
+                           {-largest_length, largest_length}),
                     unless("\"solid\"", interior_key()),
                     names(&MeshFile::sha256, "sha256",
                           "of the file, then of every obstacle, as sha256sum prints it: with other bytes "

@@ -21,6 +21,11 @@ const std::vector<Entry>& size_entries();
 const std::vector<Entry>& engine_entries();
 Entry polygon_entry();
 
+/// What stands for a key that a distribution has not but other programs have, "; write …"; empty where
+/// nothing is known of it. `number` is what the table gives to a key.
+std::string instead_of(const Entry& sizes, std::string_view key,
+                       const std::function<std::optional<double>(std::string_view)>& number);
+
 inline const Entry& entry_of(const SceneContainer& container) {
   return container_entries()[container.index()];
 }

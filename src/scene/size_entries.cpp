@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <initializer_list>
 
 #include <fmt/format.h>
 
@@ -27,6 +29,36 @@ void lognormal_rule(const Lognormal& of, const Section& section) {
   limits_rule(of, section);
   if (of.d43 && *of.d43 <= *of.d32)
     section.refuse("d43", fmt::format("must be above \"d32\", but {} is not above {}", *of.d43, *of.d32));
+}
+
+using Numbers = std::function<std::optional<double>(std::string_view)>;
+
+/// Of m = exp(ln median + sigma²/2) and s² = m² (exp(sigma²) - 1).
+std::string instead_in_lognormal(std::string_view key, const Numbers& number) {
+  if (key == "d50") return "; that of a sieve analysis is the \"median\" with basis = \"volume\"";
+  if (key == "mu") return "; the mean of the logarithm, mu, is that of the \"median\", exp(mu)";
+  const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
+    return std::ranges::find(names, key) != names.end();
+  };
+  if (!is_one_of({"mean", "sd", "std", "stdev", "std_dev", "standard_deviation", "variance", "cv"}))
+    return {};
+  const std::string formulas =
+      "; of a mean m and a standard deviation s of the size: median = m / sqrt(1 + (s/m)^2), sigma = "
+      "sqrt(ln(1 + "
+      "(s/m)^2))";
+  std::optional<double> mean = number("mean"), deviation = number("sd");
+  for (const std::string_view other : {"std", "stdev", "std_dev", "standard_deviation"})
+    if (!deviation) deviation = number(other);
+  if (!mean || !deviation || !(*mean > 0) || !(*deviation > 0)) return formulas;
+  const double spread = 1 + std::pow(*deviation / *mean, 2);
+  return formulas + fmt::format("; here median = {:.6g}, sigma = {:.6g}", *mean / std::sqrt(spread),
+                                std::sqrt(std::log(spread)));
+}
+
+std::string instead_in_normal(std::string_view key, const Numbers&) {
+  for (const std::string_view same : {"sigma", "std", "stdev", "std_dev", "standard_deviation"})
+    if (key == same) return "; did you mean \"sd\"?";
+  return key == "mu" ? "; did you mean \"mean\"?" : "";
 }
 
 void one_for_each(std::string_view key, std::size_t given, std::string_view of, std::size_t count,
@@ -98,6 +130,12 @@ Key basis(Basis T::*member) {
 Key file(std::string_view help) { return required(key(Type::file, {}, "file", help)); }
 
 }  // namespace
+
+std::string instead_of(const Entry& sizes, std::string_view key, const Numbers& number) {
+  if (&sizes == &size_entries()[SceneSizes(Lognormal{}).index()]) return instead_in_lognormal(key, number);
+  if (&sizes == &size_entries()[SceneSizes(Normal{}).index()]) return instead_in_normal(key, number);
+  return {};
+}
 
 const std::vector<Entry>& size_entries() {
   static const std::vector<Entry> all = {

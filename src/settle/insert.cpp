@@ -191,7 +191,7 @@ const StageEntry& entry_of<Insert>() {
                                           "for the next finer one",
                                           {1, 1e9})),
                     number(&Insert::packing_fraction, "packing_fraction", "where insertion stops",
-                           between(0, 1))}},
+                           packing_fractions())}},
           {.in_bed = true, .in_plane = true, .reaches = Reaches::insertion}),
       .act_in_bed = act(insert),
       .may_bring = {"insertion"},

@@ -98,6 +98,11 @@ struct RunOptions {
 /// Error{bad_argument} where it is to go on from a checkpoint of another run.
 Packing run(const Plan& plan, const RunOptions& options = {});
 
+/// Throws what `run` would throw of the spheres that the scene begins from: those that overlap, or lie
+/// outside, where the first stage does not free them of it. Cost: what drawing all radii and looking for
+/// overlaps costs; nothing where the scene names no start.
+void check_start(const Plan& plan);
+
 /// To be called once a result has been written into its folder: its checkpoints, and those that killed runs
 /// left there, go, unless a run is at work with them.
 void remove_checkpoints(const std::filesystem::path& folder);
