@@ -87,6 +87,7 @@ std::vector<Row> rows_of(const MeshReport& report, const std::vector<std::string
     rows.emplace_back(defect.what,
                       fmt::format("at {}, {:.3g} {} across", text_of(defect.at), defect.across, unit));
   for (const std::string& repair : report.repairs) rows.emplace_back("repair", repair);
+  for (const std::string& caution : report.cautions) rows.emplace_back("caution", caution);
   for (const std::string& problem : report.problems) rows.emplace_back("problem", problem);
   rows.emplace_back("verdict", report.usable() ? "can be a container"
                                : lines.empty() ? "cannot be a container"
@@ -96,7 +97,7 @@ std::vector<Row> rows_of(const MeshReport& report, const std::vector<std::string
     for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;) text.replace(at, 1, "  and  ");
     rows.emplace_back(i == 0 ? "in [container]" : "or", text);
   }
-  if (!lines.empty()) {
+  if (!lines.empty() && !report.usable()) {
     rows.emplace_back("", fmt::format("(lengths in {}; those of a scene are in its own unit)", unit));
   }
   return rows;
@@ -150,8 +151,9 @@ int inspect(const InspectCall& call) {
   const MeshFile file{.file = call.mesh};
   const ImportedMesh imported = read_mesh(file);
   const MeshReport& report = imported.report;
-  const std::vector<std::string> lines =
-      report.usable() ? std::vector<std::string>() : lines_that_help(file, {}, imported, Effort::thorough);
+  std::vector<std::string> lines;
+  if (!report.usable()) lines = lines_that_help(file, {}, imported, Effort::thorough);
+  if (report.hollow_volume > 0) lines.emplace_back("interior = \"cavity\"");
   if (!call.places.empty()) write_places(imported, call.places);
   std::optional<Chambers> chambers;
   if (call.radius && report.usable()) chambers = chambers_for(imported.mesh, *call.radius);

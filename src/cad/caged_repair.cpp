@@ -7,6 +7,7 @@
 
 #include "bernal/core/text.hpp"
 #include "cad/cage.hpp"
+#include "cad/diagnose_mesh.hpp"
 
 namespace bernal::cad {
 
@@ -36,6 +37,16 @@ Mended mend_in_cage(const Mesh& mesh, double seconds, const std::function<Mended
   const std::string befell = run_in_cage("CGAL", limits, work, take);
   if (befell.empty()) return mended;
   return {mesh, fmt::format("not repaired: {}", befell)};
+}
+
+std::string what_is_left(const Mesh& before, const Mesh& after) {
+  constexpr double edges_rounded_off = 0.98;
+  const Vector<3> was = bounds_of_faces(before).size(), is = bounds_of_faces(after).size();
+  if ((is.array() >= edges_rounded_off * was.array()).all()) return {};
+  const auto size = [](const Vector<3>& s) {
+    return fmt::format("{:.4g} x {:.4g} x {:.4g}", s[0], s[1], s[2]);
+  };
+  return fmt::format("of {} are left {}", size(was), size(is));
 }
 
 }  // namespace bernal::cad

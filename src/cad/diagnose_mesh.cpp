@@ -137,6 +137,17 @@ Bounds<3> bounds_of_vertices(const Mesh& mesh) {
   return bounds;
 }
 
+Bounds<3> bounds_of_faces(const Mesh& mesh) {
+  Bounds<3> bounds{Vector<3>::Constant(std::numeric_limits<double>::infinity()),
+                   Vector<3>::Constant(-std::numeric_limits<double>::infinity())};
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t i : t) {
+      bounds.lower = bounds.lower.cwiseMin(mesh.vertices[i]);
+      bounds.upper = bounds.upper.cwiseMax(mesh.vertices[i]);
+    }
+  return bounds;
+}
+
 MeshReport diagnose_mesh(Triangles& triangles) {
   Mesh& mesh = triangles.mesh;
   MeshReport report;

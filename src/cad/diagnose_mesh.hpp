@@ -16,5 +16,7 @@ MeshReport diagnose_mesh(Triangles& triangles);
 
 /// Of all vertices, used or not. Precondition: there are any.
 Bounds<3> bounds_of_vertices(const Mesh& mesh);
+/// Of those that faces use.
+Bounds<3> bounds_of_faces(const Mesh& mesh);
 
 }  // namespace bernal::cad

@@ -13,7 +13,10 @@
 
 #include "bernal/core/error.hpp"
 #include "cad/diagnose_mesh.hpp"
+#include "cad/hollows.hpp"
 #include "cad/mesh_topology.hpp"
+#include "cad/self_intersections.hpp"
+#include "cad/surface_pieces.hpp"
 #include "cad/triangle_tree.hpp"
 
 namespace bernal::cad {
@@ -24,62 +27,6 @@ using Planes = std::vector<CutPlane>;
 [[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::bad_mesh, why); }
 
 std::string text_of(const Vector<3>& p) { return fmt::format("({:g}, {:g}, {:g})", p[0], p[1], p[2]); }
-
-/// The pieces of a closed surface, and which of them lie in which.
-class Pieces {
- public:
-  explicit Pieces(const Mesh& mesh)
-      : mesh_(mesh), topology_(topology_of(mesh)), tree_(mesh), corner_(count(), none), depth_(count(), 0) {
-    constexpr std::uint32_t most = 2000;
-    if (count() > most)
-      refuse(fmt::format(
-          "the surface has {} pieces, too many to ask each what it encloses; choose \"solids\"", count()));
-    for (std::size_t t = mesh.triangles.size(); t-- > 0;) corner_[piece_of(t)] = mesh.triangles[t][0];
-    for (std::uint32_t c = 0; c < count(); ++c)
-      for (std::uint32_t other = 0; other < count(); ++other) depth_[c] += encloses(other, c);
-  }
-
-  std::uint32_t count() const { return topology_.components; }
-  std::uint32_t piece_of(std::size_t triangle) const { return topology_.component[triangle]; }
-  /// How many others enclose it: the walls of a space are one of even depth, and those next in it.
-  std::uint32_t depth(std::uint32_t piece) const { return depth_[piece]; }
-
-  bool encloses(std::uint32_t piece, const Vector<3>& p) const {
-    return tree_.crossing(p, 0, std::numeric_limits<double>::infinity(),
-                          [&](std::uint32_t t) { return piece_of(t) != piece; }) == Crossing::odd;
-  }
-  bool encloses(std::uint32_t piece, std::uint32_t other) const {
-    return piece != other && encloses(piece, mesh_.vertices[corner_[other]]);
-  }
-
-  /// The walls of the spaces of which these are the outermost pieces: they and the ones next in them.
-  Mesh walls_of(std::vector<bool> outermost) const {
-    std::vector<bool> kept = outermost;
-    for (std::uint32_t c = 0; c < count(); ++c)
-      for (std::uint32_t other = 0; other < count(); ++other)
-        if (outermost[other] && depth_[c] == depth_[other] + 1 && encloses(other, c)) kept[c] = true;
-    Mesh result;
-    result.vertices = mesh_.vertices;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
-      if (kept[piece_of(t)]) result.triangles.push_back(mesh_.triangles[t]);
-    drop_unused_vertices(result);
-    return result;
-  }
-
-  /// The innermost piece around a point, or none.
-  std::uint32_t around(const Vector<3>& p) const {
-    std::uint32_t found = none;
-    for (std::uint32_t c = 0; c < count(); ++c)
-      if (encloses(c, p) && (found == none || depth_[c] > depth_[found])) found = c;
-    return found;
-  }
-
- private:
-  const Mesh& mesh_;
-  MeshTopology topology_;
-  TriangleTree tree_;
-  std::vector<std::uint32_t> corner_, depth_;
-};
 
 bool is_closed(const Mesh& mesh) { return topology_of(mesh).closed(); }
 
@@ -98,7 +45,8 @@ CutPlane across(int axis, double level, bool upper_stays) {
 
 /// The space around a solid, in a box that is larger than it: what planes close off from that box is hollow.
 struct Surroundings {
-  explicit Surroundings(const Mesh& solid) : walls(solid), box(bounds_of_vertices(solid)) {
+  explicit Surroundings(const Mesh& solid)
+      : walls(solid), box(bounds_of_vertices(solid)), tree_of_solid(solid) {
     const Vector<3> margin = Vector<3>::Constant(0.1 * box.diagonal());
     box = {box.lower - margin, box.upper + margin};
     const auto first = static_cast<std::uint32_t>(walls.vertices.size());
@@ -115,22 +63,31 @@ struct Surroundings {
     return (p.array() == box.lower.array()).any() || (p.array() == box.upper.array()).any();
   }
 
+  /// Whether a piece of what is left of it encloses the solid itself, as where a plane touches a brim and
+  /// does
+  /// not part what is on both sides of it: asked beside the middle of the piece's largest face.
+  bool is_solid(const SurfacePieces& pieces, std::uint32_t piece, const Mesh& mesh) const {
+    Vector<3> middle = Vector<3>::Zero(), normal = Vector<3>::Zero();
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (pieces.piece_of(t) != piece) continue;
+      const auto& [a, b, c] = mesh.triangles[t];
+      const Vector<3> two_areas =
+          (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+      if (two_areas.squaredNorm() <= normal.squaredNorm()) continue;
+      normal = two_areas;
+      middle = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+    }
+    const Vector<3> aside = 1e-6 * box.diagonal() * normal.stableNormalized();
+    for (const Vector<3>& p : {Vector<3>(middle + aside), Vector<3>(middle - aside)})
+      if (pieces.encloses(piece, p))
+        return tree_of_solid.crossing(p, 0, std::numeric_limits<double>::infinity()) == Crossing::odd;
+    return true;  // thinner than can be told
+  }
+
   Mesh walls;
   Bounds<3> box;
+  TriangleTree tree_of_solid;
 };
-
-/// Of what each piece encloses.
-std::vector<double> volumes_of(const Mesh& mesh, const Pieces& pieces) {
-  std::vector<double> volumes(pieces.count(), 0);
-  const Vector<3> center = bounds_of_vertices(mesh).center();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    volumes[pieces.piece_of(t)] +=
-        (mesh.vertices[a] - center).dot((mesh.vertices[b] - center).cross(mesh.vertices[c] - center));
-  }
-  for (double& volume : volumes) volume = std::abs(volume) / 6;
-  return volumes;
-}
 
 /// All spaces that the planes close off, those that are no mere crevices, or the largest of these.
 enum class Which { all, wide, largest };
@@ -142,19 +99,21 @@ std::optional<Mesh> closed_off(const Surroundings& around, const Planes& planes,
                                Which which, const Vector<3>* point) {
   const Mesh mesh = cut_by(around.walls, planes, tolerance);
   if (!is_closed(mesh)) return std::nullopt;
-  const Pieces pieces(mesh);
+  const SurfacePieces pieces(mesh);
   std::vector<bool> hollow(pieces.count());
   for (std::uint32_t c = 0; c < pieces.count(); ++c) hollow[c] = pieces.depth(c) % 2 == 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t v : mesh.triangles[t])
       if (around.is_on_box(mesh.vertices[v])) hollow[pieces.piece_of(t)] = false;
+  for (std::uint32_t c = 0; c < pieces.count(); ++c)
+    if (hollow[c] && around.is_solid(pieces, c, mesh)) hollow[c] = false;
   if (point) {
     const std::uint32_t one = pieces.around(*point);
     if (one == none || !hollow[one]) return std::nullopt;
     hollow.assign(hollow.size(), false);
     hollow[one] = true;
   } else if (which != Which::all) {
-    const std::vector<double> volumes = volumes_of(mesh, pieces);
+    const std::vector<double> volumes = pieces.volumes();
     std::uint32_t largest = none;
     double volume = crevice * around.box.volume();
     for (std::uint32_t c = 0; c < pieces.count(); ++c) {
@@ -169,7 +128,9 @@ std::optional<Mesh> closed_off(const Surroundings& around, const Planes& planes,
     if (largest != none) hollow[largest] = true;
   }
   if (std::ranges::find(hollow, true) == hollow.end()) return std::nullopt;
-  return pieces.walls_of(hollow);
+  Mesh walls = pieces.walls_of(hollow);
+  if (!planes.empty() && intersects_itself(walls)) return std::nullopt;
+  return walls;
 }
 
 /// Every choice of the sides that the planes leave open, the one where all smaller values stay first.
@@ -256,30 +217,102 @@ std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Me
   return std::nullopt;
 }
 
+/// The hollows that are open to the outside, each closed across its openings: the one around a point, or all
+/// that are no mere dents beside the heaviest one.
+std::optional<ChosenInterior> closed_across_openings(const std::vector<Hollow>& hollows,
+                                                     const Vector<3>* point) {
+  constexpr double as_heavy = 0.2;
+  ChosenInterior chosen;
+  std::vector<std::string> lids;
+  std::size_t taken = 0;
+  for (const Hollow& hollow : hollows) {
+    const bool is_meant = point ? SurfacePieces(hollow.walls).around(*point) != none
+                                : hollow.weight() >= as_heavy * hollows.front().weight();
+    if (!is_meant) continue;
+    ++taken;
+    append(chosen.mesh, hollow.walls);
+    for (const Vector<3>& lid : hollow.lids) lids.push_back(text_of(lid));
+  }
+  if (taken == 0) return std::nullopt;
+  constexpr std::size_t most_told = 4;
+  const std::size_t openings = lids.size();
+  if (openings > most_told) lids.resize(most_told);
+  chosen.notes.push_back(fmt::format("{}, closed across {} at {}{}",
+                                     taken == 1 ? "the hollow" : counted(taken, "", "hollows"),
+                                     openings == 1 ? "its opening" : counted(openings, "", "openings"),
+                                     fmt::join(lids, ", "), openings > most_told ? ", ..." : ""));
+  if (!point && taken < hollows.size())
+    chosen.notes.push_back(
+        fmt::format("{} left out, which a point of \"interior\" chooses",
+                    counted(hollows.size() - taken, "lesser hollow is", "lesser hollows are")));
+  return chosen;
+}
+
+/// Without planes: the voids of a solid or its open hollows, whichever are larger; else what holds water.
+std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, const Mesh& solid,
+                                                    const std::vector<Hollow>& hollows, double tolerance,
+                                                    const Vector<3>* point) {
+  std::optional<Mesh> voids = closed_off(around, {}, tolerance, Which::all, point);
+  double volume = 0;
+  if (voids)
+    for (const double own : SurfacePieces(*voids).volumes()) volume += own;
+  const bool voids_are_larger = hollows.empty() || volume >= hollows.front().volume;
+  if (voids && (point || voids_are_larger))
+    return ChosenInterior{std::move(*voids), {"the voids of the solid"}};
+  if (auto open = closed_across_openings(hollows, point)) {
+    if (voids)
+      open->notes.emplace_back("the voids of the solid are left out, which a point of \"interior\" chooses");
+    return open;
+  }
+  return filled_to_the_brim(around, solid, tolerance, point);
+}
+
 ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double tolerance, const Vector<3>* point) {
   const Surroundings around(solid);
+  const std::vector<Planes> choices = choices_of(planes);
   std::optional<Error> failure;
-  for (const Planes& choice : choices_of(planes)) {
-    try {
-      // Without planes these are the voids inside.
-      if (auto mesh = closed_off(around, choice, tolerance, Which::all, point))
-        return {std::move(*mesh),
-                {planes.empty() ? "the voids of the solid" : "the hollow, " + told(choice)}};
-      if (planes.empty())
-        if (auto filled = filled_to_the_brim(around, solid, tolerance, point)) return std::move(*filled);
-    } catch (const Error& error) {
-      failure = error;
+  const auto first_of = [&](const auto& make) -> std::optional<ChosenInterior> {
+    for (const Planes& choice : choices) {
+      try {
+        if (std::optional<ChosenInterior> made = make(choice)) return made;
+      } catch (const Error& error) {
+        failure = error;
+      }
     }
-  }
-  for (const Planes& choice : choices_of(planes))
-    if (auto mesh = within_bounds(around, solid, choice, tolerance, point)) return std::move(*mesh);
+    return std::nullopt;
+  };
+  const auto by_planes = [&](const Planes& choice) -> std::optional<ChosenInterior> {
+    auto mesh = closed_off(around, choice, tolerance, Which::all, point);
+    if (!mesh) return std::nullopt;
+    return ChosenInterior{std::move(*mesh), {"the hollow, " + told(choice)}};
+  };
+  if (!planes.empty())
+    if (auto made = first_of(by_planes)) return std::move(*made);
+  const std::vector<Hollow> hollows = hollows_of(solid, tolerance);
+  const auto cut_hollow = [&](const Planes& choice) -> std::optional<ChosenInterior> {
+    std::optional<ChosenInterior> open = closed_across_openings(hollows, point);
+    if (!open) return std::nullopt;
+    open->mesh = cut_by(std::move(open->mesh), choice, tolerance);
+    open->notes.push_back(told(choice));
+    return open;
+  };
+  const auto without_planes = [&](const Planes&) {
+    return hollow_without_planes(around, solid, hollows, tolerance, point);
+  };
+  const auto in_bounds = [&](const Planes& choice) {
+    return within_bounds(around, solid, choice, tolerance, point);
+  };
+  if (auto made = planes.empty() ? first_of(without_planes) : first_of(cut_hollow)) return std::move(*made);
+  if (auto made = first_of(in_bounds)) return std::move(*made);
   if (point)
     refuse(
         fmt::format("the point {} of \"interior\" lies in no space that is closed; close it by \"cap\", a "
                     "plane, or move the point",
                     text_of(*point)));
   if (failure && !planes.empty()) throw *failure;
-  refuse("the solid has no void and no hollow; close the one that is meant by \"cap\", a plane");
+  refuse(
+      "the solid has no void and no hollow that can be told from its wall; close the one that is meant by "
+      "\"cap\", a plane");
 }
 
 /// What a surface encloses on the planes' sides: the first choice of sides that leaves it closed; else the
@@ -313,7 +346,7 @@ ChosenInterior choose_interior(const Mesh& surface, const InteriorRequest& reque
   if (point) {
     ChosenInterior inside = enclosed(surface, request.planes, tolerance);
     if (is_closed(inside.mesh)) {
-      const Pieces pieces(inside.mesh);
+      const SurfacePieces pieces(inside.mesh);
       if (const std::uint32_t piece = pieces.around(*point); piece != none && pieces.depth(piece) % 2 == 0) {
         std::vector<bool> outermost(pieces.count(), false);
         outermost[piece] = true;

@@ -201,13 +201,21 @@ std::vector<Line> to_close_the_widest(const MeshFile& options, const ImportedMes
 /// Of processor time, that a repair may take to be offered; and of time, after which no more lines are tried.
 constexpr double seconds_to_try = 4, seconds_for_all = 8;
 
-/// Whether the surface has an inside that can be wrapped: tried coarsely.
-bool can_be_wrapped(const Mesh& mesh, double diagonal) {
-  constexpr double coarse = 0.05, offset_over_alpha = 1.0 / 30;
-  const cad::Mended tried = cad::mend_in_cage(mesh, seconds_to_try, [&] {
-    return cad::wrap(mesh, coarse * diagonal, offset_over_alpha * coarse * diagonal);
-  });
-  return tried.done.starts_with("wrapped from inside");
+/// The line that wraps the surface and what is known of that, or nothing if it has no inside that can be
+/// wrapped: tried as it would be done, or coarsely where that takes long.
+std::string wrap_that_helps(const Mesh& mesh, double smallest_radius, double diagonal) {
+  constexpr double coarse = 0.05;
+  for (const bool coarsely : {false, true}) {
+    const cad::Mended tried = cad::mend_in_cage(mesh, seconds_to_try, [&] {
+      return coarsely ? cad::wrap(mesh, coarse * diagonal) : cad::wrap_for_spheres(mesh, smallest_radius);
+    });
+    if (!tried.done.starts_with("wrapped from inside")) continue;
+    std::string remark = coarsely ? "tried coarsely: gaps wider than its alpha have to be closed first" : "";
+    if (const std::string left = cad::what_is_left(mesh, tried.mesh); !left.empty())
+      remark += fmt::format("{}{}", remark.empty() ? "it loses a part: " : "; ", left);
+    return "repair = [\"wrap\"]" + (remark.empty() ? remark : "  # " + remark);
+  }
+  return {};
 }
 
 }  // namespace
@@ -243,10 +251,11 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
   };
   try_all(candidates(options, as_it_is));
   if (lines.empty()) try_all(to_close_the_widest(options, as_it_is));
-  if (lines.empty() && effort == Effort::thorough && options.repair.empty() &&
-      can_be_wrapped(as_it_is.mesh, as_it_is.report.bounds.diagonal()))
-    lines.emplace_back(
-        "repair = [\"wrap\"]  # tried coarsely: gaps wider than its alpha have to be closed first");
+  if (lines.empty() && effort == Effort::thorough && options.repair.empty())
+    if (std::string line =
+            wrap_that_helps(as_it_is.mesh, purpose.smallest_radius, as_it_is.report.bounds.diagonal());
+        !line.empty())
+      lines.push_back(std::move(line));
   return lines;
 }
 

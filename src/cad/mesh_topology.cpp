@@ -136,6 +136,12 @@ void keep_only(Mesh& mesh, const std::vector<bool>& kept) {
   mesh.triangles.resize(count);
 }
 
+void append(Mesh& mesh, const Mesh& other) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+}
+
 void drop_unused_vertices(Mesh& mesh) {
   std::vector<std::uint32_t> number(mesh.vertices.size(), none);
   std::vector<Vector<3>> used;

@@ -48,6 +48,9 @@ void keep_only(Mesh& mesh, const std::vector<bool>& kept);
 /// Numbers the vertices anew, in the order in which the triangles first use them, without the unused ones.
 void drop_unused_vertices(Mesh& mesh);
 
+/// The faces of another surface too, with corners of their own.
+void append(Mesh& mesh, const Mesh& other);
+
 /// Equal points become one, in the order in which faces use them.
 void weld_equal_points(Mesh& mesh);
 

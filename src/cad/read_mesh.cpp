@@ -13,6 +13,7 @@
 #include "cad/close_seams.hpp"
 #include "cad/defects.hpp"
 #include "cad/diagnose_mesh.hpp"
+#include "cad/hollows.hpp"
 #include "cad/interior.hpp"
 #include "cad/make_triangles.hpp"
 #include "cad/mesh_distance.hpp"
@@ -174,9 +175,10 @@ std::string_view remedy(const MeshReport& report) {
 
 /// The repairs that are asked for, and what they did.
 struct Repairs {
-  Repairs(const MeshFile& options, double most_seconds, Mesh& surface, std::vector<std::string>& phrases)
+  Repairs(const MeshFile& options, const ImportFor& purpose, Mesh& surface, std::vector<std::string>& phrases)
       : wanted(options.repair),
-        seconds(most_seconds),
+        seconds(purpose.repair_seconds),
+        smallest_radius(purpose.smallest_radius),
         largest_hole(options.largest_hole.value_or(std::numeric_limits<double>::infinity())),
         mesh(surface),
         done(phrases) {}
@@ -187,7 +189,7 @@ struct Repairs {
       return;  // it is a wall
     cad::Mended mended = cad::mend_in_cage(mesh, seconds, [&] {
       return repair == Repair::holes  ? cad::close_holes(mesh, largest_hole)
-             : repair == Repair::wrap ? cad::wrap(mesh)
+             : repair == Repair::wrap ? cad::wrap_for_spheres(mesh, smallest_radius)
                                       : cad::cut_out_crossings(mesh);
     });
     done.push_back(mended.done);
@@ -201,14 +203,21 @@ struct Repairs {
         fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
                     "{:.3g} from it",
                     not_less(made_up), not_less(lost)));
+    if (const std::string left = cad::what_is_left(mesh, mended.mesh); !left.empty())
+      cautions.push_back(fmt::format(
+          "repair = [\"{}\"] lost a part: {}{}", name_of(repair), left,
+          repair == Repair::wrap ? "; what is narrower than its alpha is lost, and smaller spheres make that "
+                                   "smaller; \"self-intersections\" before it unites bodies"
+                                 : ""));
     mesh = std::move(mended.mesh);
   }
 
   const std::vector<Repair>& wanted;
-  double seconds, largest_hole;
+  double seconds, smallest_radius, largest_hole;
   Mesh& mesh;
   std::vector<std::string>& done;
   bool any = false;  ///< it is no longer the file's surface
+  std::vector<std::string> cautions;
 };
 
 /// An obstacle's surface; its own unit counts, where it says one, else that of the container's file.
@@ -267,6 +276,20 @@ void take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& pu
   }
 }
 
+/// Cautions where the part is the wall of a vessel.
+void tell_shell(const Mesh& mesh, double tolerance, MeshReport& report) {
+  constexpr std::uint64_t most_faces = 500'000, most_pieces = 100;
+  if (report.faces > most_faces || report.components > most_pieces) return;
+  const std::optional<cad::Hollow> hollow = cad::hollow_of_shell(mesh, tolerance);
+  if (!hollow) return;
+  report.hollow_volume = hollow->volume;
+  report.cautions.push_back(fmt::format(
+      "the part is a shell with {}: it encloses its wall, and its hollow is {:.2g} times as large; "
+      "if that is meant, write interior = \"cavity\" in [container]",
+      hollow->lids.size() == 1 ? "an opening" : cad::counted(hollow->lids.size(), "", "openings"),
+      hollow->volume / report.volume));
+}
+
 ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   const double deflection = options.deflection.value_or(deflection_over_radius * purpose.smallest_radius);
   const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
@@ -296,7 +319,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   if (options.largest_hole && std::ranges::find(options.repair, Repair::holes) == options.repair.end())
     throw OptionError("largest_hole", "needs repair = [\"holes\"] beside it, which closes them");
   const bool cuts = !options.cap.empty() || options.fill_level;
-  Repairs repairs(options, purpose.repair_seconds, mesh, done);
+  Repairs repairs(options, purpose, mesh, done);
   // An opening that a plane is to close is no hole.
   if (!cuts) repairs.apply(Repair::holes);
   repairs.apply(Repair::self_intersections);
@@ -308,6 +331,10 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
 
   MeshReport report = cad::diagnose_mesh(triangles);
   report.is_repaired = repairs.any;
+  report.cautions = std::move(repairs.cautions);
+  if (report.usable() && !cuts && options.obstacles.empty() &&
+      options.interior == std::variant<Interior, Vector<3>>(Interior::solid))
+    tell_shell(mesh, options.weld.value_or(rounding), report);
   report.reader = std::move(chosen.reader);
   if (chosen.facts.unit) {
     report.unit = chosen.facts.written_in ? chosen.facts.written_in->name : chosen.facts.unit->name;

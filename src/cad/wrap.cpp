@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "bernal/core/error.hpp"
+#include "cad/diagnose_mesh.hpp"
 #include "cad/triangle_tree.hpp"
 #include "core/parallel.hpp"
 
@@ -22,15 +23,26 @@ using Point = Kernel::Point_3;
 using Surface = CGAL::Surface_mesh<Point>;
 
 constexpr std::size_t most_points = 500'000;
+constexpr double offset_over_alpha = 1.0 / 30, alpha_over_diagonal = 1.0 / 100;
+/// A seed begins with a ball of 1.65 alpha, which may reach into the surface, though better not: so far it
+/// should be from that; and how far below the faces to look for one, by that.
+constexpr double seed_over_alpha = 1.7 + offset_over_alpha, look_below = 1.02;
 /// Points along the longest edge of the bounds at which to look for the inside.
 constexpr int looks_along_edge = 32;
-constexpr std::size_t most_seeds = 64;
+/// And how often below the faces, at most.
+constexpr double most_looks_below = 50'000;
+constexpr std::size_t most_seeds = 64, most_seeds_in_nooks = 1000;
 
 enum class Stopped { by_monitor, too_many, outside };
+
+bool is_within(const Vector<3>& p, const Bounds<3>& bounds) {
+  return (p.array() >= bounds.lower.array()).all() && (p.array() <= bounds.upper.array()).all();
+}
 
 /// CGAL's door for a look at the work while it goes on.
 struct Watch {
   const Monitor& monitor;
+  Bounds<3> bounds;  ///< that may not be left
   std::size_t points = 0;
 
   template <class Wrapper>
@@ -42,26 +54,17 @@ struct Watch {
   template <class Wrapper, class Place>
   void before_Steiner_point_insertion(const Wrapper&, const Place&) {}
   template <class Wrapper, class Vertex>
-  void after_Steiner_point_insertion(const Wrapper&, Vertex) {
+  void after_Steiner_point_insertion(const Wrapper&, Vertex vertex) {
     if (++points > most_points) throw Stopped::too_many;
     if (points % 256 == 0 && monitor.stop()) throw Stopped::by_monitor;
+    const Point& p = vertex->point();
+    if (!is_within(Vector<3>(p.x(), p.y(), p.z()), bounds)) throw Stopped::outside;
   }
   template <class Wrapper>
   void on_flood_fill_end(const Wrapper&) {}
   template <class Wrapper>
   void on_alpha_wrapping_end(const Wrapper&) {}
 };
-
-Bounds<3> bounds_of_faces(const Mesh& mesh) {
-  Bounds<3> bounds{Vector<3>::Constant(std::numeric_limits<double>::infinity()),
-                   Vector<3>::Constant(-std::numeric_limits<double>::infinity())};
-  for (const auto& t : mesh.triangles)
-    for (const std::uint32_t i : t) {
-      bounds.lower = bounds.lower.cwiseMin(mesh.vertices[i]);
-      bounds.upper = bounds.upper.cwiseMax(mesh.vertices[i]);
-    }
-  return bounds;
-}
 
 /// Whether at least five of the six ways along the axes leave the surface by an odd number of crossings.
 bool is_inside(const TriangleTree& tree, const Vector<3>& p) {
@@ -78,31 +81,67 @@ struct Seed {
   Vector<3> place;
 };
 
-/// Points inside, the farthest from the surface first, none nearer to another than that is to the surface.
-/// Only those farther than `least` are of use.
-std::vector<Seed> points_inside(const Mesh& mesh, const Bounds<3>& bounds, double least,
-                                const Monitor& monitor) {
-  const TriangleTree tree(mesh);
+/// Where to look for the inside: a grid, which finds what is wide, and places below the faces, on both sides,
+/// as deep as a seed has to be at least, which find what is thin.
+std::vector<Vector<3>> places_to_look(const Mesh& mesh, const Bounds<3>& bounds, double depth) {
+  std::vector<Vector<3>> places;
   const double step = bounds.size().maxCoeff() / looks_along_edge;
   std::array<int, 3> count;
   for (int k = 0; k < 3; ++k) count[k] = std::max(1, static_cast<int>(std::ceil(bounds.size()[k] / step)));
   const Vector<3> cell = bounds.size().cwiseQuotient(Vector<3>(count[0], count[1], count[2]));
-  const std::size_t layer = static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]);
-  std::vector<Seed> all(layer * static_cast<std::size_t>(count[2]), {0, Vector<3>::Zero()});
-  for (int z = 0; z < count[2] && !monitor.stop(); ++z)
-    parallel_for(layer, [&](std::size_t i) {
-      const int n = static_cast<int>(i);
-      // Off the middle of the cells, because faces of parts stand at halves and thirds.
-      const Vector<3> at = Vector<3>(n % count[0], n / count[0], z) + Vector<3>(0.4871, 0.5113, 0.4937);
-      const Vector<3> p = bounds.lower + at.cwiseProduct(cell);
-      const double d = tree.distance(p, std::numeric_limits<double>::infinity());
-      if (d > least && is_inside(tree, p)) all[static_cast<std::size_t>(z) * layer + i] = {d, p};
+  for (int z = 0; z < count[2]; ++z)
+    for (int y = 0; y < count[1]; ++y)
+      for (int x = 0; x < count[0]; ++x)
+        // Off the middle of the cells, because faces of parts stand at halves and thirds.
+        places.push_back(bounds.lower +
+                         (Vector<3>(x, y, z) + Vector<3>(0.4871, 0.5113, 0.4937)).cwiseProduct(cell));
+  const auto normal_of = [&](const std::array<std::uint32_t, 3>& t) -> Vector<3> {
+    const Vector<3>& a = mesh.vertices[t[0]];
+    return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
+  };
+  double area = 0;
+  for (const auto& t : mesh.triangles) area += normal_of(t).norm() / 2;
+  const double apart = std::max(2 * depth, std::sqrt(area / most_looks_below));
+  double owed = 0;  // of a look, by the faces so far: small ones share it
+  for (const auto& t : mesh.triangles) {
+    const Vector<3> normal = normal_of(t);
+    owed += normal.norm() / 2 / (apart * apart);
+    const int looks = static_cast<int>(owed);
+    owed -= looks;
+    const Vector<3>&a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    for (int k = 0; k < looks; ++k) {
+      // Roberts's sequence fills the parallelogram evenly; its upper half is folded onto the lower.
+      double u = std::fmod(0.5 + 0.7548776662466927 * k, 1), v = std::fmod(0.5 + 0.5698402909980532 * k, 1);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const Vector<3> p = a + (looks == 1 ? 1.0 / 3 : u) * (b - a) + (looks == 1 ? 1.0 / 3 : v) * (c - a);
+      for (const double side : {depth, -depth}) places.push_back(p + side * normal.stableNormalized());
+    }
+  }
+  return places;
+}
+
+/// Points inside that are farther than `least` from the surface, the farthest first.
+std::vector<Seed> points_inside(const Mesh& mesh, const std::vector<Vector<3>>& places, double least,
+                                const Monitor& monitor) {
+  const TriangleTree tree(mesh);
+  std::vector<Seed> all(places.size(), {0, Vector<3>::Zero()});
+  constexpr std::size_t at_a_time = 4096;
+  for (std::size_t begin = 0; begin < all.size() && !monitor.stop(); begin += at_a_time)
+    parallel_for(begin, std::min(all.size(), begin + at_a_time), [&](std::size_t i) {
+      const double d = tree.distance(places[i], std::numeric_limits<double>::infinity());
+      if (d > least && is_inside(tree, places[i])) all[i] = {d, places[i]};
     });
+  std::erase_if(all, [](const Seed& seed) { return seed.distance == 0; });
   std::stable_sort(all.begin(), all.end(),
                    [](const Seed& a, const Seed& b) { return a.distance > b.distance; });
+  return all;
+}
+
+/// Those of which none is nearer to another than that is to the surface.
+std::vector<Seed> scattered(const std::vector<Seed>& all, std::size_t most) {
   std::vector<Seed> seeds;
   for (const Seed& candidate : all) {
-    if (candidate.distance == 0 || seeds.size() == most_seeds) break;
+    if (seeds.size() == most) break;
     if (std::all_of(seeds.begin(), seeds.end(), [&](const Seed& s) {
           return (s.place - candidate.place).norm() > std::max(candidate.distance, s.distance);
         }))
@@ -113,13 +152,14 @@ std::vector<Seed> points_inside(const Mesh& mesh, const Bounds<3>& bounds, doubl
 
 Point wrap_point(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
 
-/// Wrapped from these points, or from outside if there are none. Throws Stopped.
+/// Wrapped from these points, within the bounds, or from outside if there are none. Throws Stopped.
 Surface wrapped(const Mesh& mesh, double alpha, double offset, const std::vector<Seed>& seeds,
-                const Monitor& monitor) {
+                const Bounds<3>& bounds, const Monitor& monitor) {
   std::vector<Point> points, from;
   for (const Vector<3>& v : mesh.vertices) points.push_back(wrap_point(v));
   for (const Seed& seed : seeds) from.push_back(wrap_point(seed.place));
-  Watch watch{monitor};
+  const Vector<3> anywhere = Vector<3>::Constant(std::numeric_limits<double>::infinity());
+  Watch watch{monitor, seeds.empty() ? Bounds<3>{-anywhere, anywhere} : bounds};
   Surface surface;
   CGAL::alpha_wrap_3(points, mesh.triangles, alpha, offset, surface, CGAL::parameters::default_values(),
                      CGAL::parameters::seed_points(std::ref(from)).visitor(std::ref(watch)));
@@ -145,6 +185,17 @@ Mesh outward_mesh_of(const Surface& surface) {
   return mesh;
 }
 
+/// Of these points those that a wrap has not reached: they lie in chambers of their own.
+std::vector<Seed> outside_of(const Mesh& wrap, const std::vector<Seed>& inside) {
+  if (wrap.triangles.empty()) return {};
+  const TriangleTree tree(wrap);
+  std::vector<Seed> left;
+  for (const Seed& seed : inside)
+    if (tree.crossing(seed.place, 0, std::numeric_limits<double>::infinity()) == Crossing::even)
+      left.push_back(seed);
+  return scattered(left, most_seeds_in_nooks);
+}
+
 /// Whether a wrapped surface holds next to nothing but the offset from a sheet, on both of its sides.
 bool is_but_a_skin(const Mesh& mesh, double offset) {
   double area = 0;
@@ -154,12 +205,10 @@ bool is_but_a_skin(const Mesh& mesh, double offset) {
   return volume_of(Domain(mesh)) < more * area * offset;
 }
 
-bool lies_within(const Mesh& mesh, const Bounds<3>& bounds) {
-  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const Vector<3>& v) {
-    return (v.array() >= bounds.lower.array()).all() && (v.array() <= bounds.upper.array()).all();
-  });
-}
+/// The largest alpha with which a sphere of that radius is a seed wherever it fits, with the default offset.
+double alpha_for(double radius) { return radius / look_below / seed_over_alpha; }
 
+constexpr std::string_view from_inside = "wrapped from inside";
 constexpr std::string_view close_first = "close its openings by \"cap\" or repair = [\"holes\"] first";
 
 }  // namespace
@@ -169,28 +218,33 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
     throw Error(ErrorCode::bad_argument, "alpha and offset of a wrap are lengths, or 0 for the default");
   if (mesh.triangles.empty()) return {std::move(mesh), "not wrapped: it has no faces"};
   const Bounds<3> bounds = bounds_of_faces(mesh);
-  if (alpha == 0) alpha = bounds.diagonal() / 100;
-  if (offset == 0) offset = alpha / 30;
+  if (alpha == 0) alpha = alpha_over_diagonal * bounds.diagonal();
+  if (offset == 0) offset = offset_over_alpha * alpha;
   if (!(offset > 0)) return {std::move(mesh), "not wrapped: it has no extent"};
   const std::string how = fmt::format("alpha {:.4g}, offset {:.4g}", alpha, offset);
 
   try {
-    // A seed begins with a ball of 1.65 alpha, which may reach into the surface, though better not.
-    std::vector<Seed> seeds = points_inside(mesh, bounds, offset, monitor);
+    const double deep = (seed_over_alpha - offset_over_alpha) * alpha + offset;
+    std::vector<Seed> inside =
+        points_inside(mesh, places_to_look(mesh, bounds, look_below * deep), offset, monitor);
     if (monitor.stop()) throw Stopped::by_monitor;
-    const auto deep = std::count_if(seeds.begin(), seeds.end(),
-                                    [&](const Seed& s) { return s.distance > 1.7 * alpha + offset; });
-    if (deep > 0) seeds.resize(static_cast<std::size_t>(deep));
+    const auto is_shallow = [&](const Seed& seed) { return !(seed.distance > deep); };
+    const bool any_deep = !inside.empty() && !is_shallow(inside.front());
+    if (any_deep) std::erase_if(inside, is_shallow);
+    std::vector<Seed> seeds = scattered(inside, most_seeds);
     std::string why = "no inside was found";
     if (!seeds.empty()) {
-      Mesh inner = outward_mesh_of(wrapped(mesh, alpha, offset, seeds, monitor));
-      if (!lies_within(inner, bounds)) throw Stopped::outside;
+      Mesh inner = outward_mesh_of(wrapped(mesh, alpha, offset, seeds, bounds, monitor));
+      if (const std::vector<Seed> nooks = outside_of(inner, inside); any_deep && !nooks.empty()) {
+        seeds.insert(seeds.end(), nooks.begin(), nooks.end());
+        inner = outward_mesh_of(wrapped(mesh, alpha, offset, seeds, bounds, monitor));
+      }
       if (!inner.triangles.empty())
         return {std::move(inner),
-                fmt::format("wrapped from inside ({}): the result lies within the surface", how)};
+                fmt::format("{} ({}): the result lies within the surface", from_inside, how)};
       why = "the inside is too narrow for alpha";
     }
-    Mesh outer = outward_mesh_of(wrapped(mesh, alpha, offset, {}, monitor));
+    Mesh outer = outward_mesh_of(wrapped(mesh, alpha, offset, {}, bounds, monitor));
     if (outer.triangles.empty())
       return {std::move(mesh), fmt::format("not wrapped ({}): nothing came out", how)};
     if (is_but_a_skin(outer, offset))
@@ -211,6 +265,32 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
     std::string said = error.what();
     std::replace(said.begin(), said.end(), '\n', ' ');
     return {std::move(mesh), fmt::format("not wrapped ({}): {}", how, said)};
+  }
+}
+
+Mended wrap_for_spheres(const Mesh& mesh, double radius, const Monitor& monitor) {
+  if (mesh.triangles.empty() || !(radius > 0)) return wrap(mesh, 0, 0, monitor);
+  const double coarsest = alpha_over_diagonal * bounds_of_faces(mesh).diagonal();
+  double area = 0;
+  for (const auto& [i, j, k] : mesh.triangles)
+    area += 0.5 * (mesh.vertices[j] - mesh.vertices[i]).cross(mesh.vertices[k] - mesh.vertices[i]).norm();
+  const double wanted = alpha_for(radius);
+  const double finest = std::sqrt(3 * area / static_cast<double>(most_points));
+  std::string_view why = wanted < finest ? "would have more than a million faces" : "";
+  for (double alpha = std::max(wanted, finest);; alpha *= 2) {
+    alpha = std::min(alpha, coarsest);
+    Mended mended = wrap(mesh, alpha, 0, monitor);
+    const bool is_done = mended.done.starts_with(from_inside);
+    if (!is_done && alpha < coarsest && !monitor.stop()) {
+      why = "leaves the part through its gaps";
+      continue;
+    }
+    if (is_done && alpha > wanted && !why.empty())
+      mended.done += fmt::format(
+          "; a finer one {}, so places are lost where only spheres of a radius below "
+          "{:.3g} fit",
+          why, alpha / wanted * radius);
+    return mended;
   }
 }
 

@@ -20,4 +20,10 @@ namespace bernal::cad {
 /// become more than a million or the monitor stops it.
 Mended wrap(Mesh mesh, double alpha = 0, double offset = 0, const Monitor& monitor = {});
 
+/// The same with the default offset and an alpha so small that no place is lost where a sphere of that radius
+/// fits, or the default alpha if that is smaller. Where the result would have more than a million faces, or
+/// leaves the part through gaps that wide, alpha is as small as it can be to a factor of 2, and `done` says
+/// for which spheres that is too wide. Radius 0: the default.
+Mended wrap_for_spheres(const Mesh& mesh, double radius, const Monitor& monitor = {});
+
 }  // namespace bernal::cad

@@ -176,9 +176,9 @@ ImportDomain domain_of_scene(FileContents& contents, Unit unit, const std::files
   made.scene.walls = scene.walls;
   convert(contents, unit, scene.unit);
   if (std::holds_alternative<MeshFile>(scene.container)) {
-    std::string notes;  // the smallest says how finely a curved part is to be cut into triangles
+    std::string notes, caution;  // the smallest says how finely a curved part is to be cut into triangles
     made.scene.sizes = Constant{std::ranges::min(contents.spheres.r)};
-    made.domain = domain_of(made.scene, notes);
+    made.domain = domain_of(made.scene, notes, caution);
     made.scene.sizes = Constant{0};
   } else {
     made.domain = packed_domain_of(scene);

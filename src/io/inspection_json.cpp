@@ -60,7 +60,10 @@ std::string inspection_as_json(const std::filesystem::path& file, std::string_vi
       {"duplicate_faces", report.duplicate_faces},
       {"self_intersections", report.self_intersections},
       {"chambers", chambers_json(chambers)},
+      {"hollow_volume",
+       report.hollow_volume > 0 ? ordered_json(report.hollow_volume) : ordered_json(nullptr)},
       {"repairs", report.repairs},
+      {"cautions", report.cautions},
       {"problems", report.problems},
       {"defects", defects},
       {"container_lines", lines}};

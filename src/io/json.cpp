@@ -343,6 +343,7 @@ Json run_json(const Packing& packing, std::uint64_t spheres, double packing_frac
           {"phi", packing_fraction},
           {"expected_phi", packing.expected_packing_fraction},
           {"expected_phi_of_sizes", packing.expected_of_sizes},
+          {"caution", packing.caution.empty() ? Json() : Json(packing.caution)},
           {"size_scale", packing.size_scale}};
 }
 

@@ -329,7 +329,7 @@ void expect(Plan& plan) {
   }
   require_readable_places(plan);
   expect_start(plan);
-  plan.caution = caution_of(plan);
+  if (plan.caution.empty()) plan.caution = caution_of(plan);
   require_overlap(plan);
   price_effects(plan);
   require_drawable_count(plan);
@@ -384,7 +384,7 @@ Plan build(const Scene& stated) {
   require_stage_that_places(scene);
   require_effect_of_accuracy(scene);
   plan.start = read_start(plan.scene);
-  plan.domain = domain_of(plan.scene, plan.container_notes);
+  plan.domain = domain_of(plan.scene, plan.container_notes, plan.caution);
   if (scene.engine) engine::require_engine_fits(scene, plan.domain);
   plan.radii = scene.draws() ? radii_of(scene) : radii_there(plan.start.spheres.r);
   if (scene.asks_for_gaps()) {

@@ -75,6 +75,7 @@ void pin_files(MeshFile& mesh) {
 struct MakeDomain {
   Scene& scene;
   std::string& notes;
+  std::string& caution;
 
   Domain operator()(const Box& box) const { return box; }
   Domain operator()(const Cylinder& cylinder) const { return cylinder; }
@@ -92,6 +93,7 @@ struct MakeDomain {
       if (stamps_of(files) != before)
         throw Error(ErrorCode::bad_mesh, "has changed while it was read", {mesh.file.string()});
       notes = in_words(imported.report, mesh, unit);
+      caution = fmt::format("{}", fmt::join(imported.report.cautions, "; "));
       if (imported.report.deflection > 0) mesh.deflection = imported.report.deflection;
       if (imported.report.unit.empty() && !mesh.unit) mesh.unit = unit;
       return std::move(imported.mesh);
@@ -112,14 +114,14 @@ struct MakeDomain {
 
 }  // namespace
 
-Domain domain_of(Scene& scene, std::string& notes) {
-  return std::visit(MakeDomain{scene, notes}, scene.container);
+Domain domain_of(Scene& scene, std::string& notes, std::string& caution) {
+  return std::visit(MakeDomain{scene, notes, caution}, scene.container);
 }
 
 Domain domain_of(const Scene& scene) {
   Scene copy = scene;
-  std::string notes;
-  return domain_of(copy, notes);
+  std::string notes, caution;
+  return domain_of(copy, notes, caution);
 }
 
 Domain packed_domain_of(const Scene& scene) {

@@ -156,7 +156,7 @@ void take_expectations(Plan& plan, const Plan& with_room) {
   plan.places_expected = with_room.places_expected;
   plan.items = with_room.items;
   plan.absent = with_room.absent;
-  plan.caution = with_room.caution;
+  if (plan.caution.empty()) plan.caution = with_room.caution;
   plan.scene.draw = with_room.scene.draw;
 }
 

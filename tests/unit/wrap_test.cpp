@@ -6,7 +6,9 @@
 #include <random>
 
 #include "bernal/core/error.hpp"
+#include "cad/caged_repair.hpp"
 #include "cad/mesh_distance.hpp"
+#include "cad/triangle_tree.hpp"
 #include "support/mended.hpp"
 
 namespace bernal {
@@ -68,6 +70,30 @@ TEST(Wrap, KeepsObstaclesAndChambersApart) {
   const double exact = 2 - 0.008, area = 12 + 0.24;
   EXPECT_LT(volume(mended.mesh), exact);
   EXPECT_GT(volume(mended.mesh), exact - area * (offset + 2 * shake) - 24 * alpha * alpha);
+}
+
+TEST(Wrap, LosesNoPlaceWhereASphereFits) {
+  // Four legs of a square section through the walls of a body, each a piece of its own.
+  const double half = 0.03, length = 1;
+  Mesh part = divided(unit_box, 2);
+  for (const Vector<3>& out : {Vector<3>(1, 0, 0), {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}}) {
+    const Vector<3> aside = Vector<3>::Constant(2 * half) - 2 * half * out.cwiseAbs();
+    const Vector<3> from = Vector<3>::Constant(0.5) + 0.4 * out, to = from + length * out;
+    const Vector<3> lower = from.cwiseMin(to) - aside / 2, upper = from.cwiseMax(to) + aside / 2;
+    append(part, divided(box_mesh(lower, upper - lower), 3));
+  }
+  const Mesh soup = shaken_soup(part, 1e-5, 3);
+  const Mended mended = wrap_for_spheres(soup, 0.9 * half);
+  expect_sound(mended);
+  const TriangleTree tree(mended.mesh);
+  for (const Vector<3>& out : {Vector<3>(1, 0, 0), {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}})
+    for (const double along : {0.55, 0.75, 1.1, 1.36})
+      EXPECT_EQ(tree.crossing(Vector<3>::Constant(0.5) + along * out, 2, 1e9), Crossing::odd)
+          << along << ": " << mended.done;
+  EXPECT_EQ(what_is_left(soup, mended.mesh), "");
+  // Spheres that fit into no leg do not need them, and it is said that they went.
+  const Mended coarse = wrap_for_spheres(soup, 0.3);
+  EXPECT_NE(what_is_left(soup, coarse.mesh), "") << coarse.done;
 }
 
 TEST(Wrap, SaysWhenItLiesOutside) {

@@ -37,12 +37,16 @@ struct MeshReport {
   std::uint64_t components = 0;
   std::int64_t genus = 0;  ///< sum over components, where closed
   double volume = 0;       ///< enclosed, 0 unless usable
+  /// What the hollow of a usable part holds that is a shell with an opening, and so rather the wall around
+  /// what is meant; 0 where it is none.
+  double hollow_volume = 0;
   double area = 0;
   Bounds<3> bounds;
   std::string orientation;      ///< as read: "outward", "inward", "mixed"; "consistent" where there is no out
   std::vector<Defect> defects;  ///< the worst of each kind, a few of them
   std::vector<std::string> repairs;   ///< what is done before use, one phrase each
   bool is_repaired = false;           ///< the wall is no longer the file's surface: some of it was made up
+  std::vector<std::string> cautions;  ///< what may not be as it is meant though it can be a container
   std::vector<std::string> problems;  ///< why it cannot be a container, with counts; empty if it can
   bool usable() const { return problems.empty(); }
 };

@@ -84,6 +84,7 @@ struct Packing {
   std::shared_ptr<const Container> container = {};
   double volume = 0;                     ///< of the domain
   double expected_packing_fraction = 0;  ///< by the plan, before the run
+  std::string caution = {};              ///< the plan's
   /// Random close packing of the very sizes that are there, by the rod model, see `predict_packing_fraction`;
   /// nothing where that says nothing: between walls, in other than three dimensions.
   std::optional<double> expected_of_sizes = {};

@@ -42,8 +42,9 @@ struct Plan {
   double expected_count = 0;
   /// Of the run alone, on one thread; the most that it holds at a time, and what the process takes anyway.
   double expected_seconds = 0, expected_memory_bytes = 0;
-  /// Where a periodic box that is to be packed closely holds too few of its largest spheres for that: how
-  /// many, and how many would do; a sentence, or empty.
+  /// What a reader should see before the run: where a periodic box that is to be packed closely holds too few
+  /// of its largest spheres for that, how many, and how many would do; where a CAD part may not be what is
+  /// meant, why; a sentence, or empty.
   std::string caution;
   bool places_expected = false;     ///< some stage ends with as many spheres as are expected to fit
   std::vector<PlanItem> items;      ///< what would run, in order
@@ -59,8 +60,9 @@ Plan build(const Scene& scene);
 /// stands, even where the packing is to decide how large it becomes and only its proportions matter to
 /// `build`; without a size it is the unit cube. Throws as `build`.
 Domain domain_of(const Scene& scene);
-/// The same, with what the importer did in `notes`; the scene then says itself what was left to the file.
-Domain domain_of(Scene& scene, std::string& notes);
+/// The same, with what the importer did in `notes`, and in `caution` what may not be meant: see
+/// `MeshReport::cautions`; the scene then says itself what was left to the file.
+Domain domain_of(Scene& scene, std::string& notes, std::string& caution);
 
 /// The same for a packing that is there: throws Error{bad_scene} where the scene leaves it to the packing how
 /// large the periodic box becomes and does not say how large it became.

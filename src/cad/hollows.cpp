@@ -1,0 +1,393 @@
+#include "cad/hollows.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/convex_hull_3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "bernal/core/error.hpp"
+#include "cad/diagnose_mesh.hpp"
+#include "cad/patch.hpp"
+#include "cad/self_intersections.hpp"
+#include "cad/surface_pieces.hpp"
+#include "cad/triangulate.hpp"
+#include "core/parallel.hpp"
+
+namespace bernal::cad {
+namespace {
+
+constexpr double endless = std::numeric_limits<double>::infinity();
+
+/// Twice the area, along the normal.
+Vector<3> cross_of(const Mesh& mesh, const FaceCorners& t) {
+  const Vector<3>& a = mesh.vertices[t[0]];
+  return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
+}
+
+Vector<3> center_of(const Mesh& mesh, const FaceCorners& t) {
+  return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
+}
+
+template <class Faces>
+double area_of(const Mesh& mesh, const Faces& faces) {
+  double area = 0;
+  for (const FaceCorners& t : faces) area += cross_of(mesh, t).norm() / 2;
+  return area;
+}
+
+double signed_volume(const Mesh& mesh) {
+  const Vector<3> center = bounds_of_vertices(mesh).center();
+  double six_volumes = 0;
+  for (const FaceCorners& t : mesh.triangles)
+    six_volumes += cross_of(mesh, t).dot(mesh.vertices[t[0]] - center);
+  return six_volumes / 6;
+}
+
+/// Of the corners of the faces; nothing if they lie in a plane.
+std::optional<Mesh> convex_hull_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
+  std::vector<Kernel::Point_3> points;
+  for (const std::uint32_t t : faces)
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      const Vector<3>& p = mesh.vertices[v];
+      points.emplace_back(p[0], p[1], p[2]);
+    }
+  Surface surface;
+  CGAL::convex_hull_3(points.begin(), points.end(), surface);
+  Mesh hull;
+  for (const auto v : surface.vertices()) {
+    const auto& p = surface.point(v);
+    hull.vertices.emplace_back(p.x(), p.y(), p.z());
+  }
+  for (const auto face : surface.faces()) {
+    FaceCorners triangle;
+    std::size_t k = 0;
+    for (const auto v : surface.vertices_around_face(surface.halfedge(face)))
+      if (k < 3) triangle[k++] = static_cast<std::uint32_t>(v.idx());
+    if (k == 3) hull.triangles.push_back(triangle);
+  }
+  if (hull.triangles.size() < 4) return std::nullopt;
+  return hull;
+}
+
+struct LidBox {
+  Bounds<3> bounds{Vector<3>::Constant(endless), Vector<3>::Constant(-endless)};
+
+  void add(const Vector<3>& p) {
+    bounds.lower = bounds.lower.cwiseMin(p);
+    bounds.upper = bounds.upper.cwiseMax(p);
+  }
+  bool meets(const LidBox& other) const {
+    return (bounds.lower.array() <= other.bounds.upper.array()).all() &&
+           (other.bounds.lower.array() <= bounds.upper.array()).all();
+  }
+};
+
+LidBox box_of(const Mesh& mesh, const FaceCorners& t) {
+  LidBox box;
+  for (const std::uint32_t v : t) box.add(mesh.vertices[v]);
+  return box;
+}
+
+/// A loop around an opening, and the plane that it lies in more or less.
+struct Opening {
+  const HoleLoop* loop;
+  Vector<3> middle, normal;
+  bool is_flat;
+};
+
+Opening opening_of(const Mesh& mesh, const HoleLoop& loop) {
+  Opening opening{&loop, Vector<3>::Zero(), Vector<3>::Zero(), false};
+  for (const std::uint32_t v : loop.corners)
+    opening.middle += mesh.vertices[v] / static_cast<double>(loop.corners.size());
+  for (std::size_t k = 0; k < loop.corners.size(); ++k) {
+    const std::uint32_t a = loop.corners[k], b = loop.corners[(k + 1) % loop.corners.size()];
+    opening.normal += (mesh.vertices[a] - opening.middle).cross(mesh.vertices[b] - opening.middle);
+  }
+  opening.normal = opening.normal.stableNormalized();
+  constexpr double flat_enough = 0.01;  // of its width
+  opening.is_flat = std::ranges::all_of(loop.corners, [&](std::uint32_t v) {
+    return std::abs(opening.normal.dot(mesh.vertices[v] - opening.middle)) <= flat_enough * loop.width;
+  });
+  return opening;
+}
+
+/// Whether one lid may lie on both: that of a ring, or of two ends side by side.
+bool share_a_plane(const Opening& wide, const Opening& other) {
+  constexpr double parallel = 0.99, near = 0.1;
+  return wide.is_flat && other.is_flat && std::abs(wide.normal.dot(other.normal)) > parallel &&
+         std::abs(wide.normal.dot(other.middle - wide.middle)) <= near * other.loop->width;
+}
+
+/// One lid on all of these in the plane of the first; false, and nothing, if they have none.
+bool lay_flat_lid(Mesh& walls, const std::vector<Opening>& openings,
+                  const std::vector<std::size_t>& together) {
+  const Opening& widest = openings[together.front()];
+  if (!widest.is_flat || widest.normal.isZero(0)) return false;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const std::size_t j : together) {
+    const std::vector<std::uint32_t>& corners = openings[j].loop->corners;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      edges.emplace_back(corners[k], corners[(k + 1) % corners.size()]);
+  }
+  const auto lid = triangulate_regions(walls.vertices, edges, widest.normal);
+  if (!lid || std::ranges::any_of(*lid, [&](const FaceCorners& t) { return is_degenerate(walls, t); }))
+    return false;
+  walls.triangles.insert(walls.triangles.end(), lid->begin(), lid->end());
+  return true;
+}
+
+/// Appends lids to walls; the boxes of those that lie in one plane, none if some loop has no lid.
+std::vector<LidBox> put_lids(Hollow& hollow) {
+  Mesh& walls = hollow.walls;
+  std::vector<HoleLoop> loops = hole_loops(walls, topology_of(walls));
+  std::ranges::stable_sort(loops, std::greater<>(), &HoleLoop::width);
+  std::vector<Opening> openings;
+  for (const HoleLoop& loop : loops) {
+    if (loop.branched || loop.corners.size() < 3) return {};
+    openings.push_back(opening_of(walls, loop));
+  }
+  std::vector<LidBox> boxes;
+  Patcher patcher(walls);
+  std::vector<bool> is_closed(openings.size(), false);
+  for (std::size_t i = 0; i < openings.size(); ++i) {
+    if (is_closed[i]) continue;
+    std::vector<std::size_t> together;
+    for (std::size_t j = i; j < openings.size(); ++j)
+      if (!is_closed[j] && (j == i || share_a_plane(openings[i], openings[j]))) together.push_back(j);
+    const std::size_t before = walls.triangles.size();
+    if (!lay_flat_lid(walls, openings, together)) {
+      together = {i};
+      if (!patcher.fill(*openings[i].loop)) return {};
+    }
+    LidBox& box = boxes.emplace_back();
+    for (std::size_t t = before; t < walls.triangles.size(); ++t)
+      for (const std::uint32_t v : walls.triangles[t]) box.add(walls.vertices[v]);
+    for (const std::size_t j : together) is_closed[j] = true;
+    hollow.lids.push_back(openings[i].middle);
+  }
+  return boxes;
+}
+
+/// A solid whose pieces are turned outward, and the sides of them.
+class Sides {
+ public:
+  Sides(const Mesh& mesh, double tolerance)
+      : mesh_(mesh), topology_(topology_of(mesh_)), pieces_(mesh_), tree_(mesh_), tolerance_(tolerance) {
+    faces_.resize(pieces_.count());
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) faces_[pieces_.piece_of(t)].push_back(t);
+    is_two_sided_ = orient_consistently(mesh_, topology_) != none;
+    const Vector<3> center = bounds_of_vertices(mesh_).center();
+    for (const std::vector<std::uint32_t>& piece : faces_) {
+      double six_volumes = 0;
+      for (const std::uint32_t t : piece)
+        six_volumes +=
+            cross_of(mesh_, mesh_.triangles[t]).dot(mesh_.vertices[mesh_.triangles[t][0]] - center);
+      if (six_volumes < 0)
+        for (const std::uint32_t t : piece) std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
+    }
+    topology_ = topology_of(mesh_);
+  }
+
+  std::vector<Hollow> hollows(double least) const {
+    std::vector<Hollow> all;
+    if (!is_two_sided_) return all;
+    for (std::uint32_t piece = 0; piece < pieces_.count(); ++piece) {
+      if (pieces_.depth(piece) > 0) continue;
+      for (Hollow& hollow : hollows_of_piece(piece, least)) all.push_back(std::move(hollow));
+    }
+    std::ranges::stable_sort(all, std::greater<>(), &Hollow::weight);
+    for (Hollow& hollow : all) add_what_stands_in(hollow);
+    return all;
+  }
+
+ private:
+  static constexpr std::uint32_t looks_out = none - 1;
+
+  /// With the least reach that will do.
+  std::vector<Hollow> hollows_of_piece(std::uint32_t piece, double least) const {
+    const std::optional<Mesh> hull = convex_hull_of(mesh_, faces_[piece]);
+    if (!hull) return {};
+    const TriangleTree tree(*hull);
+    const double diagonal = bounds_of_vertices(*hull).diagonal();
+    const double own = pieces_.volumes()[piece], air = std::abs(signed_volume(*hull)) - own;
+    if (air < least * own) return {};
+    std::vector<std::vector<Hollow>> found;  // by reach, the heaviest first
+    double largest = 0, least_folded = 1;
+    constexpr double least_reach = 1e-6, even = 1e-3, farthest = 0.4, hardly = 0.05;
+    for (double reach = std::max(16 * tolerance_, least_reach * diagonal); reach < farthest * diagonal;
+         reach *= reach < even * diagonal ? 8 : 1.6) {
+      std::vector<Hollow> some = hollows_within(piece, tree, reach);
+      if (some.empty()) continue;
+      std::ranges::stable_sort(some, std::greater<>(), &Hollow::weight);
+      found.push_back(std::move(some));
+      const Hollow& heaviest = found.back().front();
+      largest = std::max(largest, heaviest.volume);
+      if (heaviest.volume > air / 2 && heaviest.folded < hardly) break;  // nothing else is as large
+    }
+    std::erase_if(found, [&](const auto& some) { return some.front().volume < largest / 4; });
+    for (const auto& some : found) least_folded = std::min(least_folded, some.front().folded);
+    for (auto& some : found)
+      if (some.front().folded <= least_folded + hardly) return std::move(some);
+    return {};
+  }
+
+  std::vector<Hollow> hollows_within(std::uint32_t piece, const TriangleTree& hull, double reach) const {
+    const std::vector<std::uint32_t>& own = faces_[piece];
+    std::vector<std::uint32_t> side(mesh_.triangles.size(), looks_out);
+    parallel_ranges(own.size(), 256, [&](std::size_t first, std::size_t last) {
+      for (std::size_t k = first; k < last; ++k) {
+        const FaceCorners& face = mesh_.triangles[own[k]];
+        const Vector<3> ahead = center_of(mesh_, face) + reach * cross_of(mesh_, face).stableNormalized();
+        if (hull.crossing(ahead, 0, endless) != Crossing::even) side[own[k]] = none;
+      }
+    });
+    double own_area = 0;
+    std::vector<std::pair<double, std::vector<FaceCorners>>> sides;
+    for (const std::uint32_t t : own) {
+      own_area += cross_of(mesh_, mesh_.triangles[t]).norm() / 2;
+      if (side[t] != none) continue;
+      std::vector<FaceCorners> faces = faces_of_side(t, side);
+      const double area = area_of(mesh_, faces);
+      sides.emplace_back(area, std::move(faces));
+    }
+    constexpr double least_area = 1e-4;
+    constexpr std::size_t most_sides = 64;
+    std::ranges::stable_sort(sides, std::greater<>(), [](const auto& some) { return some.first; });
+    if (sides.size() > most_sides) sides.resize(most_sides);
+    std::vector<Hollow> found;
+    for (const auto& [area, faces] : sides)
+      if (area > least_area * own_area)
+        if (std::optional<Hollow> hollow = hollow_behind(faces, area)) found.push_back(std::move(*hollow));
+    return found;
+  }
+
+  /// Those that hang together with it, turned to face what they enclose.
+  std::vector<FaceCorners> faces_of_side(std::uint32_t from, std::vector<std::uint32_t>& side) const {
+    std::vector<FaceCorners> faces;
+    std::vector<std::uint32_t> open{from};
+    side[from] = from;
+    while (!open.empty()) {
+      const std::uint32_t t = open.back();
+      open.pop_back();
+      const auto& [a, b, c] = mesh_.triangles[t];
+      faces.push_back({a, c, b});
+      for (const std::uint32_t next : topology_.neighbor[t])
+        if (next != none && side[next] == none) {
+          side[next] = from;
+          open.push_back(next);
+        }
+    }
+    return faces;
+  }
+
+  std::optional<Hollow> hollow_behind(const std::vector<FaceCorners>& faces, double area) const {
+    throw_if_interrupted();
+    Hollow hollow;
+    hollow.walls = {mesh_.vertices, faces};
+    Mesh& walls = hollow.walls;
+    const std::vector<LidBox> boxes = put_lids(hollow);
+    if (boxes.empty() || !topology_of(walls).closed()) return std::nullopt;
+    const std::vector<FaceCorners> lids(walls.triangles.begin() + static_cast<std::ptrdiff_t>(faces.size()),
+                                        walls.triangles.end());
+    hollow.openness = area_of(walls, lids) / area;
+    constexpr double widest = 0.95;
+    if (!(hollow.openness > 0 && hollow.openness < widest)) return std::nullopt;
+
+    if (orient_consistently(walls, topology_of(walls)) == none) return std::nullopt;
+    const auto ahead_of = [](const FaceCorners& t, std::uint32_t v) {
+      return t[(std::ranges::find(t, v) - t.begin() + 1) % 3];
+    };
+    const std::uint32_t corner = faces.front()[0];
+    if (ahead_of(walls.triangles.front(), corner) != ahead_of(faces.front(), corner))
+      for (FaceCorners& t : walls.triangles) std::swap(t[1], t[2]);
+    hollow.volume = signed_volume(walls);  // below 0 where what they enclose is the solid
+    constexpr double crevice = 1e-6;
+    if (!(hollow.volume > crevice * bounds_of_vertices(mesh_).volume())) return std::nullopt;
+    if (!lies_outside(walls, lids) || crosses_solid(walls, lids, boxes)) return std::nullopt;
+    hollow.folded = folded_share(walls, faces);
+    drop_unused_vertices(walls);
+    return hollow;
+  }
+
+  /// How much of these faces has others of them on its back, across the solid.
+  double folded_share(const Mesh& walls, const std::vector<FaceCorners>& faces) const {
+    const TriangleTree tree(walls);
+    constexpr std::size_t asked = 400;
+    const double diagonal = bounds_of_vertices(mesh_).diagonal(), close = 1e-9 * diagonal;
+    double all = 0, folded = 0;
+    for (std::size_t k = 0; k < faces.size(); k += 1 + faces.size() / asked) {
+      const Vector<3> inward = cross_of(mesh_, faces[k]);  // of them: as they are turned here, into the solid
+      const Vector<3> direction = inward.stableNormalized();
+      const Vector<3> start = center_of(mesh_, faces[k]) + 4 * close * direction;
+      const double ahead = tree_.first_contact(start, close, direction, diagonal, close);
+      all += inward.norm();
+      if (ahead < diagonal && tree.distance(start + ahead * direction, 8 * close) < 8 * close)
+        folded += inward.norm();
+    }
+    return folded / all;
+  }
+
+  /// Whether the largest face of the lids does, asked at its middle.
+  bool lies_outside(const Mesh& walls, const std::vector<FaceCorners>& lids) const {
+    const FaceCorners& largest = *std::ranges::max_element(
+        lids, {}, [&](const FaceCorners& t) { return cross_of(walls, t).squaredNorm(); });
+    return tree_.crossing(center_of(walls, largest), 0, endless) == Crossing::even;
+  }
+
+  bool crosses_solid(const Mesh& walls, const std::vector<FaceCorners>& lids,
+                     const std::vector<LidBox>& boxes) const {
+    Mesh near{walls.vertices, {}};  // lids share corners with the solid by number
+    for (const FaceCorners& t : mesh_.triangles) {
+      const LidBox own = box_of(mesh_, t);
+      if (std::ranges::any_of(boxes, [&](const LidBox& box) { return box.meets(own); }))
+        near.triangles.push_back(t);
+    }
+    const std::size_t faces = near.triangles.size();
+    near.triangles.insert(near.triangles.end(), lids.begin(), lids.end());
+    return std::ranges::any_of(self_intersecting_pairs(near),
+                               [&](const auto& pair) { return pair[1] >= faces; });
+  }
+
+  void add_what_stands_in(Hollow& hollow) const {
+    const TriangleTree walls(hollow.walls);
+    Mesh inside{mesh_.vertices, {}};
+    for (std::uint32_t piece = 0; piece < pieces_.count(); ++piece)
+      if (pieces_.depth(piece) == 0 && walls.crossing(pieces_.corner(piece), 0, endless) == Crossing::odd)
+        for (const std::uint32_t t : faces_[piece]) inside.triangles.push_back(mesh_.triangles[t]);
+    if (inside.triangles.empty()) return;
+    hollow.volume -= std::abs(signed_volume(inside));
+    append(hollow.walls, inside);
+    drop_unused_vertices(hollow.walls);
+  }
+
+  Mesh mesh_;
+  MeshTopology topology_;
+  SurfacePieces pieces_;
+  TriangleTree tree_;
+  double tolerance_;
+  std::vector<std::vector<std::uint32_t>> faces_;  ///< of each piece
+  bool is_two_sided_ = true;
+};
+
+}  // namespace
+
+std::vector<Hollow> hollows_of(const Mesh& solid, double tolerance, double least) {
+  return Sides(solid, tolerance).hollows(least);
+}
+
+std::optional<Hollow> hollow_of_shell(const Mesh& solid, double tolerance) {
+  constexpr double half_as_much_again = 1.5, as_wide_as_a_dish = 0.8;
+  const double wall = std::abs(signed_volume(solid));
+  for (Hollow& hollow : hollows_of(solid, tolerance, half_as_much_again))
+    if (hollow.volume >= half_as_much_again * wall && hollow.openness <= as_wide_as_a_dish)
+      return std::move(hollow);
+  return std::nullopt;
+}
+
+}  // namespace bernal::cad
