@@ -13,6 +13,7 @@
 #include "cad/close_seams.hpp"
 #include "cad/defects.hpp"
 #include "cad/diagnose_mesh.hpp"
+#include "cad/exact_corners.hpp"
 #include "cad/hollows.hpp"
 #include "cad/interior.hpp"
 #include "cad/make_triangles.hpp"
@@ -35,7 +36,7 @@ using cad::FileFacts;
 constexpr double deflection_over_radius = 0.02;
 
 /// From the file's unit to the one that is asked for.
-double factor_of(const MeshFile& options, const FileFacts& facts, std::optional<Unit> wanted) {
+Ratio ratio_of(const MeshFile& options, const FileFacts& facts, std::optional<Unit> wanted) {
   const auto& of_file = facts.unit;
   const auto is_same = [&](Unit unit) { return std::abs(metres_per(unit) / of_file->metres - 1) < 1e-9; };
   if (of_file && options.unit && !options.ignore_unit_of_file && !is_same(*options.unit))
@@ -44,12 +45,12 @@ double factor_of(const MeshFile& options, const FileFacts& facts, std::optional<
                                   "in {}; leave \"unit\" out, or, if the file is wrong, add "
                                   "ignore_unit_of_file = true",
                                   of_file->name, name_of(*options.unit)));
-  if (!wanted) return 1;
-  if (options.unit) return conversion_factor(*options.unit, *wanted);
-  if (!of_file) return 1;
+  if (!wanted) return {};
+  if (options.unit) return conversion_ratio(*options.unit, *wanted);
+  if (!of_file) return {};
   for (const std::string_view name : unit_names())
-    if (const Unit unit = unit_named(name); is_same(unit)) return conversion_factor(unit, *wanted);
-  return of_file->metres / metres_per(*wanted);
+    if (const Unit unit = unit_named(name); is_same(unit)) return conversion_ratio(unit, *wanted);
+  return {of_file->metres / metres_per(*wanted)};
 }
 
 /// The number, from 1, that a text is; 0 if it is none.
@@ -248,18 +249,19 @@ Mesh read_obstacle(const std::filesystem::path& file, const MeshFile& options, c
   throw OptionError("obstacles", fmt::format("{} {}", file.string(), why));
 }
 
-/// Closed surfaces are taken out of the container.
-void take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& purpose,
-                        std::vector<std::string>& done) {
-  if (options.obstacles.empty()) return;
+/// Closed surfaces are taken out of the container; returns them.
+std::vector<Mesh> take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& purpose,
+                                     std::vector<std::string>& done) {
+  std::vector<Mesh> taken_out;
+  if (options.obstacles.empty()) return taken_out;
   cad::Triangles container{.mesh = mesh};
-  if (!cad::diagnose_mesh(container).usable()) return;  // which the report tells
-  mesh = std::move(container.mesh);                     // turned outward
+  if (!cad::diagnose_mesh(container).usable()) return taken_out;  // which the report tells
+  mesh = std::move(container.mesh);                               // turned outward
   std::vector<std::filesystem::path> seen;
   for (const std::filesystem::path& file : options.obstacles) {
     if (std::ranges::find(seen, file) != seen.end()) refuse_obstacle(file, "stands there twice");
     seen.push_back(file);
-    const Mesh obstacle = read_obstacle(file, options, purpose);
+    const Mesh& obstacle = taken_out.emplace_back(read_obstacle(file, options, purpose));
     switch (cad::take_out(mesh, obstacle)) {
       case cad::TakenOut::outside:
         refuse_obstacle(
@@ -274,6 +276,7 @@ void take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& pu
             fmt::format("took out {}, {} faces", file.filename().string(), obstacle.triangles.size()));
     }
   }
+  return taken_out;
 }
 
 /// Cautions where the part is the wall of a vessel.
@@ -295,7 +298,8 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
   ChosenSoup chosen = cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
                                      assumed ? metres_per(*assumed) : 0);
-  const double factor = factor_of(options, chosen.facts, purpose.unit);
+  const Ratio ratio = ratio_of(options, chosen.facts, purpose.unit);
+  const double factor = ratio.nearest();
 
   ImportedMesh result;
   std::vector<std::string> done;
@@ -311,9 +315,10 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   chosen.soup = {};
   Mesh& mesh = triangles.mesh;
   const double rounding = factor * cad::rounding_of_coordinates(mesh);
+  turn_up(mesh, options.up);
+  const std::vector<Vector<3>> as_written = factor != 1 ? mesh.vertices : std::vector<Vector<3>>();
   if (factor != 1)
     for (Vector<3>& v : mesh.vertices) v *= factor;
-  turn_up(mesh, options.up);
   close_seams_of(triangles, options.weld.value_or(rounding), done);
   if (!options.solids.empty() && by_piece) keep_pieces(mesh, options);
   if (options.largest_hole && std::ranges::find(options.repair, Repair::holes) == options.repair.end())
@@ -327,7 +332,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   take_interior(mesh, options, options.weld.value_or(rounding), done);
   if (cuts) repairs.apply(Repair::holes);
   if (cuts) repairs.apply(Repair::wrap);
-  take_out_obstacles(mesh, options, purpose, done);
+  const std::vector<Mesh> taken_out = take_out_obstacles(mesh, options, purpose, done);
 
   MeshReport report = cad::diagnose_mesh(triangles);
   report.is_repaired = repairs.any;
@@ -348,6 +353,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   report.repairs.insert(report.repairs.begin(), done.begin(), done.end());
   result.report = std::move(report);
   result.mesh = std::move(mesh);
+  if (factor != 1 || !taken_out.empty()) cad::state_exactly(result.mesh, as_written, ratio, taken_out);
   return result;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,16 +20,18 @@ struct Definition {
   int exponent;
 };
 
-constexpr double power_of_ten(int n) {
-  double p = 1;
-  for (int k = 0; k < n; ++k) p *= 10;  // exact up to 10^22
+constexpr std::int64_t power_of_ten(int n) {
+  std::int64_t p = 1;
+  for (int k = 0; k < n; ++k) p *= 10;
   return p;
 }
 
-constexpr double quotient(Definition from, Definition to) {
+constexpr Ratio quotient(Definition from, Definition to) {
   const int shift = from.exponent - to.exponent;
-  return from.numerator * power_of_ten(shift > 0 ? shift : 0) /
-         (to.numerator * power_of_ten(shift < 0 ? -shift : 0));
+  const std::int64_t above = from.numerator * power_of_ten(shift > 0 ? shift : 0),
+                     below = to.numerator * power_of_ten(shift < 0 ? -shift : 0);
+  const std::int64_t common = std::gcd(above, below);
+  return {static_cast<double>(above / common), static_cast<double>(below / common)};
 }
 
 constexpr Definition definitions[] = {{1, -9}, {1, -6}, {1, -3}, {1, -2}, {1, 0}, {254, -4}, {3048, -4}};
@@ -51,6 +55,7 @@ Unit unit_named(std::string_view name) {
 
 double metres_per(Unit unit) { return conversion_factor(unit, Unit::m); }
 
-double conversion_factor(Unit from, Unit to) { return quotient(definition_of(from), definition_of(to)); }
+Ratio conversion_ratio(Unit from, Unit to) { return quotient(definition_of(from), definition_of(to)); }
+double conversion_factor(Unit from, Unit to) { return conversion_ratio(from, to).nearest(); }
 
 }  // namespace bernal

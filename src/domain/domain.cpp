@@ -336,6 +336,7 @@ Domain to_local(const Domain& shape, const Frame& frame) {
                                },
                                [&](Mesh s) -> Domain {
                                  for (Vector<3>& v : s.vertices) v = frame.to_local(v);
+                                 s.exact = nullptr;
                                  s.inset /= frame.scale;
                                  return s;
                                },

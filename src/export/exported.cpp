@@ -66,6 +66,7 @@ struct Conversion {
   }
   Domain operator()(Mesh mesh) const {
     for (Vector<3>& vertex : mesh.vertices) vertex = point(vertex);
+    mesh.exact = nullptr;
     return mesh;
   }
   Domain operator()(Polygon polygon) const {

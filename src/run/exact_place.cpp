@@ -13,6 +13,9 @@ std::optional<Vector<3>> ExactPlace::near(const Vector<3>& place, double r) {
     of_scene_ =
         make_container(plan_.domain, plain ? WallArithmetic::filtered : plan_.scene.walls, none.resolution);
   }
+  // Of corners that are no doubles, those of the container are off by less than two spacings an axis.
+  const auto* mesh = std::get_if<Mesh>(&plan_.domain);
+  const double off = mesh && mesh->exact ? 4 * frame_.resolution * frame_.scale : 0;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const Vector<3> middle = bounds_of(plan_.domain).center(), at = frame_.to_scene(place);
   const double in_the_middle_within = 1e-9 * frame_.scale + 4 * frame_.resolution * frame_.scale;
@@ -24,7 +27,7 @@ std::optional<Vector<3>> ExactPlace::near(const Vector<3>& place, double r) {
         if (step % 3 > 0) p[k] = std::nextafter(p[k], step % 3 == 1 ? infinity : -infinity);
       }
       const Vector<3> local = frame_.to_local(p);
-      if (frame_.to_scene(local) == p && of_scene_->contains(p, frame_.scale * r)) return local;
+      if (frame_.to_scene(local) == p && of_scene_->contains(p, frame_.scale * r + off)) return local;
     }
   }
   return {};

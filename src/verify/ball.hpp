@@ -20,13 +20,15 @@ struct Ball {
   double center(int axis) const { return c[axis]; }
 };
 
-/// How far from a wall a centre has to stay: a radius, and the gap that is to be beyond it.
+/// How far from a wall a centre has to stay: a radius, and the gap that is to be beyond it; so many times
+/// that where all lengths are taken so many times.
 struct Reach {
-  double r, gap = 0;
+  double r, gap = 0, scale = 1;
 
   template <class Number>
   Number as() const {
-    return gap == 0 ? Number(r) : Number(r) + Number(gap);
+    const Number length = gap == 0 ? Number(r) : Number(r) + Number(gap);
+    return scale == 1 ? length : length * Number(scale);
   }
 };
 

@@ -15,6 +15,17 @@ namespace {
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
+/// How far a vertex is from its exact corner at most: two roundings of a product, and another one or
+/// underflow where that is looked at in double.
+double off_by_at_most(double x) { return 0x1p-50 * std::abs(x) + 0x1p-1070; }
+
+/// The product with a positive integer below 2^53, without rounding.
+WidePoint times(double scale, const Vector<3>& p) {
+  WidePoint product{scale * p, Vector<3>::Zero()};
+  for (int k = 0; k < 3; ++k) product.low[k] = std::fma(scale, p[k], -product.high[k]);
+  return product;
+}
+
 void check_numbers(const Mesh& mesh) {
   if (mesh.triangles.empty()) throw Error(ErrorCode::bad_mesh, "the container's mesh has no triangles");
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
@@ -26,6 +37,22 @@ void check_numbers(const Mesh& mesh) {
         throw Error(ErrorCode::bad_mesh,
                     fmt::format("triangle {} of the container's mesh names vertex {} of {}", t, v,
                                 mesh.vertices.size()));
+}
+
+/// That other corners than those of the vertices are taken for the wall by mistake shows in numbers.
+void check_exact_corners(const Mesh& mesh) {
+  if (!mesh.exact) return;
+  const ExactCorners& exact = *mesh.exact;
+  bool same = exact.scale >= 1 && exact.high.size() == mesh.vertices.size() &&
+              exact.low.size() == mesh.vertices.size();
+  for (std::size_t v = 0; same && v < mesh.vertices.size(); ++v)
+    for (int k = 0; k < 3; ++k) {
+      const double x = mesh.vertices[v][k], high = exact.high[v][k], low = exact.low[v][k];
+      same = same && high + low == high && std::abs(high / exact.scale - x) <= off_by_at_most(x);
+    }
+  if (!same)
+    throw Error(ErrorCode::bad_mesh,
+                "the exact corners of the container's mesh are not those of its vertices");
 }
 
 /// How many directed edges lack a partner in the opposite direction.
@@ -48,17 +75,22 @@ std::size_t unpaired_edges(const Triangles& triangles) {
 
 /// The same triangles with one index for all vertices at the same point.
 Triangles welded(const Mesh& mesh) {
-  const auto& points = mesh.vertices;
-  std::vector<std::uint32_t> order(points.size());
+  const auto point = [&](std::uint32_t v) {
+    return mesh.exact ? WidePoint{mesh.exact->high[v], mesh.exact->low[v]}
+                      : WidePoint{mesh.vertices[v], Vector<3>::Zero()};
+  };
+  std::vector<std::uint32_t> order(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto less = [&](std::uint32_t a, std::uint32_t b) {
-    return std::lexicographical_compare(points[a].begin(), points[a].end(), points[b].begin(),
-                                        points[b].end());
+    const WidePoint p = point(a), q = point(b);
+    for (int k = 0; k < 3; ++k)
+      if (!are_level(p, q, k)) return is_above(q, p, k);
+    return false;
   };
   tbb::parallel_sort(order.begin(), order.end(), less);
-  std::vector<std::uint32_t> first(points.size());
+  std::vector<std::uint32_t> first(order.size());
   for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && points[order[i - 1]] == points[order[i]] ? first[order[i - 1]] : order[i];
+    first[order[i]] = i > 0 && !less(order[i - 1], order[i]) ? first[order[i - 1]] : order[i];
   Triangles result = mesh.triangles;
   for (auto& t : result)
     for (std::uint32_t& v : t) v = first[v];
@@ -108,13 +140,19 @@ MeshWall::MeshWall(const Mesh& mesh) : mesh_(mesh), facets_(facets_of(mesh)) {}
 
 std::vector<MeshWall::Facet> MeshWall::facets_of(const Mesh& mesh) {
   check_numbers(mesh);
+  check_exact_corners(mesh);
   check_closed(mesh);
   std::vector<Facet> facets(mesh.triangles.size());
   for (std::size_t t = 0; t < facets.size(); ++t) {
     facets[t].triangle = static_cast<std::uint32_t>(t);
     for (const std::uint32_t v : mesh.triangles[t]) {
       const Vector<3>& p = mesh.vertices[v];
-      facets[t].extent.include({{p[0], p[1], p[2]}, {p[0], p[1], p[2]}});
+      std::array<double, 3> lower{p[0], p[1], p[2]}, upper = lower;
+      for (int k = 0; k < 3 && mesh.exact; ++k) {
+        lower[k] -= off_by_at_most(p[k]);
+        upper[k] += off_by_at_most(p[k]);
+      }
+      facets[t].extent.include({lower, upper});
     }
   }
   return facets;
@@ -125,6 +163,25 @@ Corners MeshWall::corners(const Facet& facet) const {
   return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
 }
 
+CornersOf<WidePoint> MeshWall::exact_corners(const Facet& facet) const {
+  const auto corner = [&](std::uint32_t v) { return WidePoint{mesh_.exact->high[v], mesh_.exact->low[v]}; };
+  const auto& t = mesh_.triangles[facet.triangle];
+  return {corner(t[0]), corner(t[1]), corner(t[2])};
+}
+
+Truth MeshWall::clears(const Ball<3>& ball, const Reach& reach, const Facet& facet, Arithmetic arithmetic,
+                       Tally& tally) const {
+  if (!mesh_.exact)
+    return decide(arithmetic, tally.decisions, [&]<class Number>() {
+      return ball_clears_triangle<Number>(ball.c, reach, corners(facet));
+    });
+  const WidePoint center = times(mesh_.exact->scale, ball.c);
+  const Reach scaled{reach.r, reach.gap, mesh_.exact->scale};
+  return decide(arithmetic, tally.decisions, [&]<class Number>() {
+    return ball_clears_triangle<Number>(center, scaled, exact_corners(facet));
+  });
+}
+
 Stand MeshWall::stand_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
   const Arithmetic arithmetic = options.arithmetic;
   const Reach reach{ball.r, options.wall_gap};
@@ -132,13 +189,9 @@ Stand MeshWall::stand_of(const Ball<3>& ball, const CertifyOptions& options, Tal
   double distance = Box<3>::infinity;
   facets_.for_each_touching(widened(ball.box(), wall_distances_known_up_to(options)),
                             [&](const Facet& facet) {
-                              const Corners corner = corners(facet);
                               ++tally.walls;
-                              const Truth clears = decide(arithmetic, tally.decisions, [&]<class Number>() {
-                                return ball_clears_triangle<Number>(ball.c, reach, corner);
-                              });
-                              clear = clear && clears == Truth::yes;
-                              distance = std::min(distance, distance_from_triangle(ball.c, corner));
+                              clear &= clears(ball, reach, facet, arithmetic, tally) == Truth::yes;
+                              distance = std::min(distance, distance_from_triangle(ball.c, corners(facet)));
                             });
 
   const bool center_is_inside = center_inside(ball, arithmetic, tally);
@@ -152,12 +205,14 @@ Stand MeshWall::stand_of(const Ball<3>& ball, const CertifyOptions& options, Tal
 bool MeshWall::center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {
   const Vector<3>& p = ball.c;
   const Box<3> upwards{{p[0], p[1], p[2]}, {p[0], p[1], Box<3>::infinity}};
+  const WidePoint wide = mesh_.exact ? times(mesh_.exact->scale, p) : WidePoint{};
   int winding = 0;
   Decisions crossings;
   facets_.for_each_touching(upwards, [&](const Facet& facet) {
-    const Corners corner = corners(facet);
-    winding += static_cast<int>(
-        decide(arithmetic, crossings, [&]<class Number>() { return crossing_above<Number>(p, corner); }));
+    winding += static_cast<int>(decide(arithmetic, crossings, [&]<class Number>() {
+      return mesh_.exact ? crossing_above<Number>(wide, exact_corners(facet))
+                         : crossing_above<Number>(p, corners(facet));
+    }));
   });
   ++tally.centers;
   const bool by_double = arithmetic == Arithmetic::filtered && crossings.by_exact == 0;

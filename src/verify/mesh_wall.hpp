@@ -13,10 +13,13 @@ namespace bernal::verify {
 /// Inside is where the winding number is 1. That is well defined because the surface has no boundary: as many
 /// edges run from a to b as from b to a, for any two points, which the constructor checks. That the mesh does
 /// not intersect itself and faces outwards is its precondition (see Mesh).
+///
+/// Where the corners are no doubles (see ExactCorners), all lengths are taken `scale` times: so the corners
+/// and the centres are sums of two doubles, and the radii exact products.
 class MeshWall {
  public:
   /// Keeps a reference to the mesh. Throws Error{bad_mesh} unless it has triangles, only finite vertices,
-  /// valid indices and no boundary.
+  /// valid indices, exact corners that are those of its vertices, and no boundary.
   explicit MeshWall(const Mesh& mesh);
 
   /// Tries the ball against the near triangles and decides the side of its centre; counts both.
@@ -32,7 +35,10 @@ class MeshWall {
   };
 
   Corners corners(const Facet& facet) const;
+  CornersOf<WidePoint> exact_corners(const Facet& facet) const;
   static std::vector<Facet> facets_of(const Mesh& mesh);
+  Truth clears(const Ball<3>& ball, const Reach& reach, const Facet& facet, Arithmetic arithmetic,
+               Tally& tally) const;
   bool center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const;
   double distance_from(const Vector<3>& p) const;
 

@@ -22,9 +22,33 @@ template <class Number>
 Triple<Number> vector(const Vector<3>& v) {
   return {Number(v[0]), Number(v[1]), Number(v[2])};
 }
+
+/// A point whose coordinates are sums of two doubles, of which `high` is the one nearest to the sum.
+struct WidePoint {
+  Vector<3> high, low;
+};
+
+/// a[k] - b[k], and what is told of the coordinates of two points by comparing doubles.
 template <class Number>
-Triple<Number> difference(const Vector<3>& a, const Vector<3>& b) {
-  return {Number(a[0]) - Number(b[0]), Number(a[1]) - Number(b[1]), Number(a[2]) - Number(b[2])};
+Number minus(const Vector<3>& a, const Vector<3>& b, int k) {
+  return Number(a[k]) - Number(b[k]);
+}
+template <class Number>
+Number minus(const WidePoint& a, const WidePoint& b, int k) {
+  return minus<Number>(a.high, b.high, k) + minus<Number>(a.low, b.low, k);
+}
+inline bool is_above(const Vector<3>& a, const Vector<3>& b, int k) { return a[k] > b[k]; }
+inline bool is_above(const WidePoint& a, const WidePoint& b, int k) {
+  return a.high[k] > b.high[k] || (a.high[k] == b.high[k] && a.low[k] > b.low[k]);
+}
+template <class Point>
+bool are_level(const Point& a, const Point& b, int k) {
+  return !is_above(a, b, k) && !is_above(b, a, k);
+}
+
+template <class Number, class Point>
+Triple<Number> difference(const Point& a, const Point& b) {
+  return {minus<Number>(a, b, 0), minus<Number>(a, b, 1), minus<Number>(a, b, 2)};
 }
 template <class Number>
 Number dot(const Triple<Number>& a, const Triple<Number>& b) {
@@ -119,15 +143,17 @@ Truth inside_side(const Vector<3>& c, const Reach& r, const Cylinder& s) {
   return at_least(square(room) * squared_norm(a), squared_norm(cross(difference<Number>(c, s.base), a)));
 }
 
-using Corners = std::array<Vector<3>, 3>;
+template <class Point>
+using CornersOf = std::array<Point, 3>;
+using Corners = CornersOf<Vector<3>>;
 
 /// The distance of p from the triangle is at least r.
 ///
 /// A triangle is its three vertices, the three open edges and the open face. An edge matters only where p
 /// projects between its ends, the face only where p projects inside; a vertex always belongs to the triangle,
 /// and so may be asked without a condition. Edges and faces without extent impose nothing.
-template <class Number>
-Truth ball_clears_triangle(const Vector<3>& p, const Reach& r, const Corners& corner) {
+template <class Number, class Point>
+Truth ball_clears_triangle(const Point& p, const Reach& r, const CornersOf<Point>& corner) {
   const Number r_squared = square(r.as<Number>());
   const Triple<Number> to_p[3] = {difference<Number>(p, corner[0]), difference<Number>(p, corner[1]),
                                   difference<Number>(p, corner[2])};
@@ -164,14 +190,14 @@ Truth ball_clears_triangle(const Vector<3>& p, const Reach& r, const Corners& co
 /// On which side of the line a -> b, seen from above, the point (px + ε, py + ε²) lies for all sufficiently
 /// small ε > 0; positive to the left. Zero only where a and b coincide seen from above: such a line has no
 /// sides. Antisymmetric in a, b, so that a path that crosses an edge leaves one triangle and enters another.
-template <class Number>
-Sign side_seen_from_above(const Vector<3>& a, const Vector<3>& b, const Vector<3>& p) {
-  if (a[0] == b[0] && a[1] == b[1]) return Sign::zero;
-  const auto minus = [](double s, double t) { return Number(s) - Number(t); };
-  const Number area = minus(b[0], a[0]) * minus(p[1], a[1]) - minus(b[1], a[1]) * minus(p[0], a[0]);
+template <class Number, class Point>
+Sign side_seen_from_above(const Point& a, const Point& b, const Point& p) {
+  if (are_level(a, b, 0) && are_level(a, b, 1)) return Sign::zero;
+  const Number area =
+      minus<Number>(b, a, 0) * minus<Number>(p, a, 1) - minus<Number>(b, a, 1) * minus<Number>(p, a, 0);
   if (area.sign() != Sign::zero) return area.sign();
-  if (a[1] != b[1]) return a[1] > b[1] ? Sign::positive : Sign::negative;
-  return b[0] > a[0] ? Sign::positive : Sign::negative;
+  if (!are_level(a, b, 1)) return is_above(a, b, 1) ? Sign::positive : Sign::negative;
+  return is_above(b, a, 0) ? Sign::positive : Sign::negative;
 }
 
 /// How the ray from p upwards (+z) crosses the triangle: `positive` where it leaves through the side from
@@ -179,8 +205,8 @@ Sign side_seen_from_above(const Vector<3>& a, const Vector<3>& b, const Vector<3
 ///
 /// The ray is moved by (ε, ε²) in x and y, so that it meets no edge, no vertex and no vertical triangle. If p
 /// lies on the triangle the answer is `zero`; no ball around such a p clears it anyway.
-template <class Number>
-Sign crossing_above(const Vector<3>& p, const Corners& corner) {
+template <class Number, class Point>
+Sign crossing_above(const Point& p, const CornersOf<Point>& corner) {
   const Sign side[3] = {side_seen_from_above<Number>(corner[0], corner[1], p),
                         side_seen_from_above<Number>(corner[1], corner[2], p),
                         side_seen_from_above<Number>(corner[2], corner[0], p)};
@@ -189,7 +215,7 @@ Sign crossing_above(const Vector<3>& p, const Corners& corner) {
   if (any(Sign::unknown)) return Sign::unknown;
 
   const Sign orientation = side[0];
-  if (corner[0][2] > p[2] && corner[1][2] > p[2] && corner[2][2] > p[2]) return orientation;
+  if (is_above(corner[0], p, 2) && is_above(corner[1], p, 2) && is_above(corner[2], p, 2)) return orientation;
   const Triple<Number> normal =
       cross(difference<Number>(corner[1], corner[0]), difference<Number>(corner[2], corner[0]));
   // normal·(p - corner) = normal_z (height of p above the plane), and normal_z has the sign `orientation`.

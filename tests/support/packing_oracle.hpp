@@ -91,9 +91,9 @@ inline int winding(const Point& p, const Mesh& mesh) {
 inline bool inside(const Vector<dynamic>& c, double radius, const Box& box) {
   for (int k = 0; k < box.dimension(); ++k) {
     if (!box.periodic.empty() && box.periodic[static_cast<std::size_t>(k)]) continue;
-    const double upper = box.corner[k] + box.size[k];
-    if (Rational(c[k]) - Rational(radius) < Rational(box.corner[k])) return false;
-    if (Rational(c[k]) + Rational(radius) > Rational(upper)) return false;
+    const Rational lower(box.corner[k]);
+    if (Rational(c[k]) - Rational(radius) < lower) return false;
+    if (Rational(c[k]) + Rational(radius) > lower + Rational(box.size[k])) return false;
   }
   return true;
 }

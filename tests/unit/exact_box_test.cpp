@@ -2,30 +2,19 @@
 // asked of walls and what is packed mean the sum.
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_int.hpp>
-
 #include "bernal/core/random.hpp"
 #include "bernal/domain/container.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "core/rounding.hpp"
+#include "support/packing_oracle.hpp"
 
 namespace bernal {
 namespace exact_box_test {
 
-using Rational = boost::multiprecision::cpp_rational;
+using oracle::Rational;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// By nothing but fractions.
-bool lies_inside(const Box& box, const Vector<dynamic>& c, double r) {
-  for (int k = 0; k < box.dimension(); ++k) {
-    if (!box.has_wall(k)) continue;
-    if (Rational(c[k]) - Rational(r) < Rational(box.corner[k])) return false;
-    if (Rational(c[k]) + Rational(r) > Rational(box.corner[k]) + Rational(box.size[k])) return false;
-  }
-  return true;
-}
 
 /// A ball at the upper wall of an axis, nearer or farther by some doubles.
 struct Touching {
@@ -62,7 +51,7 @@ TEST(ExactBox, IsWhatIsCertified) {
   std::size_t inside = 0, inexact = 0;
   for (int k = 0; k < 1000; ++k) {
     const Touching t = touching(random, 2 + k % 2);
-    const bool expected = lies_inside(t.box, t.center, t.r);
+    const bool expected = oracle::inside(t.center, t.r, t.box);
     inside += expected;
     for (int axis = 0; axis < t.box.dimension(); ++axis)
       inexact += !is_exact_sum(t.box.corner[axis], t.box.size[axis]);
@@ -91,7 +80,7 @@ TEST(ExactBox, IsWhatItsContainerAnswersFor) {
   Random random(2, stream(Stream::test));
   for (int k = 0; k < 1000; ++k) {
     const Touching t = touching(random, 2 + k % 2);
-    const bool expected = lies_inside(t.box, t.center, t.r);
+    const bool expected = oracle::inside(t.center, t.r, t.box);
     Vector<3> c = Vector<3>::Zero();
     c.head(t.center.size()) = t.center;
     for (const WallArithmetic arithmetic : {WallArithmetic::filtered, WallArithmetic::exact})

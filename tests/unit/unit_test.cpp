@@ -39,6 +39,21 @@ TEST(Units, InchesAndFeet) {
   EXPECT_EQ(conversion_factor(Unit::mm, Unit::in), 10.0 / 254.0);
 }
 
+TEST(Units, RatiosAreOfIntegersWithoutACommonFactor) {
+  const auto expect = [](Unit from, Unit to, double numerator, double denominator) {
+    const Ratio ratio = conversion_ratio(from, to);
+    EXPECT_EQ(ratio.numerator, numerator);
+    EXPECT_EQ(ratio.denominator, denominator);
+  };
+  expect(Unit::in, Unit::mm, 127, 5);
+  expect(Unit::mm, Unit::in, 5, 127);
+  expect(Unit::ft, Unit::in, 12, 1);
+  expect(Unit::mm, Unit::m, 1, 1000);
+  expect(Unit::m, Unit::nm, 1e9, 1);
+  expect(Unit::nm, Unit::ft, 1, 304'800'000);
+  expect(Unit::cm, Unit::cm, 1, 1);
+}
+
 TEST(Units, ToItselfIsExactlyOneAndThereAndBackIsOneToRounding) {
   for (const std::string_view from : unit_names())
     for (const std::string_view to : unit_names()) {

@@ -17,8 +17,16 @@ Unit unit_named(std::string_view name);
 /// Metres in one unit.
 double metres_per(Unit unit);
 
-/// Lengths in `from` times this are lengths in `to`. Exactly 1 for equal units; otherwise correctly rounded
-/// for the powers of ten between metric units.
+/// A quotient of positive doubles, both integers without a common factor where it is one of units.
+struct Ratio {
+  double numerator = 1, denominator = 1;
+
+  double nearest() const { return numerator / denominator; }
+};
+
+/// Lengths in `from` times this are lengths in `to`, exactly: 127/5 from inches to millimetres.
+Ratio conversion_ratio(Unit from, Unit to);
+/// The double nearest to that.
 double conversion_factor(Unit from, Unit to);
 
 }  // namespace bernal

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -17,9 +18,10 @@ namespace bernal {
 // Container answers questions about the walls, a Boundary about the periods, and the certificate decides on
 // the same data by itself. The doubles below *are* the domain: nothing else is meant by them.
 
-/// The box [corner, corner + size] in any dimension, its upper corner rounded component by component. Every
-/// axis either ends at two walls, with whole spheres between them, or repeats itself without end: there
-/// spheres have images in every box, and a sphere may be its own neighbour.
+/// The box [corner, corner + size] in any dimension, the sum being that of real numbers: it need not be a
+/// double, and what has to stay inside takes the largest that is not above it. Every axis either ends at two
+/// walls, with whole spheres between them, or repeats itself without end: there spheres have images in every
+/// box, and a sphere may be its own neighbour.
 struct Box {
   Coordinates corner = Vector<3>::Zero();
   Coordinates size = Vector<3>::Ones();
@@ -56,6 +58,13 @@ struct Sphere {
   double radius = 1;
 };
 
+/// Corners that need not be doubles, as those of a part in another unit: corner k is exactly
+/// (high[k] + low[k]) / scale, where `high` is the double nearest to the sum and `scale` a positive integer.
+struct ExactCorners {
+  double scale = 1;
+  std::vector<Vector<3>> high, low;
+};
+
 /// A closed triangle mesh with outward orientation that does not intersect itself.
 struct Mesh {
   std::vector<Vector<3>> vertices;
@@ -63,6 +72,10 @@ struct Mesh {
   /// The walls stand so far inside of the triangles, or behind them where that is negative: what is nearer to
   /// a triangle is not of the domain. Its bounds and its area are those of the triangles all the same.
   double inset = 0;
+  /// Where the corners are not doubles, what they are; `vertices` are within two roundoffs of them then. The
+  /// certificate decides on these, and what has to stay inside keeps off the others by more than that. None
+  /// is left where vertices are moved.
+  std::shared_ptr<const ExactCorners> exact = {};
 };
 
 /// The points of the plane from which a ray crosses closed lines an odd number of times: of an outline and

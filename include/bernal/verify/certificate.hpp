@@ -32,7 +32,8 @@ enum class Arithmetic {
 ///
 /// Walls: every ball lies inside the closed domain, whose walls are the two faces of every axis of a box that
 /// does not repeat itself, in any dimension; the base, the top and the side of a cylinder, only the side of a
-/// periodic one; the surface of a sphere; the triangles of a mesh.
+/// periodic one; the surface of a sphere; the triangles of a mesh, between its
+/// exact corners where it has such.
 ///
 /// Where gaps are asked for, balls and walls keep them: |ci - cj| >= ri + rj + gap, in all images, and the
 /// ball of radius ri + wall_gap lies inside. What is said below of overlap and protrusion then means too
