@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
@@ -39,6 +40,19 @@ std::string unknown_command(const CLI::App& app, const std::vector<std::string>&
   return fmt::format("unknown command \"{}\"{}", *after, bernal::remedy(*after, names));
 }
 
+/// "nan" lies in every range that CLI11 knows, and what is computed with numbers beyond these ends in none.
+std::string complaint_of_number(const std::string& word) {
+  constexpr double largest = 1e100;
+  char* end = nullptr;
+  const double number = std::strtod(word.c_str(), &end);
+  if (*end != '\0' || std::abs(number) <= largest) return "";  // no number: so says CLI11
+  return fmt::format("must be a number from {} to {}, not {}", -largest, largest, word);
+}
+
+template <class To>
+constexpr bool holds_doubles = std::is_same_v<To, double*> || std::is_same_v<To, std::optional<double>*> ||
+                               std::is_same_v<To, std::vector<double>*>;
+
 void add_option(CLI::App& app, const Option& option) {
   CLI::Option& added = *std::visit(
       [&]<class To>(const To& to) {
@@ -49,7 +63,8 @@ void add_option(CLI::App& app, const Option& option) {
         } else {
           if constexpr (std::is_same_v<To, std::string*>)
             if (option.names.ends_with('}')) return app.add_flag(option.names, *to, option.what);
-          return app.add_option(option.names, *to, option.what);
+          CLI::Option* one = app.add_option(option.names, *to, option.what);
+          return holds_doubles<To> ? one->check(complaint_of_number) : one;
         }
       },
       option.to);

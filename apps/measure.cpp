@@ -280,10 +280,12 @@ void print(const Packing& packing, const Measurements& measured) {
   if (measured.sizes) print_sizes(packing, *measured.sizes);
 }
 
-Measurements measured_of(const Packing& packing, const MeasureCall& call) {
+Measurements measured_of(const Packing& packing, const MeasureCall& call, const Monitor& monitor) {
   const SceneRadii radii = asked_radii_of(packing);
   try {
     MeasureOptions options = call.options;
+    options.monitor = monitor;
+    options.all_or_nothing = true;
     if (call.local.empty()) options.local.most_spheres = most_cells;
     options.gap = packing.scene.gap;
     options.wall_gap = packing.scene.wall_gap;
@@ -293,7 +295,7 @@ Measurements measured_of(const Packing& packing, const MeasureCall& call) {
   }
 }
 
-int measure_folder(const MeasureCall& call) {
+int measure_folder(const MeasureCall& call) try {
   if (call.plane) return draw_section(call);
   std::optional<tbb::global_control> limit;
   if (call.threads > 0)
@@ -302,7 +304,7 @@ int measure_folder(const MeasureCall& call) {
   bar.now("measure");
   const Packing packing = read_packing(call.folder);
   say_if_unpublished(call.folder);
-  const Measurements measured = measured_of(packing, call);
+  const Measurements measured = measured_of(packing, call, bar.monitor());
   bar.clear();
   if (!call.local.empty()) {
     if (!measured.local)
@@ -315,6 +317,9 @@ int measure_folder(const MeasureCall& call) {
   else
     print(packing, measured);
   return exit_code::done;
+} catch (const Cancelled&) {
+  say(stderr, "bernal: stopped by the user; nothing is measured\n");
+  return exit_code::not_reached;
 }
 
 }  // namespace
@@ -352,6 +357,6 @@ Command measure_command() {
                     {"bernal measure out --json", "everything, for programs"},
                     {"bernal measure out --local cells.csv", "and a table of the cell of every sphere"},
                     {"bernal measure out --section \"z = 1.5\" -o section.svg", "a picture of a section"}},
-       .exit_codes = {{"0", "done"}, {"2", "bad input"}}},
+       .exit_codes = {{"0", "done"}, {"2", "bad input"}, {"3", "stopped by Ctrl-C, nothing printed"}}},
       [call] { return measure_folder(*call); }};
 }

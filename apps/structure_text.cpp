@@ -43,7 +43,7 @@ void print_local(const Packing& packing, const LocalPacking& local) {
   if (local.empty > 0)
     fmt::print("  no cell         {} spheres, hidden in others or outside\n", grouped(local.empty));
   fmt::print("  all cells       fill the {} to {:.1g} of its {}\n",
-             has_walls(packing.domain) ? "container" : "box", std::max(local.volume_error, 1e-16),
+             has_walls(packing.domain) ? "container" : "box", std::max(local.volume_error, 1e-12),
              packing.spheres.dimension() == 2 ? "area" : "volume");
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/parallel.hpp"
+
 namespace bernal {
 namespace {
 
@@ -112,6 +114,7 @@ std::vector<Vector<3>> points_inside(const Container& container, std::size_t cou
     for (std::size_t n = 0; points.size() < count && n < most_tries * count; ++n) {
       // Where the first of them are all outside, those that come after will be.
       if (n >= most_tries * (points.size() + 16)) break;
+      throw_if_interrupted();
       const Vector<3> p = point_at(n);
       if (container.contains(p, 0)) points.push_back(p);
     }

@@ -24,7 +24,8 @@ void write_local_packing(Page& page, const LocalPacking& local) {
       "domain; a sphere has more volume than its cell only where it overlaps others.</p>\n<div "
       "class=\"wide\"><table>\n");
   page.row("mean", fmt::format("{:.4f}", local.mean),
-           chart.empty() ? "over the spheres" : "over the spheres; the dashed line");
+           (local.ids.empty() ? "over the spheres" : fmt::format("over {} spheres, evenly spread", grouped(local.ids.size()))) +
+               (chart.empty() ? "" : "; the dashed line"));
   page.row("standard deviation", fmt::format("{:.4f}", local.deviation), "");
   for (const auto& [share, phi] : local.quantiles)
     if (share == 0.05 || share == 0.5 || share == 0.95)
@@ -82,6 +83,7 @@ void write_what_is_left(Page& page, const Report& report) {
   if (report.packing.spheres.empty() || dimension < 2 || dimension > 3) return;
   std::vector<std::string_view> left;
   if (!measured.local) left.push_back("local packing fractions");
+  if (measured.local && !measured.local->ids.empty()) left.push_back("that of every single sphere");
   if (!measured.pores) left.push_back("sizes of pores");
   if (!measured.structure && !has_walls(report.packing.domain) && report.packing.spheres.size() > 1)
     left.push_back("the structure factor");

@@ -154,9 +154,10 @@ static void to_json(Json& json, const LocalPacking& local) {
           {"deviation", local.deviation},
           {"quantiles", local.quantiles},
           {"mean_neighbours", local.mean_neighbours},
+          {"looked_at", local.cell_volume.size()},
           {"empty_cells", local.empty},
           {"volume", local.volume},
-          {"volume_error", local.volume_error}};
+          {"volume_error", local.volume_error}};  // null where it is no number
 }
 
 /// Without the values at all wave numbers.

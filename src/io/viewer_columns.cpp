@@ -54,7 +54,7 @@ std::vector<ViewColumn> view_columns(const Packing& packing, const Measurements*
       chamber.push_back(static_cast<float>(measured->chambers->of_sphere[i] + 1));
     columns.push_back({"chamber", "chamber", Kind::category, std::move(chamber)});
   }
-  if (measured && measured->local)
+  if (measured && measured->local && measured->local->ids.empty())
     columns.push_back({"local", "local packing fraction", Kind::number,
                        those_single(measured->local->packing_fraction, of)});
   return columns;

@@ -7,29 +7,27 @@
 
 namespace bernal {
 
-/// How much of a cell lies in a container of two or three dimensions.
-///
-/// A cell that a ball in the container holds is all inside. Another one is cut along the walls of a mesh or a
-/// polygon, see `WallPolygons`. Between round walls, and those with an inset, it is divided into triangles or
-/// tetrahedra, and these are halved across their longest edges until the clearances at their corners, being
-/// 1-Lipschitz, say that all or nothing is inside; or until clearance between them is linear to within a
-/// small part of the cell's length, or they are small: then the share where its linear interpolant is
-/// positive counts.
+/// How much of a cell lies in a container of two or three dimensions, to rounding: between round walls in
+/// closed form, see `volume_inside`; of a mesh or a polygon a cell that a ball in the container holds is all
+/// inside, and another one is cut along the walls, see `WallPolygons`.
 class CellInContainer {
  public:
-  /// The domain is that which the container was made from; both outlive this.
+  /// The domain is that which the container was made from; both outlive this. Precondition: no box and no
+  /// inset.
   CellInContainer(const Domain&, const Container&);
 
+  /// Cuts off what is outside in any case, where that is at hand, so that the cell is less work.
+  void trim(ConvexCell& cell, const Vector<3>& center) const;
+
   /// Volume, in two dimensions area. The cell is in coordinates about `center`. Cost: one clearance for a
-  /// cell that is far from walls, some hundreds for one at a round wall.
+  /// cell that is far from walls, some µs for one at a round wall.
   double volume(const ConvexCell& cell, const Vector<3>& center) const;
 
  private:
-  template <int N>
-  double volume_of_parts(const ConvexCell& cell, const Vector<3>& center, double length) const;
+  double volume_between_facets(const ConvexCell& cell, const Vector<3>& center) const;
 
+  const Domain& domain_;
   const Container& container_;
-  double length_;  ///< of the container: its volume over the area of its walls, in cells that are larger
   std::optional<WallPolygons> polygons_;
 };
 

@@ -1,6 +1,7 @@
 #include "bernal/measure/contacts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,8 @@ namespace {
 
 /// Ranks take a byte.
 constexpr std::size_t most_gaps = 256;
+/// Gaps beyond it are between spheres that have others between them.
+constexpr double widest_of_all = 1;
 
 /// Who is near whom, both ways, in one flat list, with the rank of each pair; and the pairs of spheres and
 /// their own images, which hold nothing.
@@ -151,6 +154,10 @@ std::vector<Contacts> measure_contacts(const Spheres<dynamic>& spheres, const Do
                                        std::span<const double> contact_gaps,
                                        const std::shared_ptr<const Container>& made) {
   if (contact_gaps.empty()) return {};
+  for (const double gap : contact_gaps)
+    if (!(std::abs(gap) <= widest_of_all))
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("spheres touch below a gap ratio of 0 to {:g}, not {}", widest_of_all, gap));
   std::vector<double> ascending(contact_gaps.begin(), contact_gaps.end());
   std::ranges::sort(ascending);
   const auto repeated = std::ranges::unique(ascending);

@@ -39,15 +39,15 @@ std::uint32_t ConvexCell::crossing(std::uint32_t a, std::uint32_t b) {
   return crossings_.back().corner;
 }
 
-void ConvexCell::cut(const Vector<3>& normal, double offset, Label label) {
-  if (edges_.empty()) return;
+bool ConvexCell::cut(const Vector<3>& normal, double offset, Label label, double slack) {
+  if (edges_.empty()) return false;
   height_.clear();
   double highest = 0;
   for (const Corner& corner : corners_) {
     height_.push_back(corner.point.dot(normal) - offset);
     highest = std::max(highest, height_.back());
   }
-  if (!(highest > 0)) return;
+  if (!(highest > slack)) return false;
 
   crossings_.clear();
   exits_.clear();
@@ -81,6 +81,7 @@ void ConvexCell::cut(const Vector<3>& normal, double offset, Label label) {
   edges_.swap(kept_);
   labels_.push_back(label);
   drop_unused_corners();
+  return true;
 }
 
 void ConvexCell::drop_unused_corners() {

@@ -17,7 +17,6 @@ class ConvexCell {
  public:
   struct Corner {
     Vector<3> point;
-    bool is_proven = false;  ///< for the owner; cuts keep it with the corner
   };
   /// What a face is of: as its owner says. Below 0 it is of no neighbour.
   using Label = std::int32_t;
@@ -33,12 +32,12 @@ class ConvexCell {
   /// about zero or not.
   void reset(const Vector<3>& lower, const Vector<3>& upper, const std::array<Label, 3>& sides);
 
-  /// Leaves the points p with p·normal <= offset. Corners on the plane stay. Cost: O(edges), about 0.2 µs.
-  void cut(const Vector<3>& normal, double offset, Label label);
+  /// Leaves the points p with p·normal <= offset. Corners on the plane stay. False, and nothing is done, where
+  /// no corner has p·normal > offset + slack. Cost: O(edges), about 0.2 µs.
+  bool cut(const Vector<3>& normal, double offset, Label label, double slack = 0);
 
   bool empty() const { return edges_.empty(); }
   std::span<const Corner> corners() const { return corners_; }
-  void prove(std::uint32_t corner) { corners_[corner].is_proven = true; }
   std::span<const Edge> edges() const { return edges_; }
 
   double volume() const;

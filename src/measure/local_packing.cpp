@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
+#include "bernal/core/error.hpp"
 #include "measure/cell_in_container.hpp"
 #include "measure/localised.hpp"
 #include "measure/power_cells.hpp"
@@ -27,6 +29,22 @@ Boundary<3> boundary_in_space(const Domain& domain) {
 /// Whether bounds and periods are all the walls that there are.
 bool is_box(const Domain& domain) { return std::holds_alternative<Box>(domain); }
 
+/// What was not looked at goes.
+void keep(const std::vector<std::uint8_t>& looked_at, LocalPacking& local) {
+  const auto keep_of = [&](auto& all) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < looked_at.size(); ++i)
+      if (looked_at[i]) all[kept++] = all[i];
+    all.resize(kept);
+  };
+  local.ids.resize(looked_at.size());
+  std::iota(local.ids.begin(), local.ids.end(), 0u);
+  keep_of(local.ids);
+  keep_of(local.packing_fraction);
+  keep_of(local.cell_volume);
+  keep_of(local.neighbours);
+}
+
 void summarise(LocalPacking& local) {
   std::vector<double> fractions;
   double sum = 0, neighbours = 0;
@@ -39,7 +57,8 @@ void summarise(LocalPacking& local) {
     fractions.push_back(local.packing_fraction[i]);
     neighbours += local.neighbours[i];
   }
-  local.volume_error = std::abs(sum - local.volume) / local.volume;
+  local.volume_error = local.ids.empty() ? std::abs(sum - local.volume) / local.volume
+                                         : std::numeric_limits<double>::quiet_NaN();
   if (fractions.empty()) return;
   const auto n = static_cast<double>(fractions.size());
   local.mean = std::accumulate(fractions.begin(), fractions.end(), 0.0) / n;
@@ -64,10 +83,15 @@ std::optional<LocalPacking> local_packing(const Spheres<dynamic>& packed, const 
   const Frame frame = frame_of(domain);
   const Domain local_domain = to_local(domain, frame);
   const Spheres<3> spheres = localised(packed, frame);
-  const CellBox box{dimension, bounds_of(local_domain), localised(boundary_in_space(domain), frame)};
+  CellBox box{dimension, bounds_of(local_domain), localised(boundary_in_space(domain), frame)};
   const std::shared_ptr<const Container> container = is_box(domain) ? nullptr : local_container(domain, made);
   std::optional<CellInContainer> within;
-  if (container) within.emplace(local_domain, *container);
+  if (container) {
+    if (container->inset() != 0)
+      throw Error(ErrorCode::bad_argument, "the domain has an inset; cells are those between its facets");
+    within.emplace(local_domain, *container);
+    box.trim = [&](const Vector<3>& center, ConvexCell& cell) { within->trim(cell, center); };
+  }
 
   const double unit = std::pow(frame.scale, dimension);
   LocalPacking local;
@@ -75,7 +99,11 @@ std::optional<LocalPacking> local_packing(const Spheres<dynamic>& packed, const 
   local.packing_fraction.resize(spheres.size(), 0);
   local.cell_volume.resize(spheres.size(), 0);
   local.neighbours.resize(spheres.size(), 0);
-  for_each_power_cell(spheres, box, [&](std::uint32_t i, const Vector<3>& center, const ConvexCell& cell) {
+  const bool some = spheres.size() > options.all_of;
+  std::vector<std::uint8_t> was_looked_at(spheres.size(), !some);
+  const std::size_t most = some ? options.looked_at : spheres.size();
+  for_each_power_cell(spheres, box, most, [&](std::uint32_t i, const Vector<3>& center, const ConvexCell& cell) {
+    was_looked_at[i] = true;
     if (cell.empty()) return;
     const double volume = within ? within->volume(cell, center) : cell.volume();
     if (!(volume > 0)) return;
@@ -83,6 +111,7 @@ std::optional<LocalPacking> local_packing(const Spheres<dynamic>& packed, const 
     local.packing_fraction[i] = ball_volume(dimension, spheres.r[i]) / volume;
     local.neighbours[i] = cell.faces(least_face);
   });
+  if (some) keep(was_looked_at, local);
   summarise(local);
   return local;
 }

@@ -1,6 +1,7 @@
 #include "bernal/measure/measure.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -64,6 +65,8 @@ void require_measurable(const Spheres<dynamic>& spheres) {
 Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, const AskedRadii& asked,
                      const MeasureOptions& options) {
   require_measurable(spheres);
+  std::optional<Interruptible> interruptible;
+  if (options.all_or_nothing) interruptible.emplace(options.monitor);
   Measurements measured;
   measured.packing_fraction = packing_fraction(spheres, domain);
   std::vector<double> gaps = options.gaps;
@@ -87,6 +90,7 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
     measured.structure = structure_factor(spheres, domain, options.structure);
     measured.pores = pore_sizes(spheres, domain, options.pores, container);
   } catch (const Cancelled&) {
+    if (options.all_or_nothing) throw;
   }
   if (asked.sizes && !spheres.empty()) measured.sizes = compare_sizes_of(spheres, domain, asked);
   return measured;

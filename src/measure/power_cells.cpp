@@ -4,134 +4,51 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <tuple>
 #include <vector>
 
 #include "core/parallel.hpp"
 #include "measure/sphere_tree.hpp"
-#include "tessellation/power_neighbours.hpp"
 
 namespace bernal {
 namespace {
 
 using Tree = SphereTree<3>;
 
-constexpr std::size_t spheres_a_block = 16384, cells_a_piece = 64;
-/// What is looked at around a block: so many mean distances of centres, or largest radii.
-constexpr double mean_distances = 2.2, largest_radii = 2.4;
-/// Of the squared distance of a corner: a power that is less by no more than that is rounding.
-constexpr double power_slack = 1e-10;
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// What a block knows: the spheres in a box around it, and on which sides of that box there are others.
-struct KnownSpheres {
-  Bounds<3> known;
-  std::array<bool, 3> ends_below, ends_above;
-
-  /// Nothing that is not known is nearer to p.
-  double depth(const Vector<3>& p) const {
-    double least = infinite;
-    for (int k = 0; k < 3; ++k) {
-      if (ends_below[k]) least = std::min(least, p[k] - known.lower[k]);
-      if (ends_above[k]) least = std::min(least, known.upper[k] - p[k]);
-    }
-    return least;
-  }
-};
+constexpr std::size_t cells_a_piece = 64;
+/// Of the way to the farthest corner: what a plane takes off by less is rounding.
+constexpr double rounding = 1e-12;
 
 class Diagram {
  public:
   Diagram(const Spheres<3>& spheres, const CellBox& box, const VisitCell& visit)
       : box_(box), visit_(visit), tree_(spheres, box.boundary) {}
 
-  void visit_all() const {
-    std::vector<Tree::Node> blocks;
-    collect_blocks(0, blocks);
-    const double margin = margin_of_blocks();
-    const bool alone = blocks.size() == 1;
-    parallel_for(blocks.size(), [&](std::size_t k) { visit_block(blocks[k], margin, alone); });
+  /// Of so many, which the order of the tree spreads over the domain.
+  void visit_some(std::size_t count) const {
+    parallel_ranges(count, cells_a_piece, [&](std::size_t first, std::size_t last) {
+      Piece piece;
+      for (std::size_t k = first; k < last; ++k) {
+        const auto place = static_cast<std::uint32_t>((2 * k + 1) * tree_.size() / (2 * count));
+        cut_out(place, piece);
+        visit_(tree_.id(place), tree_.center(place), piece.cell);
+      }
+    });
   }
 
  private:
-  void collect_blocks(std::uint32_t at, std::vector<Tree::Node>& blocks) const {
-    const Tree::Node& node = tree_.nodes()[at];
-    if (node.size() <= spheres_a_block) return blocks.push_back(node);
-    collect_blocks(node.children, blocks);
-    collect_blocks(node.children + 1, blocks);
-  }
-
-  double margin_of_blocks() const {
-    const Tree::Node& all = tree_.nodes().front();
-    Vector<3> size = all.bounds.size();
-    for (int k = 0; k < 3; ++k)
-      if (box_.boundary.repeats(k)) size[k] = box_.boundary.edges[k];
-    double volume = 1;
-    int axes = 0;
-    for (const double edge : size) {
-      if (!(edge > 1e-9 * size.maxCoeff())) continue;
-      volume *= edge;
-      ++axes;
-    }
-    const double distance = axes > 0 ? std::pow(volume / static_cast<double>(tree_.size()), 1.0 / axes) : 0;
-    return std::max(mean_distances * distance, largest_radii * all.largest);
-  }
-
-  KnownSpheres surroundings_of(const Tree::Node& core, double margin) const {
-    const Bounds<3>& all = tree_.nodes().front().bounds;
-    KnownSpheres around{core.bounds, {}, {}};
-    for (int k = 0; k < 3; ++k) {
-      const bool repeats = box_.boundary.repeats(k);
-      const double period = box_.boundary.edges[k], reach = repeats ? std::min(margin, period) : margin;
-      around.known.lower[k] -= reach;
-      around.known.upper[k] += reach;
-      around.ends_below[k] = repeats ? reach < period : around.known.lower[k] > all.lower[k];
-      around.ends_above[k] = repeats ? reach < period : around.known.upper[k] < all.upper[k];
-    }
-    return around;
-  }
-
-  void visit_block(const Tree::Node& core, double margin, bool alone) const {
-    const KnownSpheres around = surroundings_of(core, margin);
-    const Vector<3> origin = core.bounds.center();
-    std::vector<std::uint32_t> places;
-    std::vector<Site> sites;
-    const auto add = [&](std::uint32_t place, const Vector<3>& shift) {
-      places.push_back(place);
-      sites.push_back({tree_.center(place) - origin + shift, tree_.radius(place) * tree_.radius(place)});
-    };
-    for (std::uint32_t place = core.first; place < core.last; ++place) add(place, Vector<3>::Zero());
-    tree_.for_each_in(around.known, [&](std::uint32_t place, const Vector<3>& shift) {
-      const bool own = place >= core.first && place < core.last && shift.isZero(0);
-      if (!own) add(place, shift);
-    });
-    const PowerNeighbours neighbours = power_neighbours(sites, core.size());
-    const auto visit_some = [&](std::size_t first, std::size_t last) {
-      ConvexCell cell;
-      std::vector<Plane> planes;
-      for (std::size_t k = first; k < last; ++k) {
-        begin(cell, places[k]);
-        if (neighbours.hidden[k])
-          cell.cut(Vector<3>::Zero(), -1, ConvexCell::wall);
-        else
-          cut(cell, sites, places, k, neighbours.of(k), planes);
-        prove(cell, places[k], around);
-        visit_(tree_.id(places[k]), tree_.center(places[k]), cell);
-      }
-    };
-    if (alone) return parallel_ranges(core.size(), cells_a_piece, visit_some);
-    for (std::size_t k = 0; k < core.size(); k += cells_a_piece) {
-      throw_if_interrupted();
-      visit_some(k, std::min(k + cells_a_piece, core.size()));
-    }
-  }
-
+  /// The points p with p·normal > offset belong to the sphere at `place`.
   struct Plane {
     double distance;  ///< from the cell's centre
     Vector<3> normal;
     double offset;
     std::uint32_t place;
+  };
+  /// What is kept from cell to cell for its memory.
+  struct Piece {
+    ConvexCell cell;
+    std::vector<Tree::Waiting> waiting;
+    std::vector<Plane> planes;
   };
 
   void begin(ConvexCell& cell, std::uint32_t place) const {
@@ -150,94 +67,78 @@ class Diagram {
       }
     }
     cell.reset(lower, upper, sides);
+    if (box_.trim) box_.trim(tree_.center(place), cell);
   }
 
-  void cut(ConvexCell& cell, const std::vector<Site>& sites, const std::vector<std::uint32_t>& places,
-           std::size_t site, std::span<const std::uint32_t> neighbours, std::vector<Plane>& planes) const {
-    planes.clear();
-    for (const std::uint32_t other : neighbours) {
-      const Vector<3> normal = sites[other].point - sites[site].point;
-      const double offset = 0.5 * (normal.squaredNorm() + sites[site].weight - sites[other].weight);
-      planes.push_back({offset / normal.norm(), normal, offset, places[other]});
-    }
-    // The nearest first, so that the others find little to cut; in the order of the spheres where they are
-    // equally near.
-    std::ranges::sort(planes, {}, [](const Plane& p) {
-      return std::tuple(p.distance, p.place, p.normal[0], p.normal[1], p.normal[2]);
-    });
-    for (const Plane& p : planes) cell.cut(p.normal, p.offset, static_cast<ConvexCell::Label>(p.place));
+  /// How far its farthest corner is; less than any plane where nothing is left.
+  double reach_of(const ConvexCell& cell) const {
+    if (cell.empty()) return -infinite;
+    double farthest = 0;
+    for (const auto& [p] : cell.corners())
+      farthest = std::max(farthest, box_.dimension == 2 ? p.head<2>().squaredNorm() : p.squaredNorm());
+    return std::sqrt(farthest);
   }
 
-  void prove(ConvexCell& cell, std::uint32_t place, const KnownSpheres& around) const {
-    const Vector<3>& center = tree_.center(place);
+  /// How near the plane between spheres comes to the centre of one whose weight is `weight`, where the other
+  /// is farther than the root of `squared` and no larger than r.
+  static double nearest_plane(double weight, double squared, double r) {
+    const double more = weight - r * r, d = std::sqrt(std::max(squared, more));
+    return d > 0 ? 0.5 * (d + more / d) : more < 0 ? -infinite : 0;
+  }
+
+  void cut_out(std::uint32_t place, Piece& piece) const {
+    throw_if_interrupted();
+    ConvexCell& cell = piece.cell;
+    begin(cell, place);
     const double weight = tree_.radius(place) * tree_.radius(place);
-    const double largest = tree_.nodes().front().largest;
-    for (std::uint32_t k = 0; k < cell.corners().size();) {
-      const ConvexCell::Corner& corner = cell.corners()[k];
-      Vector<3> away = corner.point;
-      if (box_.dimension == 2) away[2] = 0;
-      const double squared = away.squaredNorm(), power = squared - weight;
-      const double depth = around.depth(center + away);
-      if (corner.is_proven || (depth > 0 && depth * depth - largest * largest >= power)) {
-        ++k;
-        continue;
-      }
-      const double limit = power - power_slack * squared;
-      const Tree::Found other = tree_.nearest<Tree::Power>(center + away, limit);
-      if (!(other.value < limit)) {
-        cell.prove(k++);
-        continue;
-      }
-      const Vector<3> normal = other.center - center;
-      const double r = tree_.radius(other.place), offset = 0.5 * (normal.squaredNorm() + weight - r * r);
-      if (corner.point.dot(normal) > offset) {
-        cell.cut(normal, offset, static_cast<ConvexCell::Label>(other.place));
-        k = 0;
-      } else {
-        cell.prove(k++);
+    double reach = reach_of(cell);
+    tree_.for_each_leaf(
+        tree_.center(place), [&](double squared, double r) { return nearest_plane(weight, squared, r); },
+        [&] { return reach; }, piece.waiting,
+        [&](const Tree::Node& leaf, const Vector<3>& shift) {
+          find_planes(place, leaf, shift, reach, piece.planes);
+          for (const Plane& plane : piece.planes) {
+            if (!(plane.distance < reach)) break;
+            const double slack = rounding * reach * plane.normal.norm();
+            if (cell.cut(plane.normal, plane.offset, static_cast<ConvexCell::Label>(plane.place), slack))
+              reach = reach_of(cell);
+          }
+        });
+  }
+
+  /// With the spheres of a leaf, the nearest first; in the order of the tree where they are equally near. With
+  /// the same centre the larger one hides the other, and of two that are equal the first.
+  void find_planes(std::uint32_t place, const Tree::Node& leaf, const Vector<3>& shift, double reach,
+                   std::vector<Plane>& planes) const {
+    const double r = tree_.radius(place);
+    planes.clear();
+    for (std::uint32_t other = leaf.first; other < leaf.last; ++other) {
+      if (other == place && shift.isZero(0)) continue;
+      const Vector<3> normal = tree_.center(other) + shift - tree_.center(place);
+      const double squared = normal.squaredNorm(), r_other = tree_.radius(other);
+      const double offset = 0.5 * (squared + (r - r_other) * (r + r_other));
+      if (squared > 0) {
+        if (offset > 0 && offset * offset >= reach * reach * squared) continue;  // saves the root
+        planes.push_back({offset / std::sqrt(squared), normal, offset, other});
+      } else if (r_other > r || (r_other == r && tree_.id(other) < tree_.id(place))) {
+        planes.push_back({-infinite, normal, -1, other});
       }
     }
+    std::ranges::sort(planes, {}, [](const Plane& p) { return std::tuple(p.distance, p.place); });
   }
+
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
 
   const CellBox& box_;
   const VisitCell& visit_;
   Tree tree_;
 };
 
-/// Those that are not another one's twin, in their order.
-std::vector<std::uint32_t> without_twins(const Spheres<3>& spheres, const Boundary<3>& boundary) {
-  std::vector<Vector<3>> centers;
-  for (std::size_t i = 0; i < spheres.size(); ++i) centers.push_back(boundary.wrap(spheres.center(i)));
-  std::vector<std::uint32_t> ids(spheres.size());
-  for (std::uint32_t i = 0; i < ids.size(); ++i) ids[i] = i;
-  const auto key = [&](std::uint32_t i) {
-    return std::tuple(centers[i][0], centers[i][1], centers[i][2], spheres.r[i]);
-  };
-  std::ranges::sort(ids, {}, [&](std::uint32_t i) { return std::tuple_cat(key(i), std::tuple(i)); });
-  ids.erase(std::unique(ids.begin(), ids.end(), [&](auto i, auto j) { return key(i) == key(j); }), ids.end());
-  std::ranges::sort(ids);
-  return ids;
-}
-
 }  // namespace
 
-void for_each_power_cell(const Spheres<3>& spheres, const CellBox& box, const VisitCell& visit) {
-  if (spheres.empty()) return;
-  const std::vector<std::uint32_t> ids = without_twins(spheres, box.boundary);
-  if (ids.size() == spheres.size()) return Diagram(spheres, box, visit).visit_all();
-
-  Spheres<3> kept;
-  std::vector<bool> has_cell(spheres.size(), false);
-  for (const std::uint32_t id : ids) {
-    kept.push_back(spheres.center(id), spheres.r[id]);
-    has_cell[id] = true;
-  }
-  const VisitCell visit_kept = [&](std::uint32_t k, const Vector<3>& center, const ConvexCell& cell) {
-    visit(ids[k], center, cell);
-  };
-  Diagram(kept, box, visit_kept).visit_all();
-  for (std::uint32_t id = 0; id < spheres.size(); ++id)
-    if (!has_cell[id]) visit(id, box.boundary.wrap(spheres.center(id)), ConvexCell());
+void for_each_power_cell(const Spheres<3>& spheres, const CellBox& box, std::size_t most,
+                         const VisitCell& visit) {
+  Diagram(spheres, box, visit).visit_some(std::min(most, spheres.size()));
 }
 
 }  // namespace bernal

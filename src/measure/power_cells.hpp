@@ -13,22 +13,22 @@ struct CellBox {
   int dimension = 3;  ///< in two the cells are prisms of height 1 on the plane z = 0, whose volumes are areas
   Bounds<3> bounds;   ///< along axes with a period not looked at
   Boundary<3> boundary;
+  /// May cut off beforehand what nobody asks for of the cell about `center`.
+  std::function<void(const Vector<3>& center, ConvexCell&)> trim = {};
 };
 
 /// Takes the cell of a sphere, which may be empty, in coordinates about its centre in the period.
 using VisitCell = std::function<void(std::uint32_t sphere, const Vector<3>& center, const ConvexCell&)>;
 
-/// Calls visit(…) once for the cell of every sphere in the power diagram, from several threads and in any
-/// order, with the same cells for any number of threads. Of spheres with the same centre and radius the first
-/// has the cell.
+/// Calls visit(…) once for the cell of every sphere in the power diagram, or of so many where there are more,
+/// evenly spread, from several threads and in any order, with the same cells for any number of threads. Of
+/// spheres with the same centre and radius the first has the cell.
 ///
-/// The spheres are divided into blocks. In each, the regular triangulation of its spheres and of those around
-/// it, images among them, says which neighbours a cell has. As what is around ends somewhere, every corner of
-/// a cell is then proven: no sphere has less power there than the cell's own. That is so at once where the
-/// corner is deep enough among the spheres that were looked at, the largest radius of all granted to those
-/// beyond; else the sphere of the least power is asked for, and cuts the cell if it is another one. Along an
-/// axis with a period one period more on either side holds the nearest image of every sphere to every corner.
-/// Cost: see `local_packing`. Precondition: coordinates near 1.
-void for_each_power_cell(const Spheres<3>&, const CellBox&, const VisitCell& visit);
+/// Each cell is cut by the planes between its sphere and the others, the nearest first, out of a tree of
+/// boxes whose largest radius says how near a plane with one of its spheres may come: until none that is left
+/// comes as near as the farthest corner. What a plane would take off within a rounding of a corner stays.
+/// Along an axis with a period one period more on either side holds the nearest image of every sphere to
+/// every corner. Cost: see `local_packing`. Precondition: coordinates near 1.
+void for_each_power_cell(const Spheres<3>&, const CellBox&, std::size_t most, const VisitCell& visit);
 
 }  // namespace bernal

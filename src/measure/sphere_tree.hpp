@@ -3,8 +3,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -44,7 +46,17 @@ class SphereTree {
     double value = std::numeric_limits<double>::infinity();
   };
 
-  SphereTree(const Spheres<D>& spheres, const Boundary<D>& boundary) : boundary_(boundary) {
+  /// A node, or an image of it, that a search has still to look at.
+  struct Waiting {
+    double least;
+    std::uint32_t node, shift;  ///< the number of its shift
+    bool operator>(const Waiting& other) const {
+      return std::tie(least, shift, node) > std::tie(other.least, other.shift, other.node);
+    }
+  };
+
+  SphereTree(const Spheres<D>& spheres, const Boundary<D>& boundary)
+      : boundary_(boundary), shifts_(shifts_of(boundary)) {
     const auto n = static_cast<std::uint32_t>(spheres.size());
     std::vector<Vector<D>> wrapped;
     wrapped.reserve(n);
@@ -81,17 +93,39 @@ class SphereTree {
     found.value = limit;
     if (nodes_.empty()) return found;
     const Vector<D> in_period = boundary_.wrap(p);
-    for_each_shift([&](const Vector<D>& shift) { search<Measure>(in_period - shift, found, shift); });
+    for (const Vector<D>& shift : shifts_) search<Measure>(in_period - shift, found, shift);
     found.center += p - in_period;
     return found;
   }
 
-  /// Calls visit(place, shift) for every image of a centre, moved by `shift`, inside of the bounds. Along
-  /// axes with a period these are at most one period longer than the period itself, on either side.
-  template <class Visit>
-  void for_each_in(const Bounds<D>& bounds, Visit&& visit) const {
-    if (nodes_.empty()) return;
-    for_each_shift([&](const Vector<D>& shift) { collect(bounds, shift, 0, visit); });
+  /// Calls visit(leaf, shift) for the leaves and their images, moved by `shift`, in the rising order of
+  /// least(squared distance of p from the bounds of the centres, largest radius), as long as that is below
+  /// limit(), which may fall. Of an axis with a period the images next to the one that p is in are looked at.
+  /// `waiting` is for its memory. Precondition: p in the period.
+  template <class Least, class Limit, class Visit>
+  void for_each_leaf(const Vector<D>& p, const Least& least, const Limit& limit,
+                     std::vector<Waiting>& waiting, const Visit& visit) const {
+    waiting.clear();
+    const auto add = [&](std::uint32_t node, std::uint32_t shift) {
+      const double squared = squared_distance(nodes_[node].bounds, p - shifts_[shift]);
+      const double value = least(squared, nodes_[node].largest);
+      if (!(value < limit())) return;
+      waiting.push_back({value, node, shift});
+      std::ranges::push_heap(waiting, std::greater());
+    };
+    for (std::uint32_t shift = 0; shift < shifts_.size() && !nodes_.empty(); ++shift) add(0, shift);
+    while (!waiting.empty() && waiting.front().least < limit()) {
+      std::ranges::pop_heap(waiting, std::greater());
+      const Waiting next = waiting.back();
+      waiting.pop_back();
+      const Node& node = nodes_[next.node];
+      if (node.children == 0) {
+        visit(node, shifts_[next.shift]);
+      } else {
+        add(node.children, next.shift);
+        add(node.children + 1, next.shift);
+      }
+    }
   }
 
   /// Calls visit(place, center) at least for every image of a sphere that a ball of radius r overlaps on its
@@ -102,10 +136,9 @@ class SphereTree {
   void for_each_on_way(const Vector<D>& p, double r, const Vector<D>& u, double limit, Visit&& visit) const {
     if (nodes_.empty()) return;
     const Vector<D> in_period = boundary_.wrap(p), back = p - in_period;
-    for_each_shift([&](const Vector<D>& shift) {
+    for (const Vector<D>& shift : shifts_)
       follow(Way{in_period - shift, u, r}, limit,
              [&](std::uint32_t k) { limit = visit(k, Vector<D>(centers_[k] + shift + back)); });
-    });
   }
 
  private:
@@ -136,18 +169,18 @@ class SphereTree {
   }
 
   /// None first, as that is where most is found.
-  template <class Visit>
-  void for_each_shift(Visit&& visit) const {
-    visit(Vector<D>(Vector<D>::Zero()));
+  static std::vector<Vector<D>> shifts_of(const Boundary<D>& boundary) {
+    std::vector<Vector<D>> shifts = {Vector<D>::Zero()};
     std::array<int, D> at;
-    for (int k = 0; k < D; ++k) at[k] = boundary_.repeats(k) ? -1 : 0;
+    for (int k = 0; k < D; ++k) at[k] = boundary.repeats(k) ? -1 : 0;
     const std::array<int, D> lowest = at;
     for (int k = 0; k < D;) {
       Vector<D> shift;
-      for (int axis = 0; axis < D; ++axis) shift[axis] = at[axis] * boundary_.edges[axis];
-      if (!shift.isZero(0)) visit(shift);
-      for (k = 0; k < D && (!boundary_.repeats(k) || ++at[k] > 1); ++k) at[k] = lowest[k];
+      for (int axis = 0; axis < D; ++axis) shift[axis] = at[axis] * boundary.edges[axis];
+      if (!shift.isZero(0)) shifts.push_back(shift);
+      for (k = 0; k < D && (!boundary.repeats(k) || ++at[k] > 1); ++k) at[k] = lowest[k];
     }
+    return shifts;
   }
 
   static double squared_distance(const Bounds<D>& bounds, const Vector<D>& p) {
@@ -161,15 +194,15 @@ class SphereTree {
 
   template <class Measure>
   void search(const Vector<D>& p, Found& found, const Vector<D>& shift) const {
-    struct Waiting {
+    struct Stacked {
       std::uint32_t node;
       double least;
     };
-    std::array<Waiting, 80> stack;  // one a level
+    std::array<Stacked, 80> stack;  // one a level
     std::size_t waiting = 0;
     stack[waiting++] = {0, least<Measure>(nodes_[0], p)};
     while (waiting > 0) {
-      const Waiting next = stack[--waiting];
+      const Stacked next = stack[--waiting];
       if (!(next.least < found.value)) continue;
       const Node& node = nodes_[next.node];
       if (node.children == 0) {
@@ -179,8 +212,8 @@ class SphereTree {
         }
         continue;
       }
-      Waiting near{node.children, least<Measure>(nodes_[node.children], p)};
-      Waiting far{node.children + 1, least<Measure>(nodes_[node.children + 1], p)};
+      Stacked near{node.children, least<Measure>(nodes_[node.children], p)};
+      Stacked far{node.children + 1, least<Measure>(nodes_[node.children + 1], p)};
       if (far.least < near.least) std::swap(near, far);
       stack[waiting++] = far;
       stack[waiting++] = near;
@@ -231,25 +264,8 @@ class SphereTree {
     }
   }
 
-  template <class Visit>
-  void collect(const Bounds<D>& bounds, const Vector<D>& shift, std::uint32_t at, Visit&& visit) const {
-    const Node& node = nodes_[at];
-    if (((node.bounds.upper + shift).array() < bounds.lower.array()).any() ||
-        ((node.bounds.lower + shift).array() > bounds.upper.array()).any())
-      return;
-    if (node.children != 0) {
-      collect(bounds, shift, node.children, visit);
-      collect(bounds, shift, node.children + 1, visit);
-      return;
-    }
-    for (std::uint32_t k = node.first; k < node.last; ++k) {
-      const Vector<D> center = centers_[k] + shift;
-      if ((center.array() >= bounds.lower.array()).all() && (center.array() <= bounds.upper.array()).all())
-        visit(k, shift);
-    }
-  }
-
   Boundary<D> boundary_;
+  std::vector<Vector<D>> shifts_;
   std::vector<std::uint32_t> ids_;
   std::vector<Node> nodes_;
   std::vector<Vector<D>> centers_;

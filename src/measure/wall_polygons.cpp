@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.hpp"
+
 namespace bernal {
 namespace {
 
@@ -141,6 +143,7 @@ std::vector<WallPolygons::Piece> WallPolygons::pieces_in(const ConvexCell& cell,
 
 double WallPolygons::inside(const ConvexCell& cell, std::vector<Piece> pieces, const Vector<3>& center,
                             double rounding) const {
+  throw_if_interrupted();  // of a cell with very many walls
   const double volume = cell.volume();
   if (cell.empty() || !(volume > 0)) return 0;
   if (pieces.empty()) {

@@ -63,8 +63,7 @@ class PointGrid {
   /// the box where axes are periodic.
   template <class Visit>
   void for_each_near(const Vector<D>& c, double reach, Visit&& visit) const {
-    // Points may lie a rounding beyond the cell that they are in.
-    const double wide = reach * (1 + 1e-9) + 1e-12 * cell_edge_.maxCoeff();
+    const double wide = reach * (1 + 1e-9);
     Vector<D> shift = Vector<D>::Zero();
     visit_axis<D - 1>(c, wide * wide, 0, shift, visit);
   }
@@ -104,7 +103,7 @@ class PointGrid {
   }
 
   std::int64_t unwrapped(int k, double x) const {
-    return static_cast<std::int64_t>(std::floor((x - lower_[k]) / cell_edge_[k]));
+    return static_cast<std::int64_t>(std::floor(std::clamp((x - lower_[k]) / cell_edge_[k], -0x1p62, 0x1p62)));
   }
   std::uint32_t cell_of(const Vector<D>& p) const {
     std::int64_t cell = 0;
@@ -119,7 +118,9 @@ class PointGrid {
   template <int K, class Visit>
   void visit_axis(const Vector<D>& c, double squared, std::int64_t cell, Vector<D>& shift,
                   Visit& visit) const {
-    const double half = std::sqrt(squared);
+    // Points may lie a rounding beyond the cell that they are in, along each axis by its own: next to one that
+    // is 1e19 long, that of the longest would be a multitude of cells.
+    const double rounding = 1e-12 * cell_edge_[K], half = std::sqrt(squared) + rounding;
     std::int64_t first = unwrapped(K, c[K] - half), last = unwrapped(K, c[K] + half);
     const std::int64_t n = cells_[K];
     const bool periodic = boundary_.edges[K] > 0;
@@ -137,7 +138,7 @@ class PointGrid {
         at = end + 1;
       } else {
         const double near = lower_[K] + static_cast<double>(at) * cell_edge_[K];
-        const double away = std::max({0.0, near - c[K], c[K] - near - cell_edge_[K]});
+        const double away = std::max({0.0, near - c[K] - rounding, c[K] - near - cell_edge_[K] - rounding});
         const double rest = squared - away * away;
         if (rest > 0) visit_axis<K - 1>(c, rest, cell * n + at - turn * n, shift, visit);
         ++at;

@@ -104,8 +104,8 @@ JobPointer measure_job(const PackingPointer& of, double contact_gap) {
     options.contact_gap = contact_gap;
     options.container = of->container;
     options.monitor = monitor;
+    options.all_or_nothing = true;
     Measurements measured = measure(of->spheres, of->domain, radii.asked, options);
-    if (monitor.stop()) throw Cancelled();
     return [json = measurements_as_json(*of, measured), measured = std::move(measured)]() -> py::object {
       return py::make_tuple(json, per_sphere(measured));
     };

@@ -84,6 +84,34 @@ TEST(Usage, WrongOnesAreOneLineAndExitTwo) {
   }
 }
 
+TEST(Usage, NumbersThatAreNoneAndThoseBeyondAllBoundsAreRefused) {
+  const Folder folder;
+  const std::string scene = folder.write("scene.toml", small_scene).string();
+  const std::string out = (folder / "out").string();
+  for (const std::string number : {"nan", "-nan", "inf", "-inf", "1e300", "-1e101", "1e400"}) {
+    const std::vector<std::vector<std::string>> wrong = {
+        {"measure", out, "--gap", number},
+        {"pack", scene, "-o", out, "--checkpoint-every", number},
+        {"pack", "part.stl", "--unit", "mm", "-o", out, "--diameter", number},
+        {"pack", "part.stl", "--unit", "mm", "-o", out, "--lognormal", "1," + number},
+        {"map", "0.1", number, "-o", out},
+        {"map", "0.1", "0.1", "-o", out, "--ratios", "1," + number},
+        {"predict", "--lognormal", "0.5", "--gap-factor", number},
+        {"predict", "--lognormal", "0.5", "--solids", number},
+        {"design", "target", "--phi", number, "--family", "lognormal"},
+        {"design", "best", "--min", "1", "--max", number},
+        {"import", scene, "-o", out, "--diameter", number},
+    };
+    for (const auto& words : wrong) {
+      SCOPED_TRACE(words.front() + " " + number);
+      expect_refused_in_one_line(bernal(words), {"must be a number from -1e+100 to 1e+100", "--help"});
+    }
+    EXPECT_FALSE(std::filesystem::exists(out));
+  }
+  for (const std::string number : {"-0.1", "1.5"})
+    expect_refused_in_one_line(bernal({"measure", out, "--gap", number}), {"not in range"});
+}
+
 TEST(Usage, AFullDeviceIsNoSuccess) {
   for (const char* words : {"--version", "--help", "keys", "predict --lognormal 0.3"}) {
     const Ended full =

@@ -35,17 +35,16 @@ Spheres<dynamic> disjoint_spheres(const Container& container, std::size_t n) {
 
 TEST_P(Cells, FillTheDomainAndHoldTheirSpheres) {
   const auto container = GetParam().container(WallArithmetic::plain);
-  const bool flat = std::holds_alternative<Box>(GetParam().shape) || is_faceted(GetParam().shape);
   for (const std::size_t n : {1, 3, 200}) {
     const Spheres<dynamic> spheres = disjoint_spheres(*container, n);
     ASSERT_GE(spheres.size(), std::min<std::size_t>(n, 3));
     const auto local = local_packing(spheres, GetParam().shape);
     ASSERT_TRUE(local);
-    EXPECT_LT(local->volume_error, flat ? 1e-9 : 1e-3) << n;
+    EXPECT_LT(local->volume_error, 1e-9) << n;
     EXPECT_EQ(local->empty, 0u);
     RecordProperty("volume_error_of_" + std::to_string(n), fmt::format("{:.2g}", local->volume_error));
     for (std::size_t i = 0; i < spheres.size(); ++i)
-      EXPECT_GE(local->cell_volume[i], (1 - (flat ? 1e-9 : 3e-3)) * ball_volume(3, spheres.r[i])) << i;
+      EXPECT_GE(local->cell_volume[i], (1 - 1e-9) * ball_volume(3, spheres.r[i])) << i;
   }
 }
 

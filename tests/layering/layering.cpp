@@ -109,10 +109,8 @@ std::string objection(const Include& include, const Place& place, const fs::path
                       const std::map<std::string, Rule>& rules) {
   const bool reads_cad_library = include.path.starts_with("CGAL/") || include.path.starts_with("assimp/") ||
                                  include.path.ends_with(".hxx");
-  const bool tessellates = place.room == "tessellation" && include.path.starts_with("CGAL/");
-  if (reads_cad_library && ((place.room != "cad" && !tessellates) || place.is_header))
-    return include.path +
-           ": CGAL, assimp and OpenCASCADE belong to src/cad/*.cpp, CGAL also to src/tessellation/*.cpp";
+  if (reads_cad_library && (place.room != "cad" || place.is_header))
+    return include.path + ": CGAL, assimp and OpenCASCADE belong to src/cad/*.cpp";
   const bool reads_tree = include.path == "cad/wall_tree.hpp" || include.path == "cad/tree_traversals.hpp";
   if (reads_tree && place.room != "cad")
     return include.path + ": brings CGAL along; include cad/triangle_tree.hpp";

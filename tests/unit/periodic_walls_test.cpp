@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/measure/measure.hpp"
 
@@ -245,6 +247,27 @@ TEST(SlabContacts, OfALatticeBetweenTwoPlates) {
   EXPECT_EQ(contacts.pairs, 27u + 27u + 18u);
   EXPECT_EQ(contacts.walls, 18u);
   EXPECT_EQ(contacts.rattlers, 0u);
+}
+
+/// As many as the length of such an axis has periods of the others would take for ever.
+TEST(SlabContacts, OfASphereBeyondAllBoundsAreThoseOfTheOthers) {
+  for (const double far : {1e10, 1e19, 1e60}) {
+    Spheres<3> spheres;
+    for (const Vector<3>& c : {Vector<3>(2, 2, far), Vector<3>(4.9, 1.5, 1.3), Vector<3>(0.9, 1.5, 1.3)})
+      spheres.push_back(c, 0.5);
+    const Measurements measured = measure(spheres, Box{{0, 0, 0}, {5, 5, 5}, {true, true, false}});
+    EXPECT_EQ(measured.contacts.pairs, 1u) << far;
+    EXPECT_TRUE(measured.chambers && measured.walls && measured.order && measured.local && measured.pores) << far;
+  }
+}
+
+TEST(SlabContacts, OfGapsThatAreNoneAreRefused) {
+  Spheres<3> spheres;
+  spheres.push_back(Vector<3>(1, 1, 1), 0.5);
+  const Box box{{0, 0, 0}, {3, 3, 3}, {true, true, false}};
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double gap : {std::nan(""), infinity, -infinity, 1e300, 1.5, -2.0})
+    EXPECT_THROW(measure(spheres, box, {}, {.contact_gap = gap}), Error) << gap;
 }
 
 }  // namespace periodic_walls_test

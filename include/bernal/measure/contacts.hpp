@@ -41,7 +41,7 @@ struct Contacts {
 
 /// Cost O(N): about 1 µs a sphere in a periodic box of three dimensions. Any dimension, any size ratio, and
 /// periods as short as one sphere; along axes with a period centres may lie anywhere. Precondition: spheres
-/// of the domain's dimension.
+/// of the domain's dimension. Throws Error{bad_argument} for a gap ratio beyond ±1, or that is no number.
 Contacts measure_contacts(const Spheres<dynamic>&, const Domain&, double contact_gap = 0.002);
 
 /// The same for every one of the gaps, in their order, at the cost of the largest. `made`: see
