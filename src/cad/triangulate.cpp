@@ -16,7 +16,7 @@ namespace bernal::cad {
 namespace {
 
 using Polygon = std::vector<std::uint32_t>;
-using Triangles = std::vector<FaceCorners>;
+using Faces = std::vector<FaceCorners>;
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Plane = CGAL::Projection_traits_3<Kernel>;
@@ -35,15 +35,15 @@ Vector<3> normal_of(const std::vector<Vector<3>>& points, const Polygon& polygon
   return normal;
 }
 
-Triangles fan(const Polygon& polygon) {
-  Triangles triangles;
+Faces fan(const Polygon& polygon) {
+  Faces triangles;
   for (std::size_t k = 2; k < polygon.size(); ++k)
     triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
   return triangles;
 }
 
 /// Across that diagonal for which the product of the two triangles' normals is larger.
-Triangles halves(const std::vector<Vector<3>>& points, const Polygon& q) {
+Faces halves(const std::vector<Vector<3>>& points, const Polygon& q) {
   const auto across = [&](int a, int b, int c) -> Vector<3> {
     return (points[q[b]] - points[q[a]]).cross(points[q[c]] - points[q[b]]);
   };
@@ -99,7 +99,7 @@ FaceCorners corners_of(Delaunay::Face_handle face) {
 }
 
 /// None if the polygon folds or touches itself in projection.
-Triangles delaunay(const std::vector<Vector<3>>& points, const Polygon& polygon, const Vector<3>& normal) {
+Faces delaunay(const std::vector<Vector<3>>& points, const Polygon& polygon, const Vector<3>& normal) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (std::size_t k = 0; k < polygon.size(); ++k)
     edges.emplace_back(polygon[k], polygon[(k + 1) % polygon.size()]);
@@ -107,7 +107,7 @@ Triangles delaunay(const std::vector<Vector<3>>& points, const Polygon& polygon,
   if (!plane) return {};
   const auto depths = depths_in(*plane);
   if (!depths) return {};
-  Triangles triangles;
+  Faces triangles;
   for (const auto face : plane->finite_face_handles())
     if (depths->at(face) > 0) triangles.push_back(corners_of(face));
   return triangles;
@@ -115,17 +115,17 @@ Triangles delaunay(const std::vector<Vector<3>>& points, const Polygon& polygon,
 
 }  // namespace
 
-Triangles triangulate(const std::vector<Vector<3>>& points, const Polygon& polygon) {
+Faces triangulate(const std::vector<Vector<3>>& points, const Polygon& polygon) {
   const Vector<3> normal = normal_of(points, polygon);
   if (normal == Vector<3>::Zero()) return fan(polygon);
   if (polygon.size() == 4) return halves(points, polygon);
-  const Triangles triangles = delaunay(points, polygon, normal);
+  const Faces triangles = delaunay(points, polygon, normal);
   return triangles.empty() ? fan(polygon) : triangles;
 }
 
-std::optional<Triangles> triangulate_regions(
-    const std::vector<Vector<3>>& points, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
-    const Vector<3>& normal) {
+std::optional<Faces> triangulate_regions(const std::vector<Vector<3>>& points,
+                                         const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
+                                         const Vector<3>& normal) {
   std::vector<std::uint32_t> corners;
   for (const auto& [a, b] : edges) corners.insert(corners.end(), {a, b});
   std::ranges::sort(corners);
@@ -134,7 +134,7 @@ std::optional<Triangles> triangulate_regions(
   if (!plane) return std::nullopt;
   const auto depths = depths_in(*plane);
   if (!depths) return std::nullopt;
-  Triangles triangles;
+  Faces triangles;
   for (const auto face : plane->finite_face_handles())
     if (depths->at(face) % 2 == 1) triangles.push_back(corners_of(face));
   return triangles;
