@@ -17,7 +17,6 @@
 #include "run/sizes_at_hand.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
-#include "scene/entry.hpp"
 #include "scene/output_table.hpp"
 #include "sizes/cut_above.hpp"
 #include "sizes/volume_carriers.hpp"
@@ -276,30 +275,6 @@ void expect_in_periodic_box(Plan& plan) {
   }
   plan.expected_packing_fraction = plan.expected_count * mean_volume / volume_of(plan.domain);
   choose_draw(plan, radii);
-}
-
-/// Throws where the domain reaches, or a box that follows from the packing would reach, farther than what is
-/// written could be read back.
-void require_readable_places(const Plan& plan) {
-  constexpr double uncertain = 10;  // a box that has not been packed yet
-  const Bounds<dynamic> bounds = bounds_of<dynamic>(plan.domain);
-  const double farthest = std::max(bounds.upper.cwiseAbs().maxCoeff(), bounds.lower.cwiseAbs().maxCoeff());
-  const double most = schema::largest_length / (plan.box_follows ? uncertain : 1);
-  if (farthest <= most) return;
-  const std::string_view unit = name_of(plan.scene.unit);
-  if (plan.box_follows)
-    throw Error(
-        ErrorCode::bad_scene,
-        fmt::format("so many of these sizes at such a packing fraction and with such gaps need a box about "
-                    "{:.3g} {} long, and more than {:.0e} is not: check the units",
-                    farthest, unit, most),
-        plan.scene.asks_for_gaps() ? plan.scene.locations.of("gap") : plan.scene.target.where);
-  throw Error(
-      ErrorCode::bad_scene,
-      fmt::format("the container reaches {:.3g} {} from the origin, and farther than {:.0e} no place may be: "
-                  "move it, or check the units",
-                  farthest, unit, most),
-      plan.scene.container.locations.whole);
 }
 
 /// What is there from the start is what can be expected at least.

@@ -14,6 +14,7 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "run/estimate.hpp"
 #include "run/room_for_gaps.hpp"
+#include "scene/entry.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/bed.hpp"
 #include "work/room.hpp"
@@ -180,6 +181,28 @@ Frame frame_for(const Scene& scene, const Domain& container, const SizeDistribut
                   "spheres",
                   frame.resolution * frame.scale, unit, shown * smallest, unit),
       scene.container.locations.whole);
+}
+
+void require_readable_places(const Plan& plan) {
+  constexpr double uncertain = 10;  // a box that has not been packed yet
+  const Bounds<dynamic> bounds = bounds_of<dynamic>(plan.domain);
+  const double farthest = std::max(bounds.upper.cwiseAbs().maxCoeff(), bounds.lower.cwiseAbs().maxCoeff());
+  const double most = schema::largest_length / (plan.box_follows ? uncertain : 1);
+  if (farthest <= most) return;
+  const std::string_view unit = name_of(plan.scene.unit);
+  if (plan.box_follows)
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("so many of these sizes at such a packing fraction and with such gaps need a box about "
+                    "{:.3g} {} long, and more than {:.0e} is not: check the units",
+                    farthest, unit, most),
+        plan.scene.asks_for_gaps() ? plan.scene.locations.of("gap") : plan.scene.target.where);
+  throw Error(
+      ErrorCode::bad_scene,
+      fmt::format("the container reaches {:.3g} {} from the origin, and farther than {:.0e} no place may be: "
+                  "move it, or check the units",
+                  farthest, unit, most),
+      plan.scene.container.locations.whole);
 }
 
 void require_drawable_count(const Plan& plan) {

@@ -43,6 +43,10 @@ double tail_cut(const Scene& scene, const Domain& container, const SizeDistribut
 /// at the sizes where they reach down so far, that neighbouring spheres could not be told apart.
 Frame frame_for(const Scene& scene, const Domain& container, const SizeDistribution& radii);
 
+/// Throws Error{bad_scene} where the domain reaches, or a box that follows from the packing would reach,
+/// farther than what is written could be read back.
+void require_readable_places(const Plan& plan);
+
 /// Throws Error{bad_scene} for a count that would be drawn for long though not a thousandth of it fits.
 void require_drawable_count(const Plan& plan);
 
