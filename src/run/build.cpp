@@ -56,7 +56,8 @@ void resolve_predicted(Plan& plan) {
                             plan.scene.dimension()),
                 target.where);
   const double expected = plan.attainable_packing_fraction;
-  const double surely = std::max(0.5 * expected, expected - error_of_expectation(plan.scene));
+  const double surely = std::max(
+      0.5 * expected, expected - error_of_expectation(plan.scene, plan.domain, *plan.radii, expected));
   target.packing_fraction = std::max(1e-4, std::floor(1e4 * surely) / 1e4);
 }
 
@@ -304,13 +305,13 @@ void expect(Plan& plan) {
   }
   require_readable_places(plan);
   expect_start(plan);
+  plan.places_expected = any_in_bed(scene) && any_stage(scene, &StageTraits::places_expected, true);
   if (plan.caution.empty()) plan.caution = caution_of(plan);
   require_overlap(plan);
   price_effects(plan);
   require_drawable_count(plan);
   require_memory(plan);
   require_fit_for_stages(plan);
-  plan.places_expected = any_in_bed(scene) && any_stage(scene, &StageTraits::places_expected, true);
 }
 
 /// An image that is too large is refused before the run, not after it.

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/text.hpp"
 #include "run/estimate.hpp"
 #include "run/few_large.hpp"
 #include "run/fitting.hpp"
@@ -38,6 +39,18 @@ double densest_of_equal(int dimension) {
                             pi * pi * pi / 105,
                             std::pow(pi, 4) / 384};
   return densest[dimension - 1];
+}
+
+/// Of what is expected between walls: an error that is said.
+constexpr double a_guess = 0.07;
+
+std::string caution_of_guess(const Plan& plan) {
+  const auto error = give_or_take(plan);
+  if (!error) return {};
+  return fmt::format(
+      "walls are near everywhere: that {} fit is known to give or take {}; fill = true in "
+      "[spheres] places as many as can be made to fit",
+      grouped(static_cast<std::uint64_t>(std::llround(plan.expected_count))), grouped(*error));
 }
 
 std::string caution_of_few(const Plan& plan) {
@@ -83,9 +96,20 @@ std::string caution_of_size(const Plan& plan) {
 
 }  // namespace
 
+bool is_guess(const Plan& plan) {
+  return plan.places_expected && plan.scene.target.is_open() &&
+         error_between_walls(plan.domain, *plan.radii) >= a_guess;
+}
+
+std::optional<std::uint64_t> give_or_take(const Plan& plan) {
+  if (!is_guess(plan) || plan.scene.target.fill) return {};
+  const double share = error_between_walls(plan.domain, *plan.radii);
+  return static_cast<std::uint64_t>(std::max(1.0, std::ceil(share * plan.expected_count)));
+}
+
 std::string caution_of(const Plan& plan) {
   std::vector<std::string> all;
-  for (std::string caution : {caution_of_few(plan), caution_of_target(plan), caution_of_size(plan)})
+  for (std::string caution : {caution_of_guess(plan), caution_of_few(plan), caution_of_target(plan), caution_of_size(plan)})
     if (!caution.empty()) all.push_back(std::move(caution));
   return fmt::format("{}", fmt::join(all, "; "));
 }

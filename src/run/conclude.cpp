@@ -8,6 +8,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/measure/hanging.hpp"
 #include "run/caution.hpp"
+#include "run/estimate.hpp"
 #include "run/room_for_gaps.hpp"
 #include "run/shortfall.hpp"
 #include "settle/compress.hpp"
@@ -23,6 +24,8 @@ struct Conclusion {
 /// A result that reaches less than this share of what was expected is none that was asked for; so is an
 /// expectation of less than this share of the random close packing of the same sizes.
 constexpr double near_expectation = 0.7, least_expectation = 0.1;
+/// So much less of the volume than expected relaxation was found to fill in a part, with all that it can.
+constexpr double least_error = 0.03;
 
 /// "1 sphere", "1,668 spheres".
 std::string counted(std::size_t n) { return fmt::format("{} {}", grouped(n), n == 1 ? "sphere" : "spheres"); }
@@ -57,6 +60,7 @@ std::string larger(double factor) {
 /// is far from what was to be expected.
 Conclusion of_open_target(const Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
   const std::size_t n = packing.spheres.size();
+  const Plan& plan = ending.plan;
   const double phi = packing.packing_fraction(), expected = packing.expected_packing_fraction;
   const auto fraction = [](double f) { return fmt::format("{:.3g}", f); };
   // Of few, one more or less is a large share.
@@ -72,10 +76,23 @@ Conclusion of_open_target(const Packing& packing, const Work& work, StageEnd end
                         "these sizes that hardly more was to be expected, where random close packing is {}; "
                         "use smaller ones or check the units",
                         counted(n), are(n), fraction(phi), fraction(ending.close_packing))};
+  std::string guess;  // where walls are everywhere
+  if (const auto error = give_or_take(plan))
+    guess = fmt::format(", give or take {}: fill = true may place more", grouped(*error));
+  if (end == StageEnd::converged && !work.target.fill && ending.places_expected)
+    return {Outcome::converged,
+            fmt::format("{} {} placed, as many as were expected to fit{}", counted(n), are(n), guess)};
+  // What relaxation is known to reach and did not is not what was to be there.
+  const double error = std::max(least_error,
+                                error_of_expectation(plan.scene, plan.domain, *plan.radii, expected)),
+               one_sphere = expected / std::max(1.0, expected_count);
+  if (ending.places_expected && phi < expected - std::min(error, one_sphere))
+    return {phi < expected - error - one_sphere ? Outcome::full : Outcome::converged,
+            fmt::format("{} {} placed, packing fraction {}, where {} was expected, give or take {:.2g}; {}",
+                        counted(n), are(n), fraction(phi), fraction(expected), error, why_no_more(end))};
   return {Outcome::converged,
-          end == StageEnd::converged && !work.target.fill && ending.places_expected
-              ? fmt::format("{} {} placed, as many as were expected to fit", counted(n), are(n))
-              : fmt::format("the stages of the scene place {} and no more", counted(n))};
+          fmt::format("the stages of the scene place {} and no more{}", counted(n),
+                      guess.empty() ? guess : ", where as many as were expected" + guess)};
 }
 
 /// In a box all spheres are wanted, and have places together.

@@ -157,10 +157,19 @@ double reached_by_last(const Scene& scene) {
   return reached;
 }
 
-double error_of_expectation(const Scene& scene) {
+double error_of_expectation(const Scene& scene, const Domain& shape, const SizeDistribution& radii,
+                            double expected) {
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   if (!any_in_bed(scene) && (!box || box->walls.empty())) return 0.01;
-  return reaches(scene, Reaches::close_packing) ? 0.016 : 0.03;
+  return std::max(reaches(scene, Reaches::close_packing) ? 0.016 : 0.03,
+                  error_between_walls(shape, radii) * expected);
+}
+
+double error_between_walls(const Domain& shape, const SizeDistribution& radii) {
+  const int dimension = dimension_of(shape);
+  if (dimension < 2 || dimension > 3 || !has_walls(shape)) return 0;
+  constexpr double share = 0.12, power = 1.5;
+  return std::min(1.0, share * std::pow(std::max(0.0, wall_share(shape, radii) - 1), power));
 }
 
 /// Compression leaves a share of close packing that falls with x = A d / V, for a wall of area A, a volume V

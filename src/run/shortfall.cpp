@@ -95,6 +95,10 @@ double ordinarily_attainable(const Plan& plan) {
   return all_drawn ? std::max(at_hand, close_packing_fraction(*plan.radii, 3)) : at_hand;
 }
 
+double error_of(const Plan& plan) {
+  return error_of_expectation(plan.scene, plan.domain, *plan.radii, plan.attainable_packing_fraction);
+}
+
 /// Of the volume that was asked for, what is in spheres larger than all that are there.
 double share_above(const SizeDistribution& radii, double largest) {
   constexpr double rounding = 1 + 1e-9;
@@ -105,7 +109,7 @@ double share_above(const SizeDistribution& radii, double largest) {
 std::vector<std::string> causes_in_sizes(const Packing& packing, const Plan& plan) {
   std::vector<std::string> causes;
   const double of_sizes = *packing.expected_of_sizes, of_asked = ordinarily_attainable(plan);
-  if (of_asked - of_sizes > error_of_expectation(plan.scene))
+  if (of_asked - of_sizes > error_of(plan))
     causes.push_back(fmt::format(
         "the sizes that were drawn pack to {:.3f}, where those asked for pack to {:.3f}{}", of_sizes,
         of_asked, plan.scene.draw == Draw::random ? "; draw = \"quantiles\" comes nearer to these" : ""));
@@ -147,7 +151,7 @@ std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan) 
   if (!packing.expected_of_sizes || !box_of(packing) || any_in_bed(plan.scene)) return {};
   const double of_sizes = *packing.expected_of_sizes, phi = packing.packing_fraction();
   const double expected = std::min(of_sizes, asked_of(packing, plan));
-  const double error = error_of_expectation(plan.scene);
+  const double error = error_of(plan);
   Shortfall shortfall{.below = expected - phi};
   if (shortfall.below > error) {
     const auto n = static_cast<double>(packing.spheres.size());

@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "bernal/run/run.hpp"
+#include "bernal/sizes/size_distribution.hpp"
+#include "run/estimate.hpp"
+#include "run/caution.hpp"
+#include "support/plans.hpp"
+
+// Where walls are near everywhere, how many spheres fit is a guess, and both the plan and the result say so.
+namespace bernal {
+namespace thin_containers_test {
+
+Plan plan_in(const std::string& container, const std::string& spheres = "") {
+  return testing::plan_of("[container]\n" + container + "[spheres]\ndiameter = 1.0\n" + spheres);
+}
+const std::string tin = "kind = \"cylinder\"\nradius = 1.5\nheight = 1.05\n";
+const std::string wide = "kind = \"cylinder\"\nradius = 5.0\nheight = 9.0\n";
+
+TEST(ThinContainers, HaveAnExpectationThatGivesOrTakesSome) {
+  const Plan thin = plan_in(tin), roomy = plan_in(wide);
+  ASSERT_TRUE(give_or_take(thin));
+  EXPECT_GE(std::round(thin.expected_count) + static_cast<double>(*give_or_take(thin)), 7);  // around one
+  EXPECT_NE(thin.caution.find("give or take 2"), std::string::npos) << thin.caution;
+  EXPECT_NE(thin.caution.find("fill = true"), std::string::npos) << thin.caution;
+  EXPECT_FALSE(give_or_take(roomy));
+  EXPECT_EQ(roomy.caution, "");
+}
+
+TEST(ThinContainers, SayNothingOfWhatIsAsked) {
+  for (const char* asked : {"count = 5\n", "packing_fraction = 0.3\n", "fill = true\n"}) {
+    EXPECT_FALSE(give_or_take(plan_in(tin, asked))) << asked;
+    EXPECT_EQ(plan_in(tin, asked).caution, "") << asked;
+  }
+}
+
+TEST(ThinContainers, EndWithAHintAtFill) {
+  const Packing expected = run(plan_in(tin));
+  EXPECT_EQ(expected.outcome, Outcome::converged);
+  EXPECT_NE(expected.reason.find("give or take 2: fill = true may place more"), std::string::npos)
+      << expected.reason;
+  const Packing filled = run(plan_in(tin, "fill = true\n"));
+  EXPECT_GT(filled.spheres.size(), expected.spheres.size());
+  EXPECT_EQ(filled.reason.find("fill = true"), std::string::npos) << filled.reason;
+  const Packing roomy = run(plan_in(wide));
+  EXPECT_EQ(roomy.reason.find("give or take"), std::string::npos) << roomy.reason;
+}
+
+/// One sphere of the three that were expected.
+TEST(ThinContainers, AreNotFilledByFarFewerThanExpected) {
+  const Packing packing = run(plan_in("kind = \"sphere\"\nradius = 1.0\n"));
+  EXPECT_NE(packing.outcome, Outcome::converged) << packing.reason;
+  EXPECT_NE(packing.reason.find("expected"), std::string::npos) << packing.reason;
+}
+
+/// By hand, of a ball: x = A d / V = 3 d / R.
+TEST(ThinContainers, HaveAnErrorThatGrowsWithTheWalls) {
+  const auto radii = make_constant(0.5);
+  const auto error = [&](double r) { return error_between_walls(Sphere{Vector<3>::Zero(), r}, *radii); };
+  EXPECT_EQ(error(3.0), 0);
+  EXPECT_EQ(error(30.0), 0);
+  EXPECT_NEAR(error(1.5), 0.12, 1e-12);
+  EXPECT_NEAR(error(1.0), 0.12 * std::pow(2.0, 1.5), 1e-12);
+  EXPECT_EQ(error_between_walls(periodic_box(Vector<3>::Constant(1.1)), *radii), 0);
+}
+
+}  // namespace thin_containers_test
+}  // namespace bernal
