@@ -61,7 +61,9 @@ TEST(Beds, AreJudgedByTheStageThatMovedThemLast) {
   const std::string loosely = stage("compress", "tolerance = 0.3\n");
   // Nothing is left to insert, so that the bed is as it was pressed.
   EXPECT_EQ(packed(tall_box + loosely + stage("insert")).outcome, Outcome::hit_limit);
-  const Packing relaxed = packed(tall_box + loosely + stage("relax"));
+  // Relaxation that places the rest moves all.
+  const Packing relaxed =
+      packed(empty_box + stage("insert", "packing_fraction = 0.06\n") + loosely + stage("relax"));
   EXPECT_EQ(relaxed.outcome, Outcome::converged) << relaxed.reason;
   EXPECT_EQ(packed(tall_box + loosely + stage("shake")).outcome, Outcome::converged);
 }
