@@ -98,6 +98,14 @@ std::optional<RawNumber> legacy_number(std::string_view type) {
   return {};
 }
 
+/// Keywords may be written in any case.
+std::string in_capitals(std::string_view word) {
+  std::string capitals(word);
+  for (char& c : capitals)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return capitals;
+}
+
 /// "%20" of a name is a blank.
 std::string decoded(std::string_view name) {
   std::string plain;
@@ -121,15 +129,17 @@ class LegacyReader {
     if (first.size() > 4) is_offsets_ = first[4][0] >= '5';
     points_.remarks = in_.line();
     const auto kind = in_.words_of_line();
-    if (kind.size() != 1 || (kind[0] != "ASCII" && kind[0] != "BINARY"))
-      in_.fail("the third line has to be ASCII or BINARY");
-    is_binary_ = kind[0] == "BINARY";
+    const std::string encoding = kind.size() == 1 ? in_capitals(kind[0]) : std::string();
+    if (encoding != "ASCII" && encoding != "BINARY") in_.fail("the third line has to be ASCII or BINARY");
+    is_binary_ = encoding == "BINARY";
     const auto set = in_.words_of_line();
-    if (set.size() != 2 || set[0] != "DATASET") in_.fail("the line DATASET POLYDATA is expected here");
-    if (set[1] != "POLYDATA" && set[1] != "UNSTRUCTURED_GRID")
+    if (set.size() != 2 || in_capitals(set[0]) != "DATASET")
+      in_.fail("the line DATASET POLYDATA is expected here");
+    const std::string of = in_capitals(set[1]);
+    if (of != "POLYDATA" && of != "UNSTRUCTURED_GRID")
       in_.fail(fmt::format("a VTK {} has no spheres; save points with radii as POLYDATA or UNSTRUCTURED_GRID",
                            bernal::quoted(set[1])));
-    points_.kind = fmt::format("{} {}", set[1] == "POLYDATA" ? "PolyData" : "UnstructuredGrid",
+    points_.kind = fmt::format("{} {}", of == "POLYDATA" ? "PolyData" : "UnstructuredGrid",
                                is_binary_ ? "binary" : "ASCII");
     for (;;) {
       const auto words = in_.words_of_line();
@@ -176,7 +186,7 @@ class LegacyReader {
   }
 
   void take(const std::vector<std::string_view>& words) {
-    const std::string_view word = words[0];
+    const std::string word = in_capitals(words[0]);
     if (word == "POINTS") return take_points(words);
     if (word == "VERTICES" || word == "LINES" || word == "POLYGONS" || word == "TRIANGLE_STRIPS" ||
         word == "CELLS")
@@ -206,7 +216,7 @@ class LegacyReader {
   /// The cells, of which only vertices are of use: faces make corners of the points.
   void take_cells(const std::vector<std::string_view>& words) {
     need(words, 3);
-    const std::string word(words[0]);
+    const std::string word = in_capitals(words[0]);
     const std::uint64_t cells = in_.whole(words[1]), numbers_of_cells = in_.whole(words[2]);
     if ((word == "POLYGONS" || word == "TRIANGLE_STRIPS") && cells > 0) refuse_faces(cells);
     if (!is_offsets_) {
@@ -215,7 +225,8 @@ class LegacyReader {
     }
     for (const std::uint64_t count : {cells, numbers_of_cells}) {
       const auto part = in_.words_of_line();
-      if (part.size() != 2 || (part[0] != "OFFSETS" && part[0] != "CONNECTIVITY"))
+      const std::string what = part.size() == 2 ? in_capitals(part[0]) : std::string();
+      if (what != "OFFSETS" && what != "CONNECTIVITY")
         in_.fail(fmt::format("OFFSETS and CONNECTIVITY are expected after {}", word));
       numbers(std::string(part[1]), count, 1);
     }
@@ -235,7 +246,7 @@ class LegacyReader {
 
   void take_section(const std::vector<std::string_view>& words) {
     need(words, 2);
-    section_ = words[0] == "POINT_DATA" ? Section::points : Section::cells;
+    section_ = in_capitals(words[0]) == "POINT_DATA" ? Section::points : Section::cells;
     rows_ = in_.whole(words[1]);
     if (section_ == Section::points && (!has_points_ || rows_ != count_))
       in_.fail(fmt::format("the data are of {} points, and there are {}; was the file put together?", rows_,
@@ -247,7 +258,7 @@ class LegacyReader {
     need(words, 3);
     for (std::uint64_t k = 0, arrays = in_.whole(words[2]); k < arrays; ++k) {
       auto head = in_.words_of_line();
-      if (!head.empty() && head[0] == "METADATA") {
+      if (!head.empty() && in_capitals(head[0]) == "METADATA") {
         take(head);
         head = in_.words_of_line();
       }
@@ -268,11 +279,11 @@ class LegacyReader {
 
   void take_attribute(const std::vector<std::string_view>& words) {
     need(words, 3);
-    const std::string word(words[0]), name = decoded(words[1]), last(words[2]);
+    const std::string word = in_capitals(words[0]), name = decoded(words[1]), last(words[2]);
     if (word == "SCALARS") {
       const std::uint64_t components = words.size() > 3 ? in_.whole(words[3]) : 1;
       const auto table = in_.words_of_line();
-      if (table.size() != 2 || table[0] != "LOOKUP_TABLE")
+      if (table.size() != 2 || in_capitals(table[0]) != "LOOKUP_TABLE")
         in_.fail(fmt::format("the line LOOKUP_TABLE is expected after SCALARS {}", name));
       return add(name, components, numbers(last, rows_, components));
     }

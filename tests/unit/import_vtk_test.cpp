@@ -88,6 +88,10 @@ TEST(ImportVtk, LegacyText) {
            "0 1 \nCELL_DATA 2\nFIELD FieldData 1\nradius 1 2 int\n7 7\nPOINT_DATA 2\nFIELD FieldData 1\n"
            "Particle%20Radius 1 2 float\n0.5 0.25 \nMETADATA\nINFORMATION 0\n\n"}})
     expect_two(of);
+  // Keywords in any case, and what vtkDataReader takes besides.
+  expect_two({"a.vtk",
+              "# vtk DataFile Version 1.0\nx\nascii\nDataset PolyData\npoints 2 Float\n1 2 3 4 5 6\n"
+              "Vertices 2 4\n1 0 1 1\npoint_data 2\nscalars r float 1\nlookup_table default\n.5 .25\n"});
   // A unit in a clause of the title; numbers of spheres; an array that only the user knows.
   EXPECT_EQ(
       imported({"a.vtk",
