@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -72,9 +73,45 @@ std::string percent_decoded(std::string_view text) {
 
 std::string sha256_of(const fs::path& file) { return sha256_of_all(std::array{file}); }
 
+namespace {
+
+/// The files that a STEP file names, as they stand in it: the first text of each DOCUMENT_FILE.
+std::vector<std::string> documents_in_step(const fs::path& file) {
+  InputFile in(file);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  constexpr std::string_view entity = "DOCUMENT_FILE";
+  std::vector<std::string> names;
+  for (std::size_t at = text.find(entity); at != text.npos; at = text.find(entity, at + 1)) {
+    const std::size_t open = text.find_first_not_of(" \t\r\n(", at + entity.size());
+    if (open == text.npos || text[open] != '\'') continue;
+    const std::size_t close = text.find('\'', open + 1);
+    if (close != text.npos) names.push_back(text.substr(open + 1, close - open - 1));
+  }
+  return names;
+}
+
+/// With those beside it that they name, and so on.
+std::vector<fs::path> files_of_step(const fs::path& file) {
+  std::vector<fs::path> files{file};
+  for (std::size_t k = 0; k < files.size(); ++k)
+    for (const std::string& name : documents_in_step(files[k])) {
+      const fs::path other = files[k].parent_path() / name;
+      const bool is_step = cad::extension_of(other) == ".step" || cad::extension_of(other) == ".stp";
+      if (is_step && kind_of_file(other) == FileKind::regular &&
+          std::ranges::find(files, other) == files.end())
+        files.push_back(other);
+    }
+  return files;
+}
+
+}  // namespace
+
 std::vector<fs::path> files_of_part(const fs::path& file) {
   std::vector<fs::path> files{file};
-  if (cad::extension_of(file) != ".gltf" || kind_of_file(file) != FileKind::regular) return files;
+  if (kind_of_file(file) != FileKind::regular) return files;
+  const std::string extension = cad::extension_of(file);
+  if (extension == ".step" || extension == ".stp") return files_of_step(file);
+  if (extension != ".gltf") return files;
   InputFile in(file);
   using Event = nlohmann::json::parse_event_t;
   const auto is_kept = [](int depth, Event event, const nlohmann::json& parsed) {

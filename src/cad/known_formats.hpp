@@ -3,6 +3,7 @@
 #include <cctype>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace bernal::cad {
 
@@ -11,6 +12,13 @@ inline std::string in_lower_case(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
+}
+
+/// Without blanks and ends of lines around it.
+inline std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
 /// ".stl" of "Part.STL".

@@ -174,6 +174,9 @@ std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_
   }
   for (const auto* some : {caps_first ? &caps : &repairs, caps_first ? &repairs : &caps})
     lines.insert(lines.end(), some->begin(), some->end());
+  // Parts that touch: where they are told apart, one of them.
+  if (report.solids.size() > 1 && options.solids.empty() && report.open_edges == 0)
+    lines.push_back({"solids = [\"1\"]", [](MeshFile& m) { m.solids = {"1"}; }});
   for (const Line& cap : caps)
     for (const Line& repair : repairs)
       lines.push_back({fmt::format("{}\n{}", cap.text, repair.text), [cap, repair](MeshFile& m) {

@@ -56,6 +56,14 @@ struct ReadAttempt {
   bool ok() const { return failure.empty(); }
 };
 
+/// 3MF: what its build places, from all parts of the package (core and production specification), in double
+/// precision; of slicers' files what is a part. Materials and metadata are passed over. In a child process.
+ReadAttempt read_3mf(const std::filesystem::path& file);
+
+/// AMF (ISO/ASTM 52915), zipped or not, in double precision: what its constellations place, else its objects
+/// as they stand, a solid a volume. Materials are passed over. In a child process.
+ReadAttempt read_amf(const std::filesystem::path& file);
+
 /// The general door: every format that assimp knows, node transforms applied in double. Coordinates have
 /// been through single precision.
 ReadAttempt read_with_assimp(const std::filesystem::path& file);
@@ -75,6 +83,10 @@ ReadAttempt read_with_opencascade(const std::filesystem::path& file, double defl
 /// Whether CGAL reads the doubles of this format: OFF, OBJ, PLY (STL goes through `read_stl_with_cgal`).
 bool cgal_reads(const std::filesystem::path& file);
 ReadAttempt read_with_cgal(const std::filesystem::path& file);
+/// The first line of an OBJ with a coordinate that is no finite number, or a corner of a face that is as long as
+/// no number is, and what is wrong with it; empty if none is. CGAL refuses it without its line, assimp makes
+/// numbers of it, or loops over its digits in a time that grows as their square.
+std::string wrong_number_of_obj(const std::filesystem::path& file);
 ReadAttempt read_stl_with_cgal(const std::string& content);
 
 }  // namespace bernal::cad

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 #include "cad/caged_repair.hpp"
 #include "cad/close_seams.hpp"
+#include "cad/counted.hpp"
 #include "cad/defects.hpp"
 #include "cad/diagnose_mesh.hpp"
 #include "cad/exact_corners.hpp"
@@ -58,17 +58,6 @@ std::size_t number_in(const std::string& text) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size() ? number : 0;
-}
-
-/// The next number of three digits that is at least as large.
-double not_less(double bound) {
-  if (!(bound > 0) || !std::isfinite(bound)) return bound;
-  const int digits = 2 - static_cast<int>(std::floor(std::log10(bound)));
-  const auto text = [&](double number) { return fmt::format("{:.3g}", number); };
-  const double unit = std::pow(10.0, -digits);
-  double rounded = std::strtod(text(bound).c_str(), nullptr);
-  while (rounded < bound) rounded = std::strtod(text(rounded + unit).c_str(), nullptr);
-  return rounded;
 }
 
 /// Which of so many named or nameless parts the options choose.
@@ -203,7 +192,7 @@ struct Repairs {
     done.push_back(
         fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
                     "{:.3g} from it",
-                    not_less(made_up), not_less(lost)));
+                    cad::not_less(made_up), cad::not_less(lost)));
     if (const std::string left = cad::what_is_left(mesh, mended.mesh); !left.empty())
       cautions.push_back(fmt::format(
           "repair = [\"{}\"] lost a part: {}{}", name_of(repair), left,

@@ -174,9 +174,16 @@ ChosenSoup read_by_extension(const std::filesystem::path& file, double deflectio
     return chosen(std::move(read), "OpenCASCADE, tessellated");
   }
   if (cgal_reads(file)) {
+    if (extension_of(file) == ".obj")
+      if (const std::string wrong = wrong_number_of_obj(file); !wrong.empty()) refuse_unread(file, wrong);
     ReadAttempt cgal = read_with_cgal(file);
     if (!cgal.ok() && cgal_is_strict(file)) refuse_unread(file, cgal.failure);
     return choose(file, read_with_assimp(file), std::move(cgal));
+  }
+  if (const std::string extension = extension_of(file); extension == ".3mf" || extension == ".amf") {
+    ReadAttempt read = extension == ".3mf" ? read_3mf(file) : read_amf(file);
+    if (!read.ok()) refuse_unread(file, read.failure);
+    return chosen(std::move(read), "pugixml, double precision");
   }
   ReadAttempt assimp = read_with_assimp(file);
   if (!assimp.ok()) refuse_unread(file, assimp.failure);

@@ -13,12 +13,10 @@
 #include <sstream>
 
 #include "cad/caged_reader.hpp"
-#include "cad/counted.hpp"
 #include "cad/file_digest.hpp"
 #include "cad/file_facts.hpp"
 #include "cad/known_formats.hpp"
 #include "cad/polygon_soup.hpp"
-#include "cad/zip_archive.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -142,29 +140,8 @@ FileFacts facts_of_fbx(const aiScene& scene) {
   return facts;
 }
 
-/// What a zipped file holds, if it is one.
-struct Archived {
-  std::string amf;
-  ThreeMfFacts model;
-  std::string trouble;  ///< one phrase; empty if all is there
-};
-
-Archived archived_in(const std::filesystem::path& file, const std::string& extension) {
-  Archived result;
-  if (extension == "3mf") {
-    const ZipEntry model = zip_entry(file, ".model");
-    if (model.trouble.empty()) result.model = facts_of_3mf(model.content);
-    result.trouble = model.trouble.empty() ? result.model.trouble : model.trouble;
-  } else if (extension == "amf" && is_zip(file)) {
-    ZipEntry amf = zip_entry(file, ".amf");
-    result = {std::move(amf.content), {}, std::move(amf.trouble)};
-  }
-  return result;
-}
-
-/// What the file says of its unit and axes, and of the names of its parts where assimp drops them.
-void add_facts(const std::filesystem::path& file, Archived archived, const aiScene& scene,
-               ReadAttempt& result) {
+/// What the file says of its unit and axes.
+void add_facts(const std::filesystem::path& file, const aiScene& scene, ReadAttempt& result) {
   const std::string format = format_of(scene);
   if (format.starts_with("Collada")) {
     result.facts = facts_of_collada(text_without_mark(file));
@@ -172,24 +149,6 @@ void add_facts(const std::filesystem::path& file, Archived archived, const aiSce
     result.facts.unit = FileFacts::Length{1, "meter"};
   } else if (format.starts_with("Autodesk FBX")) {
     result.facts = facts_of_fbx(scene);
-  } else if (format.starts_with("Additive")) {
-    result.facts = facts_of_amf(archived.amf.empty() ? text_without_mark(file) : archived.amf);
-  } else if (format.starts_with("3mf")) {
-    ThreeMfFacts& model = archived.model;
-    result.facts = std::move(model.facts);
-    std::vector<bool> is_part;
-    for (Solid& solid : result.soup.solids) {  // which assimp calls "Object_7" after the id
-      const bool by_id = solid.name.starts_with("Object_");
-      const ThreeMfFacts::Object object =
-          by_id ? model.objects[solid.name.substr(7)] : ThreeMfFacts::Object();
-      if (by_id) solid.name = object.name;
-      is_part.push_back(object.is_part);
-    }
-    const auto left_out = static_cast<std::size_t>(std::ranges::count(is_part, false));
-    if (left_out == 0) return;
-    keep_solids(result.soup, is_part);
-    result.facts.notes.push_back(fmt::format("{} left out, which by the file support the part",
-                                             counted(left_out, "object is", "objects are")));
   }
 }
 
@@ -246,8 +205,6 @@ void keep_importers_of(const std::string& extension, Assimp::Importer& importer)
 /// No post-processing: assimp's welding has an absolute tolerance, and its triangulation knows only floats.
 ReadAttempt read_here(const std::filesystem::path& file) {
   const std::string extension = extension_of(file).substr(1);
-  Archived archived = archived_in(file, extension);
-  if (!archived.trouble.empty()) return {{}, archived.trouble, {}};
   Assimp::Importer importer;
   keep_importers_of(extension, importer);
   importer.SetIOHandler(new FilesBeside(file));  // which is the importer's from now on
@@ -260,7 +217,7 @@ ReadAttempt read_here(const std::filesystem::path& file) {
     scene = importer.ReadFile(file.string(), 0);
   }
   ReadAttempt result = attempt(importer, scene);
-  if (result.ok()) add_facts(file, std::move(archived), *scene, result);
+  if (result.ok()) add_facts(file, *scene, result);
   drop_single_nameless(result.soup.solids);
   return result;
 }

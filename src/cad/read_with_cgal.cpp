@@ -147,6 +147,38 @@ std::vector<Solid> obj_parts(std::string_view text, std::size_t faces) {
 
 }  // namespace
 
+std::string wrong_number_of_obj(const std::filesystem::path& file) {
+  constexpr std::size_t most_digits = 1000, most_of_corner = 100;
+  std::istringstream in(text_without_mark(file));
+  std::size_t number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    const bool vertex = line.starts_with("v ") || line.starts_with("v\t");
+    if (!vertex && !line.starts_with("f ") && !line.starts_with("f\t")) continue;
+    if (trimmed(line).ends_with('\\')) continue;  // it goes on in the next one
+    std::string_view rest = trimmed(std::string_view(line).substr(1));
+    for (int k = 0; !rest.empty() && (!vertex || k < 3); ++k) {
+      const std::string_view word = rest.substr(0, std::min(rest.find_first_of(" \t"), rest.size()));
+      rest = trimmed(rest.substr(word.size()));
+      std::string_view digits = word;
+      if (digits.starts_with('+')) digits.remove_prefix(1);
+      double value = 0;
+      const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+      const bool too_small = error == std::errc::result_out_of_range &&
+                             digits.find_first_of("eE") != digits.npos &&
+                             std::strtod(std::string(digits).c_str(), nullptr) == 0;
+      const bool is_number =
+          error == std::errc() && end == digits.data() + digits.size() && std::isfinite(value);
+      if (vertex ? digits.size() <= most_digits && (is_number || too_small) : word.size() <= most_of_corner)
+        continue;
+      return fmt::format("a {} is \"{:.40}{}\", {} (line {})", vertex ? "coordinate" : "corner of a face",
+                         word, word.size() > 40 ? "..." : "", vertex ? "no finite number" : "no index",
+                         number);
+    }
+  }
+  return {};
+}
+
 bool cgal_reads(const std::filesystem::path& file) {
   const std::string extension = extension_of(file);
   return extension == ".off" || extension == ".obj" || extension == ".ply";

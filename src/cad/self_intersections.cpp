@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "cad/mesh_topology.hpp"
 #include "cad/separation.hpp"
 #include "core/parallel.hpp"
 
@@ -18,7 +19,6 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
-using Corners = std::array<std::uint32_t, 3>;
 
 using ThreePoints = std::array<Vector<3>, 3>;
 
@@ -57,14 +57,14 @@ class TrianglePairs {
  public:
   explicit TrianglePairs(const Mesh& mesh) : mesh_(mesh) {}
 
-  Kernel::Triangle_3 triangle(const Corners& t) const { return triangle(points_of(t)); }
-  bool degenerate(const Corners& t) const {
+  Kernel::Triangle_3 triangle(const FaceCorners& t) const { return triangle(points_of(t)); }
+  bool degenerate(const FaceCorners& t) const {
     const auto [a, b, c] = points_of(t);
     return CGAL::collinear(exact(a), exact(b), exact(c));
   }
 
   /// Whether s and t, not degenerate, share more than their common vertices and edges.
-  bool intersect(Corners s, Corners t) const {
+  bool intersect(FaceCorners s, FaceCorners t) const {
     const int shared = move_shared_to_front(s, t);
     const ThreePoints p = points_of(s), q = points_of(t);
     switch (shared) {
@@ -94,7 +94,7 @@ class TrianglePairs {
   }
 
   /// In the same order in both; the others keep theirs up to a turn. Returns how many there are.
-  static int move_shared_to_front(Corners& s, Corners& t) {
+  static int move_shared_to_front(FaceCorners& s, FaceCorners& t) {
     int shared = 0;
     for (int i = 0; i < 3; ++i)
       for (int j = shared; j < 3; ++j)
@@ -107,7 +107,7 @@ class TrianglePairs {
     return shared;
   }
 
-  ThreePoints points_of(const Corners& t) const {
+  ThreePoints points_of(const FaceCorners& t) const {
     return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
   }
 
@@ -116,14 +116,14 @@ class TrianglePairs {
 
 }  // namespace
 
-bool is_degenerate(const Mesh& mesh, const Corners& triangle) {
+bool is_degenerate(const Mesh& mesh, const FaceCorners& triangle) {
   return TrianglePairs(mesh).degenerate(triangle);
 }
 
 std::uint64_t count_degenerate(const Mesh& mesh) {
   const TrianglePairs pairs(mesh);
   return static_cast<std::uint64_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
-                                                  [&](const Corners& t) { return pairs.degenerate(t); }));
+                                                  [&](const FaceCorners& t) { return pairs.degenerate(t); }));
 }
 
 namespace {
@@ -131,12 +131,12 @@ namespace {
 /// Calls found(s, t) for each of the pairs, with their triangles, until it says that they are enough.
 template <class Found>
 void for_each_intersecting_pair(const Mesh& mesh, const Found& found) {
-  using Box = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const Corners*>;
+  using Box = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const FaceCorners*>;
   struct Enough {};
   const TrianglePairs pairs(mesh);
   std::vector<Box> boxes;
   boxes.reserve(mesh.triangles.size());
-  for (const Corners& t : mesh.triangles)
+  for (const FaceCorners& t : mesh.triangles)
     if (!pairs.degenerate(t)) boxes.emplace_back(pairs.triangle(t).bbox(), &t);
 
   try {
@@ -154,7 +154,7 @@ std::uint64_t most_self_intersections(const Mesh& mesh) { return 50'000 + 2 * me
 
 bool intersects_itself(const Mesh& mesh) {
   bool found = false;
-  for_each_intersecting_pair(mesh, [&](const Corners*, const Corners*) {
+  for_each_intersecting_pair(mesh, [&](const FaceCorners*, const FaceCorners*) {
     found = true;
     return false;
   });
@@ -164,8 +164,10 @@ bool intersects_itself(const Mesh& mesh) {
 std::vector<std::array<std::uint32_t, 2>> self_intersecting_pairs(const Mesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> pairs;
   const std::uint64_t most = most_self_intersections(mesh);
-  const auto number = [&](const Corners* t) { return static_cast<std::uint32_t>(t - mesh.triangles.data()); };
-  for_each_intersecting_pair(mesh, [&](const Corners* s, const Corners* t) {
+  const auto number = [&](const FaceCorners* t) {
+    return static_cast<std::uint32_t>(t - mesh.triangles.data());
+  };
+  for_each_intersecting_pair(mesh, [&](const FaceCorners* s, const FaceCorners* t) {
     const auto [low, high] = std::minmax({number(s), number(t)});
     pairs.push_back({low, high});
     return pairs.size() < most;

@@ -34,8 +34,9 @@ std::string certified_walls(const Scene& scene) {
                         plain_text(changed.string()));
   if (!file->repair.empty()) text += " The walls are those of the repaired surface, not of the file's.";
   if (file->deflection)
-    text += fmt::format(" The walls are triangles, tessellated to {:g} {} from the CAD surface.",
-                        *file->deflection, name_of(scene.unit));
+    text += fmt::format(
+        " The walls are triangles, tessellated from the CAD surface with a deflection of {:g} {}.",
+        *file->deflection, name_of(scene.unit));
   return text;
 }
 

@@ -2,8 +2,11 @@
 #include <minizip/zip.h>
 
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -82,30 +85,46 @@ inline std::string as_gltf_numbers(const Mesh& mesh) {
   return bytes;
 }
 
-/// The bytes of a 3MF archive around its model, in XML.
-inline std::string archived_3mf(std::string_view model) {
+/// The bytes of an archive of these entries, each a name and what it holds.
+inline std::string archived(const std::vector<std::pair<std::string, std::string>>& entries) {
   const testing::Folder folder;
-  const zipFile zip = zipOpen64((folder / "part.3mf").c_str(), 0);
-  const auto add = [&](const char* entry, std::string_view content) {
-    zipOpenNewFileInZip64(zip, entry, nullptr, nullptr, 0, nullptr, 0, nullptr, 8, 6, 0);
+  const zipFile zip = zipOpen64((folder / "archive.zip").c_str(), 0);
+  for (const auto& [name, content] : entries) {
+    zipOpenNewFileInZip64(zip, name.c_str(), nullptr, nullptr, 0, nullptr, 0, nullptr, 8, 6, 0);
     zipWriteInFileInZip(zip, content.data(), static_cast<unsigned>(content.size()));
     zipCloseFileInZip(zip);
-  };
-  add("[Content_Types].xml",
-      R"(<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">)"
-      R"(<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>)");
-  add("_rels/.rels",
-      R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">)"
-      R"(<Relationship Target="/3D/3dmodel.model" Id="r" )"
-      R"(Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)");
-  add("3D/3dmodel.model", model);
+  }
   zipClose(zip, nullptr);
-  return testing::text_of(folder / "part.3mf");
+  return testing::text_of(folder / "archive.zip");
+}
+
+/// A 3MF of these entries, whose relationships name `root`.
+inline std::string packaged_3mf(std::vector<std::pair<std::string, std::string>> entries,
+                                std::string_view root = "/3D/3dmodel.model") {
+  const std::pair<std::string, std::string> package[] = {
+      {"[Content_Types].xml",
+       R"(<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">)"
+       R"(<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>)"},
+      {"_rels/.rels",
+       fmt::format(
+           R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">)"
+           R"(<Relationship Target="/Metadata/thumbnail.png" Id="t" )"
+           R"(Type="http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail"/>)"
+           R"(<Relationship Target="{}" Id="r" )"
+           R"(Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)",
+           root)}};
+  entries.insert(entries.begin(), std::begin(package), std::end(package));
+  return archived(entries);
+}
+
+/// The bytes of a 3MF archive around its model, in XML.
+inline std::string archived_3mf(std::string_view model) {
+  return packaged_3mf({{"3D/3dmodel.model", std::string(model)}});
 }
 
 /// 3MF; `unit`: "millimeter", "inch", …
 /// `support`, if it has faces, is an object that holds the part while it is printed.
-inline std::string as_3mf(const Mesh& mesh, std::string_view unit, const Mesh& support = {}) {
+inline std::string model_3mf(const Mesh& mesh, std::string_view unit, const Mesh& support = {}) {
   std::string xml =
       fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?><model unit="{}" xml:lang="en-US" )"
                   R"(xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>)",
@@ -124,7 +143,22 @@ inline std::string as_3mf(const Mesh& mesh, std::string_view unit, const Mesh& s
   if (supported) add(2, "support", support);
   xml += fmt::format(R"(</resources><build><item objectid="1"/>{}</build></model>)",
                      supported ? R"(<item objectid="2"/>)" : "");
-  return archived_3mf(xml);
+  return xml;
+}
+inline std::string as_3mf(const Mesh& mesh, std::string_view unit, const Mesh& support = {}) {
+  return archived_3mf(model_3mf(mesh, unit, support));
+}
+
+/// AMF in millimetres, of a material that it does not define.
+inline std::string as_amf(const Mesh& mesh) {
+  std::string xml = R"(<?xml version="1.0"?><amf unit="millimeter"><object id="0"><mesh><vertices>)";
+  for (const Vector<3>& v : mesh.vertices)
+    xml += fmt::format("<vertex><coordinates><x>{}</x><y>{}</y><z>{}</z></coordinates></vertex>", v[0], v[1],
+                       v[2]);
+  xml += R"(</vertices><volume materialid="3">)";
+  for (const auto& [i, j, k] : mesh.triangles)
+    xml += fmt::format("<triangle><v1>{}</v1><v2>{}</v2><v3>{}</v3></triangle>", i, j, k);
+  return xml + "</volume></mesh></object></amf>";
 }
 
 }  // namespace bernal::test

@@ -50,7 +50,10 @@ using Names = std::vector<std::string>;
 class FileUnits : public ::testing::Test {
  protected:
   ReadAttempt read(std::string_view name, std::string_view content) {
-    return cad::read_with_assimp(folder.write(name, content));
+    const auto file = folder.write(name, content);
+    return name.ends_with(".3mf")   ? cad::read_3mf(file)
+           : name.ends_with(".amf") ? cad::read_amf(file)
+                                    : cad::read_with_assimp(file);
   }
 
   /// A tetrahedron with legs of 1, 2 and 3 along the axes.

@@ -97,6 +97,71 @@ TEST_F(ReadMesh, TextStlInUpperCaseOrWithTabs) {
   EXPECT_EQ(report.faces, 12U);
 }
 
+// What other programs write in text STL that its readers trip over.
+TEST_F(ReadMesh, TextStlAsItIsFoundInTheWild) {
+  const std::string plain = as_text_stl(box);
+  const auto with = [](std::string text, std::string_view from, std::string_view to) {
+    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+    return text;
+  };
+  const auto upper = [](std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
+    return text;
+  };
+  const std::size_t normal = plain.find("facet normal");
+  const std::string first_normal = plain.substr(normal, plain.find('\n', normal) - normal);
+  const std::pair<const char*, std::string> texts[] = {
+      {"a number behind endfacet", with(plain, "endfacet", "endfacet 17")},
+      {"in capitals", upper(with(plain, "endfacet", "endfacet 17"))},
+      {"a number behind endloop", with(plain, "endloop", "endloop 3")},
+      {"a colour behind endfacet", with(plain, "endfacet", "endfacet attr 0x7fff")},
+      {"a number behind outer loop", with(plain, "outer loop", "outer loop 1")},
+      {"words behind endsolid", with(plain, "endsolid", "endsolid 12 triangles, v1.0")},
+      {"four numbers of a normal", with(plain, first_normal, first_normal + " 0")},
+      {"a normal that is none", with(plain, first_normal, "facet normal nan -nan(ind) 1.#QNAN")},
+      {"lines of Windows", with(with(plain, "endfacet", "endfacet 17"), "\n", "\r\n")},
+      {"lines of old Macs", with(plain, "\n", "\r")},
+      {"tabs", with(plain, " ", "\t")},
+      {"one line", with(plain, "\n", " ")},
+      {"no end of the last line", plain.substr(0, plain.size() - 1)},
+      {"comments", "# made by hand\n" + with(plain, "endloop\n", "endloop\n// facet\n# facet\n")},
+      {"a solid named after its words", with(plain, "solid", "solid facet holder of a solid")},
+      {"exponents of Fortran", with(with(plain, "vertex 1", "vertex 0.1D+01"), "vertex -1", "vertex -1.d0")},
+  };
+  for (const auto& [what, text] : texts) {
+    const MeshReport report = read("wild.stl", text).report;
+    EXPECT_EQ(report.faces, 12U) << what;
+    EXPECT_NEAR(report.volume, 6, 1e-14) << what;
+  }
+  const MeshReport two =
+      read("two.stl", with(plain, "endfacet", "endfacet 1") + as_text_stl(translated(box, {10, 0, 0})))
+          .report;
+  EXPECT_EQ(two.components, 2U);
+  EXPECT_NEAR(two.volume, 12, 1e-13);
+  ASSERT_FALSE(two.notes.empty());
+  EXPECT_EQ(two.notes.front(), "12 words behind statements of the format, of no meaning there, are ignored");
+  EXPECT_NE(refusal("four.stl", with(plain, "vertex 1 ", "vertex 1 1 ")).find("expected"), std::string::npos);
+  EXPECT_NE(refusal("comma.stl", with(plain, "vertex 1 ", "vertex 1,0 ")).find("found \"1,0\""),
+            std::string::npos);
+}
+
+TEST_F(ReadMesh, NumbersOfAnObjThatAreNoneAreTold) {
+  const std::string rest = " 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 ";
+  const std::string many(1'000'000, '3');
+  EXPECT_NE(refusal("long.obj", "v " + many + rest + "4\n").find("no finite number (line 1); export"),
+            std::string::npos);
+  EXPECT_NE(refusal("digits.obj", "v 0." + many + rest + "4\n").find("(line 1)"), std::string::npos);
+  EXPECT_NE(
+      refusal("corner.obj", "v 0" + rest + std::string(1'000'000, '0') + "4\n").find("no index (line 8)"),
+      std::string::npos);
+  EXPECT_NE(refusal("large.obj", "v 1e999" + rest + "4\n").find("\"1e999\", no finite number (line 1)"),
+            std::string::npos);
+  EXPECT_NE(refusal("comma.obj", "v 1,5" + rest + "4\n").find("\"1,5\""), std::string::npos);
+  EXPECT_NEAR(read("good.obj", "v +0.0" + rest + "4\n").report.volume, 1.0 / 6, 1e-15);
+  EXPECT_NEAR(read("small.obj", "v 1e-999" + rest + "4\n").report.volume, 1.0 / 6, 1e-15);
+}
+
 TEST_F(ReadMesh, SeveralSolidsInOneFile) {
   const Mesh other = translated(box, {10, 0, 0});
   const MeshReport report = read("two.stl", as_text_stl(box, "one") + as_text_stl(other, "two")).report;
@@ -107,9 +172,9 @@ TEST_F(ReadMesh, SeveralSolidsInOneFile) {
 
 TEST_F(ReadMesh, MalformedTextStlIsToldWithItsLine) {
   std::string text = as_text_stl(box);
-  const std::string foo = std::string(text).replace(text.find("endloop"), 7, "endloop foo");
+  const std::string foo = std::string(text).replace(text.find("endloop"), 7, "endloop\nfoo");
   EXPECT_EQ(refusal("foo.stl", foo),
-            ":7: malformed text STL: expected \"endfacet\", found \"foo\"; export the file again");
+            ":8: malformed text STL: expected \"endfacet\", found \"foo\"; export the file again");
   const std::string nan = std::string(text).replace(text.find("vertex -1"), 9, "vertex nan");
   EXPECT_EQ(refusal("nan.stl", nan),
             ":4: malformed text STL: expected a finite number, found \"nan\"; export the file again");

@@ -4,11 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <string>
+#include <vector>
 
+#include "bernal/cad/read_mesh.hpp"
 #include "cad/diagnose_mesh.hpp"
+#include "cad/file_digest.hpp"
 #include "cad/make_triangles.hpp"
+#include "cad/mesh_distance.hpp"
 #include "cad/polygon_soup.hpp"
 #include "support/folder.hpp"
 
@@ -115,6 +120,114 @@ TEST_F(ReadStep, TheDeviationIsMeasuredRightly) {
   }
   EXPECT_GT(deepest, 0.01);
   EXPECT_NEAR(frustum.facts.deviation->outside, deepest, 0.03 * deepest);
+}
+
+// Against the closed forms of a cylinder, a ball and a torus, written in inch: at 91 points of each triangle,
+// and from the points of a tessellation that is sixteen times as fine back to the triangles.
+TEST_F(ReadStep, RoundBodiesLieWithinTheDeflectionAsItIsMeasured) {
+  constexpr double inch = 25.4;
+  const auto off_cylinder = [](const Vector<3>& p) { return std::abs(std::hypot(p[0], p[1]) - 10 * inch); };
+  const auto off_ball = [](const Vector<3>& p) {
+    return std::abs((p - Vector<3>(40 * inch, 0, 0)).norm() - 7 * inch);
+  };
+  const auto off_torus = [](const Vector<3>& p) {
+    return std::abs(std::hypot(std::hypot(p[0], p[1] - 50 * inch) - 12 * inch, p[2]) - 4 * inch);
+  };
+  const Mesh fine = cad::make_triangles(attempt("round_bodies_inch.step", 10.0 / 16).soup).mesh;
+  for (const double deflection : {40.0, 20.0, 10.0}) {
+    const ReadAttempt read = attempt("round_bodies_inch.step", deflection);
+    ASSERT_TRUE(read.ok()) << read.failure;
+    const PolygonSoup& soup = read.soup;
+    ASSERT_EQ(soup.solids.size(), 3U);
+    double deepest = 0;
+    for (std::size_t t = 0; t < soup.polygons.size(); ++t) {
+      const auto& corners = soup.polygons[t];
+      const Vector<3>&a = soup.points[corners[0]], &b = soup.points[corners[1]], &c = soup.points[corners[2]];
+      const bool is_cylinder = t < soup.solids[1].first, is_ball = !is_cylinder && t < soup.solids[2].first;
+      if (is_cylinder && a[2] == b[2] && b[2] == c[2]) continue;  // a flat end
+      constexpr int fineness = 12;
+      for (int i = 0; i <= fineness; ++i)
+        for (int j = 0; i + j <= fineness; ++j) {
+          const Vector<3> p = (a * i + b * j + c * (fineness - i - j)) / fineness;
+          deepest = std::max(deepest, is_cylinder ? off_cylinder(p) : is_ball ? off_ball(p) : off_torus(p));
+        }
+    }
+    ASSERT_TRUE(read.facts.deviation.has_value());
+    const double measured = std::max(read.facts.deviation->outside, read.facts.deviation->inside);
+    EXPECT_LE(measured, deflection);
+    EXPECT_NEAR(measured, deepest, 0.05 * deepest);
+    EXPECT_GT(deepest, 0.1 * deflection);
+    const Mesh coarse = cad::make_triangles(read.soup).mesh;
+    EXPECT_LE(cad::farthest(fine, coarse, {0.01 * deflection, 0.02}).at_most, 1.1 * deflection);
+    EXPECT_LE(cad::farthest(coarse, fine, {0.01 * deflection, 0.02}).at_most, 1.1 * deflection);
+  }
+}
+
+// A ruled surface that twists: OpenCASCADE's mesher leaves slivers across it that stand off, whatever it is
+// asked for, and a finer mesh of all of it has twice the triangles. Those that stand off are split.
+TEST_F(ReadStep, ASurfaceThatTwistsIsSplitWhereItStandsOff) {
+  for (const auto& [deflection, most_faces] : {std::pair{0.05, 10'000U}, {0.02, 18'000U}}) {
+    const ReadAttempt read = attempt("twisted.brep", deflection);
+    ASSERT_TRUE(read.ok()) << read.failure;
+    EXPECT_LE(read.facts.deviation->outside, deflection);
+    EXPECT_LE(read.facts.deviation->inside, deflection);
+    EXPECT_LT(read.soup.polygons.size(), most_faces);
+    EXPECT_EQ(cad::make_triangles(read.soup).welded, 0U);
+    EXPECT_TRUE(diagnosed(read.soup).usable());
+  }
+}
+
+TEST_F(ReadStep, TheLeastDeflectionThatIsOfferedIsTaken) {
+  for (const char* name : {"frustum.brep", "drum_inch.igs"}) {
+    const std::string said = attempt(name, 1e-9).failure;
+    const std::string_view offer = "choose at least ";
+    const std::size_t at = said.find(offer);
+    ASSERT_NE(at, said.npos) << said;
+    const double least = std::strtod(said.c_str() + at + offer.size(), nullptr);
+    EXPECT_TRUE(attempt(name, least).ok()) << said;
+    EXPECT_NE(attempt(name, 0.99 * least).failure.find(offer), std::string::npos) << said;
+  }
+}
+
+TEST_F(ReadStep, AnAssemblyOfOtherFilesReadsThoseBesideAndNamesTheRest) {
+  const bernal::testing::Folder folder;
+  const auto text = [](const std::string& name) {
+    return bernal::testing::text_of(std::filesystem::path(BERNAL_DATA) / "meshes/external" / name);
+  };
+  const auto assembly = folder.write("assembly.step", text("assembly.step"));
+  EXPECT_EQ(
+      cad::read_with_opencascade(assembly, 0).failure,
+      "its parts stand in other files, which cannot be read beside it: part_box.stp, part_cyl.stp; put them "
+      "there, or export all into one file");
+  folder.write("part_box.stp", text("part_box.stp"));
+  const ReadAttempt some = cad::read_with_opencascade(assembly, 0);
+  ASSERT_TRUE(some.ok()) << some.failure;
+  EXPECT_EQ(some.soup.solids.size(), 2U);
+  EXPECT_TRUE(notes(some, "goes without: part_cyl.stp"));
+  folder.write("part_cyl.stp", text("part_cyl.stp"));
+  const ReadAttempt all = cad::read_with_opencascade(assembly, 0);
+  ASSERT_TRUE(all.ok()) << all.failure;
+  EXPECT_EQ(all.soup.solids.size(), 3U);
+  EXPECT_FALSE(notes(all, "other files"));
+  EXPECT_NEAR(diagnosed(all.soup).volume, 2 * 10 * 20 * 30 + pi * 25 * 10, 10);
+  EXPECT_EQ(files_of_part(assembly).size(), 3U);
+}
+
+// Two boxes of which one stands against the other, as loose surfaces: sewn together they would be one wall
+// that branches.
+TEST_F(ReadStep, PartsThatTouchAreSewnApart) {
+  const ReadAttempt boxes = attempt("touching_boxes.igs", 0);
+  ASSERT_TRUE(boxes.ok()) << boxes.failure;
+  EXPECT_TRUE(notes(boxes, "12 surfaces that belong to no solid were sewn into 2 parts"));
+  EXPECT_TRUE(notes(boxes, "no edge is left open"));
+  ASSERT_EQ(boxes.soup.solids.size(), 2U);
+  EXPECT_NEAR(std::abs(solid(boxes.soup, 0).volume), 6000, 1e-6);
+  EXPECT_NEAR(std::abs(solid(boxes.soup, 1).volume), 9000, 1e-6);
+  const MeshFile file{.file = std::filesystem::path(BERNAL_DATA) / "meshes/touching_boxes.igs"};
+  const ImportedMesh as_it_is = read_mesh(file);
+  EXPECT_FALSE(as_it_is.report.usable());
+  const std::vector<std::string> lines = lines_that_help(file, {}, as_it_is, Effort::quick);
+  EXPECT_EQ(lines, std::vector<std::string>{"solids = [\"1\"]"});
 }
 
 TEST_F(ReadStep, AnAssemblyInInchIsPlacedNamedAndConverted) {

@@ -2,13 +2,13 @@
 #include <fmt/ranges.h>
 
 #include <BRepBndLib.hxx>
-#include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <Bnd_Box.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_IGESModel.hxx>
+#include <STEPCAFControl_ExternFile.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <ShapeFix_Shape.hxx>
 #include <Standard_Failure.hxx>
@@ -22,8 +22,10 @@
 #include <algorithm>
 #include <fstream>
 
+#include "cad/counted.hpp"
 #include "cad/known_formats.hpp"
 #include "cad/opencascade/read_shapes.hpp"
+#include "cad/opencascade/sewing.hpp"
 #include "cad/opencascade/tessellate.hpp"
 
 namespace bernal::cad {
@@ -43,6 +45,7 @@ struct Parts {
   std::vector<NamedShape> solids;
   std::vector<TopoDS_Shape> faces;
   FileFacts facts;
+  std::vector<std::string> missing = {};  ///< files that it names, which are not there
 };
 
 std::string name_of(const TDF_Label& label) {
@@ -161,14 +164,22 @@ std::string read_step(const std::filesystem::path& file, Parts& parts) {
   reader.SetGDTMode(false);
   reader.SetMatMode(false);
   reader.SetViewMode(false);
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return unparsed_step(file);
+  // Other files that it names are looked for beside it only where its path is absolute.
+  if (reader.ReadFile(std::filesystem::absolute(file).c_str()) != IFSelect_RetDone)
+    return unparsed_step(file);
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
   std::vector<std::string> names;
   for (const TCollection_AsciiString& name : lengths) names.emplace_back(name.ToCString());
   note_units(names, parts.facts);
   auto document = new_document();
-  if (!reader.Transfer(document)) return "OpenCASCADE finds no shape in the STEP file";
+  const bool any = reader.Transfer(document);
+  using Files = NCollection_DataMap<TCollection_AsciiString, opencascade::handle<STEPCAFControl_ExternFile>>;
+  for (Files::Iterator other(reader.ExternFiles()); other.More(); other.Next())
+    if (other.Value()->GetLoadStatus() != IFSelect_RetDone)
+      parts.missing.emplace_back(other.Key().ToCString());
+  std::ranges::sort(parts.missing);
+  if (!any && parts.missing.empty()) return "OpenCASCADE finds no shape in the STEP file";
   collect(document, parts);
   return {};
 }
@@ -207,40 +218,31 @@ TopoDS_Compound together(const Parts& parts) {
   return all;
 }
 
+/// The first few of them.
+std::string list_of(const std::vector<std::string>& files) {
+  constexpr std::size_t most = 6;
+  const auto end = files.begin() + std::ptrdiff_t(std::min(files.size(), most));
+  return fmt::format("{}{}", fmt::join(files.begin(), end, ", "),
+                     files.size() > most ? fmt::format(" and {} more", files.size() - most) : "");
+}
+
 double diagonal_of(const TopoDS_Shape& shape) {
   Bnd_Box box;
   BRepBndLib::AddClose(shape, box);
   return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
 }
 
-/// Sews what belongs to no solid, with the least of a few tolerances that leaves no edge free, or the fewest.
-void sew(Parts& parts, double diagonal) {
+void sew_faces(Parts& parts, double diagonal) {
   if (parts.faces.empty()) return;
-  TopoDS_Shape best;
-  int best_free = 0;
-  double best_tolerance = 0;
-  for (const double tolerance : {1e-7 * diagonal, 1e-6 * diagonal, 1e-5 * diagonal, 1e-4 * diagonal}) {
-    BRepBuilderAPI_Sewing sewing(tolerance);
-    for (const TopoDS_Shape& face : parts.faces) sewing.Add(face);
-    sewing.Perform();
-    if (sewing.SewedShape().IsNull()) continue;
-    if (best.IsNull() || sewing.NbFreeEdges() < best_free) {
-      best = sewing.SewedShape();
-      best_free = sewing.NbFreeEdges();
-      best_tolerance = tolerance;
-    }
-    if (best_free == 0) break;
-  }
-  if (best.IsNull()) return;
-  const std::string left =
-      best_free == 0 ? std::string("no edge is left open") : fmt::format("{} edges are left open", best_free);
+  const Sewn sewn = sew(parts.faces, diagonal);
+  if (sewn.shells.empty()) return;
   parts.facts.notes.push_back(
-      fmt::format("{} surfaces that belong to no solid were sewn with a tolerance of {:.2g}{}; {}",
-                  parts.faces.size(), best_tolerance, parts.facts.unit ? " mm" : "", left));
-  for (TopExp_Explorer shell(best, TopAbs_SHELL); shell.More(); shell.Next())
-    parts.solids.push_back({shell.Current(), {}});
-  for (TopExp_Explorer face(best, TopAbs_FACE, TopAbs_SHELL); face.More(); face.Next())
-    parts.solids.push_back({face.Current(), {}});
+      fmt::format("{} surfaces that belong to no solid were sewn{} with a tolerance of {:.2g}{}; {}",
+                  parts.faces.size(), sewn.parts > 1 ? fmt::format(" into {} parts", sewn.parts) : "",
+                  sewn.tolerance, parts.facts.unit ? " mm" : "",
+                  sewn.free_edges == 0 ? "no edge is left open"
+                                       : fmt::format("{} edges are left open", sewn.free_edges)));
+  for (const TopoDS_Shape& shell : sewn.shells) parts.solids.push_back({shell, {}});
 }
 
 void heal(Parts& parts) {
@@ -275,8 +277,11 @@ void tessellate(const Parts& parts, double deflection, ReadAttempt& result) {
   result.facts.notes.push_back(
       fmt::format("tessellated with a deflection of {:.3g}{}: the surface of the file lies up to {:.3g}{} "
                   "outside and {:.3g}{} "
-                  "inside of the triangles, measured at 15 points of each",
-                  deflection, unit, deviation.outside, unit, deviation.inside, unit));
+                  "inside of the triangles, measured at 15 points of each{}",
+                  deflection, unit, deviation.outside, unit, deviation.inside, unit,
+                  std::max(deviation.outside, deviation.inside) > deflection * (1 + 1e-9)
+                      ? ", farther than the deflection"
+                      : ""));
   if (untriangulated > 0)
     result.facts.notes.push_back(
         fmt::format("{} faces could not be triangulated and are missing", untriangulated));
@@ -294,22 +299,33 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
 
   const double diagonal = diagonal_of(together(parts));
   if (parts.solids.empty() && parts.faces.empty()) {
-    result.failure = "holds no solids and no surfaces; export the solid, not curves, sketches or a drawing";
+    result.failure =
+        parts.missing.empty()
+            ? "holds no solids and no surfaces; export the solid, not curves, sketches or a drawing"
+            : fmt::format(
+                  "its parts stand in other files, which cannot be read beside it: {}; put them there, or "
+                  "export all into one file",
+                  list_of(parts.missing));
     return result;
   }
+  if (!parts.missing.empty())
+    parts.facts.notes.push_back(fmt::format(
+        "the file names parts in other files, which cannot be read beside it, and goes without: {}",
+        list_of(parts.missing)));
   if (!(diagonal > 0) || !std::isfinite(diagonal)) {
     result.failure = "its surfaces have no extent";
     return result;
   }
   if (!(deflection > 0)) deflection = default_deflection * diagonal;
   if (deflection < smallest_deflection * diagonal) {
+    const std::string_view unit = parts.facts.unit ? " mm" : "";
     result.failure = fmt::format(
-        "a deflection of {:.3g} is less than a hundred-thousandth of the part, which is {:.3g} across; "
-        "choose at least {:.1g} (deflection in [container]; a fiftieth of the smallest radius if absent)",
-        deflection, diagonal, smallest_deflection * diagonal);
+        "a deflection of {:.3g}{} is less than a hundred-thousandth of the part, which is {:.3g}{} across; "
+        "choose at least {:.3g}{} (deflection in [container]; a fiftieth of the smallest radius if absent)",
+        deflection, unit, diagonal, unit, not_less(smallest_deflection * diagonal), unit);
     return result;
   }
-  sew(parts, diagonal);
+  sew_faces(parts, diagonal);
   heal(parts);
   result.facts = std::move(parts.facts);
   tessellate(parts, deflection, result);

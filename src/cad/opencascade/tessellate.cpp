@@ -3,7 +3,6 @@
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
-#include <ElSLib.hxx>
 #include <IMeshTools_Parameters.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
@@ -17,14 +16,17 @@
 #include <algorithm>
 #include <array>
 
+#include "cad/opencascade/face_triangles.hpp"
+
 namespace bernal::cad {
 namespace {
 
 /// Of two neighbouring facets on a surface that curves strongly within the deflection.
 constexpr double angular_deflection = 0.5;
 
-/// The mesher bounds the distance of edges from their curves, and of triangles from their surface only
-/// nearly: where more than the deflection is measured, it is asked for less, so often.
+/// The mesher bounds the distance of edges from their curves only nearly, and leaves slivers across surfaces
+/// that are ruled and twist, fifty times the deflection off. Faces are refined, edges are not: where more
+/// than the deflection is measured after that, the mesher is asked for less, so often.
 constexpr int attempts = 3;
 
 /// The triangulation of one face, its nodes numbered through all faces of the shape.
@@ -93,79 +95,6 @@ class Stitcher {
   std::vector<std::uint32_t> at_vertex_;
 };
 
-Vector<3> vector_of(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
-
-/// The parameters nearest to p, in closed form; false where the surface has none.
-bool nearest_parameters(const BRepAdaptor_Surface& surface, const gp_Pnt& p, gp_XY& at) {
-  double u = 0, v = 0;
-  switch (surface.GetType()) {
-    case GeomAbs_Plane:
-      ElSLib::Parameters(surface.Plane(), p, u, v);
-      break;
-    case GeomAbs_Cylinder:
-      ElSLib::Parameters(surface.Cylinder(), p, u, v);
-      break;
-    case GeomAbs_Cone:
-      ElSLib::Parameters(surface.Cone(), p, u, v);
-      break;
-    case GeomAbs_Sphere:
-      ElSLib::Parameters(surface.Sphere(), p, u, v);
-      break;
-    case GeomAbs_Torus:
-      ElSLib::Parameters(surface.Torus(), p, u, v);
-      break;
-    default:
-      return false;
-  }
-  at = {u, v};
-  return true;
-}
-
-/// From p to the surface's point nearest to it, in closed form or by Gauss-Newton from parameters nearby. Any
-/// point of the surface bounds the distance, so the nearest of the iterates is taken.
-Vector<3> offset_of_surface(const BRepAdaptor_Surface& surface, gp_XY at, const Vector<3>& p) {
-  constexpr int steps = 6;
-  if (nearest_parameters(surface, {p[0], p[1], p[2]}, at))
-    return vector_of(surface.Value(at.X(), at.Y())) - p;
-  Vector<3> best = Vector<3>::Zero();
-  for (int k = 0; k < steps; ++k) {
-    gp_Pnt point;
-    gp_Vec along_u, along_v;
-    surface.D1(at.X(), at.Y(), point, along_u, along_v);
-    const Vector<3> offset = vector_of(point) - p;
-    const double before = best.squaredNorm(), now = offset.squaredNorm();
-    if (k == 0 || now < before) best = offset;
-    if (k > 0 && !(now < 0.99 * before)) break;
-    const Vector<3> du = {along_u.X(), along_u.Y(), along_u.Z()},
-                    dv = {along_v.X(), along_v.Y(), along_v.Z()};
-    const double uu = du.dot(du), uv = du.dot(dv), vv = dv.dot(dv), determinant = uu * vv - uv * uv;
-    const double u = -du.dot(offset), v = -dv.dot(offset);
-    if (!(determinant > 1e-12 * uu * vv)) break;
-    at += gp_XY((vv * u - uv * v) / determinant, (uu * v - uv * u) / determinant);
-    at.SetX(std::clamp(at.X(), surface.FirstUParameter(), surface.LastUParameter()));
-    at.SetY(std::clamp(at.Y(), surface.FirstVParameter(), surface.LastVParameter()));
-  }
-  return best;
-}
-
-/// How far the surface lies from fifteen points of a triangle with these parameters at its corners: the
-/// middles of its edges are among them, where a bulge is highest.
-void measure(const BRepAdaptor_Surface& surface, const std::array<gp_Pnt2d, 3>& parameters,
-             const std::array<Vector<3>, 3>& corners, SurfaceDeviation& deviation) {
-  constexpr int fineness = 4;
-  const Vector<3> normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-  for (int i = 0; i <= fineness; ++i) {
-    for (int j = 0; i + j <= fineness; ++j) {
-      const double a = double(i) / fineness, b = double(j) / fineness, c = 1 - a - b;
-      const gp_XY at = parameters[0].XY() * a + parameters[1].XY() * b + parameters[2].XY() * c;
-      const Vector<3> offset =
-          offset_of_surface(surface, at, a * corners[0] + b * corners[1] + c * corners[2]);
-      double& side = normal.dot(offset) > 0 ? deviation.outside : deviation.inside;
-      side = std::max(side, offset.norm());
-    }
-  }
-}
-
 double signed_volume(const PolygonSoup& soup) {
   if (soup.points.empty()) return 0;
   double six_fold = 0;
@@ -198,6 +127,25 @@ std::vector<FacePatch> patches_of(const TopoDS_Shape& shape, std::size_t& untria
   return patches;
 }
 
+/// The triangles of a patch as they are oriented, refined.
+FaceTriangles triangles_of(const FacePatch& patch, const std::vector<Vector<3>>& place, Stitcher& stitcher,
+                           const BRepAdaptor_Surface& surface, double deflection) {
+  FaceTriangles face;
+  for (int k = 1; k <= patch.triangulation->NbNodes(); ++k) {
+    face.places.push_back(place[stitcher.root(patch.first + std::uint32_t(k) - 1)]);
+    face.parameters.push_back(patch.triangulation->UVNode(k).XY());
+  }
+  for (int i = 1; i <= patch.triangulation->NbTriangles(); ++i) {
+    std::array<int, 3> corner{};
+    patch.triangulation->Triangle(i).Get(corner[0], corner[1], corner[2]);
+    if (patch.face.Orientation() == TopAbs_REVERSED) std::swap(corner[1], corner[2]);
+    auto& corners = face.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = std::uint32_t(corner[k]) - 1;
+  }
+  refine(surface, deflection, face);
+  return face;
+}
+
 Attempt tessellate(const TopoDS_Shape& shape, double deflection) {
   IMeshTools_Parameters parameters;
   parameters.Deflection = deflection;
@@ -216,30 +164,34 @@ Attempt tessellate(const TopoDS_Shape& shape, double deflection) {
   Stitcher stitcher(patches);
   constexpr std::uint32_t unnumbered = 0xFFFFFFFF;
   std::vector<std::uint32_t> number(place.size(), unnumbered);
+  const auto add = [&](const Vector<3>& p) {
+    soup.points.push_back(p);
+    return static_cast<std::uint32_t>(soup.points.size() - 1);
+  };
   for (const FacePatch& patch : patches) {
     const BRepAdaptor_Surface surface(patch.face, false);
     const std::size_t before = soup.polygons.size();
-    for (int i = 1; i <= patch.triangulation->NbTriangles(); ++i) {
-      std::array<int, 3> corner{};
-      patch.triangulation->Triangle(i).Get(corner[0], corner[1], corner[2]);
-      if (patch.face.Orientation() == TopAbs_REVERSED) std::swap(corner[1], corner[2]);
-      std::array<std::uint32_t, 3> root{};
-      for (int k = 0; k < 3; ++k) root[k] = stitcher.root(patch.first + std::uint32_t(corner[k]) - 1);
-      if (root[0] == root[1] || root[1] == root[2] || root[2] == root[0]) continue;
-
-      std::array<Vector<3>, 3> corners;
-      std::array<gp_Pnt2d, 3> at;
+    const FaceTriangles face = triangles_of(patch, place, stitcher, surface, deflection);
+    const auto shared = static_cast<std::uint32_t>(patch.triangulation->NbNodes());
+    std::vector<std::uint32_t> own(face.places.size() - shared,
+                                   unnumbered);  // of the nodes that refining added
+    for (const FaceTriangles::Corners& corners : face.triangles) {
+      std::array<std::uint32_t, 3> node = corners;
+      for (std::uint32_t& n : node)
+        if (n < shared)
+          n = stitcher.root(patch.first + n);
+        else
+          n += static_cast<std::uint32_t>(place.size());
+      if (node[0] == node[1] || node[1] == node[2] || node[2] == node[0]) continue;
       std::vector<std::uint32_t>& polygon = soup.polygons.emplace_back();
-      for (int k = 0; k < 3; ++k) {
-        if (number[root[k]] == unnumbered) {
-          number[root[k]] = static_cast<std::uint32_t>(soup.points.size());
-          soup.points.push_back(place[root[k]]);
-        }
-        polygon.push_back(number[root[k]]);
-        corners[k] = place[root[k]];
-        at[k] = patch.triangulation->UVNode(corner[k]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        std::uint32_t& point = corners[k] < shared ? number[node[k]] : own[corners[k] - shared];
+        if (point == unnumbered) point = add(face.places[corners[k]]);
+        polygon.push_back(point);
       }
-      measure(surface, at, corners, made.deviation);
+      const SurfaceDeviation deviation = deviation_of(surface, face, corners);
+      made.deviation.outside = std::max(made.deviation.outside, deviation.outside);
+      made.deviation.inside = std::max(made.deviation.inside, deviation.inside);
     }
     made.without_area += soup.polygons.size() == before;
   }

@@ -73,6 +73,23 @@ std::vector<Case> format_cases() {
       whole);
   add("ThreeMfWithASupport", "what holds the part while it is printed is none of it",
       file("part.3mf", as_3mf(part, "millimeter", box_mesh({10, 20, -40}, {20, 30, -20}))), whole);
+  add("ThreeMfWithAThumbnail", "a picture whose path makes assimp crash",
+      file("part.3mf", packaged_3mf({{"3D/3dmodel.model", model_3mf(part, "millimeter")},
+                                     {"Metadata/thumbnail.png", "\x89PNG"}})),
+      whole);
+  add("ZippedAmf", "an archive, as its format allows",
+      file("part.amf", archived({{"part.amf", as_amf(part)}})), whole);
+  add("AmfOfAnUndefinedMaterial", "its volume names a material that is not there",
+      file("part.amf", as_amf(part)), whole);
+  add("TextStlWithNumbers", "a number behind each endfacet",
+      file("part.stl",
+           [&] {
+             std::string text = as_text_stl(part);
+             for (std::size_t at = text.find("endfacet"); at != text.npos; at = text.find("endfacet", at + 1))
+               text.insert(at + 8, " 7");
+             return text;
+           }()),
+      whole);
   add("GltfWithAHiddenInstance", "a node scaled to nothing is not to be seen",
       {{"part.gltf",
         [m = in(1000)] {

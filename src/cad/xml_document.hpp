@@ -1,0 +1,57 @@
+#pragma once
+#include <pugixml.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace bernal::cad {
+
+/// An XML document in memory, whatever its encoding; entities are those of XML, never a document's own. What
+/// is wrong with it or in it is refused as Error{bad_mesh} in one phrase that ends in the line.
+class XmlDocument {
+ public:
+  /// `name` is what phrases call it; nothing, where it is the whole file. Cost: about six times the text in
+  /// memory. Throws where it is not well-formed.
+  XmlDocument(std::string name, std::string text);
+
+  pugi::xml_node root() const { return document_.document_element(); }
+  /// Text as a finite number; `name()` is what to call it: "x of vertex 7".
+  template <class Name>
+  double number(std::string_view text, pugi::xml_node at, const Name& name) const {
+    if (const std::optional<double> value = number_in(text)) return *value;
+    refuse_number(text, at, name());
+  }
+  /// Text as the index of one of so many vertices; `name()` is what it stands in: "triangle 7".
+  template <class Name>
+  std::uint32_t index(std::string_view text, std::size_t count, pugi::xml_node at, const Name& name) const {
+    const std::optional<double> value = number_in(text);
+    if (value && *value >= 0 && *value < double(count) && *value == std::floor(*value))
+      return static_cast<std::uint32_t>(*value);
+    refuse_index(text, count, at, name());
+  }
+  /// "{what} (line 12 of 3D/3dmodel.model)"
+  [[noreturn]] void refuse(pugi::xml_node at, const std::string& what) const;
+
+ private:
+  static std::optional<double> number_in(std::string_view text);
+  [[noreturn]] void refuse_number(std::string_view text, pugi::xml_node at, const std::string& what) const;
+  [[noreturn]] void refuse_index(std::string_view text, std::size_t count, pugi::xml_node at,
+                                 const std::string& what) const;
+  [[noreturn]] void refuse_at(std::size_t offset, const std::string& what) const;
+
+  std::string name_, text_;
+  pugi::xml_document document_;
+};
+
+/// Whether an element or attribute has this name, under whatever prefix of a namespace.
+bool is_named(const char* qualified, std::string_view name);
+inline bool is_named(pugi::xml_node node, std::string_view name) { return is_named(node.name(), name); }
+
+/// The first child or attribute of that name; an empty one where there is none.
+pugi::xml_node child_of(pugi::xml_node node, std::string_view name);
+std::string_view attribute_of(pugi::xml_node node, std::string_view name);
+
+}  // namespace bernal::cad
