@@ -90,9 +90,12 @@ Conclusion of_open_target(const Packing& packing, const Work& work, StageEnd end
     return {phi < expected - error - one_sphere ? Outcome::full : Outcome::converged,
             fmt::format("{} {} placed, packing fraction {}, where {} was expected, give or take {:.2g}; {}",
                         counted(n), are(n), fraction(phi), fraction(expected), error, why_no_more(end))};
-  return {Outcome::converged,
-          fmt::format("the stages of the scene place {} and no more{}", counted(n),
-                      guess.empty() ? guess : ", where as many as were expected" + guess)};
+  return {Outcome::converged, fmt::format("the stages of the scene place {} and no more{}", counted(n),
+                                          guess.empty() ? guess
+                                                        : fmt::format("; about {} were expected{}",
+                                                                      grouped(static_cast<std::uint64_t>(
+                                                                          std::llround(plan.expected_count))),
+                                                                      guess))};
 }
 
 /// In a box all spheres are wanted, and have places together.

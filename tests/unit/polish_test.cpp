@@ -1,5 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bernal/core/tolerance.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
@@ -46,6 +53,50 @@ TEST(Polish, CostsHardlyAnyPackingFraction) {
   const double with = polished(3, 300, "1.0").packing_fraction();
   EXPECT_GT(with, 0.62);
   EXPECT_LT(with, 0.66);
+}
+
+/// What is called converged is held by as many contacts as it takes, as they are measured from the result;
+/// and what is not says what is open.
+TEST(Polish, IsConvergedOnlyIfAsManyContactsAreClosedAsHoldTheSpheres) {
+  const std::string wide = "{ distribution = \"uniform\", min = 0.5, max = 1.5 }";
+  const std::string periodic = "kind = \"periodic\"\n", plane = periodic + "dimension = 2\n";
+  const std::pair<std::string, std::string> cases[] = {
+      {periodic, "count = 4\nradius = 1"},
+      {periodic, "count = 20\nradius = 1"},
+      {periodic, "count = 60\nradius = " + wide},
+      {plane, "count = 60\nradius = " + wide},
+      {plane, "count = 30\nradius = 1"},
+      {periodic + "dimension = 4\n", "count = 40\nradius = 1"},
+      {periodic + "walls = [2]\n", "count = 60\nradius = " + wide}};
+  for (const auto& [container, spheres] : cases)
+    for (const double asked : {1e-10, 1e-15}) {
+      const Packing packing = run(
+          testing::plan_of("[container]\n" + container + "[spheres]\n" + spheres +
+                           fmt::format("\n[[stage]]\ndo = \"relax\"\nalpha = 2\npolish = {:g}\n", asked)));
+      const double rounding = tolerance::growth(bounds_of<dynamic>(packing.domain).size().maxCoeff() /
+                                                std::ranges::min(packing.spheres.r));
+      const Contacts contacts = measure_contacts(packing, asked + 3 * rounding);
+      const bool is_held = contacts.isostatic && contacts.backbone_contacts() >= *contacts.isostatic;
+      const std::string what = container + spheres + fmt::format(" {:g}: ", asked) + packing.reason;
+      EXPECT_TRUE(is_held || packing.outcome == Outcome::hit_limit) << what;
+      if (packing.outcome != Outcome::converged) {
+        EXPECT_TRUE(packing.reason.find("not polished to the end") != std::string::npos ||
+                    packing.reason.find("could not be closed") != std::string::npos)
+            << what;
+      }
+      EXPECT_TRUE(certify(packing.spheres, packing.domain).certified) << what;
+    }
+}
+
+TEST(Polish, IsNotConvergedInABoxThatOpensTheContactsAgain) {
+  for (const char* fraction : {"0.2", "0.6"}) {
+    const Packing packing = run(testing::plan_of(std::string("[container]\nkind = \"periodic\"\n[spheres]\n"
+                                                             "count = 60\nradius = 1\npacking_fraction = ") +
+                                                 fraction + "\n[[stage]]\ndo = \"relax\"\npolish = 1e-8\n"));
+    EXPECT_EQ(packing.outcome, Outcome::hit_limit) << packing.reason;
+    EXPECT_NE(packing.reason.find("larger than the spheres need"), std::string::npos) << packing.reason;
+    EXPECT_EQ(packing.spheres.size(), 60u);
+  }
 }
 
 // ---- when it ends early
