@@ -24,7 +24,8 @@ void write_local_packing(Page& page, const LocalPacking& local) {
       "domain; a sphere has more volume than its cell only where it overlaps others.</p>\n<div "
       "class=\"wide\"><table>\n");
   page.row("mean", fmt::format("{:.4f}", local.mean),
-           (local.ids.empty() ? "over the spheres" : fmt::format("over {} spheres, evenly spread", grouped(local.ids.size()))) +
+           (local.ids.empty() ? "over the spheres"
+                              : fmt::format("over {} spheres, evenly spread", grouped(local.ids.size()))) +
                (chart.empty() ? "" : "; the dashed line"));
   page.row("standard deviation", fmt::format("{:.4f}", local.deviation), "");
   for (const auto& [share, phi] : local.quantiles)

@@ -32,8 +32,8 @@ class ConvexCell {
   /// about zero or not.
   void reset(const Vector<3>& lower, const Vector<3>& upper, const std::array<Label, 3>& sides);
 
-  /// Leaves the points p with p·normal <= offset. Corners on the plane stay. False, and nothing is done, where
-  /// no corner has p·normal > offset + slack. Cost: O(edges), about 0.2 µs.
+  /// Leaves the points p with p·normal <= offset. Corners on the plane stay. False, and nothing is done,
+  /// where no corner has p·normal > offset + slack. Cost: O(edges), about 0.2 µs.
   bool cut(const Vector<3>& normal, double offset, Label label, double slack = 0);
 
   bool empty() const { return edges_.empty(); }

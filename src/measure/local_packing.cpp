@@ -102,15 +102,16 @@ std::optional<LocalPacking> local_packing(const Spheres<dynamic>& packed, const 
   const bool some = spheres.size() > options.all_of;
   std::vector<std::uint8_t> was_looked_at(spheres.size(), !some);
   const std::size_t most = some ? options.looked_at : spheres.size();
-  for_each_power_cell(spheres, box, most, [&](std::uint32_t i, const Vector<3>& center, const ConvexCell& cell) {
-    was_looked_at[i] = true;
-    if (cell.empty()) return;
-    const double volume = within ? within->volume(cell, center) : cell.volume();
-    if (!(volume > 0)) return;
-    local.cell_volume[i] = unit * volume;
-    local.packing_fraction[i] = ball_volume(dimension, spheres.r[i]) / volume;
-    local.neighbours[i] = cell.faces(least_face);
-  });
+  for_each_power_cell(spheres, box, most,
+                      [&](std::uint32_t i, const Vector<3>& center, const ConvexCell& cell) {
+                        was_looked_at[i] = true;
+                        if (cell.empty()) return;
+                        const double volume = within ? within->volume(cell, center) : cell.volume();
+                        if (!(volume > 0)) return;
+                        local.cell_volume[i] = unit * volume;
+                        local.packing_fraction[i] = ball_volume(dimension, spheres.r[i]) / volume;
+                        local.neighbours[i] = cell.faces(least_face);
+                      });
   if (some) keep(was_looked_at, local);
   summarise(local);
   return local;

@@ -106,8 +106,8 @@ class Diagram {
         });
   }
 
-  /// With the spheres of a leaf, the nearest first; in the order of the tree where they are equally near. With
-  /// the same centre the larger one hides the other, and of two that are equal the first.
+  /// With the spheres of a leaf, the nearest first; in the order of the tree where they are equally near.
+  /// With the same centre the larger one hides the other, and of two that are equal the first.
   void find_planes(std::uint32_t place, const Tree::Node& leaf, const Vector<3>& shift, double reach,
                    std::vector<Plane>& planes) const {
     const double r = tree_.radius(place);

@@ -63,7 +63,8 @@ class OverDisc {
 
   double integral() const {
     if (!(twice_area_ != 0)) return 0;
-    if (ways_.empty()) return std::abs(outside_) > pi ? std::copysign(pi, outside_) * squared() * at_zero() : 0;
+    if (ways_.empty())
+      return std::abs(outside_) > pi ? std::copysign(pi, outside_) * squared() * at_zero() : 0;
     double sum = 0;
     for (std::size_t k = 0; k < ways_.size(); ++k) {
       const Way& way = ways_[k];
@@ -124,9 +125,7 @@ class OverDisc {
 
   double within_face(double z) const { return std::clamp(z, lowest_, highest_); }
 
-  double at_zero() const {
-    return within_face(loop_.front().along - slope_.dot(loop_.front().at));
-  }
+  double at_zero() const { return within_face(loop_.front().along - slope_.dot(loop_.front().at)); }
 
   /// With the first point of all.
   double triangle(const Point& u, const Point& v) const {
@@ -202,8 +201,9 @@ void for_each_loop(const ConvexCell& cell, Visit&& visit) {
     std::size_t last = first + 1;  // of those of the loop
     for (std::uint32_t next = edges[first].to; next != loop.front(); ++last) {
       loop.push_back(next);
-      const auto it = std::find_if(edges.begin() + static_cast<std::ptrdiff_t>(last), edges.end(),
-                                   [&](const auto& e) { return e.from == next && e.face == edges[first].face; });
+      const auto it =
+          std::find_if(edges.begin() + static_cast<std::ptrdiff_t>(last), edges.end(),
+                       [&](const auto& e) { return e.from == next && e.face == edges[first].face; });
       if (it == edges.end()) break;
       std::swap(edges[last], *it);
       next = edges[last].to;
@@ -238,9 +238,8 @@ double volume_in_column(const ConvexCell& cell, const Vector<3>& from_base, cons
     const Vector<2> across(u.dot(w), v.dot(w));
     return Seen<2>{across, axis.dot(p), across.squaredNorm() <= radius * radius};
   };
-  return sum_over_faces<2>(cell, see, [&](std::span<const Seen<2>> loop) {
-    return OverDisc(loop, radius).integral();
-  });
+  return sum_over_faces<2>(cell, see,
+                           [&](std::span<const Seen<2>> loop) { return OverDisc(loop, radius).integral(); });
 }
 
 /// `from_middle`: of the cell's centre.

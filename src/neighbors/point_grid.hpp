@@ -103,7 +103,8 @@ class PointGrid {
   }
 
   std::int64_t unwrapped(int k, double x) const {
-    return static_cast<std::int64_t>(std::floor(std::clamp((x - lower_[k]) / cell_edge_[k], -0x1p62, 0x1p62)));
+    return static_cast<std::int64_t>(
+        std::floor(std::clamp((x - lower_[k]) / cell_edge_[k], -0x1p62, 0x1p62)));
   }
   std::uint32_t cell_of(const Vector<D>& p) const {
     std::int64_t cell = 0;
@@ -118,8 +119,8 @@ class PointGrid {
   template <int K, class Visit>
   void visit_axis(const Vector<D>& c, double squared, std::int64_t cell, Vector<D>& shift,
                   Visit& visit) const {
-    // Points may lie a rounding beyond the cell that they are in, along each axis by its own: next to one that
-    // is 1e19 long, that of the longest would be a multitude of cells.
+    // Points may lie a rounding beyond the cell that they are in, along each axis by its own: next to one
+    // that is 1e19 long, that of the longest would be a multitude of cells.
     const double rounding = 1e-12 * cell_edge_[K], half = std::sqrt(squared) + rounding;
     std::int64_t first = unwrapped(K, c[K] - half), last = unwrapped(K, c[K] + half);
     const std::int64_t n = cells_[K];

@@ -299,8 +299,7 @@ TEST(LocalPacking, OfFewSpheresInVeryLongAndVeryFlatContainersTakesNoLonger) {
         const Vector<3> axis = oblique ? Vector<3>(1, 2, -0.5) : Vector<3>(0, 0, 1);
         const Cylinder shape{{0, 0, 0}, axis, flat ? length : 1.5, flat ? 1.5 : length};
         Spheres<dynamic> spheres(3);
-        for (const double at : {0.1, 0.7})
-          spheres.push_back(at * shape.height * axis.normalized(), 0.5);
+        for (const double at : {0.1, 0.7}) spheres.push_back(at * shape.height * axis.normalized(), 0.5);
         const LocalPacking local = local_of(spheres, shape);
         // Coordinates of a millionth of a millionth of the length have few digits left across the axis.
         EXPECT_LT(local.volume_error, oblique ? 1e-14 * length : 1e-12) << length << oblique << flat;

@@ -257,7 +257,8 @@ TEST(SlabContacts, OfASphereBeyondAllBoundsAreThoseOfTheOthers) {
       spheres.push_back(c, 0.5);
     const Measurements measured = measure(spheres, Box{{0, 0, 0}, {5, 5, 5}, {true, true, false}});
     EXPECT_EQ(measured.contacts.pairs, 1u) << far;
-    EXPECT_TRUE(measured.chambers && measured.walls && measured.order && measured.local && measured.pores) << far;
+    EXPECT_TRUE(measured.chambers && measured.walls && measured.order && measured.local && measured.pores)
+        << far;
   }
 }
 

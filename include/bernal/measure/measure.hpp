@@ -58,7 +58,7 @@ struct MeasureOptions {
   PoreOptions pores = {};
   /// Of the domain in its own frame, see `local_container`; made where it is null and needed.
   std::shared_ptr<const Container> container = {};
-  Monitor monitor = {};  ///< once it says stop, what may be absent is
+  Monitor monitor = {};         ///< once it says stop, what may be absent is
   bool all_or_nothing = false;  ///< once it says stop, `measure` throws Cancelled
 };
 
