@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -41,18 +42,6 @@ double densest_of_equal(int dimension) {
   return densest[dimension - 1];
 }
 
-/// Of what is expected between walls: an error that is said.
-constexpr double a_guess = 0.07;
-
-std::string caution_of_guess(const Plan& plan) {
-  const auto error = give_or_take(plan);
-  if (!error) return {};
-  return fmt::format(
-      "walls are near everywhere: that {} fit is known to give or take {}; fill = true in "
-      "[spheres] places as many as can be made to fit",
-      grouped(static_cast<std::uint64_t>(std::llround(plan.expected_count))), grouped(*error));
-}
-
 std::string caution_of_few(const Plan& plan) {
   const Box* box = std::get_if<Box>(&plan.domain);
   const bool packs_closely = plan.expected_packing_fraction > closely * plan.attainable_packing_fraction;
@@ -75,7 +64,9 @@ std::string caution_of_target(const Plan& plan) {
       std::pow(1 - scene.overlap, dimension);  // what is left of spheres that may overlap
   const double asked = fill_task_of(plan).packing_fraction * overlapping;
   const double attainable = plan.attainable_packing_fraction;
-  if (!(asked > attainable + within_reach * error_of_expectation(scene))) return {};
+  if (!(asked >
+        attainable + within_reach * error_of_expectation(scene, plan.domain, *plan.radii, attainable)))
+    return {};
   std::string text =
       fmt::format("a packing fraction of {:.3g} is asked for{}, and these sizes are expected to reach {:.3f}",
                   asked, is_counted ? " by the count" : "", attainable);
@@ -84,6 +75,15 @@ std::string caution_of_target(const Plan& plan) {
     text += fmt::format("; no arrangement of equal {} that is known has more than {:.4f}",
                         dimension == 2 ? "discs" : "spheres", densest);
   return text;
+}
+
+std::string caution_of_guess(const Plan& plan) {
+  const std::optional<std::uint64_t> error = give_or_take(plan);
+  if (!error) return {};
+  return fmt::format(
+      "walls are near everywhere: that {} fit is known to give or take {}; fill = true in "
+      "[spheres] places as many as can be made to fit",
+      grouped(static_cast<std::uint64_t>(std::llround(plan.expected_count))), grouped(*error));
 }
 
 std::string caution_of_size(const Plan& plan) {
@@ -96,20 +96,10 @@ std::string caution_of_size(const Plan& plan) {
 
 }  // namespace
 
-bool is_guess(const Plan& plan) {
-  return plan.places_expected && plan.scene.target.is_open() &&
-         error_between_walls(plan.domain, *plan.radii) >= a_guess;
-}
-
-std::optional<std::uint64_t> give_or_take(const Plan& plan) {
-  if (!is_guess(plan) || plan.scene.target.fill) return {};
-  const double share = error_between_walls(plan.domain, *plan.radii);
-  return static_cast<std::uint64_t>(std::max(1.0, std::ceil(share * plan.expected_count)));
-}
-
 std::string caution_of(const Plan& plan) {
   std::vector<std::string> all;
-  for (std::string caution : {caution_of_guess(plan), caution_of_few(plan), caution_of_target(plan), caution_of_size(plan)})
+  for (std::string caution :
+       {caution_of_few(plan), caution_of_target(plan), caution_of_guess(plan), caution_of_size(plan)})
     if (!caution.empty()) all.push_back(std::move(caution));
   return fmt::format("{}", fmt::join(all, "; "));
 }

@@ -9,6 +9,7 @@
 #include "bernal/measure/hanging.hpp"
 #include "run/caution.hpp"
 #include "run/estimate.hpp"
+#include "run/few_large.hpp"
 #include "run/room_for_gaps.hpp"
 #include "run/shortfall.hpp"
 #include "settle/compress.hpp"

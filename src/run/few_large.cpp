@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "run/estimate.hpp"
 #include "run/stages.hpp"
 #include "sizes/volume_carriers.hpp"
 
@@ -13,6 +14,9 @@ namespace bernal {
 namespace {
 
 constexpr double enough_carriers = 30, enough_across = 3;
+/// Of what is expected between walls: an error that is said.
+constexpr double a_guess = 0.07;
+
 /// In one packing.
 constexpr double most_spheres = 0x1p31;
 
@@ -56,6 +60,17 @@ std::string remedy_of(const FewLarge& few, double count, const Scene& scene, con
   const double wider = std::pow(few.factor, 1.0 / static_cast<double>(edges.size()));
   return fmt::format("a shortest edge of {:.3g} {} would be enough", rounded_up(wider * edges.minCoeff()),
                      name_of(scene.unit));
+}
+
+bool is_guess(const Plan& plan) {
+  return plan.places_expected && plan.scene.target.is_open() &&
+         error_between_walls(plan.domain, *plan.radii) >= a_guess;
+}
+
+std::optional<std::uint64_t> give_or_take(const Plan& plan) {
+  if (!is_guess(plan) || plan.scene.target.fill) return {};
+  const double share = error_between_walls(plan.domain, *plan.radii);
+  return static_cast<std::uint64_t>(std::max(1.0, std::ceil(share * plan.expected_count)));
 }
 
 }  // namespace bernal

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -24,5 +25,11 @@ std::optional<FewLarge> few_large(const SizeDistribution& radii, double count, c
 std::string in_words(const FewLarge&);
 /// "11,000 spheres would be enough", or how wide a box of given size that has `edges` would have to be.
 std::string remedy_of(const FewLarge&, double count, const Scene& scene, const Vector<dynamic>& edges);
+
+/// Whether as many spheres are to be placed as are expected or fit, and walls are so near everywhere that how
+/// many that are is a guess.
+bool is_guess(const Plan& plan);
+/// Then, where as many as are expected are wanted: how many these may be too few or too many, at least one.
+std::optional<std::uint64_t> give_or_take(const Plan& plan);
 
 }  // namespace bernal

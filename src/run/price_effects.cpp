@@ -8,7 +8,7 @@
 #include "bernal/core/dimension.hpp"
 #include "engine/engine_plan.hpp"
 #include "run/estimate.hpp"
-#include "run/caution.hpp"
+#include "run/few_large.hpp"
 #include "run/stages.hpp"
 #include "work/bed.hpp"
 
