@@ -32,8 +32,7 @@ Vector<3> center_of(const Mesh& mesh, const FaceCorners& t) {
   return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
 }
 
-template <class Faces>
-double area_of(const Mesh& mesh, const Faces& faces) {
+double area_of(const Mesh& mesh, const std::vector<FaceCorners>& faces) {
   double area = 0;
   for (const FaceCorners& t : faces) area += cross_of(mesh, t).norm() / 2;
   return area;
@@ -178,7 +177,12 @@ std::vector<LidBox> put_lids(Hollow& hollow) {
 class Sides {
  public:
   Sides(const Mesh& mesh, double tolerance)
-      : mesh_(mesh), topology_(topology_of(mesh_)), pieces_(mesh_), tree_(mesh_), tolerance_(tolerance) {
+      : mesh_(mesh),
+        topology_(topology_of(mesh_)),
+        pieces_(mesh_),
+        tree_(mesh_),
+        tolerance_(tolerance),
+        diagonal_(bounds_of_vertices(mesh).diagonal()) {
     faces_.resize(pieces_.count());
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) faces_[pieces_.piece_of(t)].push_back(t);
     is_two_sided_ = orient_consistently(mesh_, topology_) != none;
@@ -208,6 +212,14 @@ class Sides {
 
  private:
   static constexpr std::uint32_t looks_out = none - 1;
+  /// Up to this part of a diagonal nothing but a crevice is between a face and the hull.
+  static constexpr double even = 1e-3;
+
+  /// From a face along a unit vector to the solid, or the limit.
+  double way_free(const Vector<3>& from, const Vector<3>& direction, double limit) const {
+    const double close = 1e-9 * diagonal_;
+    return tree_.first_contact(from + 4 * close * direction, close, direction, limit, close);
+  }
 
   /// With the least reach that will do.
   std::vector<Hollow> hollows_of_piece(std::uint32_t piece, double least) const {
@@ -219,7 +231,7 @@ class Sides {
     if (air < least * own) return {};
     std::vector<std::vector<Hollow>> found;  // by reach, the heaviest first
     double largest = 0, least_folded = 1;
-    constexpr double least_reach = 1e-6, even = 1e-3, farthest = 0.4, hardly = 0.05;
+    constexpr double least_reach = 1e-6, farthest = 0.4, hardly = 0.05;
     for (double reach = std::max(16 * tolerance_, least_reach * diagonal); reach < farthest * diagonal;
          reach *= reach < even * diagonal ? 8 : 1.6) {
       std::vector<Hollow> some = hollows_within(piece, tree, reach);
@@ -243,8 +255,10 @@ class Sides {
     parallel_ranges(own.size(), 256, [&](std::size_t first, std::size_t last) {
       for (std::size_t k = first; k < last; ++k) {
         const FaceCorners& face = mesh_.triangles[own[k]];
-        const Vector<3> ahead = center_of(mesh_, face) + reach * cross_of(mesh_, face).stableNormalized();
-        if (hull.crossing(ahead, 0, endless) != Crossing::even) side[own[k]] = none;
+        const Vector<3> normal = cross_of(mesh_, face).stableNormalized(), from = center_of(mesh_, face);
+        const bool leaves = hull.crossing(from + reach * normal, 0, endless) == Crossing::even;
+        if (!leaves || (reach > even * diagonal_ && way_free(from, normal, reach) < reach))
+          side[own[k]] = none;
       }
     });
     double own_area = 0;
@@ -319,15 +333,14 @@ class Sides {
   double folded_share(const Mesh& walls, const std::vector<FaceCorners>& faces) const {
     const TriangleTree tree(walls);
     constexpr std::size_t asked = 400;
-    const double diagonal = bounds_of_vertices(mesh_).diagonal(), close = 1e-9 * diagonal;
     double all = 0, folded = 0;
     for (std::size_t k = 0; k < faces.size(); k += 1 + faces.size() / asked) {
       const Vector<3> inward = cross_of(mesh_, faces[k]);  // of them: as they are turned here, into the solid
       const Vector<3> direction = inward.stableNormalized();
-      const Vector<3> start = center_of(mesh_, faces[k]) + 4 * close * direction;
-      const double ahead = tree_.first_contact(start, close, direction, diagonal, close);
+      const Vector<3> from = center_of(mesh_, faces[k]);
+      const double ahead = way_free(from, direction, diagonal_), close = 1e-8 * diagonal_;
       all += inward.norm();
-      if (ahead < diagonal && tree.distance(start + ahead * direction, 8 * close) < 8 * close)
+      if (ahead < diagonal_ && tree.distance(from + ahead * direction, close) < close)
         folded += inward.norm();
     }
     return folded / all;
@@ -370,7 +383,7 @@ class Sides {
   MeshTopology topology_;
   SurfacePieces pieces_;
   TriangleTree tree_;
-  double tolerance_;
+  double tolerance_, diagonal_;
   std::vector<std::vector<std::uint32_t>> faces_;  ///< of each piece
   bool is_two_sided_ = true;
 };

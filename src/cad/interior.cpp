@@ -204,7 +204,9 @@ std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Me
   std::vector<unsigned> subsets(1U << sides.size());
   std::iota(subsets.begin(), subsets.end(), 0U);
   std::ranges::stable_sort(subsets, {}, [](unsigned subset) { return std::popcount(subset); });
+  constexpr int most_sides = 4;  // what is left open on more is no hollow
   for (const unsigned subset : subsets) {
+    if (std::popcount(subset) > most_sides) break;
     Planes all = planes;
     for (std::size_t k = 0; k < sides.size(); ++k)
       if ((subset >> k & 1) != 0) all.push_back(sides[k]);

@@ -6,9 +6,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "bernal/core/error.hpp"
 #include "cad/diagnose_mesh.hpp"
@@ -35,14 +37,9 @@ constexpr std::size_t most_seeds = 64, most_seeds_in_nooks = 1000;
 
 enum class Stopped { by_monitor, too_many, outside };
 
-bool is_within(const Vector<3>& p, const Bounds<3>& bounds) {
-  return (p.array() >= bounds.lower.array()).all() && (p.array() <= bounds.upper.array()).all();
-}
-
 /// CGAL's door for a look at the work while it goes on.
 struct Watch {
   const Monitor& monitor;
-  Bounds<3> bounds;  ///< that may not be left
   std::size_t points = 0;
 
   template <class Wrapper>
@@ -54,11 +51,9 @@ struct Watch {
   template <class Wrapper, class Place>
   void before_Steiner_point_insertion(const Wrapper&, const Place&) {}
   template <class Wrapper, class Vertex>
-  void after_Steiner_point_insertion(const Wrapper&, Vertex vertex) {
+  void after_Steiner_point_insertion(const Wrapper&, Vertex) {
     if (++points > most_points) throw Stopped::too_many;
     if (points % 256 == 0 && monitor.stop()) throw Stopped::by_monitor;
-    const Point& p = vertex->point();
-    if (!is_within(Vector<3>(p.x(), p.y(), p.z()), bounds)) throw Stopped::outside;
   }
   template <class Wrapper>
   void on_flood_fill_end(const Wrapper&) {}
@@ -81,9 +76,8 @@ struct Seed {
   Vector<3> place;
 };
 
-/// Where to look for the inside: a grid, which finds what is wide, and places below the faces, on both sides,
-/// as deep as a seed has to be at least, which find what is thin.
-std::vector<Vector<3>> places_to_look(const Mesh& mesh, const Bounds<3>& bounds, double depth) {
+/// Where to look for the inside: a grid, which finds what is wide.
+std::vector<Vector<3>> grid_of_places(const Bounds<3>& bounds) {
   std::vector<Vector<3>> places;
   const double step = bounds.size().maxCoeff() / looks_along_edge;
   std::array<int, 3> count;
@@ -95,16 +89,22 @@ std::vector<Vector<3>> places_to_look(const Mesh& mesh, const Bounds<3>& bounds,
         // Off the middle of the cells, because faces of parts stand at halves and thirds.
         places.push_back(bounds.lower +
                          (Vector<3>(x, y, z) + Vector<3>(0.4871, 0.5113, 0.4937)).cwiseProduct(cell));
-  const auto normal_of = [&](const std::array<std::uint32_t, 3>& t) -> Vector<3> {
+  return places;
+}
+
+/// And places below the faces, on both sides, as deep as a seed has to be, which find what is thin.
+std::vector<Vector<3>> places_below_faces(const Mesh& mesh, double depth) {
+  std::vector<Vector<3>> places;
+  const auto across = [&](const std::array<std::uint32_t, 3>& t) -> Vector<3> {
     const Vector<3>& a = mesh.vertices[t[0]];
     return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
   };
   double area = 0;
-  for (const auto& t : mesh.triangles) area += normal_of(t).norm() / 2;
+  for (const auto& t : mesh.triangles) area += across(t).norm() / 2;
   const double apart = std::max(2 * depth, std::sqrt(area / most_looks_below));
   double owed = 0;  // of a look, by the faces so far: small ones share it
   for (const auto& t : mesh.triangles) {
-    const Vector<3> normal = normal_of(t);
+    const Vector<3> normal = across(t);
     owed += normal.norm() / 2 / (apart * apart);
     const int looks = static_cast<int>(owed);
     owed -= looks;
@@ -152,14 +152,13 @@ std::vector<Seed> scattered(const std::vector<Seed>& all, std::size_t most) {
 
 Point wrap_point(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
 
-/// Wrapped from these points, within the bounds, or from outside if there are none. Throws Stopped.
+/// Wrapped from these points, or from outside if there are none. Throws Stopped.
 Surface wrapped(const Mesh& mesh, double alpha, double offset, const std::vector<Seed>& seeds,
-                const Bounds<3>& bounds, const Monitor& monitor) {
+                const Monitor& monitor) {
   std::vector<Point> points, from;
   for (const Vector<3>& v : mesh.vertices) points.push_back(wrap_point(v));
   for (const Seed& seed : seeds) from.push_back(wrap_point(seed.place));
-  const Vector<3> anywhere = Vector<3>::Constant(std::numeric_limits<double>::infinity());
-  Watch watch{monitor, seeds.empty() ? Bounds<3>{-anywhere, anywhere} : bounds};
+  Watch watch{monitor};
   Surface surface;
   CGAL::alpha_wrap_3(points, mesh.triangles, alpha, offset, surface, CGAL::parameters::default_values(),
                      CGAL::parameters::seed_points(std::ref(from)).visitor(std::ref(watch)));
@@ -196,6 +195,25 @@ std::vector<Seed> outside_of(const Mesh& wrap, const std::vector<Seed>& inside) 
   return scattered(left, most_seeds_in_nooks);
 }
 
+/// Without those seeds from which the wrap gets out, be it that they are not inside or that their chamber has
+/// a gap: found by halving.
+template <class WrapFrom>
+std::vector<Seed> that_stay_inside(const std::vector<Seed>& seeds, const WrapFrom& wrap_from) {
+  if (seeds.empty()) return {};
+  try {
+    wrap_from(seeds);
+    return seeds;
+  } catch (Stopped reason) {
+    if (reason != Stopped::outside) throw;
+    if (seeds.size() == 1) return {};
+  }
+  const auto middle = seeds.begin() + std::ssize(seeds) / 2;
+  std::vector<Seed> stay = that_stay_inside({seeds.begin(), middle}, wrap_from);
+  const std::vector<Seed> others = that_stay_inside({middle, seeds.end()}, wrap_from);
+  stay.insert(stay.end(), others.begin(), others.end());
+  return stay;
+}
+
 /// Whether a wrapped surface holds next to nothing but the offset from a sheet, on both of its sides.
 bool is_but_a_skin(const Mesh& mesh, double offset) {
   double area = 0;
@@ -203,6 +221,12 @@ bool is_but_a_skin(const Mesh& mesh, double offset) {
     area += 0.5 * (mesh.vertices[j] - mesh.vertices[i]).cross(mesh.vertices[k] - mesh.vertices[i]).norm();
   constexpr double more = 1.5;  // at its rim, and where it bends
   return volume_of(Domain(mesh)) < more * area * offset;
+}
+
+bool lies_within(const Mesh& mesh, const Bounds<3>& bounds) {
+  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const Vector<3>& v) {
+    return (v.array() >= bounds.lower.array()).all() && (v.array() <= bounds.upper.array()).all();
+  });
 }
 
 /// The largest alpha with which a sphere of that radius is a seed wherever it fits, with the default offset.
@@ -225,26 +249,36 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
 
   try {
     const double deep = (seed_over_alpha - offset_over_alpha) * alpha + offset;
-    std::vector<Seed> inside =
-        points_inside(mesh, places_to_look(mesh, bounds, look_below * deep), offset, monitor);
+    std::vector<Seed> inside = points_inside(mesh, grid_of_places(bounds), offset, monitor);
+    std::vector<Seed> in_nooks =
+        points_inside(mesh, places_below_faces(mesh, look_below * deep), deep, monitor);
     if (monitor.stop()) throw Stopped::by_monitor;
-    const auto is_shallow = [&](const Seed& seed) { return !(seed.distance > deep); };
-    const bool any_deep = !inside.empty() && !is_shallow(inside.front());
-    if (any_deep) std::erase_if(inside, is_shallow);
+    if (inside.empty() || !(inside.front().distance > deep)) {
+      if (!in_nooks.empty()) inside = std::exchange(in_nooks, {});
+    } else {
+      std::erase_if(inside, [&](const Seed& seed) { return !(seed.distance > deep); });
+      in_nooks.insert(in_nooks.end(), inside.begin(), inside.end());
+    }
     std::vector<Seed> seeds = scattered(inside, most_seeds);
     std::string why = "no inside was found";
     if (!seeds.empty()) {
-      Mesh inner = outward_mesh_of(wrapped(mesh, alpha, offset, seeds, bounds, monitor));
-      if (const std::vector<Seed> nooks = outside_of(inner, inside); any_deep && !nooks.empty()) {
+      const auto wrap_from = [&](const std::vector<Seed>& some) {
+        Mesh made = outward_mesh_of(wrapped(mesh, alpha, offset, some, monitor));
+        if (!lies_within(made, bounds)) throw Stopped::outside;
+        return made;
+      };
+      Mesh inner = wrap_from(seeds);
+      const std::vector<Seed> nooks = that_stay_inside(outside_of(inner, in_nooks), wrap_from);
+      if (!nooks.empty()) {
         seeds.insert(seeds.end(), nooks.begin(), nooks.end());
-        inner = outward_mesh_of(wrapped(mesh, alpha, offset, seeds, bounds, monitor));
+        inner = wrap_from(seeds);
       }
       if (!inner.triangles.empty())
         return {std::move(inner),
                 fmt::format("{} ({}): the result lies within the surface", from_inside, how)};
       why = "the inside is too narrow for alpha";
     }
-    Mesh outer = outward_mesh_of(wrapped(mesh, alpha, offset, {}, bounds, monitor));
+    Mesh outer = outward_mesh_of(wrapped(mesh, alpha, offset, {}, monitor));
     if (outer.triangles.empty())
       return {std::move(mesh), fmt::format("not wrapped ({}): nothing came out", how)};
     if (is_but_a_skin(outer, offset))

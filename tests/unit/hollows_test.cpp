@@ -187,5 +187,44 @@ TEST(HollowsOf, WhatHasNoHollowHasNone) {
   EXPECT_TRUE(cad::hollows_of(oblique(spool), 1e-9).empty());
 }
 
+TEST(HollowsOf, AWallIsRefusedRatherThanFilled) {
+  const testing::Folder folder;
+  const Mesh spool = revolved({{0, 0}, {5, 0}, {5, 1}, {2, 1}, {2, 9}, {5, 9}, {5, 10}, {0, 10}});
+  for (const Mesh& part : {spool, oblique(spool), oblique(icosphere_mesh(1, 2))}) {
+    MeshFile file{.file = folder.write("part.off", as_off(part))};
+    file.interior = Interior::cavity;
+    try {
+      ADD_FAILURE() << read_container_mesh(file, {}).report.volume;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("no hollow"), std::string::npos) << error.what();
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(HollowsOf, WhatStandsInAHollowIsAWallOfIt) {
+  const Vessel cup_of_it = cup("Cup", {{10, 20}, {9, 20}}, {{9, 20}});
+  const Mesh with_rod = oblique(joined(cup_of_it.wall, box_mesh({1, 1, 3}, {2, 2, 10})));
+  const std::vector<cad::Hollow> hollows = cad::hollows_of(with_rod, 1e-12);
+  ASSERT_EQ(hollows.size(), 1U);
+  EXPECT_NEAR(hollows[0].volume, cup_of_it.volume - 40, 1e-8);
+  EXPECT_NEAR(volume_of(Domain(hollows[0].walls)), cup_of_it.volume + 40, 1e-8);  // not yet turned
+}
+
+TEST(HollowOfShell, IsThatOfWallsAndNotOfParts) {
+  for (const Vessel& vessel : vessels())
+    if (vessel.volume > 1.6 * volume_of(Domain(vessel.wall)) && vessel.name != "Bowl") {
+      const auto hollow = cad::hollow_of_shell(vessel.wall, 1e-7);
+      ASSERT_TRUE(hollow.has_value()) << vessel.name;
+      EXPECT_NEAR(hollow->volume, vessel.volume, 2 * vessel.to_within * vessel.volume) << vessel.name;
+    }
+  const Mesh bored = revolved({{3, 0}, {10, 0}, {10, 15}, {3, 15}}),
+             bearing = revolved({{8, 0}, {10, 0}, {10, 5}, {8, 5}});
+  const Mesh flange = revolved({{4, 0}, {5, 0}, {5, 2}, {12, 2}, {12, 4}, {4, 4}});
+  for (const Mesh& part : {bored, bearing, flange, l_shape_mesh(5), helix_mesh(), torus_mesh(3, 1, 24, 12),
+                           box_mesh({0, 0, 0}, {1, 1, 1})})
+    EXPECT_FALSE(cad::hollow_of_shell(part, 1e-9).has_value()) << part.triangles.size();
+}
+
 }  // namespace hollows_test
 }  // namespace bernal
