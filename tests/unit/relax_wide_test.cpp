@@ -134,7 +134,8 @@ TEST(WideSizes, TellHowFarTheyAreInProportionToTheSweeps) {
   };
   run(plan, {.seed = {}, .threads = 1, .monitor = monitor});
   ASSERT_GT(course.size(), 20u);
-  for (const auto& [over, share] : course) EXPECT_NEAR(share, over / course.back()[0], 0.15);
+  // The first sweeps take longest, as they need most lists: the share is ahead of the sweeps then.
+  for (const auto& [over, share] : course) EXPECT_NEAR(share, over / course.back()[0], 0.3);
 }
 
 TEST(WideSizes, ArePackedInBoxesThatHoldAFewOfTheLargest) {
