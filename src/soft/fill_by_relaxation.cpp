@@ -132,6 +132,7 @@ class Filling {
     if ((taking_out_ || (end != StageEnd::converged && end != StageEnd::cancelled)) && !take_out(end))
       end = StageEnd::cancelled;
     work_.effects["neighbour lists"] += crowd_.lists_built();
+    work_.effects["relaxation"].calls += static_cast<std::uint64_t>(crowd_.sweeps());
     work_.spheres = without_overlap<D>(crowd_.spheres(), edges_, work_.allowed_overlap);
     return end;
   }

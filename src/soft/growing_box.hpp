@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <type_traits>
 #include <vector>
@@ -63,6 +64,13 @@ struct BoxGrowth {
   int cycle = 1, sweeps = 0;              ///< over in this cycle
   double first_overlap = 0, overlap = 0;  ///< by which it grew at first and last, before prediction
 };
+
+/// Of all spheres, so far.
+inline std::uint64_t sweeps_of(const BoxGrowth& growth, const GrowingBox& box, StageEnd end) {
+  const int cycles = end == StageEnd::converged ? growth.cycle : growth.cycle - 1;
+  return static_cast<std::uint64_t>(cycles) * static_cast<std::uint64_t>(box.sweeps) +
+         static_cast<std::uint64_t>(growth.sweeps);
+}
 
 /// The share of the work that is over: about as much for each factor by which the overlap falls, until
 /// growths are predicted.

@@ -146,6 +146,7 @@ StageEnd let_box_grow(Packing& packing, Spheres<D>& spheres, Vector<D>& edges, W
       packing, box, growth, stop, [](int, double molr) { return molr; },
       [&](double factor, double) { teller.grown(factor); });
   work.effects["neighbour lists"] += packing.lists_built();
+  work.effects["relaxation"].calls += sweeps_of(growth, box, end);
   have_places(spheres);
   packing.write_to(spheres, edges);
   return end;

@@ -68,6 +68,7 @@ class Relaxation {
       all_there = put_in_bed();
     }
     work_.effects["neighbour lists"] += crowd_.lists_built();
+    work_.effects["relaxation"].calls += static_cast<std::uint64_t>(crowd_.sweeps());
     if (cancelled_) return StageEnd::cancelled;
     if (!all_there || crowd_.size() < target_count_) place_snugly();
     if (work_.bed().size() >= target_count_) return StageEnd::converged;

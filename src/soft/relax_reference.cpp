@@ -15,17 +15,20 @@ StageEnd relax_on(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax
   const int sweeps = sweeps_a_cycle(options, spheres.size());
   double reported = 0, molr = 0;
   int sweep = 0;
+  std::uint64_t all_sweeps = 0;
   const Resumable part(work, "published loop",
-                       [&](Archive& a) { a(reported, molr, sweep, work.edges, loop); });
+                       [&](Archive& a) { a(reported, molr, sweep, all_sweeps, work.edges, loop); });
   const auto end = [&](StageEnd how) {
     loop.write_to(spheres);
     edges = loop.edges();
+    work.effects["relaxation"].calls += all_sweeps;
     return how;
   };
   for (;;) {
     for (; sweep < sweeps; ++sweep) {
       if (work.stop()) return end(StageEnd::cancelled);
       molr = loop.sweep();
+      ++all_sweeps;
     }
     sweep = 0;
     if (molr < options.stop) return end(StageEnd::converged);

@@ -149,18 +149,20 @@ StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, co
   double largest = 1, mean = std::numeric_limits<double>::infinity();
   int cycle = 0, done = 0;
   const Resumable part(work, "kind", [&](Archive& a) { a(largest, mean, cycle, done, packing); });
-  for (; cycle < most_cycles_of_kind; ++cycle) {
+  while (cycle < most_cycles_of_kind) {
     const std::optional<double> met =
         sweep_cycle<D, true>(packing, sweeps, done, largest, [&] { return work.stop(); });
     if (!met) end = StageEnd::cancelled;
     if (!met) break;
+    ++cycle;
     largest = *met;
     const double before = mean;
     mean = mean_overlap<D>(packing.squeeze(), spheres.r);
-    teller.cycled(cycle + 1, spheres.size(), largest);
+    teller.cycled(cycle, spheres.size(), largest);
     if (mean > helps * before || largest < settled) break;
   }
   work.effects["neighbour lists"] += packing.lists_built();
+  work.effects["relaxation"].calls += static_cast<std::uint64_t>(cycle * sweeps + done);
   packing.write_to(spheres);
   return end;
 }
@@ -203,6 +205,7 @@ StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, cons
         packing, start.r, growing, growth, [&] { return work.monitor.stop(); }, [](double, double) {});
     teller.started(n + 1, starts, growth.molr);
     work.effects["neighbour lists"] += packing.lists_built();
+    work.effects["relaxation"].calls += sweeps_of(growth, growing, end);
     packing.write_to(start, box);
     if (!(box.prod() < least)) continue;
     least = box.prod();
@@ -268,6 +271,7 @@ StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
   const StageEnd end = grow_by_means<D>(packing, spheres.r, box, growth, stops,
                                         [&](double factor, double) { teller.grown(factor); });
   work.effects["neighbour lists"] += packing.lists_built();
+  work.effects["relaxation"].calls += sweeps_of(growth, box, end);
   packing.write_to(spheres, edges);
   return end;
 }

@@ -1,18 +1,22 @@
+#include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 
-// What a scene packs to stays what it is, bit for bit: hashes.csv pins it for the scenes of this folder and a
+// What a scene packs to stays what it is, bit for bit, and takes no more or less work than it took, in calls
+// of effects, which are the same on every machine: hashes.csv pins both for the scenes of this folder and a
 // few of data/scenes. tests/golden/table writes it, and says when it may.
 namespace bernal {
 namespace golden_test {
@@ -44,6 +48,44 @@ std::set<std::string> names() {
   return names;
 }
 
+/// Of "relaxation 4360; neighbour lists 710": calls by effect.
+std::map<std::string, double> work_of(const std::string& pinned) {
+  std::map<std::string, double> calls;
+  std::istringstream all(pinned);
+  std::string one;
+  while (std::getline(all >> std::ws, one, ';')) {
+    const std::size_t blank = one.rfind(' ');
+    calls[one.substr(0, blank)] = std::stod(one.substr(blank + 1));
+  }
+  return calls;
+}
+
+/// Work may change by so much until the table is made anew.
+constexpr double most_change = 0.2;
+
+void expect_work(const std::vector<Effect>& effects, const std::string& pinned) {
+  std::map<std::string, double> left = work_of(pinned);
+  for (const Effect& effect : effects) {
+    const auto calls = static_cast<double>(effect.calls);
+    EXPECT_TRUE(left.contains(effect.name)) << effect.name << " is new, with " << calls << " calls";
+    const double before = left[effect.name];
+    EXPECT_LE(std::abs(calls - before), most_change * before) << effect.name << ": the table says " << before;
+    left.erase(effect.name);
+  }
+  for (const auto& [name, calls] : left) ADD_FAILURE() << name << " had " << calls << " calls and has none";
+}
+
+TEST(GoldenWork, IsToldByMoreThanAFifth) {
+  const std::string pinned = "relaxation 100; neighbour lists 10";
+  expect_work({{"neighbour lists", 12, 0.5}, {"relaxation", 80, 0}}, pinned);
+  EXPECT_EQ(work_of(pinned), (std::map<std::string, double>{{"relaxation", 100}, {"neighbour lists", 10}}));
+  EXPECT_NONFATAL_FAILURE(expect_work({{"neighbour lists", 13, 0}, {"relaxation", 100, 0}}, pinned),
+                          "says 10");
+  EXPECT_NONFATAL_FAILURE(expect_work({{"neighbour lists", 10, 0}, {"relaxation", 79, 0}}, pinned),
+                          "says 100");
+  EXPECT_NONFATAL_FAILURE(expect_work({{"relaxation", 100, 0}}, pinned), "has none");
+}
+
 class GoldenScene : public ::testing::TestWithParam<std::string> {};
 
 INSTANTIATE_TEST_SUITE_P(, GoldenScene, ::testing::ValuesIn(names()), [](const auto& scene) {
@@ -56,6 +98,10 @@ TEST_P(GoldenScene, PacksToWhatIsPinned) {
   const auto rows = rows_of_table();
   ASSERT_EQ(rows.count(GetParam()), 1u) << "rows in hashes.csv; write one with tests/golden/table";
   std::string pinned = rows.find(GetParam())->second;
+  const std::size_t last = pinned.rfind(',');
+  ASSERT_NE(last, std::string::npos) << pinned;
+  const std::string work = pinned.substr(last + 1);
+  pinned.resize(last);
   std::ranges::replace(pinned, ',', ' ');
   std::istringstream fields(pinned);
   std::size_t n = 0;
@@ -68,6 +114,7 @@ TEST_P(GoldenScene, PacksToWhatIsPinned) {
   EXPECT_EQ(packing.packing_fraction(), phi);  // the hash is of spheres alone: this is what pins the box
   EXPECT_EQ(name_of(packing.outcome), outcome) << packing.reason;
   EXPECT_EQ(hash_of(packing.spheres), hash);
+  expect_work(packing.effects, work);
 }
 
 }  // namespace golden_test
