@@ -90,7 +90,7 @@ std::string caution_of_size(const Plan& plan) {
   if (!is_faceted(plan.domain) || !(plan.radii->min() > 0)) return {};
   const double thickness = volume_of(plan.domain) / area_of(plan.domain);
   if (plan.radii->min() < 0.5 * thickness) return {};
-  if (plan.radii->min() <= largest_known_radius(plan.domain, plan.container)) return {};
+  if (plan.radii->min() <= largest_known_radius(plan.domain, plan.container, plan.radii->min())) return {};
   return "no place is known for spheres of these sizes: " + largest_in_words(plan, coat_of(plan.scene));
 }
 
@@ -106,7 +106,8 @@ std::string caution_of(const Plan& plan) {
 
 std::string largest_in_words(const Plan& plan, double around) {
   const Scene& scene = plan.scene;
-  const double largest = std::max(0.0, largest_known_radius(plan.domain, plan.container) - around);
+  const double largest =
+      std::max(0.0, largest_known_radius(plan.domain, plan.container, plan.radii->min()) - around);
   return fmt::format("the largest sphere that is known to fit has the {} {:.6g} {}",
                      scene.sizes_are_diameters ? "diameter" : "radius",
                      (scene.sizes_are_diameters ? 2 : 1) * largest, name_of(scene.unit));

@@ -83,15 +83,20 @@ Largest largest_in(const Domain& shape, const std::shared_ptr<const Container>& 
   return {room.radius * frame.scale, std::min(bound, (1 + hidden) * room.bound * frame.scale)};
 }
 
+/// The same, so closely that it is known whether that radius fits, if many cells tell: in thin walls all have
+/// to become small.
+Largest closely_largest(const Domain& shape, const std::shared_ptr<const Container>& made, double radius) {
+  const Largest largest = largest_in(shape, made);
+  return radius > largest.known && radius <= largest.bound ? largest_in(shape, made, many_cells) : largest;
+}
+
 }  // namespace
 
 void require_fitting(const Scene& scene, const Domain& container,
                      const std::shared_ptr<const Container>& made, double radius, std::string_view remedy) {
   Largest largest{largest_fitting_radius(container), largest_fitting_radius(container)};
   if (is_faceted(container) && radius > surely_fitting * volume_of(container) / area_of(container))
-    largest = largest_in(container, made);
-  if (radius > largest.known && radius <= largest.bound)  // in thin walls all cells have to become small
-    largest = largest_in(container, made, many_cells);
+    largest = closely_largest(container, made, radius);
   if (radius <= largest.bound) return;
   const double shown = scene.sizes_are_diameters ? 2 : 1;
   const auto [one, many] =
@@ -114,8 +119,9 @@ void require_fitting(const Scene& scene, const Domain& container,
       scene.sizes.locations.whole);
 }
 
-double largest_known_radius(const Domain& container, const std::shared_ptr<const Container>& made) {
-  return largest_in(container, made).known;
+double largest_known_radius(const Domain& container, const std::shared_ptr<const Container>& made,
+                            double wanted) {
+  return closely_largest(container, made, wanted).known;
 }
 
 void refuse_thin_container() {

@@ -14,8 +14,10 @@ namespace bernal {
 /// a mesh an upper bound from its bounds and its volume.
 double largest_fitting_radius(const Domain& shape);
 
-/// The largest sphere that is known to fit. Cost: of meshes some milliseconds.
-double largest_known_radius(const Domain& container, const std::shared_ptr<const Container>& made);
+/// The largest sphere that is known to fit. Cost: of meshes some milliseconds, half a second where `wanted`
+/// is larger than what is found in these.
+double largest_known_radius(const Domain& container, const std::shared_ptr<const Container>& made,
+                            double wanted);
 
 /// Throws Error{bad_scene} at the scene's container if it repeats itself so often that spheres of that
 /// radius, in a bed, would meet two images of others.

@@ -119,6 +119,45 @@ TEST_F(AbsurdWishes, WhatIsDenserThanAnyIsSaid) {
             std::string::npos);
 }
 
+/// A cube of edge 100 whose walls are 5 thick.
+std::string hollow_cube() {
+  std::string vertices, faces;
+  for (const int inset : {0, 5})
+    for (int k = 0; k < 8; ++k) {
+      const auto x = [&](int bit) { return (k >> bit & 1) != 0 ? 100 - inset : inset; };
+      vertices += fmt::format("{} {} {}\n", x(0), x(1), x(2));
+    }
+  constexpr int quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                               {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& [a, b, c, d] : quads) {
+    faces += fmt::format("3 {} {} {}\n3 {} {} {}\n", a, b, c, a, c, d);
+    faces += fmt::format("3 {} {} {}\n3 {} {} {}\n", c + 8, b + 8, a + 8, d + 8, c + 8, a + 8);
+  }
+  return "OFF\n16 24 0\n" + vertices + faces;
+}
+
+// In a corner a sphere touches three faces and the corner of the hollow: r = 5 sqrt(3) / (1 + sqrt(3)).
+TEST_F(AbsurdWishes, WhatFitsNowhereNamesTheLargestThatFits) {
+  folder.write("cube.off", hollow_cube());
+  const double largest = 10 * std::sqrt(3.0) / (1 + std::sqrt(3.0));
+  const auto of = [](double diameter) {
+    return fmt::format(
+        "unit = \"mm\"\n[container]\nkind = \"mesh\"\nfile = \"cube.off\"\n[spheres]\nfill = true\n"
+        "diameter = {}\n",
+        diameter);
+  };
+  for (const double share : {1.5, 3.0}) expect_refused(of(share * largest), {"does not fit", "6.339"});
+  // So little larger that it is not proven: a caution, and numbers that are some.
+  const Plan hardly = build(scene(of(1.01 * largest)));
+  EXPECT_NE(hardly.caution.find("no place is known"), std::string::npos) << hardly.caution;
+  EXPECT_NE(hardly.caution.find("6.339"), std::string::npos) << hardly.caution;
+  EXPECT_TRUE(std::isfinite(hardly.expected_seconds));
+  const Plan plan = build(scene(of(0.99 * largest)));
+  EXPECT_EQ(plan.caution, "");
+  EXPECT_TRUE(std::isfinite(plan.expected_seconds));
+  EXPECT_GT(plan.expected_count, 0);
+}
+
 TEST_F(AbsurdWishes, AMeanOfLognormalSizesIsToldItsKeys) {
   const auto of = [](const std::string& keys) {
     return equal_in(3).replace(equal_in(3).find("radius = 1"), 10,
