@@ -29,7 +29,7 @@ TEST(Layering, TheTableIsReadAsItIsMeant) {
   EXPECT_TRUE(rules.at("run").rooms.contains("settle"));
   EXPECT_FALSE(rules.at("run").rooms.contains("verify"));
   EXPECT_FALSE(rules.at("run").rooms.contains("io"));
-  EXPECT_EQ(rules.at("run").files.at("io"), std::set<std::string>{"staged_folder.hpp"});
+  EXPECT_EQ(rules.at("run").files.at("io"), std::set<std::string>{"unpublished.hpp"});
   EXPECT_TRUE(rules.at("apps").public_headers_only);
 }
 
