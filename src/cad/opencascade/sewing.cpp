@@ -81,7 +81,8 @@ void sew_part(Faces faces, double diagonal, Sewn& sewn) {
 
 Sewn sew(const std::vector<TopoDS_Shape>& faces, double diagonal) {
   if (const std::vector<Faces> parts = parts_in_order(faces, 1e-5 * diagonal); parts.size() > 1) {
-    Sewn apart{.parts = parts.size()};
+    Sewn apart;
+    apart.parts = parts.size();
     for (const Faces& part : parts) sew_part(part, diagonal, apart);
     if (apart.free_edges == 0) return apart;
   }
