@@ -133,8 +133,8 @@ TEST_F(ReadStep, RoundBodiesLieWithinTheDeflectionAsItIsMeasured) {
   const auto off_torus = [](const Vector<3>& p) {
     return std::abs(std::hypot(std::hypot(p[0], p[1] - 50 * inch) - 12 * inch, p[2]) - 4 * inch);
   };
-  const Mesh fine = cad::make_triangles(attempt("round_bodies_inch.step", 20.0 / 8).soup).mesh;
-  for (const double deflection : {80.0, 40.0, 20.0}) {
+  const Mesh fine = cad::make_triangles(attempt("round_bodies_inch.step", 10.0 / 8).soup).mesh;
+  for (const double deflection : {40.0, 20.0, 10.0}) {
     const ReadAttempt read = attempt("round_bodies_inch.step", deflection);
     ASSERT_TRUE(read.ok()) << read.failure;
     const PolygonSoup& soup = read.soup;
