@@ -266,7 +266,7 @@ const StageEntry& entry_of<Grow>() {
                      "packing fraction of the random insertion at the start, in a container half of it "
                      "where spheres find no places; if absent 0.2, in other than three dimensions half of "
                      "what insertion reaches",
-                     {thinnest, 0.5}),
+                     {least_packing_fraction, 0.5}),
                  buys_accuracy(
                      {0.3, 0.1, 0.03, 0.01, 0.003, 0.001},
                      number(&Grow::rate, "rate",

@@ -44,7 +44,7 @@ fs::path where_it_stands(const fs::path& file) {
 
 namespace {
 
-bool stands(const fs::path& file) {
+bool can_be_read(const fs::path& file) {
   std::error_code unknown;
   return fs::exists(where_it_stands(file), unknown);
 }
@@ -53,11 +53,11 @@ bool stands(const fs::path& file) {
 
 fs::path spheres_file_in(const fs::path& folder) {
   const fs::path text = folder / spheres_as_text, array = folder / spheres_as_array;
-  return !stands(text) && stands(array) ? array : text;
+  return !can_be_read(text) && can_be_read(array) ? array : text;
 }
 
 fs::path only_spheres_file_in(const fs::path& folder) {
-  if (stands(folder / spheres_as_text) && stands(folder / spheres_as_array))
+  if (can_be_read(folder / spheres_as_text) && can_be_read(folder / spheres_as_array))
     throw Error(ErrorCode::bad_packing,
                 fmt::format("holds {} and {}, and a result has one of them; remove the one that is not meant",
                             spheres_as_text, spheres_as_array),

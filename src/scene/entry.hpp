@@ -64,8 +64,8 @@ inline Range between(double min, double max) { return {min, max, true, true}; }
 /// What lengths and coordinates may be in any unit, and volumes still neither overflow nor vanish.
 inline constexpr double smallest_length = 1e-30, largest_length = 1e30;
 /// Of packing fractions, so thin that a box of one sphere is some 10^12 radii long at most.
-inline constexpr double thinnest = 1e-12;
-inline Range packing_fractions() { return {thinnest, 1, false, true}; }
+inline constexpr double least_packing_fraction = 1e-12;
+inline Range packing_fractions() { return {least_packing_fraction, 1, false, true}; }
 
 /// A member as a value; nothing where it is an empty optional or vector.
 template <class M>

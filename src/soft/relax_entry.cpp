@@ -74,7 +74,7 @@ const StageEntry& entry_of<Relax>() {
                                "other than three dimensions 1.34 of random close packing, of wide sizes 1.06 "
                                "of what is expected, also if it is 0.86; of spheres that come dense from a "
                                "file what they have there",
-                               {thinnest, 10}),
+                               {least_packing_fraction, 10}),
                         buys_accuracy(
                             {1e-2, 1e-3, 2e-4, 1e-5, 1e-6},
                             number(&Relax::stop, "stop",
