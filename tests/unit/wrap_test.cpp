@@ -80,7 +80,7 @@ TEST(Wrap, LosesNoPlaceWhereASphereFits) {
     const Vector<3> aside = Vector<3>::Constant(2 * half) - 2 * half * out.cwiseAbs();
     const Vector<3> from = Vector<3>::Constant(0.5) + 0.4 * out, to = from + length * out;
     const Vector<3> lower = from.cwiseMin(to) - aside / 2, upper = from.cwiseMax(to) + aside / 2;
-    append(part, divided(box_mesh(lower, upper - lower), 3));
+    test::append(part, divided(box_mesh(lower, upper - lower), 3));
   }
   const Mesh soup = shaken_soup(part, 1e-5, 3);
   const Mended mended = wrap_for_spheres(soup, 0.9 * half);
