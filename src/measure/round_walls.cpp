@@ -252,7 +252,9 @@ void cut_behind(ConvexCell& cell, const Vector<3>& from_middle, double radius) {
 
 void cut_behind(ConvexCell& cell, const Vector<3>& center, const Cylinder& cylinder) {
   const Vector<3> axis = cylinder.axis.stableNormalized(), from_base = center - cylinder.base;
-  cut_behind(cell, from_base - axis.dot(from_base) * axis, cylinder.radius);
+  // What rounding leaves of a centre on the axis may point along it, and is taken off once more.
+  const Vector<3> nearly_across = from_base - axis.dot(from_base) * axis;
+  cut_behind(cell, nearly_across - axis.dot(nearly_across) * axis, cylinder.radius);
 }
 
 void cut_behind(ConvexCell& cell, const Vector<3>& center, const Sphere& sphere) {

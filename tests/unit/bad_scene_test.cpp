@@ -107,7 +107,7 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
       {with_spheres("count = 99999999999999999999\nradius = 1"), 3, {"TOML"}},
       {with_spheres("packing_fraction = 1.0\nradius = 1"),
        3,
-       {"above 0 and below 1 or \"predicted\", not 1"}},
+       {"at least 1e-12 and below 1 or \"predicted\", not 1"}},
       {with_spheres("radius = -0.5"), 3, {"\"radius\" in [spheres]", "positive length", "not -0.5"}},
       {with_spheres("radius = { distribution = \"uniform\", min = 2, max = 1 }"), 3, {"2 is not below 1"}},
       {with_spheres("radius = { distribution = \"uniform\", min = 2, max = 2 }"),
