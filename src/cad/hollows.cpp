@@ -234,13 +234,17 @@ class Sides {
     constexpr double least_reach = 1e-6, farthest = 0.4, hardly = 0.05;
     for (double reach = std::max(16 * tolerance_, least_reach * diagonal); reach < farthest * diagonal;
          reach *= reach < even * diagonal ? 8 : 1.6) {
-      std::vector<Hollow> some = hollows_within(piece, tree, reach);
-      if (some.empty()) continue;
-      std::ranges::stable_sort(some, std::greater<>(), &Hollow::weight);
-      found.push_back(std::move(some));
-      const Hollow& heaviest = found.back().front();
-      largest = std::max(largest, heaviest.volume);
-      if (heaviest.volume > air / 2 && heaviest.folded < hardly) break;  // nothing else is as large
+      for (const bool sees_solid : {false, true}) {
+        if (sees_solid && !(reach > even * diagonal_)) continue;
+        std::vector<Hollow> some = hollows_within(piece, tree, reach, sees_solid);
+        if (some.empty()) continue;
+        std::ranges::stable_sort(some, std::greater<>(), &Hollow::weight);
+        largest = std::max(largest, some.front().volume);
+        found.push_back(std::move(some));
+      }
+      // Nothing else is as large.
+      if (!found.empty() && found.back().front().volume > air / 2 && found.back().front().folded < hardly)
+        break;
     }
     std::erase_if(found, [&](const auto& some) { return some.front().volume < largest / 4; });
     for (const auto& some : found) least_folded = std::min(least_folded, some.front().folded);
@@ -249,7 +253,10 @@ class Sides {
     return {};
   }
 
-  std::vector<Hollow> hollows_within(std::uint32_t piece, const TriangleTree& hull, double reach) const {
+  /// `sees_solid`: a face looks out only where nothing of the solid itself is in its way within the reach,
+  /// either.
+  std::vector<Hollow> hollows_within(std::uint32_t piece, const TriangleTree& hull, double reach,
+                                     bool sees_solid) const {
     const std::vector<std::uint32_t>& own = faces_[piece];
     std::vector<std::uint32_t> side(mesh_.triangles.size(), looks_out);
     parallel_ranges(own.size(), 256, [&](std::size_t first, std::size_t last) {
@@ -257,8 +264,7 @@ class Sides {
         const FaceCorners& face = mesh_.triangles[own[k]];
         const Vector<3> normal = cross_of(mesh_, face).stableNormalized(), from = center_of(mesh_, face);
         const bool leaves = hull.crossing(from + reach * normal, 0, endless) == Crossing::even;
-        if (!leaves || (reach > even * diagonal_ && way_free(from, normal, reach) < reach))
-          side[own[k]] = none;
+        if (!leaves || (sees_solid && way_free(from, normal, reach) < reach)) side[own[k]] = none;
       }
     });
     double own_area = 0;

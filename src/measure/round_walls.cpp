@@ -252,9 +252,10 @@ void cut_behind(ConvexCell& cell, const Vector<3>& from_middle, double radius) {
 
 void cut_behind(ConvexCell& cell, const Vector<3>& center, const Cylinder& cylinder) {
   const Vector<3> axis = cylinder.axis.stableNormalized(), from_base = center - cylinder.base;
-  // What rounding leaves of a centre on the axis may point along it, and is taken off once more.
-  const Vector<3> nearly_across = from_base - axis.dot(from_base) * axis;
-  cut_behind(cell, nearly_across - axis.dot(nearly_across) * axis, cylinder.radius);
+  const Vector<3> across = from_base - axis.dot(from_base) * axis;
+  // What rounding leaves of a centre on the axis may point along it.
+  constexpr double points_across = 1e-9;
+  if (across.norm() > points_across * from_base.norm()) cut_behind(cell, across, cylinder.radius);
 }
 
 void cut_behind(ConvexCell& cell, const Vector<3>& center, const Sphere& sphere) {

@@ -30,6 +30,11 @@ class ScaledSizes : public SizeDistribution {
     return std::pow(factor_, k) * sizes_->moment_above(k, radius / factor_);
   }
   double radius_at(double u) const override { return factor_ * sizes_->radius_at(u); }
+  std::vector<double> atoms() const override {
+    std::vector<double> all = sizes_->atoms();
+    for (double& radius : all) radius *= factor_;
+    return all;
+  }
 
  private:
   std::unique_ptr<SizeDistribution> sizes_;

@@ -101,15 +101,6 @@ Vessel hook_of_pipe() {
 }
 
 /// A square bucket whose handle spans its mouth.
-Vessel with_handle() {
-  const Mesh wall = box_work_mesh(
-      {{{0, .2, .8, 1, 9, 9.2, 9.8, 10}, {0, 1, 4, 6, 9, 10}, {0, 1, 12, 15, 16}}}, [](const Vector<3>& p) {
-        const bool is_bucket = is_in(p, {0, 0, 0}, {10, 10, 12}) && !is_in(p, {1, 1, 1}, {9, 9, 12});
-        return is_bucket || (is_in(p, {.2, 4, 12}, {9.8, 6, 16}) && !is_in(p, {.8, 4, 12}, {9.2, 6, 15}));
-      });
-  return {"Handle", wall, 8. * 8 * 11};
-}
-
 std::vector<Vessel> vessels() {
   std::vector<Vessel> all = {
       cup("FlatBrim", {{10, 20}, {9, 20}}, {{9, 20}}),
@@ -136,7 +127,6 @@ std::vector<Vessel> vessels() {
        revolved_volume({{0, 1}, {5.5, 2}, {9, 5}})},
       tee(),
       hook_of_pipe(),
-      with_handle(),
   };
   Vessel uneven = cup("CornersOffByRounding", {{10, 20}, {9, 20}}, {{9, 20}});
   uneven.wall = jittered(uneven.wall, 2e-5);
