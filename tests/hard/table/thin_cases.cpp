@@ -105,7 +105,7 @@ std::vector<Case> thin_cases() {
       at_least(200));
   add("StarOfNeedles", "tips of half a degree: there is room in the middle", star_mesh(60, 1, 0.2, 0.5),
       "diameter = 0.05", explained(50));
-  add("ClosedHelix", "turns that come near each other", test::helix_mesh(), "diameter = 0.35", at_least(100));
+  add("ClosedHelix", "turns that come near each other", test::helix_mesh(), "diameter = 0.35", explained(100));
   add("RippledTorus", "concave and convex everywhere", test::torus_mesh(1, 0.4, 60, 24, 0.05),
       "diameter = 0.12", at_least(300));
   add("LShape", "one reflex edge", test::l_shape_mesh(1), "diameter = 0.15", at_least(500));
