@@ -401,11 +401,10 @@ std::vector<Hollow> hollows_of(const Mesh& solid, double tolerance, double least
 }
 
 std::optional<Hollow> hollow_of_shell(const Mesh& solid, double tolerance) {
-  constexpr double half_as_much_again = 1.5, as_wide_as_a_dish = 0.8;
+  constexpr double as_much = 1, as_wide_as_a_dish = 0.8;
   const double wall = std::abs(signed_volume(solid));
-  for (Hollow& hollow : hollows_of(solid, tolerance, half_as_much_again))
-    if (hollow.volume >= half_as_much_again * wall && hollow.openness <= as_wide_as_a_dish)
-      return std::move(hollow);
+  for (Hollow& hollow : hollows_of(solid, tolerance, as_much))
+    if (hollow.volume >= as_much * wall && hollow.openness <= as_wide_as_a_dish) return std::move(hollow);
   return std::nullopt;
 }
 

@@ -35,7 +35,7 @@ struct Hollow {
 /// hollows hold less than `least` times what they enclose themselves are passed over.
 std::vector<Hollow> hollows_of(const Mesh& solid, double tolerance, double least = 0);
 
-/// The hollow of a solid that is rather the wall around it: it holds half as much again, and its openings are
+/// The hollow of a solid that is rather the wall around it: it holds as much at least, and its openings are
 /// no wider than a dish's. Nothing where the solid is no such shell. Precondition: as above.
 std::optional<Hollow> hollow_of_shell(const Mesh& solid, double tolerance);
 

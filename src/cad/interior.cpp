@@ -269,6 +269,21 @@ std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, 
   return filled_to_the_brim(around, solid, tolerance, point);
 }
 
+/// A hollow beside which there is much more that is free within the part's bounds may not be the one that is
+/// meant: the bore of a pipe that stands higher than the brim of its tank.
+void tell_if_little(const Mesh& solid, ChosenInterior& chosen) {
+  constexpr double little = 0.1;
+  const double free = bounds_of_vertices(solid).volume() - std::abs(volume_of(Domain(solid)));
+  double volume = 0;
+  for (const double own : SurfacePieces(chosen.mesh).volumes()) volume += own;
+  if (volume < little * free)
+    chosen.notes.push_back(
+        fmt::format("the hollow is {:.2g} % of what is free within the part's bounds: if another one is "
+                    "meant, choose it by a point "
+                    "of \"interior\", or by \"cap\", a plane",
+                    100 * volume / free));
+}
+
 ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double tolerance, const Vector<3>* point) {
   const Surroundings around(solid);
   const std::vector<Planes> choices = choices_of(planes);
@@ -304,7 +319,10 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
   const auto in_bounds = [&](const Planes& choice) {
     return within_bounds(around, solid, choice, tolerance, point);
   };
-  if (auto made = planes.empty() ? first_of(without_planes) : first_of(cut_hollow)) return std::move(*made);
+  if (auto made = planes.empty() ? first_of(without_planes) : first_of(cut_hollow)) {
+    if (!point) tell_if_little(solid, *made);
+    return std::move(*made);
+  }
   if (auto made = first_of(in_bounds)) return std::move(*made);
   if (point)
     refuse(
