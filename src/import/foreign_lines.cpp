@@ -83,6 +83,24 @@ bool ForeignLines::is_row_left_out(std::span<const std::string_view> fields, std
       bernal::quoted(first)));
 }
 
+void ForeignLines::refuse_what_a_spreadsheet_gave_up() const {
+  constexpr std::string_view errors[] = {"#N/A",  "#DIV/0!", "#NULL!",  "#NAME?", "#REF!",
+                                         "#NUM!", "#VALUE!", "#SPILL!", "#CALC!"};
+  std::vector<std::string_view> fields;
+  split_at(line(), ";,\t \"", fields);
+  if (fields.empty()) return;
+  const auto is_too_narrow = [](std::string_view field) {
+    return field.size() > 2 && field.find_first_not_of('#') == field.npos;
+  };
+  const bool is_row = std::ranges::any_of(std::span(fields).subspan(1), [&](std::string_view field) {
+    return is_too_narrow(field) || is_number(field);
+  });
+  if (std::ranges::find(errors, fields[0]) != std::end(errors) || (is_too_narrow(fields[0]) && is_row))
+    fail(fmt::format(
+        "this row begins with {}, which a spreadsheet writes where it has no number to show; mend the row",
+        bernal::quoted(fields[0])));
+}
+
 std::uint64_t ForeignLines::whole(std::string_view field, std::string_view column) const {
   std::uint64_t value = 0;
   const char* end = field.data() + field.size();

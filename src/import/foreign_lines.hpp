@@ -35,6 +35,10 @@ class ForeignLines : public CsvLines {
   /// Whether the line, a remark whose parts these are, is a row of so many numbers behind a mark. Throws
   /// where it is a row that a program gave up: "#N/A 2 3 0.5".
   bool is_row_left_out(std::span<const std::string_view> fields, std::size_t in_row) const;
+  /// Throws where the line begins with what a spreadsheet writes for a number that it has not, or no room
+  /// for: "#N/A",
+  /// "####".
+  void refuse_what_a_spreadsheet_gave_up() const;
   /// `take_unit_of_remark` of the line.
   void take_unit_remark(std::optional<Unit>& unit) const;
   /// Throws where it is not so many.

@@ -80,6 +80,7 @@ TableHead read_head(ForeignLines& lines, std::string& unit) {
     const std::string_view line = stripped(lines.line(), " \t");
     if (line.empty() || lines.says_unit(unit)) continue;
     if (is_comment(line)) {
+      lines.refuse_what_a_spreadsheet_gave_up();
       std::string_view remark = stripped(line, "#%!/ \t");
       if (const std::size_t label = remark.find(": "); label != remark.npos) remark.remove_prefix(label + 2);
       if (Headings headings = named_columns(remark); names_coordinates(headings))
@@ -137,6 +138,7 @@ FileContents read_table(const Reading& reading) {
     if (line.empty() || (is_comment(line) && lines.says_unit(unit))) continue;
     split_row(lines, head.separator, fields);
     if (is_comment(line)) {
+      lines.refuse_what_a_spreadsheet_gave_up();
       if (lines.is_row_left_out(std::span(fields).first(filled(fields)), least) && ++left_out == 1)
         first_left_out = lines.number();
       continue;

@@ -67,6 +67,7 @@ TEST(CostCommand, RefusesAbsurdInputInOneLine) {
   folder.write("large.toml", text);
   expect_refused_in_one_line(bernal({"cost", large, "-o", out, "--time", "0.2"}), {"--time"});
   EXPECT_FALSE(std::filesystem::exists(folder / "out" / "cost.md"));
+  std::filesystem::create_directories(out);  // what was refused has left none
   std::ofstream(folder / "out" / "trials.csv") << "x,y,z,r\n";
   expect_refused_in_one_line(bernal({"cost", scene, "-o", out}), {"trials.csv"});
   expect_refused_in_one_line(bernal({"cost", scene, "-o", out, "--fresh"}), {"trials.csv", "remove it"});

@@ -103,7 +103,7 @@ TEST(MapCommand, RefusesAbsurdInputInOneLine) {
   };
   refuses({"0"}, "SIGMA_B");
   refuses({"0", "9"}, "SIGMA_B");
-  refuses({"nan", "0"}, "width");
+  refuses({"nan", "0"}, "SIGMA_A");
   refuses({"0", "0", "--ratios", "2,1"}, "ratios");
   refuses({"0", "0", "--ratios", "0,1"}, "ratios");
   refuses({"0", "0", "--points", "1"}, "points");

@@ -128,7 +128,7 @@ TEST(PredictCommand, RefusesAbsurdInputInOneLine) {
       {{"--lognormal", "3.5", "--fit"}, "3"},
       {{"--classes", "1:1,2:1", "--fit"}, "one lognormal"},
       {{"--lognormal", "0.5", "--solids", "0.8"}, "jams"},
-      {{"--lognormal", "0.5", "--solids", "nan"}, "jams"},
+      {{"--lognormal", "0.5", "--solids", "nan"}, "--solids"},
       {{"--lognormal", "0.5", "--solids", "0.3", "--intrinsic", "-1"}, "intrinsic"},
       {{"--lognormal", "0.5", "--intrinsic", "3"}, "--solids"},
       // Of the packing's scene, which the user never saw, no line is named.

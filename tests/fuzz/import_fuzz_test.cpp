@@ -66,13 +66,16 @@ std::map<std::string, std::string> valid_files() {
   packing.spheres.resize(5);
   std::map<std::string, std::string> files;
   for (const ImportFormat& format : import_formats()) {
-    if (format.name == "table" || format.name == "dump") continue;
+    if (format.name == "table" || format.name == "dump" || format.name == "vtk") continue;
     const testing::Folder folder;
     files[format.name] = testing::text_of(
         write_export(packing, output_of(format.name), folder / ("a." + format.name)).files.front());
   }
   files["table"] =
       "\xEF\xBB\xBF# unit: mm\nid; x [mm]; y [mm]; z [mm]; Diameter [mm]\r\n7;1;2;3;1\r\n8;4;5;6;0.5\r\n";
+  files["vtk"] =
+      "# vtk DataFile Version 3.0\nbed; lengths in mm\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n1 2 3 4 5 6\n"
+      "POINT_DATA 2\nSCALARS radius float 1\nLOOKUP_TABLE default\n0.5 0.25\n";
   files["dump"] =
       "ITEM: UNITS\nsi\nITEM: TIMESTEP\n100\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff ss\n-1 7\n0 "
       "8\n0 9\n"

@@ -163,7 +163,7 @@ TEST_P(HardRelaxation, OfHugeAndTinySpheresIsThatOfSpheresOfOne) {
       for (std::size_t i = 0; i < one.spheres.size(); ++i)
         EXPECT_EQ(other.spheres.x[k][i], r * one.spheres.x[k][i]);
   }
-  for (const double r : {1e-9, 1e9, 1e-30, 1e30}) {
+  for (const double r : {1e-9, 1e9, 1e-30, 1e28}) {
     EXPECT_NEAR(packing_of_radius(r).packing_fraction(), one.packing_fraction(), 0.03);
   }
 }

@@ -101,7 +101,9 @@ Place place_of(const fs::path& below_root) {
   if (is_public && part->extension() == ".hpp") return {"apps", true, true};
   // The tree that the searches through walls are compiled into: cad's alone, see below.
   const bool is_tree = below_root == fs::path("src/cad/wall_tree.hpp");
-  return {part->string(), is_public, below_root.extension() == ".hpp" && !is_tree};
+  // And what the files of OpenCASCADE's module share, which is a library of its own.
+  const bool is_of_module = below_root.parent_path() == fs::path("src/cad/opencascade");
+  return {part->string(), is_public, below_root.extension() == ".hpp" && !is_tree && !is_of_module};
 }
 
 /// Why the include is forbidden, or "".

@@ -64,7 +64,7 @@ def bad_values(key, seen):
     if key["type"] in ("integer", "number"):
         low, high, step = key["min"], key["max"], 1
         if low is not None:
-            values.append(text_of(low) if key["above_min"] else text_of(low - step))
+            values.append(text_of(low) if key["above_min"] else text_of(low - max(step, abs(low))))
         if high is not None and high < 2**53:
             values.append(text_of(high) if key["below_max"] else text_of(high + step))
         values.append('"nonsense"')

@@ -321,6 +321,9 @@ TEST(ImportMistakes, NoRowOfATableIsTakenForARemark) {
        {"#N/A,5,6,0.25", "#VALUE!,5,6,0.25", "#DIV/0!,#N/A,6,0.25", "#WERT!,5,6,1", "#NV,5,6,1,"})
     expect_refusal({"a.csv", head + row + "\n", mm}, {"a.csv:3", "no number"});
   expect_refusal({"a.txt", "x y z r\n1 2 3 0.5\n#N/A 5 6 0.25\n", mm}, {"a.txt:3", "\"#N/A\""});
+  for (const std::string row : {"#N/A,#N/A,#N/A,#N/A", "#DIV/0!,#DIV/0!,#DIV/0!,#DIV/0!,", "#N/A", "#REF!,,,",
+                                "########,7,7,.5", "####,####,####,####"})
+    expect_refusal({"a.csv", head + row + "\n4,5,6,0.25\n", mm}, {"a.csv:3", "a spreadsheet"});
   expect_refusal({"a.csv", head + "4,5,#N/A,0.25\n", mm}, {"a.csv:3", "z = \"#N/A\""});
   // Text for people is passed over, a row that somebody left out is counted.
   const ImportedPacking some = imported(
