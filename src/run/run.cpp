@@ -269,6 +269,7 @@ class Run {
         pressed.before_stage(work);
       }
       const Keepsake before(work);
+      if (work.stands_in_bed()) work.bed().update_grid();  // of the places that the stage before left
       end = run_stage(stage, work);
       if (end == StageEnd::cancelled && !work.may_overlap) before.give_back_if_denser(work);
       if (end == StageEnd::cancelled && bed) bed->give_back_if_denser(work);

@@ -4,6 +4,7 @@
 
 #include "bernal/measure/hanging.hpp"
 #include "bernal/settle/compress.hpp"
+#include "support/plain_check.hpp"
 #include "support/plans.hpp"
 
 // Beds are "converged" only where no sphere hangs; of any other it is said how many do, and how far one could
@@ -55,6 +56,18 @@ TEST(Beds, OfFewIterationsSayHowManyHang) {
   EXPECT_NE(packing.reason.find(std::to_string(hanging(packing)) + " spheres hang"), std::string::npos)
       << packing.reason;
   EXPECT_NE(packing.reason.find("\"max_iterations\""), std::string::npos) << packing.reason;
+}
+
+/// Whose places the compression, which its limit ends, has changed far since its lists were built.
+TEST(Beds, TakeMoreSpheresWhereACompressionWasCutShort) {
+  for (const char* size : {"[1.5, 8]", "[3, 3, 20]", "[4, 4, 12]"})
+    for (const std::string cut : {stage("compress", "max_iterations = 3\n"), stage("shake", "max_iterations = 1\n")}) {
+      const std::string box = std::string("seed = 2\n[container]\nkind = \"box\"\nsize = ") + size;
+      const Packing packing = packed(box + "\n[spheres]\ndiameter = 1.0\n" +
+                                     stage("insert", "packing_fraction = 0.15\n") + cut +
+                                     stage("insert", "packing_fraction = 0.5\n"));
+      EXPECT_EQ(testing::plain_objection(packing.spheres, packing.domain, 0), "") << size << cut;
+    }
 }
 
 TEST(Beds, AreJudgedByTheStageThatMovedThemLast) {
