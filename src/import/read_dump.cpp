@@ -155,7 +155,10 @@ FileContents read_dump(const Reading& reading) {
     } else if (lines.line().starts_with(units_item)) {
       lines.require_next("the units");
       const auto words = lines.words();
+      const std::optional<Unit> before = contents.unit;
       if (!words.empty()) contents.unit = unit_of_style(words[0], lines);
+      if (before && contents.unit != before)
+        lines.fail(fmt::format("\"{}\" says another unit than the one before it", units_item));
     } else if (here && lines.line().starts_with(count_item)) {
       if (claimed) lines.fail(fmt::format("a second \"{}\" in frame {}", count_item, frame));
       claimed = read_claimed(lines);
@@ -165,6 +168,9 @@ FileContents read_dump(const Reading& reading) {
     } else if (here && lines.line().starts_with(atoms_item)) {
       if (!claimed) lines.fail(fmt::format("\"{}\" does not stand before the atoms", count_item));
       read_frame_atoms(wanted, *claimed, reading, lines, contents);
+      while (lines.next() && !lines.line().starts_with(step_item))
+        if (lines.line().starts_with(atoms_item))
+          lines.fail(fmt::format("a second \"{}\" in frame {}", atoms_item, frame));
       return contents;
     }
   }

@@ -61,11 +61,12 @@ TEST(Beds, OfFewIterationsSayHowManyHang) {
 /// Whose places the compression, which its limit ends, has changed far since its lists were built.
 TEST(Beds, TakeMoreSpheresWhereACompressionWasCutShort) {
   for (const char* size : {"[1.5, 8]", "[3, 3, 20]", "[4, 4, 12]"})
-    for (const std::string cut : {stage("compress", "max_iterations = 3\n"), stage("shake", "max_iterations = 1\n")}) {
+    for (const std::string& cut :
+         {stage("compress", "max_iterations = 3\n"), stage("shake", "max_iterations = 1\n")}) {
       const std::string box = std::string("seed = 2\n[container]\nkind = \"box\"\nsize = ") + size;
-      const Packing packing = packed(box + "\n[spheres]\ndiameter = 1.0\n" +
-                                     stage("insert", "packing_fraction = 0.15\n") + cut +
-                                     stage("insert", "packing_fraction = 0.5\n"));
+      const Packing packing =
+          packed(box + "\n[spheres]\ndiameter = 1.0\n" + stage("insert", "packing_fraction = 0.15\n") + cut +
+                 stage("insert", "packing_fraction = 0.5\n"));
       EXPECT_EQ(testing::plain_objection(packing.spheres, packing.domain, 0), "") << size << cut;
     }
 }

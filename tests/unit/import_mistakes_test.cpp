@@ -58,6 +58,10 @@ TEST(ImportMistakes, NoRowIsLeftOver) {
   for (const std::string& rows : {two, two + "3 8 8 8 .5\n", one + "garbage\n", one + "\n2 5 5 5 .5\n"})
     expect_refusal({"a.dump", frame_of(1, rows), m}, {"frame 1", "1 spheres", "NUMBER OF ATOMS"});
   expect_refusal({"a.dump", frame_of(1, two), m}, {"a.dump:11"});
+  expect_refusal({"a.dump", frame_of(2, two) + "ITEM: ATOMS id x y z radius\n" + one, m},
+                 {"a.dump:12", "second"});
+  expect_refusal({"a.dump", "ITEM: UNITS\nsi\nITEM: UNITS\ncgs\n" + frame_of(1, one), {}},
+                 {"a.dump:4", "unit"});
   expect_refusal({"a.dump", frame_of(0, one), m}, {"a.dump:10"});
   // In a frame that nobody asked for, since the row may be the next one's.
   expect_refusal({"a.dump", frame_of(1, two) + frame_of(1, one), m}, {"a.dump:11", "frame 1"});
