@@ -43,6 +43,7 @@ std::vector<Population> populations_of(const MaximiseCall& call) {
                             "neighbouring sizes together, or see bernal design best --help",
                             populations.size(), most_populations_to_mix));
   const auto [least, most] = std::ranges::minmax(populations, {}, &Population::d43);
+  require_usable_lengths(least.d43, most.d43);
   if (most.d43 / least.d43 > widest_ratio(call.rods))
     throw Error(
         ErrorCode::bad_argument,
@@ -51,7 +52,6 @@ std::vector<Population> populations_of(const MaximiseCall& call) {
             "reach farther",
             grouped(static_cast<std::uint64_t>(call.rods)), widest_ratio(call.rods), number(least.d43),
             number(most.d43)));
-  require_usable_lengths(least.d43, most.d43);
   return populations;
 }
 
