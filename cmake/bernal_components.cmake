@@ -14,11 +14,11 @@ set(bernal_cad_stands_on core)
 set(bernal_cad_packages "CGAL 5.5" "assimp 5.2" "nlohmann_json 3.11" "pugixml 1.13")
 set(bernal_cad_debian_packages libcgal-dev libassimp-dev libmd-dev libminizip-dev libpugixml-dev nlohmann-json3-dev)
 set(bernal_bernal_stands_on core predict verify cad)
-set(bernal_bernal_packages "tomlplusplus 3.3" "pugixml 1.12" "ZLIB 1.2")
+set(bernal_bernal_packages "tomlplusplus 3.3" "ZLIB 1.2")
 if(BERNAL_CUDA)
   list(APPEND bernal_bernal_packages "CUDAToolkit 12")
 endif()
-set(bernal_bernal_debian_packages libtomlplusplus-dev libminizip-dev libpugixml-dev zlib1g-dev)
+set(bernal_bernal_debian_packages libtomlplusplus-dev libminizip-dev zlib1g-dev)
 set(bernal_figures_stands_on bernal)
 
 # The components given and all that they stand on, in the order above.
