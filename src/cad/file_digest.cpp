@@ -9,12 +9,12 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "bernal/core/error.hpp"
 #include "cad/known_formats.hpp"
+#include "core/bytes_of_file.hpp"
 #include "core/file_kind.hpp"
 #include "core/input_file.hpp"
 
@@ -77,8 +77,7 @@ namespace {
 
 /// The files that a STEP file names, as they stand in it: the first text of each DOCUMENT_FILE.
 std::vector<std::string> documents_in_step(const fs::path& file) {
-  InputFile in(file);
-  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const std::string text = bytes_of_file(file);
   constexpr std::string_view entity = "DOCUMENT_FILE";
   std::vector<std::string> names;
   for (std::size_t at = text.find(entity); at != text.npos; at = text.find(entity, at + 1)) {

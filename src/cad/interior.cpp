@@ -250,14 +250,18 @@ std::optional<ChosenInterior> closed_across_openings(const std::vector<Hollow>& 
   return chosen;
 }
 
+/// By all pieces of a surface together, whichever way they are turned.
+double enclosed_by(const Mesh& surface) {
+  const std::vector<double> volumes = SurfacePieces(surface).volumes();
+  return std::accumulate(volumes.begin(), volumes.end(), 0.0);
+}
+
 /// Without planes: the voids of a solid or its open hollows, whichever are larger; else what holds water.
 std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, const Mesh& solid,
                                                     const std::vector<Hollow>& hollows, double tolerance,
                                                     const Vector<3>* point) {
   std::optional<Mesh> voids = closed_off(around, {}, tolerance, Which::all, point);
-  double volume = 0;
-  if (voids)
-    for (const double own : SurfacePieces(*voids).volumes()) volume += own;
+  const double volume = voids ? enclosed_by(*voids) : 0;
   const bool voids_are_larger = hollows.empty() || volume >= hollows.front().volume;
   if (voids && (point || voids_are_larger))
     return ChosenInterior{std::move(*voids), {"the voids of the solid"}};
@@ -274,8 +278,7 @@ std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, 
 void tell_if_little(const Mesh& solid, ChosenInterior& chosen) {
   constexpr double little = 0.1;
   const double free = bounds_of_vertices(solid).volume() - std::abs(volume_of(Domain(solid)));
-  double volume = 0;
-  for (const double own : SurfacePieces(chosen.mesh).volumes()) volume += own;
+  const double volume = enclosed_by(chosen.mesh);
   if (volume < little * free)
     chosen.notes.push_back(
         fmt::format("the hollow is {:.2g} % of what is free within the part's bounds: if another one is "

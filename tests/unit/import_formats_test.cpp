@@ -9,35 +9,18 @@
 #include "bernal/core/error.hpp"
 #include "bernal/import/import.hpp"
 #include "support/folder.hpp"
+#include "support/foreign_files.hpp"
 
 namespace bernal {
 namespace import_formats_test {
 
 using testing::Folder;
 
-struct Case {
-  std::string name, text;
-  ImportOptions options = {};
-};
+using Case = testing::ForeignFile;
+using testing::expect_refusal;
+using testing::imported;
 
-ImportedPacking imported(const Case& of, const Folder& folder) {
-  return import_packing(folder.write(of.name, of.text), of.options);
-}
-Packing packing_of(const Case& of) { return imported(of, Folder()).packing; }
-
-/// One line that names the file, the line and a remedy.
-void expect_refusal(const Case& of, const std::vector<std::string>& words) {
-  const Folder folder;
-  try {
-    imported(of, folder);
-    ADD_FAILURE() << of.text << "\nis taken";
-  } catch (const Error& error) {
-    const std::string what = error.what();
-    EXPECT_EQ(what.find('\n'), what.npos) << what;
-    for (const std::string& word : words)
-      EXPECT_NE(what.find(word), what.npos) << word << "\nis not in: " << what;
-  }
-}
+Packing packing_of(const Case& of) { return imported(of).packing; }
 
 /// (1, 2, 3) of radius 0.5 and (4, 5, 6) of radius 0.25, in mm.
 void expect_two(const Packing& packing) {
@@ -132,7 +115,7 @@ TEST(ImportDump, TheLastFrameIsSortedByNumber) {
   const std::string all =
       dump_head + frame + "ITEM: ATOMS id type y x z diameter\n9 1 5 4 6 0.5\n3 2 2 1 3 1\n";
   const Folder folder;
-  const ImportedPacking last = imported({"a.dump", all}, folder);
+  const ImportedPacking last = import_packing(folder.write("a.dump", all));
   EXPECT_EQ(last.packing.spheres.x, (std::vector<std::vector<double>>{{2, 5}, {2, 5}, {3, 6}}));
   EXPECT_EQ(last.packing.spheres.r, (std::vector<double>{0.5, 0.25}));
   EXPECT_EQ(last.packing.scene.unit, Unit::m);

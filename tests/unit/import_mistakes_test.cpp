@@ -14,34 +14,15 @@
 #include "support/export_packings.hpp"
 #include "support/exports.hpp"
 #include "support/folder.hpp"
+#include "support/foreign_files.hpp"
 
 namespace bernal {
 namespace import_mistakes_test {
 
+using testing::expect_refusal;
 using testing::Folder;
-
-struct File {
-  std::string name, text;
-  ImportOptions options = {};
-};
-
-ImportedPacking imported(const File& of) {
-  const Folder folder;
-  return import_packing(folder.write(of.name, of.text), of.options);
-}
-
-/// One line that has the words.
-void expect_refusal(const File& of, const std::vector<std::string>& words) {
-  try {
-    imported(of);
-    ADD_FAILURE() << of.text << "\nis taken";
-  } catch (const Error& error) {
-    const std::string what = error.what();
-    EXPECT_EQ(what.find('\n'), what.npos) << what;
-    for (const std::string& word : words)
-      EXPECT_NE(what.find(word), what.npos) << word << "\nis not in: " << what;
-  }
-}
+using testing::imported;
+using File = testing::ForeignFile;
 
 /// A frame of a dump that claims so many atoms.
 std::string frame_of(int claimed, const std::string& rows) {

@@ -12,22 +12,20 @@
 #include "bernal/core/error.hpp"
 #include "bernal/import/import.hpp"
 #include "io/base64.hpp"
-#include "support/folder.hpp"
+#include "support/foreign_files.hpp"
 
 namespace bernal {
 namespace import_vtk_test {
 
-using testing::Folder;
-
+/// In millimetres, if nothing else is said.
 struct File {
   std::string name, text;
   ImportOptions options = {.unit = Unit::mm};
+
+  operator testing::ForeignFile() const { return {name, text, options}; }
 };
 
-ImportedPacking imported(const File& of) {
-  const Folder folder;
-  return import_packing(folder.write(of.name, of.text), of.options);
-}
+ImportedPacking imported(const File& of) { return testing::imported(of); }
 
 /// (1, 2, 3) of radius 0.5 and (4, 5, 6) of radius 0.25, in mm.
 void expect_two(const File& of) {
@@ -39,15 +37,7 @@ void expect_two(const File& of) {
 }
 
 void expect_refusal(const File& of, const std::vector<std::string>& words) {
-  try {
-    imported(of);
-    ADD_FAILURE() << of.text << "\nis taken";
-  } catch (const Error& error) {
-    const std::string what = error.what();
-    EXPECT_EQ(what.find('\n'), what.npos) << what;
-    for (const std::string& word : words)
-      EXPECT_NE(what.find(word), what.npos) << word << "\nis not in: " << what;
-  }
+  testing::expect_refusal(of, words);
 }
 
 /// Bytes of numbers, the last first where they are swapped.
