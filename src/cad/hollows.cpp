@@ -11,10 +11,9 @@
 
 #include "bernal/core/error.hpp"
 #include "cad/diagnose_mesh.hpp"
-#include "cad/patch.hpp"
+#include "cad/lids.hpp"
 #include "cad/self_intersections.hpp"
 #include "cad/surface_pieces.hpp"
-#include "cad/triangulate.hpp"
 #include "core/parallel.hpp"
 
 namespace bernal::cad {
@@ -72,105 +71,6 @@ std::optional<Mesh> convex_hull_of(const Mesh& mesh, const std::vector<std::uint
   }
   if (hull.triangles.size() < 4) return std::nullopt;
   return hull;
-}
-
-struct LidBox {
-  Bounds<3> bounds{Vector<3>::Constant(endless), Vector<3>::Constant(-endless)};
-
-  void add(const Vector<3>& p) {
-    bounds.lower = bounds.lower.cwiseMin(p);
-    bounds.upper = bounds.upper.cwiseMax(p);
-  }
-  bool meets(const LidBox& other) const {
-    return (bounds.lower.array() <= other.bounds.upper.array()).all() &&
-           (other.bounds.lower.array() <= bounds.upper.array()).all();
-  }
-};
-
-LidBox box_of(const Mesh& mesh, const FaceCorners& t) {
-  LidBox box;
-  for (const std::uint32_t v : t) box.add(mesh.vertices[v]);
-  return box;
-}
-
-/// A loop around an opening, and the plane that it lies in more or less.
-struct Opening {
-  const HoleLoop* loop;
-  Vector<3> middle, normal;
-  bool is_flat;
-};
-
-Opening opening_of(const Mesh& mesh, const HoleLoop& loop) {
-  Opening opening{&loop, Vector<3>::Zero(), Vector<3>::Zero(), false};
-  for (const std::uint32_t v : loop.corners)
-    opening.middle += mesh.vertices[v] / static_cast<double>(loop.corners.size());
-  for (std::size_t k = 0; k < loop.corners.size(); ++k) {
-    const std::uint32_t a = loop.corners[k], b = loop.corners[(k + 1) % loop.corners.size()];
-    opening.normal += (mesh.vertices[a] - opening.middle).cross(mesh.vertices[b] - opening.middle);
-  }
-  opening.normal = opening.normal.stableNormalized();
-  constexpr double flat_enough = 0.01;  // of its width
-  opening.is_flat = std::ranges::all_of(loop.corners, [&](std::uint32_t v) {
-    return std::abs(opening.normal.dot(mesh.vertices[v] - opening.middle)) <= flat_enough * loop.width;
-  });
-  return opening;
-}
-
-/// Whether one lid may lie on both: that of a ring, or of two ends side by side.
-bool share_a_plane(const Opening& wide, const Opening& other) {
-  constexpr double parallel = 0.99, near = 0.1;
-  return wide.is_flat && other.is_flat && std::abs(wide.normal.dot(other.normal)) > parallel &&
-         std::abs(wide.normal.dot(other.middle - wide.middle)) <= near * other.loop->width;
-}
-
-/// One lid on all of these in the plane of the first; false, and nothing, if they have none.
-bool lay_flat_lid(Mesh& walls, const std::vector<Opening>& openings,
-                  const std::vector<std::size_t>& together) {
-  const Opening& widest = openings[together.front()];
-  if (!widest.is_flat || widest.normal.isZero(0)) return false;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-  for (const std::size_t j : together) {
-    const std::vector<std::uint32_t>& corners = openings[j].loop->corners;
-    for (std::size_t k = 0; k < corners.size(); ++k)
-      edges.emplace_back(corners[k], corners[(k + 1) % corners.size()]);
-  }
-  const auto lid = triangulate_regions(walls.vertices, edges, widest.normal);
-  if (!lid || std::ranges::any_of(*lid, [&](const FaceCorners& t) { return is_degenerate(walls, t); }))
-    return false;
-  walls.triangles.insert(walls.triangles.end(), lid->begin(), lid->end());
-  return true;
-}
-
-/// Appends lids to walls; the boxes of those that lie in one plane, none if some loop has no lid.
-std::vector<LidBox> put_lids(Hollow& hollow) {
-  Mesh& walls = hollow.walls;
-  std::vector<HoleLoop> loops = hole_loops(walls, topology_of(walls));
-  std::ranges::stable_sort(loops, std::greater<>(), &HoleLoop::width);
-  std::vector<Opening> openings;
-  for (const HoleLoop& loop : loops) {
-    if (loop.branched || loop.corners.size() < 3) return {};
-    openings.push_back(opening_of(walls, loop));
-  }
-  std::vector<LidBox> boxes;
-  Patcher patcher(walls);
-  std::vector<bool> is_closed(openings.size(), false);
-  for (std::size_t i = 0; i < openings.size(); ++i) {
-    if (is_closed[i]) continue;
-    std::vector<std::size_t> together;
-    for (std::size_t j = i; j < openings.size(); ++j)
-      if (!is_closed[j] && (j == i || share_a_plane(openings[i], openings[j]))) together.push_back(j);
-    const std::size_t before = walls.triangles.size();
-    if (!lay_flat_lid(walls, openings, together)) {
-      together = {i};
-      if (!patcher.fill(*openings[i].loop)) return {};
-    }
-    LidBox& box = boxes.emplace_back();
-    for (std::size_t t = before; t < walls.triangles.size(); ++t)
-      for (const std::uint32_t v : walls.triangles[t]) box.add(walls.vertices[v]);
-    for (const std::size_t j : together) is_closed[j] = true;
-    hollow.lids.push_back(openings[i].middle);
-  }
-  return boxes;
 }
 
 /// A solid whose pieces are turned outward, and the sides of them.
@@ -311,7 +211,7 @@ class Sides {
     Hollow hollow;
     hollow.walls = {mesh_.vertices, faces};
     Mesh& walls = hollow.walls;
-    const std::vector<LidBox> boxes = put_lids(hollow);
+    const std::vector<LidBox> boxes = put_lids(walls, hollow.lids);
     if (boxes.empty() || !topology_of(walls).closed()) return std::nullopt;
     const std::vector<FaceCorners> lids(walls.triangles.begin() + static_cast<std::ptrdiff_t>(faces.size()),
                                         walls.triangles.end());
