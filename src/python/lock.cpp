@@ -12,6 +12,15 @@ std::atomic<bool>& ended() {
   return is;
 }
 
+/// Whether the interpreter has begun to end; Python says so in public since 3.13.
+bool is_ending() {
+#if PY_VERSION_HEX >= 0x030D0000
+  return Py_IsFinalizing();
+#else
+  return _Py_IsFinalizing();
+#endif
+}
+
 }  // namespace
 
 void stay() {
@@ -27,7 +36,7 @@ pybind11::object called(const pybind11::object& function, const pybind11::tuple&
 void end_locking() { ended() = true; }
 
 Locked::Locked() {
-  if (ended() || _Py_IsFinalizing()) stay();
+  if (ended() || is_ending()) stay();
   before_ = or_stay([] { return PyGILState_Ensure(); });
 }
 
