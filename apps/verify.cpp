@@ -12,6 +12,7 @@
 #include "bernal/io/json.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/io/write_packing.hpp"
+#include "bernal/measure/rest.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/slabs/pack_in_slabs.hpp"
@@ -29,6 +30,7 @@ struct VerifyCall {
   std::filesystem::path target;
   std::filesystem::path scene;
   std::string list;
+  bool settled = false;
   int threads = 0;
   bool json = false;
 };
@@ -93,6 +95,22 @@ void print(const Certificate& c, const Domain& domain, std::string_view unit) {
   say(stdout, "{}\n", c.statement);
 }
 
+/// What `--settled` asks for.
+Rest rest_of(const Scene& scene, const Spheres<dynamic>& spheres, const Domain& domain, bool streamed) {
+  if (streamed)
+    throw Error(ErrorCode::bad_argument, "--settled needs the whole packing, and this one is in slabs");
+  return measure_rest(spheres, domain, down_in(scene), scene.gap, scene.wall_gap);
+}
+
+std::string rest_text(const Rest& rest, std::string_view unit) {
+  if (rest.unsettled == 0) return "every sphere rests: it can neither fall nor roll down";
+  std::string text = fmt::format("NOT at rest: {}", grouped(rest.unsettled));
+  if (rest.hanging > 0)
+    text += fmt::format(", of which {} hang; the farthest could fall {:.3g} {}", grouped(rest.hanging),
+                        rest.farthest, unit);
+  return text;
+}
+
 /// Of a result in slabs, which is certified without holding it.
 bool is_streamed(const VerifyCall& call, const Scene& scene) {
   return is_folder(call.target) && is_in_slabs(scene) && spheres_of_result(call.target).extension() == ".npy";
@@ -118,12 +136,16 @@ int verify(const VerifyCall& call) {
   Certificate certificate = streamed ? certify_in_slabs(scene, spheres_of_result(call.target), options)
                                      : certify(spheres, domain, options);
   certificate.statement += certified_walls(scene);
+  std::optional<Rest> rest;
+  if (call.settled) rest = rest_of(scene, spheres, domain, streamed);
   bar.clear();
-  if (call.json)
-    say(stdout, "{}", certificate_as_json(certificate));
-  else
+  if (call.json) {
+    say(stdout, "{}", certificate_as_json(certificate, rest));
+  } else {
     print(certificate, domain, name_of(scene.unit));
-  return certificate.certified ? exit_code::done : exit_code::no;
+    if (rest) say(stdout, "settled    {}\n", rest_text(*rest, name_of(scene.unit)));
+  }
+  return certificate.certified && (!rest || rest->unsettled == 0) ? exit_code::done : exit_code::no;
 }
 
 }  // namespace
@@ -143,13 +165,15 @@ Command verify_command() {
             {".toml"}),
        {"--list{all}", &call->list,
         "Name every overlapping pair and protruding sphere; --list=N: the N worst of each"},
+       {"--settled", &call->settled, "Say too whether every sphere rests, or hangs or could roll down"},
        threads_option(call->threads, "the answer"),
        json_option(call->json)},
       {.text =
            "Every near pair and every near wall is decided: in double arithmetic where a proven error bound "
            "allows, else exactly.",
        .examples = {{"bernal verify out", "what bernal pack wrote"},
+                    {"bernal verify out --settled", "and whether the bed stands by itself"},
                     {"bernal verify bed.csv --scene scene.toml --list", "other spheres, and what is wrong"}},
-       .exit_codes = {{"0", "certified"}, {"1", "not certified"}, {"2", "bad input"}}},
+       .exit_codes = {{"0", "certified"}, {"1", "not certified, or not at rest"}, {"2", "bad input"}}},
       [call] { return verify(*call); }};
 }

@@ -271,7 +271,15 @@ std::string text_of(const Json& json) {
 
 }  // namespace
 
-std::string certificate_as_json(const Certificate& c) { return text_of(c); }
+std::string certificate_as_json(const Certificate& c, const std::optional<Rest>& rest) {
+  Json json = c;
+  if (rest)
+    json["settled"] = {{"at_rest", rest->unsettled == 0},
+                       {"unsettled", rest->unsettled},
+                       {"hanging", rest->hanging},
+                       {"farthest_fall", rest->farthest}};
+  return text_of(json);
+}
 
 std::string measurements_as_json(const Packing& packing, const Measurements& measured) {
   Json json = {{"n", packing.spheres.size()},

@@ -6,13 +6,12 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
-#include "bernal/measure/hanging.hpp"
+#include "bernal/measure/rest.hpp"
 #include "run/caution.hpp"
 #include "run/estimate.hpp"
 #include "run/few_large.hpp"
 #include "run/room_for_gaps.hpp"
 #include "run/shortfall.hpp"
-#include "settle/compress.hpp"
 
 namespace bernal {
 namespace {
@@ -149,19 +148,23 @@ Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, const 
                                      *packing.scene.target.packing_fraction, counted(n), why_no_more(end))};
 }
 
-/// A bed that was pressed last is what it was meant to be only where nothing hangs.
-void admit_hanging(Conclusion& conclusion, const Packing& packing, const Compress& pressed) {
+/// A bed that was pressed last is what it was meant to be only where all rest; by the paper's criterion,
+/// where nothing hangs.
+void admit_unrest(Conclusion& conclusion, const Packing& packing, const Pressing& pressed) {
   const Scene& scene = packing.scene;
-  const Hanging hanging = measure_hanging(packing.spheres, packing.domain, direction_of(pressed), scene.gap,
-                                          scene.wall_gap, packing.container);
-  if (hanging.spheres == 0) return;
+  const Rest rest = measure_rest(packing.spheres, packing.domain, pressed.direction, scene.gap,
+                                 scene.wall_gap, packing.container);
+  if ((pressed.by_tolerance ? rest.hanging : rest.unsettled) == 0) return;
   if (conclusion.outcome == Outcome::converged) conclusion.outcome = Outcome::hit_limit;
-  conclusion.reason +=
-      fmt::format("; {} {} {:.3g} {}: {}", counted(hanging.spheres),
-                  hanging.spheres == 1 ? "hangs, and could fall" : "hang, and the farthest could fall",
-                  hanging.farthest, name_of(scene.unit),
-                  pressed.tolerance ? "leave \"tolerance\" out of the stages that settle, or make it smaller"
-                                    : "let the stages that settle do more, by \"max_iterations\"");
+  std::string what = fmt::format("{} {} not at rest", counted(rest.unsettled), are(rest.unsettled));
+  if (rest.hanging > 0)
+    what = fmt::format("{} {} {:.3g} {}", counted(rest.hanging),
+                       rest.hanging == 1 ? "hangs, and could fall" : "hang, and the farthest could fall",
+                       rest.farthest, name_of(scene.unit));
+  conclusion.reason += fmt::format(
+      "; {}: {}", what,
+      pressed.by_tolerance ? "leave \"tolerance\" out of the stages that settle, or make it smaller"
+                           : "let the stages that settle do more, by \"max_iterations\"");
 }
 
 std::string resized(double size_scale) {
@@ -208,7 +211,7 @@ void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& en
   const bool in_bed = work.stands_in_bed();
   Conclusion conclusion = in_bed ? of_bed(packing, work, end, ending) : of_box(packing, work, end, ending);
   if (!in_bed && end != StageEnd::cancelled) admit_shortfall(conclusion, packing, ending.plan);
-  if (ending.pressed && end != StageEnd::cancelled) admit_hanging(conclusion, packing, *ending.pressed);
+  if (ending.pressed && end != StageEnd::cancelled) admit_unrest(conclusion, packing, *ending.pressed);
   if (end == StageEnd::cancelled) {
     const bool short_of = !in_bed && packing.spheres.size() < work.supply->wanted();
     conclusion = {Outcome::cancelled,

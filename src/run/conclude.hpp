@@ -1,24 +1,24 @@
 #pragma once
 #include "bernal/run/packing.hpp"
+#include "run/last_pressed.hpp"
 #include "work/work.hpp"
 
 namespace bernal {
 
-struct Compress;
 struct Plan;
 
 struct Ending {
-  const Plan& plan;         ///< as the scene states it
-  bool places_expected;     ///< the last stage places as many as are expected to fit, if nothing is asked
-  double unit;              ///< the packer's, in that of the scene
-  double attainable;        ///< the packing fraction that the stages are likely to reach
-  double close_packing;     ///< that of the same sizes without walls; 0 where no stage packs that far
-  const Compress* pressed;  ///< how the last stage that moved spheres pressed them; null: it did not
+  const Plan& plan;      ///< as the scene states it
+  bool places_expected;  ///< the last stage places as many as are expected to fit, if nothing is asked
+  double unit;           ///< the packer's, in that of the scene
+  double attainable;     ///< the packing fraction that the stages are likely to reach
+  double close_packing;  ///< that of the same sizes without walls; 0 where no stage packs that far
+  std::optional<Pressing> pressed;  ///< how the last stage that moved spheres pressed them
 };
 
 /// How the last stage's end, what stands where, and what the scene asked for make the outcome of the run and
 /// the sentence behind it. The packing has its spheres and what was expected of them already. Of spheres that
-/// were pressed last it tells how many hang, and is not converged where any do.
+/// were pressed last it tells how many do not rest, and is not converged where any do.
 void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& ending);
 
 }  // namespace bernal

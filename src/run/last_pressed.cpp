@@ -3,18 +3,22 @@
 #include <algorithm>
 
 #include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/settle/refill.hpp"
+#include "bernal/soft/settle.hpp"
 #include "settle/compress.hpp"
+#include "settle/roll_to_rest.hpp"
 
 namespace bernal {
 namespace {
 
-/// How a stage presses spheres; null of one that does not.
-const Compress* pressing(const Stage& stage) {
-  if (const auto* compress = stage.as<Compress>()) return compress;
-  if (const auto* shake = stage.as<Shake>()) return &shake->compress;
-  if (const auto* refill = stage.as<Refill>()) return &refill->shake.compress;
-  return nullptr;
+std::optional<Pressing> pressing(const Stage& stage) {
+  const auto by = [](const Compress& c) { return Pressing{direction_of(c), c.tolerance.has_value()}; };
+  if (const auto* settle = stage.as<Settle>()) return by({.direction = settle->direction});
+  if (const auto* compress = stage.as<Compress>()) return by(*compress);
+  if (const auto* shake = stage.as<Shake>()) return by(shake->compress);
+  if (const auto* refill = stage.as<Refill>()) return by(refill->shake.compress);
+  return {};
 }
 
 /// Of spheres that do not stand in a bed: none.
@@ -24,8 +28,17 @@ std::string hash_of_bed(const Work& work) {
 
 }  // namespace
 
+Vector<3> down_in(const Scene& scene) {
+  Vector<3> down = -Vector<3>::Unit(scene.dimension() - 1);
+  for (const Stage& stage : scene.stages)
+    if (const auto pressed = pressing(stage)) down = pressed->direction;
+  return down;
+}
+
 LastPressed::LastPressed(const Scene& scene)
-    : scene_(scene), any_settles_(std::ranges::any_of(scene.stages, pressing)) {}
+    : scene_(scene),
+      any_settles_(
+          std::ranges::any_of(scene.stages, [](const Stage& s) { return pressing(s).has_value(); })) {}
 
 void LastPressed::before_stage(const Work& work) {
   if (by_) spheres_before_ = hash_of_bed(work);
@@ -38,14 +51,14 @@ void LastPressed::after_stage(std::size_t stage, const Work& work) {
     by_.reset();
 }
 
-const Compress* LastPressed::by() const { return by_ ? pressing(scene_.stages[*by_]) : nullptr; }
+std::optional<Pressing> LastPressed::by() const { return by_ ? pressing(scene_.stages[*by_]) : std::nullopt; }
 
-StageEnd leave_out_tail(Work& work, StageEnd end, const Compress* pressed) {
+StageEnd leave_out_tail(Work& work, StageEnd end, const std::optional<Pressing>& pressed) {
   const Supply& supply = *work.supply;
   if (!work.stands_in_bed() || supply.passed_over() == 0 || !supply.trimming_is_cheap()) return end;
   work.bed().remove_tags_from(supply.first_missing());
   if (!pressed || end == StageEnd::cancelled) return end;
-  const StageEnd settled = compress(work, *pressed);
+  const StageEnd settled = roll_to_rest(work, pressed->direction);
   return settled == StageEnd::converged ? end : settled;
 }
 

@@ -8,7 +8,11 @@
 
 namespace bernal {
 
-struct Compress;
+/// How a stage presses spheres.
+struct Pressing {
+  Vector<3> direction;
+  bool by_tolerance;  ///< as the paper has it, which leaves spheres that do not rest
+};
 
 /// How the spheres were pressed last, as long as they are as that left them: a stage that only places, and
 /// finds no place, changes nothing; one that moves spheres in another way, or puts more among them, makes
@@ -19,8 +23,8 @@ class LastPressed {
 
   void before_stage(const Work& work);
   void after_stage(std::size_t stage, const Work& work);
-  /// Null: by none.
-  const Compress* by() const;
+  /// Nothing: by none.
+  std::optional<Pressing> by() const;
 
   /// Of a scene without a stage that settles: nothing.
   void archive(Archive& a) {
@@ -35,8 +39,8 @@ class LastPressed {
 };
 
 /// Takes the few spheres out again that stand beyond one which found no place, where that makes the drawn
-/// sequence whole, less its tail. What they supported settles anew, as it was pressed last. Returns how the
+/// sequence whole, less its tail. What they supported rolls to rest anew. Returns how the
 /// stages end with that.
-StageEnd leave_out_tail(Work& work, StageEnd end, const Compress* pressed);
+StageEnd leave_out_tail(Work& work, StageEnd end, const std::optional<Pressing>& pressed);
 
 }  // namespace bernal

@@ -386,8 +386,8 @@ class Run {
   Packing& packing_;
   const bool any_in_bed_;
   RunRecord record_;
-  Work* work_ = nullptr;               // while stages act on it
-  const Compress* pressed_ = nullptr;  // the spheres, last, by a stage that settles
+  Work* work_ = nullptr;                  // while stages act on it
+  std::optional<Pressing> pressed_ = {};  // the spheres, last, by a stage that settles
   Frame frame_;
   double share_ = 1;  // of packing fractions, that is left without coats
   ExactPlace exact_place_;

@@ -12,6 +12,7 @@ constexpr std::array<const StageEntry& (*)(), sizeof...(Options)> entries_of() {
 
 /// A line a stage: the struct of its options, which its own file describes.
 constexpr auto all_stages = entries_of<struct Insert,    //
+                                       struct Settle,    //
                                        struct Compress,  //
                                        struct Shake,     //
                                        struct Refill,    //

@@ -7,6 +7,7 @@
 
 #include "bernal/core/error.hpp"
 #include "settle/mover.hpp"
+#include "settle/roll_to_rest.hpp"
 
 namespace bernal {
 namespace {
@@ -29,8 +30,6 @@ constexpr int local_sweeps = 10;
 /// directions stir it, single spheres always fall, by up to the room in their boxes, and only the mean of
 /// many tells whether the bed as a whole sinks.
 constexpr std::size_t most_layers = 16, least_of_layer = 64;
-/// And once they do not, no sphere moves farther than this in an iteration, in radii.
-constexpr double still = 1e-3;
 /// A sphere that moves less than this, in radii, rests; one that moves more wakes its neighbours.
 constexpr double resting = 1e-4;
 constexpr double waking = 1e-3;
@@ -86,13 +85,6 @@ class Moved {
   void start(const Bed& bed) {
     start_.resize(bed.size());
     for (Bed::Id i = 0; i < bed.size(); ++i) start_[i] = bed[i].center;
-  }
-
-  double farthest(const Bed& bed) const {
-    double most = 0;
-    for (Bed::Id i = 0; i < bed.size(); ++i)
-      most = std::max(most, (bed[i].center - start_[i]).norm() / bed[i].r);
-    return most;
   }
 
   /// Along the direction, the mean of the layer that sank most. Layers are as many spheres each, in the order
@@ -171,13 +163,14 @@ StageEnd compress(Work& work, const Compress& options) {
   Random random = work.random(Stream::compress);
   double box = options.buffer * radius;
   int iteration = 0;
-  bool stirs = options.tilt > 0;
+  bool stirs = true;
   const Resumable part(work, "compress", [&](Archive& a) { a(radius, random, box, iteration, stirs); });
   if (!part.resumed()) bed.sort_by_height(direction);
   GlobalSweeps global(bed, direction);
   Moved moved;
 
   for (; iteration < options.max_iterations; ++iteration) {
+    if (!stirs) return roll_to_rest(work, direction, options.max_iterations);
     if (work.stop()) return StageEnd::cancelled;
     box = bed.enclose(box);
     global.wake_all();  // the ends of the old boxes held some
@@ -188,7 +181,7 @@ StageEnd compress(Work& work, const Compress& options) {
     const double factor = bed.mean_neighbors() < few_neighbors ? 2 : 0.5;
     const double least_box = options.buffer * radius;
     box = way > moving * box ? std::max(least_box, factor * box) : least_box;
-    if (resting_bed && stirs) {
+    if (resting_bed && options.tilt > 0) {
       for (int k = 0; k < local_sweeps; ++k) {
         sweep_at_random(bed, direction, options.tilt, Vector<3>::Zero(), 2 * radius, random);
       }
@@ -199,10 +192,8 @@ StageEnd compress(Work& work, const Compress& options) {
     if (options.tolerance) {
       const double fall = before - bed.potential(direction);
       if (resting_bed && fall < *options.tolerance * (before - floor)) return StageEnd::converged;
-    } else if (stirs) {
-      stirs = !resting_bed || moved.layer_farthest_along(direction, bed) > options.rest;
-    } else if (moved.farthest(bed) <= std::min(options.rest, still)) {
-      return StageEnd::converged;
+    } else if (resting_bed && moved.layer_farthest_along(direction, bed) <= options.rest) {
+      stirs = false;
     }
   }
   return StageEnd::hit_limit;

@@ -12,10 +12,10 @@ namespace bernal {
 /// direction to first touch, its neighbours being taken as static, and slides on along its contacts. Once the
 /// bed is at rest along the global direction, chains of spheres that support each other are broken by sweeps
 /// in which every sphere moves along a *local* direction of its own, drawn at random about the global one.
-/// Converged when no layer sinks any more, and then, along the global direction alone, no sphere moves (see
-/// Compress::rest); or, where a tolerance is given, when the potential energy along the direction has stopped
-/// falling. The direction leads across the axes that repeat themselves (else see `require_support`), so that
-/// this energy is that of all images. Whether spheres hang all the same is judged elsewhere, by the run.
+/// When no layer sinks any more (see Compress::rest) every sphere rolls to rest, and that is converged; or,
+/// where a tolerance is given, when the potential energy along the direction has stopped falling. The
+/// direction leads across the axes that repeat themselves (else see `require_support`), so that this energy
+/// is that of all images. Whether spheres hang all the same is judged elsewhere, by the run.
 ///
 /// What is ours in it: sliding along contacts, which along the global direction alone fills Han's cylinder to
 /// a packing fraction of 0.527 and with local directions to 0.58; the sleeping of spheres whose surroundings

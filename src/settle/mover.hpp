@@ -50,6 +50,7 @@ class Mover {
   const Bed::Ball& ball() const { return bed_.balls_[i_]; }
 
  private:
+  friend class Roller;
   void limit_by_box(const Vector<3>& u, FreePath& path) const;
   void limit_by_neighbors(const Vector<3>& u, FreePath& path);
   void limit_by_walls(const Vector<3>& u, FreePath& path) const;

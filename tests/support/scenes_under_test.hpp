@@ -47,6 +47,10 @@ inline std::vector<SceneUnderTest> own_scenes() {
                           "[spheres]\npacking_fraction = 0.4\nradius = 0.07\n[[stage]]\ndo = \"insert\"\n"
                           "[[stage]]\ndo = \"compress\"\ndirection = [1.0, 1.0, 3.0]\n"
                           "[[stage]]\ndo = \"refill\"\ndirection = [1.0, 1.0, 3.0]\n");
+  add("SettledInAnObliqueCylinder",
+      "[container]\nkind = \"cylinder\"\nradius = 1.0\nheight = 2.0\naxis = [1.0, 2.0, 3.0]\n"
+      "[spheres]\ncount = 80\nradius = { distribution = \"uniform\", min = 0.12, max = 0.2 }\n"
+      "[[stage]]\ndo = \"settle\"\n");
   add("ExchangedInABox",
       box +
           "[spheres]\nfill = true\n"

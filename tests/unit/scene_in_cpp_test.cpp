@@ -83,7 +83,7 @@ TEST(SceneInCpp, IsCompletedAsTextIs) {
 
 TEST(SceneInCpp, EveryStageHasANameThatMakesIt) {
   EXPECT_EQ(Stage(Refill{}).name(), "refill");
-  for (const char* name : {"insert", "compress", "shake", "refill", "relax", "grow", "fly"})
+  for (const char* name : {"insert", "settle", "compress", "shake", "refill", "relax", "grow", "fly"})
     EXPECT_EQ(stage_named(name).name(), name);
   EXPECT_THROW(stage_named("relaks"), Error);
   EXPECT_THROW(Stage(3).name(), Error);

@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "bernal/measure/hanging.hpp"
+#include "bernal/measure/rest.hpp"
 #include "bernal/settle/compress.hpp"
 #include "support/plans.hpp"
 
-// High beds, of which the energy above the floor says little: nothing hangs, however high.
+// High beds, of which the energy above the floor says little: every sphere rests, however high.
 namespace bernal {
 namespace beds_validation_test {
 
@@ -19,7 +19,7 @@ const std::string settled =
 
 void expect_settled(const Packing& packing) {
   EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
-  EXPECT_EQ(measure_hanging(packing.spheres, packing.domain, {0, 0, -1}).spheres, 0u);
+  EXPECT_EQ(measure_rest(packing.spheres, packing.domain, {0, 0, -1}).unsettled, 0u);
 }
 
 TEST(HighBeds, ColumnsOfFourDiameters) {

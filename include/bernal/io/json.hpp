@@ -7,6 +7,7 @@
 
 #include "bernal/cad/mesh_report.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/measure/rest.hpp"
 #include "bernal/run/packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
@@ -18,7 +19,8 @@ namespace bernal {
 /// spheres are near, twice the same index for a sphere and its own image; `worst_wall` and `min_wall_gap` are
 /// null where no sphere is near a wall. `overlaps` and `protrusions` are there where a list was asked for and
 /// has entries. Numbers that are not finite become null.
-std::string certificate_as_json(const Certificate&);
+/// With `settled`, where whether the spheres rest was asked for.
+std::string certificate_as_json(const Certificate&, const std::optional<Rest>& = {});
 
 /// Measurements as one JSON object: what `bernal measure --json` prints. Lengths are in the scene's unit,
 /// radii are radii. What there is not is null: `g_r` where there are walls, `chambers` and `walls` where

@@ -68,6 +68,10 @@ Domain domain_of(Scene& scene, std::string& notes, std::string& caution);
 /// large the periodic box becomes and does not say how large it became.
 Domain packed_domain_of(const Scene& scene);
 
+/// Down, of a bed: the unit vector along which the last stage that settles presses its spheres; where none
+/// does, against the last axis. Of two dimensions in the plane z = 0.
+Vector<3> down_in(const Scene& scene);
+
 /// Those of the scene's CAD files that are no longer what the scene names by its `sha256`.
 std::vector<std::filesystem::path> changed_files(const Scene& scene);
 

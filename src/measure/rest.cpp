@@ -1,4 +1,4 @@
-#include "bernal/measure/hanging.hpp"
+#include "bernal/measure/rest.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
 #include "measure/localised.hpp"
 #include "measure/sphere_tree.hpp"
@@ -57,11 +58,27 @@ class SpheresInWalls {
                  const Vector<3>& direction)
       : spheres_(spheres), tree_(spheres, boundary), container_(container), direction_(direction) {}
 
+  /// Of many contacts a few decide: those are taken together, one after the other, that the best way past
+  /// the others leads into most.
+  bool rests(std::size_t i) const {
+    const Normals normals = normals_at(i);
+    Normals few;
+    for (std::size_t k = 0; k <= normals.size(); ++k) {
+      const Vector<3> way = way_past(direction_, few);
+      if (way.dot(direction_) <= Rest::level) return true;
+      const auto into = [&](const Vector<3>& n) { return n.dot(way); };
+      const auto most = std::ranges::min_element(normals, {}, into);
+      if (most == normals.end() || into(*most) > -rounding_of_normals) return false;
+      few.push_back(*most);
+    }
+    return false;
+  }
+
   bool hangs(std::size_t i) const { return !way_down(i).isZero(0); }
 
   /// Of one that hangs: how far it could fall.
   double fall(std::size_t i) const {
-    const double r = spheres_.r[i], start = Hanging::least_fall * r;
+    const double r = spheres_.r[i], start = Rest::least_fall * r;
     const Vector<3> p = spheres_.center(i) + start * way_down(i);
     const double limit = first_sphere(i, p, direction_, container_.bounds().size().norm());
     const double wall = container_.free_path(p, (1 - grazing) * r, direction_, limit + grazing * r);
@@ -84,9 +101,35 @@ class SpheresInWalls {
     return limit;
   }
 
+  /// Of what sphere i touches, unit, towards it; of walls whose normals are the same, one.
+  Normals normals_at(std::size_t i) const {
+    const Vector<3> p = spheres_.center(i);
+    const double r = spheres_.r[i], reach = (1 + Rest::closed) * r;
+    Normals normals;
+    tree_.for_each_on_way(p, reach, direction_, 0, [&](std::uint32_t place, const Vector<3>& center) {
+      const Vector<3> away = p - center;
+      if (tree_.id(place) != i && away.norm() <= reach + tree_.radius(place))
+        normals.push_back(away.normalized());
+      return 0.0;
+    });
+    thread_local std::vector<NearFacet> near;
+    near.clear();
+    container_.facets_near(p, reach, near);
+    for (const NearFacet& n : near) add_new(normals, p - closest_point(n.facet, p));
+    return normals;
+  }
+
+  static bool is_known(const Normals& normals, const Vector<3>& n) {
+    return std::ranges::any_of(normals, [&](const auto& other) { return other.dot(n) > 1 - same_normal; });
+  }
+  static void add_new(Normals& normals, const Vector<3>& away) {
+    const Vector<3> n = away.normalized();
+    if (!is_known(normals, n)) normals.push_back(n);
+  }
+
   /// The unit vector along which sphere i can move, past walls that are upright; zero where it cannot.
   Vector<3> way_down(std::size_t i) const {
-    const double step = Hanging::least_fall * spheres_.r[i];
+    const double step = Rest::least_fall * spheres_.r[i];
     Normals upright;
     while (upright.size() < most_upright) {
       const Vector<3> u = way_past(direction_, upright);
@@ -101,16 +144,15 @@ class SpheresInWalls {
   /// Whether a wall supports sphere i, moved along u; if not, what other walls it then overlaps is added.
   bool wall_supports(std::size_t i, const Vector<3>& u, Normals& upright) const {
     const double r = spheres_.r[i];
-    const Vector<3> p = spheres_.center(i) + Hanging::least_fall * r * u;
+    const Vector<3> p = spheres_.center(i) + Rest::least_fall * r * u;
     thread_local std::vector<NearFacet> near;
     near.clear();
     container_.facets_near(p, r, near);
     for (const NearFacet& n : near) {
       const Vector<3> away = p - closest_point(n.facet, p);
       const Vector<3> normal = away.norm() > 0 ? away.normalized() : Vector<3>(-direction_);
-      if (normal.dot(direction_) < -Hanging::upright) return true;
-      const auto is_known = [&](const Vector<3>& other) { return other.dot(normal) > 1 - same_normal; };
-      if (normal.dot(u) < 0 && std::ranges::none_of(upright, is_known)) upright.push_back(normal);
+      if (normal.dot(direction_) < -Rest::upright) return true;
+      if (normal.dot(u) < 0) add_new(upright, normal);
     }
     return false;
   }
@@ -121,32 +163,42 @@ class SpheresInWalls {
   Vector<3> direction_;
 };
 
-Hanging hanging_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
-                   const std::shared_ptr<const Container>& made) {
-  Hanging hanging;
-  if (spheres.empty()) return hanging;
+Rest rest_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
+             const std::shared_ptr<const Container>& made) {
+  const int dimension = dimension_of(domain);
+  if (dimension < 2 || dimension > 3 || !has_walls(domain))
+    throw Error(ErrorCode::bad_argument,
+                "a bed rests on walls, in two or three dimensions; this domain has none");
+  Rest rest;
+  if (spheres.empty()) return rest;
   const Frame frame = frame_of(domain);
   const std::shared_ptr<const Container> container = local_container(domain, made);
+  if (!direction.cwiseProduct(container->boundary().edges).isZero(0))
+    throw Error(ErrorCode::bad_argument,
+                "a bed rests on a floor, and this domain repeats itself along the direction of gravity");
   const Spheres<3> local = localised(spheres, frame);
   const SpheresInWalls bed(local, container->boundary(), *container, direction.normalized());
+  constexpr double rolls = -1;  // or rests: 0, or hangs: how far it could fall
   std::vector<double> falls(local.size(), 0);
   parallel_ranges(local.size(), 256, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i)
-      if (bed.hangs(i)) falls[i] = bed.fall(i);
+      if (!bed.rests(i)) falls[i] = bed.hangs(i) ? bed.fall(i) : rolls;
   });
-  hanging.spheres = static_cast<std::uint64_t>(std::ranges::count_if(falls, [](double f) { return f > 0; }));
-  hanging.farthest = frame.scale * std::ranges::max(falls);
-  return hanging;
+  const auto count = [&](auto&& of) { return static_cast<std::uint64_t>(std::ranges::count_if(falls, of)); };
+  rest.hanging = count([](double f) { return f > 0; });
+  rest.unsettled = count([](double f) { return f != 0; });
+  rest.farthest = frame.scale * std::max(0.0, std::ranges::max(falls));
+  return rest;
 }
 
 }  // namespace
 
-Hanging measure_hanging(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
-                        double gap, double wall_gap, const std::shared_ptr<const Container>& made) {
-  if (gap == 0 && wall_gap == 0) return hanging_in(spheres, domain, direction, made);
+Rest measure_rest(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
+                  double gap, double wall_gap, const std::shared_ptr<const Container>& made) {
+  if (gap == 0 && wall_gap == 0) return rest_in(spheres, domain, direction, made);
   Spheres<dynamic> with_coats = spheres;
   for (double& r : with_coats.r) r += 0.5 * gap;
-  return hanging_in(with_coats, with_walls_moved(domain, wall_gap - 0.5 * gap), direction, {});
+  return rest_in(with_coats, with_walls_moved(domain, wall_gap - 0.5 * gap), direction, {});
 }
 
 }  // namespace bernal

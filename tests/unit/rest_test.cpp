@@ -1,4 +1,4 @@
-#include "bernal/measure/hanging.hpp"
+#include "bernal/measure/rest.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,10 @@
 #include "support/meshes.hpp"
 #include "support/plans.hpp"
 
-// Which spheres hang, against cases by hand and against a walk of each in small steps past all others.
+// Which spheres rest and which hang, against cases by hand and against a walk of each in small steps past all
+// others.
 namespace bernal {
-namespace hanging_test {
+namespace rest_test {
 
 const Vector<3> down(0, 0, -1);
 
@@ -27,75 +28,110 @@ Spheres<dynamic> spheres_at(const std::vector<Vector<3>>& centers, double r = 1)
 
 const Box box{Vector<3>::Zero(), Vector<3>(10, 10, 20)};
 
-TEST(Hanging, OneAboveTheFloorByMoreThanAHundredthOfItsRadius) {
-  EXPECT_EQ(measure_hanging(spheres_at({{5, 5, 1}}), box, down).spheres, 0u);
-  EXPECT_EQ(measure_hanging(spheres_at({{5, 5, 1.009}}), box, down).spheres, 0u);
-  const Hanging high = measure_hanging(spheres_at({{5, 5, 1.011}}), box, down);
-  EXPECT_EQ(high.spheres, 1u);
+TEST(RestOfSpheres, OneAboveTheFloorByMoreThanAHundredthOfItsRadius) {
+  EXPECT_EQ(measure_rest(spheres_at({{5, 5, 1}}), box, down).hanging, 0u);
+  EXPECT_EQ(measure_rest(spheres_at({{5, 5, 1.009}}), box, down).hanging, 0u);
+  const Rest high = measure_rest(spheres_at({{5, 5, 1.011}}), box, down);
+  EXPECT_EQ(high.hanging, 1u);
   EXPECT_NEAR(high.farthest, 0.011, 1e-12);
   // The other way it hangs under the lid, and so it does from a wall.
-  EXPECT_NEAR(measure_hanging(spheres_at({{5, 5, 1}}), box, -down).farthest, 18, 1e-12);
-  EXPECT_NEAR(measure_hanging(spheres_at({{5, 5, 1}}), box, {3, 0, 0}).farthest, 4, 1e-12);
-  EXPECT_EQ(measure_hanging(Spheres<dynamic>(3), box, down).spheres, 0u);
+  EXPECT_NEAR(measure_rest(spheres_at({{5, 5, 1}}), box, -down).farthest, 18, 1e-12);
+  EXPECT_NEAR(measure_rest(spheres_at({{5, 5, 1}}), box, {3, 0, 0}).farthest, 4, 1e-12);
+  EXPECT_EQ(measure_rest(Spheres<dynamic>(3), box, down).hanging, 0u);
 }
 
-TEST(Hanging, WhatTouchesOnlyBesideSupportsNothing) {
+TEST(RestOfSpheres, WhatTouchesOnlyBesideSupportsNothing) {
   // Of three in a row the outer ones touch walls, and all of them hang; a rounding more or less is no
   // support.
   const Box narrow{Vector<3>::Zero(), Vector<3>(6, 10, 20)};
   for (const double rounding : {0.0, 1e-15, -1e-15}) {
-    const Hanging row =
-        measure_hanging(spheres_at({{1, 5, 10}, {3 + rounding, 5, 10}, {5, 5, 10 + rounding}}), narrow, down);
-    EXPECT_EQ(row.spheres, 3u) << rounding;
+    const Rest row =
+        measure_rest(spheres_at({{1, 5, 10}, {3 + rounding, 5, 10}, {5, 5, 10 + rounding}}), narrow, down);
+    EXPECT_EQ(row.hanging, 3u) << rounding;
     EXPECT_NEAR(row.farthest, 9, 1e-6) << rounding;
   }
   // One that stands a little lower does, however steep; and the lower one rests.
   const double low = 10 - 0.01, apart = std::sqrt(4 - 0.01 * 0.01);
-  EXPECT_EQ(measure_hanging(spheres_at({{3, 5, 10}, {3 + apart, 5, low}}), box, down).spheres, 1u);
+  EXPECT_EQ(measure_rest(spheres_at({{3, 5, 10}, {3 + apart, 5, low}}), box, down).hanging, 1u);
 }
 
-TEST(Hanging, BetweenAWallAndASphereOnTheFloor) {
+TEST(RestOfSpheres, BetweenAWallAndASphereOnTheFloor) {
   const double height = std::sqrt(4 - 1.5 * 1.5);
-  EXPECT_EQ(measure_hanging(spheres_at({{2.5, 5, 1}, {1, 5, 1 + height}}), box, down).spheres, 0u);
+  EXPECT_EQ(measure_rest(spheres_at({{2.5, 5, 1}, {1, 5, 1 + height}}), box, down).hanging, 0u);
   // Above nothing but the edge of another it falls past by a hair.
-  EXPECT_EQ(measure_hanging(spheres_at({{3.0, 5, 1}, {1 - 1e-9, 5, 5}}), box, down).spheres, 1u);
+  EXPECT_EQ(measure_rest(spheres_at({{3.0, 5, 1}, {1 - 1e-9, 5, 5}}), box, down).hanging, 1u);
 }
 
-TEST(Hanging, InATubeThatIsAsWideAsItIs) {
+TEST(RestOfSpheres, InATubeThatIsAsWideAsItIs) {
   const Cylinder tube{.radius = 1, .height = 12};
-  const Hanging snug = measure_hanging(spheres_at({{0, 0, 5}, {0, 0, 1}}), tube, down);
-  EXPECT_EQ(snug.spheres, 1u);
+  const Rest snug = measure_rest(spheres_at({{0, 0, 5}, {0, 0, 1}}), tube, down);
+  EXPECT_EQ(snug.hanging, 1u);
   EXPECT_NEAR(snug.farthest, 2, 1e-6);
 }
 
-TEST(Hanging, WallsThatAreUprightButForTheRoundingOfAFileSupportNothing) {
+TEST(RestOfSpheres, WallsThatAreUprightButForTheRoundingOfAFileSupportNothing) {
   Mesh leaning = test::box_mesh(Vector<3>::Zero(), Vector<3>::Constant(10));
   for (Vector<3>& v : leaning.vertices)
     if (v[2] < 5) v[0] += v[0] < 5 ? 3e-6 : -3e-6;  // narrower below
-  const Hanging beside = measure_hanging(spheres_at({{1 + 3e-6, 5, 5}, {9 - 3e-6, 1, 5}}), leaning, down);
-  EXPECT_EQ(beside.spheres, 2u);
+  const Rest beside = measure_rest(spheres_at({{1 + 3e-6, 5, 5}, {9 - 3e-6, 1, 5}}), leaning, down);
+  EXPECT_EQ(beside.hanging, 2u);
   EXPECT_GT(beside.farthest, 3.9);
   // A funnel does.
   Mesh funnel = test::box_mesh(Vector<3>::Zero(), Vector<3>::Constant(10));
   for (Vector<3>& v : funnel.vertices)
     if (v[2] < 5) v[0] += v[0] < 5 ? 1 : -1;
-  EXPECT_EQ(measure_hanging(spheres_at({{0.5 + std::sqrt(1.01), 5, 5}}), funnel, down).spheres, 0u);
+  EXPECT_EQ(measure_rest(spheres_at({{0.5 + std::sqrt(1.01), 5, 5}}), funnel, down).hanging, 0u);
 }
 
-TEST(Hanging, OnTheNextPeriod) {
+TEST(RestOfSpheres, OnTheNextPeriod) {
   const Box slab{Vector<3>::Zero(), Vector<3>(8, 8, 20), {true, true, false}};
   const double height = std::sqrt(4 - 1.2 * 1.2);
-  EXPECT_EQ(measure_hanging(spheres_at({{7.5, 4, 1}, {0.7, 4, 1 + height}}), slab, down).spheres, 0u);
-  EXPECT_EQ(measure_hanging(spheres_at({{7.5, 4, 1}, {0.7, 4, 1.02 + height}}), slab, down).spheres, 1u);
+  EXPECT_EQ(measure_rest(spheres_at({{7.5, 4, 1}, {0.7, 4, 1 + height}}), slab, down).hanging, 0u);
+  EXPECT_EQ(measure_rest(spheres_at({{7.5, 4, 1}, {0.7, 4, 1.02 + height}}), slab, down).hanging, 1u);
   // Centres may lie anywhere along it.
-  EXPECT_EQ(measure_hanging(spheres_at({{7.5, 4, 1}, {0.7 + 24, 4 - 8, 1 + height}}), slab, down).spheres,
-            0u);
+  EXPECT_EQ(measure_rest(spheres_at({{7.5, 4, 1}, {0.7 + 24, 4 - 8, 1 + height}}), slab, down).hanging, 0u);
 }
 
-TEST(Hanging, ThatKeepGapsStandOnThose) {
+TEST(RestOfSpheres, ThatKeepGapsStandOnThose) {
   const auto two = spheres_at({{5, 5, 1.3}, {5, 5, 3.8}});
-  EXPECT_EQ(measure_hanging(two, box, down, 0.5, 0.3).spheres, 0u);
-  EXPECT_EQ(measure_hanging(two, box, down).spheres, 2u);
+  EXPECT_EQ(measure_rest(two, box, down, 0.5, 0.3).hanging, 0u);
+  EXPECT_EQ(measure_rest(two, box, down).hanging, 2u);
+}
+
+TEST(RestOfSpheres, OnThreeBelowButNotOnTwoOrOnTheTopOfOne) {
+  // A tetrahedron whose uppermost lies in the hollow of three on the floor; then one of them is missing.
+  const double a = 1 / std::sqrt(3.0), height = std::sqrt(8.0 / 3);
+  const Vector<3> middle(5, 5, 1);
+  std::vector<Vector<3>> centers = {middle + Vector<3>(2 * a, 0, 0), middle + Vector<3>(-a, 1, 0),
+                                    middle + Vector<3>(-a, -1, 0), middle + Vector<3>(0, 0, height)};
+  EXPECT_EQ(measure_rest(spheres_at(centers), box, down).unsettled, 0u);
+  centers.erase(centers.begin());
+  const Rest on_two = measure_rest(spheres_at(centers), box, down);
+  EXPECT_EQ(on_two.unsettled, 1u);
+  EXPECT_EQ(on_two.hanging, 0u);  // it rolls
+  // On the top of one it balances, which is rest, to a slope of a millionth.
+  EXPECT_EQ(measure_rest(spheres_at({{5, 5, 1}, {5, 5, 3}}), box, down).unsettled, 0u);
+  EXPECT_EQ(measure_rest(spheres_at({{5, 5, 1}, {5 + 1e-5, 5, 3}}), box, down).unsettled, 1u);
+  // In the corner of two walls it needs but one below.
+  EXPECT_EQ(measure_rest(spheres_at({{1, 1, 1}, {1, 1, 3}}), box, down).unsettled, 0u);
+}
+
+TEST(RestOfSpheres, ContactsAreClosedToAMillionthOfARadius) {
+  EXPECT_EQ(measure_rest(spheres_at({{5, 5, 1 + 0.9e-6}}), box, down).unsettled, 0u);
+  const Rest above = measure_rest(spheres_at({{5, 5, 1 + 1.1e-6}}), box, down);
+  EXPECT_EQ(above.unsettled, 1u);
+  EXPECT_EQ(above.hanging, 0u);
+  EXPECT_EQ(above.farthest, 0);
+}
+
+TEST(RestOfSpheres, OnTheGroundOfRoundWallsAndOfASlope) {
+  const Sphere ball{.radius = 4};
+  EXPECT_EQ(measure_rest(spheres_at({{0, 0, -3}}), ball, down).unsettled, 0u);
+  EXPECT_EQ(measure_rest(spheres_at({{3 * std::sin(1e-3), 0, -3 * std::cos(1e-3)}}), ball, down).unsettled,
+            1u);
+  // Gravity across the floor: it slides along it to the wall.
+  EXPECT_EQ(measure_rest(spheres_at({{5, 5, 1}}), box, {1e-4, 0, -1}).unsettled, 1u);
+  EXPECT_EQ(measure_rest(spheres_at({{9, 5, 1}}), box, {1e-4, 0, -1}).unsettled, 0u);
 }
 
 /// The same by brute force: each sphere walks along the direction in small steps, past all images of all.
@@ -135,7 +171,7 @@ Walked walked(const Spheres<dynamic>& spheres, const Domain& domain, const Vecto
     } else {
       for (const double step = 0.05 * r; is_free(t + step);) t += step;
     }
-    if (t < Hanging::least_fall * r) continue;
+    if (t < Rest::least_fall * r) continue;
     ++result.spheres;
     result.farthest = std::max(result.farthest, t * frame.scale);
   }
@@ -144,8 +180,8 @@ Walked walked(const Spheres<dynamic>& spheres, const Domain& domain, const Vecto
 
 void expect_as_walked(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction) {
   const Walked expected = walked(spheres, domain, direction);
-  const Hanging found = measure_hanging(spheres, domain, direction);
-  EXPECT_EQ(found.spheres, expected.spheres);
+  const Rest found = measure_rest(spheres, domain, direction);
+  EXPECT_EQ(found.hanging, expected.spheres);
   EXPECT_NEAR(found.farthest, expected.farthest, 0.05 * std::ranges::max(spheres.r));
 }
 
@@ -155,7 +191,7 @@ std::string stages(int iterations, const std::string& direction) {
          std::to_string(iterations) + "\ndirection = " + direction + "\n";
 }
 
-TEST(Hanging, AsManyAsAWalkInSmallStepsFinds) {
+TEST(RestOfSpheres, AsManyAsAWalkInSmallStepsFinds) {
   const std::string wide = "radius = { distribution = \"uniform\", min = 0.1, max = 1.0 }\ncount = 70\n";
   const std::string equal = "radius = 0.5\ncount = 70\n";
   struct Case {
@@ -187,7 +223,7 @@ TEST(Hanging, AsManyAsAWalkInSmallStepsFinds) {
     }
 }
 
-TEST(Hanging, AsManyInAMesh) {
+TEST(RestOfSpheres, AsManyInAMesh) {
   Plan plan = testing::plan_of(
       "[container]\nkind = \"cylinder\"\nradius = 4.0\nheight = 12.0\n[spheres]\nradius = 0.5\ncount = "
       "120\n" +
@@ -199,23 +235,23 @@ TEST(Hanging, AsManyInAMesh) {
   expect_as_walked(packing.spheres, packing.domain, down);
 }
 
-TEST(Hanging, FarFromTheOriginAndInAnyUnitIsTheSame) {
+TEST(RestOfSpheres, FarFromTheOriginAndInAnyUnitIsTheSame) {
   const Packing packing =
       run(testing::plan_of("[container]\nkind = \"cylinder\"\nradius = 4.0\nheight = 12.0\n[spheres]\nradius "
                            "= 0.5\ncount = 120\n" +
                            stages(6, "[0, 0, -1]")));
-  const Hanging here = measure_hanging(packing.spheres, packing.domain, down);
-  ASSERT_GT(here.spheres, 0u);
+  const Rest here = measure_rest(packing.spheres, packing.domain, down);
+  ASSERT_GT(here.hanging, 0u);
   Spheres<dynamic> far = packing.spheres;
   for (auto* column : {&far.x[0], &far.x[1], &far.x[2]})
     for (double& x : *column) x = 1024 * (x + 4096);
   for (double& r : far.r) r *= 1024;
   const Domain there =
       testing::shifted(testing::scaled(packing.domain, 1024), Vector<3>::Constant(1024.0 * 4096));
-  const Hanging found = measure_hanging(far, there, down);
-  EXPECT_EQ(found.spheres, here.spheres);
+  const Rest found = measure_rest(far, there, down);
+  EXPECT_EQ(found.hanging, here.hanging);
   EXPECT_NEAR(found.farthest, 1024 * here.farthest, 1e-3 * found.farthest);
 }
 
-}  // namespace hanging_test
+}  // namespace rest_test
 }  // namespace bernal

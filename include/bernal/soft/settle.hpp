@@ -1,0 +1,16 @@
+#pragma once
+#include <optional>
+
+#include "bernal/core/vector.hpp"
+
+namespace bernal {
+
+/// A bed under gravity: spheres lie at the bottom of their container, and every one of them rests.
+struct Settle {
+  /// Of gravity, of any length but 0; in two dimensions {0, -1} if nothing is said.
+  Coordinates direction = {0, 0, -1};
+  /// Share of the bed's volume, up to its surface, that is left free; without it that of a poured bed.
+  std::optional<double> porosity = {};
+};
+
+}  // namespace bernal

@@ -1,0 +1,52 @@
+#include "settle/roll_to_rest.hpp"
+
+#include <vector>
+
+#include "settle/roller.hpp"
+
+namespace bernal {
+namespace {
+
+/// What moves less far than this, in radii, rests and wakes no neighbour: a tenth of what a contact may be
+/// open by.
+constexpr double still = 1e-7;
+/// Room around a sphere, in mean radii.
+constexpr double room = 0.5;
+/// Between two buildings of the lists.
+constexpr int rolling_sweeps = 50;
+
+/// Returns whether any sphere has moved.
+bool sweep_until_still(Bed& bed, const Vector<3>& direction) {
+  Roller roller(bed, direction);
+  std::vector<char> awake(bed.size(), 1);
+  bool moved = false, moves = true;
+  for (int k = 0; k < rolling_sweeps && moves; ++k) {
+    moves = false;
+    for (Bed::Id i = 0; i < bed.size(); ++i) {
+      if (!awake[i]) continue;
+      awake[i] = 0;
+      if (roller.roll(i) <= still * bed[i].r) continue;
+      moves = moved = true;
+      for (const Bed::Id j : bed.neighbors(i)) awake[j] = 1;
+    }
+  }
+  return moved;
+}
+
+}  // namespace
+
+StageEnd roll_to_rest(Work& work, const Vector<3>& direction, int most_iterations) {
+  Bed& bed = work.bed();
+  int iteration = 0;
+  const Resumable part(work, "roll to rest", [&](Archive& a) { a(iteration); });
+  if (!part.resumed()) bed.sort_by_height(direction);
+  for (; iteration < most_iterations; ++iteration) {
+    if (work.stop()) return StageEnd::cancelled;
+    bed.enclose(room * bed.mean_radius());
+    if (!sweep_until_still(bed, direction)) return StageEnd::converged;
+    work.milestone("settle");
+  }
+  return StageEnd::hit_limit;
+}
+
+}  // namespace bernal

@@ -1,0 +1,117 @@
+#include "bernal/soft/settle.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "settle/compress.hpp"
+#include "settle/roll_to_rest.hpp"
+#include "soft/below_level.hpp"
+#include "soft/relax.hpp"
+#include "work/stage_entry.hpp"
+
+namespace bernal {
+namespace {
+
+/// Of what relaxation fills of the same container: a poured bed. Settled without friction by compression,
+/// columns of 4, 6 and 20 diameters have porosities of 0.466, 0.442 and 0.404 far from their ends; so have
+/// those with this share, to 0.003.
+constexpr double share_of_relaxed = 0.963;
+/// Where the spheres find no room below the level, it rises by so much of the bed, the next time twice as
+/// much.
+constexpr double first_rise = 0.05;
+
+Vector<3> direction_of(const Settle& options) {
+  return direction_of(Compress{.direction = options.direction});
+}
+
+/// What a sphere takes that falls by some hundredths of its radius and rolls to rest; and walls asked.
+constexpr double seconds_of_rolling = 15e-6, questions_of_rolling = 4;
+
+std::vector<PlanItem> effects_of_settling(const Settle& options, const Outlook& outlook) {
+  Outlook relaxed = outlook;
+  if (!options.porosity) relaxed.aim *= share_of_relaxed;
+  std::vector<PlanItem> items = effects_of_relaxation({}, relaxed);
+  const PlanItem walls = questions_to_walls(questions_of_rolling, outlook);
+  items.push_back({.name = "rolling",
+                   .what = "every sphere falls and rolls until all rest",
+                   .cost = "some five sweeps of O(N)",
+                   .seconds = walls.seconds + seconds_of_rolling * outlook.spheres});
+  items.push_back(walls);
+  return items;
+}
+
+/// The spheres of the bed in one of another container, those that fit, with their places in the sequence.
+void change_container(Work& work, std::shared_ptr<const Container> to) {
+  const std::shared_ptr<Bed> before = work.bed_;
+  work.container = std::move(to);
+  work.bed_ = std::make_shared<Bed>(*work.container, work.supply->smallest(), work.supply->largest(),
+                                    work.supply->wanted(), work.effects);
+  std::vector<bool> placed;
+  for (Bed::Id i = 0; i < before->size(); ++i) {
+    const std::uint32_t tag = before->tag(i);
+    if (placed.size() <= tag) placed.resize(tag + std::size_t{1}, false);
+    placed[tag] = work.fits_in_bed((*before)[i].center, (*before)[i].r);
+    if (placed[tag]) work.bed_->insert((*before)[i].center, (*before)[i].r, tag);
+  }
+  work.supply->set_placed(placed);
+}
+
+/// Relaxation packs the spheres below the level at which they have the porosity of the bed, or the lowest
+/// above at which there is room for them; then each falls and rolls to rest. Cost: that of relaxation, and of
+/// `roll_to_rest`.
+StageEnd settle(Work& work, const Settle& options) {
+  const Vector<3> down = direction_of(options);
+  require_support(work.bed().container().boundary(), down);
+  const NotResumable whole_or_not_at_all(work);
+  const double aim = options.porosity ? 1 - *options.porosity : work.attainable;
+  const std::shared_ptr<const Container> whole = work.container;
+  const std::size_t count = work.target_count();
+  StageEnd end = StageEnd::full;
+  double rise = first_rise;
+  for (double volume = work.volume_of_drawn(count) / aim; end == StageEnd::full;
+       volume *= 1 + rise, rise *= 2) {
+    const bool to_the_brim = volume >= whole->volume();
+    change_container(
+        work, to_the_brim ? whole : below_level(whole, down, level_holding(volume, *whole, down), volume));
+    end = relax_in_container(work, {});
+    if (to_the_brim) break;
+  }
+  change_container(work, whole);
+  if (end == StageEnd::cancelled) return end;
+  const EffectTimer timer(work.effects["rolling"]);
+  const Made made("rolling");
+  const StageEnd rest = roll_to_rest(work, down);
+  return rest == StageEnd::converged ? end : rest;
+}
+
+}  // namespace
+
+template <>
+const StageEntry& entry_of<Settle>() {
+  using namespace schema;
+  static const StageEntry entry = {
+      .table = stage_table<Settle>(
+          {.name = "settle",
+           .help = "a bed under gravity: spheres lie at the bottom, as dense as poured ones, and every one "
+                   "of them rests",
+           .keys = {key(Type::push, &Settle::direction, "direction",
+                        "of gravity; its length is of no matter"),
+                    number(&Settle::porosity, "porosity",
+                           "of the bed up to its surface; if absent that of poured beds of these sizes in "
+                           "this container, which is expected to 0.02",
+                           between(0.2, 0.95))}},
+          {.in_bed = true, .keeps_sizes = true, .places_expected = true}),
+      .act_in_bed = act(settle),
+      .may_bring = {"insertion", "neighbour lists", "relaxation", "rolling"},
+      .effects = of_options(effects_of_settling),
+      .require = of_options(+[](const Settle& o, const Domain& domain, double, const FillTask&) {
+        require_support(boundary_of<3>(domain), direction_of(o));
+      }),
+      .reached = of_options(+[](const Settle& o) { return o.porosity ? 1 - *o.porosity : 1; }),
+      .full = of_options(+[](const Settle& o, const EmptyBed& bed) {
+        return o.porosity ? 1 - *o.porosity : share_of_relaxed * bed.relaxed;
+      })};
+  return entry;
+}
+
+}  // namespace bernal
