@@ -160,8 +160,9 @@ Surface wrapped(const Mesh& mesh, double alpha, double offset, const std::vector
   for (const Seed& seed : seeds) from.push_back(wrap_point(seed.place));
   Watch watch{monitor};
   Surface surface;
-  CGAL::alpha_wrap_3(points, mesh.triangles, alpha, offset, surface, CGAL::parameters::default_values(),
-                     CGAL::parameters::seed_points(std::ref(from)).visitor(std::ref(watch)));
+  // CGAL 5 looks for both among the last parameters, CGAL 6 for the one among the first.
+  const auto seeds_and_watch = CGAL::parameters::seed_points(std::ref(from)).visitor(std::ref(watch));
+  CGAL::alpha_wrap_3(points, mesh.triangles, alpha, offset, surface, seeds_and_watch, seeds_and_watch);
   return surface;
 }
 

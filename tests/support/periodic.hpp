@@ -22,7 +22,7 @@ Packing periodic_packing(Spheres<D> spheres, const Vector<D>& edges,
   packing.domain = bernal::periodic_box(edges);
   packing.volume = volume_of(packing.domain);
   packing.scene = parse_scene(
-      fmt::format("unit = \"mm\"\n[container]\nkind = \"periodic\"\ndimension = {}\nsize = [{:#}]\n"
+      fmt::format("unit = \"mm\"\n[container]\nkind = \"periodic\"\ndimension = {}\nsize = [{}]\n"
                   "[spheres]\nfill = true\n{}\n",
                   D, fmt::join(edges, ", "), sizes),
       "test.toml");
