@@ -171,9 +171,10 @@ ReadAttempt attempt(const Assimp::Importer& importer, const aiScene* scene) {
     result.failure = one_line(importer.GetErrorString());
     return result;
   }
-  // What assimp turns a Collada document by, so that y is up and a unit a metre, is the transform of its
-  // root, which has none of its own.
-  const bool turned = format_of(*scene).starts_with("Collada");
+  // What assimp turns a Collada document by, so that y is up and a unit a metre, and since 5.3 an FBX too, is
+  // the transform of its root, which has none of its own.
+  const std::string format = format_of(*scene);
+  const bool turned = format.starts_with("Collada") || format.starts_with("Autodesk FBX");
   const aiMatrix4x4 root = turned ? aiMatrix4x4() : scene->mRootNode->mTransformation;
   try {
     append_node(*scene, *scene->mRootNode, to_double(root), result.soup);
