@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
@@ -125,11 +126,26 @@ void print_sweep_json(const Sweep& sweep, const SweepReport& report) {
   }
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
   for (const auto& file : report.files) files.push_back(plain_text(file.string(), 5000));
-  const nlohmann::ordered_json json = {
-      {"cells", report.rows.size()}, {"keys", sweep.keys()},        {"outcomes", outcomes},
-      {"ran", report.ran},           {"jobs", report.jobs},         {"threads", report.threads},
-      {"done", report.is_done()},    {"stopped", report.cancelled}, {"files", files}};
+  const nlohmann::ordered_json json = {{"cells", report.rows.size()},
+                                       {"keys", sweep.keys()},
+                                       {"outcomes", outcomes},
+                                       {"ran", report.ran},
+                                       {"jobs", report.jobs},
+                                       {"threads", report.threads},
+                                       {"distrusted", report.distrusted.size()},
+                                       {"done", report.is_done()},
+                                       {"stopped", report.cancelled},
+                                       {"files", files}};
   say(stdout, "{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+/// The first of them, each with its reason.
+void print_reasons(const Sweep& sweep, const std::vector<SweepRow>& rows, const char* others) {
+  constexpr std::size_t most = 5;
+  for (const SweepRow& row : rows | std::views::take(most))
+    say(stderr, "cell {:<5} {}: {}: {}\n", row.number, words_of(sweep, row), row.result.outcome,
+        plain_text(row.result.reason, 400));
+  if (rows.size() > most) say(stderr, "           and {} others{}\n", grouped(rows.size() - most), others);
 }
 
 void print_sweep_words(const Sweep& sweep, const SweepReport& report) {
@@ -137,17 +153,15 @@ void print_sweep_words(const Sweep& sweep, const SweepReport& report) {
   if (report.ran > 0)
     say(stderr, "ran        {} of them now, {} at a time on {} thread{} each\n", grouped(report.ran),
         report.jobs, report.threads, report.threads == 1 ? "" : "s");
-  constexpr std::size_t most = 5;
-  std::size_t listed = 0, short_of_it = 0;
-  for (const SweepRow& row : report.rows) {
-    if (!row.result.exit_code || row.result.is_done()) continue;
-    if (++short_of_it > most) continue;
-    ++listed;
-    say(stderr, "cell {:<5} {}: {}: {}\n", row.number, words_of(sweep, row), row.result.outcome,
-        plain_text(row.result.reason, 400));
-  }
-  if (short_of_it > listed)
-    say(stderr, "           and {} others, see the column \"reason\"\n", grouped(short_of_it - listed));
+  if (!report.distrusted.empty())
+    say(stderr, "again      {} that were there and not as they were written\n",
+        grouped(report.distrusted.size()));
+  print_reasons(sweep, report.distrusted, "");
+  std::vector<SweepRow> short_of_it = report.rows;
+  std::erase_if(short_of_it, [](const SweepRow& row) {
+    return row.result.is_done() || (!row.result.exit_code && row.result.reason.empty());
+  });
+  print_reasons(sweep, short_of_it, ", see the column \"reason\"");
 }
 
 int finish(const SweepCall& call, const Sweep& sweep, const SweepReport& report) {

@@ -11,6 +11,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/domain/domain.hpp"
 #include "io/report.hpp"
+#include "io/seal.hpp"
 
 using Json = nlohmann::ordered_json;  // writes NaN and infinity as null
 
@@ -384,6 +385,14 @@ void add_proof(Json& json, const AnyReport& report) {
     json["container"].update({{"file", mesh->file.filename().string()}, {"sha256", mesh->sha256}});
 }
 
+/// With a last key that tells whether anybody has changed any of the others.
+std::string sealed_text_of(const Json& json) {
+  constexpr std::string_view end = "\n}\n";
+  std::string text = text_of(json);
+  text.resize(text.size() - end.size());
+  return sealed(std::move(text), ",\n  \"seal\": \"", std::string("\"").append(end));
+}
+
 }  // namespace
 
 std::string json_of(const Report& report) {
@@ -400,14 +409,14 @@ std::string json_of(const Report& report) {
                {"pores", report.measured.pores},
                {"sizes", figures_of(report.measured.sizes)}});
   add_proof(json, report);
-  return text_of(json);
+  return sealed_text_of(json);
 }
 
 std::string json_of(const StreamedReport& report) {
   Json json = run_json(report.packing, report.spheres, report.packing_fraction);
   json["not_measured"] = report.not_measured;
   add_proof(json, report);
-  return text_of(json);
+  return sealed_text_of(json);
 }
 
 }  // namespace bernal

@@ -13,6 +13,7 @@
 #include "io/report.hpp"
 #include "io/report_summary.hpp"
 #include "io/result_folder.hpp"
+#include "io/seal.hpp"
 #include "io/staged_folder.hpp"
 #include "io/unpublished.hpp"
 #include "scene/read_spheres.hpp"
@@ -44,12 +45,13 @@ void take_report(const ReportSummary& report, CellResult& result) {
   result.version = report.version;
 }
 
-/// What is wrong with the files beside a report; empty where they are those that it describes.
+/// What is wrong with a report or the files beside it; empty where they are those that it describes.
 std::string complaint_about(const fs::path& folder, const std::string& report, const ReportSummary& summary) {
   const auto is_regular = [](const fs::path& file) { return kind_of_file(file) == FileKind::regular; };
   const fs::path scene = where_it_stands(folder / "scene.toml"),
                  spheres = where_it_stands(spheres_file_in(folder));
   try {
+    if (!is_sealed(report)) return "its report.json is not as bernal wrote it";
     if (!is_regular(spheres)) return "its spheres are not there";
     const Manifest files = manifest_in(report);
     const auto said = files.find("scene.toml");

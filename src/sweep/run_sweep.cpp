@@ -59,6 +59,8 @@ class Pool {
     for (std::size_t k = 0; k < report_.rows.size(); ++k) {
       if (!is_to_be_run(k)) continue;
       sweep::require_no_links(folder_, row(k).cell_hash);
+      if (row(k).result.state == CellResult::State::missing && !row(k).result.reason.empty())
+        report_.distrusted.push_back(row(k));
       queue_.push_back(k);
     }
     share_machine(checked.most_memory);

@@ -150,6 +150,39 @@ TEST(SweepCommand, ACellIsDoneWhereItsFilesAreThoseOfItsReport) {
   EXPECT_GE(converged, 4u) << "a scene or a pipe that somebody put there may be in the way";
 }
 
+// Its figures and its words come from the report, beside spheres that nobody has touched.
+TEST(SweepCommand, ACellIsDoneWhereNobodyHasChangedItsReport) {
+  const Swept swept;
+  EXPECT_EQ(swept.report()["ran"], 6);
+  const std::vector<Row> rows = swept.rows();
+  const auto change = [&](std::size_t row, const std::string& from, const std::string& to) {
+    const fs::path file = fs::path(swept.out) / rows[row].at("folder") / "report.json";
+    std::string text = text_of(file);
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, text.npos) << from;
+    std::ofstream(file) << text.replace(at, from.size(), to);
+  };
+  change(0, "\"phi\": 0.", "\"phi\": 0.7");
+  change(1, "\"n\": ", "\"n\": 1");
+  change(2, "\"certified\": true", "\"certified\": false");
+  change(3, ",\n  \"seal\": ", ",\n  \"unsealed\": ");
+
+  const Ended collected = swept.run({"--collect"});
+  EXPECT_NE(collected.err.find("report.json"), std::string::npos) << collected.err;
+  std::size_t missing = 0;
+  for (Row row : swept.rows())
+    missing += row["outcome"] == "missing" && row["phi"].empty() &&
+               row["reason"].find("report.json") != std::string::npos;
+  EXPECT_EQ(missing, 4u) << collected.err;
+
+  const Ended again = swept.run();
+  EXPECT_NE(again.err.find("4 that were there and not as they were written"), std::string::npos) << again.err;
+  const std::vector<Row> now = swept.rows();
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (const char* column : {"outcome", "n", "phi", "certified", "hash"})
+      EXPECT_EQ(now[k].at(column), rows[k].at(column)) << k << ": " << column;
+}
+
 TEST(SweepCommand, StartsFromAResultThatIsAnArray) {
   const Folder folder;
   const std::string bed = folder.write("bed.toml", tiny_bed).string(), start = (folder / "start").string();

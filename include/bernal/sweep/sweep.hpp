@@ -64,7 +64,7 @@ class Sweep {
 /// How a cell of a sweep stands in its folder.
 struct CellResult {
   enum class State {
-    missing,  ///< nothing is known, or the files are not those that their report describes
+    missing,  ///< nothing is known, or report and files are not as they were written
     packed,   ///< the folder holds a packing, whether or not it is what was asked for
     refused,  ///< bad input, which only shows when it is run: a part that is no container
     crashed,  ///< a signal ended it, memory or the disk were full: the next call tries again
@@ -94,9 +94,9 @@ struct SweepRow {
 /// Where a cell's result stands in the folder of a sweep: "cells/3f9a…".
 std::filesystem::path folder_of_cell(const std::string& hash);
 
-/// What stands there. A packing does where its scene and its spheres are those that its report describes;
-/// else the cell is missing, and the reason says why. Changes nothing. Cost: reading the report and the
-/// spheres, about 0.25 µs each.
+/// What stands there. A packing does where nobody has changed its report, and its scene and its spheres are
+/// those that it describes; else the cell is missing, and the reason says why. Changes nothing. Cost: reading
+/// the report and the spheres, about 0.25 µs each.
 CellResult read_cell(const std::filesystem::path& folder, const std::string& hash);
 
 struct CellOptions {
@@ -134,6 +134,7 @@ struct SweepReport {
   std::vector<SweepRow> rows;
   int jobs = 0, threads = 0;
   std::size_t ran = 0;  ///< cells of this call's processes; of several calls each cell counts in one
+  std::vector<SweepRow> distrusted;  ///< that were there and not as they were written, which the reason says
   bool cancelled = false;
   std::vector<std::filesystem::path> files;
 
