@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <memory>
 #include <set>
+#include <sstream>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "cad/caged_reader.hpp"
 #include "cad/counted.hpp"
 #include "cad/file_digest.hpp"
@@ -21,6 +23,37 @@ namespace {
 
 using pugi::xml_node;
 using Object = PlacedMeshes::Object;
+
+constexpr XmlDocument::Namespace production{"http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
+                                            "{production}"},
+    beams{"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02", "{beams}"},
+    slice{"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07", "{slice}"};
+
+/// What follows from the namespace of an extension: meshes are read without its slices, materials and the
+/// like; what else a file may require changes what its meshes mean.
+bool is_read_without(std::string_view uri) {
+  constexpr std::string_view extensions = "http://schemas.microsoft.com/3dmanufacturing/";
+  if (!uri.starts_with(extensions)) return false;
+  const std::string_view name = uri.substr(extensions.size());
+  return std::ranges::any_of(
+      std::initializer_list<std::string_view>{"core/", "production/", "material/", "slice/", "beamlattice/",
+                                              "trianglesets/"},
+      [&](std::string_view known) { return name.starts_with(known); });
+}
+
+void require_known_extensions(const XmlDocument& part) {
+  std::istringstream prefixes{std::string(attribute_of(part.root(), "requiredextensions"))};
+  for (std::string prefix; prefixes >> prefix;) {
+    const std::string_view uri = part.namespace_of(prefix);
+    if (uri.empty())
+      part.refuse(part.root(), fmt::format("it requires the extension \"{0}\", and xmlns:{0} is missing",
+                                           plain_text(prefix, 40)));
+    if (!is_read_without(uri))
+      part.refuse(part.root(), fmt::format("it requires the extension {}, which is not read; export plain "
+                                           "meshes",
+                                           plain_text(std::string(uri), 100)));
+  }
+}
 
 /// Of an item or a component.
 Eigen::Affine3d placement_of(const XmlDocument& part, xml_node node, const std::string& who) {
@@ -45,7 +78,7 @@ Eigen::Affine3d placement_of(const XmlDocument& part, xml_node node, const std::
 }
 
 void read_mesh(const XmlDocument& part, xml_node mesh, const std::string& who, Object& object) {
-  for (const xml_node vertex : child_of(mesh, "vertices")) {
+  for (const xml_node vertex : part.only_child(mesh, "vertices")) {
     if (!is_named(vertex, "vertex")) continue;
     const auto axis = [&](const char* letter) {
       return part.number(attribute_of(vertex, letter), vertex, [&] {
@@ -55,7 +88,7 @@ void read_mesh(const XmlDocument& part, xml_node mesh, const std::string& who, O
     object.points.emplace_back(axis("x"), axis("y"), axis("z"));
   }
   auto& triangles = object.pieces.emplace_back().triangles;
-  for (const xml_node triangle : child_of(mesh, "triangles")) {
+  for (const xml_node triangle : part.only_child(mesh, "triangles")) {
     if (!is_named(triangle, "triangle")) continue;
     const auto corner = [&](const char* key) {
       return part.index(attribute_of(triangle, key), object.points.size(), triangle,
@@ -76,9 +109,9 @@ class ThreeMf {
     if (!is_named(root.root(), "model"))
       root.refuse(root.root(), fmt::format("its root is <{}>, not <model>", root.root().name()));
     set_unit(root.root(), result.facts);
-    slicer_ = SlicerParts::of(archive_);
+    slicer_ = SlicerParts::of(archive_, result.facts.notes);
     std::vector<std::string> keys;
-    for (const xml_node item : child_of(root.root(), "build"))
+    for (const xml_node item : root.only_child(root.root(), "build"))
       if (is_named(item, "item")) add_item(root, item, keys);
     if (meshes_.items.empty() && unprinted_ == 0 && supports_ == 0) take_all(keys, result.facts);
     // Of the objects those that are built, and all that they hold.
@@ -123,12 +156,15 @@ class ThreeMf {
   Part& part(const std::string& name) {
     auto& found = parts_[name];
     if (found) return *found;
-    found = std::make_unique<Part>(Part{{name, archive_.read(name)}, {}});
-    for (const xml_node object : child_of(found->xml.root(), "resources")) {
+    found = std::make_unique<Part>(Part{{name, archive_.read(name), {production, beams, slice}}, {}});
+    const XmlDocument& xml = found->xml;
+    xml.require_namespaces();
+    require_known_extensions(xml);
+    for (const xml_node object : xml.only_child(xml.root(), "resources")) {
       if (!is_named(object, "object")) continue;
       const std::string id(trimmed(attribute_of(object, "id")));
       if (!found->objects.emplace(id, object).second)
-        found->xml.refuse(object, fmt::format("two of its objects have the id {}", id));
+        xml.refuse(object, fmt::format("two of its objects have the id {}", id));
     }
     return *found;
   }
@@ -137,7 +173,7 @@ class ThreeMf {
   /// zero byte.
   std::string key_of(const XmlDocument& where, xml_node node, const std::string& inside,
                      const std::string& who) {
-    const std::string_view path = attribute_of(node, "path");
+    const std::string_view path = path_of(node);
     const std::string* name = path.empty() ? &inside : entry(path);
     if (name == nullptr)
       where.refuse(node, fmt::format("{} names the part {}, which is not there", who, path));
@@ -168,8 +204,7 @@ class ThreeMf {
     const Part& root = part(root_);
     for (const auto& [id, object] : root.objects)
       for (const xml_node component : child_of(object, "components"))
-        if (attribute_of(component, "path").empty())
-          held.emplace(trimmed(attribute_of(component, "objectid")));
+        if (path_of(component).empty()) held.emplace(trimmed(attribute_of(component, "objectid")));
     for (const auto& [id, object] : root.objects) {
       if (held.contains(id) || !is_part(object)) continue;
       keys.push_back(root_ + '\0' + id);
@@ -181,6 +216,11 @@ class ThreeMf {
   xml_node object_node(const std::string& key) {
     const std::size_t end = key.find('\0');
     return part(key.substr(0, end)).objects.find(key.substr(end + 1))->second;
+  }
+
+  static std::string_view path_of(xml_node node) {
+    const std::string_view path = attribute_of(node, "{production}path");
+    return path.empty() ? attribute_of(node, "path") : path;
   }
 
   /// And not what holds it while it is printed, or changes how it is.
@@ -196,11 +236,19 @@ class ThreeMf {
     const XmlDocument& xml = part(path).xml;
     Object object{std::string(attribute_of(node, "name"))};
     if (object.name.empty()) object.name = slicer_.name_of(path == root_ ? id : "");
-    if (const xml_node mesh = child_of(node, "mesh")) {
+    const xml_node mesh = xml.only_child(node, "mesh"), components = xml.only_child(node, "components");
+    if (!mesh.empty() && !components.empty())
+      xml.refuse(node, fmt::format("{} has a mesh and components, and may have one of them", who));
+    if (const std::string complaint = slicer_.complaint_about(path == root_ ? id : ""); !complaint.empty())
+      xml.refuse(node, fmt::format("of {} {}", who, complaint));
+    if (!mesh.empty()) {
       read_mesh(xml, mesh, who, object);
-      if (path == root_) supports_ += slicer_.split(id, object);
-      lattices_ += !child_of(mesh, "beamlattice").empty();
-    } else if (const xml_node components = child_of(node, "components")) {
+      const std::optional<std::size_t> others = path == root_ ? slicer_.split(id, object) : 0;
+      supports_ += others.value_or(0);
+      settings_of_others_ += !others;
+      stand_ins_ += attribute_of(node, "{slice}meshresolution") == "lowres";
+      lattices_ += !child_of(mesh, "{beams}beamlattice").empty();
+    } else if (!components.empty()) {
       for (const xml_node component : components)
         if (is_named(component, "component")) add_component(xml, component, path, id, object, keys);
     } else {
@@ -235,6 +283,10 @@ class ThreeMf {
     note(supports_, "object is", "objects are",
          "which by the file support the part or change how it is printed");
     note(unprinted_, "item is", "items are", "which by the file are not to be printed");
+    if (settings_of_others_ > 0)
+      facts.notes.push_back(
+          "what the slicer says of the parts of an object is of another mesh: all of it is taken as a part");
+    if (stand_ins_ > 0) facts.notes.push_back("its meshes stand in for slices, which are finer and not read");
     note(lattices_, "lattice of beams is", "lattices of beams are", "which are no triangles");
   }
 
@@ -243,7 +295,8 @@ class ThreeMf {
   std::map<std::string, std::unique_ptr<Part>> parts_;
   PlacedMeshes meshes_;
   SlicerParts slicer_;
-  std::size_t items_ = 0, supports_ = 0, unprinted_ = 0, lattices_ = 0;
+  std::size_t items_ = 0, supports_ = 0, unprinted_ = 0, lattices_ = 0, settings_of_others_ = 0,
+              stand_ins_ = 0;
 };
 
 }  // namespace

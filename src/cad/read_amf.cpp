@@ -11,6 +11,7 @@
 #include "cad/known_formats.hpp"
 #include "cad/placed_meshes.hpp"
 #include "cad/polygon_soup.hpp"
+#include "cad/slicer_parts.hpp"
 #include "cad/xml_document.hpp"
 #include "cad/zip_archive.hpp"
 
@@ -83,6 +84,9 @@ class Amf {
       add_points(child_of(mesh, "vertices"), who, object);
       for (const xml_node volume : mesh) {
         if (!is_named(volume, "volume") && !is_named(volume, "region")) continue;
+        if (is_negative(metadata_of(volume, "slic3r.volume_type")))
+          xml_.refuse(volume,
+                      fmt::format("of {} {}", who, complaint_about_negative(metadata_of(volume, "name"))));
         if (is_part(volume))
           add_volume(volume, first, who, object);
         else

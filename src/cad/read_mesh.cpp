@@ -283,6 +283,11 @@ void tell_shell(const Mesh& mesh, double tolerance, MeshReport& report) {
 }
 
 ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
+  if (options.deflection && !cad::opencascade_reads(options.file))
+    throw OptionError("deflection",
+                      fmt::format("is of the surfaces of STEP, IGES and BREP, and {} holds triangles, "
+                                  "which stay as they are; take the key out",
+                                  options.file.filename().string()));
   const double deflection = options.deflection.value_or(deflection_over_radius * purpose.smallest_radius);
   const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
   ChosenSoup chosen = cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,

@@ -1,8 +1,12 @@
 #include "cad/slicer_parts.hpp"
 
+#include <fmt/format.h>
+
 #include <string_view>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "cad/known_formats.hpp"
 #include "cad/xml_document.hpp"
 
 namespace bernal::cad {
@@ -17,7 +21,16 @@ std::string value_of(pugi::xml_node node, std::string_view key) {
 
 }  // namespace
 
-SlicerParts SlicerParts::of(ZipArchive& archive) {
+bool is_negative(std::string_view type) { return in_lower_case(std::string(type)).starts_with("negative"); }
+
+std::string complaint_about_negative(const std::string& name) {
+  return fmt::format(
+      "its part \"{}\" is negative: a slicer cuts it out of the others, which is not done here; cut it out "
+      "there (mesh boolean), and export the result",
+      plain_text(name, 60));
+}
+
+SlicerParts SlicerParts::of(ZipArchive& archive, std::vector<std::string>& notes) {
   SlicerParts parts;
   for (const char* name : {"Metadata/Slic3r_PE_model.config", "Metadata/model_settings.config"}) {
     const std::string* entry = archive.find(name);
@@ -33,13 +46,18 @@ SlicerParts SlicerParts::of(ZipArchive& archive) {
           parts.volumes_[id].push_back({volume.attribute("firstid").as_ullong(),
                                         volume.attribute("lastid").as_ullong(), value_of(volume, "name"),
                                         is_part});
+          if (is_negative(type)) parts.negative_.try_emplace(id, value_of(volume, "name"));
         }
-        for (const pugi::xml_node part : object.children("part"))
-          if (const std::string_view type = part.attribute("subtype").value();
-              !type.empty() && type != "normal_part")
+        for (const pugi::xml_node part : object.children("part")) {
+          const std::string_view type = part.attribute("subtype").value();
+          if (is_negative(type)) parts.negative_.try_emplace(id, value_of(part, "name"));
+          if (!type.empty() && type != "normal_part")
             parts.no_parts_.emplace(id, part.attribute("id").value());
+        }
       }
-    } catch (const Error&) {  // the model counts without it
+    } catch (const Error& error) {
+      notes.push_back(fmt::format("{} cannot be read, so that what changes the print counts as parts: {}",
+                                  name, error.what()));
     }
   }
   return parts;
@@ -50,25 +68,30 @@ std::string SlicerParts::name_of(const std::string& object) const {
   return found == names_.end() ? "" : found->second;
 }
 
+std::string SlicerParts::complaint_about(const std::string& object) const {
+  const auto found = negative_.find(object);
+  return found == negative_.end() ? "" : complaint_about_negative(found->second);
+}
+
 bool SlicerParts::is_part(const std::string& object, const std::string& component) const {
   return !no_parts_.contains({object, component});
 }
 
-std::size_t SlicerParts::split(const std::string& id, PlacedMeshes::Object& object) const {
+std::optional<std::size_t> SlicerParts::split(const std::string& id, PlacedMeshes::Object& object) const {
   const auto found = volumes_.find(id);
   if (found == volumes_.end()) return 0;
   const auto triangles = object.pieces.front().triangles;
   std::vector<PlacedMeshes::Piece> pieces;
   std::size_t end = 0, others = 0;
   for (const Volume& volume : found->second) {  // one after the other, to the end, or it is of another model
-    if (volume.first != end || volume.last < end || volume.last >= triangles.size()) return 0;
+    if (volume.first != end || volume.last < end || volume.last >= triangles.size()) return {};
     end = volume.last + 1;
     const auto at = triangles.begin();
     others += volume.is_part ? 0 : 1;
     if (volume.is_part)
       pieces.push_back({volume.name, {at + std::ptrdiff_t(volume.first), at + std::ptrdiff_t(end)}});
   }
-  if (end != triangles.size()) return 0;
+  if (end != triangles.size()) return {};
   object.pieces = std::move(pieces);
   return others;
 }

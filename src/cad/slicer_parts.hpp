@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -16,13 +17,16 @@ namespace bernal::cad {
 /// Bambu Studio and OrcaSlicer by components (Metadata/model_settings.config).
 class SlicerParts {
  public:
-  /// Empty where there is neither, or what there is cannot be read.
-  static SlicerParts of(ZipArchive&);
+  /// Empty where there is neither; what there is and cannot be read is noted.
+  static SlicerParts of(ZipArchive&, std::vector<std::string>& notes);
 
   std::string name_of(const std::string& object) const;
+  /// What to say of an object that holds a part which is cut out of the others; empty for all others.
+  std::string complaint_about(const std::string& object) const;
   bool is_part(const std::string& object, const std::string& component) const;
-  /// Makes of the object's one piece those that are parts; returns how many are not.
-  std::size_t split(const std::string& id, PlacedMeshes::Object&) const;
+  /// Makes of the object's one piece those that are parts; returns how many are not. Nothing, where what the
+  /// slicer says is of another mesh.
+  std::optional<std::size_t> split(const std::string& id, PlacedMeshes::Object&) const;
 
  private:
   struct Volume {
@@ -34,6 +38,12 @@ class SlicerParts {
   std::map<std::string, std::string> names_;
   std::map<std::string, std::vector<Volume>> volumes_;
   std::set<std::pair<std::string, std::string>> no_parts_;
+  std::map<std::string, std::string> negative_;  ///< of an object the name of one
 };
+
+/// Whether it cuts out of the others, as slicers call that.
+bool is_negative(std::string_view type);
+/// "its part "Hole" is negative, …"
+std::string complaint_about_negative(const std::string& name);
 
 }  // namespace bernal::cad

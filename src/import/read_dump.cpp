@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view item = "ITEM: ", step_item = "ITEM: TIMESTEP", atoms_item = "ITEM: ATOMS",
                            box_item = "ITEM: BOX BOUNDS", count_item = "ITEM: NUMBER OF ATOMS",
-                           units_item = "ITEM: UNITS";
+                           units_item = "ITEM: UNITS", time_item = "ITEM: TIME";
 
 /// The number below "ITEM: NUMBER OF ATOMS".
 std::uint64_t read_claimed(ForeignLines& lines) {
@@ -21,23 +21,37 @@ std::uint64_t read_claimed(ForeignLines& lines) {
   return lines.whole(words.empty() ? std::string_view() : words[0], "the number of atoms");
 }
 
-/// Throws for a row more than its frame claims, whichever frame is wanted: rows of two frames may have been
+/// How many rows stand below an item. Throws for one that dumps of atoms do not have.
+std::uint64_t rows_below(std::string_view line, std::uint64_t atoms, const ForeignLines& lines) {
+  if (line.starts_with(atoms_item)) return atoms;
+  if (line.starts_with(box_item)) return 3;
+  for (const std::string_view one : {step_item, count_item, units_item, time_item})
+    if (line.starts_with(one)) return 1;
+  lines.fail(fmt::format("{} is no item of a dump of atoms; take it and the rows below it out",
+                         bernal::quoted(line)));
+}
+
+/// Throws for a row more than its item has, whichever frame is wanted: rows of two frames may have been
 /// mixed.
 int count_frames(const Reading& reading) {
   ForeignLines lines(reading);
   int frames = 0;
   constexpr std::uint64_t any_number = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t claimed = any_number;
+  std::uint64_t claimed = any_number, left = 0;
   bool in_atoms = false;
-  for (std::uint64_t rows = 0; lines.next();) {
+  while (lines.next()) {
     const std::string_view line = lines.line();
     if (line.starts_with(item)) {
+      left = rows_below(line, claimed, lines);
       in_atoms = line.starts_with(atoms_item);
-      rows = 0;
       frames += line.starts_with(step_item);
       if (line.starts_with(step_item)) claimed = any_number;
-      if (line.starts_with(count_item)) claimed = read_claimed(lines);
-    } else if (in_atoms && !line.empty() && ++rows > claimed && !lines.words().empty()) {
+      if (line.starts_with(count_item)) {
+        claimed = read_claimed(lines);
+        left = 0;
+      }
+    } else if (!lines.words().empty() && left-- == 0) {
+      if (!in_atoms) lines.fail("a row that belongs to no item; take it out");
       lines.fail(
           fmt::format("frame {} says that it has {} spheres, and here is more; if it is a sphere, "
                       "correct the number below \"{}\", else take the line out",

@@ -58,6 +58,7 @@ struct DataHead {
   bool has_atoms = false;
   FileBox box{std::vector<double>(3), std::vector<double>(3), std::vector<AxisEnd>(3, AxisEnd::unsaid)};
   std::array<bool, 3> has_axis{};
+  std::vector<std::string> unheard = {};  ///< clauses of remarks that sound like units, and are none
 
   /// "10 atoms", "0 3 xlo xhi"; others are of no matter.
   void take(std::span<const std::string_view> words, const Reading& reading, const ForeignLines& lines) {
@@ -88,12 +89,28 @@ struct DataHead {
   }
 };
 
-/// Of a clause "boundary p p f" or "boundary pp pp ff". Prose that begins with the word says nothing.
+/// Not so prose that begins with the word.
+bool is_boundary(std::string_view clause) {
+  std::vector<std::string_view> words;
+  split_at(clause, " \t", words);
+  return std::ranges::none_of(words | std::views::drop(1),
+                              [](std::string_view word) { return word.size() > 2; });
+}
+
+/// "units lj", "radii in cm", "real units of cost".
+bool sounds_like_unit(std::string_view clause) {
+  std::vector<std::string_view> words;
+  split_at(clause, " \t:=()", words);
+  constexpr std::string_view known[] = {"unit",  "units",     "length",   "lengths",
+                                        "radii", "diameters", "distances"};
+  return std::ranges::any_of(
+      words, [&](std::string_view word) { return std::ranges::find(known, word) != std::end(known); });
+}
+
+/// Of a clause "boundary p p f" or "boundary pp pp ff".
 void take_boundary(std::string_view clause, FileBox& box, const ForeignLines& lines) {
   std::vector<std::string_view> words;
   split_at(clause, " \t", words);
-  if (std::ranges::any_of(words | std::views::drop(1), [](std::string_view word) { return word.size() > 2; }))
-    return;
   std::vector<AxisEnd> ends;
   for (const std::string_view word : words | std::views::drop(1)) {
     const bool is_period = word == "p" || word == "pp";
@@ -113,15 +130,20 @@ void take_remark(const ForeignLines& lines, FileContents& contents, DataHead& he
   lines.take_unit_remark(contents.unit);
   constexpr std::string_view of_units = "units = ", of_ends = "boundary ";
   for (const std::string_view clause : clauses_of(lines.line())) {
-    if (clause.starts_with(of_units)) {
-      const std::optional<Unit> unit = unit_of_style(clause.substr(of_units.size()), lines);
+    const std::string_view style = clause.substr(std::min(of_units.size(), clause.size()));
+    if (clause.starts_with(of_units) && style.find(' ') == style.npos) {
+      const std::optional<Unit> unit = unit_of_style(style, lines);
       if (unit && contents.unit && unit != contents.unit)
         lines.fail(fmt::format("this line says that the unit is {}, and it or one before it says {}",
                                name_of(*unit), name_of(*contents.unit)));
       if (unit) contents.unit = unit;
+    } else if (clause == "dimension 2") {
+      contents.is_flat = true;
+    } else if (clause.starts_with(of_ends) && is_boundary(clause)) {
+      take_boundary(clause, head.box, lines);
+    } else if (!unit_in_clause(clause) && sounds_like_unit(clause)) {
+      head.unheard.emplace_back(clause);
     }
-    if (clause == "dimension 2") contents.is_flat = true;
-    if (clause.starts_with(of_ends)) take_boundary(clause, head.box, lines);
   }
 }
 
@@ -204,6 +226,8 @@ FileContents read_lammps_data(const Reading& reading) {
           fmt::format("{} stands behind Atoms; write the style behind a mark, such as \"Atoms # sphere\"",
                       bernal::quoted(words[1])));
     read_atoms(said, head.atoms, reading, lines, contents);
+    if (!head.unheard.empty())
+      contents.note += fmt::format("; \"{}\" is not taken for a unit", fmt::join(head.unheard, "\", \""));
     read_to_end(lines);
     return contents;
   }

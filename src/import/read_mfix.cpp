@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/csv_lines.hpp"
 #include "import/foreign_lines.hpp"
@@ -11,6 +12,7 @@ struct MfixHead {
   int dimension = 3;
   std::uint64_t particles = 0;
   std::vector<std::string> columns;
+  bool more_may_follow = false;    ///< columns of which only the run knows how many there are
   std::optional<double> diameter;  ///< of all, where no column has it
 };
 
@@ -30,13 +32,24 @@ void take_variable(std::span<const std::string_view> words, MfixHead& head, cons
     add(head.dimension);
   } else if (name == "Phase_ID" || name == "Density" || name == "Temperature") {
     add(1);
-  } else if (is_column && name != "Species" && !name.starts_with("User_") &&
-             !name.starts_with("Rotational")) {
+  } else if (name == "Species" || name.starts_with("User_") || name.starts_with("Rotational")) {
+    head.more_may_follow = head.more_may_follow || is_column;  // they come last, and are of no matter
+  } else if (is_column) {
     lines.fail(
         fmt::format("the variable {} is not known, and so not what stands in the columns; known are {}",
                     bernal::quoted(name),
                     "Coordinates, Phase_ID, Diameter, Density, Velocity, Temperature, Species, User_Scalar"));
-  }  // species and scalars come last, and are of no matter
+  }
+}
+
+/// Whether a row is what the variables that are columns make of it.
+void check_columns(std::size_t in_row, const MfixHead& head, const ForeignLines& lines) {
+  const std::size_t known = head.columns.size();
+  if (in_row < known || (in_row > known && !head.more_may_follow))
+    lines.fail(
+        fmt::format("{} columns, but the variables with T have {}{}: {}; mend the row, or the T and F of "
+                    "the variables",
+                    in_row, head.more_may_follow ? "at least " : "", known, fmt::join(head.columns, " ")));
 }
 
 FileContents read_mfix(const Reading& reading) {
@@ -74,7 +87,7 @@ FileContents read_mfix(const Reading& reading) {
           "the file says that it has {} particles, and here is more; if it is a particle, correct "
           "the number behind \"Particles:\", else take the line out",
           head.particles));
-    if (in_row == 0) in_row = row.size();
+    if (in_row == 0) check_columns(in_row = row.size(), head, lines);
     if (row.size() != in_row)
       lines.fail(fmt::format("{} columns, but the first particle has {}; was the line cut off?", row.size(),
                              in_row));

@@ -65,6 +65,8 @@ const PackingReader& reader_of(const std::filesystem::path& file, const ImportOp
 /// The clauses of a remark: what stands between its marks, semicolons and commas. What a remark says counts
 /// where it is a clause of its own: of "bond lengths in nm" nothing follows.
 std::vector<std::string_view> clauses_of(std::string_view remark);
+/// "mm" of "lengths in mm" and "unit: mm"; "1000 mm" of "lengths in 1000 mm". None of other clauses.
+std::optional<std::string_view> unit_in_clause(std::string_view clause);
 /// `unit` becomes that of a clause "lengths in mm" or "unit: mm", as bernal's own files say it. Throws
 /// Error{bad_packing} for one that is unknown and where `unit` is another already.
 void take_unit_of_remark(std::string_view remark, std::optional<Unit>& unit, const Location& where);

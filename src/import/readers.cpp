@@ -178,9 +178,6 @@ std::vector<std::string_view> clauses_of(std::string_view remark) {
   return clauses;
 }
 
-namespace {
-
-/// "mm" of "lengths in mm" and "unit: mm"; "1000 mm" of "lengths in 1000 mm". None of other clauses.
 std::optional<std::string_view> unit_in_clause(std::string_view clause) {
   for (const std::string_view mark : {"lengths in ", "unit: ", "units: "}) {
     if (!clause.starts_with(mark)) continue;
@@ -190,8 +187,6 @@ std::optional<std::string_view> unit_in_clause(std::string_view clause) {
   }
   return {};
 }
-
-}  // namespace
 
 void take_unit_of_remark(std::string_view remark, std::optional<Unit>& unit, const Location& where) {
   for (const std::string_view clause : clauses_of(remark)) {

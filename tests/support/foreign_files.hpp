@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "bernal/core/error.hpp"
 #include "bernal/import/import.hpp"
 #include "support/folder.hpp"
@@ -32,6 +34,14 @@ inline void expect_refusal(const ForeignFile& of, const std::vector<std::string>
     for (const std::string& word : words)
       EXPECT_NE(what.find(word), what.npos) << word << "\nis not in: " << what;
   }
+}
+
+/// A frame of a dump that claims so many atoms.
+inline std::string frame_of_dump(int claimed, const std::string& rows) {
+  return fmt::format(
+      "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n"
+      "ITEM: ATOMS id x y z radius\n{}",
+      claimed, rows);
 }
 
 }  // namespace bernal::testing

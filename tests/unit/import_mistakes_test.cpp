@@ -24,46 +24,6 @@ using testing::Folder;
 using testing::imported;
 using File = testing::ForeignFile;
 
-/// A frame of a dump that claims so many atoms.
-std::string frame_of(int claimed, const std::string& rows) {
-  return fmt::format(
-      "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n"
-      "ITEM: ATOMS id x y z radius\n{}",
-      claimed, rows);
-}
-
-// As many spheres as a file claims, and no row left over that might have been one.
-TEST(ImportMistakes, NoRowIsLeftOver) {
-  const ImportOptions m{.unit = Unit::m};
-  const std::string one = "1 1 1 1 .5\n", two = one + "2 5 5 5 .5\n";
-  for (const std::string& rows : {two, two + "3 8 8 8 .5\n", one + "garbage\n", one + "\n2 5 5 5 .5\n"})
-    expect_refusal({"a.dump", frame_of(1, rows), m}, {"frame 1", "1 spheres", "NUMBER OF ATOMS"});
-  expect_refusal({"a.dump", frame_of(1, two), m}, {"a.dump:11"});
-  expect_refusal({"a.dump", frame_of(2, two) + "ITEM: ATOMS id x y z radius\n" + one, m},
-                 {"a.dump:12", "second"});
-  expect_refusal({"a.dump", "ITEM: UNITS\nsi\nITEM: UNITS\ncgs\n" + frame_of(1, one), {}},
-                 {"a.dump:4", "unit"});
-  expect_refusal({"a.dump", frame_of(0, one), m}, {"a.dump:10"});
-  // In a frame that nobody asked for, since the row may be the next one's.
-  expect_refusal({"a.dump", frame_of(1, two) + frame_of(1, one), m}, {"a.dump:11", "frame 1"});
-  expect_refusal({"a.dump", frame_of(1, one) + frame_of(2, two + one), m}, {"a.dump:22", "frame 2"});
-  EXPECT_EQ(
-      imported({"a.dump", frame_of(2, two) + "\n" + frame_of(1, one + "\n \n"), m}).packing.spheres.size(),
-      1U);
-
-  const auto geometry = [](int claimed, const std::string& rows) {
-    return fmt::format(
-        "LSMGeometry 1.2\nBoundingBox 0 0 0 9 9 9\nPeriodicBoundaries 0 0 0\nDimension 3D\n"
-        "BeginParticles\nSimple\n{}\n{}",
-        claimed, rows);
-  };
-  const std::string first = "1 1 1 .5 4 0\n", both = first + "5 5 5 .5 2 0\n", end = "EndParticles\n";
-  expect_refusal({"a.geo", geometry(1, both + end), m}, {"a.geo:9", "1 spheres", "Simple"});
-  expect_refusal({"a.geo", geometry(1, both), m}, {"a.geo:9"});
-  EXPECT_EQ(imported({"a.geo", geometry(2, both + end), m}).packing.spheres.size(), 2U);
-  EXPECT_EQ(imported({"a.geo", geometry(2, both), m}).packing.spheres.size(), 2U);
-}
-
 // Whenever it is stopped, an earlier result stays as it was: what was to be imported is there still.
 TEST(ImportMistakes, AStoppedImportWritesNothing) {
   const Folder folder;
@@ -212,14 +172,27 @@ File data_file(const std::string& title, const std::string& more = "", const Imp
 // What a remark says counts where it is a clause of its own.
 TEST(ImportMistakes, ProseSaysNeitherUnitNorWalls) {
   const ImportOptions mm{.unit = Unit::mm};
-  for (const char* prose : {"Fe grain boundary model", "bond lengths in nm", "boundary layer of glass",
-                            "all lengths in mm of the lab", "the boundary p p f was tried",
-                            "old units = si, now mm", "LAMMPS, periodic boundary f"}) {
+  for (const char* prose :
+       {"Fe grain boundary model", "bond lengths in nm", "boundary layer of glass",
+        "all lengths in mm of the lab", "the boundary p p f was tried", "old units = si, now mm",
+        "LAMMPS, periodic boundary f", "LAMMPS data file, units lj", "real units of cost",
+        "units = si prefixes", "unit: cell of cubes", "radii in cm", "LAMMPS data file, units = lj"}) {
     const Packing packing = imported(data_file(prose, "", mm)).packing;
     EXPECT_FALSE(has_walls(packing.domain)) << prose;
     EXPECT_EQ(packing.scene.unit, Unit::mm) << prose;
     expect_refusal(data_file(prose), {"a.data", "--unit"});
   }
+  // What sounds like a unit and is not taken for one is named beside the format.
+  for (const auto& [title, said] :
+       {std::pair("LAMMPS data file, units lj", "\"units lj\" is not taken for a unit"),
+        {"real units of cost", "\"real units of cost\" is not"},
+        {"bed, lengths in mm, radii in cm", "\"radii in cm\" is not"},
+        {"lengths in mm of the lab; units = si prefixes",
+         "\"lengths in mm of the lab\", \"units = si prefixes\" is not"}})
+    EXPECT_NE(imported(data_file(title, "", mm)).notes.front().text.find(said), std::string::npos) << title;
+  for (const char* title : {"lengths in mm", "units = lj", "Fe grain boundary model"})
+    EXPECT_EQ(imported(data_file(title, "", mm)).notes.front().text.find("taken for"), std::string::npos)
+        << title;
   for (const auto& [title, unit] : {std::pair("# lengths in nm", Unit::nm),
                                     {"LAMMPS data file, units = si", Unit::m},
                                     {"by hand; lengths in um; dense", Unit::um},
@@ -282,7 +255,7 @@ TEST(ImportMistakes, NoSecondSectionIsPassedOver) {
                  {"a.geo:3", "0 and 1"});
   expect_refusal({"a.geo", with(geometry, "3D", "4D"), mm}, {"a.geo:4", "\"4D\""});
 
-  const std::string frame = frame_of(1, "1 1 1 1 .5\n");
+  const std::string frame = testing::frame_of_dump(1, "1 1 1 1 .5\n");
   expect_refusal({"a.dump", with(frame, "pp pp pp", "pp qq pp"), mm}, {"a.dump:5", "\"qq\""});
   expect_refusal({"a.dump", with(frame, "pp pp pp", "pp pp"), mm}, {"a.dump:5", "three axes"});
   expect_refusal({"a.dump", with(frame, "pp pp pp", "pp pf pp"), mm}, {"a.dump:5", "\"pf\""});

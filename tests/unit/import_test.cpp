@@ -126,6 +126,13 @@ TEST_F(Import, AWideRimThatIsNotFlatIsClosedByTheLineThatIsOffered) {
   EXPECT_NE(refusal(open).find("wider than 1"), std::string::npos) << refusal(open);
 }
 
+TEST_F(Import, ADeflectionIsOfCurvedSurfaces) {
+  MeshFile triangles = file(box);
+  triangles.deflection = 0.1;
+  EXPECT_NE(refusal(triangles).find("deflection"), std::string::npos) << refusal(triangles);
+  EXPECT_NE(refusal(triangles).find("STEP, IGES and BREP"), std::string::npos) << refusal(triangles);
+}
+
 TEST_F(Import, ASurfaceDrawnFromBothSidesIsOne) {
   Mesh both = box;
   for (const auto& [i, j, k] : box.triangles) both.triangles.push_back({k, j, i});
