@@ -12,15 +12,22 @@
 #include "core/parallel.hpp"
 
 namespace bernal::cad {
-namespace {
 
-/// Of the signed tetrahedron between the triangle and the centre of the bounds, where they cancel least.
-double six_signed_volumes(const Mesh& mesh, const std::array<std::uint32_t, 3>& t, const Vector<3>& center) {
-  const Vector<3> a = mesh.vertices[t[0]] - center;
-  const Vector<3> b = mesh.vertices[t[1]] - center;
-  const Vector<3> c = mesh.vertices[t[2]] - center;
+double six_signed_volumes(const Mesh& mesh, const std::array<std::uint32_t, 3>& t, const Vector<3>& point) {
+  const Vector<3> a = mesh.vertices[t[0]] - point;
+  const Vector<3> b = mesh.vertices[t[1]] - point;
+  const Vector<3> c = mesh.vertices[t[2]] - point;
   return a.dot(b.cross(c));
 }
+
+double signed_volume(const Mesh& mesh) {
+  const Vector<3> center = bounds_of_vertices(mesh).center();
+  double six_volumes = 0;
+  for (const auto& t : mesh.triangles) six_volumes += six_signed_volumes(mesh, t, center);
+  return six_volumes / 6;
+}
+
+namespace {
 
 double area_of_mesh(const Mesh& mesh) {
   double two_areas = 0;

@@ -37,14 +37,6 @@ double area_of(const Mesh& mesh, const std::vector<FaceCorners>& faces) {
   return area;
 }
 
-double signed_volume(const Mesh& mesh) {
-  const Vector<3> center = bounds_of_vertices(mesh).center();
-  double six_volumes = 0;
-  for (const FaceCorners& t : mesh.triangles)
-    six_volumes += cross_of(mesh, t).dot(mesh.vertices[t[0]] - center);
-  return six_volumes / 6;
-}
-
 /// Of the corners of the faces; nothing if they lie in a plane.
 std::optional<Mesh> convex_hull_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -76,12 +68,13 @@ std::optional<Mesh> convex_hull_of(const Mesh& mesh, const std::vector<std::uint
 /// A solid whose pieces are turned outward, and the sides of them.
 class Sides {
  public:
-  Sides(const Mesh& mesh, double tolerance)
+  Sides(const Mesh& mesh, double tolerance, double widest)
       : mesh_(mesh),
         topology_(topology_of(mesh_)),
         pieces_(mesh_),
         tree_(mesh_),
         tolerance_(tolerance),
+        widest_(widest),
         diagonal_(bounds_of_vertices(mesh).diagonal()) {
     faces_.resize(pieces_.count());
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) faces_[pieces_.piece_of(t)].push_back(t);
@@ -90,8 +83,7 @@ class Sides {
     for (const std::vector<std::uint32_t>& piece : faces_) {
       double six_volumes = 0;
       for (const std::uint32_t t : piece)
-        six_volumes +=
-            cross_of(mesh_, mesh_.triangles[t]).dot(mesh_.vertices[mesh_.triangles[t][0]] - center);
+        six_volumes += six_signed_volumes(mesh_, mesh_.triangles[t], center);
       if (six_volumes < 0)
         for (const std::uint32_t t : piece) std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
     }
@@ -211,13 +203,14 @@ class Sides {
     Hollow hollow;
     hollow.walls = {mesh_.vertices, faces};
     Mesh& walls = hollow.walls;
-    const std::vector<LidBox> boxes = put_lids(walls, hollow.lids);
-    if (boxes.empty() || !topology_of(walls).closed()) return std::nullopt;
+    const std::vector<Lid> put = put_lids(walls);
+    if (put.empty() || !topology_of(walls).closed()) return std::nullopt;
+    for (const Lid& lid : put) hollow.lids.push_back(lid.middle);
+    hollow.is_flat = std::ranges::all_of(put, &Lid::is_flat);
     const std::vector<FaceCorners> lids(walls.triangles.begin() + static_cast<std::ptrdiff_t>(faces.size()),
                                         walls.triangles.end());
     hollow.openness = area_of(walls, lids) / area;
-    constexpr double widest = 0.95;
-    if (!(hollow.openness > 0 && hollow.openness < widest)) return std::nullopt;
+    if (!(hollow.openness > 0 && hollow.openness < widest_)) return std::nullopt;
 
     if (orient_consistently(walls, topology_of(walls)) == none) return std::nullopt;
     const auto ahead_of = [](const FaceCorners& t, std::uint32_t v) {
@@ -229,7 +222,9 @@ class Sides {
     hollow.volume = signed_volume(walls);  // below 0 where what they enclose is the solid
     constexpr double crevice = 1e-6;
     if (!(hollow.volume > crevice * bounds_of_vertices(mesh_).volume())) return std::nullopt;
-    if (!lies_outside(walls, lids) || crosses_solid(walls, lids, boxes)) return std::nullopt;
+    const bool lie_outside =
+        std::ranges::all_of(put, [&](const Lid& lid) { return lies_outside(walls, lid); });
+    if (!lie_outside || crosses_solid(walls, lids, put)) return std::nullopt;
     hollow.folded = folded_share(walls, faces);
     drop_unused_vertices(walls);
     return hollow;
@@ -252,19 +247,23 @@ class Sides {
     return folded / all;
   }
 
-  /// Whether the largest face of the lids does, asked at its middle.
-  bool lies_outside(const Mesh& walls, const std::vector<FaceCorners>& lids) const {
-    const FaceCorners& largest = *std::ranges::max_element(
-        lids, {}, [&](const FaceCorners& t) { return cross_of(walls, t).squaredNorm(); });
+  /// Asked at the middle of its largest face.
+  bool lies_outside(const Mesh& walls, const Lid& lid) const {
+    const auto first = walls.triangles.begin();
+    const FaceCorners& largest =
+        *std::max_element(first + std::ptrdiff_t(lid.first), first + std::ptrdiff_t(lid.last),
+                          [&](const FaceCorners& s, const FaceCorners& t) {
+                            return cross_of(walls, s).squaredNorm() < cross_of(walls, t).squaredNorm();
+                          });
     return tree_.crossing(center_of(walls, largest), 0, endless) == Crossing::even;
   }
 
   bool crosses_solid(const Mesh& walls, const std::vector<FaceCorners>& lids,
-                     const std::vector<LidBox>& boxes) const {
+                     const std::vector<Lid>& put) const {
     Mesh near{walls.vertices, {}};  // lids share corners with the solid by number
     for (const FaceCorners& t : mesh_.triangles) {
       const LidBox own = box_of(mesh_, t);
-      if (std::ranges::any_of(boxes, [&](const LidBox& box) { return box.meets(own); }))
+      if (std::ranges::any_of(put, [&](const Lid& lid) { return lid.box.meets(own); }))
         near.triangles.push_back(t);
     }
     const std::size_t faces = near.triangles.size();
@@ -289,22 +288,23 @@ class Sides {
   MeshTopology topology_;
   SurfacePieces pieces_;
   TriangleTree tree_;
-  double tolerance_, diagonal_;
+  double tolerance_, widest_, diagonal_;
   std::vector<std::vector<std::uint32_t>> faces_;  ///< of each piece
   bool is_two_sided_ = true;
 };
 
 }  // namespace
 
-std::vector<Hollow> hollows_of(const Mesh& solid, double tolerance, double least) {
-  return Sides(solid, tolerance).hollows(least);
+std::vector<Hollow> hollows_of(const Mesh& solid, double tolerance, double least, double widest) {
+  return Sides(solid, tolerance, widest).hollows(least);
 }
 
 std::optional<Hollow> hollow_of_shell(const Mesh& solid, double tolerance) {
-  constexpr double as_much = 1, as_wide_as_a_dish = 0.8;
+  constexpr double as_much = 1, as_wide_as_a_dish = 0.8, much_more = 3, as_wide_as_a_ring = 2.5;
   const double wall = std::abs(signed_volume(solid));
-  for (Hollow& hollow : hollows_of(solid, tolerance, as_much))
-    if (hollow.volume >= as_much * wall && hollow.openness <= as_wide_as_a_dish) return std::move(hollow);
+  for (Hollow& hollow : hollows_of(solid, tolerance, as_much, as_wide_as_a_ring))
+    if (hollow.volume >= (hollow.openness <= as_wide_as_a_dish ? as_much : much_more) * wall)
+      return std::move(hollow);
   return std::nullopt;
 }
 

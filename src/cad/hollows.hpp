@@ -13,6 +13,7 @@ struct Hollow {
   double openness = 0;          ///< area of the lids over that of the inner side
   double folded = 0;            ///< share of that side of which the back, across a wall, is of it too
   std::vector<Vector<3>> lids;  ///< their middles
+  bool is_flat = true;          ///< each of them lies in a plane
 
   /// How much of a hollow it is: a vessel's is large and nearly closed, a dent is wide open, a bolt hole is
   /// small.
@@ -33,10 +34,12 @@ struct Hollow {
 /// Precondition: closed. Throws Error{bad_mesh} where it has more than 2,000 pieces. Cost: O(T log T) and 1
 /// µs a face for each reach, 20 µs for each face near a lid; pieces whose hulls tell that all of their
 /// hollows hold less than `least` times what they enclose themselves are passed over.
-std::vector<Hollow> hollows_of(const Mesh& solid, double tolerance, double least = 0);
+/// `widest`: an opening beyond this `openness` makes no hollow.
+std::vector<Hollow> hollows_of(const Mesh& solid, double tolerance, double least = 0, double widest = 0.95);
 
 /// The hollow of a solid that is rather the wall around it: it holds as much at least, and its openings are
-/// no wider than a dish's. Nothing where the solid is no such shell. Precondition: as above.
+/// no wider than a dish's; or three times as much, as in a short pipe. Nothing where the solid is no such
+/// shell. Precondition: as above.
 std::optional<Hollow> hollow_of_shell(const Mesh& solid, double tolerance);
 
 }  // namespace bernal::cad

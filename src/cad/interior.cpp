@@ -10,19 +10,23 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <ranges>
 
 #include "bernal/core/error.hpp"
+#include "cad/counted.hpp"
 #include "cad/diagnose_mesh.hpp"
+#include "cad/floods.hpp"
 #include "cad/hollows.hpp"
 #include "cad/mesh_topology.hpp"
-#include "cad/self_intersections.hpp"
 #include "cad/surface_pieces.hpp"
-#include "cad/triangle_tree.hpp"
+#include "cad/surroundings.hpp"
 
 namespace bernal::cad {
 namespace {
 
 using Planes = std::vector<CutPlane>;
+
+constexpr double endless = std::numeric_limits<double>::infinity();
 
 [[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::bad_mesh, why); }
 
@@ -41,96 +45,6 @@ CutPlane across(int axis, double level, bool upper_stays) {
   plane.offset = level;
   plane.text = fmt::format("{} = {:.6g}", "xyz"[axis], level);
   return upper_stays ? plane.turned() : plane;
-}
-
-/// The space around a solid, in a box that is larger than it: what planes close off from that box is hollow.
-struct Surroundings {
-  explicit Surroundings(const Mesh& solid)
-      : walls(solid), box(bounds_of_vertices(solid)), tree_of_solid(solid) {
-    const Vector<3> margin = Vector<3>::Constant(0.1 * box.diagonal());
-    box = {box.lower - margin, box.upper + margin};
-    const auto first = static_cast<std::uint32_t>(walls.vertices.size());
-    for (unsigned corner = 0; corner < 8; ++corner)
-      walls.vertices.emplace_back(corner & 1 ? box.upper[0] : box.lower[0],
-                                  corner & 2 ? box.upper[1] : box.lower[1],
-                                  corner & 4 ? box.upper[2] : box.lower[2]);
-    constexpr std::uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                                            {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    for (const auto& [a, b, c] : faces) walls.triangles.push_back({first + a, first + b, first + c});
-  }
-
-  bool is_on_box(const Vector<3>& p) const {
-    return (p.array() == box.lower.array()).any() || (p.array() == box.upper.array()).any();
-  }
-
-  /// Whether a piece of what is left of it encloses the solid itself, as where a plane touches a brim and
-  /// does
-  /// not part what is on both sides of it: asked beside the middle of the piece's largest face.
-  bool is_solid(const SurfacePieces& pieces, std::uint32_t piece, const Mesh& mesh) const {
-    Vector<3> middle = Vector<3>::Zero(), normal = Vector<3>::Zero();
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (pieces.piece_of(t) != piece) continue;
-      const auto& [a, b, c] = mesh.triangles[t];
-      const Vector<3> two_areas =
-          (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
-      if (two_areas.squaredNorm() <= normal.squaredNorm()) continue;
-      normal = two_areas;
-      middle = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
-    }
-    const Vector<3> aside = 1e-6 * box.diagonal() * normal.stableNormalized();
-    for (const Vector<3>& p : {Vector<3>(middle + aside), Vector<3>(middle - aside)})
-      if (pieces.encloses(piece, p))
-        return tree_of_solid.crossing(p, 0, std::numeric_limits<double>::infinity()) == Crossing::odd;
-    return true;  // thinner than can be told
-  }
-
-  Mesh walls;
-  Bounds<3> box;
-  TriangleTree tree_of_solid;
-};
-
-/// All spaces that the planes close off, those that are no mere crevices, or the largest of these.
-enum class Which { all, wide, largest };
-/// Of the volume of the box around the solid.
-constexpr double crevice = 1e-4;
-
-/// What planes close off around a solid, or of that the space around a point.
-std::optional<Mesh> closed_off(const Surroundings& around, const Planes& planes, double tolerance,
-                               Which which, const Vector<3>* point) {
-  const Mesh mesh = cut_by(around.walls, planes, tolerance);
-  if (!is_closed(mesh)) return std::nullopt;
-  const SurfacePieces pieces(mesh);
-  std::vector<bool> hollow(pieces.count());
-  for (std::uint32_t c = 0; c < pieces.count(); ++c) hollow[c] = pieces.depth(c) % 2 == 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::uint32_t v : mesh.triangles[t])
-      if (around.is_on_box(mesh.vertices[v])) hollow[pieces.piece_of(t)] = false;
-  for (std::uint32_t c = 0; c < pieces.count(); ++c)
-    if (hollow[c] && around.is_solid(pieces, c, mesh)) hollow[c] = false;
-  if (point) {
-    const std::uint32_t one = pieces.around(*point);
-    if (one == none || !hollow[one]) return std::nullopt;
-    hollow.assign(hollow.size(), false);
-    hollow[one] = true;
-  } else if (which != Which::all) {
-    const std::vector<double> volumes = pieces.volumes();
-    std::uint32_t largest = none;
-    double volume = crevice * around.box.volume();
-    for (std::uint32_t c = 0; c < pieces.count(); ++c) {
-      if (!hollow[c]) continue;
-      const double own = volumes[c];
-      hollow[c] = which == Which::wide && own > volume;
-      if (which == Which::largest && own > volume) {
-        volume = own;
-        largest = c;
-      }
-    }
-    if (largest != none) hollow[largest] = true;
-  }
-  if (std::ranges::find(hollow, true) == hollow.end()) return std::nullopt;
-  Mesh walls = pieces.walls_of(hollow);
-  if (!planes.empty() && intersects_itself(walls)) return std::nullopt;
-  return walls;
 }
 
 /// Every choice of the sides that the planes leave open, the one where all smaller values stay first.
@@ -164,33 +78,6 @@ std::string told(const Planes& planes) {
   return fmt::format("closed at {}", fmt::join(all, ", "));
 }
 
-/// The highest level to which a hollow of a solid can be filled, along z.
-std::optional<ChosenInterior> filled_to_the_brim(const Surroundings& around, const Mesh& solid,
-                                                 double tolerance, const Vector<3>* point) {
-  std::vector<double> heights;
-  for (const Vector<3>& v : solid.vertices) heights.push_back(v[2]);
-  std::ranges::sort(heights, std::greater<>());
-  const auto near = [&](double a, double b) { return a - b <= tolerance; };
-  heights.erase(std::unique(heights.begin(), heights.end(), near), heights.end());
-  constexpr std::size_t most_levels = 200;
-  constexpr double hardly_lower = 1e-3;  // of the way to the next corner
-  for (std::size_t i = 0; i + 1 < std::min(heights.size(), most_levels); ++i) {
-    // At the corners' own height where the brim is flat, else just below.
-    for (const double level : {heights[i], heights[i] - hardly_lower * (heights[i] - heights[i + 1])}) {
-      try {
-        if (auto mesh = closed_off(around, {across(2, level, false)}, tolerance, Which::wide, point))
-          return ChosenInterior{std::move(*mesh),
-                                {fmt::format("what is hollow, filled to the highest brim at z = {:.6g}; a "
-                                             "hollow that overflows lower is "
-                                             "meant by \"solids\" or \"cap\"",
-                                             level)}};
-      } catch (const Error&) {  // nothing to close at this level
-      }
-    }
-  }
-  return std::nullopt;
-}
-
 /// The largest hollow that is closed when the solid's surroundings end where it ends itself, on as few sides
 /// as will do.
 std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Mesh& solid,
@@ -211,80 +98,157 @@ std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Me
     for (std::size_t k = 0; k < sides.size(); ++k)
       if ((subset >> k & 1) != 0) all.push_back(sides[k]);
     try {
-      if (auto mesh = closed_off(around, all, tolerance, Which::largest, point))
-        return ChosenInterior{std::move(*mesh), {"the hollow, " + told(all)}};
+      auto spaces = around.closed_off(all, tolerance, point ? 0 : around.crevice(), point);
+      if (!spaces.empty())
+        return ChosenInterior{std::move(spaces.front().walls), {"the hollow, " + told(all)}};
     } catch (const Error&) {  // one of the sides touches what others have cut
     }
   }
   return std::nullopt;
 }
 
-/// The hollows that are open to the outside, each closed across its openings: the one around a point, or all
-/// that are no mere dents beside the heaviest one.
-std::optional<ChosenInterior> closed_across_openings(const std::vector<Hollow>& hollows,
-                                                     const Vector<3>* point) {
-  constexpr double as_heavy = 0.2;
-  ChosenInterior chosen;
-  std::vector<std::string> lids;
-  std::size_t taken = 0;
-  for (const Hollow& hollow : hollows) {
-    const bool is_meant = point ? SurfacePieces(hollow.walls).around(*point) != none
-                                : hollow.weight() >= as_heavy * hollows.front().weight();
-    if (!is_meant) continue;
-    ++taken;
-    append(chosen.mesh, hollow.walls);
-    for (const Vector<3>& lid : hollow.lids) lids.push_back(text_of(lid));
-  }
-  if (taken == 0) return std::nullopt;
+/// A hollow that may be meant.
+struct Candidate {
+  Mesh walls;
+  double volume, openness;
+  std::string words;  ///< how it is closed
+  Vector<3> inside;   ///< a point of it
+  bool is_void = false, is_flat = true;
+
+  /// As one would fill it: less, where its opening is as wide as a dish's.
+  double size() const { return volume * std::clamp(1 / openness - 1, 0.01, 1.0); }
+  double weight() const { return volume * (1 / openness - 1); }
+};
+
+std::string words_of_lids(std::vector<Vector<3>> lids) {
   constexpr std::size_t most_told = 4;
   const std::size_t openings = lids.size();
-  if (openings > most_told) lids.resize(most_told);
-  chosen.notes.push_back(fmt::format("{}, closed across {} at {}{}",
-                                     taken == 1 ? "the hollow" : counted(taken, "", "hollows"),
-                                     openings == 1 ? "its opening" : counted(openings, "", "openings"),
-                                     fmt::join(lids, ", "), openings > most_told ? ", ..." : ""));
-  if (!point && taken < hollows.size())
-    chosen.notes.push_back(
-        fmt::format("{} left out, which a point of \"interior\" chooses",
-                    counted(hollows.size() - taken, "lesser hollow is", "lesser hollows are")));
-  return chosen;
+  std::vector<std::string> places;
+  for (const Vector<3>& lid : lids | std::views::take(most_told)) places.push_back(text_of(lid));
+  return fmt::format("closed across {} at {}{}",
+                     openings == 1 ? "its opening" : counted(openings, "", "openings"),
+                     fmt::join(places, ", "), openings > most_told ? ", ..." : "");
 }
 
-/// By all pieces of a surface together, whichever way they are turned.
-double enclosed_by(const Mesh& surface) {
-  const std::vector<double> volumes = SurfacePieces(surface).volumes();
-  return std::accumulate(volumes.begin(), volumes.end(), 0.0);
+Mesh without_voids(const Mesh& solid) {
+  const SurfacePieces pieces(solid);
+  Mesh outside{solid.vertices, {}};
+  for (std::size_t t = 0; t < solid.triangles.size(); ++t)
+    if (pieces.depth(pieces.piece_of(t)) == 0) outside.triangles.push_back(solid.triangles[t]);
+  drop_unused_vertices(outside);
+  return outside;
 }
 
-/// Without planes: the voids of a solid or its open hollows, whichever are larger; else what holds water.
-std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, const Mesh& solid,
-                                                    const std::vector<Hollow>& hollows, double tolerance,
-                                                    const Vector<3>* point) {
-  std::optional<Mesh> voids = closed_off(around, {}, tolerance, Which::all, point);
-  const double volume = voids ? enclosed_by(*voids) : 0;
-  const bool voids_are_larger = hollows.empty() || volume >= hollows.front().volume;
-  if (voids && (point || voids_are_larger))
-    return ChosenInterior{std::move(*voids), {"the voids of the solid"}};
-  if (auto open = closed_across_openings(hollows, point)) {
-    if (voids)
-      open->notes.emplace_back("the voids of the solid are left out, which a point of \"interior\" chooses");
-    return open;
+/// The open hollows of a solid, each once: closed across its openings, or by one plane. A lid that lies in a
+/// plane is one; another one may have been drawn up by what stands on the brim, or across a step of it: then
+/// that counts which one plane closes, unless it is much smaller.
+std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
+  std::vector<Candidate> floods, all;
+  for (Flood& flood : floods_of(without_voids(solid), tolerance))
+    floods.push_back(
+        {std::move(flood.space.walls), flood.space.volume, flood.openness, told({flood.brim}), flood.inside});
+  std::vector<bool> is_taken(floods.size(), false), is_chosen(floods.size(), false);
+  std::vector<Hollow> hollows = hollows_of(solid, tolerance);
+  if (hollows.empty() && floods.empty())
+    if (std::optional<Hollow> ring = hollow_of_shell(solid, tolerance)) hollows.push_back(std::move(*ring));
+  for (Hollow& hollow : hollows) {
+    const TriangleTree tree(hollow.walls);
+    const std::optional<Vector<3>> inside = point_within(hollow.walls, tree);
+    if (!inside) continue;
+    Candidate own{std::move(hollow.walls), hollow.volume, hollow.openness, words_of_lids(hollow.lids),
+                  *inside};
+    own.is_flat = hollow.is_flat;
+    std::optional<std::size_t> same;  // the largest of those that overlap it
+    for (std::size_t k = 0; k < floods.size(); ++k) {
+      const bool overlap = tree.crossing(floods[k].inside, 0, endless) == Crossing::odd ||
+                           TriangleTree(floods[k].walls).crossing(*inside, 0, endless) == Crossing::odd;
+      if (overlap && !same) same = k;
+      if (overlap) is_taken[k] = true;
+    }
+    constexpr double as_much = 0.5, hardly = 0.01;
+    if (same && is_chosen[*same]) continue;
+    if (same) {
+      Candidate& other = floods[*same];
+      const bool is_larger = other.volume > (1 + hardly) * own.volume;
+      const bool is_rather = other.volume >= as_much * own.volume || other.weight() >= own.weight();
+      is_chosen[*same] = is_larger || (!own.is_flat && is_rather);
+      if (is_chosen[*same]) own = other;
+    }
+    all.push_back(std::move(own));
   }
-  return filled_to_the_brim(around, solid, tolerance, point);
+  for (std::size_t k = 0; k < floods.size(); ++k)
+    if (!is_taken[k]) all.push_back(std::move(floods[k]));
+  std::ranges::stable_sort(all, std::greater<>(), &Candidate::size);
+  return all;
 }
 
-/// A hollow beside which there is much more that is free within the part's bounds may not be the one that is
-/// meant: the bore of a pipe that stands higher than the brim of its tank.
-void tell_if_little(const Mesh& solid, ChosenInterior& chosen) {
-  constexpr double little = 0.1;
-  const double free = bounds_of_vertices(solid).volume() - std::abs(volume_of(Domain(solid)));
-  const double volume = enclosed_by(chosen.mesh);
-  if (volume < little * free)
-    chosen.notes.push_back(
-        fmt::format("the hollow is {:.2g} % of what is free within the part's bounds: if another one is "
-                    "meant, choose it by a point "
-                    "of \"interior\", or by \"cap\", a plane",
-                    100 * volume / free));
+/// One line with what may be meant, and how to say which.
+[[noreturn]] void refuse_choice(const std::vector<Candidate>& all) {
+  constexpr std::size_t most = 4;
+  std::vector<std::string> words;
+  for (const Candidate& one : all | std::views::take(most))
+    words.push_back(fmt::format("one of volume {:.4g}, {}: interior = [{:.4g}, {:.4g}, {:.4g}]", one.volume,
+                                one.words, one.inside[0], one.inside[1], one.inside[2]));
+  refuse(fmt::format("the part has {} hollows, and none is clearly the largest; choose by a point: {}{}",
+                     all.size(), fmt::join(words, "; "), all.size() > most ? "; ..." : ""));
+}
+
+std::string left_out(std::size_t hollows) {
+  return fmt::format("{} left out, which a point of \"interior\" chooses",
+                     counted(hollows, "lesser hollow is", "lesser hollows are"));
+}
+
+/// Without planes: of the voids of a solid and its open hollows that which one would fill, the largest, those
+/// that are as large included. A void cannot be filled where there is a hollow beside which it is not much
+/// larger: it is that in a wall. Throws where another one is nearly as large.
+std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, const Mesh& solid,
+                                                    double tolerance, const Vector<3>* point) {
+  constexpr double alike = 0.95, clearly = 0.5, dent = 0.02;
+  const std::vector<Space> voids = around.closed_off({}, tolerance, 0, point);
+  if (point && !voids.empty()) return ChosenInterior{walls_of(voids), {"the voids of the solid"}};
+  std::vector<Candidate> open = open_hollows(solid, tolerance);
+  if (point) {
+    for (Candidate& one : open)
+      if (SurfacePieces(one.walls).around(*point) != none)
+        return ChosenInterior{std::move(one.walls), {"the hollow, " + one.words}};
+    return std::nullopt;
+  }
+  double in_voids = 0;
+  for (const Space& space : voids) in_voids += space.volume;
+  if (in_voids > 0 && (open.empty() || open.front().size() < dent * in_voids)) {
+    ChosenInterior chosen{walls_of(voids), {"the voids of the solid"}};
+    if (!open.empty()) chosen.notes.push_back(left_out(open.size()));
+    return chosen;
+  }
+  if (open.empty()) return std::nullopt;
+  const double largest = open.front().size();
+  const auto first_lesser =
+      std::ranges::find_if(open, [&](const Candidate& one) { return one.size() < alike * largest; });
+  const bool is_clear = first_lesser == open.end() || first_lesser->size() < clearly * largest;
+  if (!is_clear || clearly * in_voids > largest) {
+    for (const Space& space : voids) {
+      const TriangleTree tree(space.walls);
+      if (const auto inside = point_within(space.walls, tree))
+        open.push_back({space.walls, space.volume, 0, "closed all around", *inside});
+    }
+    std::ranges::stable_sort(open, std::greater<>(), &Candidate::volume);
+    refuse_choice(open);
+  }
+  ChosenInterior chosen;
+  std::vector<std::string> words;
+  for (auto one = open.begin(); one != first_lesser; ++one) {
+    append(chosen.mesh, one->walls);
+    words.push_back(one->words);
+  }
+  constexpr std::size_t most_told = 4;
+  const std::size_t taken = words.size();
+  if (taken > most_told) words.resize(most_told);
+  chosen.notes.push_back(fmt::format("{}, {}{}", taken == 1 ? "the hollow" : counted(taken, "", "hollows"),
+                                     fmt::join(words, "; "), taken > most_told ? "; ..." : ""));
+  if (taken < open.size()) chosen.notes.push_back(left_out(open.size() - taken));
+  if (in_voids > 0)
+    chosen.notes.emplace_back("the voids of the solid are left out, which a point of \"interior\" chooses");
+  return chosen;
 }
 
 ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double tolerance, const Vector<3>* point) {
@@ -302,29 +266,23 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
     return std::nullopt;
   };
   const auto by_planes = [&](const Planes& choice) -> std::optional<ChosenInterior> {
-    auto mesh = closed_off(around, choice, tolerance, Which::all, point);
-    if (!mesh) return std::nullopt;
-    return ChosenInterior{std::move(*mesh), {"the hollow, " + told(choice)}};
+    const std::vector<Space> spaces = around.closed_off(choice, tolerance, 0, point);
+    if (spaces.empty()) return std::nullopt;
+    return ChosenInterior{walls_of(spaces), {"the hollow, " + told(choice)}};
   };
   if (!planes.empty())
     if (auto made = first_of(by_planes)) return std::move(*made);
-  const std::vector<Hollow> hollows = hollows_of(solid, tolerance);
-  const auto cut_hollow = [&](const Planes& choice) -> std::optional<ChosenInterior> {
-    std::optional<ChosenInterior> open = closed_across_openings(hollows, point);
-    if (!open) return std::nullopt;
-    open->mesh = cut_by(std::move(open->mesh), choice, tolerance);
-    open->notes.push_back(told(choice));
-    return open;
-  };
-  const auto without_planes = [&](const Planes&) {
-    return hollow_without_planes(around, solid, hollows, tolerance, point);
-  };
   const auto in_bounds = [&](const Planes& choice) {
     return within_bounds(around, solid, choice, tolerance, point);
   };
-  if (auto made = planes.empty() ? first_of(without_planes) : first_of(cut_hollow)) {
-    if (!point) tell_if_little(solid, *made);
-    return std::move(*made);
+  if (std::optional<ChosenInterior> made = hollow_without_planes(around, solid, tolerance, point)) {
+    const auto cut_hollow = [&](const Planes& choice) -> std::optional<ChosenInterior> {
+      ChosenInterior rest{cut_by(made->mesh, choice, tolerance), made->notes};
+      rest.notes.push_back(told(choice));
+      return rest;
+    };
+    if (planes.empty()) return std::move(*made);
+    if (auto rest = first_of(cut_hollow)) return std::move(*rest);
   }
   if (auto made = first_of(in_bounds)) return std::move(*made);
   if (point)

@@ -19,10 +19,11 @@ struct ChosenInterior {
 };
 
 /// The walls of the space that is meant: what the planes cut off is outside, and of what is left either what
-/// the surface encloses, or its hollow, or the space around a point. A hollow that is not closed by planes is
-/// filled to its brim, along z. Corners within `tolerance` of a plane lie on it.
-/// Throws Error{bad_mesh}, in one line, where there is no such space.
-/// Cost: O(n log n) a plane, with two choices of its side for each that leaves it open.
+/// the surface encloses, or its hollow, or the space around a point. Of hollows that no plane closes the
+/// largest counts, closed across its openings or up to its brim. Corners within `tolerance` of a plane lie on
+/// it. Throws Error{bad_mesh}, in one line, where there is no such space, and where none of several hollows
+/// is clearly the largest, with a point of each. Cost: O(n log n) a plane, with two choices of its side for
+/// each that leaves it open; that of `hollows_of` and `floods_of` for a hollow.
 ChosenInterior choose_interior(const Mesh& surface, const InteriorRequest& request, double tolerance);
 
 }  // namespace bernal::cad

@@ -26,6 +26,13 @@ struct Opening {
   bool is_flat;
 };
 
+/// Within a share of the opening's width.
+bool lies_in_plane_of(const Mesh& mesh, const HoleLoop& loop, const Opening& opening, double share) {
+  return std::ranges::all_of(loop.corners, [&](std::uint32_t v) {
+    return std::abs(opening.normal.dot(mesh.vertices[v] - opening.middle)) <= share * opening.loop->width;
+  });
+}
+
 Opening opening_of(const Mesh& mesh, const HoleLoop& loop) {
   Opening opening{&loop, Vector<3>::Zero(), Vector<3>::Zero(), false};
   for (const std::uint32_t v : loop.corners)
@@ -35,10 +42,8 @@ Opening opening_of(const Mesh& mesh, const HoleLoop& loop) {
     opening.normal += (mesh.vertices[a] - opening.middle).cross(mesh.vertices[b] - opening.middle);
   }
   opening.normal = opening.normal.stableNormalized();
-  constexpr double flat_enough = 0.01;  // of its width
-  opening.is_flat = std::ranges::all_of(loop.corners, [&](std::uint32_t v) {
-    return std::abs(opening.normal.dot(mesh.vertices[v] - opening.middle)) <= flat_enough * loop.width;
-  });
+  constexpr double flat_enough = 0.01;
+  opening.is_flat = lies_in_plane_of(mesh, loop, opening, flat_enough);
   return opening;
 }
 
@@ -69,7 +74,7 @@ bool lay_flat_lid(Mesh& walls, const std::vector<Opening>& openings,
 
 }  // namespace
 
-std::vector<LidBox> put_lids(Mesh& walls, std::vector<Vector<3>>& middles) {
+std::vector<Lid> put_lids(Mesh& walls) {
   std::vector<HoleLoop> loops = hole_loops(walls, topology_of(walls));
   std::ranges::stable_sort(loops, std::greater<>(), &HoleLoop::width);
   std::vector<Opening> openings;
@@ -77,7 +82,7 @@ std::vector<LidBox> put_lids(Mesh& walls, std::vector<Vector<3>>& middles) {
     if (loop.branched || loop.corners.size() < 3) return {};
     openings.push_back(opening_of(walls, loop));
   }
-  std::vector<LidBox> boxes;
+  std::vector<Lid> lids;
   Patcher patcher(walls);
   std::vector<bool> is_closed(openings.size(), false);
   for (std::size_t i = 0; i < openings.size(); ++i) {
@@ -85,18 +90,21 @@ std::vector<LidBox> put_lids(Mesh& walls, std::vector<Vector<3>>& middles) {
     std::vector<std::size_t> together;
     for (std::size_t j = i; j < openings.size(); ++j)
       if (!is_closed[j] && (j == i || share_a_plane(openings[i], openings[j]))) together.push_back(j);
-    const std::size_t before = walls.triangles.size();
+    Lid lid{{}, openings[i].middle, true, walls.triangles.size(), 0};
     if (!lay_flat_lid(walls, openings, together)) {
       together = {i};
       if (!patcher.fill(*openings[i].loop)) return {};
     }
-    LidBox& box = boxes.emplace_back();
-    for (std::size_t t = before; t < walls.triangles.size(); ++t)
-      for (const std::uint32_t v : walls.triangles[t]) box.add(walls.vertices[v]);
+    constexpr double in_one_plane = 1e-3;
+    for (const std::size_t j : together)
+      lid.is_flat = lid.is_flat && lies_in_plane_of(walls, *openings[j].loop, openings[i], in_one_plane);
+    lid.last = walls.triangles.size();
+    for (std::size_t t = lid.first; t < lid.last; ++t)
+      for (const std::uint32_t v : walls.triangles[t]) lid.box.add(walls.vertices[v]);
     for (const std::size_t j : together) is_closed[j] = true;
-    middles.push_back(openings[i].middle);
+    lids.push_back(lid);
   }
-  return boxes;
+  return lids;
 }
 
 }  // namespace bernal::cad

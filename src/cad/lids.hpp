@@ -24,10 +24,17 @@ struct LidBox {
 
 LidBox box_of(const Mesh&, const FaceCorners&);
 
+/// One on the edge of a hole, or on several that lie in one plane.
+struct Lid {
+  LidBox box;
+  Vector<3> middle;         ///< of the widest edge
+  bool is_flat;             ///< it lies in a plane
+  std::size_t first, last;  ///< of the triangles that are its faces
+};
+
 /// Closes every hole of a surface by a lid, in the plane of its edge where that has one; holes of which the
-/// edges lie in one plane share a lid, as those of a ring do. Appends the faces of the lids to `walls` and
-/// the middles of their edges to `middles`. Returns the bounds of each lid; nothing where an edge branches or
-/// has no lid.
-std::vector<LidBox> put_lids(Mesh& walls, std::vector<Vector<3>>& middles);
+/// edges lie in one plane share a lid, as those of a ring do. Appends their faces to `walls`. Returns nothing
+/// where an edge branches or has no lid.
+std::vector<Lid> put_lids(Mesh& walls);
 
 }  // namespace bernal::cad

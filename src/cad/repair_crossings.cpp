@@ -9,6 +9,7 @@
 
 #include "cad/body_union.hpp"
 #include "cad/counted.hpp"
+#include "cad/diagnose_mesh.hpp"
 #include "cad/mesh_topology.hpp"
 #include "cad/patch.hpp"
 #include "cad/self_intersections.hpp"
@@ -128,14 +129,6 @@ std::size_t cut_within_components(Mesh& mesh, const Monitor& monitor) {
   return own.size();
 }
 
-double six_volumes(const Mesh& mesh) {
-  double sum = 0;
-  const Vector<3>& origin = mesh.vertices[mesh.triangles.front()[0]];
-  for (const auto& [i, j, k] : mesh.triangles)
-    sum += (mesh.vertices[i] - origin).dot((mesh.vertices[j] - origin).cross(mesh.vertices[k] - origin));
-  return sum;
-}
-
 void turn_body(Mesh& mesh) {
   for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
 }
@@ -212,10 +205,10 @@ Bodies bodies_of(const Mesh& mesh) {
   for (const auto& [first, components] : members) {
     double largest = 0;
     for (const std::uint32_t c : components)
-      if (const double v = six_volumes(bodies[c]); std::abs(v) > std::abs(largest)) largest = v;
+      if (const double v = signed_volume(bodies[c]); std::abs(v) > std::abs(largest)) largest = v;
     Group& made = result.groups.emplace_back();
     for (const std::uint32_t c : components) {
-      const double volume = six_volumes(bodies[c]);
+      const double volume = signed_volume(bodies[c]);
       made.faces += bodies[c].triangles.size();
       if (volume < 0) turn_body(bodies[c]);
       ((volume < 0) == (largest < 0) ? made.outward : made.inward).push_back(std::move(bodies[c]));
@@ -310,7 +303,7 @@ void unite_with_themselves(Mesh& mesh, const Monitor& monitor, Told& told) {
     keep_only(body, own);
     drop_unused_vertices(body);
     if (body.triangles.size() > most_faces) continue;
-    const bool is_void = six_volumes(body) < 0;
+    const bool is_void = signed_volume(body) < 0;
     if (is_void) turn_body(body);
     std::optional<Mesh> walls = unite_with_itself(body);
     if (!walls) continue;

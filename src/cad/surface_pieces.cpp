@@ -26,11 +26,8 @@ SurfacePieces::SurfacePieces(const Mesh& mesh)
 std::vector<double> SurfacePieces::volumes() const {
   std::vector<double> volumes(count(), 0);
   const Vector<3> center = bounds_of_vertices(mesh_).center();
-  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh_.triangles[t];
-    volumes[piece_of(t)] +=
-        (mesh_.vertices[a] - center).dot((mesh_.vertices[b] - center).cross(mesh_.vertices[c] - center));
-  }
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+    volumes[piece_of(t)] += six_signed_volumes(mesh_, mesh_.triangles[t], center);
   for (double& volume : volumes) volume = std::abs(volume) / 6;
   return volumes;
 }

@@ -295,13 +295,22 @@ void expect_start(Plan& plan) {
                         .seconds = seconds_a_placed * n});
 }
 
+/// A refusal with what may not be as it is meant with a part, as that may be why: spheres that do not fit
+/// into the wall of a vessel are meant for its hollow.
+[[noreturn]] void refuse_with_caution(const Error& error, const std::string& caution) {
+  const std::string where = error.location().text(), what = error.what();
+  throw Error(error.code(), what.substr(where.empty() ? 0 : where.size() + 2) + "; " + caution,
+              error.location());
+}
+
 /// All that is expected of a run, and what it needs for that.
 void expect(Plan& plan) {
   const Scene& scene = plan.scene;
-  if (scene.is_periodic()) {
-    expect_in_periodic_box(plan);
-  } else {
-    expect_in_container(plan);
+  try {
+    scene.is_periodic() ? expect_in_periodic_box(plan) : expect_in_container(plan);
+  } catch (const Error& error) {
+    if (plan.caution.empty()) throw;
+    refuse_with_caution(error, plan.caution);
   }
   require_readable_places(plan);
   expect_start(plan);

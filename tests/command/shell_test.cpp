@@ -52,6 +52,14 @@ TEST(Shell, IsToldByInspectExplainAndPack) {
   EXPECT_NEAR(report_of(out)["container"]["volume"].get<double>(), hollow, 1e-9 * hollow);
 }
 
+TEST(Shell, IsToldWhereNoSphereFitsIntoTheWall) {
+  const Folder folder;
+  const std::string mesh = folder.write("bucket.off", as_off(bucket())).string();
+  const std::string scene = folder.write("scene.toml", scene_of(mesh, "count = 20\ndiameter = 3")).string();
+  expect_refused(bernal({"pack", scene, "-o", (folder / "out").string()}),
+                 {"scene.toml:7", "does not fit", "shell with an opening", "interior = \"cavity\""});
+}
+
 TEST(Shell, ALostExtentIsACaution) {
   // A box with an antenna through its lid, which is thinner than the spheres, and a face is missing.
   Mesh part = divided(box_mesh({0, 0, 0}, {10, 10, 10}), 2);

@@ -129,7 +129,7 @@ TEST_F(Import, AWideRimThatIsNotFlatIsClosedByTheLineThatIsOffered) {
 TEST_F(Import, ADeflectionIsOfCurvedSurfaces) {
   MeshFile triangles = file(box);
   triangles.deflection = 0.1;
-  EXPECT_NE(refusal(triangles).find("deflection"), std::string::npos) << refusal(triangles);
+  EXPECT_NE(refusal(triangles).find("take the key out"), std::string::npos) << refusal(triangles);
   EXPECT_NE(refusal(triangles).find("STEP, IGES and BREP"), std::string::npos) << refusal(triangles);
 }
 

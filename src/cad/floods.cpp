@@ -1,0 +1,204 @@
+#include "cad/floods.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "cad/diagnose_mesh.hpp"
+#include "cad/mesh_topology.hpp"
+#include "core/parallel.hpp"
+
+namespace bernal::cad {
+namespace {
+
+constexpr double endless = std::numeric_limits<double>::infinity();
+
+/// Twice the area, along the normal.
+Vector<3> two_areas(const Mesh& mesh, const FaceCorners& t) {
+  const Vector<3>& a = mesh.vertices[t[0]];
+  return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
+}
+
+/// Unit vectors of which none is another one's opposite.
+std::vector<Vector<3>> directions_of(const Mesh& solid) {
+  constexpr double same = 1 - 1e-7;
+  constexpr std::size_t most_told_apart = 500, most_by_area = 4;
+  std::vector<std::pair<double, Vector<3>>> by_area;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const FaceCorners& t : solid.triangles) {
+    const Vector<3> areas = two_areas(solid, t);
+    const double area = areas.norm();
+    if (!(area > 0)) continue;
+    const Vector<3> normal = areas / area;
+    spread += area * normal * normal.transpose();
+    const auto found = std::ranges::find_if(
+        by_area, [&](const auto& known) { return std::abs(known.second.dot(normal)) > same; });
+    if (found != by_area.end())
+      found->first += area;
+    else if (by_area.size() < most_told_apart)
+      by_area.emplace_back(area, normal);
+  }
+  std::ranges::stable_sort(by_area, std::greater<>(), [](const auto& known) { return known.first; });
+  std::vector<Vector<3>> all;
+  const auto add = [&](const Vector<3>& direction) {
+    constexpr double nearly = 1 - 1e-6;
+    if (std::ranges::none_of(all, [&](const Vector<3>& n) { return std::abs(n.dot(direction)) > nearly; }))
+      all.push_back(direction);
+  };
+  for (std::size_t k = 0; k < std::min(most_by_area, by_area.size()); ++k) add(by_area[k].second);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+  for (int k = 0; k < 3; ++k) add(axes.eigenvectors().col(k));
+  add(Vector<3>::UnitZ());
+  return all;
+}
+
+/// Where a plane across a direction may be a brim.
+struct Level {
+  Vector<3> direction;
+  double height, lower;  ///< of the corners there, and of the next ones below
+  double area;           ///< of the faces in the plane that look along the direction
+  std::size_t corners;
+};
+
+void add_levels(const Mesh& solid, const Vector<3>& direction, double tolerance, std::vector<Level>& levels) {
+  std::vector<std::uint32_t> order(solid.vertices.size());
+  std::vector<double> height(order.size());
+  for (std::uint32_t v = 0; v < order.size(); ++v) {
+    order[v] = v;
+    height[v] = direction.dot(solid.vertices[v]);
+  }
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t v) { return height[v]; });
+  std::vector<Level> all;
+  std::vector<std::size_t> level(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const double here = height[order[k]];
+    if (k == 0 || here - height[order[k - 1]] > tolerance)
+      all.push_back({direction, here, k == 0 ? here : height[order[k - 1]], 0, 0});
+    level[order[k]] = all.size() - 1;
+    all.back().height = here;
+    ++all.back().corners;
+  }
+  for (const FaceCorners& t : solid.triangles) {
+    if (level[t[0]] != level[t[1]] || level[t[0]] != level[t[2]]) continue;
+    all[level[t[0]]].area += std::max(0.0, two_areas(solid, t).dot(direction)) / 2;
+  }
+  all.erase(all.begin());  // nothing is below it
+  constexpr std::size_t most_by_area = 6, most_by_corners = 4;
+  std::ranges::stable_sort(all, std::greater<>(), &Level::corners);
+  std::stable_sort(all.begin() + std::ptrdiff_t(std::min(all.size(), most_by_corners)), all.end(),
+                   [](const Level& a, const Level& b) { return a.area > b.area; });
+  all.resize(std::min(all.size(), most_by_corners + most_by_area));
+  levels.insert(levels.end(), all.begin(), all.end());
+}
+
+CutPlane plane_across(const Vector<3>& direction, double height) {
+  CutPlane plane;
+  plane.normal = direction;
+  plane.offset = height;
+  plane.text = fmt::format("{:.6g} x + {:.6g} y + {:.6g} z < {:.6g}", direction[0], direction[1],
+                           direction[2], height);
+  return plane;
+}
+
+double openness_of(const Space& space, const CutPlane& brim, double tolerance) {
+  double lid = 0, rest = 0;
+  for (const FaceCorners& t : space.walls.triangles) {
+    const bool is_lid = std::ranges::all_of(
+        t, [&](std::uint32_t v) { return std::abs(brim.height(space.walls.vertices[v])) <= tolerance; });
+    (is_lid ? lid : rest) += two_areas(space.walls, t).norm();
+  }
+  return lid / rest;
+}
+
+/// The largest of those that overlap.
+class Largest {
+ public:
+  void add(Flood flood) {
+    const TriangleTree tree(flood.space.walls);
+    const std::optional<Vector<3>> inside = point_within(flood.space.walls, tree);
+    if (!inside) return;
+    flood.inside = *inside;
+    for (std::size_t k = 0; k < kept_.size(); ++k) {
+      const bool overlap = kept_[k].tree->crossing(*inside, 0, endless) == Crossing::odd ||
+                           tree.crossing(kept_[k].flood.inside, 0, endless) == Crossing::odd;
+      if (!overlap) continue;
+      if (kept_[k].flood.space.volume >= flood.space.volume) return;
+      kept_.erase(kept_.begin() + std::ptrdiff_t(k--));
+    }
+    auto own = std::make_unique<TriangleTree>(flood.space.walls);
+    kept_.push_back({std::move(flood), std::move(own)});
+  }
+  std::vector<Flood> floods() && {
+    std::vector<Flood> all;
+    for (Kept& kept : kept_) all.push_back(std::move(kept.flood));
+    std::ranges::stable_sort(all, std::greater<>(), [](const Flood& flood) { return flood.space.volume; });
+    return all;
+  }
+
+ private:
+  struct Kept {
+    Flood flood;
+    std::unique_ptr<TriangleTree> tree;
+  };
+  std::vector<Kept> kept_;
+};
+
+}  // namespace
+
+std::optional<Vector<3>> point_within(const Mesh& walls, const TriangleTree& tree) {
+  const FaceCorners& largest = *std::ranges::max_element(
+      walls.triangles, {}, [&](const FaceCorners& t) { return two_areas(walls, t).squaredNorm(); });
+  const Vector<3> normal = two_areas(walls, largest).stableNormalized();
+  const Vector<3> middle =
+      (walls.vertices[largest[0]] + walls.vertices[largest[1]] + walls.vertices[largest[2]]) / 3;
+  const double diagonal = bounds_of_vertices(walls).diagonal(), aside = 1e-6 * diagonal;
+  for (const double side : {-1.0, 1.0}) {
+    const Vector<3> from = middle + side * aside * normal;
+    if (tree.crossing(from, 0, endless) != Crossing::odd) continue;
+    const double way = tree.first_contact(from, aside / 4, side * normal, diagonal, aside / 4);
+    return Vector<3>(from + 0.5 * side * way * normal);
+  }
+  return std::nullopt;
+}
+
+std::vector<Flood> floods_of(const Mesh& solid, double tolerance) {
+  const Surroundings around(solid);
+  std::vector<Level> levels;
+  const double apart = std::max(tolerance, 1e-7 * bounds_of_vertices(solid).diagonal());
+  for (const Vector<3>& direction : directions_of(solid))
+    for (const double sign : {1.0, -1.0}) add_levels(solid, sign * direction, apart, levels);
+  std::ranges::stable_sort(levels, std::greater<>(), &Level::area);
+  constexpr double faces_in_all = 1e6;
+  const double most = std::clamp(faces_in_all / static_cast<double>(solid.triangles.size()), 12.0, 100.0);
+  if (static_cast<double>(levels.size()) > most) levels.resize(static_cast<std::size_t>(most));
+  Largest largest;
+  for (const Level& level : levels) {
+    throw_if_interrupted();
+    // At the corners' own height where the brim is flat, else just below.
+    constexpr double hardly_lower = 1e-3;  // of the way to the next corner
+    for (const double height : {level.height, level.height - hardly_lower * (level.height - level.lower)}) {
+      const CutPlane brim = plane_across(level.direction, height);
+      bool any = false;
+      try {
+        for (Space& space : around.closed_off({brim}, tolerance, around.crevice())) {
+          const double openness = openness_of(space, brim, 2 * apart);
+          constexpr double widest = 0.95;
+          if (!(openness < widest)) continue;  // a dent
+          any = true;
+          largest.add({std::move(space), brim, openness, Vector<3>::Zero()});
+        }
+      } catch (const Error&) {  // nothing to close at this level
+      }
+      if (any) break;
+    }
+  }
+  return std::move(largest).floods();
+}
+
+}  // namespace bernal::cad

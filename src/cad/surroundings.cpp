@@ -1,0 +1,87 @@
+#include "cad/surroundings.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "cad/diagnose_mesh.hpp"
+#include "cad/mesh_topology.hpp"
+#include "cad/self_intersections.hpp"
+#include "cad/surface_pieces.hpp"
+
+namespace bernal::cad {
+
+Surroundings::Surroundings(const Mesh& solid)
+    : walls_(solid), box_(bounds_of_vertices(solid)), tree_of_solid_(solid) {
+  const Vector<3> margin = Vector<3>::Constant(0.1 * box_.diagonal());
+  box_ = {box_.lower - margin, box_.upper + margin};
+  const auto first = static_cast<std::uint32_t>(walls_.vertices.size());
+  for (unsigned corner = 0; corner < 8; ++corner)
+    walls_.vertices.emplace_back(corner & 1 ? box_.upper[0] : box_.lower[0],
+                                 corner & 2 ? box_.upper[1] : box_.lower[1],
+                                 corner & 4 ? box_.upper[2] : box_.lower[2]);
+  constexpr std::uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                          {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  for (const auto& [a, b, c] : faces) walls_.triangles.push_back({first + a, first + b, first + c});
+}
+
+bool Surroundings::is_on_box(const Vector<3>& p) const {
+  return (p.array() == box_.lower.array()).any() || (p.array() == box_.upper.array()).any();
+}
+
+/// Whether a piece of what is left of it encloses the solid itself, as where a plane touches a brim and does
+/// not part what is on both sides of it: asked beside the middle of the piece's largest face.
+bool Surroundings::is_solid(const SurfacePieces& pieces, std::uint32_t piece, const Mesh& mesh) const {
+  Vector<3> middle = Vector<3>::Zero(), normal = Vector<3>::Zero();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (pieces.piece_of(t) != piece) continue;
+    const auto& [a, b, c] = mesh.triangles[t];
+    const Vector<3> two_areas =
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+    if (two_areas.squaredNorm() <= normal.squaredNorm()) continue;
+    normal = two_areas;
+    middle = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+  }
+  const Vector<3> aside = 1e-6 * box_.diagonal() * normal.stableNormalized();
+  for (const Vector<3>& p : {Vector<3>(middle + aside), Vector<3>(middle - aside)})
+    if (pieces.encloses(piece, p))
+      return tree_of_solid_.crossing(p, 0, std::numeric_limits<double>::infinity()) == Crossing::odd;
+  return true;  // thinner than can be told
+}
+
+std::vector<Space> Surroundings::closed_off(const std::vector<CutPlane>& planes, double tolerance,
+                                            double least, const Vector<3>* point) const {
+  Mesh mesh = walls_;
+  for (const CutPlane& plane : planes) mesh = cut(mesh, plane, tolerance);
+  const MeshTopology topology = topology_of(mesh);
+  if (!topology.closed() || orient_consistently(mesh, topology) == none) return {};
+  const SurfacePieces pieces(mesh);
+  std::vector<bool> hollow(pieces.count());
+  for (std::uint32_t c = 0; c < pieces.count(); ++c) hollow[c] = pieces.depth(c) % 2 == 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t])
+      if (is_on_box(mesh.vertices[v])) hollow[pieces.piece_of(t)] = false;
+  const std::vector<double> volumes = pieces.volumes();
+  const std::uint32_t one = point ? pieces.around(*point) : none;
+  std::vector<Space> spaces;
+  for (std::uint32_t c = 0; c < pieces.count(); ++c) {
+    if (!hollow[c] || (point && c != one) || !(volumes[c] > least) || is_solid(pieces, c, mesh)) continue;
+    Space space{{}, volumes[c]};
+    std::vector<bool> outermost(pieces.count(), false);
+    outermost[c] = true;
+    for (std::uint32_t other = 0; other < pieces.count(); ++other)
+      if (pieces.depth(other) == pieces.depth(c) + 1 && pieces.encloses(c, other))
+        space.volume -= volumes[other];
+    space.walls = pieces.walls_of(outermost);
+    if (planes.empty() || !intersects_itself(space.walls)) spaces.push_back(std::move(space));
+  }
+  std::ranges::stable_sort(spaces, std::greater<>(), &Space::volume);
+  return spaces;
+}
+
+Mesh walls_of(const std::vector<Space>& spaces) {
+  Mesh all;
+  for (const Space& space : spaces) append(all, space.walls);
+  return all;
+}
+
+}  // namespace bernal::cad
