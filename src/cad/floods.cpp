@@ -61,8 +61,8 @@ std::vector<Vector<3>> directions_of(const Mesh& solid) {
 /// Where a plane across a direction may be a brim.
 struct Level {
   Vector<3> direction;
-  double height, lower;  ///< of the corners there, and of the next ones below
-  double area;           ///< of the faces in the plane that look along the direction
+  double height, bottom, lower;  ///< of the highest and lowest corner there, and of the next one below
+  double area;                   ///< of the faces in the plane that look along the direction
   std::size_t corners;
 };
 
@@ -78,8 +78,8 @@ void add_levels(const Mesh& solid, const Vector<3>& direction, double tolerance,
   std::vector<std::size_t> level(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     const double here = height[order[k]];
-    if (k == 0 || here - height[order[k - 1]] > tolerance)
-      all.push_back({direction, here, k == 0 ? here : height[order[k - 1]], 0, 0});
+    if (k == 0 || here - all.back().bottom > tolerance)
+      all.push_back({direction, here, here, k == 0 ? here : height[order[k - 1]], 0, 0});
     level[order[k]] = all.size() - 1;
     all.back().height = here;
     ++all.back().corners;
@@ -170,7 +170,7 @@ std::optional<Vector<3>> point_within(const Mesh& walls, const TriangleTree& tre
 std::vector<Flood> floods_of(const Mesh& solid, double tolerance) {
   const Surroundings around(solid);
   std::vector<Level> levels;
-  const double apart = std::max(tolerance, 1e-7 * bounds_of_vertices(solid).diagonal());
+  const double apart = std::max(tolerance, 1e-5 * bounds_of_vertices(solid).diagonal());
   for (const Vector<3>& direction : directions_of(solid))
     for (const double sign : {1.0, -1.0}) add_levels(solid, sign * direction, apart, levels);
   std::ranges::stable_sort(levels, std::greater<>(), &Level::area);
@@ -180,22 +180,19 @@ std::vector<Flood> floods_of(const Mesh& solid, double tolerance) {
   Largest largest;
   for (const Level& level : levels) {
     throw_if_interrupted();
-    // At the corners' own height where the brim is flat, else just below.
-    constexpr double hardly_lower = 1e-3;  // of the way to the next corner
-    for (const double height : {level.height, level.height - hardly_lower * (level.height - level.lower)}) {
+    // At the corners' own height for what has a flat brim, and just below for what has not.
+    constexpr double hardly_lower = 1e-4;  // of the way to the next corner
+    for (const double height : {level.height, level.bottom - hardly_lower * (level.bottom - level.lower)}) {
       const CutPlane brim = plane_across(level.direction, height);
-      bool any = false;
       try {
         for (Space& space : around.closed_off({brim}, tolerance, around.crevice())) {
           const double openness = openness_of(space, brim, 2 * apart);
           constexpr double widest = 0.95;
           if (!(openness < widest)) continue;  // a dent
-          any = true;
           largest.add({std::move(space), brim, openness, Vector<3>::Zero()});
         }
       } catch (const Error&) {  // nothing to close at this level
       }
-      if (any) break;
     }
   }
   return std::move(largest).floods();

@@ -193,6 +193,13 @@ std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
                      all.size(), fmt::join(words, "; "), all.size() > most ? "; ..." : ""));
 }
 
+std::string caution_of_lids(const Candidate& one) {
+  return fmt::format(
+      "the hollow is {}, and not all of that lies in planes: what stands on a brim, or a step in it, "
+      "may have drawn it up; if so, close it by \"cap\", a plane",
+      one.words);
+}
+
 std::string left_out(std::size_t hollows) {
   return fmt::format("{} left out, which a point of \"interior\" chooses",
                      counted(hollows, "lesser hollow is", "lesser hollows are"));
@@ -210,7 +217,9 @@ std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, 
   if (point) {
     for (Candidate& one : open)
       if (SurfacePieces(one.walls).around(*point) != none)
-        return ChosenInterior{std::move(one.walls), {"the hollow, " + one.words}};
+        return ChosenInterior{std::move(one.walls),
+                              {"the hollow, " + one.words},
+                              one.is_flat ? std::vector<std::string>() : std::vector{caution_of_lids(one)}};
     return std::nullopt;
   }
   double in_voids = 0;
@@ -239,6 +248,7 @@ std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, 
   for (auto one = open.begin(); one != first_lesser; ++one) {
     append(chosen.mesh, one->walls);
     words.push_back(one->words);
+    if (!one->is_flat) chosen.cautions.push_back(caution_of_lids(*one));
   }
   constexpr std::size_t most_told = 4;
   const std::size_t taken = words.size();
@@ -277,7 +287,7 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
   };
   if (std::optional<ChosenInterior> made = hollow_without_planes(around, solid, tolerance, point)) {
     const auto cut_hollow = [&](const Planes& choice) -> std::optional<ChosenInterior> {
-      ChosenInterior rest{cut_by(made->mesh, choice, tolerance), made->notes};
+      ChosenInterior rest{cut_by(made->mesh, choice, tolerance), made->notes, {}};
       rest.notes.push_back(told(choice));
       return rest;
     };

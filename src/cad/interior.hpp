@@ -14,8 +14,9 @@ struct InteriorRequest {
 };
 
 struct ChosenInterior {
-  Mesh mesh;                       ///< the walls of the space that is meant, not yet turned outward
-  std::vector<std::string> notes;  ///< what was done, one phrase each
+  Mesh mesh;                               ///< the walls of the space that is meant, not yet turned outward
+  std::vector<std::string> notes;          ///< what was done, one phrase each
+  std::vector<std::string> cautions = {};  ///< what may not be as it is meant
 };
 
 /// The walls of the space that is meant: what the planes cut off is outside, and of what is left either what

@@ -140,12 +140,14 @@ std::string_view interior_option(const MeshFile& options) {
   return options.fill_level ? "fill_level" : "interior";
 }
 
-void take_interior(Mesh& mesh, const MeshFile& options, double tolerance, std::vector<std::string>& done) {
+void take_interior(Mesh& mesh, const MeshFile& options, double tolerance, std::vector<std::string>& done,
+                   std::vector<std::string>& cautions) {
   try {
     cad::ChosenInterior chosen =
         cad::choose_interior(mesh, {planes_of(options), options.interior}, tolerance);
     mesh = std::move(chosen.mesh);
     for (std::string& note : chosen.notes) done.push_back(std::move(note));
+    for (std::string& caution : chosen.cautions) cautions.push_back(std::move(caution));
   } catch (const OptionError&) {
     throw;
   } catch (const Error& error) {
@@ -323,7 +325,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   if (!cuts) repairs.apply(Repair::holes);
   repairs.apply(Repair::self_intersections);
   if (!cuts) repairs.apply(Repair::wrap);
-  take_interior(mesh, options, options.weld.value_or(rounding), done);
+  take_interior(mesh, options, options.weld.value_or(rounding), done, repairs.cautions);
   if (cuts) repairs.apply(Repair::holes);
   if (cuts) repairs.apply(Repair::wrap);
   const std::vector<Mesh> taken_out = take_out_obstacles(mesh, options, purpose, done);
