@@ -13,6 +13,11 @@
 
 namespace bernal::cad {
 
+Vector<3> cross_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
+  const Vector<3>& a = mesh.vertices[t[0]];
+  return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
+}
+
 double six_signed_volumes(const Mesh& mesh, const std::array<std::uint32_t, 3>& t, const Vector<3>& point) {
   const Vector<3> a = mesh.vertices[t[0]] - point;
   const Vector<3> b = mesh.vertices[t[1]] - point;
@@ -31,11 +36,7 @@ namespace {
 
 double area_of_mesh(const Mesh& mesh) {
   double two_areas = 0;
-  for (const auto& t : mesh.triangles) {
-    const Vector<3> ab = mesh.vertices[t[1]] - mesh.vertices[t[0]];
-    const Vector<3> ac = mesh.vertices[t[2]] - mesh.vertices[t[0]];
-    two_areas += ab.cross(ac).norm();
-  }
+  for (const auto& t : mesh.triangles) two_areas += cross_of(mesh, t).norm();
   return two_areas / 2;
 }
 

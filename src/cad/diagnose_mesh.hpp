@@ -14,6 +14,8 @@ namespace bernal::cad {
 /// self-intersections.
 MeshReport diagnose_mesh(Triangles& triangles);
 
+/// Twice the area of a triangle, along its normal.
+Vector<3> cross_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle);
 /// Of the signed tetrahedron between a triangle and a point; least cancels where that is the middle of all.
 double six_signed_volumes(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle,
                           const Vector<3>& point);

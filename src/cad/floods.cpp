@@ -17,14 +17,6 @@
 namespace bernal::cad {
 namespace {
 
-constexpr double endless = std::numeric_limits<double>::infinity();
-
-/// Twice the area, along the normal.
-Vector<3> two_areas(const Mesh& mesh, const FaceCorners& t) {
-  const Vector<3>& a = mesh.vertices[t[0]];
-  return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
-}
-
 /// Unit vectors of which none is another one's opposite.
 std::vector<Vector<3>> directions_of(const Mesh& solid) {
   constexpr double same = 1 - 1e-7;
@@ -32,7 +24,7 @@ std::vector<Vector<3>> directions_of(const Mesh& solid) {
   std::vector<std::pair<double, Vector<3>>> by_area;
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const FaceCorners& t : solid.triangles) {
-    const Vector<3> areas = two_areas(solid, t);
+    const Vector<3> areas = cross_of(solid, t);
     const double area = areas.norm();
     if (!(area > 0)) continue;
     const Vector<3> normal = areas / area;
@@ -86,7 +78,7 @@ void add_levels(const Mesh& solid, const Vector<3>& direction, double tolerance,
   }
   for (const FaceCorners& t : solid.triangles) {
     if (level[t[0]] != level[t[1]] || level[t[0]] != level[t[2]]) continue;
-    all[level[t[0]]].area += std::max(0.0, two_areas(solid, t).dot(direction)) / 2;
+    all[level[t[0]]].area += std::max(0.0, cross_of(solid, t).dot(direction)) / 2;
   }
   all.erase(all.begin());  // nothing is below it
   constexpr std::size_t most_by_area = 6, most_by_corners = 4;
@@ -111,7 +103,7 @@ double openness_of(const Space& space, const CutPlane& brim, double tolerance) {
   for (const FaceCorners& t : space.walls.triangles) {
     const bool is_lid = std::ranges::all_of(
         t, [&](std::uint32_t v) { return std::abs(brim.height(space.walls.vertices[v])) <= tolerance; });
-    (is_lid ? lid : rest) += two_areas(space.walls, t).norm();
+    (is_lid ? lid : rest) += cross_of(space.walls, t).norm();
   }
   return lid / rest;
 }
@@ -153,8 +145,8 @@ class Largest {
 
 std::optional<Vector<3>> point_within(const Mesh& walls, const TriangleTree& tree) {
   const FaceCorners& largest = *std::ranges::max_element(
-      walls.triangles, {}, [&](const FaceCorners& t) { return two_areas(walls, t).squaredNorm(); });
-  const Vector<3> normal = two_areas(walls, largest).stableNormalized();
+      walls.triangles, {}, [&](const FaceCorners& t) { return cross_of(walls, t).squaredNorm(); });
+  const Vector<3> normal = cross_of(walls, largest).stableNormalized();
   const Vector<3> middle =
       (walls.vertices[largest[0]] + walls.vertices[largest[1]] + walls.vertices[largest[2]]) / 3;
   const double diagonal = bounds_of_vertices(walls).diagonal(), aside = 1e-6 * diagonal;

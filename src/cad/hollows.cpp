@@ -19,14 +19,6 @@
 namespace bernal::cad {
 namespace {
 
-constexpr double endless = std::numeric_limits<double>::infinity();
-
-/// Twice the area, along the normal.
-Vector<3> cross_of(const Mesh& mesh, const FaceCorners& t) {
-  const Vector<3>& a = mesh.vertices[t[0]];
-  return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
-}
-
 Vector<3> center_of(const Mesh& mesh, const FaceCorners& t) {
   return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
 }

@@ -26,8 +26,6 @@ namespace {
 
 using Planes = std::vector<CutPlane>;
 
-constexpr double endless = std::numeric_limits<double>::infinity();
-
 [[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::bad_mesh, why); }
 
 std::string text_of(const Vector<3>& p) { return fmt::format("({:g}, {:g}, {:g})", p[0], p[1], p[2]); }

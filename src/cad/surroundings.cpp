@@ -35,16 +35,14 @@ bool Surroundings::is_solid(const SurfacePieces& pieces, std::uint32_t piece, co
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (pieces.piece_of(t) != piece) continue;
     const auto& [a, b, c] = mesh.triangles[t];
-    const Vector<3> two_areas =
-        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
-    if (two_areas.squaredNorm() <= normal.squaredNorm()) continue;
-    normal = two_areas;
+    const Vector<3> along = cross_of(mesh, mesh.triangles[t]);
+    if (along.squaredNorm() <= normal.squaredNorm()) continue;
+    normal = along;
     middle = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
   }
   const Vector<3> aside = 1e-6 * box_.diagonal() * normal.stableNormalized();
   for (const Vector<3>& p : {Vector<3>(middle + aside), Vector<3>(middle - aside)})
-    if (pieces.encloses(piece, p))
-      return tree_of_solid_.crossing(p, 0, std::numeric_limits<double>::infinity()) == Crossing::odd;
+    if (pieces.encloses(piece, p)) return tree_of_solid_.crossing(p, 0, endless) == Crossing::odd;
   return true;  // thinner than can be told
 }
 

@@ -15,6 +15,9 @@ namespace bernal::cad {
 
 class WallTree;
 
+/// The end of a way that leaves everything, for `TriangleTree::crossing`.
+inline constexpr double endless = std::numeric_limits<double>::infinity();
+
 enum class Crossing : std::uint8_t { even, odd, starts_on_wall };
 
 /// The triangles of a closed mesh in a CGAL AABB tree, and the questions a container asks of them. All
