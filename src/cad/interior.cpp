@@ -259,6 +259,19 @@ std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, 
   return chosen;
 }
 
+/// A hollow beside which there is much more that is free within the part's bounds is rather a bolt hole.
+void tell_if_little(const Mesh& solid, ChosenInterior& chosen) {
+  constexpr double little = 0.01;
+  const double free = bounds_of_vertices(solid).volume() - std::abs(signed_volume(solid));
+  const std::vector<double> volumes = SurfacePieces(chosen.mesh).volumes();
+  const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
+  if (volume < little * free)
+    chosen.cautions.push_back(fmt::format(
+        "the hollow is {:.2g} % of what is free within the part's bounds: if another one is meant, "
+        "choose it by a point of \"interior\", or by \"cap\", a plane",
+        100 * volume / free));
+}
+
 ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double tolerance, const Vector<3>* point) {
   const Surroundings around(solid);
   const std::vector<Planes> choices = choices_of(planes);
@@ -289,6 +302,7 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
       rest.notes.push_back(told(choice));
       return rest;
     };
+    if (planes.empty() && !point) tell_if_little(solid, *made);
     if (planes.empty()) return std::move(*made);
     if (auto rest = first_of(cut_hollow)) return std::move(*rest);
   }

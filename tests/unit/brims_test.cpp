@@ -201,6 +201,28 @@ TEST(HollowsToChooseFrom, AreListedWithAPointOfEach) {
     }
 }
 
+// A lid that lies in no plane, where no plane closes all of the hollow, may be drawn up by a step or by what
+// stands on its rim, and a bolt hole may not be meant: both are said.
+TEST(HollowsToChooseFrom, AreCautionsWhereTheyMayNotBeMeant) {
+  const testing::Folder folder;
+  const auto caution_of = [&](const Mesh& wall) {
+    MeshFile file{.file = folder.write("part.stl", as_binary_stl(wall))};
+    file.interior = Interior::cavity;
+    const std::vector<std::string> cautions = read_container_mesh(file, {}).report.cautions;
+    return cautions.empty() ? std::string() : cautions.front();
+  };
+  EXPECT_EQ(caution_of(round_pot()), "");
+  const Mesh stepped =
+      box_work_mesh({{{0, 1, 10, 19, 20}, {0, 1, 19, 20}, {0, 1, 16, 20}}}, [](const Vector<3>& p) {
+        const bool is_pipe = is_in(p, {0, 0, 0}, {20, 20, 20}) && !is_in(p, {1, 1, -1}, {19, 19, 21});
+        return is_pipe && !is_in(p, {10, -1, 16}, {21, 21, 21});
+      });
+  EXPECT_NE(caution_of(stepped).find("not all of that lies in planes"), std::string::npos)
+      << caution_of(stepped);
+  const Mesh spool = revolved({{1, 0}, {15, 0}, {15, 1}, {2, 1}, {2, 29}, {15, 29}, {15, 30}, {1, 30}});
+  EXPECT_NE(caution_of(spool).find("% of what is free"), std::string::npos) << caution_of(spool);
+}
+
 TEST(HollowOfShell, IsThatOfShortPipesAndNotOfRings) {
   for (const double height : {14., 10., 6., 4.}) {
     const auto hollow = cad::hollow_of_shell(revolved({{9, 0}, {10, 0}, {10, height}, {9, height}}), 1e-7);
