@@ -57,7 +57,7 @@ TEST(Shell, IsToldWhereNoSphereFitsIntoTheWall) {
   const std::string mesh = folder.write("bucket.off", as_off(bucket())).string();
   const std::string scene = folder.write("scene.toml", scene_of(mesh, "count = 20\ndiameter = 3")).string();
   expect_refused(bernal({"pack", scene, "-o", (folder / "out").string()}),
-                 {"scene.toml:7", "does not fit", "shell with an opening", "interior = \"cavity\""});
+                 {"scene.toml:8", "does not fit", "shell with an opening", "interior = \"cavity\""});
 }
 
 TEST(Shell, ALostExtentIsACaution) {
