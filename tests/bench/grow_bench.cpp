@@ -5,18 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <string>
 #include <vector>
 
 #include "bernal/core/random.hpp"
-#include "bernal/run/run.hpp"
-#include "bernal/scene/read_scene.hpp"
 #include "core/large_pages.hpp"
 #include "hard/calendar.hpp"
 #include "support/flights.hpp"
 
 // What growth costs: a collision in a fluid, by number and sizes of spheres; the queue of events, against a
-// binary heap; a packing from the scene to the jammed spheres.
+// binary heap.
 namespace bernal {
 namespace {
 
@@ -174,44 +171,6 @@ void events(benchmark::State& state) {
 }
 BENCHMARK(events<Calendar>)->Arg(10000)->Arg(1000000)->Unit(benchmark::kMillisecond)->MinTime(0.5);
 BENCHMARK(events<BinaryHeap>)->Arg(10000)->Arg(1000000)->Unit(benchmark::kMillisecond)->MinTime(0.5);
-
-/// A packing, from the scene to the jammed spheres.
-void grow(benchmark::State& state, const std::string& box, const std::string& spheres,
-          const std::string& stage) {
-  const Plan plan = build(parse_scene("[container]\nkind = \"periodic\"\n" + box + "[spheres]\n" + spheres +
-                                          "[[stage]]\ndo = \"grow\"\n" + stage,
-                                      "bench.toml"));
-  RunOptions options;
-  options.threads = 1;
-  Packing packing;
-  for (auto _ : state) packing = run(plan, options);
-  state.counters["packing_fraction"] = packing.packing_fraction();
-  state.counters["spheres"] = static_cast<double>(packing.spheres.size());
-}
-#define BERNAL_GROW(name, box, spheres, stage)       \
-  BENCHMARK_CAPTURE(grow, name, box, spheres, stage) \
-      ->Unit(benchmark::kSecond)                     \
-      ->Iterations(1)                                \
-      ->MeasureProcessCPUTime()
-BERNAL_GROW(equal_to_0_64, "scalable = true\n", "count = 10000\npacking_fraction = 0.64\nradius = 1.0\n", "");
-BERNAL_GROW(equal_to_0_6435, "scalable = true\n", "count = 10000\npacking_fraction = 0.6435\nradius = 1.0\n",
-            "");
-BERNAL_GROW(equal_jammed, "", "count = 10000\nradius = 1.0\n", "");
-BERNAL_GROW(four_dimensions, "dimension = 4\n", "count = 2000\nradius = 1.0\n", "pressure = 1e4\n");
-BERNAL_GROW(five_dimensions, "dimension = 5\n", "count = 2000\nradius = 1.0\n", "pressure = 1e4\n");
-BERNAL_GROW(six_dimensions, "dimension = 6\n", "count = 2000\nradius = 1.0\n", "pressure = 1e3\n");
-BERNAL_GROW(lognormal_0_5, "",
-            "count = 10000\nradius = { distribution = \"lognormal\", median = 1.0, sigma = 0.5 }\ndraw = "
-            "\"quantiles\"\n",
-            "pressure = 1e4\n");
-#define ONE_TO_FIVE(large, small)                                                                          \
-  "count = 10000\nradius = { distribution = \"classes\", values = [5.0, 1.0], shares = [" large ", " small \
-  "], basis = \"volume\" }\ndraw = \"quantiles\"\n"
-BERNAL_GROW(one_to_five_half_small, "", ONE_TO_FIVE("50", "50"), "pressure = 1e4\n");
-BERNAL_GROW(one_to_five_a_fifth_small, "", ONE_TO_FIVE("79", "21"), "pressure = 1e4\n");
-BERNAL_GROW(one_to_five_a_fifth_small_with_patience, "", ONE_TO_FIVE("79", "21"),
-            "pressure = 1e4\nmasses = \"volume\"\nrate = 0.0025\n");
-BERNAL_GROW(isostatic, "", "count = 1000\nradius = 1.0\n", "pressure = 1e4\npolish = 1e-10\n");
 
 }  // namespace
 }  // namespace bernal
