@@ -99,6 +99,7 @@ void price_effects(Plan& plan) {
       .spread = spread_of(plan),
       .width = bounds_of<dynamic>(plan.domain).size().minCoeff() / (2 * plan.radii->quantile(1 - 1e-4)),
       .is_filled = scene.target.fill || is_guess(plan)};
+  outlook.size = bounds_of<dynamic>(plan.domain).size() / (2 * plan.radii->moment(1));
   // Those of the start have places, and fill their share.
   const auto there = static_cast<double>(plan.start.spheres.size());
   outlook.placed = there > 0 && there >= plan.expected_count;

@@ -14,13 +14,17 @@ namespace {
 /// A place that is tried. So many are for one sphere: 1 / (1 - phi / limit)^power, where phi is filled, at
 /// most the attempts that the stage allows.
 constexpr double seconds_a_trial = 0.35e-6, limit_of_insertion = 0.385, power_of_insertion = 1.2;
-/// A sphere's way down, once and for all; that of a bed that has settled before; and what local directions
-/// add. A round of shaking without the compression after it. A probe.
-constexpr double first_compression = 50e-6, later_compression = 7e-6, of_tilt = 0.45, shaking_round = 6e-6,
-                 seconds_a_probe = 0.12e-6;
+/// A sphere's way down, a mean diameter of the container's height, and what comes on top of that while a bed
+/// is refilled; that of a bed that has settled before; and how these grow with the spread of sizes.
+constexpr double first_compression = 3e-6, power_of_first = 2, refilled_compression = 12e-6,
+                 below_refilled = 120e-6, power_of_refilled = 1, later_compression = 11e-6;
+/// What local directions add, and the share that the paper's tolerance takes.
+constexpr double of_tilt = 1.2, of_tolerance = 0.45;
+/// A round of shaking without the compression after it. A probe.
+constexpr double shaking_round = 5e-6, seconds_a_probe = 0.12e-6;
 /// Rounds of refilling until 1,000 spheres have settled densely, how they become more with their number, and
 /// fewer where less is asked for.
-constexpr double rounds_until_full = 10, rounds_by_count = 0.2, rounds_by_share = 4;
+constexpr double rounds_until_full = 7, rounds_by_count = 0.1, rounds_by_share = 4;
 /// To walls, of a sphere: while it is inserted, sinks for the first time, and in each compression after that.
 constexpr double questions_of_insertion = 2, questions_of_first = 18, questions_of_later = 1.5;
 constexpr double share_of_lists = 0.25;
@@ -28,8 +32,15 @@ constexpr double bytes_a_sphere = 120, bytes_of_lists = 190, bytes_a_probe = 40;
 /// Packing fraction of what has settled.
 constexpr double settled = 0.57;
 
-double compression(const Compress& options, const Outlook& outlook, double each) {
-  return outlook.spheres * each * (options.tilt > 0 ? 1 + of_tilt : 1);
+double compression(const Compress& options, double spheres, double each) {
+  return spheres * each * (options.tilt > 0 ? 1 + of_tilt : 1) * (options.tolerance ? of_tolerance : 1);
+}
+
+/// Of the container along the direction, which in two dimensions may still be that of three, in mean
+/// diameters.
+double height_along(const Coordinates& direction, const Outlook& outlook) {
+  if (direction.size() != outlook.size.size()) return outlook.size[outlook.size.size() - 1];
+  return direction.cwiseAbs().dot(outlook.size) / direction.norm();
 }
 
 std::vector<PlanItem> effects_of_compressing(double sweeping, double questions, std::string when,
@@ -77,7 +88,9 @@ std::vector<PlanItem> effects_of_insertion(const Insert& options, const Outlook&
 std::vector<PlanItem> effects_of_compression(const Compress& options, const Outlook& outlook) {
   Outlook now = outlook;
   now.spheres *= std::min(1.0, outlook.filled / outlook.aim);
-  return effects_of_compressing(compression(options, now, first_compression), questions_of_first,
+  const double each =
+      first_compression * height_along(options.direction, outlook) * std::pow(outlook.spread, power_of_first);
+  return effects_of_compressing(compression(options, now.spheres, each), questions_of_first,
                                 "to first touch along the global and local directions", now);
 }
 
@@ -85,7 +98,7 @@ std::vector<PlanItem> effects_of_shaking(const Shake& options, const Outlook& ou
   Outlook now = outlook;
   now.spheres *= std::min(1.0, outlook.filled / outlook.aim);
   std::vector<PlanItem> items =
-      effects_of_compressing(options.rounds * compression(options.compress, now, later_compression),
+      effects_of_compressing(options.rounds * compression(options.compress, now.spheres, later_compression),
                              options.rounds * questions_of_later, "after each round of shaking", now);
   items.insert(items.begin() + 2, shaking(options.rounds, "local directions across the global one", now));
   return items;
@@ -102,8 +115,11 @@ std::vector<PlanItem> effects_of_refilling(const Refill& options, const Outlook&
                                   .cost = "O(1) a probe",
                                   .seconds = probes * seconds_a_probe * (1 + rounds),
                                   .bytes = bytes_a_probe * probes}};
-  const double each = compression(options.shake.compress, outlook, later_compression);
-  for (PlanItem& item : effects_of_compressing(rounds * each * (1 + options.shake.rounds),
+  const Compress& compress = options.shake.compress;
+  const double each = (below_refilled + refilled_compression * height_along(compress.direction, outlook)) *
+                      std::pow(outlook.spread, power_of_refilled);
+  const double refilled = outlook.spheres * (1 - std::min(1.0, outlook.filled / outlook.aim));
+  for (PlanItem& item : effects_of_compressing(compression(compress, refilled, each),
                                                rounds * (1 + options.shake.rounds) * questions_of_later,
                                                "after each refilling", outlook))
     items.push_back(item);

@@ -64,7 +64,7 @@ constexpr double cost_of_walls = 2;
 constexpr double share_of_lists = 0.2;
 /// Sizes that are exchanged: each sphere; at least, from so many on; and the power of their spread.
 constexpr double exchange_in_box = 680 * microsecond, exchange_in_bed = 3000 * microsecond;
-constexpr double least_of_exchange = 1.5, spheres_of_least = 300, power_of_exchange = 0.6;
+constexpr double least_of_exchange = 1.5, spheres_of_least = 300, power_of_exchange = 0.85;
 /// To walls, of a sphere.
 constexpr double questions = 6;
 constexpr double bytes_a_sphere = 130, bytes_of_lists = 200;

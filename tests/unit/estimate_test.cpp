@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "bernal/cad/mesh_container.hpp"
 #include "support/meshes.hpp"
@@ -142,6 +144,17 @@ TEST(Estimate, OfInsertionKnowsHowOftenItIsTried) {
       EXPECT_NEAR(packing.packing_fraction(), packing.expected_packing_fraction, 0.04)
           << container << attempts;
     }
+}
+
+/// Every sphere of a column ten times as high has ten times as far to fall.
+TEST(Estimate, OfCompressionGrowsWithTheHeight) {
+  const auto seconds = [](const std::string& height) {
+    const Plan plan = testing::plan_of("[container]\nkind = \"cylinder\"\nradius = 5.0\nheight = " + height +
+                                       "\n[spheres]\ncount = 300\ndiameter = 1.0\n[[stage]]\ndo = "
+                                       "\"insert\"\n[[stage]]\ndo = \"compress\"\n");
+    return std::ranges::find(plan.items, "compression", &PlanItem::name)->seconds;
+  };
+  EXPECT_NEAR(seconds("200.0") / seconds("20.0"), 10, 0.5);
 }
 
 /// A few draws lack the tail of a wide distribution, which much of its prediction is of; and spheres that are
