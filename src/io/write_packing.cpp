@@ -32,7 +32,7 @@ namespace {
 /// Enough for curves that are smooth to the eye; `bernal measure` takes more.
 constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5;
 constexpr std::uint32_t points_for_a_report = 4000, pore_points_for_a_report = 20000;
-constexpr double waves_for_a_report = 6e7, wave_bins_for_a_report = 0.4;
+constexpr double waves_for_a_report = 2.5e7, wave_bins_for_a_report = 0.4;
 /// Of more spheres, cells and waves would take longer than many a packing; already all cells of fewer would.
 constexpr std::size_t most_for_a_report = 100'000, all_cells_for_a_report = 10'000;
 /// Of more spheres the search for pores would take as much memory as all the rest.

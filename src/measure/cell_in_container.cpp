@@ -31,11 +31,10 @@ double CellInContainer::volume_between_facets(const ConvexCell& cell, const Vect
   };
   const auto corners = cell.corners();
   Vector<3> mean = Vector<3>::Zero();
-  for (const ConvexCell::Corner& corner : corners) mean += corner.point;
+  for (const Vector<3>& corner : corners) mean += corner;
   const Vector<3> apex = place(mean / static_cast<double>(corners.size()));
   double farthest = 0;
-  for (const ConvexCell::Corner& corner : corners)
-    farthest = std::max(farthest, (place(corner.point) - apex).norm());
+  for (const Vector<3>& corner : corners) farthest = std::max(farthest, (place(corner) - apex).norm());
   const double clearance = container_.clearance_within(apex, 2 * farthest);
   if (clearance >= farthest) return cell.volume();
   if (clearance <= -farthest) return 0;

@@ -2,136 +2,140 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 namespace bernal {
 
 void ConvexCell::reset(const Vector<3>& lower, const Vector<3>& upper, const std::array<Label, 3>& sides) {
-  corners_.clear();
-  edges_.clear();
+  resize(8);
   labels_.clear();
-  for (int k = 0; k < 8; ++k)
-    corners_.push_back({Vector<3>((k & 1) ? upper[0] : lower[0], (k & 2) ? upper[1] : lower[1],
-                                  (k & 4) ? upper[2] : lower[2])});
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::uint32_t u = 1u << (axis + 1) % 3, v = 1u << (axis + 2) % 3;
-    for (const bool is_upper : {false, true}) {
-      const std::uint32_t base = is_upper ? 1u << axis : 0;
-      std::array<std::uint32_t, 4> loop = {base, base | u, base | u | v, base | v};  // normal along +axis
-      if (!is_upper) std::swap(loop[1], loop[3]);
-      for (std::size_t k = 0; k < 4; ++k)
-        edges_.push_back({loop[k], loop[(k + 1) % 4], static_cast<std::uint32_t>(labels_.size())});
-      labels_.push_back(sides[static_cast<std::size_t>(axis)]);
+  for (const Label side : sides) labels_.insert(labels_.end(), 2, side);  // below, above
+  for (unsigned k = 0; k < 8; ++k) {
+    const auto above = [&](unsigned axis) { return k >> axis & 1; };
+    // Anticlockwise these are the edges along x, y, z, or x, z, y; at the other end it is the other way.
+    const bool odd = std::popcount(k) % 2 == 1;
+    const std::array<unsigned, 3> axes = odd ? std::array{0u, 1u, 2u} : std::array{0u, 2u, 1u};
+    const std::array<unsigned, 3> place_of_axis = odd ? std::array{0u, 2u, 1u} : std::array{0u, 1u, 2u};
+    corners_[k] = {above(0) ? upper[0] : lower[0], above(1) ? upper[1] : lower[1],
+                   above(2) ? upper[2] : lower[2]};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const unsigned along = axes[i], across = axes[(i + 2) % 3];
+      back_[way(k, i)] = way(k ^ 1u << along, place_of_axis[along]);
+      face_[way(k, i)] = 2 * across + above(across);
     }
   }
 }
 
-/// The corner where the plane cuts the edge between two corners: one for both directions.
-std::uint32_t ConvexCell::crossing(std::uint32_t a, std::uint32_t b) {
-  const auto [low, high] = std::minmax(a, b);
-  for (const Crossing& c : crossings_)
-    if (c.low == low && c.high == high) return c.corner;
-  const double t = height_[low] / (height_[low] - height_[high]);
-  const Vector<3> point = corners_[low].point + t * (corners_[high].point - corners_[low].point);
-  crossings_.push_back({low, high, static_cast<std::uint32_t>(corners_.size())});
-  corners_.push_back({point});
-  return crossings_.back().corner;
+void ConvexCell::resize(std::size_t corners) {
+  corners_.resize(corners);
+  back_.resize(4 * corners);
+  face_.resize(4 * corners);
+}
+
+/// Ends the edge between a corner that is cut off, from which `inwards` leads, and one that stays: in a new
+/// `corner`, whose ways lead to the latter, along the cut and, anticlockwise, along the cut again, the last
+/// in the face to the left of who comes from there.
+void ConvexCell::end_edge(Way inwards, std::uint32_t corner, std::uint32_t cap) {
+  const Way outwards = back_[inwards];
+  const std::uint32_t in = corner_of(outwards), out = corner_of(inwards);
+  const double share = height_[in] / (height_[in] - height_[out]);
+  corners_[corner] = corners_[in] + share * (corners_[out] - corners_[in]);
+  back_[way(corner, 0)] = outwards;
+  face_[way(corner, 0)] = face_[inwards];
+  face_[way(corner, 1)] = cap;
+  face_[way(corner, 2)] = face_[outwards];
+  back_[outwards] = back_[inwards] = way(corner, 0);
 }
 
 bool ConvexCell::cut(const Vector<3>& normal, double offset, Label label, double slack) {
-  if (edges_.empty()) return false;
-  height_.clear();
-  double highest = 0;
-  for (const Corner& corner : corners_) {
-    height_.push_back(corner.point.dot(normal) - offset);
-    highest = std::max(highest, height_.back());
+  const auto before = static_cast<std::uint32_t>(corners_.size());
+  height_.resize(before);
+  bool beyond = false;
+  for (std::uint32_t k = 0; k < before; ++k) {
+    height_[k] = corners_[k].dot(normal) - offset;
+    beyond |= height_[k] > slack;
   }
-  if (!(highest > slack)) return false;
+  if (!beyond) return false;
 
-  crossings_.clear();
-  exits_.clear();
-  entries_.clear();
-  kept_.clear();
-  for (const Edge& edge : edges_) {
-    const bool from = height_[edge.from] <= 0, to = height_[edge.to] <= 0;
-    if (from && to) {
-      kept_.push_back(edge);
-    } else if (from) {
-      const std::uint32_t corner = crossing(edge.from, edge.to);
-      kept_.push_back({edge.from, corner, edge.face});
-      exits_.push_back({edge.face, corner});
-    } else if (to) {
-      const std::uint32_t corner = crossing(edge.from, edge.to);
-      kept_.push_back({corner, edge.to, edge.face});
-      entries_.push_back({edge.face, corner});
-    }
-  }
-  // A face that is left is entered again as often as it is left; what joins the two is an edge of the cut.
-  const auto cap = static_cast<std::uint32_t>(labels_.size());
-  for (const Open& exit : exits_) {
-    const auto entry = std::ranges::find(entries_, exit.face, &Open::face);
-    if (entry->corner != exit.corner) {
-      kept_.push_back({exit.corner, entry->corner, exit.face});
-      kept_.push_back({entry->corner, exit.corner, cap});
-    }
-    *entry = entries_.back();
-    entries_.pop_back();
-  }
-  edges_.swap(kept_);
+  cut_off_.clear();
+  crossed_.clear();
+  for (std::uint32_t k = 0; k < before; ++k)
+    if (height_[k] > 0) cut_off_.push_back(k);
+  for (const std::uint32_t corner : cut_off_)
+    for (std::uint32_t k = 0; k < 3; ++k)
+      if (const Way inwards = way(corner, k); !(height_[corner_of(back_[inwards])] > 0))
+        crossed_.push_back(inwards);
+  const auto crossings = static_cast<std::uint32_t>(crossed_.size());
+  resize(before + crossings);
+  for (std::uint32_t k = 0; k < crossings; ++k)
+    end_edge(crossed_[k], before + k, static_cast<std::uint32_t>(labels_.size()));
   labels_.push_back(label);
-  drop_unused_corners();
+  // From where a face is left, through what is cut off, to where it is entered again.
+  for (std::uint32_t k = 0; k < crossings; ++k) {
+    Way lost = clockwise(crossed_[k]);
+    while (corner_of(back_[lost]) < before) lost = next_around_face(lost);
+    const Way along = way(before + k, 2), back = back_[lost] + 1;
+    back_[along] = back;
+    back_[back] = along;
+  }
+  // The last corners take the places of those that are cut off.
+  auto left = before + crossings;
+  for (std::size_t k = cut_off_.size(); k-- > 0;)
+    if (--left != cut_off_[k]) move_corner(left, cut_off_[k]);
+  resize(left);
   return true;
 }
 
-void ConvexCell::drop_unused_corners() {
-  constexpr std::uint32_t unused = ~std::uint32_t{0};
-  std::vector<std::uint32_t>& number = numbers_;
-  number.assign(corners_.size(), unused);
-  for (const Edge& edge : edges_) number[edge.from] = 0;
-  std::uint32_t count = 0;
-  for (std::size_t k = 0; k < corners_.size(); ++k) {
-    if (number[k] == unused) continue;
-    corners_[count] = corners_[k];
-    number[k] = count++;
+/// Precondition: no way leads to the corner in whose place it goes.
+void ConvexCell::move_corner(std::uint32_t from, std::uint32_t to) {
+  corners_[to] = corners_[from];
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const Way moved = way(to, k), back = back_[way(from, k)];
+    back_[moved] = back;
+    back_[back] = moved;
+    face_[moved] = face_[way(from, k)];
   }
-  corners_.resize(count);
-  for (Edge& edge : edges_) edge = {number[edge.from], number[edge.to], edge.face};
 }
 
 double ConvexCell::volume() const {
   constexpr std::uint32_t none = ~std::uint32_t{0};
-  std::vector<std::uint32_t>& apex = numbers_;
+  std::vector<std::uint32_t>& apex = marks_;
   apex.assign(labels_.size(), none);
   double sum = 0;
-  for (const Edge& edge : edges_) {
-    if (apex[edge.face] == none) apex[edge.face] = edge.from;
-    const Vector<3>& p = corners_[apex[edge.face]].point;
-    sum += p.dot(corners_[edge.from].point.cross(corners_[edge.to].point));
+  for (Way way = 0; way < ways(); ++way) {
+    if (!is_way(way)) continue;
+    const std::uint32_t from = corner_of(way);
+    std::uint32_t& of_face = apex[face_[way]];
+    if (of_face == none) of_face = from;
+    if (of_face == from) continue;  // without volume
+    sum += corners_[of_face].dot(corners_[from].cross(corners_[corner_of(back_[way])]));
   }
   return sum / 6;
 }
 
 double ConvexCell::squared_reach() const {
   double farthest = 0;
-  for (const Corner& corner : corners_) farthest = std::max(farthest, corner.point.squaredNorm());
+  for (const Vector<3>& corner : corners_) farthest = std::max(farthest, corner.squaredNorm());
   return farthest;
 }
 
 /// Twice the area of every face, along its normal outwards.
 void ConvexCell::find_areas() const {
   areas_.assign(labels_.size(), Vector<3>::Zero());
-  for (const Edge& edge : edges_)
-    areas_[edge.face] += corners_[edge.from].point.cross(corners_[edge.to].point);
+  for (Way way = 0; way < ways(); ++way)
+    if (is_way(way)) areas_[face_[way]] += corners_[corner_of(way)].cross(corners_[corner_of(back_[way])]);
 }
 
 std::uint32_t ConvexCell::faces(double least) const {
   find_areas();
   double surface = 0;
   for (const Vector<3>& area : areas_) surface += area.norm();
+  const double smallest = least * surface;
   std::uint32_t count = 0;
   for (std::size_t face = 0; face < labels_.size(); ++face)
-    count += labels_[face] >= 0 && areas_[face].norm() > least * surface;
+    count += labels_[face] >= 0 && areas_[face].squaredNorm() > smallest * smallest;
   return count;
 }
 
@@ -142,9 +146,11 @@ std::vector<ConvexCell::Plane> ConvexCell::planes() const {
     area.stableNormalize();
     found.push_back({area, -std::numeric_limits<double>::infinity()});
   }
-  for (const Edge& edge : edges_)
-    found[edge.face].offset =
-        std::max(found[edge.face].offset, found[edge.face].normal.dot(corners_[edge.from].point));
+  for (Way way = 0; way < ways(); ++way) {
+    if (!is_way(way)) continue;
+    Plane& plane = found[face_[way]];
+    plane.offset = std::max(plane.offset, plane.normal.dot(corners_[corner_of(way)]));
+  }
   std::erase_if(found, [](const Plane& plane) { return plane.normal.isZero(0); });
   return found;
 }

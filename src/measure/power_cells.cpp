@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -44,10 +43,16 @@ class Diagram {
     double offset;
     std::uint32_t place;
   };
+  /// Moved by `shift`; how near the nearest plane with one of its spheres may come.
+  struct Leaf {
+    double least;
+    const Tree::Node* node;
+    const Vector<3>* shift;
+  };
   /// What is kept from cell to cell for its memory.
   struct Piece {
     ConvexCell cell;
-    std::vector<Tree::Waiting> waiting;
+    std::vector<Leaf> leaves;
     std::vector<Plane> planes;
   };
 
@@ -74,7 +79,7 @@ class Diagram {
   double reach_of(const ConvexCell& cell) const {
     if (cell.empty()) return -infinite;
     double farthest = 0;
-    for (const auto& [p] : cell.corners())
+    for (const Vector<3>& p : cell.corners())
       farthest = std::max(farthest, box_.dimension == 2 ? p.head<2>().squaredNorm() : p.squaredNorm());
     return std::sqrt(farthest);
   }
@@ -85,29 +90,61 @@ class Diagram {
     const double more = weight - r * r, d = std::sqrt(std::max(squared, more));
     return d > 0 ? 0.5 * (d + more / d) : more < 0 ? -infinite : 0;
   }
-
-  void cut_out(std::uint32_t place, Piece& piece) const {
-    throw_if_interrupted();
-    ConvexCell& cell = piece.cell;
-    begin(cell, place);
-    const double weight = tree_.radius(place) * tree_.radius(place);
-    double reach = reach_of(cell);
-    tree_.for_each_leaf(
-        tree_.center(place), [&](double squared, double r) { return nearest_plane(weight, squared, r); },
-        [&] { return reach; }, piece.waiting,
-        [&](const Tree::Node& leaf, const Vector<3>& shift) {
-          find_planes(place, leaf, shift, reach, piece.planes);
-          for (const Plane& plane : piece.planes) {
-            if (!(plane.distance < reach)) break;
-            const double slack = rounding * reach * plane.normal.norm();
-            if (cell.cut(plane.normal, plane.offset, static_cast<ConvexCell::Label>(plane.place), slack))
-              reach = reach_of(cell);
-          }
-        });
+  /// Whether that is below `within`, but for rounding, which is positive.
+  static bool comes_within(double weight, double squared, double r, double within) {
+    const double more = weight - r * r, far = std::max(squared, more), sum = far + more;
+    return sum <= 0 || sum * sum < 4 * within * within * far;
   }
 
-  /// With the spheres of a leaf, the nearest first; in the order of the tree where they are equally near.
-  /// With the same centre the larger one hides the other, and of two that are equal the first.
+  /// A guess at how far a cell reaches.
+  double first_look(std::uint32_t place, double reach) const {
+    constexpr double radii = 1.25, least = 1e-3;
+    return std::max(radii * tree_.radius(place), least * reach);
+  }
+
+  /// All that is near is looked at in the order of how near it may come; and what is farther, as long as the
+  /// cell still reaches there.
+  void cut_out(std::uint32_t place, Piece& piece) const {
+    throw_if_interrupted();
+    begin(piece.cell, place);
+    const double weight = tree_.radius(place) * tree_.radius(place);
+    double reach = reach_of(piece.cell), done = 0;
+    for (double within = first_look(place, reach); done < reach; within = std::min(2 * within, reach)) {
+      piece.leaves.clear();
+      tree_.for_each_leaf(
+          tree_.center(place),
+          [&](double squared, double r) { return comes_within(weight, squared, r, within); },
+          [&](const Tree::Node& leaf, const Vector<3>& shift, double squared) {
+            if (!(done > 0 && comes_within(weight, squared, leaf.largest, done)))
+              piece.leaves.push_back({nearest_plane(weight, squared, leaf.largest), &leaf, &shift});
+          });
+      std::ranges::sort(piece.leaves, {}, &Leaf::least);
+      for (const Leaf& leaf : piece.leaves) {
+        if (!(leaf.least < reach)) break;
+        find_planes(place, *leaf.node, *leaf.shift, reach, piece.planes);
+        cut_by(piece, reach);
+      }
+      done = within;
+    }
+  }
+
+  /// With planes in rising order, of which a leaf has so few that they need not be sorted.
+  void cut_by(Piece& piece, double& reach) const {
+    std::vector<Plane>& planes = piece.planes;
+    while (!planes.empty()) {
+      const auto nearest = std::ranges::min_element(planes, {}, &Plane::distance);
+      const Plane plane = *nearest;
+      *nearest = planes.back();
+      planes.pop_back();
+      if (!(plane.distance < reach)) break;
+      const double slack = rounding * reach * plane.normal.norm();
+      if (piece.cell.cut(plane.normal, plane.offset, static_cast<ConvexCell::Label>(plane.place), slack))
+        reach = reach_of(piece.cell);
+    }
+  }
+
+  /// With the spheres of a leaf. With the same centre the larger one hides the other, and of two that are
+  /// equal the first.
   void find_planes(std::uint32_t place, const Tree::Node& leaf, const Vector<3>& shift, double reach,
                    std::vector<Plane>& planes) const {
     const double r = tree_.radius(place);
@@ -124,7 +161,6 @@ class Diagram {
         planes.push_back({-infinite, normal, -1, other});
       }
     }
-    std::ranges::sort(planes, {}, [](const Plane& p) { return std::tuple(p.distance, p.place); });
   }
 
   static constexpr double infinite = std::numeric_limits<double>::infinity();

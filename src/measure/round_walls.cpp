@@ -190,39 +190,16 @@ double cone_in_ball(std::span<const Seen<3>> loop, double radius) {
   return (0.5 * height * twice_area + cube * angle) / 3;
 }
 
-/// Calls visit(corners) for every loop of every face.
-template <class Visit>
-void for_each_loop(const ConvexCell& cell, Visit&& visit) {
-  std::vector<ConvexCell::Edge> edges(cell.edges().begin(), cell.edges().end());
-  std::ranges::stable_sort(edges, {}, &ConvexCell::Edge::face);
-  std::vector<std::uint32_t> loop;
-  for (std::size_t first = 0; first < edges.size();) {
-    loop = {edges[first].from};
-    std::size_t last = first + 1;  // of those of the loop
-    for (std::uint32_t next = edges[first].to; next != loop.front(); ++last) {
-      loop.push_back(next);
-      const auto it =
-          std::find_if(edges.begin() + static_cast<std::ptrdiff_t>(last), edges.end(),
-                       [&](const auto& e) { return e.from == next && e.face == edges[first].face; });
-      if (it == edges.end()) break;
-      std::swap(edges[last], *it);
-      next = edges[last].to;
-    }
-    visit(std::span<const std::uint32_t>(loop));
-    first = last;
-  }
-}
-
 /// The sum of what `of_loop` says of the loops, as `see` sees their corners; the cell's own volume where all
 /// of them are inside.
 template <int N, class See, class OfLoop>
 double sum_over_faces(const ConvexCell& cell, const See& see, const OfLoop& of_loop) {
   std::vector<Seen<N>> seen, loop;
-  for (const ConvexCell::Corner& corner : cell.corners()) seen.push_back(see(corner.point));
+  for (const Vector<3>& corner : cell.corners()) seen.push_back(see(corner));
   const double own = cell.volume();
   if (std::ranges::all_of(seen, &Seen<N>::inside)) return own;
   double sum = 0;
-  for_each_loop(cell, [&](std::span<const std::uint32_t> corners) {
+  cell.for_each_loop([&](std::span<const std::uint32_t> corners) {
     loop.clear();
     for (const std::uint32_t corner : corners) loop.push_back(seen[corner]);
     sum += of_loop(std::span<const Seen<N>>(loop));

@@ -3,10 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <numeric>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -44,15 +42,6 @@ class SphereTree {
     std::uint32_t place = 0;  ///< in the order of the tree
     Vector<D> center = Vector<D>::Zero();
     double value = std::numeric_limits<double>::infinity();
-  };
-
-  /// A node, or an image of it, that a search has still to look at.
-  struct Waiting {
-    double least;
-    std::uint32_t node, shift;  ///< the number of its shift
-    bool operator>(const Waiting& other) const {
-      return std::tie(least, shift, node) > std::tie(other.least, other.shift, other.node);
-    }
   };
 
   SphereTree(const Spheres<D>& spheres, const Boundary<D>& boundary)
@@ -98,32 +87,28 @@ class SphereTree {
     return found;
   }
 
-  /// Calls visit(leaf, shift) for the leaves and their images, moved by `shift`, in the rising order of
-  /// least(squared distance of p from the bounds of the centres, largest radius), as long as that is below
-  /// limit(), which may fall. Of an axis with a period the images next to the one that p is in are looked at.
-  /// `waiting` is for its memory. Precondition: p in the period.
-  template <class Least, class Limit, class Visit>
-  void for_each_leaf(const Vector<D>& p, const Least& least, const Limit& limit,
-                     std::vector<Waiting>& waiting, const Visit& visit) const {
-    waiting.clear();
-    const auto add = [&](std::uint32_t node, std::uint32_t shift) {
-      const double squared = squared_distance(nodes_[node].bounds, p - shifts_[shift]);
-      const double value = least(squared, nodes_[node].largest);
-      if (!(value < limit())) return;
-      waiting.push_back({value, node, shift});
-      std::ranges::push_heap(waiting, std::greater());
-    };
-    for (std::uint32_t shift = 0; shift < shifts_.size() && !nodes_.empty(); ++shift) add(0, shift);
-    while (!waiting.empty() && waiting.front().least < limit()) {
-      std::ranges::pop_heap(waiting, std::greater());
-      const Waiting next = waiting.back();
-      waiting.pop_back();
-      const Node& node = nodes_[next.node];
-      if (node.children == 0) {
-        visit(node, shifts_[next.shift]);
-      } else {
-        add(node.children, next.shift);
-        add(node.children + 1, next.shift);
+  /// Calls visit(leaf, shift, squared) for the leaves and their images, moved by `shift`, whose bounds are
+  /// about as near as may(squared, largest radius) says for the squared distance of p from them: what it says
+  /// of a leaf it has to say of all that the leaf is a part of. Of an axis with a period the images next to
+  /// the one that p is in are looked at. Precondition: p in the period.
+  template <class May, class Visit>
+  void for_each_leaf(const Vector<D>& p, const May& may, const Visit& visit) const {
+    if (nodes_.empty()) return;
+    std::array<std::uint32_t, 80> stack;  // one a level
+    for (const Vector<D>& shift : shifts_) {
+      const Vector<D> moved = p - shift;
+      std::size_t waiting = 0;
+      stack[waiting++] = 0;
+      while (waiting > 0) {
+        const Node& node = nodes_[stack[--waiting]];
+        const double squared = squared_distance(node.bounds, moved);
+        if (!may(squared, node.largest)) continue;
+        if (node.children == 0) {
+          visit(node, shift, squared);
+        } else {
+          stack[waiting++] = node.children + 1;
+          stack[waiting++] = node.children;
+        }
       }
     }
   }

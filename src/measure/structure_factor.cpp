@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -112,6 +113,14 @@ class WaveSums {
   }
 
  private:
+  /// One after the other they would wait for each other.
+  static double sum_in_halves(std::array<double, spheres_together>& values) {
+    static_assert(std::has_single_bit(spheres_together));
+    for (std::size_t half = spheres_together / 2; half > 0; half /= 2)
+      for (std::size_t j = 0; j < half; ++j) values[j] += values[half + j];
+    return values[0];
+  }
+
   static std::complex<double> sum(std::array<Waves, D>& waves, const Eigen::Matrix<int, D, 1>& n) {
     std::array<double, spheres_together> re, im;
     const double *c = waves[0].of(std::abs(n[0])), *s = c + spheres_together;
@@ -131,12 +140,7 @@ class WaveSums {
         re[j] = real;
       }
     }
-    double real = 0, imaginary = 0;
-    for (std::size_t j = 0; j < spheres_together; ++j) {
-      real += re[j];
-      imaginary += im[j];
-    }
-    return {real, imaginary};
+    return {sum_in_halves(re), sum_in_halves(im)};
   }
 
   const Spheres<D>& spheres_;

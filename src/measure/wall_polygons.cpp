@@ -19,7 +19,7 @@ Vector<3> middle_of(std::span<const Vector<3>> points) {
 
 Vector<3> middle_of(const ConvexCell& cell) {
   Vector<3> sum = Vector<3>::Zero();
-  for (const ConvexCell::Corner& corner : cell.corners()) sum += corner.point;
+  for (const Vector<3>& corner : cell.corners()) sum += corner;
   return sum / static_cast<double>(cell.corners().size());
 }
 

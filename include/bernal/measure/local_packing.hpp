@@ -64,7 +64,7 @@ struct LocalPackingOptions {
 /// neighbours are those whose cells meet before the wall, or little behind it. What of a container lies
 /// behind a thin wall belongs to the sphere of the least power all the same.
 ///
-/// Cost in one thread: about 20 µs a sphere, 30 where sizes differ by ten, whether there are round walls or
+/// Cost in one thread: about 10 µs a sphere, also where sizes differ by ten, whether there are round walls or
 /// none.
 ///
 /// The same bits for any number of threads. `made`: see `local_container`. Throws Cancelled, see
