@@ -37,9 +37,12 @@ constexpr std::size_t most_seeds = 64, most_seeds_in_nooks = 1000;
 
 enum class Stopped { by_monitor, too_many, outside };
 
-/// CGAL's door for a look at the work while it goes on.
+/// CGAL's door for a look at the work while it goes on. What has come from inside to beyond `bounds` is out,
+/// and would go around the whole part if it were not stopped: the largest gates come first, and so soon those
+/// to the corners of the box that CGAL begins with.
 struct Watch {
   const Monitor& monitor;
+  std::optional<Bounds<3>> bounds = {};
   std::size_t points = 0;
 
   template <class Wrapper>
@@ -47,7 +50,15 @@ struct Watch {
   template <class Wrapper>
   void on_flood_fill_begin(const Wrapper&) {}
   template <class Wrapper, class Gate>
-  void before_facet_treatment(const Wrapper&, const Gate&) {}
+  void before_facet_treatment(const Wrapper&, const Gate& gate) {
+    if (!bounds) return;
+    const auto reached = gate.facet().first;  // on the side from which it is looked at
+    for (int corner = 0; corner < 4; ++corner) {
+      const Point& p = reached->vertex(corner)->point();
+      for (int k = 0; k < 3; ++k)
+        if (p[k] < bounds->lower[k] || p[k] > bounds->upper[k]) throw Stopped::outside;
+    }
+  }
   template <class Wrapper, class Place>
   void before_Steiner_point_insertion(const Wrapper&, const Place&) {}
   template <class Wrapper, class Vertex>
@@ -159,6 +170,12 @@ Surface wrapped(const Mesh& mesh, double alpha, double offset, const std::vector
   for (const Vector<3>& v : mesh.vertices) points.push_back(wrap_point(v));
   for (const Seed& seed : seeds) from.push_back(wrap_point(seed.place));
   Watch watch{monitor};
+  if (!seeds.empty()) {  // corners are no farther than the offset from the surface
+    constexpr double more = 2;
+    watch.bounds = bounds_of_faces(mesh);
+    watch.bounds->lower.array() -= more * offset;
+    watch.bounds->upper.array() += more * offset;
+  }
   Surface surface;
   // CGAL 5 looks for both among the last parameters, CGAL 6 for the one among the first.
   const auto seeds_and_watch = CGAL::parameters::seed_points(std::ref(from)).visitor(std::ref(watch));

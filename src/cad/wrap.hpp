@@ -17,7 +17,7 @@ namespace bernal::cad {
 ///
 /// alpha or offset 0: the diagonal of the bounds / 100, and alpha / 30. Cost: some 200 µs for each of about
 /// 3 A / alpha² faces that the result has for a surface of area A; it ends with the mesh as it was when these
-/// become more than a million or the monitor stops it.
+/// become more than a million or the monitor stops it, and soon where it gets out of the inside.
 Mended wrap(Mesh mesh, double alpha = 0, double offset = 0, const Monitor& monitor = {});
 
 /// The same with the default offset and an alpha so small that no place is lost where a sphere of that radius

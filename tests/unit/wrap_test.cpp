@@ -116,6 +116,16 @@ TEST(Wrap, DoesNotTakeTheSkinOfASheetForAContainer) {
   }
 }
 
+TEST(Wrap, EndsSoonWhereItGetsOut) {
+  const Mesh open = without_faces(divided(unit_box, 2), [](const Vector<3>& p) { return p[2] == 1; });
+  // Around both sides of the walls it would ask some three hundred times, once in 256 points; to look for the
+  // inside takes some twenty.
+  int asked = 0;
+  const Mended none = wrap(open, 0.02, 0.001, {{}, [&] { return ++asked < 0; }});
+  EXPECT_TRUE(says(none, "gaps wider than alpha")) << none.done;
+  EXPECT_LT(asked, 60);
+}
+
 TEST(Wrap, ListensAndRefuses) {
   const Mended cancelled = wrap(unit_box, 0.02, 0.001, {{}, [] { return true; }});
   EXPECT_TRUE(says(cancelled, "cancelled")) << cancelled.done;
