@@ -88,8 +88,9 @@ Conclusion of_open_target(const Packing& packing, const Work& work, StageEnd end
                one_sphere = expected / std::max(1.0, expected_count);
   if (ending.places_expected && phi < expected - std::min(error, one_sphere))
     return {phi < expected - error - one_sphere ? Outcome::full : Outcome::converged,
-            fmt::format("{} {} placed, packing fraction {}, where {} was expected, give or take {:.2g}; {}",
-                        counted(n), are(n), fraction(phi), fraction(expected), error, why_no_more(end))};
+            fmt::format("{} {} placed, packing fraction {}, where {} was expected, give or take {:.2g}; {}{}",
+                        counted(n), are(n), fraction(phi), fraction(expected), error, why_no_more(end),
+                        guess.empty() ? "" : "; fill = true may place more")};
   return {Outcome::converged, fmt::format("the stages of the scene place {} and no more{}", counted(n),
                                           guess.empty() ? guess
                                                         : fmt::format("; about {} were expected{}",

@@ -15,6 +15,8 @@ namespace {
 
 /// Of margins.
 constexpr double largest_margin = 0.01;
+/// Of the margin, by which walls press less on spheres that are snug between them.
+constexpr double relief_where_snug = 0.95;
 /// Random places that are looked at to find holes: so many for each sphere that there is, or for each hole
 /// where that is less, and a few more.
 constexpr double probes_a_sphere = 2, probes_a_hole = 1000, least_probes = 1000;
@@ -42,6 +44,7 @@ void ContainerGround::place(const Spheres<3>& spheres) {
     require_resolution(resolution);
     margin_ = margin_for(resolution);
   }
+  if (snug_) packing_->relieve_walls(relief_where_snug * margin_ * std::ranges::max(spheres.r));
   packing_->swell(1 + margin_);
 }
 

@@ -29,9 +29,10 @@ class ContainerGround {
   /// Lists may be worn further while spheres are crowded, and as many are put into holes as are stuck.
   static constexpr bool crowds_wear_lists = true;
 
-  /// Both outlive this.
-  ContainerGround(const Container& container, const Places& places)
-      : container_(&container), places_(&places) {}
+  /// Both outlive this. Where spheres are `snug`, none having more room between the walls than it takes,
+  /// walls press a little less than spheres, so that they leave these free.
+  ContainerGround(const Container& container, const Places& places, bool snug = false)
+      : container_(&container), places_(&places), snug_(snug) {}
 
   /// Puts the spheres, whose centres are inside the container, into the engine. Throws what
   /// `require_resolution` does.
@@ -58,6 +59,7 @@ class ContainerGround {
  private:
   const Container* container_;
   const Places* places_;
+  bool snug_;
   std::unique_ptr<SoftPacking> packing_;
   double margin_ = 0;
   Effect lists_built_;

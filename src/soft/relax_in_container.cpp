@@ -43,7 +43,8 @@ class Relaxation {
         random_(work.random(Stream::relax)),
         skin_(work.bed().skin() > thin_skin * work.supply->smallest() ? work.bed().skin() : 0),
         gain_(options.exchange ? gain_by_exchange(SizeExchange(work.supply->radii(), 3).spread(), true) : 1),
-        crowd_(ContainerGround(work.bed().container(), work.bed().places()), spheres_to_start_from()),
+        snug_(SnugPlaces(work).all_touch()),
+        crowd_(ContainerGround(work.bed().container(), work.bed().places(), snug_), spheres_to_start_from()),
         target_count_(std::max(crowd_.size(), work.target_count())) {}
 
   StageEnd run() {
@@ -101,6 +102,7 @@ class Relaxation {
   bool put_in_bed() {
     Spheres<3> spheres = crowd_.spheres();
     for (std::uint32_t i = 0; i < spheres.size(); ++i) spheres.r[i] = work_.supply->radius(i);
+    if (snug_) SnugPlaces(work_).move_to_touch(spheres);
     return work_.put_in_bed(spheres);
   }
 
@@ -256,6 +258,7 @@ class Relaxation {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   Random random_;
   const double skin_;  // that the radii are relaxed with, where it is not thin: far from the origin
+  const bool snug_;    // between the walls
   const double gain_;  // by exchange: 1 where there is none
   CrowdInContainer crowd_;
   const std::size_t target_count_;

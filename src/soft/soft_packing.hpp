@@ -55,6 +55,9 @@ class SoftPacking {
   /// `most_swelling` times the `smallest_edge` of the radii.
   SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels);
 
+  /// In a container: at its walls radii are smaller by so much. Before the first sweep.
+  void relieve_walls(double by) { walls_->relieve(by); }
+
   /// That of lists, at most, in the unit of the radii.
   static double usual_skin(const std::vector<double>& radii);
   /// The least edge in which no two images of a sphere are neighbours of one.

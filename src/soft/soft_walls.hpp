@@ -66,6 +66,9 @@ class SoftWalls {
     a(skin_, facets_, stands_, views_, first_, near_, has_fine_, until_, least_until_, planes_);
   }
 
+  /// At walls radii are smaller by so much from now on.
+  void relieve(double by) { relief_ = by; }
+
   /// For the sweep to come no plane stands for a facet, if `anew`.
   void look_anew(bool anew) { anew_ = anew; }
 
@@ -140,7 +143,7 @@ class SoftWalls {
     bool has_fine = false;
   };
 
-  double radius_at_wall(const SoftSphere& s) const { return s.r + inset_; }
+  double radius_at_wall(const SoftSphere& s) const { return s.r + inset_ - relief_; }
   Vector<3> place(const SoftSphere& s) const;
   Vector<3> way_between(const SoftSphere& from, const SoftSphere& to) const;
   /// The short way from one place of a sphere to another; along an axis that repeats itself the place jumps
@@ -165,6 +168,7 @@ class SoftWalls {
   const Container& container_;
   const bool repeats_;  // along some axis
   const double inset_;
+  double relief_ = 0;
   Vector<3> corner_, unit_;
   std::array<float, 3> float_unit_;
   double resolution_;

@@ -14,6 +14,9 @@ constexpr std::size_t milestone_every = 64;
 constexpr double clear = 1.01;
 /// In radii: what places that only touch may seem to overlap the wall by, before they are made exact.
 constexpr double seemingly = 1e-10;
+/// In radii: the longest step, along an axis, of a sphere that nearly touches to where it does; it may lead
+/// aside as well.
+constexpr double last_step = 1e-5;
 
 }  // namespace
 
@@ -76,6 +79,25 @@ std::optional<Vector<3>> SnugPlaces::find(double r) {
   for (int k = 0; k < most_starts; ++k)
     if (const auto place = from(work_.bed().places().draw(random_), r)) return place;
   return {};
+}
+
+bool SnugPlaces::all_touch() {
+  const double smallest = work_.supply->smallest();
+  return needed(smallest) && work_.exact_place && work_.is_snug(smallest);
+}
+
+void SnugPlaces::move_to_touch(Spheres<3>& spheres) {
+  work_.put_in_bed({});
+  const Bed& bed = work_.bed();
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const double r = spheres.r[i];
+    const Vector<3> center = spheres.center(i);
+    const double reach = 2 * bed.container().clearance(center);
+    if (!(reach > 0)) continue;
+    const Room top = climb(room_at(center, reach, bed.surroundings()), r + bed.skin(), last_step * r,
+                           bed.surroundings(), bed.dimension());
+    if (const auto place = work_.exact_place(top.place, r)) spheres.set_center(i, *place);
+  }
 }
 
 bool SnugPlaces::only_some_touch() {

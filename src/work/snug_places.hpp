@@ -23,6 +23,12 @@ class SnugPlaces {
   /// Cost: about a millisecond.
   std::optional<Vector<3>> find(double r);
 
+  /// Whether all that there is fits only touching the walls.
+  bool all_touch();
+  /// Moves each sphere that stands nearly between the walls to where it touches them exactly, as far as such
+  /// a place is near; the others stay. Takes everything out of the bed.
+  void move_to_touch(Spheres<3>& spheres);
+
   /// Whether of what is asked for some, but not all, fit only touching the walls, and nothing stands yet.
   bool only_some_touch();
   /// Gives these their places, the largest first, before others stand there. Throws Cancelled.

@@ -2,9 +2,13 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "bernal/run/run.hpp"
 #include "bernal/sizes/size_distribution.hpp"
+#include "bernal/verify/certificate.hpp"
 #include "run/estimate.hpp"
 #include "run/few_large.hpp"
 #include "support/plans.hpp"
@@ -46,6 +50,16 @@ TEST(ThinContainers, EndWithAHintAtFill) {
   EXPECT_EQ(filled.reason.find("fill = true"), std::string::npos) << filled.reason;
   const Packing roomy = run(plan_in(wide));
   EXPECT_EQ(roomy.reason.find("give or take"), std::string::npos) << roomy.reason;
+}
+
+/// Tins of exactly one diameter, into which 11 and 19 discs of that size fit.
+TEST(ThinContainers, AreFilledWhereEverySphereTouchesBothEnds) {
+  for (const auto& [radius, least] : {std::pair("2.0", 11), std::pair("2.5", 19)}) {
+    const Packing packing = run(
+        plan_in(fmt::format("kind = \"cylinder\"\nradius = {}\nheight = 1.0\n", radius), "fill = true\n"));
+    EXPECT_GE(packing.spheres.size(), least) << packing.reason;
+    EXPECT_TRUE(certify(packing.spheres, packing.domain).certified) << radius;
+  }
 }
 
 /// One sphere of the three that were expected.
