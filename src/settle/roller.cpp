@@ -226,7 +226,7 @@ bool Roller::step_along(const Track& track, double& step) {
   }
   step = std::clamp(2 * t, no_step * r, longest_step * r);
   const double length = offset.norm();
-  if (!(length > 0)) return stopper_ != none;
+  if (!(t > 0 && length > 0)) return stopper_ != none;  // what would only be put back stays where it is
   if (!is_in_box(offset)) return false;
   if (length > no_step * r) stopper_ = none;
   mover_.advance(offset / length, length);
