@@ -56,6 +56,7 @@ class Insertion {
     std::size_t first = 0;
     const Resumable part(work_, "classes",
                          [&](Archive& a) { a(first, random_, spheres_, grid_, placed_, count_, trials_); });
+    for (Id i = 0; i < spheres_.size(); ++i) balls_.push_back({spheres_.center(i), spheres_.r[i]});
     if (!part.resumed() && work_.placed) keep_places();
     while (first < order_.size()) {
       const double least = least_of_class * spheres_.r[order_[first]];
@@ -82,6 +83,11 @@ class Insertion {
 
  private:
   using Id = typename CellGrid<D>::Id;
+  /// A sphere in one place of memory, as searches look at them in any order.
+  struct Ball {
+    Vector<D> center;
+    double r;
+  };
 
   void forget_those_without_places() {
     Spheres<D> placed;
@@ -94,7 +100,7 @@ class Insertion {
     Vector<D> edges = work_.edges;
     resize_box<D>(spheres_, edges, edges_);
     for (const Id i : order_)
-      if (push_at(spheres_.center(i), i).overlaps == 0) place(i, spheres_.center(i));
+      if (const Vector<D> c = spheres_.center(i); push_at(c, i).overlaps == 0) place(i, c);
   }
 
   void insert_class(const std::vector<Id>& members) {
@@ -145,8 +151,9 @@ class Insertion {
     const double r = spheres_.r[i];
     grid_.for_each_near(c, r * (1 + beyond_contact), [&](Id j) {
       if (j == i) return;
-      const Vector<D> away = boundary_.minimum_image(c - spheres_.center(j));
-      const double reach = reach_share_ * (r + spheres_.r[j]), squared = away.squaredNorm();
+      const Ball& other = balls_[j];
+      const Vector<D> away = boundary_.minimum_image(c - other.center);
+      const double reach = reach_share_ * (r + other.r), squared = away.squaredNorm();
       if (!(squared < reach * reach)) return;
       ++push.overlaps;
       if (squared > 0) push.by += away * (reach / std::sqrt(squared) * (1 + beyond_contact) - 1);
@@ -155,8 +162,13 @@ class Insertion {
     return push;
   }
 
-  void place(Id i, const Vector<D>& c) {
+  void set_center(Id i, const Vector<D>& c) {
     spheres_.set_center(i, c);
+    balls_[i].center = c;
+  }
+
+  void place(Id i, const Vector<D>& c) {
+    set_center(i, c);
     grid_.insert(i, c, spheres_.r[i]);
     placed_[i] = true;
     ++count_;
@@ -174,7 +186,7 @@ class Insertion {
       c = boundary_.wrap(c);
       if (blocked(c, i)) continue;
       ++moved;
-      spheres_.set_center(i, c);
+      set_center(i, c);
       grid_.move(i, c);
     }
     const bool often = static_cast<double>(moved) > successful * static_cast<double>(there);
@@ -184,8 +196,9 @@ class Insertion {
   bool blocked(const Vector<D>& c, Id i) const {
     const double r = spheres_.r[i];
     return grid_.any_near(c, r * (1 + beyond_contact), [&](Id j) {
-      const double reach = reach_share_ * (r + spheres_.r[j]);
-      return j != i && boundary_.minimum_image(c - spheres_.center(j)).squaredNorm() < reach * reach;
+      const Ball& other = balls_[j];
+      const double reach = reach_share_ * (r + other.r);
+      return j != i && boundary_.minimum_image(c - other.center).squaredNorm() < reach * reach;
     });
   }
 
@@ -195,6 +208,7 @@ class Insertion {
   const Vector<D> edges_;
   const Boundary<D> boundary_;
   const double smallest_, reach_share_;
+  std::vector<Ball> balls_;  // of all
   CellGrid<D> grid_;
   std::vector<bool> placed_;
   bool cancelled_ = false;

@@ -23,7 +23,9 @@ void write_local_packing(Page& page, const LocalPacking& local) {
       "nearer to it than to any other by the power distance |p − c|² − r². The cells of all spheres fill the "
       "domain; a sphere has more volume than its cell only where it overlaps others.</p>\n<div "
       "class=\"wide\"><table>\n");
-  page.row("mean", fmt::format("{:.4f}", local.mean),
+  page.row("mean",
+           local.ids.empty() ? fmt::format("{:.4f}", local.mean)
+                             : fmt::format("{:.4f} ± {:.4f}", local.mean, local.mean_error),
            (local.ids.empty() ? "over the spheres"
                               : fmt::format("over {} spheres, evenly spread", grouped(local.ids.size()))) +
                (chart.empty() ? "" : "; the dashed line"));

@@ -152,6 +152,7 @@ static void to_json(Json& json, const RadialDistribution& radial) {
 /// Without what every single sphere has.
 static void to_json(Json& json, const LocalPacking& local) {
   json = {{"mean", local.mean},
+          {"mean_error", local.mean_error},
           {"deviation", local.deviation},
           {"quantiles", local.quantiles},
           {"mean_neighbours", local.mean_neighbours},

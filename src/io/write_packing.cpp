@@ -31,10 +31,11 @@ namespace {
 
 /// Enough for curves that are smooth to the eye; `bernal measure` takes more.
 constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5;
-constexpr std::uint32_t points_for_a_report = 4000, pore_points_for_a_report = 20000;
+constexpr std::uint32_t points_for_a_report = 4000, pore_points_for_a_report = 10000;
 constexpr double waves_for_a_report = 2.5e7, wave_bins_for_a_report = 0.4;
-/// Of more spheres, cells and waves would take longer than many a packing; already all cells of fewer would.
-constexpr std::size_t most_for_a_report = 100'000, all_cells_for_a_report = 10'000;
+/// Of more spheres, cells and waves would take longer than many a packing; all cells of fewer already would,
+/// of which a sample says nearly as much.
+constexpr std::size_t most_for_a_report = 100'000, all_cells_for_a_report = 10'000, cells_for_a_report = 4000;
 /// Of more spheres the search for pores would take as much memory as all the rest.
 constexpr std::size_t most_for_pores = 20'000'000;
 
@@ -107,7 +108,9 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
                .size_correlation = {.work = distances_for_a_report},
                .chambers = {.points = points_for_a_report},
                .walls = {.work = wall_distances_for_a_report},
-               .local = {.most_spheres = most_for_a_report, .all_of = all_cells_for_a_report},
+               .local = {.most_spheres = most_for_a_report,
+                         .all_of = all_cells_for_a_report,
+                         .looked_at = cells_for_a_report},
                .structure = {.bin = wave_bins_for_a_report,
                              .work = waves_for_a_report,
                              .most_spheres = most_for_a_report},

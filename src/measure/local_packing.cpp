@@ -45,7 +45,7 @@ void keep(const std::vector<std::uint8_t>& looked_at, LocalPacking& local) {
   keep_of(local.neighbours);
 }
 
-void summarise(LocalPacking& local) {
+void summarise(LocalPacking& local, std::size_t spheres) {
   std::vector<double> fractions;
   double sum = 0, neighbours = 0;
   for (std::size_t i = 0; i < local.cell_volume.size(); ++i) {
@@ -65,6 +65,8 @@ void summarise(LocalPacking& local) {
   double squares = 0;
   for (const double phi : fractions) squares += (phi - local.mean) * (phi - local.mean);
   local.deviation = std::sqrt(squares / n);
+  const double left_out = 1 - static_cast<double>(local.cell_volume.size()) / static_cast<double>(spheres);
+  local.mean_error = local.deviation * std::sqrt(left_out / n);
   local.mean_neighbours = neighbours / n;
   std::ranges::sort(fractions);
   for (const double share : {0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99}) {
@@ -113,7 +115,7 @@ std::optional<LocalPacking> local_packing(const Spheres<dynamic>& packed, const 
                         local.neighbours[i] = cell.faces(least_face);
                       });
   if (some) keep(was_looked_at, local);
-  summarise(local);
+  summarise(local, spheres.size());
   return local;
 }
 

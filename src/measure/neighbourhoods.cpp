@@ -37,19 +37,22 @@ class Lookout {
   void look(std::uint32_t i, std::uint32_t& contacts, double& gap) const {
     const Vector<D> c = boundary_.wrap(spheres_.center(i));
     const double r = spheres_.r[i];
-    contacts = 0;
-    for (const Level<D>& level : levels_)
-      visit(level, i, c, reach_of_contact(r + level.largest),
-            [&](double distance, double radii) { contacts += distance < reach_of_contact(radii) ? 1 : 0; });
     constexpr double infinity = std::numeric_limits<double>::infinity();
     constexpr double first = 0.25, wider = 3;  // of a radius; of what was looked at before
-    for (double reach = first * r;;) {
-      gap = infinity;
+    double reach = first * r;
+    contacts = 0;
+    gap = infinity;
+    for (const Level<D>& level : levels_)
+      visit(level, i, c, std::max(reach_of_contact(r + level.largest), r + level.largest + reach),
+            [&](double distance, double radii) {
+              contacts += distance < reach_of_contact(radii) ? 1 : 0;
+              gap = std::min(gap, distance - radii);
+            });
+    while (gap > reach && (gap < infinity || reach <= farthest_)) {
+      reach = gap < infinity ? gap : wider * reach;  // what is nearer than that, if anything, is within it
       for (const Level<D>& level : levels_)
         visit(level, i, c, r + level.largest + reach,
               [&](double distance, double radii) { gap = std::min(gap, distance - radii); });
-      if (gap <= reach || (gap == infinity && reach > farthest_)) return;
-      reach = gap < infinity ? gap : wider * reach;  // what is nearer than that, if anything, is within it
     }
   }
 

@@ -90,10 +90,10 @@ class Diagram {
     const double more = weight - r * r, d = std::sqrt(std::max(squared, more));
     return d > 0 ? 0.5 * (d + more / d) : more < 0 ? -infinite : 0;
   }
-  /// Whether that is below `within`, but for rounding, which is positive.
-  static bool comes_within(double weight, double squared, double r, double within) {
+  /// Whether that is below `limit`, which is positive, but for rounding.
+  static bool comes_below(double weight, double squared, double r, double limit) {
     const double more = weight - r * r, far = std::max(squared, more), sum = far + more;
-    return sum <= 0 || sum * sum < 4 * within * within * far;
+    return sum <= 0 || sum * sum < 4 * limit * limit * far;
   }
 
   /// A guess at how far a cell reaches.
@@ -109,13 +109,13 @@ class Diagram {
     begin(piece.cell, place);
     const double weight = tree_.radius(place) * tree_.radius(place);
     double reach = reach_of(piece.cell), done = 0;
-    for (double within = first_look(place, reach); done < reach; within = std::min(2 * within, reach)) {
+    for (double look = first_look(place, reach); done < reach; look = std::min(2 * look, reach)) {
       piece.leaves.clear();
       tree_.for_each_leaf(
           tree_.center(place),
-          [&](double squared, double r) { return comes_within(weight, squared, r, within); },
+          [&](double squared, double r) { return comes_below(weight, squared, r, look); },
           [&](const Tree::Node& leaf, const Vector<3>& shift, double squared) {
-            if (!(done > 0 && comes_within(weight, squared, leaf.largest, done)))
+            if (!(done > 0 && comes_below(weight, squared, leaf.largest, done)))
               piece.leaves.push_back({nearest_plane(weight, squared, leaf.largest), &leaf, &shift});
           });
       std::ranges::sort(piece.leaves, {}, &Leaf::least);
@@ -124,7 +124,7 @@ class Diagram {
         find_planes(place, *leaf.node, *leaf.shift, reach, piece.planes);
         cut_by(piece, reach);
       }
-      done = within;
+      done = look;
     }
   }
 

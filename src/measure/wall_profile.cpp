@@ -157,23 +157,29 @@ class Volumes {
     for (const double cube : cubes_) squares_ += std::pow(cube - mean_, 2);
   }
 
-  /// Of the spheres i with is_there(i).
-  template <class IsThere>
-  std::optional<WallProfile::Segregation> of(IsThere&& is_there) const {
-    double sum = 0, there = 0;
+  /// Of so many places, where sphere i is in place_of(i), or in none of them.
+  template <class PlaceOf>
+  std::vector<std::optional<WallProfile::Segregation>> of(std::size_t places, PlaceOf&& place_of) const {
+    std::vector<double> sum(places, 0), there(places, 0);
     for (std::size_t i = 0; i < cubes_.size(); ++i) {
-      if (!is_there(i)) continue;
-      sum += cubes_[i];
-      ++there;
+      const std::size_t place = place_of(i);
+      if (place >= places) continue;
+      sum[place] += cubes_[i];
+      ++there[place];
     }
-    if (there == 0) return {};
-    const double n = count();
-    // Drawn from n without putting back.
-    const double error = n > 1 ? std::sqrt(squares_ / (n - 1) / there * (1 - there / n)) / mean_ : 0;
-    return WallProfile::Segregation{static_cast<std::uint64_t>(there), sum / there / mean_, error};
+    std::vector<std::optional<WallProfile::Segregation>> found(places);
+    for (std::size_t k = 0; k < places; ++k)
+      if (there[k] > 0) found[k] = segregation(sum[k], there[k]);
+    return found;
   }
 
  private:
+  WallProfile::Segregation segregation(double sum, double there) const {
+    const double n = count();
+    // Drawn from n without putting back.
+    const double error = n > 1 ? std::sqrt(squares_ / (n - 1) / there * (1 - there / n)) / mean_ : 0;
+    return {static_cast<std::uint64_t>(there), sum / there / mean_, error};
+  }
   double count() const { return static_cast<double>(cubes_.size()); }
 
   std::vector<double> cubes_;
@@ -238,10 +244,12 @@ std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Do
   for (std::size_t i = 0; i < spheres.size(); ++i)
     profile.regions.push_back(region_of(clearance[i], spheres.r[i], zones));
   const Volumes volumes(spheres.r, 0.5 * diameter);
-  profile.segregation = volumes.of([&](std::size_t i) { return profile.regions[i] == Region::near_wall; });
-  for (std::size_t k = 0; k < profile.layers.size(); ++k)
-    profile.layers[k].segregation = volumes.of(
-        [&](std::size_t i) { return zones.layer_of(std::max(0.0, clearance[i] - spheres.r[i])) == k; });
+  profile.segregation =
+      volumes.of(1, [&](std::size_t i) { return profile.regions[i] == Region::near_wall ? 0 : 1; }).front();
+  const auto by_layer = volumes.of(profile.layers.size(), [&](std::size_t i) {
+    return zones.layer_of(std::max(0.0, clearance[i] - spheres.r[i]));
+  });
+  for (std::size_t k = 0; k < profile.layers.size(); ++k) profile.layers[k].segregation = by_layer[k];
   return profile;
 }
 

@@ -76,6 +76,12 @@ void put_in_rows(std::vector<Vector<3>>& points, const Rows& rows) {
   points.swap(sorted);
 }
 
+/// A sphere in one place of memory, as a search looks at them in any order.
+struct Ball {
+  Vector<3> center;
+  double r;
+};
+
 /// The roomiest so many of the places that have some clearance.
 struct Group {
   double least_clearance;
@@ -144,8 +150,12 @@ std::vector<Hole> holes_for(std::span<const double> radii, const Container& cont
   const auto [least, most] = std::ranges::minmax(spheres.r);
   const Boundary<3>& boundary = container.boundary();
   CellGrid<3> grid(container.bounds(), boundary, least, most, spheres.size());
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    grid.insert(static_cast<CellGrid<3>::Id>(i), spheres.center(i), spheres.r[i]);
+  std::vector<Ball> balls;
+  balls.reserve(spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    balls.push_back({spheres.center(i), spheres.r[i]});
+    grid.insert(static_cast<CellGrid<3>::Id>(i), balls[i].center, balls[i].r);
+  }
 
   // Of a hole a sphere needs to clear the wall first of all; the roomiest places may all be too near to it.
   std::vector<Group> none;
@@ -175,7 +185,7 @@ std::vector<Hole> holes_for(std::span<const double> radii, const Container& cont
       double enough = most;
       for (const Group& group : groups) enough = std::min(enough, group.enough(-most));
       const double room = room_between_spheres(grid, p, enough, most, 0, [&](CellGrid<3>::Id j) {
-        return Nearby{boundary.minimum_image(spheres.center(j) - p).squaredNorm(), spheres.r[j]};
+        return Nearby{boundary.minimum_image(balls[j].center - p).squaredNorm(), balls[j].r};
       });
       if (room <= enough) continue;
       const double clearance = container.clearance_within(p, radii.front());

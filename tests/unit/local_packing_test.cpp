@@ -321,7 +321,9 @@ TEST(LocalPacking, OfASampleIsThatOfTheSameSpheres) {
     EXPECT_EQ(some.neighbours[k], all.neighbours[some.ids[k]]);
   }
   EXPECT_TRUE(std::isnan(some.volume_error));
-  EXPECT_NEAR(some.mean, all.mean, 5 * all.deviation / std::sqrt(400.0));
+  EXPECT_NEAR(some.mean_error, all.deviation * std::sqrt(0.8 / 400), 0.1 * some.mean_error);
+  EXPECT_NEAR(some.mean, all.mean, 4 * some.mean_error);
+  EXPECT_EQ(all.mean_error, 0);
   EXPECT_NEAR(some.mean_neighbours, all.mean_neighbours, 1);
   EXPECT_TRUE(local_packing(spheres, box, {.all_of = 2000, .looked_at = 400})->ids.empty());
 }

@@ -36,7 +36,9 @@ struct LocalPacking {
   std::uint64_t empty = 0;  ///< cells without volume: of spheres that are hidden in others, or outside
 
   // Over the spheres looked at whose cells are not empty; zero without any.
-  double mean = 0;       ///< of the local packing fractions
+  double mean = 0;  ///< of the local packing fractions
+  /// Standard error of the mean, as of spheres drawn at random; 0 where all were looked at.
+  double mean_error = 0;
   double deviation = 0;  ///< their standard deviation
   double mean_neighbours = 0;
 
