@@ -155,7 +155,7 @@ void admit_unrest(Conclusion& conclusion, const Packing& packing, const Pressing
   const Scene& scene = packing.scene;
   const Rest rest = measure_rest(packing.spheres, packing.domain, pressed.direction, scene.gap,
                                  scene.wall_gap, packing.container);
-  if ((pressed.by_tolerance ? rest.hanging : rest.unsettled) == 0) return;
+  if ((pressed.loosely ? rest.hanging : rest.unsettled) == 0) return;
   if (conclusion.outcome == Outcome::converged) conclusion.outcome = Outcome::hit_limit;
   std::string what = fmt::format("{} {} not at rest", counted(rest.unsettled), are(rest.unsettled));
   if (rest.hanging > 0)
@@ -164,8 +164,8 @@ void admit_unrest(Conclusion& conclusion, const Packing& packing, const Pressing
                        rest.farthest, name_of(scene.unit));
   conclusion.reason += fmt::format(
       "; {}: {}", what,
-      pressed.by_tolerance ? "leave \"tolerance\" out of the stages that settle, or make it smaller"
-                           : "let the stages that settle do more, by \"max_iterations\"");
+      pressed.loosely ? "leave \"tolerance\" or \"rest\" out of the stages that settle, or make it smaller"
+                      : "let the stages that settle do more, by \"max_iterations\"");
 }
 
 std::string resized(double size_scale) {

@@ -14,7 +14,8 @@ namespace {
 
 std::optional<Pressing> pressing(const Stage& stage) {
   const auto by = [](const Compress& c) { return Pressing{direction_of(c), c.tolerance.has_value()}; };
-  if (const auto* settle = stage.as<Settle>()) return by({.direction = settle->direction});
+  if (const auto* settle = stage.as<Settle>())
+    return Pressing{direction_of(Compress{.direction = settle->direction}), settle->rest > Settle{}.rest};
   if (const auto* compress = stage.as<Compress>()) return by(*compress);
   if (const auto* shake = stage.as<Shake>()) return by(shake->compress);
   if (const auto* refill = stage.as<Refill>()) return by(refill->shake.compress);

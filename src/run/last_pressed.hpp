@@ -11,7 +11,7 @@ namespace bernal {
 /// How a stage presses spheres.
 struct Pressing {
   Vector<3> direction;
-  bool by_tolerance;  ///< as the paper has it, which leaves spheres that do not rest
+  bool loosely;  ///< by a tolerance that leaves spheres which do not rest
 };
 
 /// How the spheres were pressed last, as long as they are as that left them: a stage that only places, and

@@ -16,6 +16,8 @@ namespace {
 /// less than `little` of the first.
 constexpr int global_sweeps = 8;
 constexpr double little = 0.3;
+/// In the end no sphere moves farther than this, in radii.
+constexpr double at_rest_in_radii = 1e-7;
 /// The bed is at rest when the spheres' mean way along the global direction in an iteration is less than
 /// this, in mean radii. Until then local directions would only disturb the fall. (Potential energy does not
 /// tell: it may be that of a few large spheres, at rest while the small ones still fall.)
@@ -170,7 +172,7 @@ StageEnd compress(Work& work, const Compress& options) {
   Moved moved;
 
   for (; iteration < options.max_iterations; ++iteration) {
-    if (!stirs) return roll_to_rest(work, direction, options.max_iterations);
+    if (!stirs) return roll_to_rest(work, direction, at_rest_in_radii, options.max_iterations);
     if (work.stop()) return StageEnd::cancelled;
     box = bed.enclose(box);
     global.wake_all();  // the ends of the old boxes held some

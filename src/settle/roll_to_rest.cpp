@@ -7,16 +7,13 @@
 namespace bernal {
 namespace {
 
-/// What moves less far than this, in radii, rests and wakes no neighbour: a tenth of what a contact may be
-/// open by.
-constexpr double still = 1e-7;
 /// Room around a sphere, in mean radii.
 constexpr double room = 0.5;
 /// Between two buildings of the lists.
 constexpr int rolling_sweeps = 50;
 
 /// Returns whether any sphere has moved.
-bool sweep_until_still(Bed& bed, const Vector<3>& direction) {
+bool sweep_until_still(Bed& bed, const Vector<3>& direction, double still) {
   Roller roller(bed, direction);
   std::vector<char> awake(bed.size(), 1);
   bool moved = false, moves = true;
@@ -35,7 +32,7 @@ bool sweep_until_still(Bed& bed, const Vector<3>& direction) {
 
 }  // namespace
 
-StageEnd roll_to_rest(Work& work, const Vector<3>& direction, int most_iterations) {
+StageEnd roll_to_rest(Work& work, const Vector<3>& direction, double still, int most_iterations) {
   Bed& bed = work.bed();
   int iteration = 0;
   const Resumable part(work, "roll to rest", [&](Archive& a) { a(iteration); });
@@ -43,7 +40,7 @@ StageEnd roll_to_rest(Work& work, const Vector<3>& direction, int most_iteration
   for (; iteration < most_iterations; ++iteration) {
     if (work.stop()) return StageEnd::cancelled;
     bed.enclose(room * bed.mean_radius());
-    if (!sweep_until_still(bed, direction)) return StageEnd::converged;
+    if (!sweep_until_still(bed, direction, still)) return StageEnd::converged;
     work.milestone("settle");
   }
   return StageEnd::hit_limit;

@@ -80,7 +80,7 @@ StageEnd settle(Work& work, const Settle& options) {
   if (end == StageEnd::cancelled) return end;
   const EffectTimer timer(work.effects["rolling"]);
   const Made made("rolling");
-  const StageEnd rest = roll_to_rest(work, down);
+  const StageEnd rest = roll_to_rest(work, down, options.rest);
   return rest == StageEnd::converged ? end : rest;
 }
 
@@ -99,7 +99,13 @@ const StageEntry& entry_of<Settle>() {
                     number(&Settle::porosity, "porosity",
                            "of the bed up to its surface; if absent that of poured beds of these sizes in "
                            "this container, which is expected to 0.02",
-                           between(0.2, 0.95))}},
+                           between(0.2, 0.95)),
+                    buys_accuracy(
+                        {1e-2, 1e-3, 1e-5, 1e-7},
+                        number(&Settle::rest, "rest",
+                               "how far a sphere may still fall and roll, in radii, and count as "
+                               "at rest; with more than 1e-7 it is only judged whether spheres hang",
+                               {1e-12, 0.01}))}},
           {.in_bed = true, .keeps_sizes = true, .places_expected = true}),
       .act_in_bed = act(settle),
       .may_bring = {"insertion", "neighbour lists", "relaxation", "rolling"},

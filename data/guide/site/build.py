@@ -64,7 +64,7 @@ SECTIONS = [
 
 
 def pandoc(markdown):
-    return subprocess.run(["pandoc", "--from=gfm+attributes-raw_tex", "--to=html5", "--wrap=none"], input=markdown,
+    return subprocess.run(["pandoc", "--from=gfm+attributes", "--to=html5", "--wrap=none"], input=markdown,
                           capture_output=True, text=True, check=True).stdout
 
 

@@ -11,6 +11,9 @@ struct Settle {
   Coordinates direction = {0, 0, -1};
   /// Share of the bed's volume, up to its surface, that is left free; without it that of a poured bed.
   std::optional<double> porosity = {};
+  /// How far a sphere may still fall and roll, in radii, and count as at rest. With more than 1e-7 it is only
+  /// judged whether spheres hang.
+  double rest = 1e-7;
 };
 
 }  // namespace bernal
