@@ -16,7 +16,7 @@
 #include "support/meshes.hpp"
 
 // 3MF and AMF made of meshes, and what is read of them.
-namespace bernal::test {
+namespace bernal::test::printed {
 
 using Entries = std::vector<std::pair<std::string, std::string>>;
 
@@ -133,4 +133,4 @@ class PrintedFormats : public ::testing::Test {
   testing::Folder folder;
 };
 
-}  // namespace bernal::test
+}  // namespace bernal::test::printed

@@ -13,7 +13,7 @@
 namespace bernal {
 namespace printed_formats_test {
 
-using namespace test;
+using namespace test::printed;
 
 TEST_F(PrintedFormats, PicturesAndSettingsAroundTheModelAreNoMatter) {
   const std::string settings =

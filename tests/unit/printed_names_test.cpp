@@ -12,7 +12,7 @@
 namespace bernal {
 namespace printed_names_test {
 
-using namespace test;
+using namespace test::printed;
 
 class PrintedNames : public PrintedFormats {};
 
