@@ -54,9 +54,25 @@ std::vector<Vector<3>> directions_of(const Mesh& solid) {
 struct Level {
   Vector<3> direction;
   double height, bottom, lower;  ///< of the highest and lowest corner there, and of the next one below
-  double area;                   ///< of the faces in the plane that look along the direction
+  double area;                   ///< of the faces in the plane
   std::size_t corners;
 };
+
+/// The corners around which no other one is higher, and those around which such and others take turns: the
+/// top of a round brim, and where a vessel would spill.
+std::vector<std::uint32_t> peaks_and_passes(const Mesh& solid, const std::vector<std::size_t>& level) {
+  std::vector<std::uint8_t> turns(level.size(), 0), is_higher(level.size(), 0);
+  for (const FaceCorners& t : solid.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool next = level[t[(k + 1) % 3]] > level[t[k]], last = level[t[(k + 2) % 3]] > level[t[k]];
+      is_higher[t[k]] |= next || last;
+      if (next != last) turns[t[k]] = std::min<std::uint8_t>(turns[t[k]] + 1, 100);
+    }
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t v = 0; v < level.size(); ++v)
+    if (is_higher[v] == 0 || turns[v] >= 4) found.push_back(v);
+  return found;
+}
 
 void add_levels(const Mesh& solid, const Vector<3>& direction, double tolerance, std::vector<Level>& levels) {
   std::vector<std::uint32_t> order(solid.vertices.size());
@@ -74,13 +90,14 @@ void add_levels(const Mesh& solid, const Vector<3>& direction, double tolerance,
       all.push_back({direction, here, here, k == 0 ? here : height[order[k - 1]], 0, 0});
     level[order[k]] = all.size() - 1;
     all.back().height = here;
-    ++all.back().corners;
   }
+  for (const std::uint32_t v : peaks_and_passes(solid, level)) ++all[level[v]].corners;
   for (const FaceCorners& t : solid.triangles) {
     if (level[t[0]] != level[t[1]] || level[t[0]] != level[t[2]]) continue;
-    all[level[t[0]]].area += std::max(0.0, cross_of(solid, t).dot(direction)) / 2;
+    all[level[t[0]]].area += std::abs(cross_of(solid, t).dot(direction)) / 2;
   }
   all.erase(all.begin());  // nothing is below it
+  std::erase_if(all, [](const Level& one) { return one.corners == 0 && !(one.area > 0); });
   constexpr std::size_t most_by_area = 6, most_by_corners = 4;
   std::ranges::stable_sort(all, std::greater<>(), &Level::corners);
   std::stable_sort(all.begin() + std::ptrdiff_t(std::min(all.size(), most_by_corners)), all.end(),

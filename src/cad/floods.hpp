@@ -17,9 +17,9 @@ struct Flood {
 /// The hollows of a solid that one plane closes, each to the highest plane that does, the largest first: for
 /// whatever stands beyond the brim, a handle, posts, a pipe, is cut off by it. Planes lie across the
 /// directions that most faces look along, the principal axes of all normals, and z; on levels where faces lie
-/// in the plane or many corners do. Orientation does not matter; a hollow without such a brim is not found.
-/// Precondition: closed, without voids. Cost: a cut of the solid a plane, up to 100 of them, fewer for many
-/// faces.
+/// in the plane, or corners that are peaks or passes. Orientation does not matter; a hollow without such a
+/// brim is not found. Precondition: closed, without voids. Cost: a cut of the solid a plane, up to 100 of
+/// them, fewer for many faces.
 std::vector<Flood> floods_of(const Mesh& solid, double tolerance);
 
 /// A point of the space that walls enclose, halfway between its largest face and what is opposite.
