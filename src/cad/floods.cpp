@@ -191,7 +191,8 @@ std::vector<Flood> floods_of(const Mesh& solid, double tolerance) {
     throw_if_interrupted();
     // At the corners' own height for what has a flat brim, and just below for what has not.
     constexpr double hardly_lower = 1e-4;  // of the way to the next corner
-    for (const double height : {level.height, level.bottom - hardly_lower * (level.bottom - level.lower)}) {
+    for (const double height :
+         {level.height, level.bottom - std::max(4 * apart, hardly_lower * (level.bottom - level.lower))}) {
       const CutPlane brim = plane_across(level.direction, height);
       try {
         for (Space& space : around.closed_off({brim}, tolerance, around.crevice())) {
