@@ -1,5 +1,9 @@
 #pragma once
+#if __has_include(<CGAL/AABB_traits_3.h>)  // CGAL 6 has two, by dimension
+#include <CGAL/AABB_traits_3.h>
+#else
 #include <CGAL/AABB_traits.h>
+#endif
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
@@ -59,7 +63,11 @@ class Leaf {
   Vector<3> normal_;
 };
 
+#if __has_include(<CGAL/AABB_traits_3.h>)
+using TreeTraits = CGAL::AABB_traits_3<WallKernel, Leaf>;
+#else
 using TreeTraits = CGAL::AABB_traits<WallKernel, Leaf>;
+#endif
 using Tree = CGAL::AABB_tree<TreeTraits>;
 using Node = CGAL::AABB_node<TreeTraits>;
 

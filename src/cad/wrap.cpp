@@ -67,6 +67,10 @@ struct Watch {
     if (points % 256 == 0 && monitor.stop()) throw Stopped::by_monitor;
   }
   template <class Wrapper>
+  bool go_further(const Wrapper&) {  // CGAL 6 asks
+    return true;
+  }
+  template <class Wrapper>
   void on_flood_fill_end(const Wrapper&) {}
   template <class Wrapper>
   void on_alpha_wrapping_end(const Wrapper&) {}

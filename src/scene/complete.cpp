@@ -150,8 +150,8 @@ void complete_pushes(const Entry& entry, void* options, const Scene& scene, cons
         toml_text(value) != toml_text(*key.of(entry.defaults.get())))
       section.refuse(key.name, fmt::format("must have a component for each of {} dimensions, but it has {}",
                                            dimension, value.size()));
-    std::vector<double> down(dimension, 0.0);
-    down.back() = -1;
+    std::vector<double> down(dimension - 1, 0.0);
+    down.push_back(-1);
     key.member.set(options, down);
   }
 }
