@@ -7,6 +7,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/error.hpp"
+#include "bernal/core/tolerance.hpp"
 #include "core/parallel.hpp"
 #include "measure/localised.hpp"
 #include "measure/sphere_tree.hpp"
@@ -56,7 +57,11 @@ class SpheresInWalls {
  public:
   SpheresInWalls(const Spheres<3>& spheres, const Boundary<3>& boundary, const Container& container,
                  const Vector<3>& direction)
-      : spheres_(spheres), tree_(spheres, boundary), container_(container), direction_(direction) {}
+      : spheres_(spheres),
+        tree_(spheres, boundary),
+        container_(container),
+        direction_(direction),
+        least_closed_(2 * tolerance::skin(std::ranges::min(spheres.r), container.resolution())) {}
 
   /// Of many contacts a few decide: those are taken together, one after the other, that the best way past
   /// the others leads into most.
@@ -104,7 +109,7 @@ class SpheresInWalls {
   /// Of what sphere i touches, unit, towards it; of walls whose normals are the same, one.
   Normals normals_at(std::size_t i) const {
     const Vector<3> p = spheres_.center(i);
-    const double r = spheres_.r[i], reach = (1 + Rest::closed) * r;
+    const double r = spheres_.r[i], reach = r + std::max(Rest::closed * r, least_closed_);
     Normals normals;
     tree_.for_each_on_way(p, reach, direction_, 0, [&](std::uint32_t place, const Vector<3>& center) {
       const Vector<3> away = p - center;
@@ -115,8 +120,24 @@ class SpheresInWalls {
     thread_local std::vector<NearFacet> near;
     near.clear();
     container_.facets_near(p, reach, near);
-    for (const NearFacet& n : near) add_new(normals, p - closest_point(n.facet, p));
+    for (const NearFacet& n : near) {
+      if (n.facet.kind != Facet::Kind::triangle && n.facet.kind != Facet::Kind::plane &&
+          n.facet.radius <= reach)
+        add_all_around(normals, n.facet);
+      else
+        add_new(normals, p - closest_point(n.facet, p));
+    }
     return normals;
+  }
+
+  /// Of a round wall that the sphere just fits into, which holds it on all sides.
+  void add_all_around(Normals& normals, const Facet& round) const {
+    const bool has_axis = round.kind == Facet::Kind::cylinder;
+    const Vector<3> across = has_axis ? Vector<3>(round.b.unitOrthogonal()) : direction_;
+    for (const Vector<3>& n : {across, Vector<3>(has_axis ? round.b.cross(across) : across)}) {
+      add_new(normals, n);
+      add_new(normals, -n);
+    }
   }
 
   static bool is_known(const Normals& normals, const Vector<3>& n) {
@@ -161,6 +182,7 @@ class SpheresInWalls {
   SphereTree<3> tree_;
   const Container& container_;
   Vector<3> direction_;
+  double least_closed_;  // where coordinates are too coarse for a millionth of a radius
 };
 
 Rest rest_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,

@@ -215,13 +215,15 @@ std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Do
   zones.near = diameter;
   zones.core = profile.has_core ? WallProfile::core_depth * diameter : 0.5 * depths.deepest();
 
-  const std::vector<double> clearance = clearances(*container, spheres, reach);
+  // What is as deep as was looked lies in the last layer, which begins a rounding below that at most.
+  const double looked = std::max(reach, zones.edges.back());
+  const std::vector<double> clearance = clearances(*container, spheres, looked);
   double within_reach = 0;
-  for (std::size_t i = 0; i < spheres.size(); ++i) within_reach += clearance[i] - spheres.r[i] < reach;
+  for (std::size_t i = 0; i < spheres.size(); ++i) within_reach += clearance[i] - spheres.r[i] < looked;
   const double work = options.work * (std::holds_alternative<Mesh>(domain) ? mesh_share : analytic_share);
   const auto points =
       static_cast<std::uint32_t>(std::clamp(work / std::max(1.0, within_reach), fewest_points, most_points));
-  const std::vector<Filling> filling = fill(*container, spheres, clearance, zones, reach, points);
+  const std::vector<Filling> filling = fill(*container, spheres, clearance, zones, looked, points);
 
   const auto in_scene = [&](double local) { return frame.scale * local; };
   for (std::size_t k = 0; k < zones.edges.size(); ++k) {

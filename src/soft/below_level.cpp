@@ -92,24 +92,33 @@ std::shared_ptr<const Container> below_level(std::shared_ptr<const Container> wh
   return std::make_shared<BelowLevel>(std::move(whole), down, level, volume);
 }
 
-double level_holding(double volume, const Container& container, const Vector<3>& down) {
+Heights::Heights(const Container& container, const Vector<3>& down) : volume_(container.volume()) {
   const Bounds<3> bounds = container.bounds();
   const Vector<3> size = bounds.size();
   // The additive recurrence of the plastic number's relative in three dimensions (Roberts 2018).
   const Vector<3> step(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
-  std::vector<double> heights;
-  for (std::size_t n = 1; heights.size() < points_inside && n <= points_tried; ++n) {
+  for (std::size_t n = 1; heights_.size() < points_inside && n <= points_tried; ++n) {
     const Vector<3> at = static_cast<double>(n) * step;
     const Vector<3> p = bounds.lower + size.cwiseProduct(Vector<3>(at - at.array().floor().matrix()));
-    if (container.contains(p, 0)) heights.push_back(-down.dot(p));
+    if (container.contains(p, 0)) heights_.push_back(-down.dot(p));
   }
-  if (heights.empty()) return -down.dot(down.dot(size) < 0 ? bounds.upper : bounds.lower);
-  const auto place =
-      std::min(heights.size() - 1,
-               static_cast<std::size_t>(volume / container.volume() * static_cast<double>(heights.size())));
-  const auto at = heights.begin() + static_cast<std::ptrdiff_t>(place);
-  std::nth_element(heights.begin(), at, heights.end());
-  return *at;
+  if (heights_.empty()) heights_.push_back(-down.dot(bounds.center()));
+  std::ranges::sort(heights_);
+}
+
+double Heights::level_holding(double volume) const {
+  const double place = volume / volume_ * static_cast<double>(heights_.size());
+  return heights_[std::min(heights_.size() - 1, static_cast<std::size_t>(place))];
+}
+
+double Heights::volume_below_mean(double height) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < heights_.size(); ++k) {
+    sum += heights_[k];
+    if (sum > height * static_cast<double>(k + 1))
+      return volume_ * static_cast<double>(k + 1) / static_cast<double>(heights_.size());
+  }
+  return volume_;
 }
 
 }  // namespace bernal

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <vector>
 
 #include "bernal/domain/container.hpp"
 
@@ -10,9 +11,21 @@ namespace bernal {
 std::shared_ptr<const Container> below_level(std::shared_ptr<const Container>, const Vector<3>& down,
                                              double level, double volume);
 
-/// The height against `down` up to which the container holds that volume: of 32,768 evenly distributed points
-/// inside, such a share lies below. Error: some thousandths of the height. Precondition: 0 < volume <= that
-/// of the container. Cost: a question to the walls a point.
-double level_holding(double volume, const Container&, const Vector<3>& down);
+/// How high a container reaches against `down`, and how much of it lies below: by 32,768 evenly distributed
+/// points inside. Error: some thousandths. Cost: a question to the walls a point, once.
+class Heights {
+ public:
+  Heights(const Container&, const Vector<3>& down);
+
+  /// Up to which the container holds that volume. Precondition: volume > 0.
+  double level_holding(double volume) const;
+  /// Of the part below the level whose mean height is that: of a bed with a level top that is as dense
+  /// everywhere, and whose spheres have that mean height, weighted by their volumes.
+  double volume_below_mean(double height) const;
+
+ private:
+  std::vector<double> heights_;  // ascending
+  double volume_;
+};
 
 }  // namespace bernal

@@ -1,7 +1,10 @@
 #include "bernal/soft/settle.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "settle/compress.hpp"
 #include "settle/roll_to_rest.hpp"
@@ -56,6 +59,21 @@ void change_container(Work& work, std::shared_ptr<const Container> to) {
   work.supply->set_placed(placed);
 }
 
+/// Says how porous the bed has become, and that it is not as was asked where it differs by more than this.
+constexpr double as_asked = 0.015;
+
+void tell_porosity(Work& work, const Settle& options, const Heights& heights, const Vector<3>& down) {
+  const double filled = work.bed().packing_fraction() * work.container->volume();
+  const double porosity = 1 - filled / heights.volume_below_mean(work.bed().potential(down));
+  if (!(porosity > 0 && porosity < 1)) return;  // of a few spheres on a floor there is none
+  work.account = fmt::format("the bed has a porosity of {:.3f}", porosity);
+  if (!options.porosity || std::abs(porosity - *options.porosity) <= as_asked) return;
+  work.missed =
+      fmt::format("a porosity of {:.3g} was asked for: {}", *options.porosity,
+                  porosity > *options.porosity ? "they find no room in less than that"
+                                               : "they fall until they rest, and then that is left");
+}
+
 /// Relaxation packs the spheres below the level at which they have the porosity of the bed, or the lowest
 /// above at which there is room for them; then each falls and rolls to rest. Cost: that of relaxation, and of
 /// `roll_to_rest`.
@@ -68,11 +86,12 @@ StageEnd settle(Work& work, const Settle& options) {
   const std::size_t count = work.target_count();
   StageEnd end = StageEnd::full;
   double rise = first_rise;
+  const Heights heights(*whole, down);
   for (double volume = work.volume_of_drawn(count) / aim; end == StageEnd::full;
        volume *= 1 + rise, rise *= 2) {
     const bool to_the_brim = volume >= whole->volume();
-    change_container(
-        work, to_the_brim ? whole : below_level(whole, down, level_holding(volume, *whole, down), volume));
+    change_container(work,
+                     to_the_brim ? whole : below_level(whole, down, heights.level_holding(volume), volume));
     end = relax_in_container(work, {});
     if (to_the_brim) break;
   }
@@ -81,6 +100,7 @@ StageEnd settle(Work& work, const Settle& options) {
   const EffectTimer timer(work.effects["rolling"]);
   const Made made("rolling");
   const StageEnd rest = roll_to_rest(work, down, options.rest);
+  tell_porosity(work, options, heights, down);
   return rest == StageEnd::converged ? end : rest;
 }
 
@@ -94,18 +114,17 @@ const StageEntry& entry_of<Settle>() {
           {.name = "settle",
            .help = "a bed under gravity: spheres lie at the bottom, as dense as poured ones, and every one "
                    "of them rests",
-           .keys = {key(Type::push, &Settle::direction, "direction",
-                        "of gravity; its length is of no matter"),
-                    number(&Settle::porosity, "porosity",
-                           "of the bed up to its surface; if absent that of poured beds of these sizes in "
-                           "this container, which is expected to 0.02",
-                           between(0.2, 0.95)),
-                    buys_accuracy(
-                        {1e-2, 1e-3, 1e-5, 1e-7},
-                        number(&Settle::rest, "rest",
-                               "how far a sphere may still fall and roll, in radii, and count as "
-                               "at rest; with more than 1e-7 it is only judged whether spheres hang",
-                               {1e-12, 0.01}))}},
+           .keys =
+               {key(Type::push, &Settle::direction, "direction", "of gravity; its length is of no matter"),
+                number(&Settle::porosity, "porosity",
+                       "of the bed up to its surface; if absent that of poured beds of these sizes in "
+                       "this container, which is expected to 0.02",
+                       between(0.2, 0.95)),
+                buys_accuracy({1e-2, 1e-3, 1e-5, 1e-7},
+                              number(&Settle::rest, "rest",
+                                     "how far a sphere may still fall and roll, in radii, and count as "
+                                     "at rest; with more than 1e-7 it is only judged whether spheres hang",
+                                     above(0, 1)))}},
           {.in_bed = true, .keeps_sizes = true, .places_expected = true}),
       .act_in_bed = act(settle),
       .may_bring = {"insertion", "neighbour lists", "relaxation", "rolling"},

@@ -84,6 +84,28 @@ TEST(Beds, RestInAnyVessel) {
         }
 }
 
+TEST(Beds, SayTheirPorosityAndThatItIsNotWhatWasAsked) {
+  const auto bed = [](const char* porosity) {
+    return packed(std::string("[container]\nkind = \"cylinder\"\nradius = 5\nheight = 40\n[spheres]\n"
+                              "count = 1200\ndiameter = 1.0\n") +
+                  stage("settle", porosity));
+  };
+  const auto stated = [](const Packing& packing) {
+    const std::string text = "the bed has a porosity of ";
+    return std::stod(packing.reason.substr(packing.reason.find(text) + text.size()));
+  };
+  EXPECT_NEAR(stated(bed("")), 0.43, 0.01);
+  const Packing loose = bed("porosity = 0.45\n");
+  EXPECT_EQ(loose.outcome, Outcome::converged) << loose.reason;
+  EXPECT_NEAR(stated(loose), 0.45, 0.015);
+  for (const char* beyond : {"porosity = 0.3\n", "porosity = 0.7\n"}) {
+    const Packing packing = bed(beyond);
+    EXPECT_EQ(packing.outcome, Outcome::hit_limit) << packing.reason;
+    EXPECT_EQ(unsettled(packing), 0u);
+    EXPECT_NEAR(stated(packing), 0.48, 0.08) << beyond;
+  }
+}
+
 TEST(Beds, OfDiscsRest) {
   for (const char* direction : {"direction = [0, -1]\n", "direction = [0.3, -1]\n"}) {
     const Packing packing = packed(

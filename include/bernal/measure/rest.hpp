@@ -16,7 +16,8 @@ namespace bernal {
 /// more than `least_fall` and meets nothing. Balance of forces in the whole bed is more than rest: each
 /// sphere is asked alone, and what bears on it from above is held.
 struct Rest {
-  static constexpr double closed = 1e-6;      ///< gap of a contact, in radii of the sphere that is asked
+  static constexpr double closed = 1e-6;      ///< gap of a contact, in radii of the sphere that is asked;
+                                              ///< more where coordinates are too coarse for it
   static constexpr double level = 1e-6;       ///< sine of the steepest way that counts as none
   static constexpr double least_fall = 0.01;  ///< in radii
   static constexpr double upright = 1e-5;     ///< sine of a wall's angle with gravity that supports nothing
