@@ -28,6 +28,8 @@ constexpr double grazing = 1e-3;
 /// Of walls whose normals enclose a smaller angle (1 - cosine) one is enough.
 constexpr double same_normal = 1e-6;
 constexpr double rounding_of_normals = 1e-9;
+/// A round wall holds a sphere on all sides that has no more play in it than so many open contacts.
+constexpr double snug = 10;
 
 using Normals = std::vector<Vector<3>>;  // unit, from walls to the sphere
 
@@ -122,7 +124,7 @@ class SpheresInWalls {
     container_.facets_near(p, reach, near);
     for (const NearFacet& n : near) {
       if (n.facet.kind != Facet::Kind::triangle && n.facet.kind != Facet::Kind::plane &&
-          n.facet.radius <= reach)
+          n.facet.radius - r <= snug * (reach - r))
         add_all_around(normals, n.facet);
       else
         add_new(normals, p - closest_point(n.facet, p));

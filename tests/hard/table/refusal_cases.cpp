@@ -56,7 +56,7 @@ std::vector<Case> refusal_cases() {
   add("NineDimensions", "one more than there are", "kind = \"periodic\"\ndimension = 9",
       "count = 50\nradius = 0.5", "");
   add("OverlapOfAll", "an overlap ratio of one", cube, "radius = 0.1", "", "[accuracy]\noverlap = 1.0\n");
-  add("UnknownStage", "a word that is none", cube, "radius = 0.1", "", stages({"settle"}));
+  add("UnknownStage", "a word that is none", cube, "radius = 0.1", "", stages({"sediment"}));
   add("UnknownKey", "a misspelt key", cube, "radius = 0.1\ndiametre = 0.2", "");
   add("BothRadiusAndDiameter", "two sizes at once", cube, "radius = 0.1\ndiameter = 0.2", "");
   add("MedianBelowNone", "a negative median", cube,
