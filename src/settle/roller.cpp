@@ -207,13 +207,27 @@ bool Roller::is_in_box(const Vector<3>& offset) const {
   return !(length > 0) || length <= room_in_box(offset / length);
 }
 
+/// The longest step along the track: in a narrow tube the place of the sphere turns about the axis soon.
+double Roller::longest_on(const Track& track) const {
+  const double r = mover_.ball().r;
+  double longest = longest_step * r;
+  for (int k = 0; k < track.count; ++k) {
+    const Obstacle on = track.on[static_cast<std::size_t>(k)];
+    if (on < mover_.count_) continue;
+    const Facet& wall = mover_.walls()[on - mover_.count_].facet;
+    if (wall.kind == Facet::Kind::cylinder || wall.kind == Facet::Kind::sphere)
+      longest = std::min(longest, std::max(0.5 * (wall.radius - r), no_step * no_step * r));
+  }
+  return longest;
+}
+
 /// One step along the track, of at most the length `step`, which becomes what to try the next time. Returns
 /// false where the sphere can make none, mostly because its bounding box ends.
 bool Roller::step_along(const Track& track, double& step) {
   const double r = mover_.ball().r, room = room_in_box(track.along);
   if (room < no_step * r) return false;
   Vector<3> offset;
-  double t = std::min(step, room);
+  double t = std::min({step, room, longest_on(track)});
   while (!at(track, t, offset) || offset.dot(track.along) <= 0 || !is_in_box(offset)) {
     t *= 0.5;
     if (t < no_step * no_step * r) return false;

@@ -61,6 +61,7 @@ class Roller {
   double to_lowest(const Track&, double t, Vector<3>& offset) const;
   bool step_along(const Track&, double& step);
   double until_contact(const Track&, double t, Obstacle, Vector<3>& offset) const;
+  double longest_on(const Track&) const;
   double room_in_box(const Vector<3>& u) const;
   bool is_in_box(const Vector<3>& offset) const;
 
