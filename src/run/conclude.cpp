@@ -162,10 +162,7 @@ void admit_unrest(Conclusion& conclusion, const Packing& packing, const Pressing
     what = fmt::format("{} {} {:.3g} {}", counted(rest.hanging),
                        rest.hanging == 1 ? "hangs, and could fall" : "hang, and the farthest could fall",
                        rest.farthest, name_of(scene.unit));
-  conclusion.reason += fmt::format(
-      "; {}: {}", what,
-      pressed.loosely ? "leave \"tolerance\" or \"rest\" out of the stages that settle, or make it smaller"
-                      : "let the stages that settle do more, by \"max_iterations\"");
+  conclusion.reason += fmt::format("; {}: {}", what, pressed.remedy);
 }
 
 std::string resized(double size_scale) {

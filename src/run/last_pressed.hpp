@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "bernal/scene/scene.hpp"
 #include "core/archive.hpp"
@@ -11,7 +12,8 @@ namespace bernal {
 /// How a stage presses spheres.
 struct Pressing {
   Vector<3> direction;
-  bool loosely;  ///< by a tolerance that leaves spheres which do not rest
+  bool loosely;             ///< by a tolerance that leaves spheres which do not rest
+  std::string_view remedy;  ///< of spheres that do not rest as they should
 };
 
 /// How the spheres were pressed last, as long as they are as that left them: a stage that only places, and

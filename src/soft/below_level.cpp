@@ -106,6 +106,11 @@ Heights::Heights(const Container& container, const Vector<3>& down) : volume_(co
   std::ranges::sort(heights_);
 }
 
+double Heights::volume_below(double height_above_ground) const {
+  const auto above = std::ranges::upper_bound(heights_, heights_.front() + height_above_ground);
+  return volume_ * static_cast<double>(above - heights_.begin()) / static_cast<double>(heights_.size());
+}
+
 double Heights::level_holding(double volume) const {
   const double place = volume / volume_ * static_cast<double>(heights_.size());
   return heights_[std::min(heights_.size() - 1, static_cast<std::size_t>(place))];

@@ -17,6 +17,8 @@ class Heights {
  public:
   Heights(const Container&, const Vector<3>& down);
 
+  /// Below a level that is so high above the lowest point; at most that of the container.
+  double volume_below(double height_above_ground) const;
   /// Up to which the container holds that volume. Precondition: volume > 0.
   double level_holding(double volume) const;
   /// Of the part below the level whose mean height is that: of a bed with a level top that is as dense

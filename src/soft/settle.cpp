@@ -22,6 +22,8 @@ constexpr double share_of_relaxed = 0.963;
 /// Where the spheres find no room below the level, it rises by so much of the bed, the next time twice as
 /// much.
 constexpr double first_rise = 0.05;
+/// A level is at least so high above the ground, in largest radii.
+constexpr double room_for_largest = 2.05;
 
 Vector<3> direction_of(const Settle& options) {
   return direction_of(Compress{.direction = options.direction});
@@ -87,8 +89,11 @@ StageEnd settle(Work& work, const Settle& options) {
   StageEnd end = StageEnd::full;
   double rise = first_rise;
   const Heights heights(*whole, down);
-  for (double volume = work.volume_of_drawn(count) / aim; end == StageEnd::full;
-       volume *= 1 + rise, rise *= 2) {
+  // A layer is no shallower than its largest sphere.
+  const double largest = std::ranges::max(work.drawn(count).spheres.r);
+  double volume =
+      std::max(work.volume_of_drawn(count) / aim, heights.volume_below(room_for_largest * largest));
+  for (; end == StageEnd::full; volume *= 1 + rise, rise *= 2) {
     const bool to_the_brim = volume >= whole->volume();
     change_container(work,
                      to_the_brim ? whole : below_level(whole, down, heights.level_holding(volume), volume));
