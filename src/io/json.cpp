@@ -399,6 +399,7 @@ std::string sealed_text_of(const Json& json) {
 std::string json_of(const Report& report) {
   const Packing& packing = report.packing;
   Json json = run_json(packing, packing.spheres.size(), packing.packing_fraction());
+  if (!report.cell.empty()) json["cell"] = report.cell;
   json.update(contacts_json(report.measured, report.measured.contacts));
   json.update({{"held_from_gap", report.measured.held_from},
                {"crystalline", report.measured.order},

@@ -20,6 +20,7 @@ struct Report {
   std::string hash;
   std::map<std::string, std::string> files = {};  ///< of the result, see `Manifest`
   std::vector<std::string> made_from = {};        ///< files that were read, relative to the result's folder
+  std::string cell = {};                          ///< see WriteOptions
 };
 
 /// The same of a packing whose spheres nobody holds; `packing` has none of them.

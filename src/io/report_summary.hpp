@@ -7,7 +7,7 @@ namespace bernal {
 
 /// The figures at the top of a report.json.
 struct ReportSummary {
-  std::string version, outcome, reason, hash;
+  std::string version, outcome, reason, hash, cell;
   std::optional<std::size_t> n, rattlers;
   std::optional<double> phi, coordination, max_overlap, min_wall_gap, seconds, peak_memory_bytes;
   bool certified = false;

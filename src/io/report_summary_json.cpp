@@ -28,6 +28,7 @@ std::optional<ReportSummary> summary_of_report(const std::string& report) {
       .outcome = text_in(json, "outcome"),
       .reason = text_in(json, "reason"),
       .hash = text_in(json, "hash"),
+      .cell = text_in(json, "cell"),
       .n = number_in<std::size_t>(json, "n"),
       .rattlers = number_in<std::size_t>(json, "rattlers"),
       .phi = number_in<double>(json, "phi"),

@@ -141,8 +141,8 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   std::vector<std::string> sources;
   for (const std::filesystem::path& source : sources_of_scene(packing.scene.file))
     sources.push_back(std::filesystem::proximate(source, folder).string());
-  const Report report{packing,  certificate, measured, radii.all.get(), hash_of(packing.spheres),
-                      manifest, sources};
+  const Report report{packing,  certificate, measured,    radii.all.get(), hash_of(packing.spheres),
+                      manifest, sources,     options.cell};
   staged.write("report.json", json_of(report));
   const std::string view =
       options.view && has_view(packing.spheres.dimension()) ? view_data(packing, &measured) : std::string();

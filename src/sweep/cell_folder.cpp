@@ -46,12 +46,14 @@ void take_report(const ReportSummary& report, CellResult& result) {
 }
 
 /// What is wrong with a report or the files beside it; empty where they are those that it describes.
-std::string complaint_about(const fs::path& folder, const std::string& report, const ReportSummary& summary) {
+std::string complaint_about(const fs::path& folder, const std::string& cell, const std::string& report,
+                            const ReportSummary& summary) {
   const auto is_regular = [](const fs::path& file) { return kind_of_file(file) == FileKind::regular; };
   const fs::path scene = where_it_stands(folder / "scene.toml"),
                  spheres = where_it_stands(spheres_file_in(folder));
   try {
     if (!is_sealed(report)) return "its report.json is not as bernal wrote it";
+    if (summary.cell != cell) return "its report.json is that of another cell";
     if (!is_regular(spheres)) return "its spheres are not there";
     const Manifest files = manifest_in(report);
     const auto said = files.find("scene.toml");
@@ -90,7 +92,7 @@ CellResult read_cell(const fs::path& folder, const std::string& hash) {
   if (!fs::is_directory(there, unknown)) return result;
   const std::string report = bytes_of_file(where_it_stands(there / "report.json"));
   if (const auto summary = summary_of_report(report)) {
-    result.reason = complaint_about(there, report, *summary);
+    result.reason = complaint_about(there, hash, report, *summary);
     if (result.reason.empty()) take_report(*summary, result);
   } else if (fs::is_regular_file(there / failure_name, unknown)) {
     take_failure(there / failure_name, result);

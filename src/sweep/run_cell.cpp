@@ -16,7 +16,8 @@ namespace {
 
 /// What `bernal pack` does; nothing is written of what the caller's monitor has stopped.
 void pack_cell(const Cell& cell, const fs::path& folder, const CellOptions& options) {
-  const WriteOptions write{.view = options.view, .monitor = options.monitor, .all_or_nothing = true};
+  const WriteOptions write{
+      .view = options.view, .monitor = options.monitor, .all_or_nothing = true, .cell = cell.hash};
   const Plan plan = build(cell.scene);
   check_writable(folder, cell.scene, write);
   const Stopwatch watch;

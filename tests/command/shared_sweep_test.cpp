@@ -166,6 +166,10 @@ TEST(SweepCommand, ACellIsDoneWhereNobodyHasChangedItsReport) {
   change(1, "\"n\": ", "\"n\": 1");
   change(2, "\"certified\": true", "\"certified\": false");
   change(3, ",\n  \"seal\": ", ",\n  \"unsealed\": ");
+  // And a whole cell in the place of another.
+  for (const auto& file : fs::directory_iterator(fs::path(swept.out) / rows[5].at("folder")))
+    fs::copy_file(file.path(), fs::path(swept.out) / rows[4].at("folder") / file.path().filename(),
+                  fs::copy_options::overwrite_existing);
 
   const Ended collected = swept.run({"--collect"});
   EXPECT_NE(collected.err.find("report.json"), std::string::npos) << collected.err;
@@ -173,10 +177,10 @@ TEST(SweepCommand, ACellIsDoneWhereNobodyHasChangedItsReport) {
   for (Row row : swept.rows())
     missing += row["outcome"] == "missing" && row["phi"].empty() &&
                row["reason"].find("report.json") != std::string::npos;
-  EXPECT_EQ(missing, 4u) << collected.err;
+  EXPECT_EQ(missing, 5u) << collected.err;
 
   const Ended again = swept.run();
-  EXPECT_NE(again.err.find("4 that were there and not as they were written"), std::string::npos) << again.err;
+  EXPECT_NE(again.err.find("5 that were there and not as they were written"), std::string::npos) << again.err;
   const std::vector<Row> now = swept.rows();
   for (std::size_t k = 0; k < rows.size(); ++k)
     for (const char* column : {"outcome", "n", "phi", "certified", "hash"})

@@ -27,6 +27,7 @@ struct WriteOptions {
   std::size_t list = 0;  ///< so many overlapping pairs and protruding spheres are listed: the worst
   Monitor monitor = {};
   bool all_or_nothing = false;  ///< once the monitor says stop, Cancelled is thrown and nothing is written
+  std::string cell = {};        ///< of a sweep whose result this is: its hash, which report.json then names
 };
 
 /// Writes spheres.csv and spheres.vtp, or spheres.npy, scene.toml, report.json, report.html, in two and three
