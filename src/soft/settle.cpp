@@ -34,7 +34,8 @@ constexpr double seconds_of_rolling = 15e-6, questions_of_rolling = 4;
 
 std::vector<PlanItem> effects_of_settling(const Settle& options, const Outlook& outlook) {
   Outlook relaxed = outlook;
-  if (!options.porosity) relaxed.aim *= share_of_relaxed;
+  // As densely as the bed below its level, however little of the container that is.
+  relaxed.aim = options.porosity ? 1 - *options.porosity : share_of_relaxed * outlook.task.attainable;
   std::vector<PlanItem> items = effects_of_relaxation({}, relaxed);
   const PlanItem walls = questions_to_walls(questions_of_rolling, outlook);
   items.push_back({.name = "rolling",
