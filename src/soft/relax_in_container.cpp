@@ -258,8 +258,8 @@ class Relaxation {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   Random random_;
   const double skin_;  // that the radii are relaxed with, where it is not thin: far from the origin
-  const bool snug_;    // between the walls
   const double gain_;  // by exchange: 1 where there is none
+  const bool snug_;    // between the walls
   CrowdInContainer crowd_;
   const std::size_t target_count_;
   double sweeps_of_exchange_ = 0;
