@@ -14,12 +14,12 @@ namespace {
 
 std::optional<Pressing> pressing(const Stage& stage) {
   const auto by = [](const Compress& c) {
-    return Pressing{direction_of(c), c.tolerance.has_value(),
+    return Pressing{direction_of(c.direction), c.tolerance.has_value(),
                     c.tolerance ? "leave \"tolerance\" out of the stages that settle, or make it smaller"
                                 : "let the stages that settle do more, by \"max_iterations\""};
   };
   if (const auto* settle = stage.as<Settle>())
-    return Pressing{direction_of(Compress{.direction = settle->direction}), settle->rest > Settle{}.rest,
+    return Pressing{direction_of(settle->direction), settle->rest > Settle{}.rest,
                     "make \"rest\" of settle smaller, or take another \"seed\""};
   if (const auto* compress = stage.as<Compress>()) return by(*compress);
   if (const auto* shake = stage.as<Shake>()) return by(shake->compress);

@@ -148,15 +148,15 @@ void require_support(const Boundary<3>& boundary, const Vector<3>& direction) {
               "\"relax\" or \"grow\"");
 }
 
-Vector<3> direction_of(const Compress& options) {
-  Vector<3> direction = Vector<3>::Zero();
-  direction.head(options.direction.size()) = options.direction;
-  return direction.normalized();
+Vector<3> direction_of(const Coordinates& direction) {
+  Vector<3> in_space = Vector<3>::Zero();
+  in_space.head(direction.size()) = direction;
+  return in_space.normalized();
 }
 
 StageEnd compress(Work& work, const Compress& options) {
   Bed& bed = work.bed();
-  const Vector<3> direction = direction_of(options);
+  const Vector<3> direction = direction_of(options.direction);
   require_support(bed.container().boundary(), direction);
   if (bed.size() == 0) return StageEnd::converged;
   const EffectTimer timer(work.effects["compression"]);
@@ -235,7 +235,7 @@ const StageEntry& entry_of<Compress>() {
       .may_bring = {"neighbour lists", "compression"},
       .effects = of_options(effects_of_compression),
       .require = of_options(+[](const Compress& o, const Domain& domain, double, const FillTask&) {
-        require_support(boundary_of<3>(domain), direction_of(o));
+        require_support(boundary_of<3>(domain), direction_of(o.direction));
       })};
   return entry;
 }

@@ -33,7 +33,7 @@ StageEnd shake(Work& work, const Shake& options);
 /// component along an axis that repeats itself.
 void require_support(const Boundary<3>& boundary, const Vector<3>& direction);
 /// As a unit vector; in two dimensions in the plane z = 0.
-Vector<3> direction_of(const Compress& options);
+Vector<3> direction_of(const Coordinates& direction);
 /// What every stage has that ends with a compression: its keys, and its item of the plan.
 std::vector<schema::Key> compression_keys();
 std::vector<schema::Choice> ends_of_compression();

@@ -93,7 +93,7 @@ void fill_free_space(Work& work, std::vector<Probe>& probes) {
 /// come, in their order, take the first place that is large enough. Cost: O(1) a probe, and that of the
 /// compression.
 StageEnd refill(Work& work, const Refill& options) {
-  require_support(work.bed().container().boundary(), direction_of(options.shake.compress));
+  require_support(work.bed().container().boundary(), direction_of(options.shake.compress.direction));
   enum class Step { fill, compress, shake } step = Step::fill;
   int round = 0;
   double before = 0, after = 0;
@@ -158,7 +158,7 @@ const StageEntry& entry_of<Refill>() {
       .may_bring = {"refilling", "neighbour lists", "compression", "shaking"},
       .effects = of_options(effects_of_refilling),
       .require = of_options(+[](const Refill& o, const Domain& domain, double, const FillTask&) {
-        require_support(boundary_of<3>(domain), direction_of(o.shake.compress));
+        require_support(boundary_of<3>(domain), direction_of(o.shake.compress.direction));
       })};
   return entry;
 }

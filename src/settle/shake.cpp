@@ -9,7 +9,7 @@ constexpr int sweeps_a_round = 10;
 
 StageEnd shake(Work& work, const Shake& options) {
   Bed& bed = work.bed();
-  const Vector<3> direction = direction_of(options.compress);
+  const Vector<3> direction = direction_of(options.compress.direction);
   require_support(bed.container().boundary(), direction);
   int round = 0;
   bool compressing = false;
@@ -54,7 +54,7 @@ const StageEntry& entry_of<Shake>() {
       .may_bring = {"neighbour lists", "shaking", "compression"},
       .effects = of_options(effects_of_shaking),
       .require = of_options(+[](const Shake& o, const Domain& domain, double, const FillTask&) {
-        require_support(boundary_of<3>(domain), direction_of(o.compress));
+        require_support(boundary_of<3>(domain), direction_of(o.compress.direction));
       })};
   return entry;
 }

@@ -7,10 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "domain/places.hpp"
+
 namespace bernal {
 namespace {
 
-constexpr std::size_t points_inside = 1 << 15, points_tried = 1 << 21;
+constexpr std::size_t most_points = 1 << 15;
 
 class BelowLevel final : public Container {
  public:
@@ -97,11 +99,12 @@ Heights::Heights(const Container& container, const Vector<3>& down) : volume_(co
   const Vector<3> size = bounds.size();
   // The additive recurrence of the plastic number's relative in three dimensions (Roberts 2018).
   const Vector<3> step(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
-  for (std::size_t n = 1; heights_.size() < points_inside && n <= points_tried; ++n) {
-    const Vector<3> at = static_cast<double>(n) * step;
-    const Vector<3> p = bounds.lower + size.cwiseProduct(Vector<3>(at - at.array().floor().matrix()));
-    if (container.contains(p, 0)) heights_.push_back(-down.dot(p));
-  }
+  const auto even_point = [&](std::size_t n) -> Vector<3> {
+    const Vector<3> at = static_cast<double>(n + 1) * step;
+    return bounds.lower + size.cwiseProduct(Vector<3>(at - at.array().floor().matrix()));
+  };
+  for (const Vector<3>& p : points_inside(container, most_points, 1, even_point))
+    heights_.push_back(-down.dot(p));
   if (heights_.empty()) heights_.push_back(-down.dot(bounds.center()));
   std::ranges::sort(heights_);
 }

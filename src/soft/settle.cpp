@@ -25,10 +25,6 @@ constexpr double first_rise = 0.05;
 /// A level is at least so high above the ground, in largest radii.
 constexpr double room_for_largest = 2.05;
 
-Vector<3> direction_of(const Settle& options) {
-  return direction_of(Compress{.direction = options.direction});
-}
-
 /// What a sphere takes that falls by some hundredths of its radius and rolls to rest; and walls asked.
 constexpr double seconds_of_rolling = 15e-6, questions_of_rolling = 4;
 
@@ -81,7 +77,7 @@ void tell_porosity(Work& work, const Settle& options, const Heights& heights, co
 /// above at which there is room for them; then each falls and rolls to rest. Cost: that of relaxation, and of
 /// `roll_to_rest`.
 StageEnd settle(Work& work, const Settle& options) {
-  const Vector<3> down = direction_of(options);
+  const Vector<3> down = direction_of(options.direction);
   require_support(work.bed().container().boundary(), down);
   const NotResumable whole_or_not_at_all(work);
   const double aim = options.porosity ? 1 - *options.porosity : work.attainable;
@@ -136,7 +132,7 @@ const StageEntry& entry_of<Settle>() {
       .may_bring = {"insertion", "neighbour lists", "relaxation", "rolling"},
       .effects = of_options(effects_of_settling),
       .require = of_options(+[](const Settle& o, const Domain& domain, double, const FillTask&) {
-        require_support(boundary_of<3>(domain), direction_of(o));
+        require_support(boundary_of<3>(domain), direction_of(o.direction));
       }),
       .reached = of_options(+[](const Settle& o) { return o.porosity ? 1 - *o.porosity : 1; }),
       .full = of_options(+[](const Settle& o, const EmptyBed& bed) {
