@@ -79,12 +79,13 @@ void check_target(const Scene& scene) {
     fail("a periodic box without size needs a \"count\" in [spheres]; or give it \"size\" or \"edge\"");
 }
 
-/// The stage that packs any scene; in a bed of two dimensions all that work there, one after the other.
+/// The stage that packs any scene, or makes the bed that is asked for; in a bed of two dimensions all that
+/// work there, one after the other.
 void take_default_stages(Scene& scene) {
   scene.stages_are_default = true;
-  const bool in_plane = !scene.is_periodic() && scene.dimension() == 2;
+  const bool in_plane = !scene.is_periodic() && scene.dimension() == 2, bed = scene.target.bed.is_asked();
   for (const StageTable* table : stage_tables())
-    if (in_plane ? table->traits.in_plane : table->traits.is_default) {
+    if (in_plane ? table->traits.in_plane : bed ? table->traits.makes_bed : table->traits.is_default) {
       scene.stages.push_back(table->make());
       scene.stages.back().locations.whole.file = scene.file.string();
     }
@@ -156,6 +157,28 @@ void complete_pushes(const Entry& entry, void* options, const Scene& scene, cons
   }
 }
 
+/// Throws where the scene says what a bed is to be like, and no stage would make it so.
+void require_bed(const Scene& scene) {
+  const BedTarget& bed = scene.target.bed;
+  if (bed == BedTarget{}) return;
+  const auto fail = [&](std::string_view why) {
+    throw Error(ErrorCode::bad_scene, std::string(why), scene.target.where);
+  };
+  const auto makes_bed = [](const Stage& stage) { return table_of(stage).traits.makes_bed; };
+  if (!scene.is_periodic() && scene.dimension() == 2) {
+    if (bed.density.value_or(BedTarget::Density::poured) != BedTarget::Density::poured || bed.porosity ||
+        bed.gives_height() || bed.top.value_or(BedTarget::Top::free) != BedTarget::Top::free)
+      fail(
+          "a bed of discs is poured, by \"count\", and its top is free; leave out of [spheres] what says "
+          "else");
+  } else if (std::ranges::none_of(scene.stages, makes_bed)) {
+    fail(bed.is_asked()
+             ? "a bed is asked for in [spheres], and no stage makes one: name \"settle\", or no stage"
+             : "\"porosity\" in [spheres] is that of a bed: add bed = \"poured\" or the stage "
+               "\"settle\"; else give packing_fraction, which is 1 less the porosity");
+  }
+}
+
 void complete_stages(Scene& scene) {
   if (scene.stages.empty()) take_default_stages(scene);
   bool keeps_sizes = false;  // in a bed
@@ -170,6 +193,7 @@ void complete_stages(Scene& scene) {
     keeps_sizes = keeps_sizes || (table.traits.keeps_sizes && table.traits.stands_in_bed(scene));
   }
   require_end(scene);
+  require_bed(scene);
   if (!scene.draw && keeps_sizes) scene.draw = Draw::quantiles;
 }
 

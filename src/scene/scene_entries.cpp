@@ -73,6 +73,21 @@ Member sizes(bool diameters) {
   return member;
 }
 
+/// The same of what the scene says of a bed.
+template <class M>
+Member of_bed(M BedTarget::*member) {
+  return Member(member).inside(&Target::bed).inside(&Scene::target);
+}
+
+void bed_rule(const BedTarget& bed, const Section& section) {
+  if (bed.heap_angle && bed.top != BedTarget::Top::heap)
+    section.fail("heap_angle",
+                 "\"heap_angle\" in [spheres] is of a heap: say top = \"heap\", or leave it out");
+  if (bed.porosity && bed.density)
+    section.fail("porosity",
+                 "\"bed\" and \"porosity\" in [spheres] both say how dense the bed is; give one of them");
+}
+
 /// The same of what the scene says of its start.
 template <class M>
 Member of_start(M Start::*member) {
@@ -80,6 +95,7 @@ Member of_start(M Start::*member) {
 }
 
 void spheres_rule(const Scene& scene, const Section& section) {
+  bed_rule(scene.target.bed, section);
   // The one that is read last is all that the scene still holds.
   if (const auto& keys = section.locations.keys; keys.contains("radius") && keys.contains("diameter"))
     section.fail("diameter", "\"radius\" and \"diameter\" in [spheres] exclude each other; give one of them");
@@ -222,6 +238,24 @@ const Entry& spheres_entry() {
                         "much as is predicted, less the error of that",
                         packing_fractions()),
                  flag(fill(), "fill", "true: as many spheres as the stages can place", {1, 1}),
+                 length(of_bed(&BedTarget::height), "height",
+                        "of a bed: as many spheres as make its surface lie so high above the lowest point"),
+                 number(of_bed(&BedTarget::layers), "bed_layers",
+                        "the height of a bed in mean diameters of the spheres", above(0, 1e9)),
+                 word(of_bed(&BedTarget::density), "bed",
+                      "a bed under gravity: poured (settled without friction), vibrated (denser) or loose "
+                      "(arches that friction holds are kept)",
+                      {"poured", "vibrated", "loose"}),
+                 word(of_bed(&BedTarget::top), "top",
+                      "of a bed: free (as the spheres fall), level (none above a plane) or heap (none above "
+                      "a cone)",
+                      {"free", "level", "heap"}),
+                 number(of_bed(&BedTarget::heap_angle), "heap_angle",
+                        "of the flanks of a heap with the level, in degrees; if absent 20", between(0, 60)),
+                 number(of_bed(&BedTarget::porosity), "porosity",
+                        "of a bed, up to its surface, in place of bed = …: the share of the volume that is "
+                        "left free",
+                        between(0.2, 0.95)),
                  key(Type::distribution, sizes(false), "radius", "lengths are radii"),
                  key(Type::distribution, sizes(true), "diameter", "lengths are diameters"),
                  number(&Scene::gap, "gap",
@@ -248,7 +282,13 @@ const Entry& spheres_entry() {
                  names(of_start(&Start::sha256), "start_sha256",
                        "of the start's file, as sha256sum prints it: other bytes are refused; a result "
                        "names it")},
-        .choices = {{{"count"}, {"packing_fraction"}, {"fill"}, {"count", "packing_fraction"}, {}},
+        .choices = {{{"count"},
+                     {"packing_fraction"},
+                     {"fill"},
+                     {"count", "packing_fraction"},
+                     {"height"},
+                     {"bed_layers"},
+                     {}},
                     {{"radius"}, {"diameter"}}},
         .rule = rule(spheres_rule)};
     of.keys[1].words = {"predicted"};

@@ -30,6 +30,7 @@ struct StageTraits {
   bool frees_bed = false, frees_box = false;  ///< it may begin with spheres that overlap there
   bool joins_start = false;  ///< in a box it finds others their places among those that have some
   bool is_default = false;   ///< it packs a scene that names no stage
+  bool makes_bed = false;    ///< it makes the bed that a scene asks for, and where that names no stage
   Reaches reaches = Reaches::nothing;
 
   /// Whether spheres stand in a bed for it there: in every container, and in a periodic box of three

@@ -31,7 +31,7 @@ constexpr double seconds_of_rolling = 15e-6, questions_of_rolling = 4;
 std::vector<PlanItem> effects_of_settling(const Settle& options, const Outlook& outlook) {
   Outlook relaxed = outlook;
   // As densely as the bed below its level, however little of the container that is.
-  relaxed.aim = options.porosity ? 1 - *options.porosity : share_of_relaxed * outlook.task.attainable;
+  relaxed.aim = options.bed.porosity ? 1 - *options.bed.porosity : share_of_relaxed * outlook.task.attainable;
   std::vector<PlanItem> items = effects_of_relaxation({}, relaxed);
   const PlanItem walls = questions_to_walls(questions_of_rolling, outlook);
   items.push_back({.name = "rolling",
@@ -66,11 +66,11 @@ void tell_porosity(Work& work, const Settle& options, const Heights& heights, co
   const double porosity = 1 - filled / heights.volume_below_mean(work.bed().potential(down));
   if (!(porosity > 0 && porosity < 1)) return;  // of a few spheres on a floor there is none
   work.account = fmt::format("the bed has a porosity of {:.3f}", porosity);
-  if (!options.porosity || std::abs(porosity - *options.porosity) <= as_asked) return;
+  if (!options.bed.porosity || std::abs(porosity - *options.bed.porosity) <= as_asked) return;
   work.missed =
-      fmt::format("a porosity of {:.3g} was asked for: {}", *options.porosity,
-                  porosity > *options.porosity ? "they find no room in less than that"
-                                               : "they fall until they rest, and then that is left");
+      fmt::format("a porosity of {:.3g} was asked for: {}", *options.bed.porosity,
+                  porosity > *options.bed.porosity ? "they find no room in less than that"
+                                                   : "they fall until they rest, and then that is left");
 }
 
 /// Relaxation packs the spheres below the level at which they have the porosity of the bed, or the lowest
@@ -80,7 +80,7 @@ StageEnd settle(Work& work, const Settle& options) {
   const Vector<3> down = direction_of(options.direction);
   require_support(work.bed().container().boundary(), down);
   const NotResumable whole_or_not_at_all(work);
-  const double aim = options.porosity ? 1 - *options.porosity : work.attainable;
+  const double aim = options.bed.porosity ? 1 - *options.bed.porosity : work.attainable;
   const std::shared_ptr<const Container> whole = work.container;
   const std::size_t count = work.target_count();
   StageEnd end = StageEnd::full;
@@ -106,6 +106,10 @@ StageEnd settle(Work& work, const Settle& options) {
   return rest == StageEnd::converged ? end : rest;
 }
 
+void take_bed_target(Settle& options, Scene& scene, const schema::Section&) {
+  options.bed = scene.target.bed;
+}
+
 }  // namespace
 
 template <>
@@ -118,25 +122,22 @@ const StageEntry& entry_of<Settle>() {
                    "of them rests",
            .keys =
                {key(Type::push, &Settle::direction, "direction", "of gravity; its length is of no matter"),
-                number(&Settle::porosity, "porosity",
-                       "of the bed up to its surface; if absent that of poured beds of these sizes in "
-                       "this container, which is expected to 0.02",
-                       between(0.2, 0.95)),
                 buys_accuracy({1e-2, 1e-3, 1e-5, 1e-7},
                               number(&Settle::rest, "rest",
                                      "how far a sphere may still fall and roll, in radii, and count as "
                                      "at rest; with more than 1e-7 it is only judged whether spheres hang",
-                                     above(0, 1)))}},
-          {.in_bed = true, .keeps_sizes = true, .places_expected = true}),
+                                     above(0, 1)))},
+           .complete = completion(take_bed_target)},
+          {.in_bed = true, .keeps_sizes = true, .places_expected = true, .makes_bed = true}),
       .act_in_bed = act(settle),
       .may_bring = {"insertion", "neighbour lists", "relaxation", "rolling"},
       .effects = of_options(effects_of_settling),
       .require = of_options(+[](const Settle& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), direction_of(o.direction));
       }),
-      .reached = of_options(+[](const Settle& o) { return o.porosity ? 1 - *o.porosity : 1; }),
+      .reached = of_options(+[](const Settle& o) { return o.bed.porosity ? 1 - *o.bed.porosity : 1; }),
       .full = of_options(+[](const Settle& o, const EmptyBed& bed) {
-        return o.porosity ? 1 - *o.porosity : share_of_relaxed * bed.relaxed;
+        return o.bed.porosity ? 1 - *o.bed.porosity : share_of_relaxed * bed.relaxed;
       })};
   return entry;
 }

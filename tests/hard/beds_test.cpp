@@ -88,7 +88,7 @@ TEST(Beds, SayTheirPorosityAndThatItIsNotWhatWasAsked) {
   const auto bed = [](const char* porosity) {
     return packed(std::string("[container]\nkind = \"cylinder\"\nradius = 5\nheight = 40\n[spheres]\n"
                               "count = 1200\ndiameter = 1.0\n") +
-                  stage("settle", porosity));
+                  porosity + stage("settle"));
   };
   const auto stated = [](const Packing& packing) {
     const std::string text = "the bed has a porosity of ";

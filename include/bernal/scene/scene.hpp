@@ -15,6 +15,7 @@
 #include "bernal/domain/domain.hpp"
 #include "bernal/domain/mesh_file.hpp"
 #include "bernal/engine/engine.hpp"
+#include "bernal/scene/bed_target.hpp"
 #include "bernal/scene/sizes.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/solids/contact_treatment.hpp"
@@ -82,6 +83,7 @@ struct Target {
   /// `packing_fraction = "predicted"`: `build` puts in a number, what is predicted less the error of that.
   bool predicted = false;
   bool fill = false;  ///< as many as the stages can place, at any price
+  BedTarget bed = {};
   Location where = {};
 
   bool has_packing_fraction() const { return packing_fraction || predicted; }

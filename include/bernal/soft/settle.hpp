@@ -1,7 +1,6 @@
 #pragma once
-#include <optional>
-
 #include "bernal/core/vector.hpp"
+#include "bernal/scene/bed_target.hpp"
 
 namespace bernal {
 
@@ -9,8 +8,8 @@ namespace bernal {
 struct Settle {
   /// Of gravity, of any length but 0; in two dimensions {0, -1} if nothing is said.
   Coordinates direction = {0, 0, -1};
-  /// Share of the bed's volume, up to its surface, that is left free; without it that of a poured bed.
-  std::optional<double> porosity = {};
+  /// What the bed is to be like, but for its height; of a scene, what its [spheres] say.
+  BedTarget bed = {};
   /// How far a sphere may still fall and roll, in radii, and count as at rest. With more than 1e-7 it is only
   /// judged whether spheres hang.
   double rest = 1e-7;

@@ -1,0 +1,29 @@
+#pragma once
+#include <optional>
+
+namespace bernal {
+
+/// A bed under gravity as a scene asks for it. What is left out is as it comes.
+struct BedTarget {
+  /// How densely: settled without friction; as beds that were vibrated are; as ones that friction holds
+  /// loose.
+  enum class Density { poured, vibrated, loose };
+  /// Its surface: as it comes; no sphere above a level; no sphere above a cone whose axis runs through the
+  /// middle of the container.
+  enum class Top { free, level, heap };
+
+  std::optional<Density> density = {};
+  std::optional<Top> top = {};
+  std::optional<double> heap_angle = {};  ///< of the cone with the level, in degrees
+  /// Share of the bed's volume, up to its surface, that is left free, in place of the density's.
+  std::optional<double> porosity = {};
+  /// Of its surface above the lowest point of the container, in place of a count; or that in mean diameters.
+  std::optional<double> height = {}, layers = {};
+
+  bool gives_height() const { return height || layers; }
+  /// Whether the scene asks for a bed at all.
+  bool is_asked() const { return density || top || gives_height(); }
+  bool operator==(const BedTarget&) const = default;
+};
+
+}  // namespace bernal
