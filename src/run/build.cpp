@@ -372,6 +372,8 @@ Plan build(const Scene& stated) {
   plan.domain = domain_of(plan.scene, plan.container_notes, plan.caution);
   if (scene.engine) engine::require_engine_fits(scene, plan.domain);
   plan.radii = scene.draws() ? radii_of(scene) : radii_there(plan.start.spheres.r);
+  BedTarget& bed = plan.scene.target.bed;
+  bed.above_ground = bed.height ? *bed.height : bed.layers ? *bed.layers * 2 * plan.radii->moment(1) : 0;
   if (scene.asks_for_gaps()) {
     require_gaps(plan);
     if (is_faceted(plan.domain)) plan.container = container_of(plan);

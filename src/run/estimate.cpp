@@ -6,10 +6,12 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/predict/predict.hpp"
+#include "bernal/run/run.hpp"
 #include "core/close_packing.hpp"
 #include "domain/places.hpp"
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
+#include "soft/below_level.hpp"
 
 namespace bernal {
 namespace {
@@ -80,30 +82,57 @@ std::vector<double> radii_by_volume(const SizeDistribution& radii, int dimension
   return middle;
 }
 
+/// A part of a domain that spheres are to fill: its walls, and the surface of the bed.
+struct Part {
+  std::shared_ptr<const Container> container;  // in the domain's frame
+  double volume, area;                         // in the scene's unit
+};
+
+/// The whole domain; of a bed of given height what is below its surface: the area of that as in a vessel that
+/// is as wide everywhere.
+Part part_to_fill(const Scene& scene, const Domain& shape, const std::shared_ptr<const Container>& made) {
+  Part part{local_container(shape, made), volume_of(shape), area_of(shape)};
+  const BedTarget& bed = scene.target.bed;
+  if (!(bed.above_ground > 0)) return part;
+  const double scale = frame_of(shape).scale;
+  const Vector<3> down = down_in(scene);
+  const BedTop top(bed, *part.container, down);
+  const Heights heights(*part.container, top);
+  const double level = heights.ground() + bed.above_ground / scale;
+  const double below = heights.volume_below(level), whole = part.container->volume();
+  if (!(below > 0 && below < whole)) return part;
+  const double share = below / whole, height = down.cwiseAbs().dot(part.container->bounds().size()) * scale;
+  const double section = part.volume / height;
+  part.area = 2 * section + share * std::max(0.0, part.area - 2 * section);
+  part.container = below_level(part.container, top, level, below);
+  part.volume *= share;
+  return part;
+}
+
 /// x = A d / V, for a wall of area A, a volume V and the mean diameter d that counts by surface; in two
 /// dimensions for its length, an area and the diameter that counts by circumference.
+double wall_share(double area, double volume, int dimension, const SizeDistribution& radii) {
+  return 2 * radii.moment(dimension) / radii.moment(dimension - 1) * area / volume;
+}
 double wall_share(const Domain& shape, const SizeDistribution& radii) {
-  const int dimension = dimension_of(shape);
-  return 2 * radii.moment(dimension) / radii.moment(dimension - 1) * area_of(shape) / volume_of(shape);
+  return wall_share(area_of(shape), volume_of(shape), dimension_of(shape), radii);
 }
 
 /// Random close packing, less a deficit at the wall, of what spheres of each size can cover. And the larger
 /// ones have no more room than what they can cover, which in thin parts is less than their share.
-double reached_by_relaxation(const Domain& shape, const SizeDistribution& radii,
-                             const std::shared_ptr<const Container>& made) {
+double reached_by_relaxation(const Domain& shape, const SizeDistribution& radii, const Part& part) {
   const Frame frame = frame_of(shape);
   const int dimension = dimension_of(shape);
-  const auto container = local_container(shape, made);
   const std::vector<double> by_volume = radii_by_volume(radii, dimension);
   const auto n = static_cast<double>(by_volume.size());
   double mean = 0, tightest = 2;
   for (std::size_t k = 0; k < by_volume.size(); ++k) {
-    const double share = coverable_share(*container, by_volume[k] / frame.scale);
+    const double share = coverable_share(*part.container, by_volume[k] / frame.scale);
     mean += share / n;
     // What the larger ones can cover, over their share.
     if (k > 0) tightest = std::min(tightest, share_in_thin_parts * share * n / (n - static_cast<double>(k)));
   }
-  const double wall = wall_share(shape, radii);
+  const double wall = wall_share(part.area, part.volume, dimension, radii);
   return close_packing_fraction(radii, dimension) * share_relaxed * std::min(mean, tightest) *
          std::max(0.1, 1 - wall_deficit_relaxed * wall);
 }
@@ -178,14 +207,17 @@ double error_between_walls(const Domain& shape, const SizeDistribution& radii) {
 double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii,
                                  const std::shared_ptr<const Container>& made) {
   if (reaches(scene, Reaches::close_packing))
-    return gain_of_stages(scene, radii) * reached_by_relaxation(shape, radii, made);
+    return gain_of_stages(scene, radii) *
+           reached_by_relaxation(shape, radii, part_to_fill(scene, shape, made));
   if (!reaches(scene, Reaches::settled)) {
     const int dimension = dimension_of(shape);
     const double largest = radii.quantile(quantile_of_largest);
+    const Part part = part_to_fill(scene, shape, made);
     const EmptyBed bed{.dimension = dimension,
-                       .relaxed = reached_by_relaxation(shape, radii, made),
-                       .wall_share = wall_share(shape, radii),
-                       .evenness = std::min(1.0, radii.moment(dimension) / std::pow(largest, dimension))};
+                       .relaxed = reached_by_relaxation(shape, radii, part),
+                       .wall_share = wall_share(part.area, part.volume, dimension, radii),
+                       .evenness = std::min(1.0, radii.moment(dimension) / std::pow(largest, dimension)),
+                       .share = part.volume / volume_of(shape)};
     double fraction = 0;
     for (const Stage& stage : scene.stages)
       if (const StageEntry& entry = entry_of(stage); entry.full) {

@@ -130,6 +130,9 @@ Plan plan_with_room(const Plan& plan) {
   with_room.radii = std::make_unique<Enlarged>(*plan.radii, coat_of(plan.scene));
   const double share = share_without_coats(plan, with_room);
   if (auto& phi = with_room.scene.target.packing_fraction) *phi /= share;
+  if (double& height = with_room.scene.target.bed.above_ground;
+      height > 0)  // of the coats, above the region's
+    height = std::max(height + plan.scene.gap - plan.scene.wall_gap, 2 * with_room.radii->min());
   with_room.attainable_packing_fraction = plan.attainable_packing_fraction / share;
   with_room.expected_packing_fraction = plan.expected_packing_fraction / share;
   with_room.expected_count = plan.expected_count;

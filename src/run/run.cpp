@@ -170,6 +170,7 @@ class Run {
     }
     if (any_in_bed_) require_long_periods(scene_, plan_.domain, work.supply->largest());
     work.supply->divide_by(frame_.scale);
+    work.target.bed.above_ground /= frame_.scale;
     if (any_in_bed_)
       work.exact_place = [this](const Vector<3>& place, double r) { return exact_place_.near(place, r); };
     if (scene_.is_periodic()) put_into_box(work);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -13,26 +14,31 @@ namespace bernal {
 namespace {
 
 constexpr std::size_t most_points = 1 << 15;
+/// So steep, in degrees, a heap is if nothing is said; and so many planes stand for its cone.
+constexpr double usual_heap_angle = 20;
+constexpr int flanks = 32;
 
 class BelowLevel final : public Container {
  public:
-  BelowLevel(std::shared_ptr<const Container> whole, const Vector<3>& down, double level, double volume)
+  BelowLevel(std::shared_ptr<const Container> whole, const BedTop& top, double height, double volume)
       : Container(whole->arithmetic(), whole->resolution(), whole->boundary(), whole->dimension(),
                   whole->inset()),
         whole_(std::move(whole)),
-        plane_{.kind = Facet::Kind::plane, .a = -level * down, .b = down},
+        up_(top.up()),
+        height_(height),
+        planes_(top.planes(height)),
         volume_(volume) {}
 
   std::string_view kind() const override { return whole_->kind(); }
   double volume() const override { return volume_; }
 
-  /// Cut where the level lies across an axis.
+  /// Cut where gravity is along an axis.
   Bounds<3> bounds() const override {
     Bounds<3> bounds = whole_->bounds();
     for (int k = 0; k < 3; ++k) {
-      if (std::abs(plane_.b[k]) < 1) continue;
-      double& end = plane_.b[k] < 0 ? bounds.upper[k] : bounds.lower[k];
-      end = std::clamp(plane_.a[k], bounds.lower[k], bounds.upper[k]);
+      if (std::abs(up_[k]) < 1) continue;
+      double& end = up_[k] > 0 ? bounds.upper[k] : bounds.lower[k];
+      end = std::clamp(up_[k] * height_, bounds.lower[k], bounds.upper[k]);
     }
     return bounds;
   }
@@ -47,54 +53,108 @@ class BelowLevel final : public Container {
   void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
     const auto before = static_cast<std::ptrdiff_t>(out.size());
     whole_->facets_near(c, reach, out);
-    add_plane(c, reach, before, out);
+    add_planes(c, reach, before, out);
   }
   bool few_facets_near(const Vector<3>& c, double reach, std::size_t most,
                        std::vector<NearFacet>& out) const override {
     const auto before = static_cast<std::ptrdiff_t>(out.size());
     if (!whole_->few_facets_near(c, reach, most, out)) return false;
-    add_plane(c, reach, before, out);
+    add_planes(c, reach, before, out);
     return true;
   }
   void contacts(const Vector<3>& c, double r, std::vector<WallContact>& out) const override {
     whole_->contacts(c, r, out);
-    if (depth(c) < r) out.push_back({plane_.b, depth(c)});
+    for (const Facet& plane : planes_)
+      if (depth(plane, c) < r) out.push_back({plane.b, depth(plane, c)});
   }
   double first_contact(const Vector<3>& c, double r, const Vector<3>& direction,
                        double limit) const override {
-    return whole_->first_contact(c, r, direction, std::min(limit, until_level(c, r, direction)));
+    return whole_->first_contact(c, r, direction, std::min(limit, until_surface(c, r, direction)));
   }
   double free_path(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const override {
-    return whole_->free_path(c, r, direction, std::min(limit, until_level(c, r, direction)));
+    return whole_->free_path(c, r, direction, std::min(limit, until_surface(c, r, direction)));
   }
 
  private:
-  double depth(const Vector<3>& p) const { return (p - plane_.a).dot(plane_.b); }
-  double until_level(const Vector<3>& c, double r, const Vector<3>& direction) const {
-    const double rise = -direction.dot(plane_.b);
-    return rise > 0 ? std::max(0.0, depth(c) - r) / rise : std::numeric_limits<double>::infinity();
+  static double depth(const Facet& plane, const Vector<3>& p) { return (p - plane.a).dot(plane.b); }
+  double depth(const Vector<3>& p) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Facet& plane : planes_) least = std::min(least, depth(plane, p));
+    return least;
   }
-  void add_plane(const Vector<3>& c, double reach, std::ptrdiff_t before, std::vector<NearFacet>& out) const {
-    if (depth(c) >= reach) return;
-    const NearFacet near{depth(c), plane_};
-    out.insert(std::upper_bound(out.begin() + before, out.end(), near,
-                                [](const auto& a, const auto& b) { return a.distance < b.distance; }),
-               near);
+  double until_surface(const Vector<3>& c, double r, const Vector<3>& direction) const {
+    double way = std::numeric_limits<double>::infinity();
+    for (const Facet& plane : planes_) {
+      const double approach = -direction.dot(plane.b);
+      if (approach > 0) way = std::min(way, std::max(0.0, depth(plane, c) - r) / approach);
+    }
+    return way;
+  }
+  void add_planes(const Vector<3>& c, double reach, std::ptrdiff_t before,
+                  std::vector<NearFacet>& out) const {
+    for (const Facet& plane : planes_) {
+      const NearFacet near{depth(plane, c), plane};
+      if (near.distance >= reach) continue;
+      out.insert(std::upper_bound(out.begin() + before, out.end(), near,
+                                  [](const auto& a, const auto& b) { return a.distance < b.distance; }),
+                 near);
+    }
   }
 
   std::shared_ptr<const Container> whole_;
-  Facet plane_;
+  Vector<3> up_;
+  double height_;
+  std::vector<Facet> planes_;
   double volume_;
 };
 
-}  // namespace
-
-std::shared_ptr<const Container> below_level(std::shared_ptr<const Container> whole, const Vector<3>& down,
-                                             double level, double volume) {
-  return std::make_shared<BelowLevel>(std::move(whole), down, level, volume);
+/// Along `up`: of the bounds where that is an axis, else of the points.
+double lowest_of(const Container& container, const Vector<3>& up, const std::vector<Vector<3>>& points) {
+  const Bounds<3> bounds = container.bounds();
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(up[k]) >= 1) return std::min(up[k] * bounds.lower[k], up[k] * bounds.upper[k]);
+  double lowest = up.dot(bounds.center());
+  for (const Vector<3>& p : points) lowest = std::min(lowest, up.dot(p));
+  return lowest;
 }
 
-Heights::Heights(const Container& container, const Vector<3>& down) : volume_(container.volume()) {
+}  // namespace
+
+BedTop::BedTop(const BedTarget& bed, const Container& container, const Vector<3>& down)
+    : up_(-down), middle_(Vector<3>::Zero()), normals_{up_} {
+  if (bed.top != BedTarget::Top::heap) return;
+  const double angle = bed.heap_angle.value_or(usual_heap_angle) * std::numbers::pi / 180;
+  cosine_ = std::cos(angle);
+  const Vector<3> center = container.bounds().center();
+  middle_ = center - center.dot(up_) * up_;
+  normals_.clear();
+  const Vector<3> a = up_.unitOrthogonal(), b = up_.cross(a);
+  for (int k = 0; k < flanks; ++k) {
+    const double turn = 2 * std::numbers::pi * k / flanks;
+    const Vector<3> across = std::cos(turn) * a + std::sin(turn) * b;
+    normals_.push_back(cosine_ * up_ + std::sin(angle) * across);
+  }
+}
+
+double BedTop::height(const Vector<3>& p) const {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const Vector<3>& n : normals_) highest = std::max(highest, n.dot(p - middle_) / cosine_);
+  return highest;
+}
+
+std::vector<Facet> BedTop::planes(double height) const {
+  std::vector<Facet> planes;
+  for (const Vector<3>& n : normals_)
+    planes.push_back({.kind = Facet::Kind::plane, .a = middle_ + height * up_, .b = -n});
+  return planes;
+}
+
+std::shared_ptr<const Container> below_level(std::shared_ptr<const Container> whole, const BedTop& top,
+                                             double height, double volume) {
+  return std::make_shared<BelowLevel>(std::move(whole), top, height, volume);
+}
+
+Heights::Heights(const Container& container, const BedTop& top) : volume_(container.volume()) {
   const Bounds<3> bounds = container.bounds();
   const Vector<3> size = bounds.size();
   // The additive recurrence of the plastic number's relative in three dimensions (Roberts 2018).
@@ -103,18 +163,19 @@ Heights::Heights(const Container& container, const Vector<3>& down) : volume_(co
     const Vector<3> at = static_cast<double>(n + 1) * step;
     return bounds.lower + size.cwiseProduct(Vector<3>(at - at.array().floor().matrix()));
   };
-  for (const Vector<3>& p : points_inside(container, most_points, 1, even_point))
-    heights_.push_back(-down.dot(p));
-  if (heights_.empty()) heights_.push_back(-down.dot(bounds.center()));
+  const std::vector<Vector<3>> points = points_inside(container, most_points, 1, even_point);
+  for (const Vector<3>& p : points) heights_.push_back(top.height(p));
+  if (heights_.empty()) heights_.push_back(top.height(bounds.center()));
+  ground_ = lowest_of(container, top.up(), points);
   std::ranges::sort(heights_);
 }
 
-double Heights::volume_below(double height_above_ground) const {
-  const auto above = std::ranges::upper_bound(heights_, heights_.front() + height_above_ground);
+double Heights::volume_below(double height) const {
+  const auto above = std::ranges::upper_bound(heights_, height);
   return volume_ * static_cast<double>(above - heights_.begin()) / static_cast<double>(heights_.size());
 }
 
-double Heights::level_holding(double volume) const {
+double Heights::holding(double volume) const {
   const double place = volume / volume_ * static_cast<double>(heights_.size());
   return heights_[std::min(heights_.size() - 1, static_cast<std::size_t>(place))];
 }

@@ -3,30 +3,53 @@
 #include <vector>
 
 #include "bernal/domain/container.hpp"
+#include "bernal/scene/bed_target.hpp"
 
 namespace bernal {
 
-/// The part of a container below a level: what the walls and a plane across `down` enclose. `volume` is its
-/// own. The plane is decided in doubles; all questions else are passed on.
-std::shared_ptr<const Container> below_level(std::shared_ptr<const Container>, const Vector<3>& down,
-                                             double level, double volume);
+/// The shape of a bed's surface: a level, or a heap, a pyramid of many flanks around a line along gravity
+/// through the middle of the container.
+class BedTop {
+ public:
+  /// `down` is a unit vector.
+  BedTop(const BedTarget&, const Container&, const Vector<3>& down);
 
-/// How high a container reaches against `down`, and how much of it lies below: by 32,768 evenly distributed
-/// points inside. Error: some thousandths. Cost: a question to the walls a point, once.
+  /// How high, against gravity, the surface through p is: of a heap its tip.
+  double height(const Vector<3>& p) const;
+  /// The planes of the surface that is so high, with the bed in front of them.
+  std::vector<Facet> planes(double height) const;
+  const Vector<3>& up() const { return up_; }
+
+ private:
+  Vector<3> up_, middle_;
+  double cosine_ = 1;               // of the flanks' angle
+  std::vector<Vector<3>> normals_;  // of the planes, unit, out of the bed
+};
+
+/// The part of a container below a surface: what the walls and that enclose. `volume` is its own. The surface
+/// is decided in doubles; all questions else are passed on.
+std::shared_ptr<const Container> below_level(std::shared_ptr<const Container>, const BedTop&, double height,
+                                             double volume);
+
+/// How much of a container lies below a surface: by 32,768 evenly distributed points inside. Error: some
+/// thousandths. Cost: a question to the walls a point, once.
 class Heights {
  public:
-  Heights(const Container&, const Vector<3>& down);
+  Heights(const Container&, const BedTop&);
 
-  /// Below a level that is so high above the lowest point; at most that of the container.
-  double volume_below(double height_above_ground) const;
-  /// Up to which the container holds that volume. Precondition: volume > 0.
-  double level_holding(double volume) const;
-  /// Of the part below the level whose mean height is that: of a bed with a level top that is as dense
-  /// everywhere, and whose spheres have that mean height, weighted by their volumes.
+  /// Of the lowest point of the container.
+  double ground() const { return ground_; }
+  /// Of the surface of that height; at most the container's.
+  double volume_below(double height) const;
+  /// Of the surface below which the container holds that volume. Precondition: volume > 0.
+  double holding(double volume) const;
+  /// Of the part below the surface whose points have that mean height: of a bed that is as dense everywhere,
+  /// and whose spheres have that mean, weighted by their volumes.
   double volume_below_mean(double height) const;
 
  private:
-  std::vector<double> heights_;  // ascending
+  std::vector<double> heights_;  // of the surfaces through the points, ascending
+  double ground_;                // the lowest point
   double volume_;
 };
 

@@ -58,12 +58,23 @@ void change_container(Work& work, std::shared_ptr<const Container> to) {
   work.supply->set_placed(placed);
 }
 
+/// Weighted by the volumes of the spheres.
+double mean_height(const Bed& bed, const BedTop& top) {
+  double sum = 0, volume = 0;
+  for (Bed::Id i = 0; i < bed.size(); ++i) {
+    const double own = ball_volume(3, bed[i].r);
+    sum += own * top.height(bed[i].center);
+    volume += own;
+  }
+  return sum / volume;
+}
+
 /// Says how porous the bed has become, and that it is not as was asked where it differs by more than this.
 constexpr double as_asked = 0.015;
 
-void tell_porosity(Work& work, const Settle& options, const Heights& heights, const Vector<3>& down) {
+void tell_porosity(Work& work, const Settle& options, const Heights& heights, const BedTop& top) {
   const double filled = work.bed().packing_fraction() * work.container->volume();
-  const double porosity = 1 - filled / heights.volume_below_mean(work.bed().potential(down));
+  const double porosity = 1 - filled / heights.volume_below_mean(mean_height(work.bed(), top));
   if (!(porosity > 0 && porosity < 1)) return;  // of a few spheres on a floor there is none
   work.account = fmt::format("the bed has a porosity of {:.3f}", porosity);
   if (!options.bed.porosity || std::abs(porosity - *options.bed.porosity) <= as_asked) return;
@@ -73,36 +84,55 @@ void tell_porosity(Work& work, const Settle& options, const Heights& heights, co
                                                    : "they fall until they rest, and then that is left");
 }
 
-/// Relaxation packs the spheres below the level at which they have the porosity of the bed, or the lowest
-/// above at which there is room for them; then each falls and rolls to rest. Cost: that of relaxation, and of
-/// `roll_to_rest`.
+/// Relaxation packs the spheres below the surface at which they have the porosity of the bed, or the lowest
+/// above at which there is room for them; where its height is given, or the container does not hold them, as
+/// many as have that porosity.
+StageEnd relax_below(Work& work, const BedTop& top, const Heights& heights, double porosity_or_0) {
+  const std::shared_ptr<const Container> whole = work.container;
+  const Target asked = work.target;
+  const bool has_height = asked.bed.above_ground > 0;
+  const double height = heights.ground() + asked.bed.above_ground;
+  const double room = has_height ? heights.volume_below(height) : whole->volume();
+  const double attainable = work.attainable;
+  const double aim = porosity_or_0 > 0 ? 1 - porosity_or_0 : attainable * whole->volume() / room;
+  const std::size_t count = work.target_count();
+  // A layer is no shallower than its largest sphere.
+  const double largest = std::ranges::max(work.drawn(count).spheres.r);
+  double volume = std::max(work.volume_of_drawn(count) / aim,
+                           heights.volume_below(heights.ground() + room_for_largest * largest));
+  if (!asked.fill && (has_height || volume > room)) {
+    work.target = Target{};  // as many as are expected to fit
+    work.attainable = aim;
+    volume = room;
+  }
+  StageEnd end = StageEnd::full;
+  for (double rise = first_rise; end == StageEnd::full; volume *= 1 + rise, rise *= 2) {
+    const bool to_the_brim = volume >= whole->volume();
+    change_container(
+        work,
+        to_the_brim ? whole : below_level(whole, top, has_height ? height : heights.holding(volume), volume));
+    end = relax_in_container(work, {});
+    if (to_the_brim || work.target.is_open()) break;
+  }
+  change_container(work, whole);
+  work.target = asked;
+  work.attainable = attainable;
+  return end;
+}
+
+/// Then each falls and rolls to rest. Cost: that of relaxation, and of `roll_to_rest`.
 StageEnd settle(Work& work, const Settle& options) {
   const Vector<3> down = direction_of(options.direction);
   require_support(work.bed().container().boundary(), down);
   const NotResumable whole_or_not_at_all(work);
-  const double aim = options.bed.porosity ? 1 - *options.bed.porosity : work.attainable;
-  const std::shared_ptr<const Container> whole = work.container;
-  const std::size_t count = work.target_count();
-  StageEnd end = StageEnd::full;
-  double rise = first_rise;
-  const Heights heights(*whole, down);
-  // A layer is no shallower than its largest sphere.
-  const double largest = std::ranges::max(work.drawn(count).spheres.r);
-  double volume =
-      std::max(work.volume_of_drawn(count) / aim, heights.volume_below(room_for_largest * largest));
-  for (; end == StageEnd::full; volume *= 1 + rise, rise *= 2) {
-    const bool to_the_brim = volume >= whole->volume();
-    change_container(work,
-                     to_the_brim ? whole : below_level(whole, down, heights.level_holding(volume), volume));
-    end = relax_in_container(work, {});
-    if (to_the_brim) break;
-  }
-  change_container(work, whole);
+  const BedTop top(work.target.bed, *work.container, down);
+  const Heights heights(*work.container, top);
+  const StageEnd end = relax_below(work, top, heights, options.bed.porosity.value_or(0));
   if (end == StageEnd::cancelled) return end;
   const EffectTimer timer(work.effects["rolling"]);
   const Made made("rolling");
   const StageEnd rest = roll_to_rest(work, down, options.rest);
-  tell_porosity(work, options, heights, down);
+  tell_porosity(work, options, heights, top);
   return rest == StageEnd::converged ? end : rest;
 }
 
@@ -137,7 +167,7 @@ const StageEntry& entry_of<Settle>() {
       }),
       .reached = of_options(+[](const Settle& o) { return o.bed.porosity ? 1 - *o.bed.porosity : 1; }),
       .full = of_options(+[](const Settle& o, const EmptyBed& bed) {
-        return o.bed.porosity ? 1 - *o.bed.porosity : share_of_relaxed * bed.relaxed;
+        return bed.share * (o.bed.porosity ? 1 - *o.bed.porosity : share_of_relaxed * bed.relaxed);
       })};
   return entry;
 }

@@ -33,6 +33,8 @@ struct EmptyBed {
   double relaxed = 0;     ///< packing fraction that relaxation would reach there
   double wall_share = 0;  ///< area of the wall times the mean diameter, over the volume
   double evenness = 1;    ///< mean volume of a sphere over that of the largest: 1 for equal spheres
+  /// Of the container's volume, where the scene says how high the bed is: the rest is of that part.
+  double share = 1;
 };
 
 /// All that there is to know of a stage. Each defines its own beside its act, as entry_of<Its options>().

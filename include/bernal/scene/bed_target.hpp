@@ -20,6 +20,9 @@ struct BedTarget {
   /// Of its surface above the lowest point of the container, in place of a count; or that in mean diameters.
   std::optional<double> height = {}, layers = {};
 
+  /// The height that either of these means, in the scene's unit: by `build`; 0 where none is given.
+  double above_ground = 0;
+
   bool gives_height() const { return height || layers; }
   /// Whether the scene asks for a bed at all.
   bool is_asked() const { return density || top || gives_height(); }
