@@ -65,12 +65,30 @@ std::string effects_in_words(const Plan& plan) {
   return text;
 }
 
+std::string_view density_in_words(const BedTarget& bed) {
+  if (bed.porosity) return "as asked,";
+  switch (bed.density.value_or(BedTarget::Density::poured)) {
+    case BedTarget::Density::vibrated:
+      return "vibrated,";
+    case BedTarget::Density::loose:
+      return "loose,";
+    case BedTarget::Density::poured:
+      break;
+  }
+  return "poured,";
+}
+
 }  // namespace
 
 std::string explain(const Plan& plan) {
   const Scene& scene = plan.scene;
   std::string text = describe(plan);
   text += fmt::format("accuracy   walls {}, overlap {}\n", name_of(scene.walls), scene.overlap);
+  if (const auto& bed = plan.expected_bed)
+    text += fmt::format(
+        "bed        {} porosity about {:.3g}, its {} about {:.4g} {} above the lowest point\n",
+        density_in_words(scene.target.bed), bed->porosity,
+        scene.target.bed.top == BedTarget::Top::heap ? "tip" : "surface", bed->height, name_of(scene.unit));
   text += fmt::format("expected   about {:.3g} spheres, packing fraction {:.3f}\n", plan.expected_count,
                       plan.expected_packing_fraction);
   text += fmt::format("           about {} to pack them on one core, {} of memory\n\n",

@@ -19,6 +19,9 @@ std::string plan_as_json(const Plan& plan) {
     container["scalable"] = plan.box_follows;
   }
   container["notes"] = plan.container_notes;
+  ordered_json bed;
+  if (plan.expected_bed)
+    bed = {{"porosity", plan.expected_bed->porosity}, {"height", plan.expected_bed->height}};
   ordered_json items = ordered_json::array();
   for (const PlanItem& item : plan.items)
     items.push_back({{"name", item.name},
@@ -45,6 +48,7 @@ std::string plan_as_json(const Plan& plan) {
       {"expected",
        {{"count", plan.expected_count},
         {"packing_fraction", plan.expected_packing_fraction},
+        {"bed", bed},
         {"seconds", plan.expected_seconds},
         {"memory_bytes", plan.expected_memory_bytes}}},
       {"caution", plan.caution.empty() ? ordered_json() : ordered_json(plan.caution)},

@@ -335,6 +335,26 @@ void require_images(const Plan& plan) {
   }
 }
 
+/// The height that the scene gives the bed, which the container has to have, and a sphere.
+void set_height_of_bed(Plan& plan) {
+  BedTarget& bed = plan.scene.target.bed;
+  if (!bed.gives_height()) return;
+  bed.above_ground = bed.height ? *bed.height : *bed.layers * 2 * plan.radii->moment(1);
+  const auto refuse = [&](const std::string& why) {
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("a bed that is {:.4g} {} high {}", bed.above_ground, name_of(plan.scene.unit), why),
+        plan.scene.locations.of(bed.height ? "height" : "bed_layers"));
+  };
+  const double most = down_in(plan.scene).cwiseAbs().dot(bounds_of(plan.domain).size());
+  if (bed.above_ground > (1 + 1e-9) * most)
+    refuse(fmt::format("is higher than the container, {:.4g}: leave the height out to fill it to the brim",
+                       most));
+  const double least = 2 * plan.radii->min() + 2 * plan.scene.wall_gap;
+  if (bed.above_ground < least)
+    refuse(fmt::format("holds no sphere of these sizes: the smallest needs {:.4g}", least));
+}
+
 void expect_with_room(Plan& plan) {
   Plan with_room = plan_with_room(plan);
   expect(with_room);
@@ -372,8 +392,7 @@ Plan build(const Scene& stated) {
   plan.domain = domain_of(plan.scene, plan.container_notes, plan.caution);
   if (scene.engine) engine::require_engine_fits(scene, plan.domain);
   plan.radii = scene.draws() ? radii_of(scene) : radii_there(plan.start.spheres.r);
-  BedTarget& bed = plan.scene.target.bed;
-  bed.above_ground = bed.height ? *bed.height : bed.layers ? *bed.layers * 2 * plan.radii->moment(1) : 0;
+  set_height_of_bed(plan);
   if (scene.asks_for_gaps()) {
     require_gaps(plan);
     if (is_faceted(plan.domain)) plan.container = container_of(plan);
@@ -388,6 +407,7 @@ Plan build(const Scene& stated) {
   } else {
     expect(plan);
   }
+  if (any_stage(plan.scene, &StageTraits::makes_bed, true)) plan.expected_bed = expected_bed(plan);
   require_images(plan);
   return plan;
 }

@@ -104,7 +104,7 @@ Part part_to_fill(const Scene& scene, const Domain& shape, const std::shared_ptr
   const double share = below / whole, height = down.cwiseAbs().dot(part.container->bounds().size()) * scale;
   const double section = part.volume / height;
   part.area = 2 * section + share * std::max(0.0, part.area - 2 * section);
-  part.container = below_level(part.container, top, level, below);
+  part.container = cut_by_planes(part.container, top.planes(level), below);
   part.volume *= share;
   return part;
 }
@@ -140,6 +140,22 @@ double reached_by_relaxation(const Domain& shape, const SizeDistribution& radii,
 bool reaches(const Scene& scene, Reaches what) { return any_stage(scene, &StageTraits::reaches, what); }
 
 }  // namespace
+
+Plan::ExpectedBed expected_bed(const Plan& plan) {
+  const auto container = local_container(plan.domain, plan.container);
+  const double scale = frame_of(plan.domain).scale;
+  const BedTarget& bed = plan.scene.target.bed;
+  const Heights heights(*container, BedTop(bed, *container, down_in(plan.scene)));
+  double solid = plan.attainable_packing_fraction, height = bed.above_ground / scale;
+  if (height > 0) {
+    solid *= container->volume() / heights.volume_below(heights.ground() + height);
+  } else {
+    const double filled = plan.expected_packing_fraction / solid;
+    height = heights.holding(std::min(1.0, filled) * container->volume()) - heights.ground();
+  }
+  if (bed.porosity) solid = 1 - *bed.porosity;
+  return {1 - solid, height * scale};
+}
 
 double coverable_share(const Container& container, double r) {
   // The additive recurrence of the plastic number's relative in three dimensions (Roberts 2018).

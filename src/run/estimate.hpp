@@ -3,6 +3,7 @@
 
 #include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/scene/scene.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
@@ -21,6 +22,9 @@ double coverable_share(const Container& container, double r);
 double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii,
                                  const std::shared_ptr<const Container>& made = {});
 
+/// Of a scene with a stage that makes a bed, from what is expected to fit and how many there are.
+Plan::ExpectedBed expected_bed(const Plan& plan);
+
 /// How far below the one of the two functions here that is for the scene's domain a result may lie: 0.01, the
 /// error of the rod model, in a periodic box; 0.016 and 0.03 in a container, where relaxation and compression
 /// were measured; and where that is so thin that walls are everywhere a share of what is `expected`, as it is
@@ -28,11 +32,11 @@ double expected_packing_fraction(const Scene& scene, const Domain& shape, const 
 double error_of_expectation(const Scene& scene, const Domain& shape, const SizeDistribution& radii,
                             double expected);
 
-/// That share: 0.12 (x - 1)^1.5 where x = A d / V is more than 1, for walls of area A, a volume V and the mean
-/// diameter d that counts by surface. Of 41 cylinders, boxes and balls 1 to 20 diameters wide with x from 0.9
-/// to 4.4, and a Menger sponge, filled with as many equal spheres as could be made to fit, all but two came
-/// within this and a sphere of what was expected, from 0.7 to 1.8 times as many; those to 1 of 3.3 and 422 of
-/// 408. 0 in other than two and three dimensions.
+/// That share: 0.12 (x - 1)^1.5 where x = A d / V is more than 1, for walls of area A, a volume V and the
+/// mean diameter d that counts by surface. Of 41 cylinders, boxes and balls 1 to 20 diameters wide with x
+/// from 0.9 to 4.4, and a Menger sponge, filled with as many equal spheres as could be made to fit, all but
+/// two came within this and a sphere of what was expected, from 0.7 to 1.8 times as many; those to 1 of 3.3
+/// and 422 of 408. 0 in other than two and three dimensions.
 double error_between_walls(const Domain& shape, const SizeDistribution& radii);
 
 /// What the last stage that places spheres says that it reaches of itself, whatever the sizes: 1 where it

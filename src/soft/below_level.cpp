@@ -18,28 +18,27 @@ constexpr std::size_t most_points = 1 << 15;
 constexpr double usual_heap_angle = 20;
 constexpr int flanks = 32;
 
-class BelowLevel final : public Container {
+class CutByPlanes final : public Container {
  public:
-  BelowLevel(std::shared_ptr<const Container> whole, const BedTop& top, double height, double volume)
+  CutByPlanes(std::shared_ptr<const Container> whole, std::vector<Facet> planes, double volume)
       : Container(whole->arithmetic(), whole->resolution(), whole->boundary(), whole->dimension(),
                   whole->inset()),
         whole_(std::move(whole)),
-        up_(top.up()),
-        height_(height),
-        planes_(top.planes(height)),
+        planes_(std::move(planes)),
         volume_(volume) {}
 
   std::string_view kind() const override { return whole_->kind(); }
   double volume() const override { return volume_; }
 
-  /// Cut where gravity is along an axis.
+  /// Cut where a plane lies across an axis.
   Bounds<3> bounds() const override {
     Bounds<3> bounds = whole_->bounds();
-    for (int k = 0; k < 3; ++k) {
-      if (std::abs(up_[k]) < 1) continue;
-      double& end = up_[k] > 0 ? bounds.upper[k] : bounds.lower[k];
-      end = std::clamp(up_[k] * height_, bounds.lower[k], bounds.upper[k]);
-    }
+    for (const Facet& plane : planes_)
+      for (int k = 0; k < 3; ++k) {
+        if (std::abs(plane.b[k]) < 1) continue;
+        double& end = plane.b[k] < 0 ? bounds.upper[k] : bounds.lower[k];
+        end = std::clamp(plane.a[k], bounds.lower[k], bounds.upper[k]);
+      }
     return bounds;
   }
 
@@ -69,10 +68,10 @@ class BelowLevel final : public Container {
   }
   double first_contact(const Vector<3>& c, double r, const Vector<3>& direction,
                        double limit) const override {
-    return whole_->first_contact(c, r, direction, std::min(limit, until_surface(c, r, direction)));
+    return whole_->first_contact(c, r, direction, std::min(limit, until_planes(c, r, direction)));
   }
   double free_path(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const override {
-    return whole_->free_path(c, r, direction, std::min(limit, until_surface(c, r, direction)));
+    return whole_->free_path(c, r, direction, std::min(limit, until_planes(c, r, direction)));
   }
 
  private:
@@ -82,7 +81,7 @@ class BelowLevel final : public Container {
     for (const Facet& plane : planes_) least = std::min(least, depth(plane, p));
     return least;
   }
-  double until_surface(const Vector<3>& c, double r, const Vector<3>& direction) const {
+  double until_planes(const Vector<3>& c, double r, const Vector<3>& direction) const {
     double way = std::numeric_limits<double>::infinity();
     for (const Facet& plane : planes_) {
       const double approach = -direction.dot(plane.b);
@@ -102,8 +101,6 @@ class BelowLevel final : public Container {
   }
 
   std::shared_ptr<const Container> whole_;
-  Vector<3> up_;
-  double height_;
   std::vector<Facet> planes_;
   double volume_;
 };
@@ -120,14 +117,12 @@ double lowest_of(const Container& container, const Vector<3>& up, const std::vec
 
 }  // namespace
 
-BedTop::BedTop(const BedTarget& bed, const Container& container, const Vector<3>& down)
-    : up_(-down), middle_(Vector<3>::Zero()), normals_{up_} {
+BedTop::BedTop(const BedTarget& bed, const Container& container, const Vector<3>& down) : up_(-down) {
   if (bed.top != BedTarget::Top::heap) return;
   const double angle = bed.heap_angle.value_or(usual_heap_angle) * std::numbers::pi / 180;
   cosine_ = std::cos(angle);
   const Vector<3> center = container.bounds().center();
   middle_ = center - center.dot(up_) * up_;
-  normals_.clear();
   const Vector<3> a = up_.unitOrthogonal(), b = up_.cross(a);
   for (int k = 0; k < flanks; ++k) {
     const double turn = 2 * std::numbers::pi * k / flanks;
@@ -137,21 +132,21 @@ BedTop::BedTop(const BedTarget& bed, const Container& container, const Vector<3>
 }
 
 double BedTop::height(const Vector<3>& p) const {
-  double highest = -std::numeric_limits<double>::infinity();
+  double highest = up_.dot(p);
   for (const Vector<3>& n : normals_) highest = std::max(highest, n.dot(p - middle_) / cosine_);
   return highest;
 }
 
 std::vector<Facet> BedTop::planes(double height) const {
-  std::vector<Facet> planes;
+  std::vector<Facet> planes = {{.kind = Facet::Kind::plane, .a = height * up_, .b = -up_}};
   for (const Vector<3>& n : normals_)
     planes.push_back({.kind = Facet::Kind::plane, .a = middle_ + height * up_, .b = -n});
   return planes;
 }
 
-std::shared_ptr<const Container> below_level(std::shared_ptr<const Container> whole, const BedTop& top,
-                                             double height, double volume) {
-  return std::make_shared<BelowLevel>(std::move(whole), top, height, volume);
+std::shared_ptr<const Container> cut_by_planes(std::shared_ptr<const Container> whole,
+                                               std::vector<Facet> planes, double volume) {
+  return std::make_shared<CutByPlanes>(std::move(whole), std::move(planes), volume);
 }
 
 Heights::Heights(const Container& container, const BedTop& top) : volume_(container.volume()) {

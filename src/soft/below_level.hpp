@@ -16,20 +16,21 @@ class BedTop {
 
   /// How high, against gravity, the surface through p is: of a heap its tip.
   double height(const Vector<3>& p) const;
-  /// The planes of the surface that is so high, with the bed in front of them.
+  /// The planes that a bed lies in front of whose surface is so high: the level, of a heap at its tip, and
+  /// the flanks.
   std::vector<Facet> planes(double height) const;
   const Vector<3>& up() const { return up_; }
 
  private:
-  Vector<3> up_, middle_;
+  Vector<3> up_, middle_ = Vector<3>::Zero();
   double cosine_ = 1;               // of the flanks' angle
-  std::vector<Vector<3>> normals_;  // of the planes, unit, out of the bed
+  std::vector<Vector<3>> normals_;  // of the flanks, unit, out of the bed
 };
 
-/// The part of a container below a surface: what the walls and that enclose. `volume` is its own. The surface
-/// is decided in doubles; all questions else are passed on.
-std::shared_ptr<const Container> below_level(std::shared_ptr<const Container>, const BedTop&, double height,
-                                             double volume);
+/// The part of a container in front of planes. `volume` is its own. The planes are decided in doubles; all
+/// questions else are passed on.
+std::shared_ptr<const Container> cut_by_planes(std::shared_ptr<const Container>, std::vector<Facet> planes,
+                                               double volume);
 
 /// How much of a container lies below a surface: by 32,768 evenly distributed points inside. Error: some
 /// thousandths. Cost: a question to the walls a point, once.

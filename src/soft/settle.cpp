@@ -8,7 +8,7 @@
 
 #include "settle/compress.hpp"
 #include "settle/roll_to_rest.hpp"
-#include "soft/below_level.hpp"
+#include "soft/pour.hpp"
 #include "soft/relax.hpp"
 #include "work/stage_entry.hpp"
 
@@ -19,11 +19,6 @@ namespace {
 /// columns of 4, 6 and 20 diameters have porosities of 0.466, 0.442 and 0.404 far from their ends; so have
 /// those with this share, to 0.003.
 constexpr double share_of_relaxed = 0.963;
-/// Where the spheres find no room below the level, it rises by so much of the bed, the next time twice as
-/// much.
-constexpr double first_rise = 0.05;
-/// A level is at least so high above the ground, in largest radii.
-constexpr double room_for_largest = 2.05;
 
 /// What a sphere takes that falls by some hundredths of its radius and rolls to rest; and walls asked.
 constexpr double seconds_of_rolling = 15e-6, questions_of_rolling = 4;
@@ -40,22 +35,6 @@ std::vector<PlanItem> effects_of_settling(const Settle& options, const Outlook& 
                    .seconds = walls.seconds + seconds_of_rolling * outlook.spheres});
   items.push_back(walls);
   return items;
-}
-
-/// The spheres of the bed in one of another container, those that fit, with their places in the sequence.
-void change_container(Work& work, std::shared_ptr<const Container> to) {
-  const std::shared_ptr<Bed> before = work.bed_;
-  work.container = std::move(to);
-  work.bed_ = std::make_shared<Bed>(*work.container, work.supply->smallest(), work.supply->largest(),
-                                    work.supply->wanted(), work.effects);
-  std::vector<bool> placed;
-  for (Bed::Id i = 0; i < before->size(); ++i) {
-    const std::uint32_t tag = before->tag(i);
-    if (placed.size() <= tag) placed.resize(tag + std::size_t{1}, false);
-    placed[tag] = work.fits_in_bed((*before)[i].center, (*before)[i].r);
-    if (placed[tag]) work.bed_->insert((*before)[i].center, (*before)[i].r, tag);
-  }
-  work.supply->set_placed(placed);
 }
 
 /// Weighted by the volumes of the spheres.
@@ -84,50 +63,27 @@ void tell_porosity(Work& work, const Settle& options, const Heights& heights, co
                                                    : "they fall until they rest, and then that is left");
 }
 
-/// Relaxation packs the spheres below the surface at which they have the porosity of the bed, or the lowest
-/// above at which there is room for them; where its height is given, or the container does not hold them, as
-/// many as have that porosity.
-StageEnd relax_below(Work& work, const BedTop& top, const Heights& heights, double porosity_or_0) {
-  const std::shared_ptr<const Container> whole = work.container;
-  const Target asked = work.target;
-  const bool has_height = asked.bed.above_ground > 0;
-  const double height = heights.ground() + asked.bed.above_ground;
-  const double room = has_height ? heights.volume_below(height) : whole->volume();
-  const double attainable = work.attainable;
-  const double aim = porosity_or_0 > 0 ? 1 - porosity_or_0 : attainable * whole->volume() / room;
-  const std::size_t count = work.target_count();
-  // A layer is no shallower than its largest sphere.
-  const double largest = std::ranges::max(work.drawn(count).spheres.r);
-  double volume = std::max(work.volume_of_drawn(count) / aim,
-                           heights.volume_below(heights.ground() + room_for_largest * largest));
-  if (!asked.fill && (has_height || volume > room)) {
-    work.target = Target{};  // as many as are expected to fit
-    work.attainable = aim;
-    volume = room;
-  }
-  StageEnd end = StageEnd::full;
-  for (double rise = first_rise; end == StageEnd::full; volume *= 1 + rise, rise *= 2) {
-    const bool to_the_brim = volume >= whole->volume();
-    change_container(
-        work,
-        to_the_brim ? whole : below_level(whole, top, has_height ? height : heights.holding(volume), volume));
-    end = relax_in_container(work, {});
-    if (to_the_brim || work.target.is_open()) break;
-  }
-  change_container(work, whole);
-  work.target = asked;
-  work.attainable = attainable;
-  return end;
+/// Packing fraction of the bed by what is expected of the whole container.
+double aim_of(const Work& work, const BedTarget& bed, const Heights& heights) {
+  if (bed.porosity) return 1 - *bed.porosity;
+  const double height = work.target.bed.above_ground, whole = work.container->volume();
+  return height > 0 ? work.attainable * whole / heights.volume_below(heights.ground() + height)
+                    : work.attainable;
 }
 
-/// Then each falls and rolls to rest. Cost: that of relaxation, and of `roll_to_rest`.
+/// Onto a start, which rests, the others are poured; what other stages have placed is placed anew. Then each
+/// falls and rolls to rest. Cost: that of relaxation, and of `roll_to_rest`.
 StageEnd settle(Work& work, const Settle& options) {
   const Vector<3> down = direction_of(options.direction);
   require_support(work.bed().container().boundary(), down);
   const NotResumable whole_or_not_at_all(work);
   const BedTop top(work.target.bed, *work.container, down);
   const Heights heights(*work.container, top);
-  const StageEnd end = relax_below(work, top, heights, options.bed.porosity.value_or(0));
+  if (work.begun == 0)
+    work.put_in_bed({});
+  else if (roll_to_rest(work, down, options.rest) == StageEnd::cancelled)
+    return StageEnd::cancelled;
+  const StageEnd end = pour(work, top, heights, aim_of(work, options.bed, heights));
   if (end == StageEnd::cancelled) return end;
   const EffectTimer timer(work.effects["rolling"]);
   const Made made("rolling");

@@ -74,6 +74,24 @@ Supply::Supply(const Source& source, double volume, const Target& target, double
   open_window();
 }
 
+Supply Supply::of(const std::vector<std::uint32_t>& tags) const {
+  const auto chosen = [&](const std::vector<double>& from) {
+    std::vector<double> values;
+    if (from.empty()) return values;
+    values.reserve(tags.size());
+    for (const std::uint32_t tag : tags) values.push_back(from[tag]);
+    return values;
+  };
+  Supply some = *this;
+  some.radii_ = chosen(radii_);
+  some.drawn_ = chosen(drawn_);
+  const auto [smallest, largest] = std::ranges::minmax(some.radii_);
+  some.smallest_ = smallest;
+  some.largest_ = largest;
+  some.set_placed({});
+  return some;
+}
+
 void Supply::divide_by(double unit) {
   for (double& r : radii_) r /= unit;
   for (double& r : drawn_) r /= unit;

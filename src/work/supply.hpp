@@ -42,6 +42,9 @@ class Supply {
   /// open, by the seed's stream of radii. Throws Error{bad_scene} if those are more than 2^31.
   Supply(const Source& source, double volume, const Target& target, double fraction = densest);
 
+  /// The same of these of the sequence alone, in that order, with nothing taken. Precondition: one or more.
+  Supply of(const std::vector<std::uint32_t>& tags) const;
+
   /// Lengths from now on are in units of `unit`, a power of two.
   void divide_by(double unit);
   /// All sizes are so many times as large from now on.

@@ -40,6 +40,12 @@ struct Plan {
   /// What the stages are likely to reach, and what the result is likely to be: less, where less is asked for.
   double attainable_packing_fraction = 0, expected_packing_fraction = 0;
   double expected_count = 0;
+  /// Of a bed: how much of it is left free, up to its surface, and how high that lies above the lowest point
+  /// of the container; of a heap its tip. To a few per cent.
+  struct ExpectedBed {
+    double porosity, height;
+  };
+  std::optional<ExpectedBed> expected_bed = {};
   /// Of the run alone, on one thread; the most that it holds at a time, and what the process takes anyway.
   double expected_seconds = 0, expected_memory_bytes = 0;
   /// What a reader should see before the run: where a periodic box that is to be packed closely holds too few
