@@ -69,6 +69,8 @@ std::string describe_target(const Plan& plan) {
   }
   if (!fraction.empty()) return "up to " + fraction;
   if (scene.target.fill) return "as many as can be made to fit";
+  if (const BedTarget& bed = plan.scene.target.bed; bed.gives_height())
+    return fmt::format("as many as make a bed {:.6g} {} high", bed.above_ground, name_of(plan.scene.unit));
   return plan.places_expected ? "as many as are expected to fit" : "as many as fit";
 }
 

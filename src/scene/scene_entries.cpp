@@ -251,7 +251,7 @@ const Entry& spheres_entry() {
                       "a cone)",
                       {"free", "level", "heap"}),
                  number(of_bed(&BedTarget::heap_angle), "heap_angle",
-                        "of the flanks of a heap with the level, in degrees; if absent 20", between(0, 60)),
+                        "of the flanks of a heap with the level, in degrees; if absent 20", above(0, 45)),
                  number(of_bed(&BedTarget::porosity), "porosity",
                         "of a bed, up to its surface, in place of bed = …: the share of the volume that is "
                         "left free",

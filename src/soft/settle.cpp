@@ -89,6 +89,8 @@ StageEnd settle(Work& work, const Settle& options) {
   const Made made("rolling");
   const StageEnd rest = roll_to_rest(work, down, options.rest);
   tell_porosity(work, options, heights, top);
+  const bool to_the_brim = !work.target.is_open() && !work.supply->exhausted();
+  if (to_the_brim && !work.account.empty()) work.account += " and reaches the brim";
   return rest == StageEnd::converged ? end : rest;
 }
 

@@ -8,6 +8,9 @@ namespace {
 /// Of what is likely to fit: where it is left open how many spheres there are, and a bed holds less than
 /// this, a stage that works in a box starts anew with all.
 constexpr double nearly_all = 0.7;
+/// A container that is smaller is not the whole domain; its middle is not its roomiest place, which matters
+/// where a few of the largest radii are less than that.
+constexpr double part_of_domain = 1 - 1e-9, well_within = 2;
 
 /// Which of the drawn sequence the radii are, which come in its order but for some that are left out.
 std::vector<std::uint32_t> tags_of(const std::vector<double>& radii, const Supply& supply) {
@@ -63,9 +66,10 @@ const Room& Work::roomiest() const {
     // Of one place in the middle, where nothing is nearer than what bounds the largest sphere, that is known.
     const Room middle{container->bounds().center(), container->clearance(container->bounds().center())};
     roomiest_ = middle;
-    if (is_faceted(domain)) {
+    const bool is_part = container->volume() < part_of_domain * volume_of(domain);
+    if (is_faceted(domain) || (is_part && middle.radius < well_within * supply->largest())) {
       const LargestRoom known = largest_room(*container);
-      roomiest_ = Room{known.place, known.radius};
+      if (is_faceted(domain) || known.radius > middle.radius) roomiest_ = Room{known.place, known.radius};
     }
   }
   return *roomiest_;
