@@ -79,20 +79,26 @@ void check_target(const Scene& scene) {
     fail("a periodic box without size needs a \"count\" in [spheres]; or give it \"size\" or \"edge\"");
 }
 
+bool has_fixed_walls(const PeriodicBox& box) {
+  return !box.walls.empty() && box.dimension == 3 && !box.scalable;
+}
+
 /// The stage that packs any scene, or makes the bed that is asked for; in a bed of two dimensions all that
 /// work there, one after the other.
 void take_default_stages(Scene& scene) {
   scene.stages_are_default = true;
+  if (const auto* box = std::get_if<PeriodicBox>(&scene.container);
+      box && scene.target.bed.is_asked() && !has_fixed_walls(*box))
+    throw Error(ErrorCode::bad_scene,
+                "a bed lies on a floor, which this periodic box has not: give it walls = [2] and a size, or "
+                "take another container",
+                scene.target.where);
   const bool in_plane = !scene.is_periodic() && scene.dimension() == 2, bed = scene.target.bed.is_asked();
   for (const StageTable* table : stage_tables())
     if (in_plane ? table->traits.in_plane : bed ? table->traits.makes_bed : table->traits.is_default) {
       scene.stages.push_back(table->make());
       scene.stages.back().locations.whole.file = scene.file.string();
     }
-}
-
-bool has_fixed_walls(const PeriodicBox& box) {
-  return !box.walls.empty() && box.dimension == 3 && !box.scalable;
 }
 
 std::string_view name_of_domain(const Scene& scene) {
@@ -157,6 +163,12 @@ void complete_pushes(const Entry& entry, void* options, const Scene& scene, cons
   }
 }
 
+/// Whether any stage that settles spheres makes it, by a count.
+bool is_plain(const BedTarget& bed) {
+  return bed.density.value_or(BedTarget::Density::poured) == BedTarget::Density::poured && !bed.porosity &&
+         !bed.gives_height() && bed.top.value_or(BedTarget::Top::free) == BedTarget::Top::free;
+}
+
 /// Throws where the scene says what a bed is to be like, and no stage would make it so.
 void require_bed(const Scene& scene) {
   const BedTarget& bed = scene.target.bed;
@@ -164,19 +176,18 @@ void require_bed(const Scene& scene) {
   const auto fail = [&](std::string_view why) {
     throw Error(ErrorCode::bad_scene, std::string(why), scene.target.where);
   };
-  const auto makes_bed = [](const Stage& stage) { return table_of(stage).traits.makes_bed; };
-  if (!scene.is_periodic() && scene.dimension() == 2) {
-    if (bed.density.value_or(BedTarget::Density::poured) != BedTarget::Density::poured || bed.porosity ||
-        bed.gives_height() || bed.top.value_or(BedTarget::Top::free) != BedTarget::Top::free)
-      fail(
-          "a bed of discs is poured, by \"count\", and its top is free; leave out of [spheres] what says "
-          "else");
-  } else if (std::ranges::none_of(scene.stages, makes_bed)) {
-    fail(bed.is_asked()
-             ? "a bed is asked for in [spheres], and no stage makes one: name \"settle\", or no stage"
-             : "\"porosity\" in [spheres] is that of a bed: add bed = \"poured\" or the stage "
-               "\"settle\"; else give packing_fraction, which is 1 less the porosity");
-  }
+  const auto makes_bed = [&](const Stage& stage) {
+    const StageTraits& traits = table_of(stage).traits;
+    return traits.makes_bed || (is_plain(bed) && traits.reaches == Reaches::settled);
+  };
+  if (std::ranges::any_of(scene.stages, makes_bed)) return;
+  if (!scene.is_periodic() && scene.dimension() == 2)
+    fail(
+        "a bed of discs is poured, by \"count\", and its top is free; leave out of [spheres] what says else");
+  fail(bed.is_asked()
+           ? "a bed is asked for in [spheres], and no stage makes one: name \"settle\", or no stage"
+           : "\"porosity\" in [spheres] is that of a bed: add bed = \"poured\" or the stage "
+             "\"settle\"; else give packing_fraction, which is 1 less the porosity");
 }
 
 void complete_stages(Scene& scene) {

@@ -121,7 +121,8 @@ class Reader {
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
     if (scene.start.file) scene.start.file = beside(scene.locations.of("start"), *scene.start.file);
     scene.target.where = at(table.source());
-    for (const char* key : {"count", "packing_fraction", "fill"})
+    for (const char* key :
+         {"bed", "top", "height", "bed_layers", "porosity", "count", "packing_fraction", "fill"})
       if (table.contains(key)) scene.target.where = scene.locations.of(key);
   }
 

@@ -23,6 +23,7 @@ constexpr double room_for_largest = 2.05;
 void change_container(Work& work, std::shared_ptr<const Container> to) {
   const std::shared_ptr<Bed> before = work.bed_;
   work.container = std::move(to);
+  work.roomiest_.reset();
   work.bed_ = std::make_shared<Bed>(*work.container, work.supply->smallest(), work.supply->largest(),
                                     work.supply->wanted(), work.effects);
   if (!before) return;
@@ -119,6 +120,8 @@ StageEnd pour(Work& work, const BedTop& top, const Heights& heights, double aim)
         poured, ends.empty() ? whole : cut_by_planes(whole, ends, std::min(volume, whole->volume() - below)));
     end = relax_in_container(poured, {});
     if (to_the_brim || poured.target.is_open()) break;
+    // What fits only touching both the level and walls is squeezed in: the level is too low.
+    if (poured.is_snug(largest) && !work.is_snug(largest)) end = StageEnd::full;
   }
   work.streams_used = poured.streams_used;
   if (poured.stands_in_bed()) put_in_bed(poured.bed(), tags, ground.placed, work);
