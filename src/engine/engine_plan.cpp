@@ -87,6 +87,18 @@ void require_slabs_fit(const Scene& scene, const Refusal& refuse) {
           fmt::format("\"{}\" needs all spheres at once; leave it out, or the engine's \"slabs\"", key));
 }
 
+/// Spheres that are poured are so many, and fall onto something.
+void require_pouring_fits(const Scene& scene, const Domain& domain, const Refusal& refuse) {
+  const Location where = scene.engine->locations.of("pour");
+  if (scene.engine->process().slabs > 1)
+    refuse.at(where, "\"pour\" and \"slabs\" exclude each other; give one");
+  if (!has_walls(domain) || !table_of(scene.stages.front()).traits.stands_in_bed(scene))
+    refuse.at(where,
+              "spheres are poured onto a floor, which this periodic box has not: take another container");
+  if (!scene.target.count)
+    refuse.at(where, "\"pour\" needs a \"count\" in [spheres]: how many spheres are poured");
+}
+
 }  // namespace
 
 void require_engine_fits(const Scene& scene, const Domain& domain) {
@@ -101,6 +113,8 @@ void require_engine_fits(const Scene& scene, const Domain& domain) {
         "\"start\" and [engine] exclude each other: both say where the spheres begin; give one of them");
   require_stages(scene, refuse);
   if (scene.engine->process().slabs > 1) require_slabs_fit(scene, refuse);
+  if (const auto* liggghts = std::get_if<Liggghts>(&*scene.engine); liggghts && liggghts->pour)
+    require_pouring_fits(scene, domain, refuse);
   if (const auto* box = std::get_if<PeriodicBox>(&scene.container)) {
     if (box->scalable && !box->walls.empty())
       refuse.of_kind("engines know no box between walls whose size follows; give it \"size\" or \"edge\"");

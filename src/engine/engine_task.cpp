@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 namespace bernal::engine {
@@ -14,7 +15,22 @@ constexpr double beyond_walls = 1.5;
 
 }  // namespace
 
-double EngineTask::mass(double r) const { return std::max(1.0, r * r); }
+double EngineTask::mass(double r) const { return pouring ? r * r * r : std::max(1.0, r * r); }
+
+double Pouring::gravity(const TaskSpheres& spheres) const {
+  constexpr double pressed = 1e-3;
+  return pressed / (layers * spheres.mean * spheres.mean);  // of mass mean³
+}
+
+double Pouring::time_step(const TaskSpheres& spheres) const {
+  constexpr double share_of_contact = 0.1;
+  return share_of_contact * std::numbers::pi * std::sqrt(0.5 * std::pow(spheres.least, 3));
+}
+
+int Pouring::steps_of_fall(const TaskSpheres& spheres) const {
+  const double time = std::sqrt(2 * fall * 2 * spheres.mean / gravity(spheres));
+  return static_cast<int>(std::clamp(std::ceil(time / time_step(spheres)), 100.0, 1e8));
+}
 
 std::size_t SizeClasses::octave(double r) const {
   return std::min(most - 1, static_cast<std::size_t>(std::log(r / least) / std::log(class_width)));

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/domain.hpp"
@@ -39,6 +40,23 @@ TaskSpheres told(TaskSpheres::Tell tell);
 /// These, which are held.
 TaskSpheres told(Spheres<3> spheres);
 
+/// How spheres are poured instead: they fall along gravity, with masses r³, stiffness 1 between them and at
+/// walls, Coulomb's friction, and damping by the coefficient of restitution, in steps of a tenth of the time
+/// that the smallest are in contact, until the mean kinetic energy is a ten-millionth of what a fall by a
+/// mean diameter gives. Gravity is such that the weight of the bed presses those at the bottom together by a
+/// thousandth of the mean radius.
+struct Pouring {
+  Vector<3> down;  ///< unit vector
+  double friction, restitution;
+  double layers;  ///< of the bed, about, in mean diameters
+  double fall;    ///< the longest, in mean diameters
+
+  double gravity(const TaskSpheres&) const;
+  double time_step(const TaskSpheres&) const;
+  /// Steps of the longest fall; after that it is asked whether they rest.
+  int steps_of_fall(const TaskSpheres&) const;
+};
+
 /// What an engine does: spheres that overlap push each other apart, and are pushed by walls, until they lie
 /// as soft particles do.
 ///
@@ -57,6 +75,7 @@ struct EngineTask {
   double growth = 1;
   int steps = 1000;
   bool tells_radii = false;  ///< the result has them beside the places
+  std::optional<Pouring> pouring = {};
 
   /// Of steps: fixed, while the box grows, fixed again.
   int steps_before() const { return growth == 1 ? steps : 2 * steps / 5; }

@@ -18,6 +18,9 @@ inline constexpr const char* last_words = "bernal: all places are written";
 inline constexpr const char* script_mark = "# bernal: ";
 
 inline std::string about_script(const EngineTask& task) {
+  if (task.pouring)
+    return script_mark + fmt::format("{} spheres are poured; the mean radius is {:.3g}, stiffness is 1",
+                                     task.spheres.count, task.spheres.mean);
   return script_mark +
          fmt::format("{} soft spheres push each other apart; the mean radius is {:.3g}, stiffness is 1",
                      task.spheres.count, task.spheres.mean);

@@ -1,16 +1,21 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <numeric>
 #include <system_error>
 
 #include <fmt/format.h>
 
+#include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/run/run.hpp"
 #include "engine/engine_plan.hpp"
 #include "engine/run_engine.hpp"
 #include "run/engine_box.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
+#include "settle/insert.hpp"
 #include "work/clear_place.hpp"
 
 namespace bernal {
@@ -126,6 +131,92 @@ struct Turn {
   Vector<3> back(const Vector<3>& p) const { return base + turned.transpose() * p; }
 };
 
+/// Room in the air for what is poured: so much of it, at most, is spheres.
+constexpr double most_in_air = 0.2;
+
+/// The container, and where it can be, with a shaft on it, for spheres that are to fall into it.
+Domain with_shaft(const Domain& domain, const Vector<3>& down, double volume_in_air) {
+  const double more = volume_in_air / volume_of(domain);
+  if (more <= 1) return domain;
+  Domain higher = domain;
+  if (auto* box = std::get_if<Box>(&higher)) {
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(down[k]) >= 1) {
+        const double added = (more - 1) * box->size[k];
+        if (down[k] > 0) box->corner[k] -= added;
+        box->size[k] += added;
+      }
+  } else if (auto* cylinder = std::get_if<Cylinder>(&higher)) {
+    const double along = down.dot(cylinder->axis.normalized());
+    if (std::abs(along) >= 1 - 1e-12) {
+      const double added = (more - 1) * cylinder->height;
+      if (along > 0) cylinder->base -= added * cylinder->axis.normalized();
+      cylinder->height += added;
+    }
+  }
+  return higher;
+}
+
+/// Those spheres in the air, each with room around it. Throws where there is none for them.
+Spheres<3> in_air(const Domain& domain, const std::vector<double>& radii, const Plan& plan, Work& work) {
+  std::vector<std::uint32_t> tags(radii.size());
+  std::iota(tags.begin(), tags.end(), 0u);
+  const Target all{.count = static_cast<std::int64_t>(radii.size())};
+  Work own{.spheres = Spheres<dynamic>(3),
+           .target = all,
+           .domain = domain,
+           .supply = std::make_shared<Supply>(work.supply->of(tags)),
+           .container = make_container(domain, WallArithmetic::plain, work.container->resolution()),
+           .seed = work.seed,
+           .monitor = work.monitor,
+           .effects = work.effects,
+           .streams_used = work.streams_used};
+  own.stand_in_bed();
+  insert(own, until_full);
+  work.streams_used = own.streams_used;
+  if (own.bed().size() < radii.size())
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("of {} spheres that are to be poured {} have room in the air before they fall: ask "
+                    "for fewer, or make the container higher",
+                    grouped(radii.size()), grouped(own.bed().size())),
+        plan.scene.target.where);
+  Spheres<3> spheres;
+  spheres.resize(radii.size());
+  spheres.r = radii;
+  for (Bed::Id i = 0; i < own.bed().size(); ++i) spheres.set_center(own.bed().tag(i), own.bed()[i].center);
+  return spheres;
+}
+
+/// What `Pouring` says, of spheres in this container.
+engine::Pouring pouring_of(const Liggghts& engine, const Vector<3>& down, const Domain& shaft,
+                           const std::vector<double>& radii) {
+  const double height = down.cwiseAbs().dot(bounds_of(shaft).size());
+  double volume = 0, mean = 0;
+  for (const double r : radii) {
+    volume += ball_volume(3, r);
+    mean += r / static_cast<double>(radii.size());
+  }
+  constexpr double settled = 0.58;
+  const double layers = volume / settled / volume_of(shaft) * height / (2 * mean);
+  return {.down = down,
+          .friction = engine.friction,
+          .restitution = engine.restitution,
+          .layers = std::max(3.0, layers),
+          .fall = height / (2 * mean)};
+}
+
+void require_below_brim(const Container& container, const Spheres<3>& spheres, const Plan& plan) {
+  std::size_t above = 0;
+  for (std::size_t i = 0; i < spheres.size(); ++i) above += !container.contains(spheres.center(i), 0);
+  if (above > 0)
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("{} of {} spheres that were poured lie outside the container: ask for fewer, or "
+                            "make it higher",
+                            grouped(above), grouped(spheres.size())),
+                plan.scene.target.where);
+}
+
 void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, Work& work) {
   work.stand_in_bed();
   const Container& container = work.bed().container();
@@ -139,13 +230,29 @@ void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, W
   const auto place_for = [&](double r) {
     return clear_place(r, container, work.bed().places(), random, work.monitor);
   };
+  const auto* liggghts = std::get_if<Liggghts>(&*plan.scene.engine);
+  const bool pours = liggghts && liggghts->pour;
   Spheres<3> begin;
   begin.reserve(count);
-  for (const double r : radii) begin.push_back(turn.there(place_for(r)) / unit, r / unit);
+  std::optional<engine::Pouring> pouring;
+  Domain around = turn.domain;
+  if (pours) {
+    const Vector<3> down = down_in(plan.scene);
+    around = with_shaft(turn.domain, down, work.volume_of_drawn(count) / most_in_air);
+    pouring = pouring_of(*liggghts, down, around, radii);
+    begin = in_air(around, radii, plan, work);
+    for (std::size_t i = 0; i < count; ++i) begin.set_center(i, begin.center(i) / unit);
+    for (double& r : begin.r) r /= unit;
+  } else {
+    for (const double r : radii) begin.push_back(turn.there(place_for(r)) / unit, r / unit);
+  }
   const std::vector<double> told_radii = begin.r;
-  const engine::EngineTask task{.spheres = engine::told(std::move(begin)),
-                                .domain = to_local(turn.domain, Frame{.scale = unit}),
-                                .steps = plan.scene.engine->process().steps};
+  const engine::TaskSpheres spheres_told = engine::told(std::move(begin));
+  const engine::EngineTask task{
+      .spheres = spheres_told,
+      .domain = to_local(around, Frame{.scale = unit}),
+      .steps = pouring ? 3 * pouring->steps_of_fall(spheres_told) : plan.scene.engine->process().steps,
+      .pouring = pouring};
 
   const engine::Places places = run_in_folder(plan, folder, task, told_radii, work);
   Spheres<3> spheres;
@@ -153,14 +260,18 @@ void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, W
   std::size_t put_back = 0;
   for (std::size_t i = 0; i < count; ++i) {
     Vector<3> c = container.boundary().wrap(turn.back(unit * places.spheres.center(i)));
-    if (!container.contains(c, 0)) {
+    if (!pours && !container.contains(c, 0)) {
       c = place_for(radii[i]);
       ++put_back;
     }
     spheres.push_back(c, radii[i]);
   }
+  if (pours) require_below_brim(container, spheres, plan);
   work.begun = count;
   work.crowded_start = std::move(spheres);
+  if (pours)
+    work.account = fmt::format("poured by LIGGGHTS with a friction of {} and a restitution of {}",
+                               liggghts->friction, liggghts->restitution);
   if (put_back > 0)
     work.account = fmt::format("{} had left the container in {}, and {} put back",
                                put_back == 1 ? "1 sphere" : grouped(put_back) + " spheres",

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "scene/scene_entries.hpp"
 
 namespace bernal::schema {
@@ -42,13 +44,39 @@ void engine_rule(const EngineProcess& process, const Section& section) {
         section.refuse(key, "must have no empty words and no line breaks");
 }
 
+std::vector<Key> keys_of_pouring() {
+  return {flag(&Liggghts::pour, "pour",
+               "true: the spheres fall from above the bed under gravity, rub and bounce, until all are at "
+               "rest"),
+          number(&Liggghts::friction, "friction",
+                 "Coulomb's, of spheres that are poured, between them and with walls", {0, 10}),
+          number(&Liggghts::restitution, "restitution",
+                 "of spheres that are poured: their speed after an impact over that before", above(0, 1))};
+}
+
+/// What a result says of it explicitly is no matter.
+void pouring_rule(const Liggghts& of, const Section& section) {
+  const Liggghts usual;
+  if (of.pour && of.process.steps != usual.process.steps)
+    section.fail("steps", "spheres that are poured move until they rest; leave \"steps\" out");
+  if (of.pour) return;
+  const auto refuse = [&](std::string_view key) {
+    section.fail(key,
+                 fmt::format("\"{}\" is of spheres that are poured: say pour = true, or leave it out", key));
+  };
+  if (of.friction != usual.friction) refuse("friction");
+  if (of.restitution != usual.restitution) refuse("restitution");
+}
+
 template <class Options>
-Entry entry_of_engine(std::string_view name, std::string_view help) {
+Entry entry_of_engine(std::string_view name, std::string_view help, std::vector<Key> more = {}) {
   return entry<Options>({.name = name,
                          .help = help,
-                         .keys = inside(&Options::process, keys_of_process()),
+                         .keys = joined(inside(&Options::process, keys_of_process()), std::move(more)),
                          .rule = [](const void* options, const Section& section) {
-                           engine_rule(static_cast<const Options*>(options)->process, section);
+                           const auto& engine = *static_cast<const Options*>(options);
+                           engine_rule(engine.process, section);
+                           if constexpr (std::is_same_v<Options, Liggghts>) pouring_rule(engine, section);
                          }});
 }
 
@@ -62,7 +90,8 @@ const std::vector<Entry>& engine_entries() {
           "cylinders and spheres"),
       entry_of_engine<Liggghts>("liggghts",
                                 "LIGGGHTS over MPI finds the places, as soft particles: in parts of CAD, "
-                                "boxes, cylinders along an axis and periodic boxes")};
+                                "boxes, cylinders along an axis and periodic boxes",
+                                keys_of_pouring())};
   return all;
 }
 

@@ -80,6 +80,26 @@ def shapes(folder):
             expect(packed(folder / "few.toml", folder / "few")["n"] == count, f"{count} in a periodic box")
 
 
+def poured(folder):
+    """As far as friction holds them up, and no sphere in the air; the looser the rougher."""
+    fractions = []
+    for friction in (0.1, 0.6):
+        (folder / "poured.toml").write_text('[container]\nkind = "cylinder"\nradius = 3\nheight = 14\n[spheres]\n'
+                                            'count = 300\ndiameter = 1\n[engine]\nkind = "liggghts"\npour = true\n'
+                                            f"friction = {friction}\n")
+        report = packed(folder / "poured.toml", folder / "poured")
+        expect(report["outcome"] == "converged" and report["n"] == 300, f"friction {friction}: {report['reason']}")
+        heights = [float(line.split(",")[2]) for line in (folder / "poured/spheres.csv").read_text().splitlines()[2:]]
+        fractions.append(300 / 6 / (9 * 2 * sum(heights) / 300))
+    expect(0.5 < fractions[1] < fractions[0] - 0.01 < 0.62, f"poured: packing fractions {fractions}")
+    run = subprocess.run([BERNAL, "pack", folder / "poured/scene.toml", "-o", folder / "again"], capture_output=True)
+    expect(run.returncode == 0, f"the scene of a result that was poured runs again: {run.stderr}")
+    (folder / "high.toml").write_text('[container]\nkind = "cylinder"\nradius = 3\nheight = 8\n[spheres]\n'
+                                      'count = 300\ndiameter = 1\n[engine]\nkind = "liggghts"\npour = true\n')
+    run = subprocess.run([BERNAL, "pack", folder / "high.toml", "-o", folder / "high"], capture_output=True, text=True)
+    expect(run.returncode == 2 and "lie outside the container" in run.stderr, f"above the brim: {run.stderr}")
+
+
 def slabs(folder):
     """As dense as all at once, in any number of slabs, of equal sizes and of others."""
     for sizes, least in (("diameter = 1.0", 0.63),
@@ -123,6 +143,8 @@ def work(folder):
         one_seed(folder)
         slabs(folder)
     shapes(folder)
+    if LIGGGHTS:
+        poured(folder)
     if LMP and MPIRUN:
         interrupted(folder)
 

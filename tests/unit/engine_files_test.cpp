@@ -73,13 +73,43 @@ TEST(LiggghtsScript, TakesCadWallsAsAMesh) {
                          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
   const std::string text = liggghts_script(task_in(tetrahedron));
   EXPECT_TRUE(holds(text, "fix surface all mesh/surface file walls.stl type 2")) << text;
-  EXPECT_TRUE(holds(text, "kn peratomtypepair 2 1.0 4.0 4.0 4.0\n")) << text;
+  EXPECT_TRUE(holds(text, "kn peratomtypepair 2 1 4 4 4\n")) << text;
   EXPECT_TRUE(holds(text, "guard_lower_x") && holds(text, "guard_upper_z")) << text;
   const Folder folder;
   write_walls_stl(folder / "walls.stl", tetrahedron);
   const std::string stl = text_of(folder / "walls.stl");
   EXPECT_EQ(std::count(stl.begin(), stl.end(), '\n'), 2 + 4 * 7);
   EXPECT_TRUE(holds(stl, "  vertex 0 9 0\n"));
+}
+
+TEST(LiggghtsScript, PoursUntilAllRest) {
+  EngineTask task = task_in(Cylinder{.base = {0, 0, 0}, .axis = {0, 0, 1}, .radius = 5, .height = 9});
+  task.pouring = Pouring{.down = {0, 0, -1}, .friction = 0.4, .restitution = 0.5, .layers = 10, .fall = 30};
+  const std::string text = liggghts_script(task);
+  for (const char* line :
+       {"fix friction all property/global coefficientFriction peratomtypepair 2 0.4 0.4 0.4 0.4\n",
+        "pair_style gran model hooke/stiffness tangential history\n", "zcylinder 5 0 0\n",
+        "fix down all gravity 0.0001 vector 0 0 -1\n", "fix motion all nve/sphere\n", "if \"${energy} < ",
+        "jump SELF again\n"})
+    EXPECT_TRUE(holds(text, line)) << line << text;
+  EXPECT_FALSE(holds(text, "nve/limit") || holds(text, "tangential off")) << text;
+  EXPECT_NEAR(task.mass(3), 27, 1e-12);
+}
+
+/// Two spheres of mass 1 and stiffness 1 that meet: what they keep of their speed, by small steps.
+TEST(LiggghtsScript, DampsByTheCoefficientOfRestitution) {
+  EngineTask task = task_in(Box{Vector<3>(0, 0, 0), Vector<3>(9, 9, 9), {}});
+  task.pouring = Pouring{.down = {0, 0, -1}, .friction = 0, .restitution = 0.7, .layers = 3, .fall = 3};
+  const std::string text = liggghts_script(task), name = "gamman peratomtypepair 2 ";
+  ASSERT_TRUE(holds(text, name)) << text;
+  const double damping = std::stod(text.substr(text.find(name) + name.size())), reduced_mass = 0.5;
+  double depth = 0, speed = 1;
+  constexpr double step = 1e-5;
+  do {
+    speed += step * (-depth / reduced_mass - damping * speed);
+    depth += step * speed;
+  } while (depth > 0);
+  EXPECT_NEAR(-speed, 0.7, 1e-3);
 }
 
 TEST(EngineData, HasAnAtomASphereOfItsMassAndClass) {

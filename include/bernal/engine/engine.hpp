@@ -33,6 +33,10 @@ struct Lammps {
 /// LIGGGHTS: parts of CAD, boxes, cylinders along an axis and periodic boxes.
 struct Liggghts {
   EngineProcess process = {};
+  /// The spheres are poured: they fall from above the bed, rub and bounce, until all are at rest.
+  bool pour = false;
+  double friction = 0.3;     ///< Coulomb's, between spheres and with walls; where they are poured
+  double restitution = 0.5;  ///< speed after an impact over that before, of spheres of mean size
 };
 
 }  // namespace bernal
