@@ -18,7 +18,7 @@ constexpr double beyond_walls = 1.5;
 double EngineTask::mass(double r) const { return pouring ? r * r * r : std::max(1.0, r * r); }
 
 double Pouring::gravity(const TaskSpheres& spheres) const {
-  constexpr double pressed = 1e-3;
+  constexpr double pressed = 2e-4;
   return pressed / (layers * spheres.mean * spheres.mean);  // of mass mean³
 }
 

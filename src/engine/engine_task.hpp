@@ -44,7 +44,7 @@ TaskSpheres told(Spheres<3> spheres);
 /// walls, Coulomb's friction, and damping by the coefficient of restitution, in steps of a tenth of the time
 /// that the smallest are in contact, until the mean kinetic energy is a ten-millionth of what a fall by a
 /// mean diameter gives. Gravity is such that the weight of the bed presses those at the bottom together by a
-/// thousandth of the mean radius.
+/// five-thousandth of the mean radius.
 struct Pouring {
   Vector<3> down;  ///< unit vector
   double friction, restitution;

@@ -89,7 +89,7 @@ TEST(LiggghtsScript, PoursUntilAllRest) {
   for (const char* line :
        {"fix friction all property/global coefficientFriction peratomtypepair 2 0.4 0.4 0.4 0.4\n",
         "pair_style gran model hooke/stiffness tangential history\n", "zcylinder 5 0 0\n",
-        "fix down all gravity 0.0001 vector 0 0 -1\n", "fix motion all nve/sphere\n", "if \"${energy} < ",
+        "fix down all gravity 2e-05 vector 0 0 -1\n", "fix motion all nve/sphere\n", "if \"${energy} < ",
         "jump SELF again\n"})
     EXPECT_TRUE(holds(text, line)) << line << text;
   EXPECT_FALSE(holds(text, "nve/limit") || holds(text, "tangential off")) << text;
