@@ -21,9 +21,15 @@ inline Scene small(Scene scene, std::int64_t count = 300) {
   // In a box that follows from both, its packing fraction goes with the count.
   const auto* its_box = std::get_if<PeriodicBox>(&scene.container);
   const bool scalable = its_box && its_box->scalable;
+  BedTarget bed = scene.target.bed;
+  if (bed.gives_height()) {
+    bed.height = bed.layers = std::nullopt;
+    if (!bed.porosity && !bed.density) bed.density = BedTarget::Density::poured;
+  }
   scene.target = {.count = count,
                   .packing_fraction = scalable ? scene.target.packing_fraction : std::nullopt,
                   .fill = false,
+                  .bed = bed,
                   .where = scene.target.where};
   return scene;
 }
