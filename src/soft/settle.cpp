@@ -20,6 +20,9 @@ namespace {
 /// those with this share, to 0.003.
 constexpr double share_of_relaxed = 0.963;
 
+/// In mean diameters.
+constexpr double shallow = 3;
+
 /// What a sphere takes that falls by some hundredths of its radius and rolls to rest; and walls asked.
 constexpr double seconds_of_rolling = 15e-6, questions_of_rolling = 4;
 
@@ -28,6 +31,10 @@ std::vector<PlanItem> effects_of_settling(const Settle& options, const Outlook& 
   // As densely as the bed below its level, however little of the container that is.
   relaxed.aim = options.bed.porosity ? 1 - *options.bed.porosity : share_of_relaxed * outlook.task.attainable;
   std::vector<PlanItem> items = effects_of_relaxation({}, relaxed);
+  // A few on a wide floor find places at random.
+  const double height = direction_of(options.direction).cwiseAbs().dot(outlook.size);
+  if (outlook.task.packing_fraction > 0 && outlook.task.packing_fraction * height < shallow * relaxed.aim)
+    for (PlanItem& item : items) item.if_needed = true;
   const PlanItem walls = questions_to_walls(questions_of_rolling, outlook);
   items.push_back({.name = "rolling",
                    .what = "every sphere falls and rolls until all rest",
