@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
+#include "bed_text.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/io/json.hpp"
@@ -174,9 +175,16 @@ void print_layers(const WallProfile& profile) {
   }
 }
 
-void print_walls(const Packing& packing, const WallProfile& profile) {
-  fmt::print("\nporosity over the distance z from the wall, in mean diameters of {:.6g} {}\n",
-             profile.mean_diameter, name_of(packing.scene.unit));
+/// "; of the bed below 24.1 mm"
+std::string part_of_bed(const Packing& packing, const std::optional<BedProfile>& bed) {
+  if (!bed || !bed->level) return {};
+  return fmt::format("; of the bed below {:.4g} {}", *bed->level, name_of(packing.scene.unit));
+}
+
+void print_walls(const Packing& packing, const Measurements& measured) {
+  const WallProfile& profile = *measured.walls;
+  fmt::print("\nporosity over the distance z from the wall, in mean diameters of {:.6g} {}{}\n",
+             profile.mean_diameter, name_of(packing.scene.unit), part_of_bed(packing, measured.bed));
   const std::size_t even = profile.layers.size() - 1;  // the last layer holds all that is deeper
   if (even > 1) {
     std::vector<double> porosities;
@@ -270,12 +278,13 @@ void print(const Packing& packing, const Measurements& measured) {
   print_contacts(packing, measured);
   print_radial(packing, measured.radial);
   if (measured.size_correlation) print_size_correlation(*measured.size_correlation);
-  if (measured.walls) print_walls(packing, *measured.walls);
+  if (measured.bed) print_bed(*measured.bed, name_of(packing.scene.unit));
+  if (measured.walls) print_walls(packing, measured);
   if (measured.order && !packing.spheres.empty()) print_order(*measured.order);
   if (measured.local) print_local(packing, *measured.local);
   if (!measured.local && packing.spheres.size() > most_cells)
     fmt::print("\nlocal packing     not of so many spheres, unless --local FILE asks for it\n");
-  if (measured.pores) print_pores(packing, *measured.pores);
+  if (measured.pores) print_pores(packing, *measured.pores, part_of_bed(packing, measured.bed));
   if (measured.structure) print_structure(*measured.structure);
   if (measured.sizes) print_sizes(packing, *measured.sizes);
 }
@@ -289,6 +298,7 @@ Measurements measured_of(const Packing& packing, const MeasureCall& call, const 
     if (call.local.empty()) options.local.most_spheres = most_cells;
     options.gap = packing.scene.gap;
     options.wall_gap = packing.scene.wall_gap;
+    options.bed = bed_options_of(packing.scene);
     return measure(packing.spheres, packing.domain, radii.asked, options);
   } catch (const Error& error) {
     throw Error(error.code(), error.what(), {spheres_of_result(call.folder).string()});

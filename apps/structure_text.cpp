@@ -66,9 +66,9 @@ void print_structure(const StructureFactor& factor) {
              factor.k.front() * d);
 }
 
-void print_pores(const Packing& packing, const PoreSizes& pores) {
-  fmt::print("\npores             porosity {:.4f} ± {:.4f}, from {} points\n", pores.porosity,
-             pores.porosity_error, grouped(pores.points));
+void print_pores(const Packing& packing, const PoreSizes& pores, const std::string& where) {
+  fmt::print("\npores             porosity {:.4f} ± {:.4f}, from {} points{}\n", pores.porosity,
+             pores.porosity_error, grouped(pores.points), where);
   if (pores.in_pores == 0) return;
   fmt::print("  to a solid      {:.4g} ± {:.1g} {} on average, {:.4g} at most, root mean square {:.4g}\n",
              pores.mean, pores.mean_error, name_of(packing.scene.unit), pores.largest,

@@ -13,6 +13,6 @@ void print_chart(const std::vector<double>& values, int highest, int rows_a_unit
 // What `bernal measure` says of cells, waves and pores.
 void print_local(const Packing&, const LocalPacking&);
 void print_structure(const StructureFactor&);
-void print_pores(const Packing&, const PoreSizes&);
+void print_pores(const Packing&, const PoreSizes&, const std::string& where);
 
 }  // namespace bernal

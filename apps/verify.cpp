@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bed_text.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/io/json.hpp"
@@ -99,16 +100,7 @@ void print(const Certificate& c, const Domain& domain, std::string_view unit) {
 Rest rest_of(const Scene& scene, const Spheres<dynamic>& spheres, const Domain& domain, bool streamed) {
   if (streamed)
     throw Error(ErrorCode::bad_argument, "--settled needs the whole packing, and this one is in slabs");
-  return measure_rest(spheres, domain, down_in(scene), scene.gap, scene.wall_gap);
-}
-
-std::string rest_text(const Rest& rest, std::string_view unit) {
-  if (rest.unsettled == 0) return "every sphere rests: it can neither fall nor roll down";
-  std::string text = fmt::format("NOT at rest: {}", grouped(rest.unsettled));
-  if (rest.hanging > 0)
-    text += fmt::format(", of which {} hang; the farthest could fall {:.3g} {}", grouped(rest.hanging),
-                        rest.farthest, unit);
-  return text;
+  return measure_rest(spheres, domain, down_in(scene), {.gap = scene.gap, .wall_gap = scene.wall_gap});
 }
 
 /// Of a result in slabs, which is certified without holding it.

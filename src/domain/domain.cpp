@@ -10,6 +10,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "core/every_dimension.hpp"
+#include "domain/share_of_area.hpp"
 
 namespace bernal {
 namespace {
@@ -104,15 +105,9 @@ bool is_within(const std::vector<Vector<2>>& loop, const Vector<2>& p) {
   return inside;
 }
 
-/// A line that an even number of others encloses bounds the region from outside, another one a hole in it.
 double area_of_polygon(const Polygon& s) {
   double area = 0;
-  for (const auto& loop : s.loops) {
-    if (loop.empty()) continue;
-    bool hole = false;
-    for (const auto& other : s.loops) hole ^= &other != &loop && is_within(other, loop.front());
-    area += (hole ? -0.5 : 0.5) * std::abs(twice_area_of(loop));
-  }
+  for (std::size_t loop = 0; loop < s.loops.size(); ++loop) area += share_of_area(s, loop);
   return area;
 }
 
@@ -136,6 +131,14 @@ double spacing(double x) {
 }
 
 }  // namespace
+
+double share_of_area(const Polygon& s, std::size_t loop) {
+  const auto& line = s.loops[loop];
+  if (line.empty()) return 0;
+  bool hole = false;
+  for (const auto& other : s.loops) hole ^= &other != &line && is_within(other, line.front());
+  return (hole ? -0.5 : 0.5) * std::abs(twice_area_of(line));
+}
 
 Box periodic_box(const Vector<dynamic>& edges, const std::vector<bool>& walls) {
   Box box{Vector<dynamic>::Zero(edges.size()), edges, walls};

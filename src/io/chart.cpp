@@ -164,6 +164,20 @@ std::string size_correlation_chart(const SizeCorrelation& correlation) {
   return std::move(chart).finish();
 }
 
+std::string bed_chart(const BedProfile& bed, std::string_view unit) {
+  double most = 1;
+  std::vector<double> heights, fractions;
+  for (const auto& layer : bed.layers) {
+    most = std::max(most, layer.packing_fraction);
+    heights.push_back(0.5 * (layer.from + layer.to));
+    fractions.push_back(layer.packing_fraction);
+  }
+  Chart chart({0, 1.02 * bed.highest, fmt::format("height ({})", unit)}, {0, most, "packing fraction"});
+  chart.add("<path class=\"asked line\" d=\"M{:.1f} {}V{}\"/>", chart.x(bed.height), top, height - bottom);
+  chart.line(heights, fractions, "first line");
+  return std::move(chart).finish();
+}
+
 std::string wall_chart(const WallProfile& profile) {
   const std::size_t even = profile.layers.size() - 1;  // the last layer holds all that is deeper
   if (even < 2) return {};

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "bernal/measure/bed_profile.hpp"
 #include "bernal/measure/local_packing.hpp"
 #include "bernal/measure/pore_sizes.hpp"
 #include "bernal/measure/radial_distribution.hpp"
@@ -31,6 +32,9 @@ std::string radial_chart(const RadialDistribution&);
 /// C over d in mean diameters, from the first distance at which there are pairs on, with the band of its
 /// error.
 std::string size_correlation_chart(const SizeCorrelation&);
+
+/// Packing fraction over the height in that unit, with the mean height of the surface as a dashed line.
+std::string bed_chart(const BedProfile&, std::string_view unit);
 
 /// Porosity over the distance from the wall in mean diameters, with the band of its error and the mean as a
 /// dashed line; empty where there are fewer than two layers of equal thickness.

@@ -219,8 +219,8 @@ void write_walls(Page& page, const Report& report) {
     const std::string chart = wall_chart(*walls);
     page.add(
         "<p>The porosity at a distance from the wall: of all that is so far from the nearest piece of wall, "
-        "the share that no sphere fills{}. Lengths are in mean diameters, of {:.4g} {}.</p>\n",
-        chart.empty() ? "" : ". The band is its standard error", walls->mean_diameter,
+        "the share that no sphere fills{}{}. Lengths are in mean diameters, of {:.4g} {}.</p>\n",
+        below_level(report), chart.empty() ? "" : ". The band is its standard error", walls->mean_diameter,
         escaped(name_of(report.packing.scene.unit)));
     page.add("<div class=\"pair\"><div>{}{}</div><div class=\"wide\"><table>\n", chart,
              wall_size_chart(*walls));

@@ -59,12 +59,13 @@ void write_structure_factor(Page& page, const StructureFactor& factor) {
   page.raw("</table></div></div></div>\n");
 }
 
-void write_pore_sizes(Page& page, const PoreSizes& pores, std::string_view unit, bool walls) {
+void write_pore_sizes(Page& page, const PoreSizes& pores, std::string_view unit, bool walls,
+                      const std::string& where) {
   page.add("<h2>How large the pores are</h2>\n<div class=\"pair\"><div>{}</div><div>\n", pore_chart(pores));
   page.add(
-      "<p>From points in the pores, how far it is to the nearest sphere{}. P(d) is the density of these "
+      "<p>From points in the pores{}, how far it is to the nearest sphere{}. P(d) is the density of these "
       "distances, in mean diameters; the band is its standard error.</p>\n<div class=\"wide\"><table>\n",
-      walls ? " or wall" : "");
+      where, walls ? " or wall" : "");
   const std::string in = fmt::format("in {}", unit);
   page.row("mean", fmt::format("{:.4g} ± {:.1g}", pores.mean, pores.mean_error), in);
   page.row("root mean square", fmt::format("{:.4g}", std::sqrt(pores.second_moment)), in);
@@ -101,7 +102,7 @@ void write_structure(Page& page, const Report& report) {
     write_local_packing(page, *measured.local);
   if (measured.pores && measured.pores->in_pores > 0)
     write_pore_sizes(page, *measured.pores, escaped(name_of(report.packing.scene.unit)),
-                     has_walls(report.packing.domain));
+                     has_walls(report.packing.domain), below_level(report));
   if (measured.structure) write_structure_factor(page, *measured.structure);
   write_what_is_left(page, report);
 }

@@ -37,6 +37,8 @@ static void to_json(Json& json, const WallProfile::Segregation& segregation) {
   static void to_json(Json& nlohmann_json_j, const Type& nlohmann_json_t) {  \
     NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(NLOHMANN_JSON_TO, __VA_ARGS__)) \
   }
+BERNAL_KEYS(BedProfile::Core, from, to, porosity)
+BERNAL_KEYS(BedProfile::Layer, from, to, packing_fraction)
 BERNAL_KEYS(Bounds<3>, lower, upper)
 BERNAL_KEYS(BondOrder, all, mean_q6, q6_error, near_wall, core)
 BERNAL_KEYS(Certificate::Overlap, pair, ratio)
@@ -109,6 +111,23 @@ static void to_json(Json& json, const Chambers& found) {
           {"misplaced", found.misplaced},
           {"uncovered", {{"smallest", found.by_smallest}, {"mean", found.by_mean}}},
           {"list", found.chambers}};
+}
+
+/// Without its layers.
+static void to_json(Json& json, const BedProfile& bed) {
+  json = {{"direction", bed.direction},
+          {"mean_diameter", bed.mean_diameter},
+          {"height", bed.height},
+          {"highest", bed.highest},
+          {"roughness", bed.roughness},
+          {"covered", bed.covered},
+          {"porosity", bed.porosity},
+          {"porosity_error", bed.porosity_error},
+          {"core", bed.core},
+          {"level", bed.level},
+          {"unsettled", bed.rest.unsettled},
+          {"hanging", bed.rest.hanging},
+          {"farthest_fall", bed.rest.farthest}};
 }
 
 /// Without its layers.
@@ -298,6 +317,8 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
   json["size_correlation"] = measured.size_correlation;
   json["crystalline"] = measured.order;
   json["chambers"] = measured.chambers;
+  json["bed"] = measured.bed;
+  if (measured.bed) json["bed"]["layers"] = measured.bed->layers;
   json["walls"] = measured.walls;
   if (measured.walls) json["walls"]["layers"] = measured.walls->layers;
   json["local_packing"] = measured.local;
@@ -405,6 +426,7 @@ std::string json_of(const Report& report) {
                {"crystalline", report.measured.order},
                {"size_correlation", report.measured.size_correlation},
                {"chambers", report.measured.chambers},
+               {"bed", report.measured.bed},
                {"walls", report.measured.walls},
                {"local_packing", report.measured.local},
                {"structure_factor", report.measured.structure},

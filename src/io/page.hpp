@@ -37,7 +37,14 @@ class Page {
 void write_sizes(Page&, const Report&);
 void write_contacts(Page&, const Report&);
 void write_chambers(Page&, const Report&);
+void write_bed(Page&, const Report&);
 void write_walls(Page&, const Report&);
 void write_structure(Page&, const Report&);
+
+/// ", of the bed below 24.1 mm", where walls and pores are measured there.
+std::string below_level(const Report&);
+
+/// "every sphere rests".
+std::string rest_in_short(const Rest&);
 
 }  // namespace bernal

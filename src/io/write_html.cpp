@@ -59,6 +59,10 @@ void write_headline(Page& page, const Report& report) {
             fmt::format("the share of the {}’s {} that is sphere{}",
                         kind_of(packing.domain) == "periodic" ? "box" : "container", volume_word(packing),
                         expected_text(packing)));
+  if (const auto& bed = report.measured.bed)
+    page.card(fmt::format("{:.3f}", bed->porosity), "Porosity of the bed",
+              fmt::format("up to its surface, {:.4g} {} high; {}", bed->height,
+                          escaped(name_of(packing.scene.unit)), rest_in_short(bed->rest)));
   page.card(certified ? "yes" : "no", "Certified",
             !certified ? "see the certificate below for what is wrong"
             : allowed_overlap > 0
@@ -230,6 +234,7 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
     page.raw("</div>\n");
   }
   write_scene(page, report, scene);
+  write_bed(page, report);
   write_sizes(page, report);
   write_contacts(page, report);
   write_chambers(page, report);

@@ -107,6 +107,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
                .radial = {.work = distances_for_a_report},
                .size_correlation = {.work = distances_for_a_report},
                .chambers = {.points = points_for_a_report},
+               .bed = bed_options_of(packing.scene),
                .walls = {.work = wall_distances_for_a_report},
                .local = {.most_spheres = most_for_a_report,
                          .all_of = all_cells_for_a_report,

@@ -8,11 +8,14 @@
 #include "bernal/core/random.hpp"
 #include "core/parallel.hpp"
 #include "domain/places.hpp"
+#include "domain/volume_below.hpp"
 
 namespace bernal {
 namespace {
 
 constexpr double most_waste = 16;
+constexpr double rounding_of_shares = 1e-12;
+constexpr double least_step = 1e-9;  // of the depth of a shape
 
 /// Volume of the points deeper than z, over a constant factor.
 double inner_volume(const Box& box, double z) {
@@ -65,18 +68,20 @@ std::array<std::size_t, 3> cells_along(const Vector<3>& size, double wanted) {
 /// One point in each cell of a grid over the bounds, at random in it: what is known of the error of
 /// independent points is a bound for these. Where the container fills next to nothing of its bounds, points
 /// of its `Places`.
-std::vector<double> sample(const Container& container, double reach, std::size_t points) {
-  const Bounds<3> bounds = container.bounds();
+std::vector<double> sample(const Container& container, double reach, std::size_t points,
+                           const std::optional<LowerPart>& below, double volume) {
+  const Bounds<3> bounds = below ? below->cut(container.bounds()) : container.bounds();
   const Vector<3> size = bounds.size();
   if (!fills_its_bounds(container)) {
-    const std::vector<Vector<3>> inside = points_inside(container, points, 1, {});
+    std::vector<Vector<3>> inside = points_inside(container, points, 1, {});
+    if (below) std::erase_if(inside, [&](const Vector<3>& p) { return !below->contains(p); });
     std::vector<double> depths(inside.size());
     parallel_for(depths.size(),
                  [&](std::size_t k) { depths[k] = container.clearance_within(inside[k], reach); });
     std::ranges::sort(depths);
     return depths;
   }
-  const double waste = std::clamp(size.prod() / container.volume(), 1.0, most_waste);
+  const double waste = std::clamp(size.prod() / volume, 1.0, most_waste);
   const std::array<std::size_t, 3> cells = cells_along(size, waste * static_cast<double>(points));
 
   std::vector<double> depths(cells[0] * cells[1] * cells[2], -1);
@@ -88,7 +93,8 @@ std::vector<double> sample(const Container& container, double reach, std::size_t
     for (int k = 0; k < 3; ++k)
       p[k] = bounds.lower[k] +
              size[k] * (static_cast<double>(at[k]) + random.uniform()) / static_cast<double>(cells[k]);
-    if (container.contains(p, 0)) depths[cell] = container.clearance_within(p, reach);
+    if ((!below || below->contains(p)) && container.contains(p, 0))
+      depths[cell] = container.clearance_within(p, reach);
   });
   std::erase_if(depths, [](double depth) { return depth < 0; });
   std::ranges::sort(depths);
@@ -97,22 +103,44 @@ std::vector<double> sample(const Container& container, double reach, std::size_t
 
 }  // namespace
 
-Depths::Depths(const Domain& shape, const Container& container, double reach, std::size_t points) {
+Depths::Depths(const Domain& shape, const Container& container, double reach, std::size_t points,
+               const std::optional<LowerPart>& below)
+    : below_(below),
+      volume_(below ? VolumeBelow(shape, below->direction)(below->height) : container.volume()) {
   if (std::holds_alternative<Mesh>(shape)) {
     shape_ = Mesh{};
-    sampled_ = sample(container, reach, points);
+    sampled_ = sample(container, reach, points, below, volume_);
     deepest_ = sampled_.empty() ? 0 : sampled_.back();
     if (deepest_ >= reach) deepest_ = std::numeric_limits<double>::infinity();
   } else {
     shape_ = shape;
     deepest_ = std::visit([](const auto& s) { return deepest_of(s); }, shape);
+    if (below) deepest_ = deepest_below();
   }
+}
+
+/// By halving: to where nothing of the inner shape is below the level.
+double Depths::deepest_below() const {
+  double some = 0, none = deepest_;
+  while (none - some > least_step * deepest_) {
+    const double middle = 0.5 * (some + none);
+    (deeper(middle) > 0 ? some : none) = middle;
+  }
+  return none;
+}
+
+/// Of the shape, not of a mesh, or its part: what is deeper than z.
+double Depths::inner_share(double z) const {
+  const double whole =
+      std::visit([z](const auto& s) { return inner_volume(s, z) / inner_volume(s, 0); }, shape_);
+  if (!below_ || !(whole > 0)) return whole;
+  const double part = VolumeBelow(with_walls_moved(shape_, z), below_->direction)(below_->height) / volume_;
+  return part > rounding_of_shares ? part : 0;
 }
 
 double Depths::deeper(double z) const {
   if (z <= 0) return 1;
-  if (!std::holds_alternative<Mesh>(shape_))
-    return std::visit([z](const auto& s) { return inner_volume(s, z) / inner_volume(s, 0); }, shape_);
+  if (!std::holds_alternative<Mesh>(shape_)) return inner_share(z);
   const auto nearer = std::ranges::lower_bound(sampled_, z) - sampled_.begin();
   return sampled_.empty() ? 0 : 1 - static_cast<double>(nearer) / static_cast<double>(sampled_.size());
 }

@@ -83,12 +83,19 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
     measured.radial = radial_distribution(spheres, domain, options.radial);
     measured.size_correlation = size_correlation(spheres, domain, options.size_correlation);
     measured.chambers = chambers(spheres, domain, options.chambers, container);
-    measured.walls = wall_profile(spheres, domain, options.walls, container);
+    BedOptions bed = options.bed;
+    bed.gap = options.gap;
+    bed.wall_gap = options.wall_gap;
+    measured.bed = bed_profile(spheres, domain, bed, container);
+    WallOptions walls = options.walls;
+    PoreOptions pores = options.pores;
+    if (measured.bed) walls.below = pores.below = measured.bed->below_level();
+    measured.walls = wall_profile(spheres, domain, walls, container);
     measured.order =
         bond_order(spheres, domain, measured.walls ? measured.walls->regions : std::vector<Region>{});
     measured.local = local_packing(spheres, domain, options.local, container);
     measured.structure = structure_factor(spheres, domain, options.structure);
-    measured.pores = pore_sizes(spheres, domain, options.pores, container);
+    measured.pores = pore_sizes(spheres, domain, pores, container);
   } catch (const Cancelled&) {
     if (options.all_or_nothing) throw;
   }

@@ -37,13 +37,15 @@ std::vector<double> distances_in_period(const Spheres<dynamic>& packed, const Do
 }
 
 std::vector<double> distances_between_walls(const Spheres<dynamic>& packed, const Domain& domain,
-                                            const Container& container, std::size_t points) {
+                                            const Container& container, const PoreOptions& options) {
   const Frame frame = frame_of(domain);
   const SphereTree<3> tree(localised(packed, frame), container.boundary());
-  const Bounds<3> bounds = container.bounds();
-  const std::vector<Vector<3>> inside = points_inside(container, points, 3, [&](std::size_t k) {
+  const auto below = options.below ? std::optional(options.below->to_local(frame)) : std::nullopt;
+  const Bounds<3> bounds = below ? below->cut(container.bounds()) : container.bounds();
+  std::vector<Vector<3>> inside = points_inside(container, options.points, 3, [&](std::size_t k) {
     return Vector<3>(bounds.lower + bounds.size().cwiseProduct(even_point(k)));
   });
+  if (below) std::erase_if(inside, [&](const Vector<3>& p) { return !below->contains(p); });
   std::vector<double> found(inside.size());
   parallel_for((inside.size() + points_a_part - 1) / points_a_part, [&](std::size_t part) {
     for (std::size_t k = part * points_a_part; k < std::min(inside.size(), (part + 1) * points_a_part); ++k) {
@@ -90,9 +92,8 @@ std::optional<PoreSizes> pore_sizes(const Spheres<dynamic>& spheres, const Domai
   if (spheres.empty() || options.points == 0 || (has_walls(domain) && dimension != 2 && dimension != 3))
     return {};
   std::vector<double> distances =
-      has_walls(domain)
-          ? distances_between_walls(spheres, domain, *local_container(domain, made), options.points)
-          : distances_in_period(spheres, domain, options.points);
+      has_walls(domain) ? distances_between_walls(spheres, domain, *local_container(domain, made), options)
+                        : distances_in_period(spheres, domain, options.points);
   if (distances.empty()) return {};
   PoreSizes pores;
   pores.points = distances.size();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "bernal/cad/mesh_container.hpp"
@@ -58,27 +59,32 @@ Vector<3> way_past(const Vector<3>& direction, const Normals& normals) {
 class SpheresInWalls {
  public:
   SpheresInWalls(const Spheres<3>& spheres, const Boundary<3>& boundary, const Container& container,
-                 const Vector<3>& direction)
+                 const Vector<3>& direction, double tolerance)
       : spheres_(spheres),
         tree_(spheres, boundary),
         container_(container),
         direction_(direction),
+        closed_(std::max(Rest::closed, tolerance)),
+        level_(std::max(Rest::level, tolerance)),
         least_closed_(2 * tolerance::skin(std::ranges::min(spheres.r), container.resolution())) {}
 
-  /// Of many contacts a few decide: those are taken together, one after the other, that the best way past
-  /// the others leads into most.
-  bool rests(std::size_t i) const {
+  /// The sine of the steepest way down that is open to sphere i; 0 where it rests. Of many contacts a few
+  /// decide: those are taken together, one after the other, that the best way past the others leads into
+  /// most.
+  double slope(std::size_t i) const {
     const Normals normals = normals_at(i);
     Normals few;
+    double steepest = 0;
     for (std::size_t k = 0; k <= normals.size(); ++k) {
       const Vector<3> way = way_past(direction_, few);
-      if (way.dot(direction_) <= Rest::level) return true;
+      steepest = way.dot(direction_);
+      if (steepest <= level_) return 0;
       const auto into = [&](const Vector<3>& n) { return n.dot(way); };
       const auto most = std::ranges::min_element(normals, {}, into);
-      if (most == normals.end() || into(*most) > -rounding_of_normals) return false;
+      if (most == normals.end() || into(*most) > -rounding_of_normals) return steepest;
       few.push_back(*most);
     }
-    return false;
+    return steepest;
   }
 
   bool hangs(std::size_t i) const { return !way_down(i).isZero(0); }
@@ -111,7 +117,7 @@ class SpheresInWalls {
   /// Of what sphere i touches, unit, towards it; of walls whose normals are the same, one.
   Normals normals_at(std::size_t i) const {
     const Vector<3> p = spheres_.center(i);
-    const double r = spheres_.r[i], reach = r + std::max(Rest::closed * r, least_closed_);
+    const double r = spheres_.r[i], reach = r + std::max(closed_ * r, least_closed_);
     Normals normals;
     tree_.for_each_on_way(p, reach, direction_, 0, [&](std::uint32_t place, const Vector<3>& center) {
       const Vector<3> away = p - center;
@@ -184,11 +190,12 @@ class SpheresInWalls {
   SphereTree<3> tree_;
   const Container& container_;
   Vector<3> direction_;
+  double closed_, level_;
   double least_closed_;  // where coordinates are too coarse for a millionth of a radius
 };
 
 Rest rest_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
-             const std::shared_ptr<const Container>& made) {
+             const RestOptions& options, const std::shared_ptr<const Container>& made) {
   const int dimension = dimension_of(domain);
   if (dimension < 2 || dimension > 3 || !has_walls(domain))
     throw Error(ErrorCode::bad_argument,
@@ -201,28 +208,34 @@ Rest rest_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector
     throw Error(ErrorCode::bad_argument,
                 "a bed rests on a floor, and this domain repeats itself along the direction of gravity");
   const Spheres<3> local = localised(spheres, frame);
-  const SpheresInWalls bed(local, container->boundary(), *container, direction.normalized());
-  constexpr double rolls = -1;  // or rests: 0, or hangs: how far it could fall
-  std::vector<double> falls(local.size(), 0);
+  const SpheresInWalls bed(local, container->boundary(), *container, direction.normalized(),
+                           options.tolerance);
+  std::vector<double> slopes(local.size(), 0), falls(local.size(), 0);
   parallel_ranges(local.size(), 256, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i)
-      if (!bed.rests(i)) falls[i] = bed.hangs(i) ? bed.fall(i) : rolls;
+      if ((slopes[i] = bed.slope(i)) > 0 && bed.hangs(i)) falls[i] = bed.fall(i);
   });
-  const auto count = [&](auto&& of) { return static_cast<std::uint64_t>(std::ranges::count_if(falls, of)); };
-  rest.hanging = count([](double f) { return f > 0; });
-  rest.unsettled = count([](double f) { return f != 0; });
-  rest.farthest = frame.scale * std::max(0.0, std::ranges::max(falls));
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    rest.hanging += falls[i] > 0;
+    rest.unsettled += slopes[i] > 0;
+    if (options.list && slopes[i] > 0) rest.list.push_back({i, slopes[i], frame.scale * falls[i]});
+  }
+  rest.farthest = frame.scale * std::ranges::max(falls);
+  std::ranges::stable_sort(rest.list, [](const auto& a, const auto& b) {
+    return std::tie(a.fall, a.slope) > std::tie(b.fall, b.slope);
+  });
   return rest;
 }
 
 }  // namespace
 
 Rest measure_rest(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
-                  double gap, double wall_gap, const std::shared_ptr<const Container>& made) {
-  if (gap == 0 && wall_gap == 0) return rest_in(spheres, domain, direction, made);
+                  const RestOptions& options, const std::shared_ptr<const Container>& made) {
+  const double gap = options.gap, wall_gap = options.wall_gap;
+  if (gap == 0 && wall_gap == 0) return rest_in(spheres, domain, direction, options, made);
   Spheres<dynamic> with_coats = spheres;
   for (double& r : with_coats.r) r += 0.5 * gap;
-  return rest_in(with_coats, with_walls_moved(domain, wall_gap - 0.5 * gap), direction, {});
+  return rest_in(with_coats, with_walls_moved(domain, wall_gap - 0.5 * gap), direction, options, {});
 }
 
 }  // namespace bernal

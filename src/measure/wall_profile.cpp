@@ -9,6 +9,7 @@
 #include "bernal/core/random.hpp"
 #include "bernal/measure/measure.hpp"
 #include "core/parallel.hpp"
+#include "domain/ball_below.hpp"
 #include "measure/depths.hpp"
 #include "measure/even_points.hpp"
 #include "measure/localised.hpp"
@@ -87,10 +88,15 @@ std::vector<double> clearances(const Container& container, const Spheres<3>& sph
   return found;
 }
 
-/// Spreads the volumes of the spheres over the zones: that of a sphere beyond reach goes whole.
+double volume_below(const LowerPart& part, const Vector<3>& center, double r) {
+  return ball_below(3, r, part.height - part.height_of(center));
+}
+
+/// Spreads the volumes of the spheres over the zones: that of a sphere beyond reach goes whole. What is above
+/// the level is left out.
 std::vector<Filling> fill(const Container& container, const Spheres<3>& spheres,
                           const std::vector<double>& clearance, const Zones& zones, double reach,
-                          std::uint32_t points) {
+                          std::uint32_t points, const std::optional<LowerPart>& below) {
   std::vector<std::vector<Filling>> parts((spheres.size() + spheres_a_part - 1) / spheres_a_part);
   parallel_for(parts.size(), [&](std::size_t part) {
     std::vector<Filling>& filling = parts[part];
@@ -99,21 +105,27 @@ std::vector<Filling> fill(const Container& container, const Spheres<3>& spheres,
     for (std::size_t i = part * spheres_a_part; i < std::min(spheres.size(), (part + 1) * spheres_a_part);
          ++i) {
       throw_if_interrupted();
-      const double r = spheres.r[i], v = ball_volume(3, r);
+      const double r = spheres.r[i];
+      const double v = below ? volume_below(*below, spheres.center(i), r) : ball_volume(3, r);
+      if (!(v > 0)) continue;
+      const bool cut = v < ball_volume(3, r);
       std::ranges::fill(inside, 0u);
       const bool beyond = clearance[i] - r >= reach;
-      if (beyond) zones.count(reach, inside);
       Random random(0, stream(Stream::measure, i));
       const Vector<3> shift = uniform_point<3>(random, {Vector<3>::Zero(), Vector<3>::Ones()});
       const std::uint32_t tried = clearance[i] < structured * zones.near ? points : std::max(2u, points / 4);
+      std::uint32_t looked = 0;
       for (std::uint32_t k = 0; !beyond && k < tried; ++k) {
         const Vector<3> away = r * even_point_in_ball(k, shift);
+        if (cut && !below->contains(spheres.center(i) + away)) continue;
+        ++looked;
         // Clearance is 1-Lipschitz: a tight bound makes the question cheap.
         const double most = std::min(reach, clearance[i] + away.norm());
         zones.count(container.clearance_within(spheres.center(i) + away, most), inside);
       }
+      if (looked == 0) zones.count(beyond ? reach : std::min(reach, clearance[i]), inside);
       for (std::size_t zone = 0; zone < filling.size(); ++zone)
-        filling[zone].add(v, inside[zone], beyond ? 1 : tried);
+        filling[zone].add(v, inside[zone], std::max(looked, 1u));
     }
   });
   std::vector<Filling> sum(zones.count());
@@ -186,6 +198,13 @@ class Volumes {
   double mean_ = 0, squares_ = 0;
 };
 
+double filled_below(const Spheres<3>& spheres, const LowerPart& below) {
+  double sum = 0;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    sum += volume_below(below, spheres.center(i), spheres.r[i]);
+  return sum;
+}
+
 Region region_of(double clearance, double r, const Zones& zones) {
   if (clearance - r < zones.near) return Region::near_wall;
   return clearance >= zones.core ? Region::core : Region::between;
@@ -200,13 +219,14 @@ std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Do
   const Frame frame = frame_of(domain);
   const auto container = local_container(domain, made);
   const Spheres<3> spheres = localised(packed, frame);
-  const double volume = container->volume();
+  const auto below = options.below ? std::optional(options.below->to_local(frame)) : std::nullopt;
   const double diameter =
       2 * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / static_cast<double>(spheres.size());
   const double thickness = options.layer * diameter;
   const double reach = std::max(options.reach, least_reach) * diameter;
   const Depths depths(to_local(domain, frame), *container, reach,
-                      static_cast<std::size_t>(mesh_share * options.work));
+                      static_cast<std::size_t>(mesh_share * options.work), below);
+  const double volume = depths.volume();
 
   WallProfile profile;
   profile.has_core = depths.deepest() >= least_reach * diameter;
@@ -223,7 +243,7 @@ std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Do
   const double work = options.work * (std::holds_alternative<Mesh>(domain) ? mesh_share : analytic_share);
   const auto points =
       static_cast<std::uint32_t>(std::clamp(work / std::max(1.0, within_reach), fewest_points, most_points));
-  const std::vector<Filling> filling = fill(*container, spheres, clearance, zones, looked, points);
+  const std::vector<Filling> filling = fill(*container, spheres, clearance, zones, looked, points, below);
 
   const auto in_scene = [&](double local) { return frame.scale * local; };
   for (std::size_t k = 0; k < zones.edges.size(); ++k) {
@@ -234,7 +254,8 @@ std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Do
     profile.layers.push_back({in_scene(from), in_scene(to), share, 1 - solid.value, solid.error});
   }
   profile.mean_diameter = in_scene(diameter);
-  profile.mean_porosity = 1 - packing_fraction(packed, domain);
+  profile.mean_porosity =
+      below ? 1 - filled_below(spheres, *below) / volume : 1 - packing_fraction(packed, domain);
   const double near_share = 1 - depths.deeper(zones.near), core_share = depths.deeper(zones.core);
   profile.near_wall_packing_fraction = fraction_of(filling[zones.near_zone()], near_share, 0, volume).value;
   const Fraction core =

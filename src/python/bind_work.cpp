@@ -102,6 +102,7 @@ JobPointer measure_job(const PackingPointer& of, double contact_gap) {
     options.gap = of->scene.gap;
     options.wall_gap = of->scene.wall_gap;
     options.contact_gap = contact_gap;
+    options.bed = bed_options_of(of->scene);
     options.container = of->container;
     options.monitor = monitor;
     options.all_or_nothing = true;

@@ -149,15 +149,22 @@ Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, const 
                                      *packing.scene.target.packing_fraction, counted(n), why_no_more(end))};
 }
 
-/// A bed that was pressed last is what it was meant to be only where all rest; by the paper's criterion,
-/// where nothing hangs.
-void admit_unrest(Conclusion& conclusion, const Packing& packing, const Pressing& pressed) {
+/// Says whether every sphere of a bed that was pressed last rests. It is what it was meant to be only where
+/// all do; by the paper's criterion, where nothing hangs.
+void tell_rest(Conclusion& conclusion, const Packing& packing, const Pressing& pressed) {
   const Scene& scene = packing.scene;
-  const Rest rest = measure_rest(packing.spheres, packing.domain, pressed.direction, scene.gap,
-                                 scene.wall_gap, packing.container);
-  if ((pressed.loosely ? rest.hanging : rest.unsettled) == 0) return;
-  if (conclusion.outcome == Outcome::converged) conclusion.outcome = Outcome::hit_limit;
+  const Rest rest = measure_rest(packing.spheres, packing.domain, pressed.direction,
+                                 {.gap = scene.gap, .wall_gap = scene.wall_gap}, packing.container);
+  if (rest.unsettled == 0) {
+    conclusion.reason += packing.spheres.size() == 1 ? ", at rest" : "; every sphere rests";
+    return;
+  }
   std::string what = fmt::format("{} {} not at rest", counted(rest.unsettled), are(rest.unsettled));
+  if (pressed.loosely && rest.hanging == 0) {
+    conclusion.reason += fmt::format("; {}, none hangs", what);
+    return;
+  }
+  if (conclusion.outcome == Outcome::converged) conclusion.outcome = Outcome::hit_limit;
   if (rest.hanging > 0)
     what = fmt::format("{} {} {:.3g} {}", counted(rest.hanging),
                        rest.hanging == 1 ? "hangs, and could fall" : "hang, and the farthest could fall",
@@ -209,7 +216,7 @@ void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& en
   const bool in_bed = work.stands_in_bed();
   Conclusion conclusion = in_bed ? of_bed(packing, work, end, ending) : of_box(packing, work, end, ending);
   if (!in_bed && end != StageEnd::cancelled) admit_shortfall(conclusion, packing, ending.plan);
-  if (ending.pressed && end != StageEnd::cancelled) admit_unrest(conclusion, packing, *ending.pressed);
+  if (ending.pressed && end != StageEnd::cancelled) tell_rest(conclusion, packing, *ending.pressed);
   if (end == StageEnd::cancelled) {
     const bool short_of = !in_bed && packing.spheres.size() < work.supply->wanted();
     conclusion = {Outcome::cancelled,

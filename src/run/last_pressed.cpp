@@ -41,6 +41,11 @@ Vector<3> down_in(const Scene& scene) {
   return down;
 }
 
+BedOptions bed_options_of(const Scene& scene) {
+  const bool ends_settled = !scene.stages.empty() && pressing(scene.stages.back());
+  return {.direction = down_in(scene), .is_bed = ends_settled};
+}
+
 LastPressed::LastPressed(const Scene& scene)
     : scene_(scene),
       any_settles_(

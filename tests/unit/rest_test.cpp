@@ -94,7 +94,7 @@ TEST(RestOfSpheres, OnTheNextPeriod) {
 
 TEST(RestOfSpheres, ThatKeepGapsStandOnThose) {
   const auto two = spheres_at({{5, 5, 1.3}, {5, 5, 3.8}});
-  EXPECT_EQ(measure_rest(two, box, down, 0.5, 0.3).hanging, 0u);
+  EXPECT_EQ(measure_rest(two, box, down, {.gap = 0.5, .wall_gap = 0.3}).hanging, 0u);
   EXPECT_EQ(measure_rest(two, box, down).hanging, 2u);
 }
 

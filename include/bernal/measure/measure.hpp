@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bernal/core/monitor.hpp"
+#include "bernal/measure/bed_profile.hpp"
 #include "bernal/measure/bond_order.hpp"
 #include "bernal/measure/chambers.hpp"
 #include "bernal/measure/contacts.hpp"
@@ -36,6 +37,7 @@ struct Measurements {
   std::optional<RadialDistribution> radial;
   std::optional<SizeCorrelation> size_correlation;
   std::optional<Chambers> chambers;
+  std::optional<BedProfile> bed;  ///< below whose level walls and pores are measured, if it has one
   std::optional<WallProfile> walls;
   std::optional<BondOrder> order;
   std::optional<LocalPacking> local;
@@ -52,6 +54,7 @@ struct MeasureOptions {
   RadialOptions radial = {};
   SizeCorrelationOptions size_correlation = {};
   ChamberOptions chambers = {};
+  BedOptions bed = {};  ///< without its gaps
   WallOptions walls = {};
   LocalPackingOptions local = {};
   StructureOptions structure = {};

@@ -7,6 +7,7 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
+#include "bernal/measure/lower_part.hpp"
 
 namespace bernal {
 
@@ -38,6 +39,9 @@ struct PoreSizes {
 struct PoreOptions {
   std::uint32_t points = 100'000;
   double bin = 0.01;  ///< mean diameters; wider where the largest distance is more than a hundred bins
+  /// Between walls: from points below a level alone; those in containers that fill little of their bounds are
+  /// fewer then.
+  std::optional<LowerPart> below = {};
 };
 
 /// Absent without spheres or points, and between walls in other dimensions than two and three. The same

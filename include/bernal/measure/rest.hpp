@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/container.hpp"
@@ -27,17 +28,35 @@ struct Rest {
   /// The longest way that one that hangs could fall, straight, until it meets a sphere or a wall; in the
   /// domain's unit. 0 where none hangs.
   double farthest = 0;
+
+  /// One that does not rest: by how steep a way it can go down, as a sine, and where it hangs, how far it
+  /// could fall, straight; else 0.
+  struct Restless {
+    std::uint64_t sphere;
+    double slope, fall;
+  };
+  /// Where a list was asked for: all of them, those that could fall the farthest first, then those that could
+  /// roll the most steeply.
+  std::vector<Restless> list = {};
 };
 
-/// Of spheres that keep `gap` from each other and `wall_gap` from walls those that these hold rest, see
-/// `measure_contacts_across`. By a search of its own, which shares neither lists nor kernels with what moves
-/// spheres.
+struct RestOptions {
+  double gap = 0, wall_gap = 0;  ///< that spheres keep from each other and from walls, and that hold them
+  /// What counts as touching, in radii, and as level, as a sine: at least `Rest::closed` and `Rest::level`.
+  /// More is for coordinates that were rounded, to about twice their error over the radius. What is nearer
+  /// then supports as if it touched, so that a sphere which hangs by less, or can roll by less, is taken for
+  /// one at rest.
+  double tolerance = Rest::closed;
+  bool list = false;
+};
+
+/// By a search of its own, which shares neither lists nor kernels with what moves spheres.
 ///
 /// Cost: O(N log N), about 4 µs a sphere, in threads, and a question to the walls for those near them; any
 /// size ratio. `made`: see `local_container`. Precondition: spheres of the domain's dimension, 2 or 3, inside
 /// it; `direction` of any length but 0, of two dimensions in the plane z = 0. Throws Error{bad_argument} for
 /// a domain that repeats itself along it, or has no walls.
-Rest measure_rest(const Spheres<dynamic>&, const Domain&, const Vector<3>& direction, double gap = 0,
-                  double wall_gap = 0, const std::shared_ptr<const Container>& made = {});
+Rest measure_rest(const Spheres<dynamic>&, const Domain&, const Vector<3>& direction,
+                  const RestOptions& = {}, const std::shared_ptr<const Container>& made = {});
 
 }  // namespace bernal

@@ -8,6 +8,7 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
+#include "bernal/measure/lower_part.hpp"
 
 namespace bernal {
 
@@ -76,6 +77,9 @@ struct WallOptions {
   /// About how many distances from a mesh are computed; from other walls, which answer more quickly, four
   /// times as many.
   double work = 1e6;
+  /// Only what is below a level counts, of container and spheres, also in the means; the regions and sizes
+  /// are those of all spheres. The level is no wall.
+  std::optional<LowerPart> below = {};
 };
 
 /// Absent without walls, in other dimensions than three, and without spheres.

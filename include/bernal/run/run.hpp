@@ -78,6 +78,9 @@ Domain packed_domain_of(const Scene& scene);
 /// does, against the last axis. Of two dimensions in the plane z = 0.
 Vector<3> down_in(const Scene& scene);
 
+/// Of its bed: down, and that there is one, where the last stage settles.
+BedOptions bed_options_of(const Scene& scene);
+
 /// Those of the scene's CAD files that are no longer what the scene names by its `sha256`.
 std::vector<std::filesystem::path> changed_files(const Scene& scene);
 
