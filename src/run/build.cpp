@@ -348,11 +348,15 @@ void set_height_of_bed(Plan& plan) {
   };
   const double most = down_in(plan.scene).cwiseAbs().dot(bounds_of(plan.domain).size());
   if (bed.above_ground > (1 + 1e-9) * most)
-    refuse(fmt::format("is higher than the container, {:.4g}: leave the height out to fill it to the brim",
-                       most));
-  const double least = 2 * plan.radii->min() + 2 * plan.scene.wall_gap;
-  if (bed.above_ground < least)
-    refuse(fmt::format("holds no sphere of these sizes: the smallest needs {:.4g}", least));
+    refuse(fmt::format("is higher than the container, {:.4g}: leave \"{}\" out to fill it to the brim", most,
+                       bed.height ? "height" : "bed_layers"));
+  const double rare = plan.radii->quantile(1 - 1e-4), largest = std::min(plan.radii->max(), 2 * rare);
+  const double least = 2 * largest + plan.scene.wall_gap;
+  if (bed.above_ground < (1 - 1e-9) * least)
+    refuse(fmt::format(
+        "has no room for the largest spheres, which need {:.4g}: give the sizes a \"max\", or make "
+        "it higher",
+        least));
 }
 
 void expect_with_room(Plan& plan) {

@@ -77,7 +77,7 @@ Conclusion of_open_target(const Packing& packing, const Work& work, StageEnd end
                         "use smaller ones or check the units",
                         counted(n), are(n), fraction(phi), fraction(ending.close_packing))};
   std::string guess;  // where walls are everywhere
-  if (const auto error = give_or_take(plan))
+  if (const auto error = give_or_take(plan); error && !plan.scene.target.bed.gives_height())
     guess = fmt::format(", give or take {}: fill = true may place more", grouped(*error));
   if (end == StageEnd::converged && !work.target.fill && ending.places_expected)
     return {Outcome::converged,
@@ -235,7 +235,8 @@ void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& en
   packing.outcome = conclusion.outcome;
   packing.reason =
       conclusion.reason + (in_bed && !work.account.empty() ? "; " + work.account : std::string()) +
-      (in_bed ? resized(packing.size_scale) + left_out(packing, work, ending.unit) : std::string());
+      (in_bed ? resized(packing.size_scale) : std::string()) +
+      (in_bed && end != StageEnd::cancelled ? left_out(packing, work, ending.unit) : std::string());
 }
 
 }  // namespace bernal

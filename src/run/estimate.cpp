@@ -9,6 +9,7 @@
 #include "bernal/run/run.hpp"
 #include "core/close_packing.hpp"
 #include "domain/places.hpp"
+#include "domain/volume_below.hpp"
 #include "run/fitting.hpp"
 #include "run/stages.hpp"
 #include "soft/below_level.hpp"
@@ -97,7 +98,7 @@ Part part_to_fill(const Scene& scene, const Domain& shape, const std::shared_ptr
   const double scale = frame_of(shape).scale;
   const Vector<3> down = down_in(scene);
   const BedTop top(bed, *part.container, down);
-  const Heights heights(*part.container, top);
+  const Heights heights(*part.container, top, VolumeBelow(to_local(shape, frame_of(shape)), down).lowest());
   const double level = heights.ground() + bed.above_ground / scale;
   const double below = heights.volume_below(level), whole = part.container->volume();
   if (!(below > 0 && below < whole)) return part;
@@ -145,7 +146,9 @@ Plan::ExpectedBed expected_bed(const Plan& plan) {
   const auto container = local_container(plan.domain, plan.container);
   const double scale = frame_of(plan.domain).scale;
   const BedTarget& bed = plan.scene.target.bed;
-  const Heights heights(*container, BedTop(bed, *container, down_in(plan.scene)));
+  const Vector<3> down = down_in(plan.scene);
+  const Heights heights(*container, BedTop(bed, *container, down),
+                        VolumeBelow(to_local(plan.domain, frame_of(plan.domain)), down).lowest());
   double solid = plan.attainable_packing_fraction, height = bed.above_ground / scale;
   if (height > 0) {
     solid *= container->volume() / heights.volume_below(heights.ground() + height);

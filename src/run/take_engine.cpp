@@ -163,6 +163,7 @@ Spheres<3> in_air(const Domain& domain, const std::vector<double>& radii, const 
   std::iota(tags.begin(), tags.end(), 0u);
   const Target all{.count = static_cast<std::int64_t>(radii.size())};
   Work own{.spheres = Spheres<dynamic>(3),
+           .edges = {},
            .target = all,
            .domain = domain,
            .supply = std::make_shared<Supply>(work.supply->of(tags)),

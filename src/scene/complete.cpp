@@ -71,6 +71,14 @@ void check_target(const Scene& scene) {
     fail(
         "there are no sizes to draw more spheres from than the start has: give \"diameter\" or \"radius\" in "
         "[spheres] too, or ask for no more");
+  if (all_are_there && target.bed.gives_height())
+    fail(
+        "a bed of given height needs sizes to draw spheres from: give \"diameter\" or \"radius\" in "
+        "[spheres] too");
+  if (target.bed.gives_height() && (target.count || target.has_packing_fraction() || target.fill))
+    fail(
+        "the height of a bed in [spheres] says how many spheres there are: leave \"count\", "
+        "\"packing_fraction\" and \"fill\" out");
   if (target.count && target.has_packing_fraction() && !scalable)
     fail(
         "\"count\" and \"packing_fraction\" in [spheres] exclude each other; give one of them (both go "
@@ -180,14 +188,20 @@ void require_bed(const Scene& scene) {
     const StageTraits& traits = table_of(stage).traits;
     return traits.makes_bed || (is_plain(bed) && traits.reaches == Reaches::settled);
   };
-  if (std::ranges::any_of(scene.stages, makes_bed)) return;
+  if (bed.top == BedTarget::Top::heap && scene.target.is_open() && !bed.gives_height())
+    fail("a heap needs the \"height\" of its tip, or a \"count\"");
+  if (std::ranges::any_of(scene.stages, makes_bed)) {
+    if (is_plain(bed) || table_of(scene.stages.back()).traits.makes_bed) return;
+    throw Error(ErrorCode::bad_scene,
+                "this stage would make something else of the bed that [spheres] asks for: leave it out",
+                scene.stages.back().locations.whole);
+  }
   if (!scene.is_periodic() && scene.dimension() == 2)
     fail(
-        "a bed of discs is poured, by \"count\", and its top is free; leave out of [spheres] what says else");
-  fail(bed.is_asked()
-           ? "a bed is asked for in [spheres], and no stage makes one: name \"settle\", or no stage"
-           : "\"porosity\" in [spheres] is that of a bed: add bed = \"poured\" or the stage "
-             "\"settle\"; else give packing_fraction, which is 1 less the porosity");
+        "a bed of discs takes a \"count\", and its density and its top are as they come: leave porosity, "
+        "height "
+        "and the like out of [spheres]");
+  fail("a bed is asked for in [spheres], and no stage makes one: name \"settle\", or no stage");
 }
 
 void complete_stages(Scene& scene) {

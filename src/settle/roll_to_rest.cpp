@@ -13,9 +13,10 @@ constexpr double room = 0.5;
 constexpr int rolling_sweeps = 50;
 
 /// Returns whether any sphere has moved.
-bool sweep_until_still(Bed& bed, const Vector<3>& direction, double still) {
+bool sweep_until_still(Bed& bed, const Vector<3>& direction, double still, std::size_t held) {
   Roller roller(bed, direction);
-  std::vector<char> awake(bed.size(), 1);
+  std::vector<char> awake(bed.size());
+  for (Bed::Id i = 0; i < bed.size(); ++i) awake[i] = bed.tag(i) >= held;
   bool moved = false, moves = true;
   for (int k = 0; k < rolling_sweeps && moves; ++k) {
     moves = false;
@@ -24,7 +25,7 @@ bool sweep_until_still(Bed& bed, const Vector<3>& direction, double still) {
       awake[i] = 0;
       if (roller.roll(i) <= still * bed[i].r) continue;
       moves = moved = true;
-      for (const Bed::Id j : bed.neighbors(i)) awake[j] = 1;
+      for (const Bed::Id j : bed.neighbors(i)) awake[j] = bed.tag(j) >= held;
     }
   }
   return moved;
@@ -32,7 +33,8 @@ bool sweep_until_still(Bed& bed, const Vector<3>& direction, double still) {
 
 }  // namespace
 
-StageEnd roll_to_rest(Work& work, const Vector<3>& direction, double still, int most_iterations) {
+StageEnd roll_to_rest(Work& work, const Vector<3>& direction, double still, std::size_t held,
+                      int most_iterations) {
   Bed& bed = work.bed();
   int iteration = 0;
   const Resumable part(work, "roll to rest", [&](Archive& a) { a(iteration); });
@@ -40,7 +42,7 @@ StageEnd roll_to_rest(Work& work, const Vector<3>& direction, double still, int 
   for (; iteration < most_iterations; ++iteration) {
     if (work.stop()) return StageEnd::cancelled;
     bed.enclose(room * bed.mean_radius());
-    if (!sweep_until_still(bed, direction, still)) return StageEnd::converged;
+    if (!sweep_until_still(bed, direction, still, held)) return StageEnd::converged;
     work.milestone("settle");
   }
   return StageEnd::hit_limit;

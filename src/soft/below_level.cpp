@@ -105,21 +105,14 @@ class CutByPlanes final : public Container {
   double volume_;
 };
 
-/// Along `up`: of the bounds where that is an axis, else of the points.
-double lowest_of(const Container& container, const Vector<3>& up, const std::vector<Vector<3>>& points) {
-  const Bounds<3> bounds = container.bounds();
-  for (int k = 0; k < 3; ++k)
-    if (std::abs(up[k]) >= 1) return std::min(up[k] * bounds.lower[k], up[k] * bounds.upper[k]);
-  double lowest = up.dot(bounds.center());
-  for (const Vector<3>& p : points) lowest = std::min(lowest, up.dot(p));
-  return lowest;
-}
-
 }  // namespace
 
 BedTop::BedTop(const BedTarget& bed, const Container& container, const Vector<3>& down) : up_(-down) {
   if (bed.top != BedTarget::Top::heap) return;
-  const double angle = bed.heap_angle.value_or(usual_heap_angle) * std::numbers::pi / 180;
+  // Whose edges lie on the cone.
+  const double angle =
+      std::atan(std::tan(bed.heap_angle.value_or(usual_heap_angle) * std::numbers::pi / 180) /
+                std::cos(std::numbers::pi / flanks));
   cosine_ = std::cos(angle);
   const Vector<3> center = container.bounds().center();
   middle_ = center - center.dot(up_) * up_;
@@ -149,7 +142,7 @@ std::shared_ptr<const Container> cut_by_planes(std::shared_ptr<const Container> 
   return std::make_shared<CutByPlanes>(std::move(whole), std::move(planes), volume);
 }
 
-Heights::Heights(const Container& container, const BedTop& top) : volume_(container.volume()) {
+std::vector<Vector<3>> even_points_inside(const Container& container) {
   const Bounds<3> bounds = container.bounds();
   const Vector<3> size = bounds.size();
   // The additive recurrence of the plastic number's relative in three dimensions (Roberts 2018).
@@ -158,10 +151,13 @@ Heights::Heights(const Container& container, const BedTop& top) : volume_(contai
     const Vector<3> at = static_cast<double>(n + 1) * step;
     return bounds.lower + size.cwiseProduct(Vector<3>(at - at.array().floor().matrix()));
   };
-  const std::vector<Vector<3>> points = points_inside(container, most_points, 1, even_point);
-  for (const Vector<3>& p : points) heights_.push_back(top.height(p));
-  if (heights_.empty()) heights_.push_back(top.height(bounds.center()));
-  ground_ = lowest_of(container, top.up(), points);
+  return points_inside(container, most_points, 1, even_point);
+}
+
+Heights::Heights(const Container& container, const BedTop& top, double ground)
+    : ground_(ground), volume_(container.volume()) {
+  for (const Vector<3>& p : even_points_inside(container)) heights_.push_back(top.height(p));
+  if (heights_.empty()) heights_.push_back(top.height(container.bounds().center()));
   std::ranges::sort(heights_);
 }
 

@@ -32,11 +32,16 @@ class BedTop {
 std::shared_ptr<const Container> cut_by_planes(std::shared_ptr<const Container>, std::vector<Facet> planes,
                                                double volume);
 
-/// How much of a container lies below a surface: by 32,768 evenly distributed points inside. Error: some
-/// thousandths. Cost: a question to the walls a point, once.
+/// 32,768 evenly distributed points inside; fewer of a container that is hardly more than nothing. Cost: a
+/// question to the walls a point.
+std::vector<Vector<3>> even_points_inside(const Container&);
+
+/// How much of a container lies below a surface: by evenly distributed points inside. Error: some
+/// thousandths. Cost: that of these points, once.
 class Heights {
  public:
-  Heights(const Container&, const BedTop&);
+  /// `ground`: height of the lowest point of the domain.
+  Heights(const Container&, const BedTop&, double ground);
 
   /// Of the lowest point of the container.
   double ground() const { return ground_; }
@@ -50,7 +55,7 @@ class Heights {
 
  private:
   std::vector<double> heights_;  // of the surfaces through the points, ascending
-  double ground_;                // the lowest point
+  double ground_;
   double volume_;
 };
 

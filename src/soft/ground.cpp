@@ -63,9 +63,9 @@ void ContainerGround::move_to_holes(Spheres<3>& spheres, std::vector<std::uint32
 
 std::vector<Vector<3>> ContainerGround::holes_for(std::span<const double> radii, const Spheres<3>& spheres,
                                                   Random& random) const {
-  const auto probes = static_cast<std::size_t>(
-      least_probes + std::min(probes_a_sphere * static_cast<double>(spheres.size()),
-                              probes_a_hole * static_cast<double>(radii.size())));
+  const auto probes =
+      static_cast<std::size_t>(least_probes + std::min(probes_a_sphere * static_cast<double>(spheres.size()),
+                                                       probes_a_hole * static_cast<double>(radii.size())));
   std::vector<Vector<3>> places;
   for (const Hole& hole : bernal::holes_for(radii, *container_, *places_, spheres, probes, random))
     places.push_back(hole.place);

@@ -1,6 +1,7 @@
 #include "soft/pour.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -8,6 +9,8 @@
 #include <vector>
 
 #include "bernal/core/dimension.hpp"
+#include "settle/roll_to_rest.hpp"
+#include "soft/above_spheres.hpp"
 #include "soft/relax.hpp"
 
 namespace bernal {
@@ -18,6 +21,10 @@ namespace {
 constexpr double first_rise = 0.05;
 /// A level is at least so high above the ground, in largest radii.
 constexpr double room_for_largest = 2.05;
+/// Lower beds, in largest diameters, have one layer.
+constexpr double one_layer = 1.0005;
+/// Vessels less wide, in largest radii, hold what happens to fit.
+constexpr double narrow = 3;
 
 /// The spheres of the bed in one of another container, those that fit, with their places in the sequence.
 void change_container(Work& work, std::shared_ptr<const Container> to) {
@@ -37,9 +44,26 @@ void change_container(Work& work, std::shared_ptr<const Container> to) {
   work.supply->set_placed(placed);
 }
 
+/// Of the stage's progress, what relaxation takes.
+constexpr double share_of_relaxation = 0.9;
+
+/// What is told of relaxation in a part of the container is told of the whole, and never less than before.
+std::function<void(const Course&)> as_of_whole(const Work& work, const Work& poured) {
+  return [&work, &poured, furthest = 0.0](const Course& of_part) mutable {
+    if (!work.on_course) return;
+    Course course = of_part;
+    course.stage = "settle";
+    course.packing_fraction *= poured.container->volume() / work.container->volume();
+    furthest = std::max(furthest, share_of_relaxation * course.done.value_or(0));
+    course.done = furthest;
+    work.on_course(course);
+  };
+}
+
 /// Work on some of the sequence by themselves, with nothing in its place.
 Work work_on(const std::vector<std::uint32_t>& tags, const Work& work) {
   return {.spheres = Spheres<dynamic>(3),
+          .edges = {},
           .target = work.target,
           .attainable = work.attainable,
           .domain = work.domain,
@@ -48,28 +72,29 @@ Work work_on(const std::vector<std::uint32_t>& tags, const Work& work) {
           .seed = work.seed,
           .monitor = work.monitor,
           .effects = work.effects,
-          .on_course = work.on_course,
           .streams_used = work.streams_used};
 }
 
-/// What stands in a bed.
-struct Ground {
-  double top = -std::numeric_limits<double>::infinity();  ///< no sphere reaches higher
-  std::vector<bool> placed;                               ///< by their tags
+/// The spheres that stand in a bed, by their tags.
+struct Standing {
+  Spheres<3> spheres;
+  std::vector<std::uint32_t> tags;
+  std::vector<bool> placed;
 
-  Ground(const Bed& bed, const Vector<3>& up) {
+  explicit Standing(const Bed& bed) {
     for (Bed::Id i = 0; i < bed.size(); ++i) {
-      top = std::max(top, up.dot(bed[i].center) + bed[i].r + bed.skin());
+      spheres.push_back(bed[i].center, bed[i].r);
+      tags.push_back(bed.tag(i));
       if (placed.size() <= bed.tag(i)) placed.resize(bed.tag(i) + std::size_t{1}, false);
       placed[bed.tag(i)] = true;
     }
   }
 
   std::vector<std::uint32_t> others(std::size_t wanted) const {
-    std::vector<std::uint32_t> tags;
+    std::vector<std::uint32_t> all;
     for (std::uint32_t tag = 0; tag < wanted; ++tag)
-      if (tag >= placed.size() || !placed[tag]) tags.push_back(tag);
-    return tags;
+      if (tag >= placed.size() || !placed[tag]) all.push_back(tag);
+    return all;
   }
 };
 
@@ -86,45 +111,77 @@ void put_in_bed(const Bed& poured, const std::vector<std::uint32_t>& tags, std::
 
 }  // namespace
 
-StageEnd pour(Work& work, const BedTop& top, const Heights& heights, double aim) {
-  const std::shared_ptr<const Container> whole = work.container;
-  const Ground ground(work.bed(), top.up());
-  const std::vector<std::uint32_t> tags = ground.others(work.supply->wanted());
-  if (tags.empty()) return StageEnd::converged;
+StageEnd rest_first(Work& work, const Vector<3>& down, double still) {
+  const Standing standing(work.bed());
+  std::vector<std::uint32_t> tags = standing.tags;
+  std::ranges::sort(tags);
+  Work own = work_on(tags, work);
+  own.domain = work.domain;
+  change_container(own, work.container);
+  std::vector<bool> placed(tags.size(), true);
+  for (std::size_t i = 0; i < standing.tags.size(); ++i) {
+    const auto at = std::ranges::lower_bound(tags, standing.tags[i]) - tags.begin();
+    own.bed().insert(standing.spheres.center(i), standing.spheres.r[i], static_cast<std::uint32_t>(at));
+  }
+  own.supply->set_placed(placed);
+  const StageEnd end = roll_to_rest(own, down, still);
+  work.put_in_bed({});
+  std::vector<bool> in_place(tags.empty() ? 0 : tags.back() + std::size_t{1}, false);
+  for (Bed::Id i = 0; i < own.bed().size(); ++i) {
+    const std::uint32_t tag = tags[own.bed().tag(i)];
+    work.bed().insert(own.bed()[i].center, own.bed()[i].r, tag);
+    in_place[tag] = true;
+  }
+  work.supply->set_placed(in_place);
+  return end;
+}
 
-  const double given = work.target.bed.above_ground;
-  const double height = given > 0 ? heights.ground() + given : std::numeric_limits<double>::infinity();
-  const double below = heights.volume_below(ground.top), room = heights.volume_below(height) - below;
+StageEnd pour(Work& work, const BedTop& top, double ground, double aim) {
+  const Standing standing(work.bed());
+  const std::vector<std::uint32_t> tags = standing.others(work.supply->wanted());
+  if (tags.empty()) return StageEnd::converged;
+  const std::shared_ptr<const Container> whole =
+      standing.tags.empty() ? work.container : above_spheres(work.container, standing.spheres, top.up());
+  const Heights heights(*whole, top, ground);
+
   double volume = 0, largest = 0;
-  for (const std::uint32_t tag : std::span(tags).first(std::min(tags.size(), work.target_count()))) {
+  const std::size_t wanted = work.target_count() - std::min(work.target_count(), standing.tags.size());
+  for (const std::uint32_t tag : std::span(tags).first(std::min(tags.size(), wanted))) {
     volume += ball_volume(3, work.supply->radius(tag));
     largest = std::max(largest, work.supply->radius(tag));
   }
+  const double given = work.target.bed.above_ground;
+  // One layer lies on the floor in the end, and may lie a little higher before.
+  const double height = ground + (given < one_layer * 2 * largest ? one_layer * 2 * largest : given);
+  const double room = given > 0 ? heights.volume_below(height) : whole->volume();
   // A layer is no shallower than its largest sphere.
-  const double floor = std::max(heights.ground(), ground.top);
-  volume = std::max(volume / aim, heights.volume_below(floor + room_for_largest * largest) - below);
+  volume = std::max(volume / aim, heights.volume_below(ground + room_for_largest * largest));
 
   Work poured = work_on(tags, work);
+  poured.on_course = as_of_whole(work, poured);
   if (!work.target.fill && (given > 0 || volume > room)) {
-    poured.target = Target{};  // as many as are expected to fit
-    poured.attainable = aim;
+    // As many as are expected to fit; where walls are near everywhere nobody knows, and all are tried.
+    const bool is_narrow = work.roomiest().radius < narrow * largest;
+    if (!is_narrow)
+      poured.target = Target{}, poured.attainable = aim;
+    else if (given > 0)
+      poured.target = Target{.fill = true};
     volume = room;
   }
   StageEnd end = StageEnd::full;
   for (double rise = first_rise; end == StageEnd::full && room > 0; volume *= 1 + rise, rise *= 2) {
-    const bool to_the_brim = below + volume >= whole->volume();
-    std::vector<Facet> ends;
-    if (!to_the_brim) ends = top.planes(given > 0 ? height : heights.holding(below + volume));
-    if (below > 0) ends.push_back({.kind = Facet::Kind::plane, .a = ground.top * top.up(), .b = top.up()});
+    const bool to_the_brim = volume >= whole->volume();
     change_container(
-        poured, ends.empty() ? whole : cut_by_planes(whole, ends, std::min(volume, whole->volume() - below)));
+        poured, to_the_brim
+                    ? whole
+                    : cut_by_planes(whole, top.planes(given > 0 ? height : heights.holding(volume)), volume));
     end = relax_in_container(poured, {});
-    if (to_the_brim || poured.target.is_open()) break;
+    if (to_the_brim || given > 0 || poured.target.is_open()) break;
     // What fits only touching both the level and walls is squeezed in: the level is too low.
     if (poured.is_snug(largest) && !work.is_snug(largest)) end = StageEnd::full;
   }
   work.streams_used = poured.streams_used;
-  if (poured.stands_in_bed()) put_in_bed(poured.bed(), tags, ground.placed, work);
+  if (poured.stands_in_bed()) put_in_bed(poured.bed(), tags, standing.placed, work);
   return end;
 }
 

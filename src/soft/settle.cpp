@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "domain/volume_below.hpp"
 #include "settle/compress.hpp"
 #include "settle/roll_to_rest.hpp"
 #include "soft/pour.hpp"
@@ -60,7 +61,9 @@ constexpr double as_asked = 0.015;
 
 void tell_porosity(Work& work, const Settle& options, const Heights& heights, const BedTop& top) {
   const double filled = work.bed().packing_fraction() * work.container->volume();
-  const double porosity = 1 - filled / heights.volume_below_mean(mean_height(work.bed(), top));
+  const double height = work.target.bed.above_ground;
+  const double porosity = 1 - filled / (height > 0 ? heights.volume_below(heights.ground() + height)
+                                                   : heights.volume_below_mean(mean_height(work.bed(), top)));
   if (!(porosity > 0 && porosity < 1)) return;  // of a few spheres on a floor there is none
   work.account = fmt::format("the bed has a porosity of {:.3f}", porosity);
   if (!options.bed.porosity || std::abs(porosity - *options.bed.porosity) <= as_asked) return;
@@ -68,6 +71,22 @@ void tell_porosity(Work& work, const Settle& options, const Heights& heights, co
       fmt::format("a porosity of {:.3g} was asked for: {}", *options.bed.porosity,
                   porosity > *options.bed.porosity ? "they find no room in less than that"
                                                    : "they fall until they rest, and then that is left");
+}
+
+/// Says that the bed is not as high as was asked where it differs by more than that, in largest diameters.
+constexpr double as_high = 1.05;
+
+void tell_height(Work& work, const Heights& heights, const BedTop& top) {
+  const double asked = work.target.bed.above_ground;
+  if (!(asked > 0) || work.bed().size() == 0) return;
+  double highest = 0;
+  for (Bed::Id i = 0; i < work.bed().size(); ++i)
+    highest = std::max(highest, top.up().dot(work.bed()[i].center) + work.bed()[i].r - heights.ground());
+  if (highest < asked - as_high * 2 * work.supply->largest())
+    work.missed = fmt::format("the bed is only {:.3g} of the height that was asked for", highest / asked);
+  else if (highest > asked * (1 + 1e-3))
+    work.missed =
+        fmt::format("what was there before is {:.3g} times as high as the bed was to be", highest / asked);
 }
 
 /// Packing fraction of the bed by what is expected of the whole container.
@@ -85,17 +104,19 @@ StageEnd settle(Work& work, const Settle& options) {
   require_support(work.bed().container().boundary(), down);
   const NotResumable whole_or_not_at_all(work);
   const BedTop top(work.target.bed, *work.container, down);
-  const Heights heights(*work.container, top);
-  if (work.begun == 0)
+  const Heights heights(*work.container, top, VolumeBelow(work.domain, down).lowest());
+  const std::size_t held = work.begun;
+  if (held == 0)
     work.put_in_bed({});
-  else if (roll_to_rest(work, down, options.rest) == StageEnd::cancelled)
+  else if (rest_first(work, down, options.rest) == StageEnd::cancelled)
     return StageEnd::cancelled;
-  const StageEnd end = pour(work, top, heights, aim_of(work, options.bed, heights));
+  const StageEnd end = pour(work, top, heights.ground(), aim_of(work, options.bed, heights));
   if (end == StageEnd::cancelled) return end;
   const EffectTimer timer(work.effects["rolling"]);
   const Made made("rolling");
-  const StageEnd rest = roll_to_rest(work, down, options.rest);
+  const StageEnd rest = roll_to_rest(work, down, options.rest, held);
   tell_porosity(work, options, heights, top);
+  tell_height(work, heights, top);
   const bool to_the_brim = !work.target.is_open() && !work.supply->exhausted();
   if (to_the_brim && !work.account.empty()) work.account += " and reaches the brim";
   return rest == StageEnd::converged ? end : rest;

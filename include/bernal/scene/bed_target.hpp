@@ -25,7 +25,7 @@ struct BedTarget {
 
   bool gives_height() const { return height || layers; }
   /// Whether the scene asks for a bed at all.
-  bool is_asked() const { return density || top || gives_height(); }
+  bool is_asked() const { return density || top || porosity || gives_height(); }
   bool operator==(const BedTarget&) const = default;
 };
 

@@ -1,0 +1,172 @@
+#include "soft/above_spheres.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "bernal/domain/boundary.hpp"
+#include "soft/below_level.hpp"
+
+namespace bernal {
+namespace {
+
+/// Columns by the cells that they reach into, of a grid across `up`; those that end highest come first.
+class Columns {
+ public:
+  struct Column {
+    Vector<3> end;  ///< centre of the sphere on it
+    double r;
+    double top;  ///< of the sphere, along `up`
+  };
+
+  Columns(const Spheres<3>& spheres, const Boundary<3>& boundary, const Vector<3>& up)
+      : boundary_(boundary), up_(up), a_(up.unitOrthogonal()), b_(up.cross(a_)) {
+    edge_ = 2 * std::ranges::max(spheres.r);
+    double low_a = std::numeric_limits<double>::infinity(), low_b = low_a, high_a = -low_a, high_b = -low_a;
+    // Of periods a column stands in the images next to its own, too.
+    std::vector<Vector<3>> shifts = {Vector<3>::Zero()};
+    for (int k = 0; k < 3; ++k) {
+      if (!(boundary.edges[k] > 0)) continue;
+      const std::size_t n = shifts.size();
+      for (std::size_t i = 0; i < n; ++i)
+        for (const double side : {-1.0, 1.0})
+          shifts.push_back(shifts[i] + side * boundary.edges[k] * Vector<3>::Unit(k));
+    }
+    for (const Vector<3>& shift : shifts)
+      for (std::size_t i = 0; i < spheres.size(); ++i) {
+        const Vector<3> c = spheres.center(i) + shift;
+        columns_.push_back({c, spheres.r[i], up.dot(c) + spheres.r[i]});
+        low_a = std::min(low_a, a_.dot(c)), high_a = std::max(high_a, a_.dot(c));
+        low_b = std::min(low_b, b_.dot(c)), high_b = std::max(high_b, b_.dot(c));
+      }
+    low_a_ = low_a, low_b_ = low_b;
+    across_ = 1 + static_cast<int>((high_a - low_a) / edge_);
+    along_ = 1 + static_cast<int>((high_b - low_b) / edge_);
+    cells_.resize(static_cast<std::size_t>(across_) * static_cast<std::size_t>(along_));
+    for (std::uint32_t k = 0; k < columns_.size(); ++k) cells_[cell_of(columns_[k].end)].push_back(k);
+    for (auto& cell : cells_)
+      std::ranges::sort(cell, std::greater<>(), [this](std::uint32_t k) { return columns_[k].top; });
+  }
+
+  /// Calls visit(column) for those that may be nearer to p than `reach`; until it returns true.
+  template <class Visit>
+  void for_each_near(const Vector<3>& p, double reach, Visit&& visit) const {
+    const double height = up_.dot(p);
+    const int cells = 1 + static_cast<int>(std::max(0.0, reach) / edge_);
+    const int i = static_cast<int>(std::floor((a_.dot(p) - low_a_) / edge_)),
+              j = static_cast<int>(std::floor((b_.dot(p) - low_b_) / edge_));
+    for (int u = std::max(0, i - cells); u <= std::min(across_ - 1, i + cells); ++u)
+      for (int v = std::max(0, j - cells); v <= std::min(along_ - 1, j + cells); ++v)
+        for (const std::uint32_t k : cells_[static_cast<std::size_t>(u) * static_cast<std::size_t>(along_) +
+                                            static_cast<std::size_t>(v)]) {
+          if (columns_[k].top + reach < height) break;
+          if (visit(columns_[k])) return;
+        }
+  }
+
+  /// The point on a column's axis that is nearest to p.
+  Vector<3> axis_point(const Column& column, const Vector<3>& p) const {
+    const double along = up_.dot(p - column.end);
+    return along < 0 ? Vector<3>(column.end + along * up_) : column.end;
+  }
+
+ private:
+  std::size_t cell_of(const Vector<3>& p) const {
+    const int i = std::clamp(static_cast<int>((a_.dot(p) - low_a_) / edge_), 0, across_ - 1),
+              j = std::clamp(static_cast<int>((b_.dot(p) - low_b_) / edge_), 0, along_ - 1);
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(along_) + static_cast<std::size_t>(j);
+  }
+
+  Boundary<3> boundary_;
+  Vector<3> up_, a_, b_;
+  double edge_ = 1, low_a_ = 0, low_b_ = 0;
+  int across_ = 1, along_ = 1;
+  std::vector<Column> columns_;
+  std::vector<std::vector<std::uint32_t>> cells_;
+};
+
+class AboveSpheres final : public Container {
+ public:
+  AboveSpheres(std::shared_ptr<const Container> whole, const Spheres<3>& spheres, const Vector<3>& up)
+      : Container(whole->arithmetic(), whole->resolution(), whole->boundary(), whole->dimension(),
+                  whole->inset()),
+        whole_(std::move(whole)),
+        columns_(spheres, whole_->boundary(), up) {
+    const std::vector<Vector<3>> points = even_points_inside(*whole_);
+    const auto clear = std::ranges::count_if(points, [this](const auto& p) { return nearest(p, 1) > 0; });
+    volume_ = whole_->volume() * static_cast<double>(clear) /
+              static_cast<double>(std::max<std::size_t>(1, points.size()));
+  }
+
+  std::string_view kind() const override { return whole_->kind(); }
+  double volume() const override { return volume_; }
+  Bounds<3> bounds() const override { return whole_->bounds(); }
+  double clearance(const Vector<3>& p) const override { return nearest(p, whole_->clearance(p)); }
+  double clearance_within(const Vector<3>& p, double reach) const override {
+    return nearest(p, whole_->clearance_within(p, reach));
+  }
+  bool contains(const Vector<3>& c, double r) const override {
+    return nearest(c, r) >= r && whole_->contains(c, r);
+  }
+  void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
+    const auto before = static_cast<std::ptrdiff_t>(out.size());
+    whole_->facets_near(c, reach, out);
+    add_columns(c, reach, before, out);
+  }
+  bool few_facets_near(const Vector<3>& c, double reach, std::size_t most,
+                       std::vector<NearFacet>& out) const override {
+    const auto before = static_cast<std::ptrdiff_t>(out.size());
+    if (!whole_->few_facets_near(c, reach, most, out)) return false;
+    add_columns(c, reach, before, out);
+    return out.size() - static_cast<std::size_t>(before) <= most;
+  }
+  void contacts(const Vector<3>& c, double r, std::vector<WallContact>& out) const override {
+    whole_->contacts(c, r, out);
+    columns_.for_each_near(c, r, [&](const Columns::Column& column) {
+      const Vector<3> away = c - columns_.axis_point(column, c);
+      const double distance = away.norm() - column.r;
+      if (distance < r && away.norm() > 0) out.push_back({away.normalized(), distance});
+      return false;
+    });
+  }
+
+ private:
+  double nearest(const Vector<3>& p, double limit) const {
+    columns_.for_each_near(p, limit, [&](const Columns::Column& column) {
+      limit = std::min(limit, (p - columns_.axis_point(column, p)).norm() - column.r);
+      return limit < 0;
+    });
+    return limit;
+  }
+  void add_columns(const Vector<3>& c, double reach, std::ptrdiff_t before,
+                   std::vector<NearFacet>& out) const {
+    columns_.for_each_near(c, reach, [&](const Columns::Column& column) {
+      const Vector<3> axis = columns_.axis_point(column, c), away = c - axis;
+      const double length = away.norm(), distance = length - column.r;
+      if (distance >= reach || !(length > 0)) return false;
+      const Vector<3> normal = away / length;
+      const NearFacet near{distance,
+                           {.kind = Facet::Kind::plane, .a = axis + column.r * normal, .b = normal}};
+      out.insert(std::upper_bound(out.begin() + before, out.end(), near,
+                                  [](const auto& a, const auto& b) { return a.distance < b.distance; }),
+                 near);
+      return false;
+    });
+  }
+
+  std::shared_ptr<const Container> whole_;
+  Columns columns_;
+  double volume_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Container> above_spheres(std::shared_ptr<const Container> whole,
+                                               const Spheres<3>& spheres, const Vector<3>& up) {
+  return std::make_shared<AboveSpheres>(std::move(whole), spheres, up);
+}
+
+}  // namespace bernal
