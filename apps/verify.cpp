@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bed_text.hpp"
 #include "bernal/core/error.hpp"
@@ -32,6 +33,7 @@ struct VerifyCall {
   std::filesystem::path scene;
   std::string list;
   bool settled = false;
+  double tolerance = Rest::closed;  ///< of what touches, for `settled`
   int threads = 0;
   bool json = false;
 };
@@ -97,10 +99,32 @@ void print(const Certificate& c, const Domain& domain, std::string_view unit) {
 }
 
 /// What `--settled` asks for.
-Rest rest_of(const Scene& scene, const Spheres<dynamic>& spheres, const Domain& domain, bool streamed) {
+Rest rest_of(const VerifyCall& call, const Scene& scene, const Spheres<dynamic>& spheres,
+             const Domain& domain, bool streamed) {
   if (streamed)
     throw Error(ErrorCode::bad_argument, "--settled needs the whole packing, and this one is in slabs");
-  return measure_rest(spheres, domain, down_in(scene), {.gap = scene.gap, .wall_gap = scene.wall_gap});
+  Rest rest = measure_rest(spheres, domain, down_in(scene),
+                           {.gap = scene.gap,
+                            .wall_gap = scene.wall_gap,
+                            .tolerance = call.tolerance,
+                            .list = !call.list.empty()});
+  if (const std::size_t most = listed(call.list); rest.list.size() > most) rest.list.resize(most);
+  return rest;
+}
+
+void print(const Rest& rest, const VerifyCall& call, const Spheres<dynamic>& spheres, std::string_view unit) {
+  const std::string to =
+      call.tolerance > Rest::closed ? fmt::format(", to {:g} of a radius", call.tolerance) : "";
+  say(stdout, "settled    {}{}\n", rest_text(rest, unit), to);
+  for (const auto& [sphere, slope, fall] : rest.list) {
+    const auto i = static_cast<std::size_t>(sphere);
+    say(stdout, "unsettled  {} at {:.6g}, radius {:.6g}: {}\n", sphere, fmt::join(spheres.center(i), ", "),
+        spheres.r[i],
+        fall > 0 ? fmt::format("hangs, could fall {:.3g} {}", fall, unit)
+                 : fmt::format("is not held, a way down of slope {:.3g} is open", slope));
+  }
+  if (!rest.list.empty() && rest.list.size() < rest.unsettled)
+    say(stdout, "           and {} more\n", grouped(rest.unsettled - rest.list.size()));
 }
 
 /// Of a result in slabs, which is certified without holding it.
@@ -129,13 +153,13 @@ int verify(const VerifyCall& call) {
                                      : certify(spheres, domain, options);
   certificate.statement += certified_walls(scene);
   std::optional<Rest> rest;
-  if (call.settled) rest = rest_of(scene, spheres, domain, streamed);
+  if (call.settled) rest = rest_of(call, scene, spheres, domain, streamed);
   bar.clear();
   if (call.json) {
-    say(stdout, "{}", certificate_as_json(certificate, rest));
+    say(stdout, "{}", certificate_as_json(certificate, rest, spheres));
   } else {
     print(certificate, domain, name_of(scene.unit));
-    if (rest) say(stdout, "settled    {}\n", rest_text(*rest, name_of(scene.unit)));
+    if (rest) print(*rest, call, spheres, name_of(scene.unit));
   }
   return certificate.certified && (!rest || rest->unsettled == 0) ? exit_code::done : exit_code::no;
 }
@@ -156,8 +180,15 @@ Command verify_command() {
              "SCENE.toml"},
             {".toml"}),
        {"--list{all}", &call->list,
-        "Name every overlapping pair and protruding sphere; --list=N: the N worst of each"},
+        "Name every overlapping pair and protruding sphere, and with --settled every sphere that does not "
+        "rest; --list=N: the N worst of each"},
        {"--settled", &call->settled, "Say too whether every sphere rests, or hangs or could roll down"},
+       within(needs({"--gap", &call->tolerance,
+                     "For --settled: spheres touch below this gap, in radii, and ways down that are no "
+                     "steeper count as level; 1e-6 if absent, more for coordinates that were rounded",
+                     "RATIO"},
+                    "--settled"),
+              Rest::closed, 0.1),
        threads_option(call->threads, "the answer"),
        json_option(call->json)},
       {.text =
@@ -165,6 +196,8 @@ Command verify_command() {
            "allows, else exactly.",
        .examples = {{"bernal verify out", "what bernal pack wrote"},
                     {"bernal verify out --settled", "and whether the bed stands by itself"},
+                    {"bernal verify bed.csv --scene scene.toml --settled --gap 1e-3 --list=20",
+                     "of others, with three decimals: which spheres do not rest"},
                     {"bernal verify bed.csv --scene scene.toml --list", "other spheres, and what is wrong"}},
        .exit_codes = {{"0", "certified"}, {"1", "not certified, or not at rest"}, {"2", "bad input"}}},
       [call] { return verify(*call); }};

@@ -292,13 +292,22 @@ std::string text_of(const Json& json) {
 
 }  // namespace
 
-std::string certificate_as_json(const Certificate& c, const std::optional<Rest>& rest) {
+std::string certificate_as_json(const Certificate& c, const std::optional<Rest>& rest,
+                                const Spheres<dynamic>& spheres) {
   Json json = c;
-  if (rest)
+  if (rest) {
     json["settled"] = {{"at_rest", rest->unsettled == 0},
                        {"unsettled", rest->unsettled},
                        {"hanging", rest->hanging},
                        {"farthest_fall", rest->farthest}};
+    for (const auto& [sphere, slope, fall] : rest->list)
+      json["settled"]["list"].push_back({{"sphere", sphere},
+                                         {"center", spheres.center(static_cast<std::size_t>(sphere))},
+                                         {"radius", spheres.r[static_cast<std::size_t>(sphere)]},
+                                         {"hangs", fall > 0},
+                                         {"fall", fall},
+                                         {"slope", slope}});
+  }
   return text_of(json);
 }
 

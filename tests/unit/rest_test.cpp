@@ -40,6 +40,38 @@ TEST(RestOfSpheres, OneAboveTheFloorByMoreThanAHundredthOfItsRadius) {
   EXPECT_EQ(measure_rest(Spheres<dynamic>(3), box, down).hanging, 0u);
 }
 
+TEST(RestOfSpheres, AreListedThoseFirstThatCouldFallTheFarthest) {
+  // On the floor, six above it, beside the first, and three above the floor.
+  const Spheres<dynamic> spheres = spheres_at({{2, 2, 1}, {7, 7, 7}, {3, 2, 1 + std::sqrt(3.0)}, {7, 2, 4}});
+  EXPECT_TRUE(measure_rest(spheres, box, down).list.empty());
+  const Rest rest = measure_rest(spheres, box, down, {.list = true});
+  ASSERT_EQ(rest.list.size(), rest.unsettled);
+  ASSERT_EQ(rest.unsettled, 3u);
+  EXPECT_EQ(rest.list[0].sphere, 1u);
+  EXPECT_NEAR(rest.list[0].fall, 6, 1e-12);
+  EXPECT_EQ(rest.list[1].sphere, 3u);
+  EXPECT_NEAR(rest.list[1].fall, 3, 1e-12);
+  EXPECT_EQ(rest.list[2].sphere, 2u);
+  EXPECT_EQ(rest.list[2].fall, 0);
+  EXPECT_NEAR(rest.list[2].slope, 0.5, 1e-9);
+}
+
+TEST(RestOfSpheres, IsJudgedToATolerance) {
+  // Half a thousandth above the floor, and three thousandths above another one.
+  const Spheres<dynamic> spheres = spheres_at({{2, 2, 1.0005}, {7, 7, 1}, {7, 7, 3.003}});
+  EXPECT_EQ(measure_rest(spheres, box, down).unsettled, 2u);
+  EXPECT_EQ(measure_rest(spheres, box, down, {.tolerance = 1e-3}).unsettled, 1u);
+  EXPECT_EQ(measure_rest(spheres, box, down, {.tolerance = 5e-3}).unsettled, 0u);
+  // A way down that is as steep as that; and what hangs farther hangs.
+  const double tilt = 2e-3;
+  const Spheres<dynamic> aside = spheres_at({{5, 5, 1}, {5 + 2 * std::sin(tilt), 5, 1 + 2 * std::cos(tilt)}});
+  EXPECT_EQ(measure_rest(aside, box, down, {.tolerance = 1e-3}).unsettled, 1u);
+  EXPECT_EQ(measure_rest(aside, box, down, {.tolerance = 3e-3}).unsettled, 0u);
+  EXPECT_EQ(measure_rest(spheres_at({{5, 5, 1.02}}), box, down, {.tolerance = 5e-3}).hanging, 1u);
+  // Less than what is always allowed is that.
+  EXPECT_EQ(measure_rest(spheres_at({{5, 5, 1 + 0.9e-6}}), box, down, {.tolerance = 0}).unsettled, 0u);
+}
+
 TEST(RestOfSpheres, WhatTouchesOnlyBesideSupportsNothing) {
   // Of three in a row the outer ones touch walls, and all of them hang; a rounding more or less is no
   // support.

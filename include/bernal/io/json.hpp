@@ -19,8 +19,10 @@ namespace bernal {
 /// spheres are near, twice the same index for a sphere and its own image; `worst_wall` and `min_wall_gap` are
 /// null where no sphere is near a wall. `overlaps` and `protrusions` are there where a list was asked for and
 /// has entries. Numbers that are not finite become null.
-/// With `settled`, where whether the spheres rest was asked for.
-std::string certificate_as_json(const Certificate&, const std::optional<Rest>& = {});
+/// With `settled`, where whether the spheres rest was asked for; its `list`, of spheres with centre and
+/// radius, is there where it has entries.
+std::string certificate_as_json(const Certificate&, const std::optional<Rest>& = {},
+                                const Spheres<dynamic>& = Spheres<dynamic>(3));
 
 /// Measurements as one JSON object: what `bernal measure --json` prints. Lengths are in the scene's unit,
 /// radii are radii. What there is not is null: `g_r` where there are walls, `chambers` and `walls` where
