@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <tuple>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/error.hpp"
@@ -194,19 +197,25 @@ class SpheresInWalls {
   double least_closed_;  // where coordinates are too coarse for a millionth of a radius
 };
 
+constexpr std::string_view how_to_import =
+    "of a packing of others, import --periodic none says that its box ends at walls";
+
 Rest rest_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
              const RestOptions& options, const std::shared_ptr<const Container>& made) {
   const int dimension = dimension_of(domain);
   if (dimension < 2 || dimension > 3 || !has_walls(domain))
     throw Error(ErrorCode::bad_argument,
-                "a bed rests on walls, in two or three dimensions; this domain has none");
+                fmt::format("a bed rests on walls, in two or three dimensions, and this domain has none; {}",
+                            how_to_import));
   Rest rest;
   if (spheres.empty()) return rest;
   const Frame frame = frame_of(domain);
   const std::shared_ptr<const Container> container = local_container(domain, made);
   if (!direction.cwiseProduct(container->boundary().edges).isZero(0))
     throw Error(ErrorCode::bad_argument,
-                "a bed rests on a floor, and this domain repeats itself along the direction of gravity");
+                fmt::format("a bed rests on a floor, and this domain repeats itself along the direction of "
+                            "gravity; {}",
+                            how_to_import));
   const Spheres<3> local = localised(spheres, frame);
   const SpheresInWalls bed(local, container->boundary(), *container, direction.normalized(),
                            options.tolerance);

@@ -117,6 +117,21 @@ TEST_F(BedCommand, JudgesRoundedCoordinatesToTheirRounding) {
   EXPECT_EQ(verify("1,1,1.01,1\n", {"--gap", "3e-3"}).status, 1);
 }
 
+TEST_F(BedCommand, ShowsTheWayToJudgeAPackingOfOthers) {
+  const std::string table =
+      folder.write("theirs.csv", "# unit: mm\nx,y,z,r\n1,1,1,1\n3,1,1,1\n1,1,3,1\n").string();
+  const std::string out = (folder / "out").string();
+  ASSERT_EQ(bernal({"import", table, "--box", "4,4,9", "-o", out}).status, 0);
+  expect_refused_in_one_line(bernal({"verify", out, "--settled"}), {"walls", "--periodic none"});
+  ASSERT_EQ(bernal({"import", table, "--box", "4,4,9", "--periodic", "z", "-o", out}).status, 0);
+  expect_refused_in_one_line(bernal({"verify", out, "--settled"}), {"floor", "--periodic none"});
+  ASSERT_EQ(bernal({"import", table, "--box", "4,4,9", "--periodic", "none", "-o", out}).status, 0);
+  const Ended judged = bernal({"verify", out, "--settled"});
+  EXPECT_EQ(judged.status, 0) << judged.out;
+  expect_in(judged.out, {"settled    every sphere rests"});
+  EXPECT_EQ(report_of(out).at("bed").at("unsettled"), 0);
+}
+
 TEST_F(BedCommand, RefusesWhatItCannotJudgeInOneLine) {
   const std::string one = "1,1,1,1\n";
   expect_refused_in_one_line(verify(one, {"--gap", "0.5"}), {"--gap"});
