@@ -355,14 +355,18 @@ Command measure_command() {
         "FILE.csv"},
        threads_option(call->threads, "the answer"),
        json_option(call->json)},
-      {.text = "Rattlers are taken out one after the other until every sphere left is held by D + 1 "
-               "contacts.\n\nIn a container: the chambers that the smallest spheres cannot leave, with the "
-               "packing fraction of each, and what no sphere can cover; porosity over the distance from the "
-               "wall, the packing fraction of the core (more than 3 mean diameters from it) and near it; "
-               "whether small spheres gather there.\n\nIn three dimensions: the share of the spheres whose "
-               "neighbours lie as in a crystal.\n\nIn two and three: the packing fraction of every sphere in "
-               "its cell of the power diagram. In periodic boxes: g(r) and the structure factor S(k). "
-               "Everywhere: how far it is from points in the pores to the nearest solid.",
+      {.text =
+           "Rattlers are taken out one after the other until every sphere left is held by D + 1 "
+           "contacts.\n\nIn a container: the chambers that the smallest spheres cannot leave, with the "
+           "packing fraction of each, and what no sphere can cover; porosity over the distance from the "
+           "wall, the packing fraction of the core (more than 3 mean diameters from it) and near it; "
+           "whether small spheres gather there.\n\nOf a bed, which leaves the top of its container empty or "
+           "was settled last: its height, roughness, porosity up to its surface and packing fraction over "
+           "the height, and whether its spheres rest; walls and pores are those below its surface then."
+           "\n\nIn three dimensions: the share of the spheres whose neighbours lie as in a crystal.\n\nIn two "
+           "and three: the packing fraction of every sphere in "
+           "its cell of the power diagram. In periodic boxes: g(r) and the structure factor S(k). "
+           "Everywhere: how far it is from points in the pores to the nearest solid.",
        .examples = {{"bernal measure out", "everything, for people"},
                     {"bernal measure out --json", "everything, for programs"},
                     {"bernal measure out --local cells.csv", "and a table of the cell of every sphere"},

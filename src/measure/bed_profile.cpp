@@ -50,12 +50,12 @@ struct Scenery {
   }
 };
 
-struct Mean {
+struct MeanSurface {
   double value, deviation, share;
 };
 
 /// Of the cells that are not bare; the share is theirs of all.
-Mean mean_of(const std::vector<BedSurface::Cell>& cells) {
+MeanSurface mean_surface(const std::vector<BedSurface::Cell>& cells) {
   double all = 0, covered = 0, sum = 0, squares = 0;
   for (const auto& [height, share] : cells) {
     all += share;
@@ -207,7 +207,7 @@ std::optional<BedProfile> bed_profile(const Spheres<dynamic>& packed, const Doma
   const double floor = below.lowest();
   const BedSurface surface(spheres, *container, down, cell * diameter);
   const std::vector<BedSurface::Cell> cells = surface.cells(*container, floor);
-  const Mean mean = mean_of(cells);
+  const MeanSurface mean = mean_surface(cells);
   if (!(mean.share > 0)) return {};
   const Volume bed = below_surface(all, surface, mean.value);
   const double filled = all.filled();
