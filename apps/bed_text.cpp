@@ -10,6 +10,9 @@
 namespace bernal {
 
 std::string rest_text(const Rest& rest, std::string_view unit) {
+  if (rest.unsettled == 0 && rest.held_by_friction > 0)
+    return fmt::format("every sphere rests, {} of them by friction, up to an angle of {:.3g} degrees",
+                       grouped(rest.held_by_friction), rest.friction);
   if (rest.unsettled == 0) return "every sphere rests: it can neither fall nor roll down";
   std::string text = fmt::format("NOT at rest: {}", grouped(rest.unsettled));
   if (rest.hanging > 0)

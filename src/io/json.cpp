@@ -298,6 +298,8 @@ std::string certificate_as_json(const Certificate& c, const std::optional<Rest>&
   if (rest) {
     json["settled"] = {{"at_rest", rest->unsettled == 0},
                        {"unsettled", rest->unsettled},
+                       {"held_by_friction", rest->held_by_friction},
+                       {"angle_of_friction", rest->friction},
                        {"hanging", rest->hanging},
                        {"farthest_fall", rest->farthest}};
     for (const auto& [sphere, slope, fall] : rest->list)

@@ -200,7 +200,9 @@ std::optional<BedProfile> bed_profile(const Spheres<dynamic>& packed, const Doma
   BedProfile profile;
   profile.direction = down;
   profile.mean_diameter = diameter;
-  profile.rest = measure_rest(packed, domain, down, {.gap = options.gap, .wall_gap = options.wall_gap}, made);
+  profile.rest =
+      measure_rest(packed, domain, down,
+                   {.gap = options.gap, .wall_gap = options.wall_gap, .friction = options.friction}, made);
   if (!options.is_bed &&
       static_cast<double>(profile.rest.hanging) > most_hanging * static_cast<double>(packed.size()))
     return {};

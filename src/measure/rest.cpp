@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -219,16 +221,24 @@ Rest rest_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector
   const Spheres<3> local = localised(spheres, frame);
   const SpheresInWalls bed(local, container->boundary(), *container, direction.normalized(),
                            options.tolerance);
-  std::vector<double> slopes(local.size(), 0), falls(local.size(), 0);
+  std::vector<double> slopes(local.size(), 0), falls(local.size(), 0), held(local.size(), 0);
+  const double flattest = std::sin(options.friction * std::numbers::pi / 180) + Rest::level;
   parallel_ranges(local.size(), 256, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i)
-      if ((slopes[i] = bed.slope(i)) > 0 && bed.hangs(i)) falls[i] = bed.fall(i);
+    for (std::size_t i = first; i < last; ++i) {
+      slopes[i] = bed.slope(i);
+      if (options.friction > 0 && slopes[i] <= flattest)
+        held[i] = std::exchange(slopes[i], 0);
+      else if (slopes[i] > 0 && bed.hangs(i))
+        falls[i] = bed.fall(i);
+    }
   });
   for (std::size_t i = 0; i < local.size(); ++i) {
     rest.hanging += falls[i] > 0;
     rest.unsettled += slopes[i] > 0;
+    rest.held_by_friction += held[i] > 0;
     if (options.list && slopes[i] > 0) rest.list.push_back({i, slopes[i], frame.scale * falls[i]});
   }
+  rest.friction = std::asin(std::ranges::max(held)) * 180 / std::numbers::pi;
   rest.farthest = frame.scale * std::ranges::max(falls);
   std::ranges::stable_sort(rest.list, [](const auto& a, const auto& b) {
     return std::tie(a.fall, a.slope) > std::tie(b.fall, b.slope);

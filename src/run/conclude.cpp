@@ -154,9 +154,15 @@ Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, const 
 void tell_rest(Conclusion& conclusion, const Packing& packing, const Pressing& pressed) {
   const Scene& scene = packing.scene;
   const Rest rest = measure_rest(packing.spheres, packing.domain, pressed.direction,
-                                 {.gap = scene.gap, .wall_gap = scene.wall_gap}, packing.container);
+                                 {.gap = scene.gap, .wall_gap = scene.wall_gap, .friction = pressed.friction},
+                                 packing.container);
+  if (rest.held_by_friction > 0)
+    conclusion.reason +=
+        fmt::format("; {} {} held by friction, up to an angle of {:.3g} degrees",
+                    counted(rest.held_by_friction), are(rest.held_by_friction), rest.friction);
   if (rest.unsettled == 0) {
-    conclusion.reason += packing.spheres.size() == 1 ? ", at rest" : "; every sphere rests";
+    if (rest.held_by_friction == 0)
+      conclusion.reason += packing.spheres.size() == 1 ? ", at rest" : "; every sphere rests";
     return;
   }
   std::string what = fmt::format("{} {} not at rest", counted(rest.unsettled), are(rest.unsettled));

@@ -14,12 +14,12 @@ namespace {
 
 std::optional<Pressing> pressing(const Stage& stage) {
   const auto by = [](const Compress& c) {
-    return Pressing{direction_of(c.direction), c.tolerance.has_value(),
+    return Pressing{direction_of(c.direction), c.tolerance.has_value(), 0,
                     c.tolerance ? "leave \"tolerance\" out of the stages that settle, or make it smaller"
                                 : "let the stages that settle do more, by \"max_iterations\""};
   };
   if (const auto* settle = stage.as<Settle>())
-    return Pressing{direction_of(settle->direction), settle->rest > Settle{}.rest,
+    return Pressing{direction_of(settle->direction), settle->rest > Settle{}.rest, friction_in(settle->bed),
                     "make \"rest\" of settle smaller, or take another \"seed\""};
   if (const auto* compress = stage.as<Compress>()) return by(*compress);
   if (const auto* shake = stage.as<Shake>()) return by(shake->compress);
@@ -43,7 +43,11 @@ Vector<3> down_in(const Scene& scene) {
 
 BedOptions bed_options_of(const Scene& scene) {
   const bool ends_settled = !scene.stages.empty() && pressing(scene.stages.back());
-  return {.direction = down_in(scene), .is_bed = ends_settled};
+  return {.direction = down_in(scene), .is_bed = ends_settled, .friction = friction_in(scene.target.bed)};
+}
+
+double friction_in(const BedTarget& bed) {
+  return bed.porosity || bed.density == BedTarget::Density::loose ? most_friction : 0;
 }
 
 LastPressed::LastPressed(const Scene& scene)
@@ -69,7 +73,7 @@ StageEnd leave_out_tail(Work& work, StageEnd end, const std::optional<Pressing>&
   if (!work.stands_in_bed() || supply.passed_over() == 0 || !supply.trimming_is_cheap()) return end;
   work.bed().remove_tags_from(supply.first_missing());
   if (!pressed || end == StageEnd::cancelled) return end;
-  const StageEnd settled = roll_to_rest(work, pressed->direction);
+  const StageEnd settled = roll_to_rest(work, pressed->direction, {.friction = pressed->friction});
   return settled == StageEnd::converged ? end : settled;
 }
 

@@ -13,6 +13,7 @@ namespace bernal {
 struct Pressing {
   Vector<3> direction;
   bool loosely;             ///< by a tolerance that leaves spheres which do not rest
+  double friction;          ///< the angle up to which it may hold spheres, in degrees
   std::string_view remedy;  ///< of spheres that do not rest as they should
 };
 

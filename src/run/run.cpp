@@ -139,6 +139,7 @@ class Run {
               .allowed_overlap = scene_.overlap,
               .target = scene_.target,
               .attainable = plan_.attainable_packing_fraction,
+              .close_packing = scene_.target.bed.density ? random_close_packing_of(plan_) : 0,
               .seed = packing_.seed,
               .monitor = monitor_,
               .effects = record_.effects(),

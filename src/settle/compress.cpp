@@ -172,7 +172,7 @@ StageEnd compress(Work& work, const Compress& options) {
   Moved moved;
 
   for (; iteration < options.max_iterations; ++iteration) {
-    if (!stirs) return roll_to_rest(work, direction, at_rest_in_radii, 0, options.max_iterations);
+    if (!stirs) return roll_to_rest(work, direction, {.still = at_rest_in_radii, .most_iterations = options.max_iterations});
     if (work.stop()) return StageEnd::cancelled;
     box = bed.enclose(box);
     global.wake_all();  // the ends of the old boxes held some

@@ -13,8 +13,9 @@ constexpr double room = 0.5;
 constexpr int rolling_sweeps = 50;
 
 /// Returns whether any sphere has moved.
-bool sweep_until_still(Bed& bed, const Vector<3>& direction, double still, std::size_t held) {
-  Roller roller(bed, direction);
+bool sweep_until_still(Bed& bed, const Vector<3>& direction, const RollToRest& options) {
+  const auto& [still, friction, held, most] = options;
+  Roller roller(bed, direction, friction);
   std::vector<char> awake(bed.size());
   for (Bed::Id i = 0; i < bed.size(); ++i) awake[i] = bed.tag(i) >= held;
   bool moved = false, moves = true;
@@ -33,16 +34,15 @@ bool sweep_until_still(Bed& bed, const Vector<3>& direction, double still, std::
 
 }  // namespace
 
-StageEnd roll_to_rest(Work& work, const Vector<3>& direction, double still, std::size_t held,
-                      int most_iterations) {
+StageEnd roll_to_rest(Work& work, const Vector<3>& direction, const RollToRest& options) {
   Bed& bed = work.bed();
   int iteration = 0;
   const Resumable part(work, "roll to rest", [&](Archive& a) { a(iteration); });
   if (!part.resumed()) bed.sort_by_height(direction);
-  for (; iteration < most_iterations; ++iteration) {
+  for (; iteration < options.most_iterations; ++iteration) {
     if (work.stop()) return StageEnd::cancelled;
     bed.enclose(room * bed.mean_radius());
-    if (!sweep_until_still(bed, direction, still, held)) return StageEnd::converged;
+    if (!sweep_until_still(bed, direction, options)) return StageEnd::converged;
     work.milestone("settle");
   }
   return StageEnd::hit_limit;

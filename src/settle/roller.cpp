@@ -65,12 +65,12 @@ void Roller::find_contacts() {
   }
 }
 
-/// The track of the steepest way down; none where nothing is steeper than `level`.
+/// The track of the steepest way down; none where nothing is steeper than `flattest_`.
 Roller::Track Roller::steepest() const {
   const SteepestWay found = steepest_way(down_, normals_, stopper_at_);
   Track track;
   const double slope = found.way.norm();
-  if (!(slope > level)) return track;
+  if (!(slope > flattest_)) return track;
   track.count = found.count;
   for (int k = 0; k < found.count; ++k)
     track.on[static_cast<std::size_t>(k)] = contacts_[found.held_by[static_cast<std::size_t>(k)]].obstacle;

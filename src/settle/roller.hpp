@@ -1,6 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "settle/mover.hpp"
@@ -23,7 +26,13 @@ class Roller {
   /// The sine of what counts as level.
   static constexpr double level = 1e-7;
 
-  Roller(Bed& bed, const Vector<3>& direction) : bed_(bed), mover_(bed), down_(direction) {}
+  /// With friction, an angle in degrees, a sphere that touches something rests where nothing leads down more
+  /// steeply than that.
+  Roller(Bed& bed, const Vector<3>& direction, double friction = 0)
+      : bed_(bed),
+        mover_(bed),
+        down_(direction),
+        flattest_(std::max(level, std::sin(friction * std::numbers::pi / 180))) {}
 
   /// Returns how far sphere i then is from where it was. It rests there, or its bounding box ended.
   double roll(Bed::Id i);
@@ -68,6 +77,7 @@ class Roller {
   Bed& bed_;
   Mover mover_;
   Vector<3> down_;
+  double flattest_;  // sine of the steepest way that is not taken
   std::vector<Contact> contacts_;
   std::vector<Vector<3>> normals_;  // of these, unit, from the obstacle to the sphere
   static constexpr Obstacle none = ~Obstacle{0};

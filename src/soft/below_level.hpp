@@ -20,6 +20,7 @@ class BedTop {
   /// the flanks.
   std::vector<Facet> planes(double height) const;
   const Vector<3>& up() const { return up_; }
+  bool is_level() const { return normals_.empty(); }
 
  private:
   Vector<3> up_, middle_ = Vector<3>::Zero();

@@ -18,13 +18,15 @@ namespace {
 
 /// Where the spheres find no room below the level, it rises by so much of the bed, the next time twice as
 /// much.
-constexpr double first_rise = 0.05;
+constexpr double first_rise = 0.05, first_rise_tapped = 0.01;
+/// Stirring hardly helps those that were tapped.
+constexpr int patience_with_tapped = 2;
 /// A level is at least so high above the ground, in largest radii.
 constexpr double room_for_largest = 2.05;
 /// Lower beds, in largest diameters, have one layer.
 constexpr double one_layer = 1.0005;
 /// Vessels less wide, in largest radii, hold what happens to fit.
-constexpr double narrow = 3;
+constexpr double narrow_vessel = 3;
 
 /// The spheres of the bed in one of another container, those that fit, with their places in the sequence.
 void change_container(Work& work, std::shared_ptr<const Container> to) {
@@ -124,7 +126,7 @@ StageEnd rest_first(Work& work, const Vector<3>& down, double still) {
     own.bed().insert(standing.spheres.center(i), standing.spheres.r[i], static_cast<std::uint32_t>(at));
   }
   own.supply->set_placed(placed);
-  const StageEnd end = roll_to_rest(own, down, still);
+  const StageEnd end = roll_to_rest(own, down, {.still = still});
   work.put_in_bed({});
   std::vector<bool> in_place(tags.empty() ? 0 : tags.back() + std::size_t{1}, false);
   for (Bed::Id i = 0; i < own.bed().size(); ++i) {
@@ -136,7 +138,7 @@ StageEnd rest_first(Work& work, const Vector<3>& down, double still) {
   return end;
 }
 
-StageEnd pour(Work& work, const BedTop& top, double ground, double aim) {
+StageEnd pour(Work& work, const BedTop& top, double ground, Laying& how) {
   const Standing standing(work.bed());
   const std::vector<std::uint32_t> tags = standing.others(work.supply->wanted());
   if (tags.empty()) return StageEnd::converged;
@@ -155,32 +157,38 @@ StageEnd pour(Work& work, const BedTop& top, double ground, double aim) {
   const double height = ground + (given < one_layer * 2 * largest ? one_layer * 2 * largest : given);
   const double room = given > 0 ? heights.volume_below(height) : whole->volume();
   // A layer is no shallower than its largest sphere.
-  volume = std::max(volume / aim, heights.volume_below(ground + room_for_largest * largest));
+  volume = std::max(volume / how.packing_fraction, heights.volume_below(ground + room_for_largest * largest));
 
   Work poured = work_on(tags, work);
   poured.on_course = as_of_whole(work, poured);
   if (!work.target.fill && (given > 0 || volume > room)) {
     // As many as are expected to fit; where walls are near everywhere nobody knows, and all are tried.
-    const bool is_narrow = work.roomiest().radius < narrow * largest;
+    const bool is_narrow = work.roomiest().radius < narrow_vessel * largest;
     if (!is_narrow)
-      poured.target = Target{}, poured.attainable = aim;
+      poured.target = Target{}, poured.attainable = how.packing_fraction;
     else if (given > 0)
       poured.target = Target{.fill = true};
     volume = room;
   }
+  poured.crowded_start = work.crowded_start;
   StageEnd end = StageEnd::full;
-  for (double rise = first_rise; end == StageEnd::full && room > 0; volume *= 1 + rise, rise *= 2) {
+  how.finds_room = true;
+  for (double rise = how.taps > 0 ? first_rise_tapped : first_rise; end == StageEnd::full && room > 0;
+       volume *= 1 + rise, rise *= 2) {
     const bool to_the_brim = volume >= whole->volume();
     change_container(
         poured, to_the_brim
                     ? whole
                     : cut_by_planes(whole, top.planes(given > 0 ? height : heights.holding(volume)), volume));
-    end = relax_in_container(poured, {});
+    if (how.taps > 0 && how.finds_room) tap(poured, how.taps, how.first_tap);
+    end = relax_in_container(poured, {.patience = how.taps > 0 ? patience_with_tapped : Relax{}.patience});
+    how.finds_room = how.finds_room && end != StageEnd::full;
     if (to_the_brim || given > 0 || poured.target.is_open()) break;
     // What fits only touching both the level and walls is squeezed in: the level is too low.
     if (poured.is_snug(largest) && !work.is_snug(largest)) end = StageEnd::full;
   }
   work.streams_used = poured.streams_used;
+  if (how.taps > 0) work.crowded_start = poured.crowded_start;
   if (poured.stands_in_bed()) put_in_bed(poured.bed(), tags, standing.placed, work);
   return end;
 }

@@ -9,8 +9,11 @@
 #include "domain/volume_below.hpp"
 #include "settle/compress.hpp"
 #include "settle/roll_to_rest.hpp"
+#include "soft/bed_density.hpp"
 #include "soft/pour.hpp"
 #include "soft/relax.hpp"
+#include "soft/settle_as_dense.hpp"
+#include "soft/tap.hpp"
 #include "work/stage_entry.hpp"
 
 namespace bernal {
@@ -20,11 +23,11 @@ namespace {
 /// columns of 4, 6 and 20 diameters have porosities of 0.466, 0.442 and 0.404 far from their ends; so have
 /// those with this share, to 0.003.
 constexpr double share_of_relaxed = 0.963;
-
 /// In mean diameters.
 constexpr double shallow = 3;
 
 /// What a sphere takes that falls by some hundredths of its radius and rolls to rest; and walls asked.
+constexpr double attempts_to_vibrate = 2;
 constexpr double seconds_of_rolling = 15e-6, questions_of_rolling = 4;
 
 std::vector<PlanItem> effects_of_settling(const Settle& options, const Outlook& outlook) {
@@ -37,6 +40,14 @@ std::vector<PlanItem> effects_of_settling(const Settle& options, const Outlook& 
   if (outlook.task.packing_fraction > 0 && outlook.task.packing_fraction * height < shallow * relaxed.aim)
     for (PlanItem& item : items) item.if_needed = true;
   const PlanItem walls = questions_to_walls(questions_of_rolling, outlook);
+  const bool vibrated = options.bed.density == BedTarget::Density::vibrated;
+  if (vibrated || options.bed.porosity)
+    items.push_back(
+        {.name = "tapping",
+         .what = "spheres are displaced and pushed apart, by less and less, for a denser bed",
+         .cost = "some 10,000 sweeps of O(N)",
+         .seconds = vibrated ? attempts_to_vibrate * usual_taps * seconds_a_tap * outlook.spheres : 0,
+         .if_needed = !vibrated});
   items.push_back({.name = "rolling",
                    .what = "every sphere falls and rolls until all rest",
                    .cost = "some five sweeps of O(N)",
@@ -45,43 +56,24 @@ std::vector<PlanItem> effects_of_settling(const Settle& options, const Outlook& 
   return items;
 }
 
-/// Weighted by the volumes of the spheres.
-double mean_height(const Bed& bed, const BedTop& top) {
-  double sum = 0, volume = 0;
-  for (Bed::Id i = 0; i < bed.size(); ++i) {
-    const double own = ball_volume(3, bed[i].r);
-    sum += own * top.height(bed[i].center);
-    volume += own;
-  }
-  return sum / volume;
-}
-
-/// Says how porous the bed has become, and that it is not as was asked where it differs by more than this.
-constexpr double as_asked = 0.015;
-
-void tell_porosity(Work& work, const Settle& options, const Heights& heights, const BedTop& top) {
-  const double filled = work.bed().packing_fraction() * work.container->volume();
-  const double height = work.target.bed.above_ground;
-  const double porosity = 1 - filled / (height > 0 ? heights.volume_below(heights.ground() + height)
-                                                   : heights.volume_below_mean(mean_height(work.bed(), top)));
-  if (!(porosity > 0 && porosity < 1)) return;  // of a few spheres on a floor there is none
-  work.account = fmt::format("the bed has a porosity of {:.3f}", porosity);
-  if (!options.bed.porosity || std::abs(porosity - *options.bed.porosity) <= as_asked) return;
-  work.missed =
-      fmt::format("a porosity of {:.3g} was asked for: {}", *options.bed.porosity,
-                  porosity > *options.bed.porosity ? "they find no room in less than that"
-                                                   : "they fall until they rest, and then that is left");
+/// What is expected of a bed by its walls, floor and lid among them.
+double as_dense_as_aimed(const BedTarget& target, const EmptyBed& bed) {
+  const double poured = share_of_relaxed * bed.relaxed, across = 4 / bed.wall_share;
+  const auto aim = aim_of(target, {across, true}, 1).first;
+  if (!aim) return poured;
+  return bed.evenness == 1 ? 1 - aim->porosity
+                           : std::min(1.0, poured * (1 - aim->porosity) / (1 - porosity_poured(across)));
 }
 
 /// Says that the bed is not as high as was asked where it differs by more than that, in largest diameters.
 constexpr double as_high = 1.05;
 
-void tell_height(Work& work, const Heights& heights, const BedTop& top) {
+void tell_height(Work& work, double ground, const BedTop& top) {
   const double asked = work.target.bed.above_ground;
   if (!(asked > 0) || work.bed().size() == 0) return;
   double highest = 0;
   for (Bed::Id i = 0; i < work.bed().size(); ++i)
-    highest = std::max(highest, top.up().dot(work.bed()[i].center) + work.bed()[i].r - heights.ground());
+    highest = std::max(highest, top.up().dot(work.bed()[i].center) + work.bed()[i].r - ground);
   if (highest < asked - as_high * 2 * work.supply->largest())
     work.missed = fmt::format("the bed is only {:.3g} of the height that was asked for", highest / asked);
   else if (highest > asked * (1 + 1e-3))
@@ -89,9 +81,8 @@ void tell_height(Work& work, const Heights& heights, const BedTop& top) {
         fmt::format("what was there before is {:.3g} times as high as the bed was to be", highest / asked);
 }
 
-/// Packing fraction of the bed by what is expected of the whole container.
-double aim_of(const Work& work, const BedTarget& bed, const Heights& heights) {
-  if (bed.porosity) return 1 - *bed.porosity;
+/// Packing fraction of a poured bed, by what is expected of the whole container.
+double poured_of(const Work& work, const Heights& heights) {
   const double height = work.target.bed.above_ground, whole = work.container->volume();
   return height > 0 ? work.attainable * whole / heights.volume_below(heights.ground() + height)
                     : work.attainable;
@@ -110,16 +101,21 @@ StageEnd settle(Work& work, const Settle& options) {
     work.put_in_bed({});
   else if (rest_first(work, down, options.rest) == StageEnd::cancelled)
     return StageEnd::cancelled;
-  const StageEnd end = pour(work, top, heights.ground(), aim_of(work, options.bed, heights));
+  const auto lay = [&](Laying& how) {
+    const StageEnd end = pour(work, top, heights.ground(), how);
+    if (end == StageEnd::cancelled) return end;
+    const EffectTimer timer(work.effects["rolling"]);
+    const Made made("rolling");
+    const StageEnd rest =
+        roll_to_rest(work, down, {.still = options.rest, .friction = how.friction, .held = held});
+    return rest == StageEnd::converged ? end : rest;
+  };
+  const StageEnd end = settle_as_dense(work, options.bed, heights, top, poured_of(work, heights), lay);
   if (end == StageEnd::cancelled) return end;
-  const EffectTimer timer(work.effects["rolling"]);
-  const Made made("rolling");
-  const StageEnd rest = roll_to_rest(work, down, options.rest, held);
-  tell_porosity(work, options, heights, top);
-  tell_height(work, heights, top);
+  tell_height(work, heights.ground(), top);
   const bool to_the_brim = !work.target.is_open() && !work.supply->exhausted();
-  if (to_the_brim && !work.account.empty()) work.account += " and reaches the brim";
-  return rest == StageEnd::converged ? end : rest;
+  if (to_the_brim && !work.account.empty()) work.account += "; it reaches the brim";
+  return end;
 }
 
 void take_bed_target(Settle& options, Scene& scene, const schema::Section&) {
@@ -146,14 +142,14 @@ const StageEntry& entry_of<Settle>() {
            .complete = completion(take_bed_target)},
           {.in_bed = true, .keeps_sizes = true, .places_expected = true, .makes_bed = true}),
       .act_in_bed = act(settle),
-      .may_bring = {"insertion", "neighbour lists", "relaxation", "rolling"},
+      .may_bring = {"insertion", "neighbour lists", "relaxation", "tapping", "rolling"},
       .effects = of_options(effects_of_settling),
       .require = of_options(+[](const Settle& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), direction_of(o.direction));
       }),
       .reached = of_options(+[](const Settle& o) { return o.bed.porosity ? 1 - *o.bed.porosity : 1; }),
       .full = of_options(+[](const Settle& o, const EmptyBed& bed) {
-        return bed.share * (o.bed.porosity ? 1 - *o.bed.porosity : share_of_relaxed * bed.relaxed);
+        return bed.share * (o.bed.porosity ? 1 - *o.bed.porosity : as_dense_as_aimed(o.bed, bed));
       })};
   return entry;
 }

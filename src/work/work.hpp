@@ -114,6 +114,8 @@ struct Work {
   Target target = {};
   /// The packing fraction that the stages are likely to reach.
   double attainable = 1;
+  /// Random close packing of the sizes without walls, as predicted; 0 where no stage asks.
+  double close_packing = 0;
   Domain domain = {};
   /// A place within some roundings of this one at which a sphere of that radius lies inside the domain of the
   /// scene, touching allowed: for those that the walls leave no room. Set by the run.

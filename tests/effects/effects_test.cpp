@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cctype>
 #include <cstdlib>
 #include <initializer_list>
 #include <map>
@@ -133,6 +134,12 @@ std::vector<std::pair<std::string, Scene>> scenes() {
                    parse_scene("[container]\nkind = \"periodic\"\n[spheres]\ncount = 4\nradius = 0.05\n"
                                "[[stage]]\ndo = \"relax\"\n",
                                "test.toml"));
+  for (const std::string bed :
+       {"bed = \"poured\"", "bed = \"vibrated\"", "bed = \"loose\"", "porosity = 0.45"})
+    all.emplace_back("settled, " + bed.substr(bed.find(' ') + 3, 4),
+                     parse_scene("[container]\nkind = \"cylinder\"\nradius = 0.4\nheight = 2.0\n" + spheres +
+                                     bed + "\n[[stage]]\ndo = \"settle\"\n",
+                                 "test.toml"));
   add_periodic("polished", "[[stage]]\ndo = \"relax\"\npolish = 1e-6\n");
   const std::string box = "[container]\nkind = \"box\"\nsize = [1.0, 1.0, 1.0]\n";
   const std::string exact = box + spheres + "[accuracy]\nwalls = \"exact\"\n";
@@ -207,7 +214,7 @@ TEST_P(EffectsOf, ThePlanHavePricesThatAddUp) {
 std::string test_name(const ::testing::TestParamInfo<std::pair<std::string, Scene>>& tested) {
   std::string name = tested.param.first;
   for (char& c : name)
-    if (c == ' ') c = '_';
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   return name;
 }
 INSTANTIATE_TEST_SUITE_P(All, EffectsOf, ::testing::ValuesIn(scenes()), test_name);

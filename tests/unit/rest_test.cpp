@@ -148,6 +148,30 @@ TEST(RestOfSpheres, OnThreeBelowButNotOnTwoOrOnTheTopOfOne) {
   EXPECT_EQ(measure_rest(spheres_at({{1, 1, 1}, {1, 1, 3}}), box, down).unsettled, 0u);
 }
 
+TEST(RestOfSpheres, FrictionHoldsUpToItsAngle) {
+  const auto leaning = [](double degrees) {
+    const double angle = degrees * std::acos(-1.0) / 180;
+    return spheres_at({{5, 5, 1}, {5 + 2 * std::sin(angle), 5, 1 + 2 * std::cos(angle)}});
+  };
+  const auto with = [](const Spheres<dynamic>& spheres, double friction) {
+    return measure_rest(spheres, box, down, {.friction = friction});
+  };
+  EXPECT_EQ(with(leaning(20), 0).unsettled, 1u);
+  EXPECT_EQ(with(leaning(20), 0).held_by_friction, 0u);
+  EXPECT_EQ(with(leaning(20), 19.9).unsettled, 1u);
+  const Rest held = with(leaning(20), 20.1);
+  EXPECT_EQ(held.unsettled, 0u);
+  EXPECT_EQ(held.held_by_friction, 1u);
+  EXPECT_NEAR(held.friction, 20, 1e-4);
+  // What rests anyway needs none, and what touches nothing, or a wall that is upright, is held by none.
+  EXPECT_EQ(with(leaning(0), 45).held_by_friction, 0u);
+  EXPECT_EQ(with(spheres_at({{5, 5, 3}}), 45).hanging, 1u);
+  EXPECT_EQ(with(spheres_at({{1, 5, 3}}), 89).hanging, 1u);
+  // Across a gap of two: along the line between them it would slide level, and rests; off that line it rolls.
+  EXPECT_NEAR(with(spheres_at({{4, 5, 1}, {6, 5, 1}, {5, 5 + std::sqrt(3.0) * 0.5, 2.5}}), 45).friction, 30,
+              1e-4);
+}
+
 TEST(RestOfSpheres, ContactsAreClosedToAMillionthOfARadius) {
   EXPECT_EQ(measure_rest(spheres_at({{5, 5, 1 + 0.9e-6}}), box, down).unsettled, 0u);
   const Rest above = measure_rest(spheres_at({{5, 5, 1 + 1.1e-6}}), box, down);

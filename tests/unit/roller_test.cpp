@@ -149,5 +149,26 @@ TEST(Roller, BringsAnyBedToRest) {
   }
 }
 
+TEST(Roller, StopsWhereFrictionHolds) {
+  const auto place_after = [](double degrees, double friction) {
+    const double angle = degrees * std::acos(-1.0) / 180;
+    const auto container = make_analytic_container(box, WallArithmetic::filtered, 0x1p-48);
+    EffectLog effects;
+    Bed bed(*container, 1, 1, 2, effects);
+    bed.insert({5, 5, 1}, 1, 0);
+    bed.insert({5 + 2.001 * std::sin(angle), 5, 1 + 2.001 * std::cos(angle)}, 1, 1);
+    for (int k = 0; k < 20; ++k) {
+      bed.enclose(0.5);
+      Roller(bed, down, friction).roll(1);
+    }
+    return bed[1].center;
+  };
+  const Vector<3> held = place_after(20, 25), rolled_off = place_after(20, 15), free = place_after(20, 0);
+  EXPECT_NEAR(held[2], 1 + 2 * std::cos(20 * std::acos(-1.0) / 180), 0.01);
+  EXPECT_NEAR((held - Vector<3>(5, 5, 1)).norm(), 2, 1e-6);  // it has fallen until it touches
+  EXPECT_NEAR(rolled_off[2], 1, 1e-6);
+  EXPECT_NEAR(free[2], 1, 1e-6);
+}
+
 }  // namespace roller_test
 }  // namespace bernal

@@ -65,6 +65,7 @@ struct BedOptions {
   /// It is known to be a bed. If not, spheres are one where they leave the top of the container empty, by a
   /// mean diameter and a fiftieth of its volume or more, and no more than half of them hang.
   bool is_bed = false;
+  double friction = 0;  ///< as of `RestOptions`
   double gap = 0, wall_gap = 0;  ///< see `measure_rest`
   double layer = 0.1;            ///< thickness in mean diameters, about; at most `most_layers`
   std::size_t most_layers = 1000;

@@ -14,7 +14,8 @@ namespace bernal {
 /// A sphere *rests* if, with all others held, it can neither fall nor roll down without friction: of what it
 /// touches, to a gap of `closed`, the normals leave no direction that descends more steeply than `level`. It
 /// *hangs* if it does not rest and can move along the direction of gravity, past walls that are upright, by
-/// more than `least_fall` and meets nothing. Balance of forces in the whole bed is more than rest: each
+/// more than `least_fall` and meets nothing. *Friction* of an angle holds a sphere whose steepest way down
+/// descends by no more than that angle. Balance of forces in the whole bed is more than rest: each
 /// sphere is asked alone, and what bears on it from above is held.
 struct Rest {
   static constexpr double closed = 1e-6;      ///< gap of a contact, in radii of the sphere that is asked;
@@ -24,7 +25,10 @@ struct Rest {
   static constexpr double upright = 1e-5;     ///< sine of a wall's angle with gravity that supports nothing
 
   std::uint64_t hanging = 0;
-  std::uint64_t unsettled = 0;  ///< those that do not rest, hanging ones among them
+  std::uint64_t unsettled = 0;  ///< those that neither rest nor are held by friction, hanging ones among them
+  std::uint64_t held_by_friction = 0;
+  /// The angle of friction that holds them all, in degrees: that of the steepest of their ways. 0 of none.
+  double friction = 0;
   /// The longest way that one that hangs could fall, straight, until it meets a sphere or a wall; in the
   /// domain's unit. 0 where none hangs.
   double farthest = 0;
@@ -47,6 +51,7 @@ struct RestOptions {
   /// then supports as if it touched, so that a sphere which hangs by less, or can roll by less, is taken for
   /// one at rest.
   double tolerance = Rest::closed;
+  double friction = 0;  ///< the angle up to which it may hold a sphere, in degrees
   bool list = false;
 };
 
