@@ -161,7 +161,7 @@ Kind beds_of(double across, double height, const char* density, int seeds, doubl
   if (0.86 * across * across * height > most_spheres) return kind;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Packing packing = bed_of(across, height, density, static_cast<std::uint64_t>(seed));
-    const Rest rest = measure_rest(packing.spheres, packing.domain, down, 0, 0, {}, friction);
+    const Rest rest = measure_rest(packing.spheres, packing.domain, down, {.friction = friction});
     const Column column(packing, across);
     kind.porosities.push_back(column.porosity_of_core());
     kind.spheres += packing.spheres.size();
