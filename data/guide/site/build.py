@@ -48,7 +48,8 @@ SECTIONS = [
     ("Results", [("results/reaches", "data/guide/reaches.md", "What it reaches")] +
      [(f"results/{name}", f"data/results/{name}.md", title) for name, title in (
          ("methods", "Methods, priced"), ("effects", "Effects, one by one"), ("arithmetic", "The arithmetic, priced"),
-         ("exchange", "Exchange of sizes"), ("loose", "Loose packings"), ("beds", "Beds in columns"), ("containers", "Many spheres in CAD parts"),
+         ("exchange", "Exchange of sizes"), ("loose", "Loose packings"), ("beds", "Beds in columns"), ("poured", "Beds with friction"),
+         ("containers", "Many spheres in CAD parts"),
          ("large", "Large packings"), ("lists", "Lists and arrays"),
          ("engines", "Engines over MPI"), ("scale", "How relaxation scales"), ("gpu", "Relaxation on a GPU"), ("packers", "Against public packers"),
          ("hard", "Hard cases"), ("starts", "Packings of others"))] +
