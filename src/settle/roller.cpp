@@ -105,11 +105,12 @@ bool Roller::at(const Track& track, double t, Vector<3>& offset) const {
   return put_back(track, offset);
 }
 
-/// What the gap to an obstacle may not fall below.
+/// What the gap to an obstacle may not fall below; of walls that leave no play what it is.
 double Roller::least_allowed(Obstacle k) const {
   const double skin = bed_.skin();
   for (const Contact& c : contacts_)
-    if (c.obstacle == k) return std::clamp(c.gap - rounding * skin, 0.5 * skin, least * skin);
+    if (c.obstacle == k)
+      return c.gap < 0.5 * skin ? c.gap : std::clamp(c.gap - rounding * skin, 0.5 * skin, least * skin);
   return least * skin;
 }
 

@@ -112,6 +112,17 @@ TEST(Beds, SayTheirPorosityAndThatItIsNotWhatWasAsked) {
       << airy.reason;
 }
 
+/// Between walls that leave no play, spheres roll as discs do.
+TEST(Beds, InASlitOfOneDiameterRest) {
+  for (const char* size : {"[1, 7, 14]", "[9, 1, 9]"})
+    for (const char* count : {"count = 5\n", "count = 25\n", "height = 4\n"}) {
+      const Packing packing = packed(std::string("[container]\nkind = \"box\"\nsize = ") + size +
+                                     "\n[spheres]\ndiameter = 1.0\nbed = \"poured\"\n" + count);
+      EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+      EXPECT_EQ(unsettled(packing), 0u);
+    }
+}
+
 TEST(Beds, OfDiscsRest) {
   for (const char* direction : {"direction = [0, -1]\n", "direction = [0.3, -1]\n"}) {
     const Packing packing = packed(
