@@ -83,9 +83,6 @@ void bed_rule(const BedTarget& bed, const Section& section) {
   if (bed.heap_angle && bed.top != BedTarget::Top::heap)
     section.fail("heap_angle",
                  "\"heap_angle\" in [spheres] is of a heap: say top = \"heap\", or leave it out");
-  if (bed.porosity && bed.density)
-    section.fail("porosity",
-                 "\"bed\" and \"porosity\" in [spheres] both say how dense the bed is; give one of them");
 }
 
 /// The same of what the scene says of its start.
@@ -289,6 +286,7 @@ const Entry& spheres_entry() {
                      {"height"},
                      {"bed_layers"},
                      {}},
+                    {{"bed"}, {"porosity"}, {}},
                     {{"radius"}, {"diameter"}}},
         .rule = rule(spheres_rule)};
     of.keys[1].words = {"predicted"};

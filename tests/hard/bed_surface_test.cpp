@@ -147,7 +147,7 @@ TEST(BedSurface, ThatCannotBeIsRefused) {
                                       std::pair("heap_angle = 20\nbed = \"poured\"\n", "say top = \"heap\""),
                                       std::pair("top = \"heap\"\nheap_angle = 80\n", "heap_angle"),
                                       std::pair("top = \"heap\"\n", "a heap needs"),
-                                      std::pair("bed = \"loose\"\nporosity = 0.4\n", "both say how dense")})
+                                      std::pair("bed = \"loose\"\nporosity = 0.4\n", "exclude each other")})
     EXPECT_NE(refusal(spheres).find(part), std::string::npos) << spheres << refusal(spheres);
   EXPECT_NE(refusal("height = 10\n", "[[stage]]\ndo = \"relax\"\n").find("no stage makes one"),
             std::string::npos);

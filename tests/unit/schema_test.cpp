@@ -100,6 +100,7 @@ std::string sample_of(const Entry& entry, const Key& key, int choice) {
     if (&format->keys == &entry && key.type == Type::file)
       return choice == 0 ? "\"mine.x\"" : "'a \"b\" \\c'";
   // With which every other key acts.
+  if (key.name == "top") return "\"heap\"";
   for (const OutputTable* format : output_tables())
     if (&format->keys == &entry && key.name == "contact")
       return format->solids ? "\"bridge\"" : choice == 0 ? "\"gap\"" : "\"shrink\"";
@@ -144,7 +145,7 @@ void for_every_entry(Visit visit) {
   const auto joined = [](const std::vector<std::string>& parts, const char* with) {
     return fmt::format("{}", fmt::join(parts, with));
   };
-  for (std::size_t n = 0; n < 3; ++n) {
+  for (std::size_t n = 0; n < 6; ++n) {
     for (const Entry& e : schema::container_entries())
       visit(e, keys_of(e, n), [&](const std::vector<std::string>& lines) {
         return fmt::format(
@@ -168,7 +169,17 @@ void for_every_entry(Visit visit) {
           });
     for (const bool periodic : {false, true}) {
       std::vector<Key> keys = keys_of(schema::spheres_entry(), n);
-      if (!periodic) std::erase_if(keys, [](const Key& key) { return key.name == "start_box"; });
+      const bool is_open = std::ranges::none_of(keys, [](const Key& key) {
+        return key.name == "count" || key.name == "packing_fraction" || key.name == "height" ||
+               key.name == "bed_layers";
+      });
+      std::erase_if(keys, [&](const Key& key) {
+        const bool of_heap = key.name == "top" || key.name == "heap_angle";
+        const bool of_bed = of_heap || key.name == "bed" || key.name == "porosity" || key.name == "height" ||
+                            key.name == "bed_layers";
+        if (key.name == "start_box") return !periodic;
+        return periodic ? of_bed : is_open && of_heap;  // no heap fills its container, no bed a period
+      });
       visit(schema::spheres_entry(), keys, [&](const std::vector<std::string>& lines) {
         return periodic ? "[container]\nkind = \"periodic\"\nedge = 9\n[spheres]\n" + joined(lines, "\n")
                         : with_spheres(joined(lines, "\n"));
