@@ -335,30 +335,6 @@ void require_images(const Plan& plan) {
   }
 }
 
-/// The height that the scene gives the bed, which the container has to have, and a sphere.
-void set_height_of_bed(Plan& plan) {
-  BedTarget& bed = plan.scene.target.bed;
-  if (!bed.gives_height()) return;
-  bed.above_ground = bed.height ? *bed.height : *bed.layers * 2 * plan.radii->moment(1);
-  const auto refuse = [&](const std::string& why) {
-    throw Error(
-        ErrorCode::bad_scene,
-        fmt::format("a bed that is {:.4g} {} high {}", bed.above_ground, name_of(plan.scene.unit), why),
-        plan.scene.locations.of(bed.height ? "height" : "bed_layers"));
-  };
-  const double most = down_in(plan.scene).cwiseAbs().dot(bounds_of(plan.domain).size());
-  if (bed.above_ground > (1 + 1e-9) * most)
-    refuse(fmt::format("is higher than the container, {:.4g}: leave \"{}\" out to fill it to the brim", most,
-                       bed.height ? "height" : "bed_layers"));
-  const double rare = plan.radii->quantile(1 - 1e-4), largest = std::min(plan.radii->max(), 2 * rare);
-  const double least = 2 * largest + plan.scene.wall_gap;
-  if (bed.above_ground < (1 - 1e-9) * least)
-    refuse(fmt::format(
-        "has no room for the largest spheres, which need {:.4g}: give the sizes a \"max\", or make "
-        "it higher",
-        least));
-}
-
 void expect_with_room(Plan& plan) {
   Plan with_room = plan_with_room(plan);
   expect(with_room);

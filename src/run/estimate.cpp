@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/error.hpp"
 #include "bernal/predict/predict.hpp"
 #include "bernal/run/run.hpp"
 #include "core/close_packing.hpp"
@@ -141,6 +145,30 @@ double reached_by_relaxation(const Domain& shape, const SizeDistribution& radii,
 bool reaches(const Scene& scene, Reaches what) { return any_stage(scene, &StageTraits::reaches, what); }
 
 }  // namespace
+
+void set_height_of_bed(Plan& plan) {
+  BedTarget& bed = plan.scene.target.bed;
+  if (!bed.gives_height()) return;
+  bed.above_ground = bed.height ? *bed.height : *bed.layers * 2 * plan.radii->moment(1);
+  const auto refuse = [&](const std::string& why) {
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("a bed that is {:.4g} {} high {}", bed.above_ground, name_of(plan.scene.unit), why),
+        plan.scene.locations.of(bed.height ? "height" : "bed_layers"));
+  };
+  const double most = down_in(plan.scene).cwiseAbs().dot(bounds_of(plan.domain).size());
+  if (bed.above_ground > (1 + 1e-9) * most)
+    refuse(fmt::format("is higher than the container, {:.4g}: leave \"{}\" out to fill it to the brim", most,
+                       bed.height ? "height" : "bed_layers"));
+  const double most_radius = plan.radii->max();
+  const double largest = std::isfinite(most_radius) ? most_radius : plan.radii->quantile(quantile_of_largest);
+  const double least = 2 * largest + plan.scene.wall_gap;
+  if (bed.above_ground < (1 - 1e-9) * least)
+    refuse(fmt::format(
+        "has no room for the largest spheres, which need {:.4g}: give the sizes a \"max\", or make "
+        "it higher",
+        least));
+}
 
 Plan::ExpectedBed expected_bed(const Plan& plan) {
   const auto container = local_container(plan.domain, plan.container);

@@ -22,6 +22,10 @@ double coverable_share(const Container& container, double r);
 double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii,
                                  const std::shared_ptr<const Container>& made = {});
 
+/// Takes the height that the scene gives the bed. Throws Error{bad_scene} where the container has it not, or
+/// no room is in it for the largest spheres.
+void set_height_of_bed(Plan& plan);
+
 /// Of a scene with a stage that makes a bed, from what is expected to fit and how many there are.
 Plan::ExpectedBed expected_bed(const Plan& plan);
 

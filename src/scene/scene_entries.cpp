@@ -79,12 +79,6 @@ Member of_bed(M BedTarget::*member) {
   return Member(member).inside(&Target::bed).inside(&Scene::target);
 }
 
-void bed_rule(const BedTarget& bed, const Section& section) {
-  if (bed.heap_angle && bed.top != BedTarget::Top::heap)
-    section.fail("heap_angle",
-                 "\"heap_angle\" in [spheres] is of a heap: say top = \"heap\", or leave it out");
-}
-
 /// The same of what the scene says of its start.
 template <class M>
 Member of_start(M Start::*member) {
@@ -92,7 +86,9 @@ Member of_start(M Start::*member) {
 }
 
 void spheres_rule(const Scene& scene, const Section& section) {
-  bed_rule(scene.target.bed, section);
+  if (const BedTarget& bed = scene.target.bed; bed.heap_angle && bed.top != BedTarget::Top::heap)
+    section.fail("heap_angle",
+                 "\"heap_angle\" in [spheres] is of a heap: say top = \"heap\", or leave it out");
   // The one that is read last is all that the scene still holds.
   if (const auto& keys = section.locations.keys; keys.contains("radius") && keys.contains("diameter"))
     section.fail("diameter", "\"radius\" and \"diameter\" in [spheres] exclude each other; give one of them");

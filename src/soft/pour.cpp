@@ -1,6 +1,7 @@
 #include "soft/pour.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -25,7 +26,7 @@ constexpr int patience_with_tapped = 2;
 constexpr double room_for_largest = 2.05;
 /// Lower beds, in largest diameters, have one layer.
 constexpr double one_layer = 1.0005;
-/// Vessels less wide, in largest radii, hold what happens to fit.
+/// Vessels less wide, in mean radii, hold what happens to fit.
 constexpr double narrow_vessel = 3;
 
 /// The spheres of the bed in one of another container, those that fit, with their places in the sequence.
@@ -148,10 +149,13 @@ StageEnd pour(Work& work, const BedTop& top, double ground, Laying& how) {
 
   double volume = 0, largest = 0;
   const std::size_t wanted = work.target_count() - std::min(work.target_count(), standing.tags.size());
-  for (const std::uint32_t tag : std::span(tags).first(std::min(tags.size(), wanted))) {
+  const std::span first_tags = std::span(tags).first(std::min(tags.size(), wanted));
+  for (const std::uint32_t tag : first_tags) {
     volume += ball_volume(3, work.supply->radius(tag));
     largest = std::max(largest, work.supply->radius(tag));
   }
+  const double mean =
+      std::cbrt(volume / ball_volume(3, 1) / std::max<double>(1, static_cast<double>(first_tags.size())));
   const double given = work.target.bed.above_ground;
   // One layer lies on the floor in the end, and may lie a little higher before.
   const double height = ground + (given < one_layer * 2 * largest ? one_layer * 2 * largest : given);
@@ -163,7 +167,7 @@ StageEnd pour(Work& work, const BedTop& top, double ground, Laying& how) {
   poured.on_course = as_of_whole(work, poured);
   if (!work.target.fill && (given > 0 || volume > room)) {
     // As many as are expected to fit; where walls are near everywhere nobody knows, and all are tried.
-    const bool is_narrow = work.roomiest().radius < narrow_vessel * largest;
+    const bool is_narrow = work.roomiest().radius < narrow_vessel * mean;
     if (!is_narrow)
       poured.target = Target{}, poured.attainable = how.packing_fraction;
     else if (given > 0)

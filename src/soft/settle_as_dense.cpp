@@ -184,7 +184,8 @@ void tell_density(Work& work, const BedTarget& target, const std::optional<Densi
   if (!porosity) return;  // of a few spheres on a floor there is none
   work.account = fmt::format("the bed has a porosity of {:.3f}", porosity->whole);
   if (target.density) work.account += fmt::format(", far from floor and top {:.3f}", porosity->core);
-  if (target.density == BedTarget::Density::poured && across.is_column)
+  if (target.density == BedTarget::Density::poured && across.is_column && across.diameters > 1.5 &&
+      across.diameters < 50)  // of which the law is
     work.account +=
         fmt::format(" (of poured beds {:.3f} by Benyahia and O'Neill's law, {:.3g} diameters across)",
                     porosity_poured(across.diameters), across.diameters);
