@@ -13,6 +13,9 @@
 namespace bernal {
 namespace {
 
+/// Normals of planes have components in so many steps of their length.
+constexpr double directions = 8;
+
 /// Columns by the cells that they reach into, of a grid across `up`; those that end highest come first.
 class Columns {
  public:
@@ -55,7 +58,8 @@ class Columns {
   template <class Visit>
   void for_each_near(const Vector<3>& p, double reach, Visit&& visit) const {
     const double height = up_.dot(p);
-    const int cells = 1 + static_cast<int>(std::max(0.0, reach) / edge_);
+    // A column is as wide as half an edge, at most, on either side.
+    const int cells = 1 + static_cast<int>(std::max(0.0, reach) / edge_ + 0.5);
     const int i = static_cast<int>(std::floor((a_.dot(p) - low_a_) / edge_)),
               j = static_cast<int>(std::floor((b_.dot(p) - low_b_) / edge_));
     for (int u = std::max(0, i - cells); u <= std::min(across_ - 1, i + cells); ++u)
@@ -65,6 +69,23 @@ class Columns {
           if (columns_[k].top + reach < height) break;
           if (visit(columns_[k])) return;
         }
+  }
+
+  /// A plane that touches the column about where it is nearest to p: of few directions, so that many spheres
+  /// meet the same ones.
+  NearFacet plane_near(const Column& column, const Vector<3>& p) const {
+    const Vector<3> away = p - axis_point(column, p);
+    Vector<3> steps = (directions * away.normalized()).array().round();
+    if (steps.isZero(0)) steps = directions * up_;
+    const bool beside = up_.dot(p - column.end) < 0;
+    Vector<3> normal = steps.normalized();
+    if (beside) normal = (normal - normal.dot(up_) * up_).normalized();
+    if (!normal.allFinite() || normal.isZero(0)) normal = a_;
+    std::uint32_t id = static_cast<std::uint32_t>(&column - columns_.data() + 1) * 2654435761u;
+    for (int k = 0; k < 3; ++k)
+      id = (id ^ static_cast<std::uint32_t>(static_cast<int>(steps[k]) + 64)) * 16777619u;
+    const Vector<3> on = column.end + column.r * normal;
+    return {(p - on).dot(normal), {.kind = Facet::Kind::plane, .id = id, .a = on, .b = normal}};
   }
 
   /// The point on a column's axis that is nearest to p.
@@ -144,12 +165,8 @@ class AboveSpheres final : public Container {
   void add_columns(const Vector<3>& c, double reach, std::ptrdiff_t before,
                    std::vector<NearFacet>& out) const {
     columns_.for_each_near(c, reach, [&](const Columns::Column& column) {
-      const Vector<3> axis = columns_.axis_point(column, c), away = c - axis;
-      const double length = away.norm(), distance = length - column.r;
-      if (distance >= reach || !(length > 0)) return false;
-      const Vector<3> normal = away / length;
-      const NearFacet near{distance,
-                           {.kind = Facet::Kind::plane, .a = axis + column.r * normal, .b = normal}};
+      const NearFacet near = columns_.plane_near(column, c);
+      if (near.distance >= reach) return false;
       out.insert(std::upper_bound(out.begin() + before, out.end(), near,
                                   [](const auto& a, const auto& b) { return a.distance < b.distance; }),
                  near);

@@ -167,7 +167,7 @@ StageEnd pour(Work& work, const BedTop& top, double ground, Laying& how) {
   poured.on_course = as_of_whole(work, poured);
   if (!work.target.fill && (given > 0 || volume > room)) {
     // As many as are expected to fit; where walls are near everywhere nobody knows, and all are tried.
-    const bool is_narrow = work.roomiest().radius < narrow_vessel * mean;
+    const bool is_narrow = work.roomiest().radius < narrow_vessel * mean && !how.is_aimed;
     if (!is_narrow)
       poured.target = Target{}, poured.attainable = how.packing_fraction;
     else if (given > 0)

@@ -81,7 +81,7 @@ class Attempts {
       if (!tapped_.empty()) laying.first_tap = next_tap;
       if (!tapped_.empty() && tapped_in_vain == 0) laying.taps = usual_taps / 2;
       const double error = attempt(laying);
-      if (end_ == StageEnd::cancelled) return end_;
+      if (end_ == StageEnd::cancelled) break;
       if (std::abs(error) <= near_aim) break;
       if (start_before > 0 && start != start_before)
         slope = std::clamp((error - error_before) / (start - start_before), 0.0, 1.0);
@@ -105,7 +105,7 @@ class Attempts {
       }
     }
     if (best_) best_->put_back();
-    return end_of_best_;
+    return end_ == StageEnd::cancelled ? end_ : end_of_best_;
   }
 
  private:
@@ -114,8 +114,10 @@ class Attempts {
     if (tried_) before_.put_back();
     tried_ = true;
     if (!tapped_.empty()) work_.crowded_start = tapped_;
+    laying.is_aimed = true;
     end_ = lay_(laying);
     if (laying.taps > 0) tapped_ = work_.crowded_start;
+    if (end_ == StageEnd::cancelled && best_) return least_error_;
     const auto reached = porosity_of(work_, heights_, top_);
     const double error =  // of a few spheres on a floor there is none
         reached ? (aim_.of_core ? reached->core : reached->whole) - aim_.porosity : 0;
@@ -130,7 +132,9 @@ class Attempts {
 
   std::string why_missed(double error, const Laying& laying) const {
     // What fills its container cannot rise to be looser.
-    if (std::abs(error) <= missed_by || (error < 0 && work_.target.is_open())) return "";
+    if (std::abs(error) <= missed_by ||
+        (error < 0 && work_.target.is_open() && !work_.target.bed.gives_height()))
+      return "";
     return fmt::format("a porosity of {:.3f}{} is the aim, and {:.3f} is reached: {}", aim_.porosity,
                        aim_.of_core ? " far from floor and top" : "", aim_.porosity + error,
                        error < 0             ? "they fall until they rest, and then that is left"
@@ -181,7 +185,8 @@ void tell_density(Work& work, const BedTarget& target, const std::optional<Densi
                   const std::string& why_none, const Across& across, const Heights& heights,
                   const BedTop& top) {
   const auto porosity = porosity_of(work, heights, top);
-  if (!porosity) return;  // of a few spheres on a floor there is none
+  if (!porosity) return;                                       // of a few spheres on a floor there is none
+  if (work.supply->drawn(0) < work.supply->radius(0)) return;  // nor of spheres with their coats
   work.account = fmt::format("the bed has a porosity of {:.3f}", porosity->whole);
   if (target.density) work.account += fmt::format(", far from floor and top {:.3f}", porosity->core);
   if (target.density == BedTarget::Density::poured && across.is_column && across.diameters > 1.5 &&

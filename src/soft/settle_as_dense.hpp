@@ -14,6 +14,7 @@ struct Laying {
   int taps = 0;             ///< before, see `tap`
   double first_tap = bernal::first_tap;
   double friction = 0;     ///< the angle, in degrees, up to which it holds a sphere that rolls
+  bool is_aimed = false;   ///< at a porosity, so that what else would fit is left out
   bool finds_room = true;  ///< set by who lays it: whether they found it at that density
 };
 

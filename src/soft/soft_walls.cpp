@@ -94,7 +94,8 @@ bool SoftWalls::look(const Vector<3>& at, double r, double skin, std::uint32_t i
   if (stand.clearance - moved >= near) return false;
   View& view = views_[id];
   if (view.reach - moved >= near)
-    return (view.is_fine ? stand.clearance : view.pieces.front().distance) - moved < near;
+    return (view.is_fine || view.pieces.empty() ? stand.clearance : view.pieces.front().distance) - moved <
+           near;
   view.pieces.clear();
   view.is_fine = false;
   view.reach = 0;

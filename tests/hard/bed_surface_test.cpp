@@ -132,6 +132,29 @@ TEST_F(Poured, OntoABedDoesNotStirIt) {
   }
 }
 
+/// One sphere on the floor, and a pyramid: nobody waits for ever for what stands beside them.
+TEST_F(Poured, AroundWhatStandsUnevenlyInAnyDensity) {
+  Spheres<dynamic> one(3), pyramid(3);
+  one.push_back(Vector<3>(3, 3, 0.5), 0.5);
+  for (int layer = 0; layer < 4; ++layer)
+    for (int i = 0; i < 4 - layer; ++i)
+      for (int k = 0; k < 4 - layer; ++k)
+        pyramid.push_back(
+            Vector<3>(1.3 + 0.5 * layer + 1.001 * i, 1.3 + 0.5 * layer + 1.001 * k, 0.5 + 0.72 * layer), 0.5);
+  for (const auto& [start, box] : {std::pair(one, "[6, 6, 8]"), std::pair(pyramid, "[7, 7, 9]")}) {
+    write("start.csv", start);
+    for (const char* density : {"porosity = 0.45\n", "bed = \"poured\"\n", "bed = \"loose\"\n"}) {
+      const std::string scene = std::string("[container]\nkind = \"box\"\nsize = ") + box +
+                                "\n[spheres]\nstart = \"start.csv\"\ndiameter = 1.0\nheight = 4\n" + density;
+      const Packing packing = packed(scene);
+      EXPECT_GT(packing.spheres.size(), 50u) << scene << packing.reason;
+      EXPECT_EQ(testing::plain_objection(packing.spheres, packing.domain, 0), "") << scene;
+      EXPECT_EQ(measure_rest(packing.spheres, packing.domain, {0, 0, -1}, {.friction = 45}).unsettled, 0u)
+          << scene;
+    }
+  }
+}
+
 TEST(BedSurface, ThatCannotBeIsRefused) {
   const auto refusal = [](const std::string& spheres, const std::string& stages = "") {
     try {
@@ -147,6 +170,8 @@ TEST(BedSurface, ThatCannotBeIsRefused) {
                                       std::pair("heap_angle = 20\nbed = \"poured\"\n", "say top = \"heap\""),
                                       std::pair("top = \"heap\"\nheap_angle = 80\n", "heap_angle"),
                                       std::pair("top = \"heap\"\n", "a heap needs"),
+                                      std::pair("fill = true\nporosity = 0.4\n", "exclude each other"),
+                                      std::pair("gap = 0.1\nbed = \"loose\"\n", "spheres which touch"),
                                       std::pair("bed = \"loose\"\nporosity = 0.4\n", "exclude each other")})
     EXPECT_NE(refusal(spheres).find(part), std::string::npos) << spheres << refusal(spheres);
   EXPECT_NE(refusal("height = 10\n", "[[stage]]\ndo = \"relax\"\n").find("no stage makes one"),
