@@ -127,7 +127,9 @@ static void to_json(Json& json, const BedProfile& bed) {
           {"level", bed.level},
           {"unsettled", bed.rest.unsettled},
           {"hanging", bed.rest.hanging},
-          {"farthest_fall", bed.rest.farthest}};
+          {"farthest_fall", bed.rest.farthest},
+          {"held_by_friction", bed.rest.held_by_friction},
+          {"angle_of_friction", bed.rest.friction}};
 }
 
 /// Without its layers.
