@@ -12,6 +12,11 @@ namespace bernal {
 namespace {
 
 void write_rest(Page& page, const Rest& rest, const std::string& unit) {
+  if (rest.held_by_friction > 0)
+    page.row("held by friction", grouped(rest.held_by_friction),
+             fmt::format("which would roll without it; an angle of {:.3g} degrees holds all of them",
+                         rest.friction));
+  if (rest.unsettled == 0 && rest.held_by_friction > 0) return;
   if (rest.unsettled == 0) {
     page.row("not at rest", "0",
              "every sphere rests: with all others held it can neither fall nor roll down");
@@ -34,6 +39,8 @@ std::string below_level(const Report& report) {
 }
 
 std::string rest_in_short(const Rest& rest) {
+  if (rest.unsettled == 0 && rest.held_by_friction > 0)
+    return fmt::format("every sphere rests, {} by friction", grouped(rest.held_by_friction));
   return rest.unsettled == 0 ? "every sphere rests"
                              : fmt::format("{} sphere{} not at rest", grouped(rest.unsettled),
                                            rest.unsettled == 1 ? " is" : "s are");
