@@ -26,8 +26,9 @@ constexpr double share_of_relaxed = 0.963;
 /// In mean diameters.
 constexpr double shallow = 3;
 
+/// So many beds are laid until one is as porous as is asked, about.
+constexpr double beds_tapped = 2, beds_tried = 5;
 /// What a sphere takes that falls by some hundredths of its radius and rolls to rest; and walls asked.
-constexpr double attempts_to_vibrate = 2;
 constexpr double seconds_of_rolling = 15e-6, questions_of_rolling = 4;
 
 std::vector<PlanItem> effects_of_settling(const Settle& options, const Outlook& outlook) {
@@ -41,17 +42,18 @@ std::vector<PlanItem> effects_of_settling(const Settle& options, const Outlook& 
     for (PlanItem& item : items) item.if_needed = true;
   const PlanItem walls = questions_to_walls(questions_of_rolling, outlook);
   const bool vibrated = options.bed.density == BedTarget::Density::vibrated;
+  const double beds = vibrated ? beds_tapped : options.bed.porosity ? beds_tried : 1;
+  for (PlanItem& item : items) item.seconds *= beds;
   if (vibrated || options.bed.porosity)
-    items.push_back(
-        {.name = "tapping",
-         .what = "spheres are displaced and pushed apart, by less and less, for a denser bed",
-         .cost = "some 10,000 sweeps of O(N)",
-         .seconds = vibrated ? attempts_to_vibrate * usual_taps * seconds_a_tap * outlook.spheres : 0,
-         .if_needed = !vibrated});
+    items.push_back({.name = "tapping",
+                     .what = "spheres are displaced and pushed apart, by less and less, for a denser bed",
+                     .cost = "some 10,000 sweeps of O(N)",
+                     .seconds = vibrated ? beds_tapped * usual_taps * seconds_a_tap * outlook.spheres : 0,
+                     .if_needed = !vibrated});
   items.push_back({.name = "rolling",
                    .what = "every sphere falls and rolls until all rest",
                    .cost = "some five sweeps of O(N)",
-                   .seconds = walls.seconds + seconds_of_rolling * outlook.spheres});
+                   .seconds = beds * (walls.seconds + seconds_of_rolling * outlook.spheres)});
   items.push_back(walls);
   return items;
 }
