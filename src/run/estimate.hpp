@@ -23,7 +23,7 @@ double expected_packing_fraction(const Scene& scene, const Domain& shape, const 
                                  const std::shared_ptr<const Container>& made = {});
 
 /// Takes the height that the scene gives the bed. Throws Error{bad_scene} where the container has it not, or
-/// no room is in it for the largest spheres.
+/// no room is in it for the largest spheres, or gaps contradict its density.
 void set_height_of_bed(Plan& plan);
 
 /// Of a scene with a stage that makes a bed, from what is expected to fit and how many there are.

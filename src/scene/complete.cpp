@@ -192,8 +192,6 @@ void require_bed(const Scene& scene) {
       bed.porosity || bed.density.value_or(BedTarget::Density::poured) != BedTarget::Density::poured;
   if (is_aimed && scene.target.fill)
     fail("\"fill\" and a bed of given density exclude each other: leave one of them out of [spheres]");
-  if (is_aimed && scene.asks_for_gaps())
-    fail("the density of a bed in [spheres] is that of spheres which touch: leave it out, or the gaps");
   if (bed.top == BedTarget::Top::heap && scene.target.is_open() && !bed.gives_height())
     fail("a heap needs the \"height\" of its tip, or a \"count\"");
   if (std::ranges::any_of(scene.stages, makes_bed)) {
