@@ -21,4 +21,11 @@ void append_nearest_first(const Facets& facets, const Vector<3>& c, double reach
   });
 }
 
+/// Puts a facet among those from `first` on, nearest first; equal distances in the order given.
+inline void insert_nearest_first(const NearFacet& near, std::ptrdiff_t first, std::vector<NearFacet>& out) {
+  out.insert(std::upper_bound(out.begin() + first, out.end(), near,
+                              [](const NearFacet& x, const NearFacet& y) { return x.distance < y.distance; }),
+             near);
+}
+
 }  // namespace bernal

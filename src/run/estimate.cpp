@@ -148,9 +148,7 @@ bool reaches(const Scene& scene, Reaches what) { return any_stage(scene, &StageT
 
 void set_height_of_bed(Plan& plan) {
   BedTarget& bed = plan.scene.target.bed;
-  const bool is_aimed =
-      bed.porosity || bed.density.value_or(BedTarget::Density::poured) != BedTarget::Density::poured;
-  if (is_aimed && plan.scene.asks_for_gaps())
+  if (bed.asks_for_density() && plan.scene.asks_for_gaps())
     throw Error(ErrorCode::bad_scene,
                 "the density of a bed in [spheres] is that of spheres which touch: leave it out, or the gaps",
                 plan.scene.target.where);

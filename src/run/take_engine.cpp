@@ -161,17 +161,11 @@ Domain with_shaft(const Domain& domain, const Vector<3>& down, double volume_in_
 Spheres<3> in_air(const Domain& domain, const std::vector<double>& radii, const Plan& plan, Work& work) {
   std::vector<std::uint32_t> tags(radii.size());
   std::iota(tags.begin(), tags.end(), 0u);
-  const Target all{.count = static_cast<std::int64_t>(radii.size())};
-  Work own{.spheres = Spheres<dynamic>(3),
-           .edges = {},
-           .target = all,
-           .domain = domain,
-           .supply = std::make_shared<Supply>(work.supply->of(tags)),
-           .container = make_container(domain, WallArithmetic::plain, work.container->resolution()),
-           .seed = work.seed,
-           .monitor = work.monitor,
-           .effects = work.effects,
-           .streams_used = work.streams_used};
+  Work own = work.alone(tags);
+  own.target = {.count = static_cast<std::int64_t>(radii.size())};
+  own.domain = domain;
+  own.exact_place = {};  // that is of the scene's container
+  own.container = make_container(domain, WallArithmetic::plain, work.container->resolution());
   own.stand_in_bed();
   insert(own, until_full);
   work.streams_used = own.streams_used;

@@ -173,8 +173,8 @@ void complete_pushes(const Entry& entry, void* options, const Scene& scene, cons
 
 /// Whether any stage that settles spheres makes it, by a count.
 bool is_plain(const BedTarget& bed) {
-  return bed.density.value_or(BedTarget::Density::poured) == BedTarget::Density::poured && !bed.porosity &&
-         !bed.gives_height() && bed.top.value_or(BedTarget::Top::free) == BedTarget::Top::free;
+  return !bed.asks_for_density() && !bed.gives_height() &&
+         bed.top.value_or(BedTarget::Top::free) == BedTarget::Top::free;
 }
 
 /// Throws where the scene says what a bed is to be like, and no stage would make it so.
@@ -188,9 +188,7 @@ void require_bed(const Scene& scene) {
     const StageTraits& traits = table_of(stage).traits;
     return traits.makes_bed || (is_plain(bed) && traits.reaches == Reaches::settled);
   };
-  const bool is_aimed =
-      bed.porosity || bed.density.value_or(BedTarget::Density::poured) != BedTarget::Density::poured;
-  if (is_aimed && scene.target.fill)
+  if (bed.asks_for_density() && scene.target.fill)
     fail("\"fill\" and a bed of given density exclude each other: leave one of them out of [spheres]");
   if (bed.top == BedTarget::Top::heap && scene.target.is_open() && !bed.gives_height())
     fail("a heap needs the \"height\" of its tip, or a \"count\"");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bernal/domain/boundary.hpp"
+#include "domain/nearest_first.hpp"
 #include "soft/below_level.hpp"
 
 namespace bernal {
@@ -167,9 +168,7 @@ class AboveSpheres final : public Container {
     columns_.for_each_near(c, reach, [&](const Columns::Column& column) {
       const NearFacet near = columns_.plane_near(column, c);
       if (near.distance >= reach) return false;
-      out.insert(std::upper_bound(out.begin() + before, out.end(), near,
-                                  [](const auto& a, const auto& b) { return a.distance < b.distance; }),
-                 near);
+      insert_nearest_first(near, before, out);
       return false;
     });
   }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "domain/ball_below.hpp"
 #include "domain/places.hpp"
 
 namespace bernal {
@@ -20,12 +21,6 @@ constexpr double width_at_wall = 0.02;
 /// Sine of the angle with gravity up to which a wall is flattest_upright.
 constexpr double flattest_upright = std::numbers::sqrt2 / 2;
 constexpr double parallel_to = 1e-9;
-
-/// The share of a sphere at that height which lies below a level.
-double share_below(double level, double height, double r) {
-  const double t = std::clamp((level - height + r) / (2 * r), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 /// The cylinder around the middle of the container whose axis is that direction.
 std::optional<double> radius_of_column(const Container& container, const Vector<3>& axis) {
@@ -119,7 +114,7 @@ std::optional<BedPorosity> porosity_of(const Work& work, const Heights& heights,
   double inside = 0;
   for (Bed::Id i = 0; i < bed.size(); ++i) {
     const double r = bed[i].r, h = top.height(bed[i].center) - floor;
-    inside += ball_volume(3, r) * (share_below(height - end, h, r) - share_below(end, h, r));
+    inside += ball_below(3, r, height - end - h) - ball_below(3, r, end - h);
   }
   const double core = 1 - inside / (below(height - end) - below(end));
   return BedPorosity{whole, core > 0 && core < 1 ? core : whole};

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "domain/nearest_first.hpp"
 #include "domain/places.hpp"
 
 namespace bernal {
@@ -93,10 +94,7 @@ class CutByPlanes final : public Container {
                   std::vector<NearFacet>& out) const {
     for (const Facet& plane : planes_) {
       const NearFacet near{depth(plane, c), plane};
-      if (near.distance >= reach) continue;
-      out.insert(std::upper_bound(out.begin() + before, out.end(), near,
-                                  [](const auto& a, const auto& b) { return a.distance < b.distance; }),
-                 near);
+      if (near.distance < reach) insert_nearest_first(near, before, out);
     }
   }
 

@@ -11,7 +11,6 @@
 
 #include "bernal/core/dimension.hpp"
 #include "settle/roll_to_rest.hpp"
-#include "soft/above_spheres.hpp"
 #include "soft/relax.hpp"
 
 namespace bernal {
@@ -63,44 +62,6 @@ std::function<void(const Course&)> as_of_whole(const Work& work, const Work& pou
   };
 }
 
-/// Work on some of the sequence by themselves, with nothing in its place.
-Work work_on(const std::vector<std::uint32_t>& tags, const Work& work) {
-  return {.spheres = Spheres<dynamic>(3),
-          .edges = {},
-          .target = work.target,
-          .attainable = work.attainable,
-          .domain = work.domain,
-          .exact_place = work.exact_place,
-          .supply = std::make_shared<Supply>(work.supply->of(tags)),
-          .seed = work.seed,
-          .monitor = work.monitor,
-          .effects = work.effects,
-          .streams_used = work.streams_used};
-}
-
-/// The spheres that stand in a bed, by their tags.
-struct Standing {
-  Spheres<3> spheres;
-  std::vector<std::uint32_t> tags;
-  std::vector<bool> placed;
-
-  explicit Standing(const Bed& bed) {
-    for (Bed::Id i = 0; i < bed.size(); ++i) {
-      spheres.push_back(bed[i].center, bed[i].r);
-      tags.push_back(bed.tag(i));
-      if (placed.size() <= bed.tag(i)) placed.resize(bed.tag(i) + std::size_t{1}, false);
-      placed[bed.tag(i)] = true;
-    }
-  }
-
-  std::vector<std::uint32_t> others(std::size_t wanted) const {
-    std::vector<std::uint32_t> all;
-    for (std::uint32_t tag = 0; tag < wanted; ++tag)
-      if (tag >= placed.size() || !placed[tag]) all.push_back(tag);
-    return all;
-  }
-};
-
 void put_in_bed(const Bed& poured, const std::vector<std::uint32_t>& tags, std::vector<bool> placed,
                 Work& work) {
   for (Bed::Id i = 0; i < poured.size(); ++i) {
@@ -115,40 +76,35 @@ void put_in_bed(const Bed& poured, const std::vector<std::uint32_t>& tags, std::
 }  // namespace
 
 StageEnd rest_first(Work& work, const Vector<3>& down, double still) {
-  const Standing standing(work.bed());
-  std::vector<std::uint32_t> tags = standing.tags;
-  std::ranges::sort(tags);
-  Work own = work_on(tags, work);
-  own.domain = work.domain;
+  const std::vector<bool> placed = work.drawn(0).placed;
+  std::vector<std::uint32_t> tags;
+  for (std::uint32_t tag = 0; tag < placed.size(); ++tag)
+    if (placed[tag]) tags.push_back(tag);
+  Work own = work.alone(tags);
   change_container(own, work.container);
-  std::vector<bool> placed(tags.size(), true);
-  for (std::size_t i = 0; i < standing.tags.size(); ++i) {
-    const auto at = std::ranges::lower_bound(tags, standing.tags[i]) - tags.begin();
-    own.bed().insert(standing.spheres.center(i), standing.spheres.r[i], static_cast<std::uint32_t>(at));
+  for (Bed::Id i = 0; i < work.bed().size(); ++i) {
+    const auto at = std::ranges::lower_bound(tags, work.bed().tag(i)) - tags.begin();
+    own.bed().insert(work.bed()[i].center, work.bed()[i].r, static_cast<std::uint32_t>(at));
   }
-  own.supply->set_placed(placed);
   const StageEnd end = roll_to_rest(own, down, {.still = still});
-  work.put_in_bed({});
-  std::vector<bool> in_place(tags.empty() ? 0 : tags.back() + std::size_t{1}, false);
-  for (Bed::Id i = 0; i < own.bed().size(); ++i) {
-    const std::uint32_t tag = tags[own.bed().tag(i)];
-    work.bed().insert(own.bed()[i].center, own.bed()[i].r, tag);
-    in_place[tag] = true;
-  }
-  work.supply->set_placed(in_place);
+  work.bed().remove_tags_from(0);
+  for (Bed::Id i = 0; i < own.bed().size(); ++i)
+    work.bed().insert(own.bed()[i].center, own.bed()[i].r, tags[own.bed().tag(i)]);
   return end;
 }
 
-StageEnd pour(Work& work, const BedTop& top, double ground, Laying& how) {
-  const Standing standing(work.bed());
-  const std::vector<std::uint32_t> tags = standing.others(work.supply->wanted());
+StageEnd pour(Work& work, const BedTop& top, const std::shared_ptr<const Container>& whole,
+              const Heights& heights, Laying& how) {
+  const std::vector<bool> placed = work.drawn(0).placed;
+  std::vector<std::uint32_t> tags;
+  for (std::uint32_t tag = 0; tag < work.supply->wanted(); ++tag)
+    if (tag >= placed.size() || !placed[tag]) tags.push_back(tag);
   if (tags.empty()) return StageEnd::converged;
-  const std::shared_ptr<const Container> whole =
-      standing.tags.empty() ? work.container : above_spheres(work.container, standing.spheres, top.up());
-  const Heights heights(*whole, top, ground);
+  const double ground = heights.ground();
 
   double volume = 0, largest = 0;
-  const std::size_t wanted = work.target_count() - std::min(work.target_count(), standing.tags.size());
+  const std::size_t wanted =
+      work.target_count() - std::min<std::size_t>(work.target_count(), work.bed().size());
   const std::span first_tags = std::span(tags).first(std::min(tags.size(), wanted));
   for (const std::uint32_t tag : first_tags) {
     volume += ball_volume(3, work.supply->radius(tag));
@@ -163,7 +119,7 @@ StageEnd pour(Work& work, const BedTop& top, double ground, Laying& how) {
   // A layer is no shallower than its largest sphere.
   volume = std::max(volume / how.packing_fraction, heights.volume_below(ground + room_for_largest * largest));
 
-  Work poured = work_on(tags, work);
+  Work poured = work.alone(tags);
   poured.on_course = as_of_whole(work, poured);
   if (!work.target.fill && (given > 0 || volume > room)) {
     // As many as are expected to fit; where walls are near everywhere nobody knows, and all are tried.
@@ -193,7 +149,7 @@ StageEnd pour(Work& work, const BedTop& top, double ground, Laying& how) {
   }
   work.streams_used = poured.streams_used;
   if (how.taps > 0) work.crowded_start = poured.crowded_start;
-  if (poured.stands_in_bed()) put_in_bed(poured.bed(), tags, standing.placed, work);
+  if (poured.stands_in_bed()) put_in_bed(poured.bed(), tags, placed, work);
   return end;
 }
 

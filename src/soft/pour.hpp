@@ -8,9 +8,11 @@ namespace bernal {
 /// Gives the spheres of the drawn sequence that have no place one above those that have: relaxation packs
 /// them in the part of the container that they fill at the packing fraction that `how` says, or the lowest
 /// larger one in which there is room for them; where the bed's height is given, or the container does not
-/// hold them, as many as have that packing fraction. What stands there stays where it is. `ground`: height of
-/// the lowest point of the container. Precondition: the spheres stand in a bed. Cost: that of relaxation.
-StageEnd pour(Work& work, const BedTop& top, double ground, Laying& how);
+/// hold them, as many as have that packing fraction. What stands there stays where it is. `whole`: what of
+/// the container it leaves, and `heights` of that. Precondition: the spheres stand in a bed. Cost: that of
+/// relaxation.
+StageEnd pour(Work& work, const BedTop& top, const std::shared_ptr<const Container>& whole,
+              const Heights& heights, Laying& how);
 
 /// Those that stand there fall and roll to rest, as they do without any that are still to come: what rested
 /// then stays where it is, however small those are.

@@ -9,6 +9,7 @@
 #include "domain/volume_below.hpp"
 #include "settle/compress.hpp"
 #include "settle/roll_to_rest.hpp"
+#include "soft/above_spheres.hpp"
 #include "soft/bed_density.hpp"
 #include "soft/pour.hpp"
 #include "soft/relax.hpp"
@@ -103,8 +104,11 @@ StageEnd settle(Work& work, const Settle& options) {
     work.put_in_bed({});
   else if (rest_first(work, down, options.rest) == StageEnd::cancelled)
     return StageEnd::cancelled;
+  const std::shared_ptr<const Container> room =
+      held == 0 ? work.container : above_spheres(work.container, work.bed().spheres(), top.up());
+  const Heights of_room = held == 0 ? heights : Heights(*room, top, heights.ground());
   const auto lay = [&](Laying& how) {
-    const StageEnd end = pour(work, top, heights.ground(), how);
+    const StageEnd end = pour(work, top, room, of_room, how);
     if (end == StageEnd::cancelled) return end;
     const EffectTimer timer(work.effects["rolling"]);
     const Made made("rolling");

@@ -44,12 +44,8 @@ double height_of(const Work& work, const Heights& heights, std::size_t count, do
 /// The bed before a stage, from which each attempt begins.
 class BedBefore {
  public:
-  explicit BedBefore(Work& work) : work_(work), bed_(*work.bed_), start_(work.crowded_start) {
-    for (Bed::Id i = 0; i < bed_.size(); ++i) {
-      if (placed_.size() <= bed_.tag(i)) placed_.resize(bed_.tag(i) + std::size_t{1}, false);
-      placed_[bed_.tag(i)] = true;
-    }
-  }
+  explicit BedBefore(Work& work)
+      : work_(work), bed_(*work.bed_), start_(work.crowded_start), placed_(work.drawn(0).placed) {}
   void put_back() const {
     work_.bed_ = std::make_shared<Bed>(bed_);
     work_.crowded_start = start_;
@@ -60,7 +56,7 @@ class BedBefore {
   Work& work_;
   const Bed bed_;
   const Spheres<3> start_;
-  std::vector<bool> placed_;
+  const std::vector<bool> placed_;
 };
 
 class Attempts {

@@ -61,6 +61,20 @@ Work::Drawn Work::drawn(std::size_t count) const {
   return drawn;
 }
 
+Work Work::alone(const std::vector<std::uint32_t>& tags) const {
+  return {.spheres = Spheres<dynamic>(dimension()),
+          .edges = {},
+          .target = target,
+          .attainable = attainable,
+          .domain = domain,
+          .exact_place = exact_place,
+          .supply = std::make_shared<Supply>(supply->of(tags)),
+          .seed = seed,
+          .monitor = monitor,
+          .effects = effects,
+          .streams_used = streams_used};
+}
+
 const Room& Work::roomiest() const {
   if (!roomiest_) {
     // Of one place in the middle, where nothing is nearer than what bounds the largest sphere, that is known.

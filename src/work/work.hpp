@@ -151,6 +151,9 @@ struct Work {
   std::size_t target_count() const;
   /// At least `count` of the sequence, and up to the last that stands in the bed; those have places.
   Drawn drawn(std::size_t count) const;
+  /// Work on these of the sequence by themselves, in their order, with nothing in its place: no container
+  /// yet, no checkpoints, and nobody is told of its course.
+  Work alone(const std::vector<std::uint32_t>& tags) const;
   /// The roomiest place of the container, as far as it is known. Looked for once.
   const Room& roomiest() const;
   /// Of so many of the sequence, or all that stand in the bed if these are more.

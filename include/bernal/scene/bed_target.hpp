@@ -26,6 +26,8 @@ struct BedTarget {
   bool gives_height() const { return height || layers; }
   /// Whether the scene asks for a bed at all.
   bool is_asked() const { return density || top || porosity || gives_height(); }
+  /// Whether it is to be denser or looser than settling leaves it.
+  bool asks_for_density() const { return porosity || (density && *density != Density::poured); }
   bool operator==(const BedTarget&) const = default;
 };
 
