@@ -25,10 +25,6 @@ namespace {
 
 using Kind = FolderTree::Kind;
 
-[[noreturn]] void fail(const std::string& what, const std::string& why, const fs::path& path) {
-  throw Error(ErrorCode::cannot_write, what + ": " + why, {path.string()});
-}
-
 std::string name_of_line(const std::string& line) {
   std::string name;
   for (std::size_t k = 0; k < line.size(); ++k) {
@@ -57,7 +53,7 @@ class Moves {
   /// Makes the folder that is missing there.
   void move(const fs::path& from, const fs::path& to) {
     make_folder(to.parent_path());
-    if (const auto why = tree_.move(from, to)) fail("cannot be replaced", *why, tree_.path() / to);
+    if (const auto why = tree_.move(from, to)) fail_to_write("cannot be replaced", *why, tree_.path() / to);
     done_.emplace_back(from, to);
   }
   void take_back() {
@@ -71,10 +67,11 @@ class Moves {
     if (kind == Kind::folder) return;
     make_folder(folder.parent_path());
     if (kind != Kind::missing)
-      fail("is in the way", "files of the result go below it, and it is no folder but a file or a link",
-           tree_.path() / folder);
+      fail_to_write("is in the way",
+                    "files of the result go below it, and it is no folder but a file or a link",
+                    tree_.path() / folder);
     if (const auto why = tree_.make_folder(folder))
-      fail("the folder cannot be made", *why, tree_.path() / folder);
+      fail_to_write("the folder cannot be made", *why, tree_.path() / folder);
     made_.push_back(folder);
   }
 
@@ -118,6 +115,10 @@ void go_on(const FolderTree& tree, Moves& moves) {
 }
 
 }  // namespace
+
+void fail_to_write(const std::string& what, const std::string& why, const fs::path& path) {
+  throw Error(ErrorCode::cannot_write, what + ": " + why, {path.string()});
+}
 
 std::string line_of_replaced(const std::string& name) {
   std::string line;
@@ -212,9 +213,10 @@ void finish_in_turn(const FolderTree& tree) {
     } catch (const Error& error) {
       moves.take_back();
       ::close(lock);
-      fail("holds a result that a run was killed over, and that cannot be put into its place",
-           fmt::format("{}; move that away or make the folder writable, and try again", error.what()),
-           tree.path());
+      fail_to_write(
+          "holds a result that a run was killed over, and that cannot be put into its place",
+          fmt::format("{}; move that away or make the folder writable, and try again", error.what()),
+          tree.path());
     }
     // Under a name of its own, that whoever is killed over this blocks nobody.
     const fs::path done = new_staging(tree.path()).filename();

@@ -52,6 +52,9 @@ class Turn {
 /// file systems know no locks.
 int locked(const FolderTree&, const std::filesystem::path& name);
 
+/// Throws Error{cannot_write} at that path: what it cannot, and why.
+[[noreturn]] void fail_to_write(const std::string& what, const std::string& why, const std::filesystem::path& path);
+
 /// A new folder with a name that nobody else has; empty where none can be made.
 std::filesystem::path new_staging(const std::filesystem::path& folder);
 

@@ -37,20 +37,16 @@ bool is_name_in(const fs::path& folder, const fs::path& name) {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& what, const std::string& why, const fs::path& path) {
-  throw Error(ErrorCode::cannot_write, what + ": " + why, {path.string()});
-}
-
 bool is_busy(const FolderTree& tree) {
   const auto is_there = [&](const char* name) { return tree.kind_of(name) != FolderTree::Kind::missing; };
   return is_there(complete_name) || is_there(placing_name);
 }
 
 [[noreturn]] void fail_busy(const fs::path& folder) {
-  fail("cannot be written to",
-       fmt::format("another run puts its files there; if none does, remove {} and {}", complete_name,
-                   placing_name),
-       folder);
+  fail_to_write("cannot be written to",
+                fmt::format("another run puts its files there; if none does, remove {} and {}", complete_name,
+                            placing_name),
+                folder);
 }
 
 }  // namespace
@@ -68,7 +64,7 @@ StagedFolder::StagedFolder(fs::path folder) : StagedFolder(std::move(folder), No
     remove_abandoned(tree);
     if (stage()) return;
     // Another process that had made the folder too, and failed, may have taken it away.
-    if (errno != ENOENT || k == most_tries) fail("cannot write here", std::strerror(errno), folder_);
+    if (errno != ENOENT || k == most_tries) fail_to_write("cannot write here", std::strerror(errno), folder_);
   }
 }
 
@@ -85,16 +81,17 @@ void StagedFolder::make_folders() {
   std::error_code problem;
   for (fs::path path = fs::absolute(folder_).lexically_normal(); !fs::exists(path, problem) && !problem;
        path = path.parent_path()) {
-    if (fs::is_symlink(path)) fail("the folder cannot be reached", "a link that leads nowhere", path);
+    if (fs::is_symlink(path))
+      fail_to_write("the folder cannot be reached", "a link that leads nowhere", path);
     missing.push_back(path);
   }
   for (auto path = missing.rbegin(); path != missing.rend(); ++path) {
     if (fs::create_directory(*path, problem)) made_.push_back(*path);
-    if (problem) fail("the folder cannot be made", problem.message(), *path);
+    if (problem) fail_to_write("the folder cannot be made", problem.message(), *path);
   }
-  if (problem) fail("the folder cannot be reached", problem.message(), folder_);
+  if (problem) fail_to_write("the folder cannot be reached", problem.message(), folder_);
   if (!fs::is_directory(folder_, problem))
-    fail("is not a folder", "files are to be written into it", folder_);
+    fail_to_write("is not a folder", "files are to be written into it", folder_);
 }
 
 bool StagedFolder::stage() {
@@ -109,7 +106,7 @@ fs::path StagedFolder::add(const std::string& name) {
   const fs::path there = staging_ / name;
   std::error_code problem;
   fs::create_directories(there.parent_path(), problem);
-  if (problem) fail("cannot write here", problem.message(), folder_);
+  if (problem) fail_to_write("cannot write here", problem.message(), folder_);
   return there;
 }
 
@@ -117,10 +114,10 @@ void StagedFolder::require_room(std::uint64_t bytes) const {
   std::error_code unknown;
   const fs::space_info space = fs::space(staging_, unknown);
   if (unknown || space.available >= bytes) return;
-  fail("has too little room",
-       fmt::format("{:.3g} GB are to be written, and {:.3g} GB are free", static_cast<double>(bytes) / 1e9,
-                   static_cast<double>(space.available) / 1e9),
-       folder_);
+  fail_to_write("has too little room",
+                fmt::format("{:.3g} GB are to be written, and {:.3g} GB are free",
+                            static_cast<double>(bytes) / 1e9, static_cast<double>(space.available) / 1e9),
+                folder_);
 }
 
 void StagedFolder::write(const std::string& name, std::string_view text) {
@@ -135,11 +132,11 @@ std::vector<fs::path> StagedFolder::publish(const std::vector<std::string>& repl
     files.push_back(folder_ / name);
     std::error_code unknown;
     if (fs::is_directory(fs::symlink_status(files.back(), unknown)))
-      fail("cannot be replaced", "a folder of that name stands there", files.back());
+      fail_to_write("cannot be replaced", "a folder of that name stands there", files.back());
   }
   std::error_code problem;
   fs::create_directory(staging_ / earlier_name, problem);
-  if (problem) fail("cannot write here", problem.message(), staging_);
+  if (problem) fail_to_write("cannot write here", problem.message(), staging_);
   OutputFile list(staging_ / replaced_name, folder_);
   for (const std::string& name : replaced) list.append(line_of_replaced(name));
   list.close();
