@@ -244,9 +244,6 @@ StageEnd grow(Work& work, const Grow& options) {
 template <>
 const StageEntry& entry_of<Grow>() {
   using namespace schema;
-  const PlanItem insertion{"insertion", "random places at the start, the largest first", "O(1) a trial"};
-  const PlanItem collisions{"collisions", "of growing spheres, from a calendar of events", "0.5 to 0.8 µs"};
-  const PlanItem reflections{"reflections", "of growing spheres from the walls", "0.5 to 0.8 µs"};
   static const StageEntry entry =
       {.table = stage_table<Grow>(
            {.name = "grow",

@@ -136,6 +136,10 @@ std::string causes_of(const Packing& packing, const Plan& plan) {
 
 }  // namespace
 
+bool is_loose(double below, std::uint64_t n) {
+  return below > loose_below + chance_of_few / static_cast<double>(n);
+}
+
 std::optional<double> expected_of_sizes(const Packing& packing) {
   if (!box_of(packing)) return {};
   const std::vector<double>& radii = packing.spheres.r;
@@ -154,8 +158,7 @@ std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan) 
   const double error = error_of(plan);
   Shortfall shortfall{.below = expected - phi};
   if (shortfall.below > error) {
-    const auto n = static_cast<double>(packing.spheres.size());
-    shortfall.is_loose = shortfall.below > loose_below + chance_of_few / n;
+    shortfall.is_loose = is_loose(shortfall.below, packing.spheres.size());
     shortfall.reason = fmt::format(
         "the packing fraction, {:.4f}, is {:.3f} below the {:.3f} to be expected of these sizes: {}", phi,
         shortfall.below, expected, causes_of(packing, plan));
@@ -166,7 +169,7 @@ std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan) 
   const double drawn = std::min(attainable, asked_of(packing, plan)) - phi;
   if (drawn <= error || attainable - of_sizes <= error) return {};
   shortfall.below = drawn;
-  shortfall.is_loose = drawn > loose_below + chance_of_few / static_cast<double>(packing.spheres.size()) &&
+  shortfall.is_loose = is_loose(drawn, packing.spheres.size()) &&
                        share_above(*plan.radii, std::ranges::max(packing.spheres.r)) > most_missing;
   shortfall.reason = fmt::format("the packing fraction, {:.4f}, is {:.3f} below what was expected: {}", phi,
                                  drawn, fmt::join(causes_in_sizes(packing, plan), "; "));

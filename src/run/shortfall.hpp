@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -13,6 +14,9 @@ struct Shortfall {
   bool is_loose = false;
   std::string reason = {};  ///< what is missing, of what, and why: a clause
 };
+
+/// Whether a packing of n spheres that lacks so much of the packing fraction to be expected of it is loose.
+bool is_loose(double below, std::uint64_t n);
 
 /// Random close packing of the very sizes that are there, in a periodic box of three dimensions without
 /// walls; nothing elsewhere. Where the scene asks for gaps, of spheres with half of them around. Cost: O(N

@@ -18,6 +18,7 @@
 #include "io/staged_folder.hpp"
 #include "run/begin_packing.hpp"
 #include "run/engine_box.hpp"
+#include "run/shortfall.hpp"
 #include "slabs/drawn_spheres.hpp"
 #include "slabs/slab_relaxation.hpp"
 #include "slabs/write_slabs.hpp"
@@ -31,8 +32,6 @@ namespace {
 constexpr int most_growths = 400;
 /// Of a sphere: in a slab and in the result, and about those of the texts that the engine reads and writes.
 constexpr std::uint64_t bytes_on_disk = 2 * 32 + 180;
-/// More than the model has been found above packings that have room enough and time.
-constexpr double loose_below = 0.05;
 
 int longest_axis(const Vector<3>& edges) {
   int axis = 0;
@@ -189,7 +188,7 @@ class SlabRun {
                                        scene_.engine->process().slabs)
                          : fmt::format("the last stage reached its limit of {} growths with {} spheres",
                                        most_growths, grouped(drawn_.count));
-    if (!is_relaxed_ || phi > expected - loose_below) return;
+    if (!is_relaxed_ || !is_loose(expected - phi, drawn_.count)) return;
     packing.outcome = Outcome::loose;
     packing.reason += fmt::format(
         "; the packing fraction, {:.4f}, is {:.3f} below the {:.3f} to be expected of "

@@ -36,13 +36,11 @@ TEST(CostCommand, WritesItsFilesAndItsAdviceRuns) {
   // What is advised is what was measured.
   const Ended packed = bernal({"pack", out + "/recommended.toml", "-o", (folder / "packed").string()});
   EXPECT_EQ(packed.status, 0) << packed.err;
+  EXPECT_NE(text_of(out + "/cost.md").find(report_of(folder / "packed")["hash"]), std::string::npos);
   const Ended again = bernal({"cost", scene, "-o", out, "--time", "1s", "--seeds", "1", "--json"});
   ASSERT_EQ(again.status, 0) << again.err;
   const json report = json::parse(again.out);
   EXPECT_GT(report["runs_kept"], 0);
-  EXPECT_TRUE(text_of(out + "/cost.md").find(report_of(folder / "packed")["hash"]) != std::string::npos ||
-              report["runs_made"] > 0)
-      << "with nothing new measured the advice stays";
   EXPECT_FALSE(report["settings"].empty());
 }
 

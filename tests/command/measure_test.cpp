@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <chrono>
 
 #include "check.hpp"
 
@@ -204,7 +203,6 @@ TEST_F(Measure, BadInputIsOneLine) {
 // What stands in the files may be of another box, in other units, or made up: images without number, sums
 // that overflow, places that no double tells apart.
 TEST_F(Measure, TrustsNobody) {
-  const auto start = std::chrono::steady_clock::now();
   for (const char* edge : {"1.0", "1e-20", "1e30"})
     for (const char* spheres : {"1.7e308,0,0,0.1\n-1.7e308,0,0,0.1\n", "0,0,0,1e6\n0.5,0.5,0.5,0.1\n",
                                 "0,0,0,1e300\n0.5,0.5,0.5,0.1\n", "0,0,0,1.7e308\n0,0,0,1.7e308\n",
@@ -224,7 +222,6 @@ TEST_F(Measure, TrustsNobody) {
         const Ended verified = bernal({"verify", folder.path().string()});
         EXPECT_TRUE(verified.status == 0 || verified.status == 1) << verified.err;
       }
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(120));
 }
 
 }  // namespace measure_test

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <chrono>
 #include <string>
 
 #include "bernal/cad/read_mesh.hpp"
@@ -23,7 +22,6 @@ class HostileFile : public ::testing::Test {
   /// What is said of it, less the name of the file in front, which must be there.
   std::string refusal(std::string_view name, std::string_view content) {
     const auto file = folder.write(name, content);
-    const auto start = std::chrono::steady_clock::now();
     std::string said;
     try {
       read_mesh({.file = file});
@@ -32,7 +30,6 @@ class HostileFile : public ::testing::Test {
       EXPECT_EQ(error.code(), ErrorCode::bad_mesh);
       said = error.what();
     }
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
     const std::string path = file.string() + ": ";
     EXPECT_TRUE(said.starts_with(path)) << said;
     EXPECT_EQ(said.find_first_of("\n\r\x1b"), std::string::npos) << said;
