@@ -113,7 +113,7 @@ class Page:
     def __init__(self, command, source, file, slow, write):
         self.command, self.source, self.file, self.slow, self.write = command, source, file, slow, write
         self.lines = file.read_text().split("\n")
-        self.problems, self.skipped, self.replacements, self.session = [], 0, [], None
+        self.problems, self.passed_over, self.replacements, self.session = [], [], [], None
 
     def problem(self, block, text):
         self.problems.append(f"{self.file}:{block.first}: {text}")
@@ -147,7 +147,7 @@ class Page:
         """What it prints; nothing where it is passed over."""
         needed = [name for name in block.value("needs", "").split(",") if name]
         if any(not self.has(name, environment) for name in needed) or ("slow" in block.words and not self.slow):
-            self.skipped += 1
+            self.passed_over.append(block)
             return None
         text = "\n".join(block.lines)
         if block.language == "python":
@@ -197,12 +197,17 @@ class Page:
                 continue
             made = folder / found[1]
             shown = self.file.parent / SHOWN.search(self.lines[number + 1])[1]
-            if not made.exists() and self.skipped:
+            if not made.exists() and self.is_passed_over(pathlib.Path(found[1])):
                 continue
             if self.write:
                 shutil.copy(made, shown)
             elif not made.exists() or not shown.exists() or made.read_bytes() != shown.read_bytes():
                 self.problems.append(f"{self.file}:{number + 1}: {shown} is not what is made here")
+
+    def is_passed_over(self, made):
+        """Whether a block that was passed over names the picture, or the folder in which it appears."""
+        return any(str(made) in line or str(made.parent) in line
+                   for block in self.passed_over for line in block.lines)
 
     def rewrite(self):
         for block, printed in reversed(self.replacements):
@@ -226,7 +231,7 @@ def main():
             page.run(pathlib.Path(folder))
         page.rewrite()
         print("\n".join(page.problems) or f"{file}: as it stands there" +
-              (f"; {page.skipped} blocks passed over" if page.skipped else ""))
+              (f"; {len(page.passed_over)} blocks passed over" if page.passed_over else ""))
         failed |= bool(page.problems)
     sys.exit(failed)
 
