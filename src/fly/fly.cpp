@@ -18,12 +18,6 @@
 namespace bernal {
 namespace {
 
-/// Of random close packing, what event-driven flight reaches with 2,000 equal spheres in about a second, by
-/// dimension: measured.
-constexpr double share_of_flight[] = {0.75, 0.80, 0.71, 0.59, 0.47, 0.43, 0.41, 0.38};
-/// Of that between walls: they cost a layer of spheres, in eight dimensions half of the box. On the safe
-/// side, as relaxation is fast at such targets too.
-constexpr double share_between_walls = 0.5;
 /// Where radii differ more than this, small spheres have room between the large ones: those come first.
 constexpr double wide_sizes = 4;
 
@@ -79,10 +73,6 @@ bool flies(FillMethod method) { return method == FillMethod::patent || method ==
 
 std::string_view name_of(FillMethod method) { return methods[static_cast<std::size_t>(method)]; }
 
-double reached_by_flight(const FillTask& task) {
-  return share_of_flight[task.dimension - 1] * task.attainable * (task.has_walls ? share_between_walls : 1);
-}
-
 FillChoice choose_filling(FillMethod method, const FillTask& task) {
   if (method != FillMethod::automatic) {
     if (task.has_walls && method == FillMethod::classes)
@@ -91,20 +81,11 @@ FillChoice choose_filling(FillMethod method, const FillTask& task) {
                   "\"patent\" and \"relaxation\"");
     return {method, "as the scene asks for it"};
   }
-  const double reached = reached_by_flight(task);
-  const auto phi = task.packing_fraction;
-  const char* between = task.has_walls ? " between walls surely" : "";
   if (task.size_ratio > wide_sizes && !task.has_walls)
     return {FillMethod::classes, fmt::format("as the largest sphere is {:.3g} times the smallest: small ones "
                                              "find room between the large",
                                              task.size_ratio)};
-  if (task.may_overlap)
-    return {FillMethod::relaxation, "as some overlap may stay, which flight leaves none of"};
-  if (phi <= reached)
-    return {FillMethod::flight,
-            fmt::format("as flight{} reaches {:.3f}, and {:.3f} is asked for", between, reached, phi)};
-  return {FillMethod::relaxation,
-          fmt::format("as {:.3f} is more than the {:.3f} that flight{} reaches", phi, reached, between)};
+  return {FillMethod::relaxation, "which fills a box fastest"};
 }
 
 StageEnd fly(Work& work, const FillChoice& choice, const Fly& options) {
@@ -145,14 +126,15 @@ const StageEntry& entry_of<Fly>() {
       .table = stage_table<Fly>(
           {.name = "fly",
            .help = "fill a box of given size with spheres of given radii that fly and collide",
-           .keys = {word(
-                        &Fly::method, "method",
-                        "auto: by target and sizes; flight: from collision to collision; patent: in steps of "
-                        "one collision; classes: large ones first, small ones between them; relaxation: all "
-                        "at once, pushed apart",
-                        {std::begin(methods), std::end(methods)}),
+           .keys = {word(&Fly::method, "method",
+                         "auto: classes where sizes are wide and there are no walls, else relaxation; "
+                         "flight: from collision to collision; patent: in steps of "
+                         "one collision; classes: large ones first, small ones between them; relaxation: all "
+                         "at once, pushed apart",
+                         {std::begin(methods), std::end(methods)}),
                     number(&Fly::packing_fraction, "packing_fraction",
-                           "where [spheres] does not say it: the one to fill the box to", packing_fractions()),
+                           "where [spheres] does not say it: the one to fill the box to",
+                           packing_fractions()),
                     integer(&Fly::batch, "batch",
                             "flight, patent: new spheres tried between two steps; 0: half of all, for the "
                             "patent's procedure a tenth",

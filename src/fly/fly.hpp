@@ -11,15 +11,12 @@ std::string_view name_of(FillMethod);
 
 struct FillChoice {
   FillMethod method = FillMethod::relaxation;  ///< not automatic
-  std::string reason;                          ///< a clause: "as …"
+  std::string reason;                          ///< a clause: "as …", "which …"
 };
 
 /// All know walls but `classes`.
 /// Throws Error{bad_argument} where the method that is named cannot do it.
 FillChoice choose_filling(FillMethod method, const FillTask& task);
-
-/// The packing fraction that flight gets to in about a second.
-double reached_by_flight(const FillTask& task);
 
 /// The method and why it, and its effects. Throws as `choose_filling`.
 std::vector<PlanItem> effects_of_flight(const Fly& options, const Outlook& outlook);

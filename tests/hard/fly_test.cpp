@@ -236,11 +236,11 @@ TEST_P(HardFlight, KeepsEveryPrescribedRadiusToTheLastBit) {
 
 TEST(FillChoice, GoesByTargetAndSizes) {
   const auto method = [](FillTask task) { return choose_filling(FillMethod::automatic, task).method; };
-  EXPECT_EQ(method({.packing_fraction = 0.4, .attainable = 0.64}), FillMethod::flight);
+  EXPECT_EQ(method({.packing_fraction = 0.4, .attainable = 0.64}), FillMethod::relaxation);
   EXPECT_EQ(method({.packing_fraction = 0.6, .attainable = 0.64}), FillMethod::relaxation);
   EXPECT_EQ(method({.packing_fraction = 0.6, .attainable = 0.8, .size_ratio = 10}), FillMethod::classes);
   EXPECT_EQ(method({.packing_fraction = 0.6, .attainable = 0.64, .has_walls = true}), FillMethod::relaxation);
-  EXPECT_EQ(method({.packing_fraction = 0.2, .attainable = 0.64, .has_walls = true}), FillMethod::flight);
+  EXPECT_EQ(method({.packing_fraction = 0.2, .attainable = 0.64, .has_walls = true}), FillMethod::relaxation);
   EXPECT_EQ(method({.packing_fraction = 0.4, .attainable = 0.64, .has_walls = true}), FillMethod::relaxation);
   EXPECT_EQ(choose_filling(FillMethod::patent, {.packing_fraction = 0.9}).method, FillMethod::patent);
   EXPECT_THROW(choose_filling(FillMethod::classes, {.has_walls = true}), Error);

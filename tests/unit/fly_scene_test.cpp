@@ -53,16 +53,16 @@ TEST(FlyScene, IsExplained) {
     const auto found = std::ranges::find(plan.items, "fly", &PlanItem::name);
     return found == plan.items.end() ? std::string() : found->what;
   };
-  const Plan loose = plan_of("edge = 10.0", fraction),
-             dense = plan_of("edge = 10.0", "packing_fraction = 0.6");
-  EXPECT_NE(item(loose).find("by flight, as"), std::string::npos) << item(loose);
-  EXPECT_NE(item(dense).find("by relaxation, as"), std::string::npos) << item(dense);
+  const Plan flight = plan_of("edge = 10.0", fraction, "method = \"flight\"\n"),
+             pushed = plan_of("edge = 10.0", "packing_fraction = 0.6");
+  EXPECT_NE(item(flight).find("by flight, as"), std::string::npos) << item(flight);
+  EXPECT_NE(item(pushed).find("by relaxation, which"), std::string::npos) << item(pushed);
   const auto leaves_out = [](const Plan& plan, const char* effect) {
     return std::ranges::find(plan.absent, effect) != plan.absent.end();
   };
-  EXPECT_TRUE(leaves_out(loose, "relaxation"));
-  EXPECT_TRUE(leaves_out(dense, "collisions"));
-  EXPECT_FALSE(leaves_out(dense, "relaxation"));
+  EXPECT_TRUE(leaves_out(flight, "relaxation"));
+  EXPECT_TRUE(leaves_out(pushed, "collisions"));
+  EXPECT_FALSE(leaves_out(pushed, "relaxation"));
 }
 
 }  // namespace fly_scene_test

@@ -5,7 +5,7 @@ namespace bernal {
 
 /// How a box of given edges is filled with spheres of given radii.
 enum class FillMethod {
-  automatic,   ///< the one of the others that suits target and sizes
+  automatic,   ///< classes or relaxation, as suits the sizes
   flight,      ///< from event to event, with pushed trial centres
   patent,      ///< the patent's collision filling
   classes,     ///< the largest first, the smaller between them
