@@ -1,5 +1,4 @@
 #pragma once
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -56,8 +55,6 @@ class Plot {
   }
   /// Grid lines, numbers and labels, that of y above the axis.
   void axes();
-  /// A line through points in the units of the axes.
-  void line(std::span<const double> xs, std::span<const double> ys, std::string_view classes);
 
   std::string finish() && { return std::move(out_); }
 
