@@ -71,6 +71,7 @@ TEST(Completion, BashOffersWhatAValueMayBe) {
   EXPECT_TRUE(bash.offers({"export", "out", "--contact", ""}).contains("bridge"));
   EXPECT_TRUE(bash.offers({"keys", ""}).contains("relax"));
   EXPECT_EQ(bash.offers({"design", "target", "--family", "f"}), Words{"fuller"});
+  EXPECT_TRUE(bash.offers({"manual", "design", ""}).contains("pack")) << "several may follow each other";
   EXPECT_EQ(bash.offers({"completion", ""}), (Words{"bash", "zsh"}));
   EXPECT_EQ(bash.offers({"pack", "bed.toml", "--seed", ""}), Words{});
 }
