@@ -100,7 +100,7 @@ def pack_all(scenes, *, name: str, pictured=(), costs=None, dense: bool = True) 
                 done[waiting[future]] = future.result()
                 say(f"{name}: {sum(d is not None for d in done)} of {len(scenes)} packings")
         except BaseException:
-            for process in list(pool._processes.values()):  # what they pack is of no use
+            for process in list((pool._processes or {}).values()):  # what they pack is of no use
                 process.terminate()
             pool.shutdown(wait=False, cancel_futures=True)
             raise

@@ -77,4 +77,11 @@ void Plot::axes() {
     add("<text class=\"label\" x=\"{}\" y=\"{}\">{}</text>", f.left - 58, f.top - 30, escaped(y_.label));
 }
 
+void Plot::line(std::span<const double> xs, std::span<const double> ys, std::string_view classes) {
+  std::string path;
+  for (std::size_t i = 0; i < xs.size(); ++i)
+    path += fmt::format("{}{:.1f} {:.1f}", i == 0 ? 'M' : 'L', x(xs[i]), y(ys[i]));
+  add("<path class=\"{}\" d=\"{}\"/>", classes, path);
+}
+
 }  // namespace bernal

@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -55,6 +56,8 @@ class Plot {
   }
   /// Grid lines, numbers and labels, that of y above the axis.
   void axes();
+  /// A line through points in the units of the axes.
+  void line(std::span<const double> xs, std::span<const double> ys, std::string_view classes);
 
   std::string finish() && { return std::move(out_); }
 
