@@ -276,6 +276,7 @@ def run(what: str, write, options=()) -> None:
         parser.add_argument(names, **how)
     call = parser.parse_args()
     output = Output(call.output)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # which jobs in the background have not
     try:
         write(output, call)
         output.publish()
