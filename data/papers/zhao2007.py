@@ -153,7 +153,7 @@ def figure_5(output, results: Results) -> str:
     ax.plot([MOST], [SIZES[EQUAL].phi], "k*", markersize=8, markerfacecolor=INK, linestyle="none",
             label="printed, table 2")  # fmt: skip
     ax.set_xscale("log")
-    ax.legend()
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)  # the curves fill the axes
     output.figure("zhao2007_fig5.svg", figure)
 
     counts = sorted({*results.counts(Run(period=PERIODS[0])), *results.counts(Run(method="fast"))})
