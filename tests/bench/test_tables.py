@@ -25,7 +25,6 @@ class Table(unittest.TestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp(prefix="bernal-test-"))
         self.addCleanup(shutil.rmtree, self.folder)
-        os.environ["MPLCONFIGDIR"] = str(self.folder / ".matplotlib")
 
     def made(self, name, *words):
         """Runs the command, and returns the lines of its CSV."""

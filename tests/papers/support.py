@@ -1,7 +1,6 @@
 """What the tests of papers share."""
 
 import csv
-import os
 import re
 import shutil
 import subprocess
@@ -12,7 +11,6 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(SOURCE / "data/papers")]
-os.environ.setdefault("MPLCONFIGDIR", tempfile.mkdtemp(prefix="bernal-matplotlib-"))
 
 try:
     import matplotlib  # noqa: F401
