@@ -53,9 +53,7 @@ Explanation explanation() {
                    {"bernal keys relax", "what a scene may say of a stage"},
                    {"bernal predict --lognormal 0.5", "how densely spheres of these sizes pack"},
                    {"bernal design maximise --diameters 1,3,9", "how much of each size packs densest"},
-                   {"bernal map 0.3 0.6 -o out", "how densely all their mixtures do"},
-                   {"bernal reproduce fig6 -o out", "a figure of the paper behind that"},
-                   {"bernal bench", "what its own work costs here"}},
+                   {"bernal map 0.3 0.6 -o out", "how densely all their mixtures do"}},
       .exit_codes = {{"0", "done"},
                      {"1", "not certified, or not usable"},
                      {"2", "bad input"},
@@ -90,15 +88,14 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a run is not lost because nobody reads what it says
   int status = exit_code::done;
   try {
-    Command command = {
-        "bernal",
-        description,
-        {},
-        explanation(),
-        {},
-        {pack_command(), verify_command(), inspect_command(), explain_command(), keys_command(),
-         cost_command(), sweep_command(), measure_command(), export_command(), import_command(), predict_command(),
-         design_command(), map_command(), reproduce_command(), bench_command()}};
+    Command command = {"bernal",
+                       description,
+                       {},
+                       explanation(),
+                       {},
+                       {pack_command(), verify_command(), inspect_command(), explain_command(),
+                        keys_command(), cost_command(), sweep_command(), measure_command(), export_command(),
+                        import_command(), predict_command(), design_command(), map_command()}};
     command.commands.push_back(completion_command(command));
     command.commands.push_back(manual_command(command));
     status = run_command_line(argc, argv, command, "bernal " + std::string(bernal::version()));

@@ -13,8 +13,6 @@ Command measure_command();
 Command predict_command();
 Command design_command();
 Command map_command();
-Command reproduce_command();
-Command bench_command();
 Command export_command();
 Command import_command();
 // These write about all commands, so that `bernal` has to outlive them.

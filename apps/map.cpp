@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
-#include "bernal/figures/figures.hpp"
+#include "bernal/map/map.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"

@@ -10,7 +10,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/figures/check_prediction.hpp"
+#include "bernal/map/check_prediction.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "commands.hpp"

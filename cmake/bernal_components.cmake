@@ -2,7 +2,7 @@
 # find_package() calls it, and the Debian packages of what is linked or included. Read by the build, by the packages
 # and, installed, by find_package(bernal). CONTRIBUTING.md says why each package is here; those that the build needs
 # besides are listed in cmake/debian-packages.txt.
-set(bernal_components core predict verify cad bernal figures)
+set(bernal_components core predict verify cad bernal studies)
 
 set(bernal_core_packages "Eigen3 3.4 NO_MODULE" "Boost 1.74" "TBB" "fmt 9")
 set(bernal_core_debian_packages libeigen3-dev libboost-dev libtbb-dev libfmt-dev)
@@ -19,7 +19,7 @@ if(BERNAL_CUDA)
   list(APPEND bernal_bernal_packages "CUDAToolkit 12")
 endif()
 set(bernal_bernal_debian_packages libtomlplusplus-dev libminizip-dev zlib1g-dev)
-set(bernal_figures_stands_on bernal)
+set(bernal_studies_stands_on bernal)
 
 # The components given and all that they stand on, in the order above.
 function(bernal_with_foundations result)

@@ -3,8 +3,8 @@
 #include <map>
 
 #include "cost/write_cost.hpp"
-#include "figures/drawing.hpp"
 #include "io/html_text.hpp"
+#include "map/drawing.hpp"
 
 namespace bernal::cost {
 namespace {
@@ -38,7 +38,7 @@ class Markers {
   void legend(Plot& plot, double y) const {
     const auto line = [&](const std::string& symbol, std::string_view text) {
       plot.add("{}", symbol);
-      figures::add_text(plot, legend_at + 22, y, "start", text);
+      drawing::add_text(plot, legend_at + 22, y, "start", text);
       y += 22;
     };
     line(own(legend_at + 8, y - 4), "the scene as it is");
@@ -58,13 +58,13 @@ class Markers {
     return fmt::format("<path d=\"M{:.1f} {:.1f}l7 7l-7 7l-7 -7z\" fill=\"#1d2733\"/>", x, y - 7);
   }
   static std::string several(double x, double y) {
-    return figures::shape(0, x, y, 3.2, "fill=\"#ffffff\" stroke=\"#5d6b7a\" stroke-width=\"1.3\"");
+    return drawing::shape(0, x, y, 3.2, "fill=\"#ffffff\" stroke=\"#5d6b7a\" stroke-width=\"1.3\"");
   }
   static std::string short_of_it(double x, double y) {
     return fmt::format("<path class=\"short\" d=\"M{:.1f} {:.1f}l7 7m0 -7l-7 7\"/>", x - 3.5, y - 3.5);
   }
   static std::string of_knob(std::size_t k, double x, double y) {
-    return figures::shape(k, x, y, 4.4, fmt::format("fill=\"{}\"", figures::series_colour(k)));
+    return drawing::shape(k, x, y, 4.4, fmt::format("fill=\"{}\"", drawing::series_colour(k)));
   }
 
   std::map<std::string, std::size_t> knobs_;
@@ -79,7 +79,7 @@ void add_numbers(Plot& plot, const CostReport& report) {
     const CostRow& row = report.rows[front[n]];
     const double x = plot.x(row.seconds) - 7, y = plot.y(row.phi) - 8;
     if (std::abs(x - last_x) < 18 && std::abs(y - last_y) < 15) continue;
-    figures::add_text(plot, x, y, "end", fmt::format("{}", n + 1));
+    drawing::add_text(plot, x, y, "end", fmt::format("{}", n + 1));
     last_x = x;
     last_y = y;
   }
@@ -138,7 +138,7 @@ std::string cost_svg(const CostReport& report, const CostHeading& heading) {
       "<style>.chosen{fill:none;stroke:#c0322b;stroke-width:2.2}.short{stroke:#5d6b7a;stroke-width:1.6}."
       "scatter{stroke:#9aa7b4;stroke-width:1}</"
       "style>";
-  return figures::svg_document(drawing_width, drawing_height,
+  return drawing::svg_document(drawing_width, drawing_height,
                                fmt::format("What accuracy costs: {}, {}", heading.scene, heading.machine),
                                style + std::move(plot).finish());
 }

@@ -87,7 +87,6 @@ Rounds interleaved(const std::vector<Setting>& settings, TrialRecord& record, co
                                                       .threads = threads,
                                                       .limit = std::min(options.limit, budget.left()),
                                                       .meant = setting.meant.get(),
-                                                      .with_core = setting.with_core,
                                                       .monitor = budget.monitor(setting.name)});
         rounds.cancelled = trial.outcome == Outcome::cancelled && !trial.cut_off;
         // That it is slower than what happened to be left of the time says nothing.

@@ -18,7 +18,6 @@ struct Setting {
   std::string name;
   Scene scene;
   std::shared_ptr<const Domain> meant = {};  ///< see `TrialOptions::meant`
-  bool with_core = false;                    ///< see `TrialOptions::with_core`
 };
 
 /// The trials that were made, in a file that grows by a line with each of them, so that nothing measured is

@@ -50,6 +50,15 @@ double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
+/// Seconds that all threads of this process have computed, and children that have ended.
+double processor_seconds() {
+  rusage own{}, children{};
+  getrusage(RUSAGE_SELF, &own);
+  getrusage(RUSAGE_CHILDREN, &children);
+  return seconds_of(own.ru_utime) + seconds_of(own.ru_stime) + seconds_of(children.ru_utime) +
+         seconds_of(children.ru_stime);
+}
+
 double early_overlap_of(const Packing& packing) {
   for (const Milestone& milestone : packing.history | std::views::reverse)
     if (milestone.max_overlap > 0) return milestone.max_overlap;
@@ -101,14 +110,6 @@ void count_contacts(Trial& trial, const Packing& packing) {
 
 }  // namespace
 
-double processor_seconds() {
-  rusage own{}, children{};
-  getrusage(RUSAGE_SELF, &own);
-  getrusage(RUSAGE_CHILDREN, &children);
-  return seconds_of(own.ru_utime) + seconds_of(own.ru_stime) + seconds_of(children.ru_utime) +
-         seconds_of(children.ru_stime);
-}
-
 Trial run_trial(const Scene& scene, const TrialOptions& options) {
   Trial trial;
   trial.seed = options.seed;
@@ -139,9 +140,6 @@ Trial run_trial(const Scene& scene, const TrialOptions& options) {
   if (packing.outcome == Outcome::cancelled || packing.spheres.empty()) return trial;
   certify_trial(trial, packing, options);
   count_contacts(trial, packing);
-  if (options.with_core)
-    if (const auto profile = wall_profile(packing.spheres, packing.domain, {}, packing.container))
-      trial.core_packing_fraction = profile->core_packing_fraction;
   return trial;
 }
 

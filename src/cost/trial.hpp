@@ -27,13 +27,10 @@ struct Trial {
   double packing_fraction = 0;
   double packed_fraction = 0;  ///< as the packing states it, of its own domain
   double size_scale = 1;       ///< see `Packing::size_scale`
-  /// Of what lies a few spheres from the walls and deeper, where there are walls and it was asked for. The
-  /// file of a record does not hold it.
-  std::optional<double> core_packing_fraction;
-  bool certified = false;    ///< as the scene asks for it, with the overlap that it allows
-  double max_overlap = 0;    ///< that the certificate finds; 0 where no pair overlaps
-  double early_overlap = 0;  ///< the largest before the finish: the last that a stage reports of itself
-  double protrusion = 0;     ///< of the sphere that sticks out of the exact wall most; 0 where none does
+  bool certified = false;      ///< as the scene asks for it, with the overlap that it allows
+  double max_overlap = 0;      ///< that the certificate finds; 0 where no pair overlaps
+  double early_overlap = 0;    ///< the largest before the finish: the last that a stage reports of itself
+  double protrusion = 0;       ///< of the sphere that sticks out of the exact wall most; 0 where none does
   /// Gap of the sphere nearest to a wall, by the certificate; absent where none is near.
   std::optional<double> wall_gap;
   /// The smallest gap ratio at which half of the spheres or more are held by contacts: how far the contacts
@@ -64,15 +61,11 @@ struct TrialOptions {
   /// The domain that is meant, where the scene's only stands for it: packing fraction and walls are judged by
   /// this one. Null: the scene's own.
   const Domain* meant = nullptr;
-  bool with_core = false;  ///< measures the packing fraction of the core: some 10 µs a sphere
   Monitor monitor = {};
 };
 
 /// Builds and runs a scene, certifies and measures what comes out. Nothing is written. Cost: that of the run,
 /// and some µs a sphere. Throws as `build`; being cancelled or cut off is an outcome.
 Trial run_trial(const Scene& scene, const TrialOptions& options);
-
-/// Seconds that all threads of this process have computed, and children that have ended.
-double processor_seconds();
 
 }  // namespace bernal::cost

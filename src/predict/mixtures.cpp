@@ -7,14 +7,10 @@
 #include <utility>
 
 #include "bernal/core/error.hpp"
-#include "core/parallel.hpp"
 #include "predict/chord_table.hpp"
 
 namespace bernal {
 namespace {
-
-/// So many predictions lie between two looks at the monitor: about a tenth of a second of them.
-constexpr std::size_t batch = 512;
 
 /// Of a given volume-weighted mean, which is e^(sigma²/2) times the median by volume.
 std::unique_ptr<SizeDistribution> make_population(double mean, double sigma) {
@@ -69,19 +65,6 @@ std::vector<Prediction> predict_shares(const TwoPopulations& populations, std::s
     const double second = number_a * a->moment(2) + number_b * b->moment(2);
     predictions.push_back(predict::predict_from_chords(
         predict::ChordTable::mixture(of_a, number_a, of_b, number_b), 1 / (1.5 * second), rods));
-  }
-  return predictions;
-}
-
-std::vector<Prediction> predict_all(
-    std::size_t count, const std::function<std::unique_ptr<SizeDistribution>(std::size_t)>& sizes, int rods,
-    std::string_view activity, const Monitor& monitor) {
-  std::vector<Prediction> predictions(count);
-  for (std::size_t from = 0; from < count; from += batch) {
-    if (monitor.stop()) return {};
-    monitor.report({activity, static_cast<double>(from) / static_cast<double>(count), "of the predictions"});
-    parallel_for(from, std::min(count, from + batch),
-                 [&](std::size_t i) { predictions[i] = predict_packing_fraction(*sizes(i), rods); });
   }
   return predictions;
 }

@@ -68,6 +68,13 @@ py::object walls_of(const Packing& packing) {
   return py::make_tuple(vertices, triangles);
 }
 
+std::vector<double> coordination_of(const Packing& packing, const std::vector<double>& gaps) {
+  std::vector<double> all;
+  for (const Contacts& contacts : measure_contacts(packing.spheres, packing.domain, gaps, packing.container))
+    all.push_back(contacts.coordination);
+  return all;
+}
+
 std::string section_of_packing(const Packing& packing, const std::optional<std::string>& plane) {
   if (packing.spheres.dimension() != 3)
     throw Error(ErrorCode::bad_argument, "sections are for packings of three dimensions");
@@ -89,6 +96,7 @@ void bind_packing(py::module_& module) {
       .def("scene", [](const Packing& packing) { return packing.scene; })
       .def("picture", &picture_of, OthersRun())
       .def("section", &section_of_packing, OthersRun())
+      .def("coordination", &coordination_of, OthersRun())
       .def(
           "hash", [](const Packing& packing) { return hash_of(packing.spheres); }, OthersRun())
       .def("domain", [](const Packing& packing) { return name_of(packing.domain); })

@@ -8,8 +8,8 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "figures/drawing.hpp"
 #include "io/palette.hpp"
+#include "map/drawing.hpp"
 #include "scene/toml_text.hpp"
 #include "sweep/results.hpp"
 
@@ -88,10 +88,10 @@ class Picture {
     const double right = series_.size() > 1 ? 700 : 940;
     Plot plot({78, 92, right, 530}, axis_of(xs, x), axis_of(ys, y));
     plot.axes();
-    if (add_means(plot)) figures::add_text(plot, right, 44, "end", "lines: means");
+    if (add_means(plot)) drawing::add_text(plot, right, 44, "end", "lines: means");
     for (const Point& p : points_) plot.add("{}", marker(p.series, p.is_done, plot.x(p.x), plot.y(p.y)));
     add_legend(plot);
-    return figures::svg_document(drawing_width, drawing_height, title, std::move(plot).finish());
+    return drawing::svg_document(drawing_width, drawing_height, title, std::move(plot).finish());
   }
 
  private:
@@ -99,7 +99,7 @@ class Picture {
     return static_cast<std::size_t>(std::ranges::find(series_, series) - series_.begin());
   }
   std::string colour_of(const std::string& series) const {
-    if (series_.size() <= most_series) return std::string(figures::series_colour(place_of(series)));
+    if (series_.size() <= most_series) return std::string(drawing::series_colour(place_of(series)));
     // So many that only their order can be seen; the lightest would not be seen on white.
     return size_colour(0.2 +
                        0.8 * static_cast<double>(place_of(series)) / static_cast<double>(series_.size() - 1))
@@ -109,8 +109,8 @@ class Picture {
     const std::string colour = colour_of(series);
     const std::size_t shape = series_.size() <= most_series ? place_of(series) : 0;
     return is_done
-               ? figures::shape(shape, x, y, 4.2, fmt::format("fill=\"{}\" fill-opacity=\"0.75\"", colour))
-               : figures::shape(shape, x, y, 4.2,
+               ? drawing::shape(shape, x, y, 4.2, fmt::format("fill=\"{}\" fill-opacity=\"0.75\"", colour))
+               : drawing::shape(shape, x, y, 4.2,
                                 fmt::format("fill=\"#ffffff\" stroke=\"{}\" stroke-width=\"1.4\"", colour));
   }
 
@@ -139,12 +139,12 @@ class Picture {
   void add_legend(Plot& plot) const {
     double y = plot.area().top + 14;
     if (series_.size() > 1) {
-      figures::add_text(plot, legend_at, y, "start", columns_.colour);
+      drawing::add_text(plot, legend_at, y, "start", columns_.colour);
       y += 24;
       const std::size_t step = (series_.size() - 1) / most_series + 1;
       for (std::size_t k = 0; k < series_.size(); k += step) {
         plot.add("{}", marker(series_[k], true, legend_at + 8, y - 4));
-        figures::add_text(plot, legend_at + 24, y, "start",
+        drawing::add_text(plot, legend_at + 24, y, "start",
                           series_[k].empty() ? "–" : plain_text(series_[k], 32));
         y += 22;
       }
@@ -152,8 +152,8 @@ class Picture {
     if (std::ranges::all_of(points_, &Point::is_done)) return;
     const bool beside = series_.size() > 1;
     const double x = beside ? legend_at + 8 : plot.area().right - 190, at = beside ? y - 4 : 62;
-    plot.add("{}", figures::shape(0, x, at, 4.2, "fill=\"#ffffff\" stroke=\"#5d6b7a\" stroke-width=\"1.4\""));
-    figures::add_text(plot, x + 16, at + 4, "start", "not what was asked for");
+    plot.add("{}", drawing::shape(0, x, at, 4.2, "fill=\"#ffffff\" stroke=\"#5d6b7a\" stroke-width=\"1.4\""));
+    drawing::add_text(plot, x + 16, at + 4, "start", "not what was asked for");
   }
 
   std::vector<Point> points_;

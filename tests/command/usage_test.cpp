@@ -11,7 +11,7 @@ TEST(Usage, HelpNamesEverySubcommandWithExamples) {
   EXPECT_EQ(help.status, 0);
   EXPECT_EQ(help.err, "");
   for (const std::string command : {"pack", "verify", "inspect", "explain", "keys", "cost", "measure",
-                                    "export", "predict", "design", "map", "reproduce"}) {
+                                    "export", "predict", "design", "map"}) {
     EXPECT_NE(help.out.find("\n  " + command), std::string::npos) << command;
     const Ended own = bernal({command, "--help"});
     EXPECT_EQ(own.status, 0);

@@ -6,7 +6,7 @@
   tests/guide/guide.py COMMAND SOURCE PAGE.md --write   puts what is printed, and the pictures, into the page
 
 In a page
-  ```sh            is run by bash, with bernal on PATH and data/ and tests/ of the source at hand; words behind it:
+  ```sh            is run by bash, with bernal on PATH and apps/, data/ and tests/ of the source at hand; words behind it:
                    exit=N it ends so; slow; needs=PROGRAM,… it is passed over where one is missing
   ```toml, ```csv  are written to the file that their first line names: # mine.toml
   ```python        is run after the Python blocks before it, in one process
@@ -119,7 +119,7 @@ class Page:
         self.problems.append(f"{self.file}:{block.first}: {text}")
 
     def run(self, folder):
-        for name in ("data", "tests"):
+        for name in ("apps", "data", "tests"):
             (folder / name).symlink_to(self.source / name)
         environment = os.environ | {
             "PATH": f"{self.command.parent}:/usr/bin:{os.environ['PATH']}",  # Debian's before others

@@ -145,6 +145,13 @@ class Runs(InFolder):
         self.refuses(AttributeError, 'did you mean "rattlers"?', lambda: measured.ratlers)
         self.refuses(bernal.InputError, "gap", lambda: bernal.measure(bernal.pack(small()), gap=2))
 
+    def test_contacts_by_gap(self):
+        packing = bernal.pack(small())
+        few, many = packing.coordination([0.001, 0.01])
+        self.assertLess(few, many)
+        self.assertEqual(packing.coordination([0.002])[0], bernal.measure(packing).coordination)
+        self.refuses(bernal.InputError, "from 0 to 1", lambda: packing.coordination([2]))
+
     def test_exports_and_imports(self):
         packing = bernal.pack(small())
         bernal.export(packing, "lammps", "bed.data", unit="m", density=1000)

@@ -1,5 +1,5 @@
 // The table of arithmetic on what takes no time: pairs and the analytic containers.
-#include "cost/arithmetic.hpp"
+#include "bench/pricing/arithmetic.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 namespace bernal {
 namespace arithmetic_bench_test {
 
-using cost::PricedContainer;
-using cost::PricedRow;
+using pricing::PricedContainer;
+using pricing::PricedRow;
 
 constexpr std::size_t plain = 0, filtered = 1, exact = 2;
 
@@ -31,28 +31,28 @@ void expect_sound(const PricedRow& row, std::uint64_t asked) {
 
 TEST(PricedArithmetic, FilteredIsExactAndErrorsAreBelowTheirBounds) {
   constexpr std::uint64_t asked = 400;
-  expect_sound(cost::price_pairs(asked, {}), asked);
+  expect_sound(pricing::price_pairs(asked, {}), asked);
   std::uint64_t judged_wrongly = 0;
-  for (const PricedContainer& container : cost::containers_to_price(100)) {
-    for (const auto& price : {cost::price_places, cost::price_distances, cost::price_ways}) {
+  for (const PricedContainer& container : pricing::containers_to_price(100)) {
+    for (const auto& price : {pricing::price_places, pricing::price_distances, pricing::price_ways}) {
       const PricedRow row = price(container, asked, {});
       expect_sound(row, asked);
       judged_wrongly += row.level[plain]->differ;
     }
-    EXPECT_EQ(cost::price_certificate(container, asked, {}).level[filtered]->differ, 0u) << container.name;
+    EXPECT_EQ(pricing::price_certificate(container, asked, {}).level[filtered]->differ, 0u) << container.name;
   }
   EXPECT_GT(judged_wrongly, 100u) << "near ties doubles err";
 }
 
 // What is said to touch does, to the last bit: one double more and it does not fit.
 TEST(PricedArithmetic, TiesAreTies) {
-  for (const PricedContainer& container : cost::containers_to_price(1000)) {
+  for (const PricedContainer& container : pricing::containers_to_price(1000)) {
     Random random(1, stream(Stream::test));
     for (int k = 0; k < 20; ++k) {
-      const cost::Query ball = cost::query_of_place(container, cost::Population::tie, random);
+      const pricing::Query ball = pricing::query_of_place(container, pricing::Population::tie, random);
       EXPECT_TRUE(container.exact().contains(ball.c, ball.r)) << container.name;
       EXPECT_FALSE(container.exact().contains(ball.c, std::nextafter(ball.r, 9.0))) << container.name;
-      const cost::Query centre = cost::query_of_centre(container, cost::Population::tie, random);
+      const pricing::Query centre = pricing::query_of_centre(container, pricing::Population::tie, random);
       EXPECT_TRUE(container.exact().contains(centre.c, 0)) << container.name;
       EXPECT_FALSE(container.exact().contains(centre.c, 1e-300)) << container.name;
     }

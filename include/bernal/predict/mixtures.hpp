@@ -1,12 +1,8 @@
 #pragma once
-#include <cstddef>
-#include <functional>
 #include <memory>
 #include <span>
-#include <string_view>
 #include <vector>
 
-#include "bernal/core/monitor.hpp"
 #include "bernal/predict/predict.hpp"
 
 namespace bernal {
@@ -27,13 +23,5 @@ std::unique_ptr<SizeDistribution> make_two_populations(const TwoPopulations&);
 /// 1e-9.
 std::vector<Prediction> predict_shares(const TwoPopulations& populations, std::span<const double> shares,
                                        int rods);
-
-/// The predictions for `count` distributions, `sizes(0)` … `sizes(count - 1)`, which are asked for from
-/// several threads. The same to the bit for any number of threads. Where the monitor stops it, what is there
-/// by then is not complete, and nothing is returned. `activity` is what its progress is called. What `sizes`
-/// throws passes through.
-std::vector<Prediction> predict_all(
-    std::size_t count, const std::function<std::unique_ptr<SizeDistribution>(std::size_t)>& sizes, int rods,
-    std::string_view activity, const Monitor& monitor = {});
 
 }  // namespace bernal

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import os
+from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, _records, _surfaces, _toml
+from ._errors import InputError
 from ._jobs import finish
 from ._progress import Progress
 from ._records import Record, Written
@@ -216,6 +218,15 @@ class Packing:
     def hash(self) -> str:
         """Of the bits of all spheres in their order, 16 hexadecimal digits."""
         return str(self._core.hash())
+
+    def coordination(self, gaps: Iterable[float] = (0.002,)) -> Array:
+        """Mean number of contacts of a sphere, those with walls among them, where spheres touch below each of these
+        gaps over the sum of their radii, from 0 to 1. Cost: that of the largest gap."""
+        asked = [_toml.number(gap, "gap") for gap in gaps]
+        for gap in asked:
+            if not 0 <= gap <= 1:
+                raise InputError("bad_argument", f"gap is a ratio from 0 to 1, not {gap}")
+        return np.array(self._core.coordination(asked))
 
     @property
     def history(self) -> list[Record]:

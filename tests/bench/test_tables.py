@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""The commands that make the tables of what methods, effects and arithmetic cost, at their smallest size. Times are not
+asserted."""
+
+import csv
+import math
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+try:
+    import matplotlib  # noqa: F401
+except ImportError:
+    print("skipped: matplotlib is not installed, see cmake/papers-packages.txt")
+    raise SystemExit(0) from None
+
+HERE = Path(__file__).resolve().parent
+ARITHMETIC = Path(os.environ["BERNAL_BUILD"]) / "bernal_arithmetic"
+
+
+class Table(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="bernal-test-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def made(self, name, *words):
+        """Runs the command, and returns the lines of its CSV."""
+        ended = subprocess.run([HERE / name, "-o", self.folder, *map(str, words)], capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        for file in ended.stdout.split():
+            self.assertEqual(Path(file).parent, self.folder)
+        self.page = (self.folder / f"{name}.md").read_text()
+        with open(self.folder / f"{name}.csv") as file:
+            return list(csv.DictReader(file))
+
+
+class Methods(Table):
+    def test_every_method_has_an_upward_ladder_of_two_seeds(self):
+        """More sweeps, slower growth, more refilling: what costs more time is there because it packs denser."""
+        phi, seeds, core = {}, {}, []
+        for line in self.made("methods", "--spheres", 100, "--sizes", "equal"):
+            method = line["walls"], line["method"]
+            self.assertNotEqual(line["outcome"], "cut_off", method)
+            reached = float(line["packing_fraction"])
+            self.assertLess(reached, math.pi / math.sqrt(18), "equal spheres are never denser")
+            self.assertEqual(line["walls"] == "lids", line["core_packing_fraction"] != "", method)
+            if line["walls"] == "lids":
+                core.append(float(line["core_packing_fraction"]) - reached)
+            seeds.setdefault(method, set()).add(line["seed"])
+            values = phi.setdefault(method, {})
+            values[float(line["value"])] = values.get(float(line["value"]), 0) + 0.5 * reached
+        self.assertEqual(len(phi), 11, "with the filling by classes, which is for wide sizes, they are twelve")
+        picture = (self.folder / "methods_equal.svg").read_text()
+        for method, values in phi.items():
+            self.assertGreaterEqual(len(values), 3, method)
+            self.assertEqual(seeds[method], {"1", "2"}, method)
+            self.assertIn(method[1], picture)
+            first, last = values[min(values)], values[max(values)]
+            if method[1] == "growth":  # where a smaller rate is the slower
+                first, last = last, first
+            self.assertGreater(last, first, method)
+        self.assertGreater(sum(core) / len(core), 0, "the spheres beside the walls pack loosely")
+        self.assertIn("Without walls: densest by", self.page)
+
+
+class Effects(Table):
+    def test_every_pair_is_there_with_its_ratio(self):
+        lines = self.made("effects", "--spheres", 100)
+        self.assertGreaterEqual(len(lines), 12)
+        gain = {line["effect"]: float(line["gain"]) for line in lines}
+        self.assertEqual(len(gain), len(lines), "no effect has two lines")
+        picture = (self.folder / "effects.svg").read_text()
+        for line in lines:
+            self.assertGreater(float(line["seconds_with"]), 0, line)
+            self.assertGreater(float(line["time_ratio"]), 0, line)
+            self.assertNotEqual(line["with"], line["without"])
+            self.assertIn(f"| {line['effect']} |", self.page)
+            self.assertIn(line["effect"], picture)
+        # What no seed can turn round, at any number of spheres.
+        self.assertGreater(gain["refilling"], 0.05)
+        self.assertLess(gain["side walls"], 0)
+        self.assertLess(gain["a floor and a lid"], 0)
+        self.assertRegex(self.page, r"contacts are closed to a gap ratio of 1e-0[6-9] instead of")
+
+
+class Arithmetic(Table):
+    def test_filtered_is_exact_and_errors_are_below_their_bounds(self):
+        lines = self.made("arithmetic", "--decisions", 3000, "--largest", 100, "--program", ARITHMETIC)
+        self.assertEqual(len({line["decision"] for line in lines}), 6)
+        self.assertEqual({line["container"] for line in lines}, {"", "box", "cylinder", "sphere", "mesh 1e2"})
+        wrong = 0
+        for line in lines:
+            self.assertGreaterEqual(int(line["decisions"]), 1 if line["decision"] == "certificate" else 40)
+            self.assertGreater(float(line["ns"]), 0)
+            if line["arithmetic"] == "filtered":
+                self.assertEqual(line["differ_from_exact"], "0", line)
+            if line["arithmetic"] == "double":
+                wrong += int(line["differ_from_exact"])
+            if line["worst_error"] and line["bound"]:
+                self.assertLessEqual(float(line["worst_error"]), float(line["bound"]), line)
+        self.assertGreater(wrong, 50, "near ties doubles err")
+        self.assertIn("`filtered` differs from `exact` in 0,", self.page)
+        self.assertIn("every error is within its bound", self.page)
+
+    def test_refuses_what_is_no_number(self):
+        self.assertEqual(subprocess.run([ARITHMETIC, "many", "1"], capture_output=True).returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
