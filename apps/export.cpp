@@ -1,4 +1,4 @@
-#include "bernal/export/export.hpp"
+#include "bernal/formats/export.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -5,7 +5,7 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
-#include "bernal/export/export.hpp"
+#include "bernal/formats/export.hpp"
 #include "support/export_packings.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"
