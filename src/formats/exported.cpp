@@ -15,53 +15,29 @@
 namespace bernal {
 namespace {
 
-/// Lengths and points of the scene as a file has them. To a larger unit they are divided: by a whole number
-/// where both are metric, so that nothing but the result is rounded.
-struct Conversion {
-  double times = 1, by = 1;
-  bool single = false;
-  Vector<3> middle = Vector<3>::Zero();
+/// `mapping.of` of each kind of domain.
+struct MappedDomain {
+  const Mapping& mapping;
 
-  Conversion(Unit from, Unit to, Precision precision) : single(precision == Precision::as_float) {
-    const double factor = conversion_factor(from, to);
-    if (factor < 1)
-      by = conversion_factor(to, from);
-    else
-      times = factor;
-  }
-
-  double rounded(double value) const {
-    return single ? static_cast<double>(static_cast<float>(value)) : value;
-  }
-  double converted(double length) const { return by == 1 ? length * times : length / by; }
-
-  /// Diameters and edges: what formats of single precision hold, and half of it is exact.
-  double length(double of_scene) const { return rounded(converted(of_scene)); }
-  double radius(double of_scene) const { return 0.5 * length(2 * of_scene); }
-  double coordinate(double of_scene, int axis) const {
-    const double value = converted(of_scene);
-    return rounded(axis < 3 ? value - middle[axis] : value);
-  }
   template <class Point>
   Point point(Point p) const {
-    for (int k = 0; k < p.size(); ++k) p[k] = coordinate(p[k], k);
+    for (int k = 0; k < p.size(); ++k) p[k] = mapping.coordinate(p[k], k);
     return p;
   }
-
   Domain operator()(Box box) const {
     box.corner = point(box.corner);
-    for (double& edge : box.size) edge = length(edge);
+    for (double& edge : box.size) edge = mapping.length(edge);
     return box;
   }
   Domain operator()(Cylinder cylinder) const {
     cylinder.base = point(cylinder.base);
-    cylinder.radius = length(cylinder.radius);
-    cylinder.height = length(cylinder.height);
+    cylinder.radius = mapping.length(cylinder.radius);
+    cylinder.height = mapping.length(cylinder.height);
     return cylinder;
   }
   Domain operator()(Sphere sphere) const {
     sphere.center = point(sphere.center);
-    sphere.radius = length(sphere.radius);
+    sphere.radius = mapping.length(sphere.radius);
     return sphere;
   }
   Domain operator()(Mesh mesh) const {
@@ -97,7 +73,7 @@ void wrap_into_periods(Exported& made, bool centred) {
 }
 
 /// What the output asks for about contacts, of the numbers that the file will hold.
-void treat_contacts(Exported& made, const Format& format, const Monitor& monitor) {
+void treat_contacts(Exported& made, const PackingWriter& format, const Monitor& monitor) {
   const Output& output = made.output;
   if (format.table.solids) {
     made.solids = solids_of(
@@ -113,8 +89,8 @@ void treat_contacts(Exported& made, const Format& format, const Monitor& monitor
   }
 }
 
-}  // namespace
-
+/// The type of every radius, from 1, and how many there are: classes of equal width if `asked`; else one for
+/// every radius where at most ten occur, or one for all.
 std::uint32_t take_types(std::span<const double> radii, const std::optional<int>& asked,
                          std::vector<std::uint32_t>& types) {
   constexpr std::size_t most_by_radius = 10;
@@ -138,32 +114,52 @@ std::uint32_t take_types(std::span<const double> radii, const std::optional<int>
   return static_cast<std::uint32_t>(sorted.size());
 }
 
+}  // namespace
+
+std::function<double(double)> unit_conversion(Unit from, Unit to) {
+  const double factor = conversion_factor(from, to), back = conversion_factor(to, from);
+  return [factor, back](double length) { return factor < 1 ? length / back : length * factor; };
+}
+
+Vector<3> Mapping::point(Vector<3> p) const { return MappedDomain{*this}.point(p); }
+void Mapping::map(Spheres<dynamic>& spheres) const {
+  for (std::size_t k = 0; k < spheres.x.size(); ++k)
+    for (double& x : spheres.x[k]) x = coordinate(x, static_cast<int>(k));
+  for (double& r : spheres.r) r = length(r);
+}
+Domain Mapping::of(const Domain& domain) const { return std::visit(MappedDomain{*this}, domain); }
+
 Exported exported(const Packing& packing, const Output& output, const Monitor& monitor) {
-  const Format& format = format_of(output);
-  Conversion convert(packing.scene.unit, *output.unit, format.precision);
+  const PackingWriter& format = writer_of(output);
+  const auto converted = unit_conversion(packing.scene.unit, *output.unit);
+  const auto rounded = [is_single = format.precision == Precision::as_float](double value) {
+    return is_single ? static_cast<double>(static_cast<float>(value)) : value;
+  };
   Exported made{.packing = packing,
                 .output = output,
                 .spheres = packing.spheres,
                 .domain = Domain(),
                 .types = {},
                 .monitor = monitor};
+  Vector<3> middle = Vector<3>::Zero();
   if (format.centred) {
     const Bounds<3> bounds = bounds_of(packing.domain);
-    for (int k = 0; k < 3; ++k)
-      convert.middle[k] = convert.converted(0.5 * (bounds.lower[k] + bounds.upper[k]));
-    made.middle = convert.middle;
+    for (int k = 0; k < 3; ++k) middle[k] = converted(0.5 * (bounds.lower[k] + bounds.upper[k]));
   }
-  for (std::size_t k = 0; k < made.spheres.x.size(); ++k)
-    for (double& x : made.spheres.x[k]) x = convert.coordinate(x, static_cast<int>(k));
-  for (std::size_t i = 0; i < made.size(); ++i) {
-    double& r = made.spheres.r[i];
-    r = convert.radius(r);
-    if (!(r > 0 && std::isfinite(r)))
+  Mapping mapping{[&](double x, int axis) {
+                    const double value = converted(x);
+                    return rounded(axis < 3 ? value - middle[axis] : value);
+                  },
+                  [&](double length) { return rounded(converted(length)); }};
+  made.domain = mapping.of(packing.domain);
+  // A format of single precision holds diameters, and half of one is exact.
+  mapping.length = [&](double radius) { return 0.5 * rounded(converted(2 * radius)); };
+  mapping.map(made.spheres);
+  for (std::size_t i = 0; i < made.size(); ++i)
+    if (const double r = made.spheres.r[i]; !(r > 0 && std::isfinite(r)))
       throw Error(ErrorCode::bad_packing,
                   fmt::format("sphere {} has the radius {} {}, which numbers of the format {} cannot hold", i,
                               packing.spheres.r[i], name_of(packing.scene.unit), output.format));
-  }
-  made.domain = std::visit(convert, packing.domain);
   if (format.wraps) wrap_into_periods(made, format.centred);
   made.type_count = take_types(packing.spheres.r, output.types, made.types);
   treat_contacts(made, format, monitor);
@@ -207,18 +203,43 @@ std::string Exported::name() const { return plain_text(output.file.string()); }
 
 std::string Exported::name_as_word() const { return as_word(output.file.string()); }
 
-std::string as_word(const std::string& word) {
-  const auto is_plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("._-+", c);
-  };
-  return std::ranges::all_of(word, is_plain) ? word : toml_string(word);
+std::string Exported::name_of_type(std::uint32_t type) const {
+  return type_count == 1 ? "spheres" : fmt::format("spheres_{}", type);
 }
+
+std::string periods_in_python(const Exported& file) {
+  return fmt::format("({})", file.periods_as("True", "False", ", "));
+}
+
+bool is_plain_word(const std::string& word) {
+  return std::ranges::all_of(
+      word, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("._-+", c); });
+}
+
+std::string as_word(const std::string& word) { return is_plain_word(word) ? word : toml_string(word); }
 
 std::string Exported::title() const {
   return fmt::format("bernal {}: {} spheres in a {}, packing fraction {:.6g}", version(), grouped(size()),
                      name_of(domain), packing.packing_fraction() - contacts.change_of_porosity());
 }
 
-std::string row_of(const Vector<3>& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); }
+std::string row_of(const Vector<3>& v, std::string_view between) {
+  return fmt::format("{0}{3}{1}{3}{2}", v[0], v[1], v[2], between);
+}
+
+std::string filled(std::string_view text,
+                   const std::vector<std::pair<std::string_view, std::string>>& values) {
+  std::string made;
+  for (std::size_t at; (at = text.find('@')) != text.npos;) {
+    const std::size_t end = text.find('@', at + 1);
+    const auto value = std::ranges::find(values, text.substr(at + 1, end - at - 1),
+                                         &std::pair<std::string_view, std::string>::first);
+    const bool is_name = end != text.npos && value != values.end();
+    made += text.substr(0, at);
+    made += is_name ? value->second : "@";
+    text.remove_prefix(is_name ? end + 1 : at + 1);
+  }
+  return made += text;
+}
 
 }  // namespace bernal

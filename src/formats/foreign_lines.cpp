@@ -9,7 +9,6 @@
 
 #include "bernal/core/error.hpp"
 #include "core/csv_headings.hpp"
-#include "formats/sphere_size.hpp"
 
 namespace bernal {
 
@@ -101,13 +100,18 @@ void ForeignLines::refuse_what_a_spreadsheet_gave_up() const {
         bernal::quoted(fields[0])));
 }
 
-std::uint64_t ForeignLines::whole(std::string_view field, std::string_view column) const {
+std::optional<std::uint64_t> whole_number(std::string_view text) {
   std::uint64_t value = 0;
-  const char* end = field.data() + field.size();
-  const auto [stop, problem] = std::from_chars(field.data(), end, value);
-  if (problem != std::errc{} || stop != end)
-    fail(fmt::format("{} = {} is not a whole number", column, bernal::quoted(field)));
+  const char* end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, value);
+  if (problem != std::errc{} || stop != end) return {};
   return value;
+}
+
+std::uint64_t ForeignLines::whole(std::string_view field, std::string_view column) const {
+  const std::optional<std::uint64_t> value = whole_number(field);
+  if (!value) fail(fmt::format("{} = {} is not a whole number", column, bernal::quoted(field)));
+  return *value;
 }
 
 void ForeignLines::take_unit_remark(std::optional<Unit>& unit) const {
@@ -120,6 +124,18 @@ void ForeignLines::expect_rows(std::uint64_t said, std::uint64_t found) const {
                      found));
 }
 
+void ForeignLines::expect_fields(std::size_t found, std::size_t in_first) const {
+  if (found != in_first)
+    fail(fmt::format("{} columns, but the first row has {}; was the line cut off?", found, in_first));
+}
+
+void ForeignLines::refuse_more(std::string_view what, std::uint64_t said, std::string_view where) const {
+  fail(fmt::format(
+      "{} says that it has {} spheres, and here is more; if it is a sphere, correct the number {}, "
+      "else take the line out",
+      what, said, where));
+}
+
 bool is_number(std::string_view field) {
   field = unquoted(field);
   if (field.starts_with('+')) field.remove_prefix(1);
@@ -127,25 +143,32 @@ bool is_number(std::string_view field) {
   return std::from_chars(field.data(), field.data() + field.size(), value).ec != std::errc::invalid_argument;
 }
 
-void check_coordinate(const CsvLines& lines, double x, std::string_view column) {
-  if (std::abs(x) > farthest_place)
-    lines.fail(fmt::format("{} = {} is beyond {}", column, x, farthest_place));
-}
-
 void add_row(const ForeignLines& lines, const SphereColumns& columns, std::span<const std::string_view> row,
              Spheres<dynamic>& spheres) {
   if (row.size() < columns.least_fields())
     lines.fail(fmt::format("{} {}, but a sphere needs {}; was the line cut off?", row.size(),
                            row.size() == 1 ? "field" : "fields", columns.least_fields()));
-  for (std::size_t k = 0; k < columns.x.size(); ++k) {
-    const double x = lines.number(row[columns.x[k]], columns.names[k]);
-    check_coordinate(lines, x, columns.names[k]);
-    spheres.x[k].push_back(x);
+  add_sphere(
+      columns, spheres,
+      [&](std::size_t place, const std::string& name) { return lines.number(row[place], name); },
+      [&](const std::string& why) { lines.fail(why); });
+}
+
+void NumberTable::add(const std::vector<double>& values, std::uint64_t components, const std::string& name) {
+  for (std::uint64_t k = 0; k < components; ++k) {
+    columns.push_back({values, components, k});
+    names.push_back(components == 1 ? name : fmt::format("{}:{}", name, k));
   }
-  if (!columns.size) return;
-  const double size = lines.number(row[*columns.size], columns.names.back());
-  if (!is_size(size)) lines.fail(complaint_of_size(size, columns.is_diameter));
-  spheres.r.push_back(columns.is_diameter ? 0.5 * size : size);
+}
+
+Spheres<dynamic> NumberTable::spheres(const SphereColumns& of, std::uint64_t rows, std::string_view row,
+                                      std::uint64_t first, const Reading& reading) const {
+  Spheres<dynamic> made = of.no_spheres();
+  for (std::uint64_t i = 0; i < rows; ++i)
+    add_sphere(
+        of, made, [&](std::size_t place, const std::string&) { return columns[place].at(i); },
+        [&](const std::string& why) { reading.fail(fmt::format("{} {}: {}", row, i + first, why)); });
+  return made;
 }
 
 void Identities::sort(Spheres<dynamic>& spheres, const Reading& reading) const {
@@ -167,6 +190,71 @@ void Identities::sort(Spheres<dynamic>& spheres, const Reading& reading) const {
                   fmt::format("the number {} has a sphere in {} {} already; leave one of them out",
                               id[order[i]], what, line[order[i - 1]]),
                   {reading.file.string(), what == "line" ? line[order[i]] : 0});
+}
+
+std::vector<std::string_view> clauses_of(std::string_view remark) {
+  std::vector<std::string_view> clauses;
+  constexpr std::string_view between = ";,\n", around = " \t\r#%!/.";
+  for (std::size_t at = 0; (at = remark.find_first_not_of(between, at)) != remark.npos;) {
+    const std::size_t end = std::min(remark.find_first_of(between, at), remark.size());
+    if (const std::string_view clause = stripped(remark.substr(at, end - at), around); !clause.empty())
+      clauses.push_back(clause);
+    at = end;
+  }
+  return clauses;
+}
+
+std::optional<std::string_view> unit_in_clause(std::string_view clause) {
+  for (const std::string_view mark : {"lengths in ", "unit: ", "units: "}) {
+    if (!clause.starts_with(mark)) continue;
+    const std::string_view rest = stripped(clause.substr(mark.size()), " \t");
+    const bool is_text = rest.find_first_of(" \t") != rest.npos && !is_number(rest);
+    if (!is_text) return rest;
+  }
+  return {};
+}
+
+void take_unit(Unit said, std::optional<Unit>& unit, const Location& where) {
+  if (unit && *unit != said)
+    throw Error(ErrorCode::bad_packing,
+                fmt::format("this line says that the unit is {}, and it or one before it says {}",
+                            name_of(said), name_of(*unit)),
+                where);
+  unit = said;
+}
+
+void take_unit(std::string_view word, std::string_view what, std::optional<Unit>& unit,
+               const Location& where) {
+  const std::string_view name = unit_in_letters(word);
+  if (const std::string complaint = complaint_of_unit(name); !complaint.empty())
+    throw Error(ErrorCode::bad_packing,
+                fmt::format("{}; convert the file, or take {} out and give --unit", complaint, what), where);
+  take_unit(unit_named(name), unit, where);
+}
+
+void take_unit_of_remark(std::string_view remark, std::optional<Unit>& unit, const Location& where) {
+  for (const std::string_view clause : clauses_of(remark))
+    if (const auto word = unit_in_clause(clause)) take_unit(*word, "this remark", unit, where);
+}
+
+void refuse_skewed(const Reading& reading, int line) {
+  reading.fail(
+      "the box is skewed (triclinic), and only upright ones are known; write the packing in an upright box",
+      line);
+}
+
+int frame_of(const Reading& reading, int frames) {
+  const int wanted = reading.options.frame.value_or(frames);
+  if (wanted < 1 || wanted > frames)
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("there is no frame {}; the file has {}, and the first is 1", wanted, frames),
+                {reading.file.string()});
+  return wanted;
+}
+
+std::string complaint_of_size(double length, bool is_diameter) {
+  return fmt::format("the {} {} is not a length from {} to {}", is_diameter ? "diameter" : "radius", length,
+                     smallest_length, farthest_place);
 }
 
 }  // namespace bernal

@@ -1,14 +1,17 @@
 #pragma once
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/spheres.hpp"
 #include "core/csv_lines.hpp"
-#include "formats/reader.hpp"
+#include "formats/format.hpp"
 
 namespace bernal {
 
@@ -41,8 +44,13 @@ class ForeignLines : public CsvLines {
   void refuse_what_a_spreadsheet_gave_up() const;
   /// `take_unit_of_remark` of the line.
   void take_unit_remark(std::optional<Unit>& unit) const;
-  /// Throws where it is not so many.
+  /// Throws where the file ends after `found` of the rows that it says it has.
   void expect_rows(std::uint64_t said, std::uint64_t found) const;
+  /// Throws where a row has not as many fields as the first one.
+  void expect_fields(std::size_t found, std::size_t in_first) const;
+  /// Of a row more than the file, or `what` of it, says it has, in a number that stands there: "below X".
+  [[noreturn]] void refuse_more(std::string_view what, std::uint64_t said, std::string_view where) const;
+  [[noreturn]] void refuse_empty() const { fail("there are no spheres in it"); }
 
  private:
   const Monitor& monitor_;
@@ -54,6 +62,8 @@ class ForeignLines : public CsvLines {
 void split_at(std::string_view text, std::string_view between, std::vector<std::string_view>& parts);
 /// Whether a number stands at its beginning.
 bool is_number(std::string_view field);
+/// Of a text that is a whole number and nothing else.
+std::optional<std::uint64_t> whole_number(std::string_view text);
 
 /// Where in a row the centre and the size stand.
 struct SphereColumns {
@@ -69,16 +79,53 @@ struct SphereColumns {
   std::string in_words() const;
 };
 
+/// x, y, z and the radius, the first four of a row.
+inline SphereColumns columns_xyzr() {
+  return {.x = {0, 1, 2}, .size = 3, .names = {"x", "y", "z", "radius"}};
+}
+
 /// Those of the user's words where there are some, else by the names that columns have; without names there
 /// is nothing else to go by. Throws with the remedy where that says too little or too much.
 SphereColumns sphere_columns(const std::string& wish, const std::vector<std::string>& names,
                              const CsvLines& lines);
 
+/// Appends the sphere whose numbers are value(place, name). Calls fail(why) for what is none.
+template <class Value, class Fail>
+void add_sphere(const SphereColumns& columns, Spheres<dynamic>& spheres, const Value& value,
+                const Fail& fail) {
+  for (std::size_t k = 0; k < columns.x.size(); ++k) {
+    const double x = value(columns.x[k], columns.names[k]);
+    if (!(std::abs(x) <= farthest_place))
+      fail(fmt::format("{} = {} is not finite or is beyond {}", columns.names[k], x, farthest_place));
+    spheres.x[k].push_back(x);
+  }
+  if (!columns.size) return;
+  const double size = value(*columns.size, columns.names.back());
+  if (!is_size(size)) fail(complaint_of_size(size, columns.is_diameter));
+  spheres.r.push_back(columns.is_diameter ? 0.5 * size : size);
+}
+
 /// Appends the sphere of a row. Throws for what is none. Precondition: a column for each of the coordinates.
 void add_row(const ForeignLines& lines, const SphereColumns& columns, std::span<const std::string_view> row,
              Spheres<dynamic>& spheres);
-/// Throws Error{bad_packing} for a coordinate or a size that no sphere has.
-void check_coordinate(const CsvLines& lines, double x, std::string_view column);
+
+/// Columns of numbers, each `components` apart in an array that outlives them, from its number `component`
+/// on.
+struct NumberTable {
+  struct Column {
+    const std::vector<double>& values;
+    std::uint64_t components, component;
+    double at(std::uint64_t row) const { return values[row * components + component]; }
+  };
+  std::vector<Column> columns = {};
+  std::vector<std::string> names = {};
+
+  /// Several components are called "name:0", "name:1", …
+  void add(const std::vector<double>& values, std::uint64_t components, const std::string& name);
+  /// The spheres of so many rows; errors call the first "point 0" where `row` is "point" and `first` is 0.
+  Spheres<dynamic> spheres(const SphereColumns&, std::uint64_t rows, std::string_view row,
+                           std::uint64_t first, const Reading&) const;
+};
 
 /// The axis that a column's name means: "x", "x0" and "Points:0" the first.
 std::optional<std::size_t> axis_named(std::string_view name);

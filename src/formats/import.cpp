@@ -15,8 +15,6 @@
 #include "core/csv_lines.hpp"
 #include "core/file_kind.hpp"
 #include "formats/import_domain.hpp"
-#include "formats/reader.hpp"
-#include "formats/sphere_size.hpp"
 #include "io/result_folder.hpp"
 
 namespace bernal {

@@ -10,7 +10,6 @@
 #include "bernal/core/error.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "formats/sphere_size.hpp"
 
 namespace bernal {
 namespace {
@@ -152,16 +151,6 @@ ImportDomain domain_of_box(const FileBox& box, Unit unit, const std::string& why
   return made;
 }
 
-/// Lengths of the file become lengths of the scene.
-void convert(FileContents& contents, Unit from, Unit to) {
-  if (from == to) return;
-  const double factor = conversion_factor(from, to), back = conversion_factor(to, from);
-  const auto converted = [&](double length) { return factor < 1 ? length / back : length * factor; };
-  for (std::vector<double>& column : contents.spheres.x)
-    for (double& x : column) x = converted(x);
-  for (double& r : contents.spheres.r) r = converted(r);
-}
-
 ImportDomain domain_of_scene(FileContents& contents, Unit unit, const std::filesystem::path& file) {
   const Scene scene = read_scene(file);
   if (scene.dimension() != contents.spheres.dimension())
@@ -174,7 +163,8 @@ ImportDomain domain_of_scene(FileContents& contents, Unit unit, const std::files
   made.scene.unit = scene.unit;
   made.scene.container = scene.container;
   made.scene.walls = scene.walls;
-  convert(contents, unit, scene.unit);
+  const auto converted = unit_conversion(unit, scene.unit);
+  Mapping{[&](double x, int) { return converted(x); }, converted}.map(contents.spheres);
   if (std::holds_alternative<MeshFile>(scene.container)) {
     std::string notes, caution;  // the smallest says how finely a curved part is to be cut into triangles
     made.scene.sizes = Constant{std::ranges::min(contents.spheres.r)};

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "bernal/domain/domain.hpp"
-#include "formats/reader.hpp"
+#include "formats/format.hpp"
 
 namespace bernal {
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,13 +12,6 @@ namespace {
 
 constexpr std::string_view example_of_wish = "--columns x,y,z,r (r radius, d diameter, - another column)";
 
-std::string name_in_lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
-
 bool names_radius(std::string_view word) {
   return word == "r" || word == "radius" || word == "radii" || word == "rad" || word == "particle_radius" ||
          word == "particle radius";
@@ -32,7 +24,7 @@ bool names_diameter(std::string_view word) {
 }  // namespace
 
 std::optional<std::size_t> axis_named(std::string_view name) {
-  const std::string lower = name_in_lower_case(name);
+  const std::string lower = in_lower_case(name);
   const std::string_view word = lower;
   if (word.size() == 1 && word[0] >= 'x' && word[0] <= 'z') return static_cast<std::size_t>(word[0] - 'x');
   for (const std::string_view stem : {"x", "points:", "points_"}) {  // the latter are ParaView's
@@ -86,7 +78,7 @@ struct Choice {
 
 SphereColumns columns_by_name(const std::vector<std::string>& names, const CsvLines& lines) {
   Choice choice{lines};
-  for (std::size_t k = 0; k < names.size(); ++k) choice.take(name_in_lower_case(names[k]), k);
+  for (std::size_t k = 0; k < names.size(); ++k) choice.take(in_lower_case(names[k]), k);
   if (!choice.is_complete())
     lines.fail(
         fmt::format("the columns are called {}, and none or not all of x, y, z; say which they are, such "
@@ -104,12 +96,10 @@ SphereColumns columns_by_name(const std::vector<std::string>& names, const CsvLi
 std::size_t place_of_wish(std::string_view word, const std::vector<std::string>& names,
                           const CsvLines& lines) {
   for (std::size_t k = 0; k < names.size(); ++k)
-    if (name_in_lower_case(names[k]) == name_in_lower_case(word)) return k;
-  std::size_t number = 0;
-  const auto [stop, problem] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (problem == std::errc{} && stop == word.data() + word.size() && number > 0 && number <= 4096 &&
-      (names.empty() || number <= names.size()))
-    return number - 1;
+    if (in_lower_case(names[k]) == in_lower_case(word)) return k;
+  if (const auto number = whole_number(word);
+      number && *number > 0 && *number <= (names.empty() ? 4096 : names.size()))
+    return *number - 1;
   lines.fail(
       names.empty()
           ? fmt::format("--columns: {} is no number of a column, which count from 1", bernal::quoted(word))
@@ -150,7 +140,7 @@ SphereColumns sphere_columns(const std::string& wish, const std::vector<std::str
   // A list of names that the header has goes by them, whatever their order.
   const auto is_named = [&](std::string_view word) {
     return std::ranges::any_of(
-        names, [&](const std::string& name) { return name_in_lower_case(name) == name_in_lower_case(word); });
+        names, [&](const std::string& name) { return in_lower_case(name) == in_lower_case(word); });
   };
   const bool by_name = std::ranges::find(words, "-") == words.end() && std::ranges::any_of(words, is_named);
   Choice choice{lines};
@@ -158,7 +148,7 @@ SphereColumns sphere_columns(const std::string& wish, const std::vector<std::str
     const std::string_view word = words[k];
     if (word == "-") continue;
     const std::size_t sign = word.find('=');
-    const std::string role = name_in_lower_case(word.substr(0, sign));
+    const std::string role = in_lower_case(word.substr(0, sign));
     if (choice.twice) break;
     std::size_t place = k;
     if (sign != word.npos) {
@@ -166,7 +156,7 @@ SphereColumns sphere_columns(const std::string& wish, const std::vector<std::str
     } else if (by_name) {
       // "d" is also what the header calls "diameter".
       const auto same = std::ranges::find_if(names, [&](const std::string& name) {
-        const std::string lower = name_in_lower_case(name);
+        const std::string lower = in_lower_case(name);
         return lower == role || (names_radius(role) && names_radius(lower)) ||
                (names_diameter(role) && names_diameter(lower));
       });

@@ -1,8 +1,10 @@
 #pragma once
 #include <array>
+#include <bit>
 #include <charconv>
 #include <concepts>
 #include <cstring>
+#include <span>
 #include <string_view>
 
 #include "core/parallel.hpp"
@@ -54,5 +56,22 @@ class TextFile {
   std::array<char, 1 << 14> buffer_;
   char* end_ = buffer_.data();
 };
+
+static_assert(std::endian::native == std::endian::little,
+              "binary files are written as numbers lie in memory");
+
+/// Numbers as they lie in memory.
+template <class T>
+std::string_view bytes_of(std::span<const T> values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
+}
+template <class T>
+void append_bytes(OutputFile& out, const T& value) {
+  out.append(bytes_of(std::span(&value, 1)));
+}
+template <class T>
+void append_bytes(OutputFile& out, std::span<const T> values) {
+  out.append(bytes_of(values));
+}
 
 }  // namespace bernal

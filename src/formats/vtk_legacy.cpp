@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <utility>
 
@@ -9,7 +8,7 @@
 #include "core/csv_headings.hpp"
 #include "core/csv_lines.hpp"
 #include "formats/foreign_lines.hpp"
-#include "formats/vtk_points.hpp"
+#include "formats/vtk.hpp"
 
 namespace bernal {
 namespace {
@@ -55,11 +54,10 @@ class LegacyText {
     return bytes;
   }
   std::uint64_t whole(std::string_view word) const {
-    std::uint64_t value = 0;
-    const auto [stop, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (problem != std::errc{} || stop != word.data() + word.size() || value > most_numbers)
+    const std::optional<std::uint64_t> value = whole_number(word);
+    if (!value || *value > most_numbers)
       fail(fmt::format("{} is not a number of points, cells or components", bernal::quoted(word)));
-    return value;
+    return *value;
   }
   [[noreturn]] void fail(const std::string& why) const {
     throw Error(ErrorCode::bad_packing, why, {file_, line_of_words_});
@@ -90,9 +88,7 @@ std::optional<RawNumber> legacy_number(std::string_view type) {
       {"vtktypeint64", {'i', 8}},   {"vtktypeuint64", {'u', 8}},
       {"vtktypeint32", {'i', 4}},   {"vtktypeuint32", {'u', 4}},
       {"vtktypefloat32", {'f', 4}}, {"vtktypefloat64", {'f', 8}}};
-  std::string lower(type);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string lower = in_lower_case(type);
   for (const auto& [name, number] : types)
     if (name == lower) return RawNumber{number.kind, number.bytes, true};  // the format's order of bytes
   return {};
@@ -166,9 +162,7 @@ class LegacyReader {
       return values;
     }
     const std::optional<RawNumber> number = legacy_number(type);
-    if (!number && !(type == "bit"))
-      in_.fail(
-          fmt::format("numbers of the type {} are not known; save float or double", bernal::quoted(type)));
+    if (!number && type != "bit") in_.fail(complaint_of_type(type));
     if (is_binary_) {
       const auto bytes = static_cast<std::uint64_t>(number->bytes);
       append_raw_numbers(in_.bytes(count > most_numbers / 8 ? most_numbers : count * bytes), *number, values);
@@ -218,7 +212,7 @@ class LegacyReader {
     need(words, 3);
     const std::string word = in_capitals(words[0]);
     const std::uint64_t cells = in_.whole(words[1]), numbers_of_cells = in_.whole(words[2]);
-    if ((word == "POLYGONS" || word == "TRIANGLE_STRIPS") && cells > 0) refuse_faces(cells);
+    if ((word == "POLYGONS" || word == "TRIANGLE_STRIPS") && cells > 0) in_.fail(complaint_of_faces(cells));
     if (!is_offsets_) {
       numbers("int", numbers_of_cells, 1);
       return;
@@ -234,16 +228,9 @@ class LegacyReader {
   void take_cell_types(const std::vector<std::string_view>& words) {
     need(words, 2);
     const std::vector<double> types = numbers("int", in_.whole(words[1]), 1);
-    const auto faces = std::ranges::count_if(types, [](double type) { return type > 4; });
-    if (faces > 0) refuse_faces(static_cast<std::uint64_t>(faces));
+    const auto faces = std::ranges::count_if(types, is_face);
+    if (faces > 0) in_.fail(complaint_of_faces(static_cast<std::uint64_t>(faces)));
   }
-  [[noreturn]] void refuse_faces(std::uint64_t count) {
-    in_.fail(
-        fmt::format("the points are the corners of {} faces or solids, and no centres of spheres; save the "
-                    "particles as points, before a filter such as Glyph makes surfaces of them",
-                    count));
-  }
-
   void take_section(const std::vector<std::string_view>& words) {
     need(words, 2);
     section_ = in_capitals(words[0]) == "POINT_DATA" ? Section::points : Section::cells;

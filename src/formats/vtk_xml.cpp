@@ -1,7 +1,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <pugixml.hpp>
@@ -12,7 +11,7 @@
 #include "core/csv_headings.hpp"
 #include "core/csv_lines.hpp"
 #include "formats/foreign_lines.hpp"
-#include "formats/vtk_points.hpp"
+#include "formats/vtk.hpp"
 #include "io/base64.hpp"
 
 namespace bernal {
@@ -29,12 +28,11 @@ std::optional<RawNumber> xml_number(std::string_view type, bool is_swapped) {
   for (const auto& [word, kind] : {std::pair{"Float", 'f'}, {"UInt", 'u'}, {"Int", 'i'}}) {
     if (!type.starts_with(word)) continue;
     const std::string_view bits = type.substr(std::string_view(word).size());
-    int count = 0;
-    if (std::from_chars(bits.data(), bits.data() + bits.size(), count).ptr != bits.data() + bits.size())
-      return {};
+    const std::optional<std::uint64_t> count = whole_number(bits);
+    if (!count || *count > 64) return {};
     number.kind = kind;
-    number.bytes = count / 8;
-    if (count % 8 == 0 && number.is_known()) return number;
+    number.bytes = static_cast<int>(*count / 8);
+    if (*count % 8 == 0 && number.is_known()) return number;
   }
   return {};
 }
@@ -121,15 +119,15 @@ class XmlReader {
     const std::uint64_t rows = whole(piece, "NumberOfPoints", {}, most_rows);
     for (const char* faces : {"NumberOfPolys", "NumberOfStrips"})
       if (const std::uint64_t count = whole(piece, faces, 0, most_rows); count > 0)
-        refuse_faces(piece, count);
+        fail_at(piece, complaint_of_faces(count));
     if (rows == 0) return;
     if (const pugi::xml_node cells = piece.child("Cells")) {
       const pugi::xml_node types = cells.find_child_by_attribute("DataArray", "Name", "types");
       const std::uint64_t count = whole(piece, "NumberOfCells", 0, most_rows);
       if (types && count > 0) {
         const std::vector<double> kinds = values_of(types, count, 1);
-        const auto solids = std::ranges::count_if(kinds, [](double kind) { return kind > 4; });
-        if (solids > 0) refuse_faces(types, static_cast<std::uint64_t>(solids));
+        const auto solids = std::ranges::count_if(kinds, is_face);
+        if (solids > 0) fail_at(types, complaint_of_faces(static_cast<std::uint64_t>(solids)));
       }
     }
     const pugi::xml_node places = piece.child("Points").child("DataArray");
@@ -167,13 +165,6 @@ class XmlReader {
     found->values.insert(found->values.end(), own.begin(), own.end());
   }
 
-  [[noreturn]] void refuse_faces(const pugi::xml_node& node, std::uint64_t count) const {
-    fail_at(node,
-            fmt::format("the points are the corners of {} faces or solids, and no centres of spheres; save "
-                        "the particles as points, before a filter such as Glyph makes surfaces of them",
-                        count));
-  }
-
   std::vector<double> values_of(const pugi::xml_node& node, std::uint64_t rows,
                                 std::uint64_t components) const {
     const std::uint64_t count = rows * components;
@@ -181,7 +172,7 @@ class XmlReader {
     if (format == "ascii") return numbers_in_text(node, count);
     const std::string_view type = node.attribute("type").value();
     const std::optional<RawNumber> number = xml_number(type, is_swapped_);
-    if (!number) fail_at(node, fmt::format("numbers of the type {} are not known", bernal::quoted(type)));
+    if (!number) fail_at(node, complaint_of_type(type));
     std::string_view source = node.child_value();
     bool is_base64 = true;
     if (format == "appended") {
@@ -291,12 +282,11 @@ class XmlReader {
                       std::uint64_t most) const {
     const std::string_view word = stripped(node.attribute(name).value(), vtk_blanks);
     if (word.empty() && otherwise) return *otherwise;
-    std::uint64_t value = 0;
-    const auto [stop, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (problem != std::errc{} || stop != word.data() + word.size() || value > most)
+    const std::optional<std::uint64_t> value = whole_number(word);
+    if (!value || *value > most)
       fail_at(node,
               fmt::format("{} is {}, which is no number from 0 to {}", name, bernal::quoted(word), most));
-    return value;
+    return *value;
   }
 
   int line_at(std::ptrdiff_t offset) const {

@@ -259,8 +259,10 @@ void SphereSurfaces::make(std::size_t sphere,
   // If need be with gaps as narrow as a sliver, between the two ends of a period.
   for (const Cutting wanted : {Cutting::closes, Cutting::leaves_gaps}) {
     for (int frequency = frequency_; frequency < 2 * frequency_ + 8; ++frequency) {
-      if (make_cut(sphere, frequency, made, measured) < wanted) continue;
+      const Cutting cutting = make_cut(sphere, frequency, made, measured);
+      if (cutting < wanted) continue;
       if (measured.inner - shift_ < (1 - deflection_) * first.radius) continue;
+      measured.leaves_gaps = cutting == Cutting::leaves_gaps;
       for (std::size_t p = 0; p < made.size(); ++p)
         use(made[p], p == 0 ? measured : Measured{0, measured.inner});
       return;
@@ -279,6 +281,7 @@ void SphereSurfaces::visit(std::size_t sphere, const std::function<void(const Fl
 SurfaceMeasures SphereSurfaces::measure() const {
   struct OfSphere {
     std::uint32_t surfaces = 0, vertices = 0, triangles = 0;
+    bool leaves_gaps = false;
     double volume = 0, deflection = 0;
   };
   std::vector<OfSphere> all(spheres());
@@ -294,6 +297,7 @@ SurfaceMeasures SphereSurfaces::measure() const {
         all[i].vertices += static_cast<std::uint32_t>(surface.vertices.size());
         all[i].triangles += static_cast<std::uint32_t>(surface.triangles.size());
         all[i].volume += measured.volume;
+        all[i].leaves_gaps |= measured.leaves_gaps;
         all[i].deflection = std::max(all[i].deflection, 1 - (measured.inner - shift_) / radius(i));
         for (const FloatPoint& p : surface.vertices) {
           if (!some) low = high = p, some = true;
@@ -313,6 +317,7 @@ SurfaceMeasures SphereSurfaces::measure() const {
     sum.surfaces += all[i].surfaces;
     sum.vertices += all[i].vertices;
     sum.triangles += all[i].triangles;
+    sum.with_gaps += all[i].leaves_gaps;
     sum.deflection = std::max(sum.deflection, all[i].deflection);
     sum.volume_share += all[i].volume;
     volume += 4 * std::numbers::pi / 3 * std::pow(radius(i), 3);

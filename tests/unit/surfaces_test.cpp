@@ -286,6 +286,21 @@ TEST(Surfaces, ClaimNothingOfSpheresThatOverlap) {
   EXPECT_NE(surfaces.note().find("overlap"), std::string::npos) << surfaces.note();
 }
 
+TEST(Surfaces, ThePoresOfSpheresThatOverlapAtTheEndOfAPeriodAreRefusedWithARemedy) {
+  Spheres<3> spheres;
+  spheres.push_back(Vector<3>(0.1, 1, 1), 0.5);
+  spheres.push_back(Vector<3>(0.1, 1.7, 1), 0.5);
+  const Domain box = bernal::periodic_box(Vector<3>(3, 3, 3));
+  try {
+    const Surfaces surfaces(spheres, box, 0.05, SurfaceChoice::pores, nobody);
+    FAIL() << "no pore space has such a boundary";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_argument);
+    EXPECT_NE(std::string(error.what()).find("contact gap"), std::string::npos) << error.what();
+  }
+  EXPECT_NO_THROW(Surfaces(spheres, box, 0.05, SurfaceChoice::all, nobody));
+}
+
 TEST(Surfaces, RefuseSpheresThatSinglePrecisionCannotHold) {
   Spheres<3> spheres;
   spheres.push_back(Vector<3>(1e6, 1, 1), 0.5);
