@@ -129,11 +129,12 @@ void ForeignLines::expect_fields(std::size_t found, std::size_t in_first) const 
     fail(fmt::format("{} columns, but the first row has {}; was the line cut off?", found, in_first));
 }
 
-void ForeignLines::refuse_more(std::string_view what, std::uint64_t said, std::string_view where) const {
-  fail(fmt::format(
-      "{} says that it has {} spheres, and here is more; if it is a sphere, correct the number {}, "
-      "else take the line out",
-      what, said, where));
+void ForeignLines::refuse_more(std::string_view what, std::uint64_t said, std::string_view where,
+                               std::string_view one) const {
+  fail(
+      fmt::format("{0} says that it has {1} {3}s, and here is more; if it is a {3}, correct the number {2}, "
+                  "else take the line out",
+                  what, said, where, one));
 }
 
 bool is_number(std::string_view field) {

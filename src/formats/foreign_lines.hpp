@@ -49,7 +49,8 @@ class ForeignLines : public CsvLines {
   /// Throws where a row has not as many fields as the first one.
   void expect_fields(std::size_t found, std::size_t in_first) const;
   /// Of a row more than the file, or `what` of it, says it has, in a number that stands there: "below X".
-  [[noreturn]] void refuse_more(std::string_view what, std::uint64_t said, std::string_view where) const;
+  [[noreturn]] void refuse_more(std::string_view what, std::uint64_t said, std::string_view where,
+                                std::string_view one = "sphere") const;
   [[noreturn]] void refuse_empty() const { fail("there are no spheres in it"); }
 
  private:

@@ -109,7 +109,7 @@ FileContents read_mfix(const Reading& reading) {
     const auto row = lines.words();
     if (row.empty()) continue;
     if (contents.size() == head.particles)
-      lines.refuse_more("the file", head.particles, "behind \"Particles:\"");
+      lines.refuse_more("the file", head.particles, "behind \"Particles:\"", "particle");
     if (in_row == 0) check_columns(in_row = row.size(), head, lines);
     lines.expect_fields(row.size(), in_row);
     add_row(lines, columns, row, contents.spheres);

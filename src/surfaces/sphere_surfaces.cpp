@@ -178,8 +178,8 @@ void SphereSurfaces::verify(const Piece& piece, const Vector<3>& home, const Flo
   }
 }
 
-SphereSurfaces::Cutting SphereSurfaces::make_cut(std::size_t sphere, int frequency,
-                                                 std::vector<FloatSurface>& to, Measured& measured) const {
+bool SphereSurfaces::make_cut(std::size_t sphere, int frequency, std::vector<FloatSurface>& to,
+                              Measured& measured) const {
   const std::span<const Piece> pieces(pieces_.data() + first_piece_[sphere],
                                       first_piece_[sphere + 1] - first_piece_[sphere]);
   const PlanesOfSphere cuts = planes_of(pieces, boundary_, shift_);
@@ -191,7 +191,7 @@ SphereSurfaces::Cutting SphereSurfaces::make_cut(std::size_t sphere, int frequen
     const Piece& piece = pieces[n];
     CutBall ball(frequency, piece.radius - 5 * shift_, cuts.planes);
     for (const auto& [plane, below] : cuts.cuts[n])
-      if (!ball.cut(plane, below)) return Cutting::fails;
+      if (!ball.cut(plane, below)) return false;
     if (ball.empty()) continue;
     FloatSurface made;
     std::vector<std::uint32_t> number(ball.corners().size(), ~0U);
@@ -236,7 +236,7 @@ SphereSurfaces::Cutting SphereSurfaces::make_cut(std::size_t sphere, int frequen
     verify(piece, home, made);
     to.push_back(std::move(made));
   }
-  return polygons.match() ? Cutting::closes : Cutting::leaves_gaps;
+  return polygons.match();
 }
 
 void SphereSurfaces::make(std::size_t sphere,
@@ -256,21 +256,17 @@ void SphereSurfaces::make(std::size_t sphere,
   }
   std::vector<FloatSurface> made;
   Measured measured;
-  // If need be with gaps as narrow as a sliver, between the two ends of a period.
-  for (const Cutting wanted : {Cutting::closes, Cutting::leaves_gaps}) {
-    for (int frequency = frequency_; frequency < 2 * frequency_ + 8; ++frequency) {
-      const Cutting cutting = make_cut(sphere, frequency, made, measured);
-      if (cutting < wanted) continue;
-      if (measured.inner - shift_ < (1 - deflection_) * first.radius) continue;
-      measured.leaves_gaps = cutting == Cutting::leaves_gaps;
-      for (std::size_t p = 0; p < made.size(); ++p)
-        use(made[p], p == 0 ? measured : Measured{0, measured.inner});
-      return;
-    }
+  for (int frequency = frequency_; frequency < 2 * frequency_ + 8; ++frequency) {
+    if (!make_cut(sphere, frequency, made, measured)) continue;
+    if (measured.inner - shift_ < (1 - deflection_) * first.radius) continue;
+    for (std::size_t p = 0; p < made.size(); ++p)
+      use(made[p], p == 0 ? measured : Measured{0, measured.inner});
+    return;
   }
   throw Error(
       ErrorCode::bad_argument,
-      fmt::format("sphere {} cannot be cut into triangles in single precision with a deflection of {}",
+      fmt::format("sphere {} cannot be cut into closed surfaces of triangles in single precision with a "
+                  "deflection of {}; give another one",
                   sphere, deflection_));
 }
 
@@ -281,7 +277,6 @@ void SphereSurfaces::visit(std::size_t sphere, const std::function<void(const Fl
 SurfaceMeasures SphereSurfaces::measure() const {
   struct OfSphere {
     std::uint32_t surfaces = 0, vertices = 0, triangles = 0;
-    bool leaves_gaps = false;
     double volume = 0, deflection = 0;
   };
   std::vector<OfSphere> all(spheres());
@@ -297,7 +292,6 @@ SurfaceMeasures SphereSurfaces::measure() const {
         all[i].vertices += static_cast<std::uint32_t>(surface.vertices.size());
         all[i].triangles += static_cast<std::uint32_t>(surface.triangles.size());
         all[i].volume += measured.volume;
-        all[i].leaves_gaps |= measured.leaves_gaps;
         all[i].deflection = std::max(all[i].deflection, 1 - (measured.inner - shift_) / radius(i));
         for (const FloatPoint& p : surface.vertices) {
           if (!some) low = high = p, some = true;
@@ -317,7 +311,6 @@ SurfaceMeasures SphereSurfaces::measure() const {
     sum.surfaces += all[i].surfaces;
     sum.vertices += all[i].vertices;
     sum.triangles += all[i].triangles;
-    sum.with_gaps += all[i].leaves_gaps;
     sum.deflection = std::max(sum.deflection, all[i].deflection);
     sum.volume_share += all[i].volume;
     volume += 4 * std::numbers::pi / 3 * std::pow(radius(i), 3);

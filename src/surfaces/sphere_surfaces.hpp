@@ -33,7 +33,6 @@ bool lies_within(const FloatPoint& p, const Vector<3>& center, double radius);
 /// What the surfaces of all spheres come to.
 struct SurfaceMeasures {
   std::uint64_t surfaces = 0, vertices = 0, triangles = 0;
-  std::uint64_t with_gaps = 0;  ///< spheres whose pieces do not meet to the last corner at an end of a period
   double deflection = 0;    ///< the largest distance of a point of a true sphere from its triangles, over r
   double volume_share = 0;  ///< of the polyhedra, over the spheres'
   FloatPoint lower{}, upper{};  ///< bounds; of no surfaces all zero
@@ -51,7 +50,7 @@ struct SurfaceMeasures {
 ///
 /// At opposite ends of a period the polygons are the same, corner by corner: across the axis the floats are
 /// equal, and along it they are those of the two ends. All pieces of a sphere are cut from one polyhedron.
-/// Where no polyhedron can be cut so, gaps as narrow as a sliver are left, which `with_gaps` counts.
+/// A sphere of which no polyhedron can be cut so is refused.
 class SphereSurfaces {
  public:
   /// `pieces` as `pieces_of` gives them, of the domain, perhaps with further cuts at contacts: every piece of
@@ -79,12 +78,10 @@ class SphereSurfaces {
  private:
   struct Measured {
     double volume = 0, inner = 0;  ///< the least distance of a triangle on the sphere from the centre
-    bool leaves_gaps = false;
   };
   void make(std::size_t sphere, const std::function<void(const FloatSurface&, const Measured&)>& use) const;
-  enum class Cutting { fails, leaves_gaps, closes };
-  Cutting make_cut(std::size_t sphere, int frequency, std::vector<FloatSurface>& to,
-                   Measured& measured) const;
+  /// False where rounding or slivers have the better of a cut.
+  bool make_cut(std::size_t sphere, int frequency, std::vector<FloatSurface>& to, Measured& measured) const;
   void verify(const Piece& piece, const Vector<3>& home, const FloatSurface& surface) const;
 
   std::vector<Piece> pieces_;

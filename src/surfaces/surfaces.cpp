@@ -263,13 +263,8 @@ std::string Surfaces::note() const {
     return fmt::format("{} triangles of the container in single precision", grouped(triangles_));
   return fmt::format(
       "{} triangles in single precision, {} (proven); at most {:.3g} of a radius below the sphere, "
-      "{:.4g} of its volume{}",
-      grouped(triangles_), proof_, measures_.deflection, measures_.volume_share,
-      measures_.with_gaps == 0
-          ? std::string()
-          : fmt::format("; not closed at the ends of periods, where the pieces of {} leave gaps as narrow as "
-                        "a sliver: another deflection may close them",
-                        measures_.with_gaps == 1 ? "1 sphere" : grouped(measures_.with_gaps) + " spheres"));
+      "{:.4g} of its volume",
+      grouped(triangles_), proof_, measures_.deflection, measures_.volume_share);
 }
 
 }  // namespace bernal

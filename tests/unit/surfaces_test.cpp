@@ -314,6 +314,37 @@ TEST(Surfaces, RefuseSpheresThatSinglePrecisionCannotHold) {
   }
 }
 
+/// Slivers have the better of these cuts for every polyhedron of that deflection.
+TEST(Surfaces, ASphereThatCannotBeClosedIsRefusedWithARemedy) {
+  const Domain domain = bernal::periodic_box(Vector<3>(3, 3, 3));
+  Spheres<3> spheres;
+  spheres.push_back(Vector<3>(0.63240011480680813, 0.16736818328378505, 0.78696825049284469), 1);
+  std::vector<Piece> pieces = pieces_of(spheres, domain);
+  const std::pair<Vector<3>, double> planes[] = {
+      {{0.7401548899410394, 0.47708601701835063, 0.47387727447297362}, 0.44819831897301587},
+      {{0.16688173019517188, -0.90805570059516971, 0.38416836510009694}, 0.31006061792636608},
+      {{-0.00016500403703276122, 0.00031620173159884043, 0.99999993639506424}, 0.69804581199097204}};
+  for (Piece& piece : pieces)
+    for (const auto& [normal, depth] : planes)
+      piece.cuts.push_back({{normal, normal.dot(piece.center) + depth}});
+  const double shift = single_precision_shift(4);
+  try {
+    SphereSurfaces(pieces, domain, 0.023118355623494471, shift).measure();
+    FAIL() << "the case is no hard one any more: find another";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_argument);
+    EXPECT_NE(std::string(error.what()).find("closed"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("another one"), std::string::npos) << error.what();
+  }
+  const SphereSurfaces surfaces(pieces, domain, 0.03, shift);
+  surfaces.visit(0, [&](const FloatSurface& surface) {
+    Mesh mesh;
+    for (const FloatPoint& p : surface.vertices) mesh.vertices.emplace_back(p[0], p[1], p[2]);
+    mesh.triangles = surface.triangles;
+    EXPECT_EQ(open_edges(mesh), 0U);
+  });
+}
+
 TEST(Surfaces, AContactCutTakesItsCapAway) {
   const Domain domain = bernal::periodic_box(Vector<3>(3, 3, 3));
   Spheres<3> spheres;
