@@ -1,4 +1,4 @@
-#include "bernal/export/export.hpp"
+#include "bernal/formats/export.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -132,7 +132,7 @@ Command export_command() {
                      "atoms of three types by size"},
                     {"bernal export out --to nrrd -o bed.nrrd --resolution 512 --values labels",
                      "an image: which sphere is where"},
-                    {"bernal export out --to gmsh -o rve.geo --contact gap && python3 rve.py",
+                    {"bernal export out --to gmsh -o rve.py --contact gap && python3 rve.py",
                      "a mesh of tetrahedra"},
                     {"bernal export out --to povray -o bed.pov && povray +A +W1200 +H900 bed.pov",
                      "a picture"}},

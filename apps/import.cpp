@@ -1,4 +1,4 @@
-#include "bernal/import/import.hpp"
+#include "bernal/formats/import.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,11 +1,13 @@
-# cmake -D FOLDER=src/io/viewer -D TO=viewer_files.cpp -P embed_viewer.cmake: the style sheet and the program of the view
-# as C++. The modules become one script, in the order below, in a scope of its own: their imports and the word export go,
-# for all names differ. Shaders become the strings that shaders.js asks for. Lines that are comments are left out.
+# cmake -D FOLDER=src/io/viewer -D HEADER=io/viewer_files.hpp -D TO=viewer_files.cpp -P embed_viewer.cmake: the style sheet
+# and the program of the view as C++. The modules become one script, in the order below, in a scope of its own: their
+# imports and the word export go, for all names differ. Shaders become the strings that shaders.js asks for. Lines that
+# are comments are left out.
+include(${CMAKE_CURRENT_LIST_DIR}/embed_files.cmake)
 set(modules data colours camera shaders walls images renderer order pick labels panel controls view)
 
 function(read_without_comments file to)
   file(READ ${file} text)
-  if(text MATCHES "</script|<!--|\\)viewer\"|[^\n\t -~]")
+  if(text MATCHES "</script|<!--|[^\n\t -~]")
     message(FATAL_ERROR "${file} has what may not stand in a page's script, or is not ASCII: ${CMAKE_MATCH_0}")
   endif()
   string(REGEX REPLACE "(^|\n)[ ]*//[^\n]*" "\\1" text "${text}")
@@ -33,7 +35,6 @@ endforeach()
 string(APPEND script "})();\n")
 read_without_comments(${FOLDER}/view.css style)
 
-file(WRITE ${TO}
-  "#include \"io/viewer_files.hpp\"\n\nnamespace bernal {\n\n"
-  "const std::string_view viewer_style = R\"viewer(${style})viewer\";\n"
-  "const std::string_view viewer_script = R\"viewer(${script})viewer\";\n\n}  // namespace bernal\n")
+append_string(code viewer_style "${style}")
+append_string(code viewer_script "${script}")
+write_strings(${TO} ${HEADER} "${code}")

@@ -7,10 +7,10 @@
 //   scene.sizes = Lognormal{.median = 0.5, .sigma = 0.2};
 //   const Packing packing = run(build(scene));
 
-#include "bernal/export/export.hpp"
 #include "bernal/fly/fly.hpp"
+#include "bernal/formats/export.hpp"
+#include "bernal/formats/import.hpp"
 #include "bernal/hard/grow.hpp"
-#include "bernal/import/import.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "bernal/io/write_packing.hpp"
 #include "bernal/measure/measure.hpp"

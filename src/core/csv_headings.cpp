@@ -8,6 +8,13 @@ std::string_view stripped(std::string_view text, std::string_view of) {
   return text.substr(first, text.find_last_not_of(of) - first + 1);
 }
 
+std::string in_lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
 std::string_view unit_in_letters(std::string_view unit) {
   return unit == "\xC2\xB5m" || unit == "\xCE\xBCm" ? "um" : unit;
 }
@@ -31,13 +38,6 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
 }
 
 namespace {
-
-std::string in_lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
 
 /// "x [mm]" without its unit, which is told.
 std::string_view without_unit(std::string_view name, std::string& unit) {

@@ -1,7 +1,6 @@
 #include "core/npy_file.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cerrno>
 #include <cstring>
 
@@ -16,32 +15,17 @@
 namespace bernal {
 namespace {
 
-static_assert(std::endian::native == std::endian::little);
-
-constexpr std::string_view magic = "\x93NUMPY";
 constexpr std::size_t piece_bytes = std::size_t{1} << 20;
 /// Structures of more members, and longer headers, are no spheres.
 constexpr std::size_t most_members = 64, longest_header = 1 << 16;
-
-template <class Number, class Bits>
-double number_in(const char* bytes, bool big_endian) {
-  Bits bits;
-  std::memcpy(&bits, bytes, sizeof bits);
-  if (big_endian) {
-    Bits turned = 0;
-    for (std::size_t k = 0; k < sizeof bits; ++k) turned = (turned << 8) | ((bits >> (8 * k)) & 0xFF);
-    bits = turned;
-  }
-  return double{std::bit_cast<Number>(bits)};
-}
 
 }  // namespace
 
 bool is_npy_file(const std::filesystem::path& file) {
   if (kind_of_file(file) != FileKind::regular) return false;
   InputFile in(file);
-  char begin[magic.size()] = {};
-  return in.read(begin, sizeof begin) && std::string_view(begin, sizeof begin) == magic;
+  char begin[npy_magic.size()] = {};
+  return in.read(begin, sizeof begin) && std::string_view(begin, sizeof begin) == npy_magic;
 }
 
 std::string npy_header(std::size_t rows, std::size_t columns) {
@@ -51,12 +35,12 @@ std::string npy_header(std::size_t rows, std::size_t columns) {
   header.resize((lead + header.size() + 1 + alignment - 1) / alignment * alignment - lead - 1, ' ');
   header += '\n';
   const auto length = static_cast<std::uint16_t>(header.size());
-  std::string whole(magic);
+  std::string whole(npy_magic);
   whole += {'\x01', '\0', static_cast<char>(length & 0xFF), static_cast<char>(length >> 8)};
   return whole + header;
 }
 
-NpyFile::NpyFile(const std::filesystem::path& file, std::function<void(std::string_view)> see)
+NpyFile::NpyFile(const std::filesystem::path& file, std::function<void(std::string_view)> see, Takes takes)
     : name_(file.string()), see_(std::move(see)) {
   const FileKind kind = kind_of_file(file);
   if (kind == FileKind::folder) fail("cannot be read: it is a folder");
@@ -64,26 +48,28 @@ NpyFile::NpyFile(const std::filesystem::path& file, std::function<void(std::stri
   errno = 0;
   stream_.open(file);
   if (!stream_) fail(fmt::format("cannot be read: {}", std::strerror(errno)));
-  read_header();
+  read_header(takes);
   begin_ = static_cast<std::uintmax_t>(stream_.tellg());
   const std::uintmax_t there = std::filesystem::file_size(file) - begin_;
-  const bool holds = row_bytes_ == 0 || rows_ <= there / row_bytes_;
-  if (!holds || rows_ * row_bytes_ != there)
-    fail(fmt::format("its header says {} rows of {} bytes, and {} bytes follow: it {}", rows_, row_bytes_,
-                     there, holds ? "holds something else too" : "was cut off"));
+  if (row_bytes_ > 0 && rows_ > there / row_bytes_)
+    fail(fmt::format("ends after {} of {} rows: it was cut off", there / row_bytes_, rows_));
+  if (const std::uintmax_t left = there - rows_ * row_bytes_; left > 0)
+    fail(
+        fmt::format("holds something else too, {} bytes behind its {} rows; save one array alone, with np.save",
+                    left, rows_));
 }
 
 std::optional<std::uintmax_t> NpyFile::doubles_from() const {
   const bool are_doubles = std::ranges::all_of(
-      fields_, [](const Field& field) { return field.bytes == sizeof(double) && !field.big_endian; });
+      fields_, [](const Field& f) { return f.number.kind == 'f' && f.bytes() == 8 && !f.number.is_swapped; });
   if (!are_doubles || !names_.empty() || by_columns_) return std::nullopt;
   return begin_;
 }
 
-void NpyFile::read_header() {
+void NpyFile::read_header(Takes takes) {
   char lead[8];
   read_bytes(lead, sizeof lead);
-  if (std::string_view(lead, magic.size()) != magic) fail("is no .npy file");
+  if (std::string_view(lead, npy_magic.size()) != npy_magic) fail("is no .npy file");
   const int version = static_cast<unsigned char>(lead[6]);
   if (version < 1 || version > 3) fail(fmt::format("is an .npy of version {}, which is unknown", version));
   unsigned char length_bytes[4] = {};
@@ -99,24 +85,28 @@ void NpyFile::read_header() {
     fail(fmt::format("has a header that is not understood: {}; save an array of floats or doubles",
                      bernal::quoted(text)));
   const std::vector<std::uint64_t>& shape = header->shape;
-  if (shape.size() != (header->is_structure ? 1 : 2))
+  is_list_ = takes == Takes::any_numbers && !header->is_structure && shape.size() == 1;
+  if (shape.size() != (header->is_structure || is_list_ ? 1 : 2))
     fail(fmt::format("is an array of shape ({}), not a table with a row for each sphere",
                      fmt::join(shape, ", ")));
-  const std::uint64_t columns = header->is_structure ? header->members.size() : shape[1];
-  if (columns > most_members) fail(fmt::format("has {} columns, which are none of spheres", columns));
+  const std::uint64_t columns = header->is_structure ? header->members.size() : is_list_ ? 1 : shape[1];
+  if (columns > (takes == Takes::any_numbers ? 4096 : most_members))
+    fail(fmt::format("has {} columns, which are none of spheres", columns));
   rows_ = shape[0];
   by_columns_ = header->fortran_order && !header->is_structure;
   for (std::size_t k = 0; k < columns; ++k) {
     const auto& [name, type] = header->members[header->is_structure ? k : 0];
     if (header->is_structure) names_.push_back(name);
-    const bool is_float = type.size() == 3 &&
-                          std::string_view("<>=").find(type[0]) != std::string_view::npos && type[1] == 'f' &&
-                          (type[2] == '8' || type[2] == '4');
-    if (!is_float)
-      fail(fmt::format("holds numbers of type {}; save it as float64, \"<f8\"", bernal::quoted(type)));
-    const auto bytes = static_cast<std::size_t>(type[2] - '0');
-    fields_.push_back({row_bytes_, bytes, type[0] == '>'});
-    row_bytes_ += bytes;
+    const RawNumber number{type.size() == 3 ? type[1] : '?', type.size() == 3 ? type[2] - '0' : 0,
+                           type[0] == '>'};
+    const bool is_taken = std::string_view("<>=|").find(type[0]) != std::string_view::npos &&
+                          number.is_known() && (number.kind == 'f' || takes == Takes::any_numbers);
+    if (!is_taken)
+      fail(fmt::format(
+          "holds numbers of type {}; save it as float64, \"<f8\": np.save(file, a.astype(float))",
+          bernal::quoted(type)));
+    fields_.push_back({row_bytes_, number});
+    row_bytes_ += fields_.back().bytes();
   }
 }
 
@@ -126,11 +116,6 @@ void NpyFile::read_bytes(char* to, std::size_t count) {
     fail(stream_.bad() || errno != 0 ? fmt::format("cannot be read: {}", std::strerror(errno))
                                      : "ends before its header says so: it was cut off");
   if (see_) see_({to, count});
-}
-
-double NpyFile::value(const Field& field, const char* bytes) const {
-  return field.bytes == 8 ? number_in<double, std::uint64_t>(bytes, field.big_endian)
-                          : number_in<float, std::uint32_t>(bytes, field.big_endian);
 }
 
 void NpyFile::read(const Visit& visit) {
@@ -147,7 +132,7 @@ void NpyFile::read_rows(const Visit& visit) {
     read_bytes(bytes.data(), count * row_bytes_);
     for (std::size_t k = 0; k < fields_.size(); ++k) {
       const char* at = bytes.data() + fields_[k].offset;
-      for (std::size_t i = 0; i < count; ++i, at += row_bytes_) values[i] = value(fields_[k], at);
+      for (std::size_t i = 0; i < count; ++i, at += row_bytes_) values[i] = raw_number(at, fields_[k].number);
       visit(k, first, std::span(values).first(count));
     }
   }
@@ -155,13 +140,13 @@ void NpyFile::read_rows(const Visit& visit) {
 
 void NpyFile::read_columns(const Visit& visit) {
   for (std::size_t k = 0; k < fields_.size(); ++k) {
-    const std::size_t width = fields_[k].bytes, at_once = piece_bytes / width;
+    const std::size_t width = fields_[k].bytes(), at_once = piece_bytes / width;
     std::vector<char> bytes(at_once * width);
     std::vector<double> values(at_once);
     for (std::size_t first = 0; first < rows_; first += at_once) {
       const std::size_t count = std::min(at_once, rows_ - first);
       read_bytes(bytes.data(), count * width);
-      for (std::size_t i = 0; i < count; ++i) values[i] = value(fields_[k], bytes.data() + i * width);
+      for (std::size_t i = 0; i < count; ++i) values[i] = raw_number(bytes.data() + i * width, fields_[k].number);
       visit(k, first, std::span(values).first(count));
     }
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/input_file.hpp"
+#include "core/raw_numbers.hpp"
 
 namespace bernal {
 
@@ -20,18 +21,25 @@ bool is_npy_file(const std::filesystem::path& file);
 /// (rows, columns) or, where `columns` is 0, (rows,). Source: numpy.lib.format.
 std::string npy_header(std::size_t rows, std::size_t columns);
 
+inline constexpr std::string_view npy_magic = "\x93NUMPY";
+
 /// A table of numbers in a file of NumPy's: an array of shape (rows, columns), in C or in Fortran order, of
 /// doubles or floats of either byte order; or one of shape (rows,) whose entries are structures of such, with
 /// names. Versions 1.0 to 3.0. Its errors are Error{bad_packing} with the file and, where one is meant, the
 /// row, counted from 1.
 class NpyFile {
  public:
+  /// What other programs save besides: whole numbers, and lists, which have one dimension.
+  enum class Takes { tables, any_numbers };
+
   /// `see` is told all bytes in order, by the end of `read`. Throws for what is no such table: no regular
   /// file, another type or shape, more or fewer bytes than the header says.
-  explicit NpyFile(const std::filesystem::path& file, std::function<void(std::string_view bytes)> see = {});
+  explicit NpyFile(const std::filesystem::path& file, std::function<void(std::string_view bytes)> see = {},
+                   Takes takes = Takes::tables);
 
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return fields_.size(); }
+  bool is_list() const { return is_list_; }
   /// Of the structures' members; none where there are none.
   const std::vector<std::string>& names() const { return names_; }
   /// The byte where its numbers begin, if they are doubles as this machine has them, row by row; else
@@ -49,12 +57,12 @@ class NpyFile {
 
  private:
   struct Field {
-    std::size_t offset = 0, bytes = 8;
-    bool big_endian = false;
+    std::size_t offset = 0;
+    RawNumber number;
+    std::size_t bytes() const { return static_cast<std::size_t>(number.bytes); }
   };
-  double value(const Field& field, const char* bytes) const;
 
-  void read_header();
+  void read_header(Takes takes);
   void read_bytes(char* to, std::size_t count);
   void read_rows(const Visit& visit);
   void read_columns(const Visit& visit);
@@ -66,7 +74,7 @@ class NpyFile {
   std::vector<std::string> names_;
   std::size_t rows_ = 0, row_bytes_ = 0;
   std::uintmax_t begin_ = 0;
-  bool by_columns_ = false;
+  bool by_columns_ = false, is_list_ = false;
 };
 
 }  // namespace bernal

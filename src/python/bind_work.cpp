@@ -4,8 +4,8 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "bernal/export/export.hpp"
-#include "bernal/import/import.hpp"
+#include "bernal/formats/export.hpp"
+#include "bernal/formats/import.hpp"
 #include "bernal/io/describe.hpp"
 #include "bernal/io/json.hpp"
 #include "bernal/io/read_packing.hpp"

@@ -32,7 +32,7 @@ struct OutputTable {
   std::string_view name() const { return keys.name; }
 };
 
-/// All of them, in the order in which people are told of them; export/ holds the list.
+/// All of them, in the order in which people are told of them; formats/ holds the list.
 std::span<const OutputTable* const> output_tables();
 
 /// Of a key that acts with other treatments of contacts than the output's: which; else empty.

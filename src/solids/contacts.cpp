@@ -88,14 +88,18 @@ ContactReport shrink_contacts(Spheres<dynamic>& spheres, const Domain& domain, C
   ContactReport report{.treatment = treatment, .gap = gap, .spheres = spheres.size()};
   report.volume_before = volume_of_balls(spheres);
   report.domain_volume = volume_of(domain);
-  Factors factors = factors_of(spheres, domain, gap);
+  const Spheres<dynamic> untouched = spheres;
+  Factors factors = factors_of(untouched, domain, gap);
   report.pairs = factors.pairs;
   report.walls = factors.walls;
-  if (treatment == ContactTreatment::shrink && !spheres.empty())
-    std::ranges::fill(factors.of, std::ranges::min(factors.of));
+  const auto share_least_factor = [&] {
+    if (treatment == ContactTreatment::shrink && !spheres.empty())
+      std::ranges::fill(factors.of, std::ranges::min(factors.of));
+  };
+  share_least_factor();
 
   constexpr double first_margin = 16 * tolerance::roundoff, last_margin = 1e-6;
-  const std::vector<double> before = spheres.r;
+  const std::vector<double>& before = untouched.r;
   double margin = first_margin;
   do {
     if (margin > last_margin)
@@ -107,9 +111,13 @@ ContactReport shrink_contacts(Spheres<dynamic>& spheres, const Domain& domain, C
       if (factors.of[i] < 1)
         spheres.r[i] = 0.5 * at_most(2 * before[i] * factors.of[i] * (1 - margin), single);
     margin *= 16;
-    // Whoever stands at the gap to within rounding may turn out to be nearer.
-    if (margin > 1e3 * first_margin)
-      for (double& factor : factors.of) factor = std::min(factor, 1 - margin);
+    if (margin > 1e3 * first_margin) {
+      // Whoever stands at the gap to within rounding may turn out to be nearer; strangers stay.
+      const Factors near = factors_of(untouched, domain, (1 + gap) * (1 + margin) - 1);
+      for (std::size_t i = 0; i < before.size(); ++i)
+        if (near.of[i] < 1) factors.of[i] = std::min(factors.of[i], 1 - margin);
+      share_least_factor();
+    }
   } while (!has_gap(spheres, domain, gap, monitor));
 
   for (std::size_t i = 0; i < before.size(); ++i) {

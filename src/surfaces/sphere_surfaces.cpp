@@ -178,8 +178,8 @@ void SphereSurfaces::verify(const Piece& piece, const Vector<3>& home, const Flo
   }
 }
 
-SphereSurfaces::Cutting SphereSurfaces::make_cut(std::size_t sphere, int frequency,
-                                                 std::vector<FloatSurface>& to, Measured& measured) const {
+bool SphereSurfaces::make_cut(std::size_t sphere, int frequency, std::vector<FloatSurface>& to,
+                              Measured& measured) const {
   const std::span<const Piece> pieces(pieces_.data() + first_piece_[sphere],
                                       first_piece_[sphere + 1] - first_piece_[sphere]);
   const PlanesOfSphere cuts = planes_of(pieces, boundary_, shift_);
@@ -191,7 +191,7 @@ SphereSurfaces::Cutting SphereSurfaces::make_cut(std::size_t sphere, int frequen
     const Piece& piece = pieces[n];
     CutBall ball(frequency, piece.radius - 5 * shift_, cuts.planes);
     for (const auto& [plane, below] : cuts.cuts[n])
-      if (!ball.cut(plane, below)) return Cutting::fails;
+      if (!ball.cut(plane, below)) return false;
     if (ball.empty()) continue;
     FloatSurface made;
     std::vector<std::uint32_t> number(ball.corners().size(), ~0U);
@@ -236,7 +236,7 @@ SphereSurfaces::Cutting SphereSurfaces::make_cut(std::size_t sphere, int frequen
     verify(piece, home, made);
     to.push_back(std::move(made));
   }
-  return polygons.match() ? Cutting::closes : Cutting::leaves_gaps;
+  return polygons.match();
 }
 
 void SphereSurfaces::make(std::size_t sphere,
@@ -256,19 +256,17 @@ void SphereSurfaces::make(std::size_t sphere,
   }
   std::vector<FloatSurface> made;
   Measured measured;
-  // If need be with gaps as narrow as a sliver, between the two ends of a period.
-  for (const Cutting wanted : {Cutting::closes, Cutting::leaves_gaps}) {
-    for (int frequency = frequency_; frequency < 2 * frequency_ + 8; ++frequency) {
-      if (make_cut(sphere, frequency, made, measured) < wanted) continue;
-      if (measured.inner - shift_ < (1 - deflection_) * first.radius) continue;
-      for (std::size_t p = 0; p < made.size(); ++p)
-        use(made[p], p == 0 ? measured : Measured{0, measured.inner});
-      return;
-    }
+  for (int frequency = frequency_; frequency < 2 * frequency_ + 8; ++frequency) {
+    if (!make_cut(sphere, frequency, made, measured)) continue;
+    if (measured.inner - shift_ < (1 - deflection_) * first.radius) continue;
+    for (std::size_t p = 0; p < made.size(); ++p)
+      use(made[p], p == 0 ? measured : Measured{0, measured.inner});
+    return;
   }
   throw Error(
       ErrorCode::bad_argument,
-      fmt::format("sphere {} cannot be cut into triangles in single precision with a deflection of {}",
+      fmt::format("sphere {} cannot be cut into closed surfaces of triangles in single precision with a "
+                  "deflection of {}; give another one",
                   sphere, deflection_));
 }
 

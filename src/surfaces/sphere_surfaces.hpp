@@ -50,6 +50,7 @@ struct SurfaceMeasures {
 ///
 /// At opposite ends of a period the polygons are the same, corner by corner: across the axis the floats are
 /// equal, and along it they are those of the two ends. All pieces of a sphere are cut from one polyhedron.
+/// A sphere of which no polyhedron can be cut so is refused.
 class SphereSurfaces {
  public:
   /// `pieces` as `pieces_of` gives them, of the domain, perhaps with further cuts at contacts: every piece of
@@ -79,9 +80,8 @@ class SphereSurfaces {
     double volume = 0, inner = 0;  ///< the least distance of a triangle on the sphere from the centre
   };
   void make(std::size_t sphere, const std::function<void(const FloatSurface&, const Measured&)>& use) const;
-  enum class Cutting { fails, leaves_gaps, closes };
-  Cutting make_cut(std::size_t sphere, int frequency, std::vector<FloatSurface>& to,
-                   Measured& measured) const;
+  /// False where rounding or slivers have the better of a cut.
+  bool make_cut(std::size_t sphere, int frequency, std::vector<FloatSurface>& to, Measured& measured) const;
   void verify(const Piece& piece, const Vector<3>& home, const FloatSurface& surface) const;
 
   std::vector<Piece> pieces_;

@@ -93,10 +93,12 @@ Surfaces::Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double
                                                   : pieces_of(wrapped(spheres, domain), domain),
                domain, deflection, shift_),
       monitor_(monitor) {
+  bool overlaps = false;
   if (has_spheres()) {
     measures_ = spheres_.measure();
     const Certificate pairs = certify(smaller_by(spheres, spheres_.inset()), domain, {.monitor = monitor});
     if (pairs.cancelled) throw Cancelled();
+    overlaps = pairs.overlapping_pairs > 0;
     proof_ =
         pairs.overlapping_pairs == 0
             ? "inside the true spheres, no two of them touch"
@@ -105,7 +107,7 @@ Surfaces::Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double
                                                        : grouped(pairs.overlapping_pairs) + " pairs overlap",
                           pairs.max_overlap);
   }
-  if (choice != SurfaceChoice::spheres) make_container();
+  if (choice != SurfaceChoice::spheres) make_container(overlaps);
   if (has_spheres() && choice != SurfaceChoice::spheres && !walls_.walls.triangles.empty()) {
     // A thousandth more than the walls were moved by, for what conversion to another unit rounded.
     const Certificate in = certify(smaller_by(spheres, 1.001 * shift_),
@@ -120,7 +122,7 @@ Surfaces::Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double
   count();
 }
 
-void Surfaces::make_container() {
+void Surfaces::make_container(bool overlaps) {
   if (choice_ != SurfaceChoice::pores || walls_.ends.empty()) {
     container_ = walls_.closed();
     return;
@@ -158,10 +160,16 @@ void Surfaces::make_container() {
   for (const WallSurface::End& end : walls_.ends) {
     if (end.is_upper()) continue;
     const auto opposite = std::ranges::find(walls_.ends, end.face + 1, &WallSurface::End::face);
-    const FloatSurface lower = end_between(end, covered[static_cast<std::size_t>(end.face)],
-                                           points_on_outline(end, walls_.ends, covered));
-    add(lower);
-    add(moved_to(*opposite, lower));
+    const std::optional<FloatSurface> lower = end_between(end, covered[static_cast<std::size_t>(end.face)],
+                                                          points_on_outline(end, walls_.ends, covered));
+    if (!lower && !overlaps) throw std::logic_error("spheres cross each other at the end of a period");
+    if (!lower)
+      throw Error(
+          ErrorCode::bad_argument,
+          "spheres overlap at the end of a period, where their triangles bound no pore space; contact "
+          "gap or shrink makes room, bernal verify says where");
+    add(*lower);
+    add(moved_to(*opposite, *lower));
   }
 }
 

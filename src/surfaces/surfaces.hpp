@@ -24,7 +24,8 @@ struct SurfacePart {
 /// and the pieces are in memory.
 class Surfaces {
  public:
-  /// Lengths in the file's unit. Throws Error{bad_argument} as SphereSurfaces and `wall_surface` do.
+  /// Lengths in the file's unit. Throws Error{bad_argument} as SphereSurfaces and `wall_surface` do, and
+  /// where spheres overlap at the end of a period and the pore space is asked for.
   Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double deflection, SurfaceChoice choice,
            const Monitor& monitor);
 
@@ -53,7 +54,7 @@ class Surfaces {
   std::string note() const;
 
  private:
-  void make_container();
+  void make_container(bool overlaps);
   void count();
   void visit_spheres(const std::vector<std::uint32_t>* order, const Visit& visit) const;
 

@@ -201,8 +201,9 @@ WallSurface wall_surface(const Domain& domain, double deflection) {
   return std::visit(MakeWalls{deflection}, domain);
 }
 
-FloatSurface end_between(const WallSurface::End& end, const std::vector<std::array<FloatPoint, 3>>& covered,
-                         const std::vector<FloatPoint>& on_outline) {
+std::optional<FloatSurface> end_between(const WallSurface::End& end,
+                                        const std::vector<std::array<FloatPoint, 3>>& covered,
+                                        const std::vector<FloatPoint>& on_outline) {
   // Of what is covered the outline: edges that only one triangle has.
   std::map<FloatEdge, int> times;
   for (const auto& [a, b, c] : covered) {
@@ -258,7 +259,7 @@ FloatSurface end_between(const WallSurface::End& end, const std::vector<std::arr
   if (lines.empty()) return made;
   const auto filled =
       cad::triangulate_regions(points, lines, (end.is_upper() ? 1.0 : -1.0) * Vector<3>::Unit(end.axis()));
-  if (!filled) throw std::logic_error("spheres cross each other at the end of a period");
+  if (!filled) return std::nullopt;
   made.triangles = *filled;
   made.faces.assign(made.triangles.size(), static_cast<std::int8_t>(end.face));
   return made;

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "surfaces/sphere_surfaces.hpp"
@@ -33,10 +34,11 @@ struct WallSurface {
 WallSurface wall_surface(const Domain& domain, double deflection);
 
 /// The part of an end that no sphere covers: triangles seen from outside. `covered` are triangles of spheres
-/// that lie in it; `on_outline` are points that divide its outline as well. Throws std::logic_error if the
-/// triangles overlap.
-FloatSurface end_between(const WallSurface::End& end, const std::vector<std::array<FloatPoint, 3>>& covered,
-                         const std::vector<FloatPoint>& on_outline);
+/// that lie in it; `on_outline` are points that divide its outline as well. Nothing if the triangles
+/// overlap.
+std::optional<FloatSurface> end_between(const WallSurface::End& end,
+                                        const std::vector<std::array<FloatPoint, 3>>& covered,
+                                        const std::vector<FloatPoint>& on_outline);
 
 /// The same surface at the opposite end.
 FloatSurface moved_to(const WallSurface::End& opposite, FloatSurface surface);

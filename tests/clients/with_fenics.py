@@ -23,7 +23,7 @@ diameter = 0.8
 
 
 def conductivity(result, ratio, *options):
-    result.export("gmsh", "composite.geo", *options)
+    result.export("gmsh", "composite.py", *options)
     run("/usr/bin/python3", "composite.py", folder=result.folder, seconds=1200)
     said = run("/usr/bin/python3", SOLVER, "composite.msh", "--ratio", ratio, "--degree", 2, "--json", folder=result.folder)
     return json.loads(said[said.index("{"):said.rindex("}") + 1])

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "bernal/core/unit.hpp"
-#include "bernal/export/export.hpp"
+#include "bernal/formats/export.hpp"
 #include "command_tree.hpp"
 
 namespace bernal::testing {

@@ -5,7 +5,7 @@
 #include <regex>
 #include <set>
 
-#include "bernal/export/export.hpp"
+#include "bernal/formats/export.hpp"
 #include "check.hpp"
 
 namespace bernal::testing {

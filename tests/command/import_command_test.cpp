@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-#include "bernal/import/import.hpp"
+#include "bernal/formats/import.hpp"
 #include "check.hpp"
 #include "support/packings.hpp"
 

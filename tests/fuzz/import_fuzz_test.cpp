@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "bernal/core/error.hpp"
-#include "bernal/import/import.hpp"
+#include "bernal/formats/import.hpp"
 #include "support/export_packings.hpp"
 #include "support/folder.hpp"
 #include "support/fuzz.hpp"

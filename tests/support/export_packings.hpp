@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "bernal/export/export.hpp"
+#include "bernal/formats/export.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "support/folder.hpp"
 #include "support/packings.hpp"

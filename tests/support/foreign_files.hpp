@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/import/import.hpp"
+#include "bernal/formats/import.hpp"
 #include "support/folder.hpp"
 
 namespace bernal::testing {

@@ -3,7 +3,7 @@
 
 #include <tuple>
 
-#include "bernal/export/export.hpp"
+#include "bernal/formats/export.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "support/export_packings.hpp"

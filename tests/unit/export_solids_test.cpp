@@ -5,7 +5,7 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
-#include "bernal/export/export.hpp"
+#include "bernal/formats/export.hpp"
 #include "support/export_packings.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"
@@ -29,6 +29,18 @@ WrittenExport written(const Folder& folder, const Packing& packing, const std::s
   return write_export(packing, output_of(format, words), folder / name);
 }
 
+/// What an Error says, or nothing.
+std::string refusal_of(const Packing& packing, const std::string& format,
+                       const std::map<std::string, std::string>& words, const std::string& name = {}) {
+  const Folder folder;
+  try {
+    written(folder, packing, format, name.empty() ? "a." + format : name, words);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
 std::size_t count_of(const std::string& text, const std::string& what) {
   std::size_t count = 0;
   for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + 1)) ++count;
@@ -38,19 +50,25 @@ std::size_t count_of(const std::string& text, const std::string& what) {
 TEST(ExportSolids, GmshIsWrittenForEveryDomain) {
   for (const Packing& packing : {periodic(), between_walls(), in_cylinder(), in_mesh()}) {
     const Folder folder;
-    const WrittenExport made = written(folder, packing, "gmsh", "a.geo", {{"contact", "gap"}});
-    ASSERT_EQ(made.files.size(), 2u);
-    const std::string geo = text_of(folder / "a.geo"), python = text_of(folder / "a.py");
-    const std::size_t wall_is_sphere = std::holds_alternative<Sphere>(packing.domain);
-    EXPECT_GE(count_of(geo, "\nSphere("), packing.spheres.size() + wall_is_sphere);
-    EXPECT_EQ(count_of(geo, "Periodic Surface") > 0, is_periodic(packing.domain));
+    const WrittenExport made = written(folder, packing, "gmsh", "a.py", {{"contact", "gap"}});
+    ASSERT_EQ(made.files.size(), 1u);
+    const std::string python = text_of(folder / "a.py");
+    const std::size_t from = python.find("PIECES = [\n"), to = python.find("\n]", from);
+    ASSERT_NE(to, python.npos);
+    EXPECT_GE(count_of(python.substr(from, to - from), "\n    ("), packing.spheres.size());
+    EXPECT_EQ(count_of(python.substr(0, from), "True,") + count_of(python.substr(0, from), "True)") > 0,
+              is_periodic(packing.domain));
     EXPECT_NE(python.find("def geometry"), python.npos);
-    for (const std::string name : {"spheres_1", "spheres_2", "spheres_3"}) {
-      EXPECT_NE(geo.find("\"" + name + "\""), geo.npos);
+    EXPECT_EQ(count_of(python, "@"), count_of(python, " @ ")) << "a name has no value";
+    for (const std::string name : {"spheres_1", "spheres_2", "spheres_3"})
       EXPECT_NE(python.find("\"" + name + "\""), python.npos);
-    }
     EXPECT_NE(made.note.find("proven"), made.note.npos);
   }
+}
+
+TEST(ExportSolids, AScriptForGmshIsNoGeo) {
+  EXPECT_EQ(refusal_of(periodic(), "gmsh", {}, "rve.geo"),
+            "the script that Gmsh is driven by is Python; name it \"rve.py\"");
 }
 
 TEST(ExportSolids, CadFilesHoldTheVolume) {
@@ -102,18 +120,6 @@ TEST(ExportSolids, GapsAreForAllFormatsAndCapsForSolids) {
   }
 }
 
-/// What an Error says, or nothing.
-std::string refusal_of(const Packing& packing, const std::string& format,
-                       const std::map<std::string, std::string>& words) {
-  const Folder folder;
-  try {
-    written(folder, packing, format, "a." + format, words);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
-
 Packing of_two(double distance, double radius = 0.5) {
   Packing packing = between_walls();
   Spheres<3> spheres;
@@ -127,16 +133,16 @@ TEST(ExportSolids, ScriptsOfAnyUnitBuildTheSameModel) {
   const Packing packing = periodic();
   const Folder folder;
   for (const std::string unit : {"m", "mm", "nm"}) {
-    written(folder, packing, "gmsh", unit + ".geo", {{"contact", "gap"}, {"unit", unit}});
-    const std::string geo = text_of(folder / (unit + ".geo"));
+    written(folder, packing, "gmsh", unit + ".py", {{"contact", "gap"}, {"unit", unit}});
+    const std::string python = text_of(folder / (unit + ".py"));
     const double factor = unit == "m" ? 1e-3 : unit == "nm" ? 1e6 : 1;
     const auto after = [&](const std::string& what) {
-      const std::size_t at = geo.find(what);
-      EXPECT_NE(at, geo.npos) << what;
-      return geo.substr(at + what.size());
+      const std::size_t at = python.find(what);
+      EXPECT_NE(at, python.npos) << what;
+      return python.substr(at + what.size());
     };
-    const double length = std::stod(after("Mesh.ScalingFactor = "));
-    std::string corner_and_size = after("Box(1) = {");
+    const double length = std::stod(after("\nLENGTH = "));
+    std::string corner_and_size = after("\nDOMAIN = (\"Box\", ");
     for (int k = 0; k < 3; ++k) corner_and_size = corner_and_size.substr(corner_and_size.find(',') + 1);
     const double edge = std::stod(corner_and_size);
     EXPECT_NEAR(edge * length, 3 * factor, 1e-12 * factor) << unit;
@@ -156,10 +162,10 @@ TEST(ExportSolids, WhatIsTooSmallForOpenCascadeIsRefusedWithTheUnitThatHelps) {
 
 TEST(ExportSolids, NothingIsPromisedOfSpheresThatOverlapOrCrossWalls) {
   const Folder folder;
-  EXPECT_NE(written(folder, of_two(1.1), "gmsh", "a.geo").note.find("makes the mesh"), std::string::npos);
-  const WrittenExport near = written(folder, of_two(1.0001), "gmsh", "b.geo");
+  EXPECT_NE(written(folder, of_two(1.1), "gmsh", "a.py").note.find("makes the mesh"), std::string::npos);
+  const WrittenExport near = written(folder, of_two(1.0001), "gmsh", "b.py");
   EXPECT_NE(near.note.find("contact gap"), std::string::npos) << near.note;
-  const WrittenExport overlap = written(folder, of_two(0.9), "gmsh", "c.geo");
+  const WrittenExport overlap = written(folder, of_two(0.9), "gmsh", "c.py");
   EXPECT_EQ(overlap.note.find("makes the mesh"), std::string::npos) << overlap.note;
   const std::string python = text_of(folder / "c.py");
   EXPECT_NE(python.find("TROUBLE = \"spheres overlap"), python.npos);
@@ -179,7 +185,7 @@ TEST(ExportSolids, CapsThatMeetHaveNoExactVolume) {
   const Folder folder;
   const auto fraction = [&](const std::string& gap) {
     const WrittenExport made =
-        written(folder, packing, "gmsh", "a" + gap + ".geo", {{"contact", "cap"}, {"contact_gap", gap}});
+        written(folder, packing, "gmsh", "a" + gap + ".py", {{"contact", "cap"}, {"contact_gap", gap}});
     const bool is_about = made.note.find("porosity about") != std::string::npos;
     EXPECT_EQ(text_of(folder / ("a" + gap + ".py")).find("EXACT = {}") != std::string::npos, is_about);
     return is_about;

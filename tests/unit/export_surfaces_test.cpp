@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "bernal/export/export.hpp"
+#include "bernal/formats/export.hpp"
 #include "support/export_packings.hpp"
 #include "support/written_files.hpp"
 

@@ -1,5 +1,5 @@
 // What other programs read is the packing: every format read back by a parser of its own.
-#include "bernal/export/export.hpp"
+#include "bernal/formats/export.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/import/import.hpp"
+#include "bernal/formats/import.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"

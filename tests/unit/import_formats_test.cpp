@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "bernal/core/error.hpp"
-#include "bernal/import/import.hpp"
+#include "bernal/formats/import.hpp"
 #include "support/folder.hpp"
 #include "support/foreign_files.hpp"
 

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "bernal/core/error.hpp"
-#include "bernal/import/import.hpp"
+#include "bernal/formats/import.hpp"
 #include "support/export_packings.hpp"
 #include "support/exports.hpp"
 #include "support/folder.hpp"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "bernal/core/error.hpp"
-#include "bernal/import/import.hpp"
+#include "bernal/formats/import.hpp"
 #include "bernal/io/read_packing.hpp"
 #include "support/export_packings.hpp"
 #include "support/exports.hpp"

@@ -5,7 +5,7 @@
 
 #include <tuple>
 
-#include "bernal/import/import.hpp"
+#include "bernal/formats/import.hpp"
 #include "support/foreign_files.hpp"
 
 namespace bernal {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/import/import.hpp"
+#include "bernal/formats/import.hpp"
 #include "io/base64.hpp"
 #include "support/foreign_files.hpp"
 

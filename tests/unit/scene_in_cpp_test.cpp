@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bernal/export/export.hpp"
+#include "bernal/formats/export.hpp"
 #include "bernal/fly/fly.hpp"
 #include "bernal/hard/grow.hpp"
 #include "bernal/io/json.hpp"

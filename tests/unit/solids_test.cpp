@@ -188,6 +188,28 @@ TEST(Solids, ShrinkingDependsOnNoOrderAndSparesTheLonely) {
   EXPECT_EQ(spheres.r.back(), 0.01);
 }
 
+/// At the gap to the last bit, where rounding has to be made room for; nobody else shrinks for it.
+TEST(Solids, StrangersStayWhateverAGapTakes) {
+  const Domain box = Box{Vector<3>(-5, -5, -5), Vector<3>(10, 10, 10)};
+  for (const double gap : {0.01, 0.02, 0.05}) {
+    Spheres<3> three;
+    three.push_back({-0.5 * (1 + gap), 0, 0}, 0.5);
+    three.push_back({0.5 * (1 + gap), 0, 0}, 0.5);
+    three.push_back({0, 3, 0}, 0.5);
+    Spheres<dynamic> spheres = three;
+    ASSERT_FALSE(has_gap(spheres, box, gap));
+    const ContactReport report = shrink_contacts(spheres, box, ContactTreatment::gap, gap, false);
+    EXPECT_EQ(spheres.r[2], 0.5);
+    EXPECT_EQ(report.changed, 2U);
+    EXPECT_LT(report.largest_change, 1e-9);
+    expect_exact_gap(spheres, box, gap);
+    Spheres<dynamic> all = three;
+    shrink_contacts(all, box, ContactTreatment::shrink, gap, false);
+    EXPECT_LT(all.r[2], 0.5);
+    EXPECT_EQ(all.r[2], all.r[0]);
+  }
+}
+
 TEST(Solids, ShrinkingKeepsSinglePrecision) {
   const Packing packing = lattice(6);
   Spheres<dynamic> spheres = packing.spheres;

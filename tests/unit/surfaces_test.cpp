@@ -286,6 +286,21 @@ TEST(Surfaces, ClaimNothingOfSpheresThatOverlap) {
   EXPECT_NE(surfaces.note().find("overlap"), std::string::npos) << surfaces.note();
 }
 
+TEST(Surfaces, ThePoresOfSpheresThatOverlapAtTheEndOfAPeriodAreRefusedWithARemedy) {
+  Spheres<3> spheres;
+  spheres.push_back(Vector<3>(0.1, 1, 1), 0.5);
+  spheres.push_back(Vector<3>(0.1, 1.7, 1), 0.5);
+  const Domain box = bernal::periodic_box(Vector<3>(3, 3, 3));
+  try {
+    const Surfaces surfaces(spheres, box, 0.05, SurfaceChoice::pores, nobody);
+    FAIL() << "no pore space has such a boundary";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_argument);
+    EXPECT_NE(std::string(error.what()).find("contact gap"), std::string::npos) << error.what();
+  }
+  EXPECT_NO_THROW(Surfaces(spheres, box, 0.05, SurfaceChoice::all, nobody));
+}
+
 TEST(Surfaces, RefuseSpheresThatSinglePrecisionCannotHold) {
   Spheres<3> spheres;
   spheres.push_back(Vector<3>(1e6, 1, 1), 0.5);
@@ -297,6 +312,37 @@ TEST(Surfaces, RefuseSpheresThatSinglePrecisionCannotHold) {
     EXPECT_EQ(error.code(), ErrorCode::bad_argument);
     EXPECT_NE(std::string(error.what()).find("origin"), std::string::npos) << error.what();
   }
+}
+
+/// Slivers have the better of these cuts for every polyhedron of that deflection.
+TEST(Surfaces, ASphereThatCannotBeClosedIsRefusedWithARemedy) {
+  const Domain domain = bernal::periodic_box(Vector<3>(3, 3, 3));
+  Spheres<3> spheres;
+  spheres.push_back(Vector<3>(0.63240011480680813, 0.16736818328378505, 0.78696825049284469), 1);
+  std::vector<Piece> pieces = pieces_of(spheres, domain);
+  const std::pair<Vector<3>, double> planes[] = {
+      {{0.7401548899410394, 0.47708601701835063, 0.47387727447297362}, 0.44819831897301587},
+      {{0.16688173019517188, -0.90805570059516971, 0.38416836510009694}, 0.31006061792636608},
+      {{-0.00016500403703276122, 0.00031620173159884043, 0.99999993639506424}, 0.69804581199097204}};
+  for (Piece& piece : pieces)
+    for (const auto& [normal, depth] : planes)
+      piece.cuts.push_back({{normal, normal.dot(piece.center) + depth}});
+  const double shift = single_precision_shift(4);
+  try {
+    SphereSurfaces(pieces, domain, 0.023118355623494471, shift).measure();
+    FAIL() << "the case is no hard one any more: find another";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_argument);
+    EXPECT_NE(std::string(error.what()).find("closed"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("another one"), std::string::npos) << error.what();
+  }
+  const SphereSurfaces surfaces(pieces, domain, 0.03, shift);
+  surfaces.visit(0, [&](const FloatSurface& surface) {
+    Mesh mesh;
+    for (const FloatPoint& p : surface.vertices) mesh.vertices.emplace_back(p[0], p[1], p[2]);
+    mesh.triangles = surface.triangles;
+    EXPECT_EQ(open_edges(mesh), 0U);
+  });
 }
 
 TEST(Surfaces, AContactCutTakesItsCapAway) {

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "cad/write_shapes.hpp"
+#include "formats/format.hpp"
+#include "solids/flat_faces.hpp"
+
+namespace bernal {
+namespace {
+
+constexpr std::size_t most_faces = 5000;  // of a container: sewing takes a minute
+
+std::vector<cad::BallShape::Plane> planes_of(const std::vector<Cut>& cuts) {
+  std::vector<cad::BallShape::Plane> planes;
+  for (const Cut& cut : cuts) planes.push_back({cut.keeps.normal, cut.keeps.offset});
+  return planes;
+}
+
+cad::SolidShapes shapes_of(const Exported& file) {
+  const Solids& solids = file.solids;
+  const std::vector<Seam> seams = seams_of(solids);
+  cad::SolidShapes shapes{.balls = {}, .necks = {}, .type_names = {}, .domain = file.domain, .faces = {}};
+  for (std::size_t p = 0; p < solids.pieces.size(); ++p) {
+    const Piece& piece = solids.pieces[p];
+    shapes.balls.push_back({piece.center, piece.radius, seams[p].pole, seams[p].meridian,
+                            planes_of(piece.cuts), file.types[piece.sphere]});
+  }
+  for (const Bridge& bridge : solids.bridges)
+    shapes.necks.push_back({bridge.rims,
+                            bridge.radius,
+                            {solids.spheres.r[bridge.spheres[0]], solids.spheres.r[bridge.spheres[1]]},
+                            planes_of(bridge.cuts)});
+  for (std::uint32_t type = 1; type <= file.type_count; ++type)
+    shapes.type_names.push_back(file.name_of_type(type));
+  if (const auto* mesh = std::get_if<Mesh>(&file.domain)) {
+    const std::vector<FlatFace> faces = flat_faces_of(*mesh, 1e-9 * bounds_of(file.domain).diagonal());
+    if (faces.size() <= most_faces)
+      for (const FlatFace& face : faces) shapes.faces.push_back(face.loops);
+  }
+  return shapes;
+}
+
+/// OpenCASCADE takes points nearer than 1e-7 for one, in any unit. Where a cut is off by so much, the wedge
+/// between is so wide and so high: of a ball's volume the square of 1e-7 over its radius.
+constexpr double confusion = 1e-7, least_error = 1e-9;
+
+void require_size(const Exported& file) {
+  if (file.spheres.empty()) return;
+  const double smallest = *std::ranges::min_element(file.spheres.r),
+               least = confusion / std::sqrt(least_error);
+  if (smallest >= least) return;
+  std::string remedy = "scale the packing up";
+  for (const Unit unit : {Unit::mm, Unit::um, Unit::nm}) {
+    if (smallest * conversion_factor(file.unit(), unit) < least) continue;
+    remedy = fmt::format("the format brep takes the unit {}", name_of(unit));
+    break;
+  }
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("spheres down to a radius of {:.3g} {} are too small for OpenCASCADE, whose "
+                          "volumes are exact from {:.2g} on; {}",
+                          smallest, name_of(file.unit()), least, remedy),
+              {file.name()});
+}
+
+template <cad::SolidFormat format>
+std::string write_cad(const Exported& file, StagedFolder& staged) {
+  require_size(file);
+  const cad::WrittenShapes written =
+      cad::write_with_opencascade(shapes_of(file), format, staged.add(file.output.file.string()));
+  const double exact = file.contacts.volume_after;
+  const double off = exact > 0 ? std::abs(written.volume / exact - 1) : 0;
+  return fmt::format(
+      "{} solids of spheres and images, volumes in OpenCASCADE within {:.1g} of the exact ones; {}",
+      written.solids, off,
+      written.has_container ? "the container is a solid of its own"
+                            : "the container is left out: it has too many faces");
+}
+
+template <cad::SolidFormat format>
+Format cad_format(std::string_view name, std::string_view help, std::string_view file,
+                  const std::vector<std::string_view>& keys) {
+  return {
+      .writer = PackingWriter{
+          .table = {.keys = output_entry(name, help, keys), .file = file, .sizes = "solids", .solids = true},
+          .write_and_tell = write_cad<format>}};
+}
+
+}  // namespace
+
+Format step_format() {
+  Format made = cad_format<cad::SolidFormat::step>(
+      "step",
+      "STEP, in millimetres: spheres as true spheres, cut at the ends of periods, products by type, and the "
+      "container as a solid",
+      "spheres.step", {"types", "bridge_radius"});
+  made.writer->table.unit = Unit::mm;
+  return made;
+}
+
+Format brep_format() {
+  return cad_format<cad::SolidFormat::brep>("brep",
+                                            "BREP of OpenCASCADE, the same as STEP without names and units",
+                                            "spheres.brep", {"unit", "types", "bridge_radius"});
+}
+
+}  // namespace bernal

@@ -1,0 +1,266 @@
+#include "bernal/formats/export.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "bernal/core/text.hpp"
+#include "bernal/verify/certificate.hpp"
+#include "core/parallel.hpp"
+#include "formats/format.hpp"
+#include "formats/text_file.hpp"
+#include "io/result_folder.hpp"
+#include "io/seal.hpp"
+#include "io/write_output.hpp"
+#include "scene/scene_sources.hpp"
+
+namespace fs = std::filesystem;
+
+namespace bernal {
+namespace {
+
+[[noreturn]] void refuse_target(const fs::path& file, const std::string& why) {
+  throw Error(ErrorCode::cannot_write, why, {file.string()});
+}
+
+/// What the packing was made from, or is.
+std::vector<fs::path> sources_of(const Packing& packing) {
+  const Scene& scene = packing.scene;
+  std::vector<fs::path> files = sources_of_scene(scene.file);
+  if (!scene.file.empty()) {
+    const fs::path folder = scene.file.parent_path();
+    for (const std::string_view name : names_of_result) files.push_back(folder / name);
+    for (const std::string& source : sources_of_result(folder)) files.push_back(folder / source);
+  }
+  const auto add_part = [&](const fs::path& part) {
+    std::error_code unknown;
+    if (!fs::is_regular_file(part, unknown)) return;
+    for (const fs::path& file : files_of_part_beside(part)) files.push_back(file);
+  };
+  if (const auto* mesh = std::get_if<MeshFile>(&scene.container)) {
+    add_part(mesh->file);
+    for (const fs::path& obstacle : mesh->obstacles) add_part(obstacle);
+  }
+  if (scene.start.file) files.push_back(*scene.start.file);
+  return files;
+}
+
+/// The file that is meant by a name, or by a link to it, whether it stands or not. Throws Error{cannot_write}
+/// where that is a folder, a device or a pipe, or no name of a file.
+fs::path file_meant_by(const fs::path& named) {
+  fs::path file = named;
+  std::error_code unknown;
+  constexpr int most_links = 40;  // as the system has it
+  for (int k = 0; fs::is_symlink(file, unknown); ++k) {
+    if (k == most_links) refuse_target(named, "is a link that leads to itself; give the name of a file");
+    const fs::path target = fs::read_symlink(file, unknown);
+    file = target.is_absolute() ? target : file.parent_path() / target;
+  }
+  const fs::path name = file.filename();
+  if (name == "." || name == ".." || fs::is_directory(file, unknown))
+    refuse_target(named, "is a folder; give the name of a file in it");
+  if (stands(file) && !fs::is_regular_file(file, unknown))
+    refuse_target(named, "is a device or a pipe, which no file takes the place of; give the name of a file");
+  return file;
+}
+
+/// Throws Error{cannot_write} where one of the files of an output in the folder would take the place of what
+/// the packing is read or made from, of a file of any result, or, being one that goes with the file that was
+/// named, of what bernal did not write. Precondition: the output is complete.
+void require_free_places(const Packing& packing, const Output& output, const fs::path& folder) {
+  const std::vector<std::string> names = files_of(output);
+  const std::vector<fs::path> sources = sources_of(packing);
+  const Manifest of_result = manifest_of(folder);
+  std::vector<fs::path> files, of_others;
+  for (const std::string& name : names) files.push_back(folder / name);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const fs::path& file = files[k];
+    if (!stands(file)) continue;
+    std::error_code unknown;
+    for (const fs::path& source : sources)
+      if (fs::equivalent(file, source, unknown))
+        refuse_target(file, "is what the packing is read from, or was made from; give another name with -o");
+    if (of_result.contains(names[k]))
+      refuse_target(file, "belongs to the result in that folder; give another name with -o");
+    if (k > 0 && !(fs::is_regular_file(fs::symlink_status(file, unknown)) && is_as_bernal_wrote(file, files)))
+      of_others.push_back(file);
+  }
+  if (of_others.empty()) return;
+  // A script that was changed no longer answers for those that go with it.
+  std::ranges::stable_partition(of_others, [](const fs::path& file) { return has_seal(file); });
+  refuse_target(of_others[0],
+                fmt::format("goes with {}, and what stands there bernal did not write, or somebody "
+                            "has changed it; give another name with -o, or move it away",
+                            names[0]));
+}
+
+/// The domain with its walls moved out of reach, so that a certificate is one of pairs.
+Domain without_walls(const Domain& domain) {
+  const Bounds<dynamic> bounds = bounds_of<dynamic>(domain);
+  Box box{bounds.lower, bounds.size(), std::vector<bool>(static_cast<std::size_t>(dimension_of(domain)))};
+  const auto* given = std::get_if<Box>(&domain);
+  const auto* cylinder = std::get_if<Cylinder>(&domain);
+  for (int k = 0; k < box.dimension(); ++k) {
+    const bool repeats =
+        given ? given->repeats(k) : cylinder && cylinder->periodic && cylinder->coordinate_axis() == k;
+    box.periodic[static_cast<std::size_t>(k)] = repeats;
+    if (repeats) continue;
+    box.corner[k] -= box.size[k];
+    box.size[k] *= 3;
+  }
+  return box;
+}
+
+/// Of pairs, whatever the walls.
+double largest_overlap(const Spheres<dynamic>& spheres, const Domain& domain, const Monitor& monitor) {
+  const Certificate certificate = certify(spheres, without_walls(domain), {.monitor = monitor});
+  if (certificate.cancelled) throw Cancelled();
+  return certificate.max_overlap;
+}
+
+/// Of a packing that nobody certified, or whose scene allows it; else nothing.
+std::string words_on_overlap(const Packing& packing, double overlap) {
+  if (!(overlap > 0)) return {};
+  return fmt::format("the packing itself overlaps: largest {:.2g} of the sum of two radii, {}", overlap,
+                     overlap <= packing.scene.overlap
+                         ? fmt::format("of which its scene allows {:.2g}", packing.scene.overlap)
+                         : "and bernal verify says where");
+}
+
+/// What solids and surfaces cannot be right with. Walls matter where they are made too.
+void take_faults(Exported& file, const PackingWriter& format, const Monitor& monitor) {
+  const Packing& packing = file.packing;
+  const bool with_walls = format.table.sizes == "solids" || format.table.sizes == "triangles";
+  const Certificate certificate = certify(
+      packing.spheres, with_walls ? packing.domain : without_walls(packing.domain), {.monitor = monitor});
+  if (certificate.cancelled) throw Cancelled();
+  file.overlap = certificate.max_overlap;
+  if (!with_walls) return;
+  file.protruding = certificate.protruding_spheres;
+  file.protrusion = -certificate.min_wall_gap;
+}
+
+std::string words_on_faults(const Exported& file) {
+  std::string words;
+  if (const std::string itself = words_on_overlap(file.packing, file.overlap); !itself.empty())
+    words += "; " + itself;
+  if (file.protruding > 0)
+    words += fmt::format(
+        "; {} through the walls or {} outside, by up to {:.2g} of the radius: bernal verify says where",
+        file.protruding == 1 ? "1 sphere goes" : grouped(file.protruding) + " spheres go",
+        file.protruding == 1 ? "lies" : "lie", file.protrusion);
+  return words;
+}
+
+/// Whether its numbers are others than those of the packing.
+bool is_rounded(const Exported& file, const PackingWriter& format) {
+  return format.precision == Precision::as_float || file.unit() != file.packing.scene.unit || file.wrapped;
+}
+
+/// Of touching spheres, the most that rounding makes: each coordinate is rounded up to three times, when it
+/// is converted, moved to the middle and put into the period, by half an epsilon of the farthest c there is,
+/// and so is the period: the distance of two loses up to 4 sqrt(3) epsilon c, of which the radii are at least
+/// 2 r.
+double most_by_rounding(const Packing& packing, const PackingWriter& format) {
+  const double epsilon = format.precision == Precision::as_float ? std::numeric_limits<float>::epsilon()
+                                                                 : std::numeric_limits<double>::epsilon();
+  if (packing.spheres.empty()) return 0;
+  const Bounds<dynamic> bounds = bounds_of<dynamic>(packing.domain);
+  const double farthest = std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff()),
+               smallest = *std::ranges::min_element(packing.spheres.r);
+  return epsilon * (4 * farthest / smallest + 1);
+}
+
+/// What rounding did, in words; what the packing overlaps itself is not put down to it.
+std::string words_on_rounding(const Exported& file, const PackingWriter& format, const Monitor& monitor) {
+  if (!is_rounded(file, format)) {
+    const std::string itself =
+        words_on_overlap(file.packing, largest_overlap(file.packing.spheres, file.packing.domain, monitor));
+    const std::string kept = file.contacts.changed == 0
+                                 ? "the numbers of spheres.csv, not rounded"
+                                 : "centres are the numbers of spheres.csv, not rounded";
+    return kept + (itself.empty() ? "" : "; " + itself);
+  }
+  const std::string to =
+      format.precision == Precision::as_float ? "single precision" : fmt::format("{}", name_of(file.unit()));
+  const double overlap = largest_overlap(file.spheres, file.domain, monitor);
+  if (!(overlap > 0)) return fmt::format("no overlap after rounding to {}", to);
+  if (overlap > most_by_rounding(file.packing, format))
+    if (const std::string itself = words_on_overlap(
+            file.packing, largest_overlap(file.packing.spheres, file.packing.domain, monitor));
+        !itself.empty())
+      return itself;
+  std::string remedy;
+  if (format.precision == Precision::as_float)
+    remedy = "; extxyz and npy round nothing";
+  else if (format.table.keys.find("unit"))
+    remedy = fmt::format("; the unit {} rounds nothing", name_of(file.packing.scene.unit));
+  return fmt::format("largest overlap after rounding to {}: {:.2g} of the sum of two radii{}", to, overlap,
+                     remedy);
+}
+
+std::string spheres_in(const Exported& file) {
+  return fmt::format("{} {}, lengths in {}", grouped(file.size()), file.size() == 1 ? "sphere" : "spheres",
+                     name_of(file.unit()));
+}
+
+/// `told` by whoever wrote the file; or empty.
+std::string note_of(const Exported& file, const PackingWriter& format, const std::string& told,
+                    const Monitor& monitor) {
+  const std::string remark = format.remark ? format.remark(file) : "";
+  const std::string contacts =
+      file.contacts.treatment == ContactTreatment::none ? "" : "; " + words_on(file.contacts);
+  if (format.note || !told.empty())
+    return fmt::format("{}, {}{}{}{}", spheres_in(file), format.note ? format.note(file) : told, contacts,
+                       words_on_faults(file), remark);
+  const OutputTable& table = format.table;
+  std::string note =
+      fmt::format("{}, {}", spheres_in(file), table.sizes == "diameter" ? "diameters" : "radii");
+  if (table.keys.find("density")) note += fmt::format(", density {} kg/m3", file.output.density);
+  if (table.keys.find("types"))
+    note += fmt::format(", {} {}", file.type_count, file.type_count == 1 ? "type" : "types");
+  return note + contacts + "; " + words_on_rounding(file, format, monitor) + remark;
+}
+
+}  // namespace
+
+std::string write_output(const Packing& packing, const Output& output, StagedFolder& staged,
+                         const Monitor& monitor) {
+  const Interruptible interruptible(monitor);
+  const PackingWriter& format = writer_of(output);
+  Exported file = exported(packing, output, monitor);
+  if (format.note || format.write_and_tell) take_faults(file, format, monitor);
+  std::string told;
+  if (format.write_text) {
+    TextFile out(staged.add(file.output.file.string()));
+    format.write_text(file, out);
+    out.close();
+  } else if (format.write_and_tell) {
+    told = format.write_and_tell(file, staged);
+  } else {
+    format.write(file, staged);
+  }
+  return note_of(file, format, told, monitor);
+}
+
+WrittenExport write_export(const Packing& packing, const Output& asked, const fs::path& file,
+                           const Monitor& monitor) {
+  if (table_of(asked).is_folder && stands(file))
+    throw Error(ErrorCode::cannot_write, "stands there already; give another name with -o, or move it away",
+                {file.string()});
+  const fs::path meant = file_meant_by(file);
+  Output output = asked;
+  output.file = meant.filename();
+  complete_output(output, packing.scene);
+  const fs::path folder = meant.parent_path().empty() ? "." : meant.parent_path();
+  require_free_places(packing, output, folder);
+  StagedFolder staged(folder);
+  const std::string note = write_output(packing, output, staged, monitor);
+  WrittenExport written{staged.publish(), note};
+  for (fs::path& path : written.files) path = path.lexically_normal();
+  return written;
+}
+
+}  // namespace bernal

@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/version.hpp"
+#include "formats/format.hpp"
+#include "scene/toml_text.hpp"
+
+namespace bernal {
+namespace {
+
+/// `mapping.of` of each kind of domain.
+struct MappedDomain {
+  const Mapping& mapping;
+
+  template <class Point>
+  Point point(Point p) const {
+    for (int k = 0; k < p.size(); ++k) p[k] = mapping.coordinate(p[k], k);
+    return p;
+  }
+  Domain operator()(Box box) const {
+    box.corner = point(box.corner);
+    for (double& edge : box.size) edge = mapping.length(edge);
+    return box;
+  }
+  Domain operator()(Cylinder cylinder) const {
+    cylinder.base = point(cylinder.base);
+    cylinder.radius = mapping.length(cylinder.radius);
+    cylinder.height = mapping.length(cylinder.height);
+    return cylinder;
+  }
+  Domain operator()(Sphere sphere) const {
+    sphere.center = point(sphere.center);
+    sphere.radius = mapping.length(sphere.radius);
+    return sphere;
+  }
+  Domain operator()(Mesh mesh) const {
+    for (Vector<3>& vertex : mesh.vertices) vertex = point(vertex);
+    mesh.exact = nullptr;
+    return mesh;
+  }
+  Domain operator()(Polygon polygon) const {
+    for (auto& loop : polygon.loops)
+      for (Vector<2>& p : loop) p = point(p);
+    return polygon;
+  }
+};
+
+/// Into the half-open period, where programs look for centres: what rounding put on its end, and what a file
+/// of another hand has beyond.
+void wrap_into_periods(Exported& made, bool centred) {
+  const auto* box = std::get_if<Box>(&made.domain);
+  const auto periods = made.periods();
+  const Bounds<dynamic> bounds = bounds_of<dynamic>(made.domain);
+  for (std::size_t k = 0; k < made.spheres.x.size(); ++k) {
+    const auto axis = static_cast<int>(k);
+    if (!(box ? box->repeats(axis) : periods[k])) continue;
+    const double edge = bounds.size()[axis], lower = centred ? -0.5 * edge : bounds.lower[axis],
+                 upper = lower + edge;
+    for (double& x : made.spheres.x[k]) {
+      if (x >= lower && x < upper) continue;
+      made.wrapped = true;
+      x -= std::floor((x - lower) / edge) * edge;
+      if (!(x >= lower && x < upper)) x = lower;
+    }
+  }
+}
+
+/// What the output asks for about contacts, of the numbers that the file will hold.
+void treat_contacts(Exported& made, const PackingWriter& format, const Monitor& monitor) {
+  const Output& output = made.output;
+  if (format.table.solids) {
+    made.solids = solids_of(
+        made.spheres, made.domain,
+        {.contact = output.contact, .gap = output.contact_gap, .bridge_radius = output.bridge_radius},
+        monitor);
+    made.spheres = made.solids.spheres;
+    made.domain = made.solids.domain;
+    made.contacts = made.solids.contacts;
+  } else if (output.contact != ContactTreatment::none) {
+    made.contacts = shrink_contacts(made.spheres, made.domain, output.contact, output.contact_gap,
+                                    format.precision == Precision::as_float, monitor);
+  }
+}
+
+/// The type of every radius, from 1, and how many there are: classes of equal width if `asked`; else one for
+/// every radius where at most ten occur, or one for all.
+std::uint32_t take_types(std::span<const double> radii, const std::optional<int>& asked,
+                         std::vector<std::uint32_t>& types) {
+  constexpr std::size_t most_by_radius = 10;
+  types.assign(radii.size(), 1);
+  if (radii.empty()) return 1;
+  if (asked) {
+    const auto [low, high] = std::ranges::minmax(radii);
+    const double width = (high - low) / *asked;
+    for (std::size_t i = 0; i < radii.size() && width > 0; ++i)
+      types[i] = std::min(static_cast<std::uint32_t>((radii[i] - low) / width),
+                          static_cast<std::uint32_t>(*asked - 1)) +
+                 1;
+    return static_cast<std::uint32_t>(*asked);
+  }
+  std::set<double> different;
+  for (const double r : radii)
+    if (different.insert(r); different.size() > most_by_radius) return 1;
+  const std::vector<double> sorted(different.begin(), different.end());
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    types[i] = static_cast<std::uint32_t>(std::ranges::lower_bound(sorted, radii[i]) - sorted.begin()) + 1;
+  return static_cast<std::uint32_t>(sorted.size());
+}
+
+}  // namespace
+
+std::function<double(double)> unit_conversion(Unit from, Unit to) {
+  const double factor = conversion_factor(from, to), back = conversion_factor(to, from);
+  return [factor, back](double length) { return factor < 1 ? length / back : length * factor; };
+}
+
+Vector<3> Mapping::point(Vector<3> p) const { return MappedDomain{*this}.point(p); }
+void Mapping::map(Spheres<dynamic>& spheres) const {
+  for (std::size_t k = 0; k < spheres.x.size(); ++k)
+    for (double& x : spheres.x[k]) x = coordinate(x, static_cast<int>(k));
+  for (double& r : spheres.r) r = length(r);
+}
+Domain Mapping::of(const Domain& domain) const { return std::visit(MappedDomain{*this}, domain); }
+
+Exported exported(const Packing& packing, const Output& output, const Monitor& monitor) {
+  const PackingWriter& format = writer_of(output);
+  const auto converted = unit_conversion(packing.scene.unit, *output.unit);
+  const auto rounded = [is_single = format.precision == Precision::as_float](double value) {
+    return is_single ? static_cast<double>(static_cast<float>(value)) : value;
+  };
+  Exported made{.packing = packing,
+                .output = output,
+                .spheres = packing.spheres,
+                .domain = Domain(),
+                .types = {},
+                .monitor = monitor};
+  Vector<3> middle = Vector<3>::Zero();
+  if (format.centred) {
+    const Bounds<3> bounds = bounds_of(packing.domain);
+    for (int k = 0; k < 3; ++k) middle[k] = converted(0.5 * (bounds.lower[k] + bounds.upper[k]));
+  }
+  Mapping mapping{[&](double x, int axis) {
+                    const double value = converted(x);
+                    return rounded(axis < 3 ? value - middle[axis] : value);
+                  },
+                  [&](double length) { return rounded(converted(length)); }};
+  made.domain = mapping.of(packing.domain);
+  // A format of single precision holds diameters, and half of one is exact.
+  mapping.length = [&](double radius) { return 0.5 * rounded(converted(2 * radius)); };
+  mapping.map(made.spheres);
+  for (std::size_t i = 0; i < made.size(); ++i)
+    if (const double r = made.spheres.r[i]; !(r > 0 && std::isfinite(r)))
+      throw Error(ErrorCode::bad_packing,
+                  fmt::format("sphere {} has the radius {} {}, which numbers of the format {} cannot hold", i,
+                              packing.spheres.r[i], name_of(packing.scene.unit), output.format));
+  if (format.wraps) wrap_into_periods(made, format.centred);
+  made.type_count = take_types(packing.spheres.r, output.types, made.types);
+  treat_contacts(made, format, monitor);
+  return made;
+}
+
+double Exported::largest_radius() const {
+  return spheres.empty() ? 0 : *std::max_element(spheres.r.begin(), spheres.r.end());
+}
+
+std::array<bool, 3> Exported::periods() const {
+  std::array<bool, 3> all{};
+  if (const auto* box = std::get_if<Box>(&domain))
+    for (int k = 0; k < std::min(3, box->dimension()); ++k)
+      all[static_cast<std::size_t>(k)] = box->repeats(k);
+  if (const auto* cylinder = std::get_if<Cylinder>(&domain); cylinder && cylinder->periodic)
+    all[static_cast<std::size_t>(cylinder->coordinate_axis())] = true;
+  return all;
+}
+
+std::string Exported::periods_as(std::string_view yes, std::string_view no, std::string_view between) const {
+  const auto periodic = periods();
+  const auto word = [&](std::size_t k) { return periodic[k] ? yes : no; };
+  return fmt::format("{0}{3}{1}{3}{2}", word(0), word(1), word(2), between);
+}
+
+Bounds<3> Exported::box() const {
+  Bounds<3> bounds = bounds_of(domain);
+  const double largest = largest_radius(), diagonal = bounds.size().norm();
+  const double margin = largest > 0 ? largest : 1e-3 * diagonal;
+  const auto periodic = periods();
+  for (int k = 0; k < 3; ++k) {
+    if (periodic[static_cast<std::size_t>(k)]) continue;
+    bounds.lower[k] -= margin;
+    bounds.upper[k] += margin;
+  }
+  return bounds;
+}
+
+std::string Exported::name() const { return plain_text(output.file.string()); }
+
+std::string Exported::name_as_word() const { return as_word(output.file.string()); }
+
+std::string Exported::name_of_type(std::uint32_t type) const {
+  return type_count == 1 ? "spheres" : fmt::format("spheres_{}", type);
+}
+
+std::string periods_in_python(const Exported& file) {
+  return fmt::format("({})", file.periods_as("True", "False", ", "));
+}
+
+bool is_plain_word(const std::string& word) {
+  return std::ranges::all_of(
+      word, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("._-+", c); });
+}
+
+std::string as_word(const std::string& word) { return is_plain_word(word) ? word : toml_string(word); }
+
+std::string Exported::title() const {
+  return fmt::format("bernal {}: {} spheres in a {}, packing fraction {:.6g}", version(), grouped(size()),
+                     name_of(domain), packing.packing_fraction() - contacts.change_of_porosity());
+}
+
+std::string row_of(const Vector<3>& v, std::string_view between) {
+  return fmt::format("{0}{3}{1}{3}{2}", v[0], v[1], v[2], between);
+}
+
+std::string filled(std::string_view text,
+                   const std::vector<std::pair<std::string_view, std::string>>& values) {
+  std::string made;
+  for (std::size_t at; (at = text.find('@')) != text.npos;) {
+    const std::size_t end = text.find('@', at + 1);
+    const auto value = std::ranges::find(values, text.substr(at + 1, end - at - 1),
+                                         &std::pair<std::string_view, std::string>::first);
+    const bool is_name = end != text.npos && value != values.end();
+    made += text.substr(0, at);
+    made += is_name ? value->second : "@";
+    text.remove_prefix(is_name ? end + 1 : at + 1);
+  }
+  return made += text;
+}
+
+}  // namespace bernal

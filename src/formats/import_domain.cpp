@@ -1,0 +1,208 @@
+#include "formats/import_domain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/scene/read_scene.hpp"
+
+namespace bernal {
+namespace {
+
+[[noreturn]] void refuse_words(const std::string& why) { throw Error(ErrorCode::bad_argument, why); }
+
+/// "x, y", for axes as people call them.
+std::string axes_in_words(const std::vector<std::size_t>& axes, std::size_t dimension) {
+  std::vector<std::string> names;
+  for (const std::size_t k : axes)
+    names.push_back(dimension <= 3 ? std::string(1, "xyz"[k]) : fmt::format("axis {}", k));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Ends of the axes as `--periodic` says them: "none", "xyz", "z".
+std::vector<AxisEnd> ends_of_word(const std::string& word, std::size_t dimension) {
+  std::vector<AxisEnd> ends(dimension, AxisEnd::wall);
+  if (word == "none") return ends;
+  for (const char letter : word) {
+    const auto axis = static_cast<std::size_t>(letter - 'x');
+    if (letter < 'x' || letter > 'z' || axis >= dimension)
+      refuse_words(
+          fmt::format("--periodic takes the axes that repeat themselves, such as xyz or xy, or none, "
+                      "for {} dimensions",
+                      dimension));
+    if (ends[axis] == AxisEnd::period)
+      refuse_words(
+          fmt::format("--periodic names the axis {} twice; it takes each once, such as xyz or xy", letter));
+    ends[axis] = AxisEnd::period;
+  }
+  return ends;
+}
+
+/// The least edge whose sum with the corner, as a box rounds it, reaches the upper bound.
+double edge_between(double lower, double upper) {
+  double edge = upper - lower;
+  while (lower + edge < upper) edge = std::nextafter(edge, std::numeric_limits<double>::infinity());
+  return edge;
+}
+
+/// Bounds of balls along an axis, rounded outwards.
+void bounds_along(const Spheres<dynamic>& spheres, std::size_t axis, double& lower, double& upper) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  lower = infinity;
+  upper = -infinity;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    lower = std::min(lower, spheres.x[axis][i] - spheres.r[i]);
+    upper = std::max(upper, spheres.x[axis][i] + spheres.r[i]);
+  }
+  lower = std::nextafter(lower, -infinity);
+  upper = std::nextafter(upper, infinity);
+}
+
+/// The box that is meant, its ends all decided, and why in words.
+FileBox box_of_import(const FileContents& contents, const ImportOptions& options, std::string& words) {
+  const std::size_t dimension = contents.spheres.x.size();
+  FileBox box;
+  words = "as the file says";
+  if (!options.box.empty()) {
+    if (options.box.size() != dimension)
+      refuse_words(fmt::format("--box needs an edge for each of {} dimensions, not {}", dimension,
+                               options.box.size()));
+    box = {std::vector<double>(dimension), options.box, std::vector<AxisEnd>(dimension, AxisEnd::period)};
+    words = "as --box says";
+  } else if (contents.box) {
+    box = *contents.box;
+  } else {
+    if (!options.periodic.empty())
+      refuse_words("--periodic needs a box, and the file has none; give --box too, such as --box 10,10,10");
+    if (dimension != 2 && dimension != 3)
+      refuse_words(fmt::format("the file has no box; give its {} edges by --box", dimension));
+    box = {std::vector<double>(dimension), std::vector<double>(dimension),
+           std::vector<AxisEnd>(dimension, AxisEnd::wrapped)};
+    words = "the bounds of the spheres, as the file has no box; --box or --container says another";
+  }
+  box.lower.resize(dimension);
+  box.upper.resize(dimension);
+  box.ends.resize(dimension);
+  if (!options.periodic.empty()) {
+    box.ends = ends_of_word(options.periodic, dimension);
+    words += ", its ends as --periodic says";
+  }
+  std::vector<std::size_t> guessed, wrapped;
+  for (std::size_t k = 0; k < dimension; ++k) {
+    if (box.ends[k] == AxisEnd::unsaid) {
+      box.ends[k] = AxisEnd::period;
+      guessed.push_back(k);
+    } else if (box.ends[k] == AxisEnd::wrapped) {
+      box.ends[k] = AxisEnd::wall;
+      wrapped.push_back(k);
+      bounds_along(contents.spheres, k, box.lower[k], box.upper[k]);
+    }
+    if (!(box.upper[k] - box.lower[k] >= smallest_length && box.upper[k] - box.lower[k] <= farthest_place))
+      throw Error(ErrorCode::bad_packing,
+                  fmt::format("the box has no length along axis {}: from {} to {}; give --box", k,
+                              box.lower[k], box.upper[k]));
+  }
+  if (!guessed.empty())
+    words += fmt::format("; it does not say how {} end{}, which then repeat{}: --periodic says another",
+                         axes_in_words(guessed, dimension), guessed.size() == 1 ? "s" : "",
+                         guessed.size() == 1 ? "s itself" : " themselves");
+  if (!wrapped.empty() && (contents.box || !options.box.empty()))
+    words += fmt::format("; along {} the bounds of the spheres", axes_in_words(wrapped, dimension));
+  return box;
+}
+
+std::string edges_in_words(const std::vector<double>& edges, Unit unit) {
+  return fmt::format("{:.10g} {}", fmt::join(edges, " x "), name_of(unit));
+}
+
+ImportDomain domain_of_box(const FileBox& box, Unit unit, const std::string& why) {
+  ImportDomain made;
+  made.scene.unit = unit;
+  const std::size_t dimension = box.lower.size();
+  std::vector<double> edges;
+  std::vector<int> walls;
+  for (std::size_t k = 0; k < dimension; ++k) {
+    const bool is_wall = box.ends[k] == AxisEnd::wall;
+    if (is_wall) walls.push_back(static_cast<int>(k));
+    edges.push_back(is_wall ? edge_between(box.lower[k], box.upper[k]) : box.upper[k] - box.lower[k]);
+  }
+  if (walls.size() == dimension && (dimension == 2 || dimension == 3)) {
+    Box of{Vector<dynamic>::Zero(static_cast<int>(dimension)),
+           Vector<dynamic>::Zero(static_cast<int>(dimension))};
+    for (std::size_t k = 0; k < dimension; ++k) {
+      of.corner[static_cast<int>(k)] = box.lower[k];
+      of.size[static_cast<int>(k)] = edges[k];
+    }
+    made.scene.container = std::move(of);
+    made.domain = packed_domain_of(made.scene);
+  } else {
+    made.scene.container =
+        PeriodicBox{.dimension = static_cast<int>(dimension), .size = edges, .walls = walls};
+    made.domain = packed_domain_of(made.scene);
+    if (std::ranges::any_of(box.lower, [](double x) { return x != 0; }))
+      for (const double x : box.lower) made.shift.push_back(0 - x);  // of 0 no -0, which would be printed
+  }
+  made.words = fmt::format("{}, {}, {}", name_of(made.domain), edges_in_words(edges, unit), why);
+  return made;
+}
+
+ImportDomain domain_of_scene(FileContents& contents, Unit unit, const std::filesystem::path& file) {
+  const Scene scene = read_scene(file);
+  if (scene.dimension() != contents.spheres.dimension())
+    throw Error(ErrorCode::bad_packing,
+                fmt::format("the spheres have {} dimensions, but the container of the scene has {}; "
+                            "--dimension 2 takes spheres of one plane for discs",
+                            contents.spheres.dimension(), scene.dimension()),
+                {file.string()});
+  ImportDomain made;
+  made.scene.unit = scene.unit;
+  made.scene.container = scene.container;
+  made.scene.walls = scene.walls;
+  const auto converted = unit_conversion(unit, scene.unit);
+  Mapping{[&](double x, int) { return converted(x); }, converted}.map(contents.spheres);
+  if (std::holds_alternative<MeshFile>(scene.container)) {
+    std::string notes, caution;  // the smallest says how finely a curved part is to be cut into triangles
+    made.scene.sizes = Constant{std::ranges::min(contents.spheres.r)};
+    made.domain = domain_of(made.scene, notes, caution);
+    made.scene.sizes = Constant{0};
+  } else {
+    made.domain = packed_domain_of(scene);
+  }
+  made.words = fmt::format("{}, the container of {}", name_of(made.domain), file.string());
+  return made;
+}
+
+}  // namespace
+
+Unit unit_of_import(const FileContents& contents, const Reading& reading,
+                    const std::optional<Unit>& otherwise) {
+  const std::optional<Unit>& asked = reading.options.unit;
+  if (contents.unit && asked && *contents.unit != *asked)
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("says itself that it is in {}; leave --unit out", name_of(*contents.unit)),
+                {reading.file.string()});
+  if (contents.unit) return *contents.unit;
+  if (asked) return *asked;
+  if (otherwise) return *otherwise;
+  throw Error(ErrorCode::bad_packing, "does not say the unit of its lengths; give it, such as --unit mm",
+              {reading.file.string()});
+}
+
+ImportDomain domain_of_import(FileContents& contents, Unit unit, const Reading& reading) {
+  const ImportOptions& options = reading.options;
+  if (options.container) {
+    if (!options.periodic.empty() || !options.box.empty())
+      refuse_words("--container says what the spheres lie in; leave --box and --periodic out");
+    return domain_of_scene(contents, unit, *options.container);
+  }
+  std::string why;
+  const FileBox box = box_of_import(contents, options, why);
+  return domain_of_box(box, unit, why);
+}
+
+}  // namespace bernal

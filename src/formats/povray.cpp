@@ -1,0 +1,166 @@
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "formats/foreign_lines.hpp"
+#include "formats/templates.hpp"
+#include "formats/text_file.hpp"
+#include "io/legend.hpp"
+#include "io/palette.hpp"
+
+namespace bernal {
+namespace {
+
+/// What a sphere of the packing begins with, and how the frame is told: to the writer and the reader.
+constexpr std::string_view ball_mark = "sphere{<", swap_mark = "y and z have changed places";
+
+/// POV-Ray's frame is left-handed and its y points up: y and z change places.
+std::string vector_of(const Vector<3>& v) { return fmt::format("<{}, {}, {}>", v[0], v[2], v[1]); }
+
+constexpr std::string_view glass = "pigment { srgbt <0.62, 0.70, 0.80, 0.82> } no_shadow";
+
+/// POV-Ray takes what is smaller than some 1e-6 for a point, and sees no farther than 1e7: a picture of a
+/// domain of another size is made in lengths of its own, so many of the file's unit each. A power of ten.
+double length_in_picture(const Domain& domain) {
+  constexpr double smallest = 0.1, largest = 1e4;
+  const double diagonal = bounds_of(domain).diagonal();
+  if (!(diagonal > 0) || (diagonal >= smallest && diagonal <= largest)) return 1;
+  return std::pow(10, std::floor(std::log10(diagonal)));
+}
+
+/// The lines that show the domain, for the spheres in it to be seen.
+struct OutlineLines {
+  std::string edge(const Vector<3>& from, const Vector<3>& to) const {
+    return fmt::format("cylinder {{ {}, {}, Thickness }}\n", vector_of(from), vector_of(to));
+  }
+  std::string operator()(const Box& box) const {
+    const Vector<3> corner = box.corner, size = box.size;
+    std::string lines = "union {\n";
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = 0; side < 4; ++side) {
+        Vector<3> from = corner;
+        if (side & 1) from[(axis + 1) % 3] += size[(axis + 1) % 3];
+        if (side & 2) from[(axis + 2) % 3] += size[(axis + 2) % 3];
+        Vector<3> to = from;
+        to[axis] += size[axis];
+        lines += edge(from, to);
+      }
+    return lines + "pigment { srgb <0.35, 0.40, 0.48> }\n}\n";
+  }
+  std::string operator()(const Cylinder& cylinder) const {
+    const Vector<3> top = cylinder.base + cylinder.height * cylinder.axis.normalized();
+    return fmt::format("cylinder {{ {}, {}, {} open {} }}\n", vector_of(cylinder.base), vector_of(top),
+                       cylinder.radius, glass);
+  }
+  std::string operator()(const Sphere& sphere) const {
+    return fmt::format("sphere {{ {}, {} {} }}\n", vector_of(sphere.center), sphere.radius, glass);
+  }
+  std::string operator()(const Mesh& mesh) const {
+    std::string lines = fmt::format("mesh2 {{\nvertex_vectors {{ {}", mesh.vertices.size());
+    for (const Vector<3>& vertex : mesh.vertices) lines += ",\n" + vector_of(vertex);
+    lines += fmt::format(" }}\nface_indices {{ {}", mesh.triangles.size());
+    for (const auto& [a, b, c] : mesh.triangles) lines += fmt::format(",\n<{}, {}, {}>", a, b, c);
+    return lines + fmt::format(" }}\n{}\n}}\n", glass);
+  }
+  std::string operator()(const Polygon&) const { return {}; }
+};
+
+std::string note_of_picture(const Exported& file) {
+  const double length = length_in_picture(file.domain);
+  if (length == 1) return "radii";
+  return fmt::format("radii; in the picture a length of 1 is {} {}", length, name_of(file.unit()));
+}
+
+/// With a camera far enough away to see all of the domain, and of spheres that stick out of it, in pictures
+/// that are at least as wide as high.
+void write_picture(const Exported& file, double length, TextFile& out) {
+  constexpr double half_angle = 13 * std::numbers::pi / 180;
+  const Bounds<3> bounds = bounds_of(file.domain);
+  const Vector<3> middle = 0.5 * (bounds.lower + bounds.upper);
+  const double distance = (0.5 * bounds.size().norm() + file.largest_radius()) / std::sin(half_angle);
+  const auto at = [&](const Vector<3>& from) { return vector_of(middle + distance * from); };
+  std::string textures;
+  for (int c = 0; c < colour_classes; ++c) {
+    const Colour colour = size_colour((c + 0.5) / colour_classes);
+    textures += fmt::format(
+        "#declare Size{} = texture {{ pigment {{ srgb <{}, {}, {}> }} finish {{ ambient 0.18 "
+        "diffuse 0.75 specular 0.15 roughness 0.03 }} }}\n",
+        c, colour.red, colour.green, colour.blue);
+  }
+  const std::string_view unit = name_of(file.unit());
+  out.add(filled(povray_pov, {{"TITLE", file.title()},
+                              {"UNIT", length == 1 ? std::string(unit)
+                                                   : fmt::format("{} {}, from the middle", length, unit)},
+                              {"SWAPPED", std::string(swap_mark)},
+                              {"NAME", file.name()},
+                              {"LOCATION", at(Vector<3>(0.45, -1, 0.42).normalized())},
+                              {"DIRECTION", fmt::format("{}", 0.5 / std::tan(half_angle))},
+                              {"MIDDLE", vector_of(middle)},
+                              {"LIGHT", at({-0.6, -0.8, 1.2})},
+                              {"FILL_LIGHT", at({1, -0.6, 0.1})},
+                              {"THICKNESS", fmt::format("{}", 0.002 * bounds.size().norm())},
+                              {"SIZES", textures},
+                              {"OUTLINE", std::visit(OutlineLines(), file.domain)}}));
+  const SizeScale sizes(file.spheres.r);
+  for (std::size_t i = 0; i < file.size(); ++i)
+    out.add(ball_mark, file.coordinate(0, i), ',', file.coordinate(2, i), ',', file.coordinate(1, i), ">,",
+            file.spheres.r[i], " texture{Size", sizes.colour_class(file.spheres.r[i]), "}}\n");
+}
+
+void write_povray(const Exported& file, TextFile& out) {
+  const double length = length_in_picture(file.domain);
+  if (length == 1) return write_picture(file, length, out);
+  const Bounds<3> bounds = bounds_of(file.domain);
+  const Vector<3> middle = 0.5 * (bounds.lower + bounds.upper);
+  const Mapping mapping{[&](double x, int axis) { return (x - middle[axis]) / length; },
+                        [&](double l) { return l / length; }};
+  Exported picture = file;
+  mapping.map(picture.spheres);
+  picture.domain = mapping.of(file.domain);
+  write_picture(picture, length, out);
+}
+
+/// Of scenes that bernal wrote: a sphere of the packing has a line, and no blank after its word.
+FileContents read_povray(const Reading& reading) {
+  ForeignLines lines(reading);
+  FileContents contents;
+  bool is_swapped = false;
+  const SphereColumns columns = columns_xyzr();
+  std::vector<std::string_view> parts;
+  while (lines.next()) {
+    const std::string_view line = lines.line();
+    if (line.starts_with("//")) {
+      is_swapped = is_swapped || line.find(swap_mark) != line.npos;
+      lines.take_unit_remark(contents.unit);
+    }
+    if (!line.starts_with(ball_mark)) continue;
+    split_at(line.substr(ball_mark.size()), "<,> ", parts);
+    add_row(lines, columns, parts, contents.spheres);
+  }
+  if (contents.size() == 0)
+    lines.fail("there is no sphere of a packing in it; only scenes that bernal wrote are read");
+  if (is_swapped) std::swap(contents.spheres.x[1], contents.spheres.x[2]);
+  return contents;
+}
+
+}  // namespace
+
+Format povray_format() {
+  return {
+      .writer = PackingWriter{.table = {.keys = output_entry("povray",
+                                                             "POV-Ray scene with camera and light, spheres "
+                                                             "coloured by size, the outline of the domain",
+                                                             {"unit"}),
+                                        .file = "povray.pov"},
+                              .write_text = write_povray,
+                              .note = note_of_picture},
+      .reader = PackingReader{
+          .about = {"povray", "POV-Ray scenes that bernal wrote", "\"lengths in mm\" in its first line", {}},
+          .recognises =
+              [](const FileBeginning& file) { return file.begins("// bernal ") && file.has(swap_mark); },
+          .read = read_povray}};
+}
+
+}  // namespace bernal
