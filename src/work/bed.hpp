@@ -8,7 +8,7 @@
 #include "bernal/domain/container.hpp"
 #include "core/archive.hpp"
 #include "domain/places.hpp"
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 #include "work/effect_log.hpp"
 #include "work/room.hpp"
 
