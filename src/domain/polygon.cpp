@@ -6,20 +6,39 @@
 #include "domain/analytic.hpp"
 #include "domain/exact_analytic.hpp"
 #include "domain/inset_container.hpp"
-#include "domain/segment_tree.hpp"
+#include "near/box_tree.hpp"
 
 namespace bernal {
 namespace {
 
-std::vector<SegmentTree::Segment> edges_of(const Polygon& shape) {
-  std::vector<SegmentTree::Segment> edges;
+struct Segment {
+  Vector<2> a, b;
+
+  /// p minus the nearest point of the segment, as in kernels/closest_point.hpp.
+  Vector<2> offset(const Vector<2>& p) const {
+    const Vector<2> base = b - a, w = p - a;
+    const double along = w.dot(base), squared_length = base.squaredNorm();
+    if (!(along > 0)) return w;
+    if (along >= squared_length) return p - b;
+    return w - (along / squared_length) * base;
+  }
+};
+
+std::vector<Segment> edges_of(const Polygon& shape) {
+  std::vector<Segment> edges;
   for (const auto& loop : shape.loops) {
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const Vector<2>&a = loop[k], &b = loop[(k + 1) % loop.size()];
-      if (a != b) edges.push_back({a, b, static_cast<std::uint32_t>(edges.size())});
+      if (a != b) edges.push_back({a, b});
     }
   }
   return edges;
+}
+
+BoxTree<2> tree_of(const std::vector<Segment>& edges) {
+  std::vector<Bounds<2>> boxes;
+  for (const Segment& s : edges) boxes.push_back({s.a.cwiseMin(s.b), s.a.cwiseMax(s.b)});
+  return {boxes, 4};
 }
 
 /// Upright walls on the edges of a polygon in the plane z = 0.
@@ -30,7 +49,8 @@ class PolygonContainer final : public Container {
         shape_(shape),
         bounds_(bounds_of(shape)),
         volume_(volume_of(Polygon{shape.loops})),
-        edges_(edges_of(shape)) {}
+        edges_(edges_of(shape)),
+        tree_(tree_of(edges_)) {}
 
   std::string_view kind() const override { return "polygon"; }
   Bounds<3> bounds() const override { return bounds_; }
@@ -42,9 +62,9 @@ class PolygonContainer final : public Container {
 
   double clearance_within(const Vector<3>& p, double reach) const override {
     // Outside the distance is asked whatever the reach.
-    const bool inside = edges_.encloses(p.head<2>());
+    const bool inside = encloses(p.head<2>());
     const double distance =
-        edges_.distance(p.head<2>(), inside ? std::max(0.0, reach) : std::numeric_limits<double>::infinity());
+        distance_within(p.head<2>(), inside ? std::max(0.0, reach) : std::numeric_limits<double>::infinity());
     return std::min(inside ? distance : -distance, reach);
   }
 
@@ -58,14 +78,14 @@ class PolygonContainer final : public Container {
 
   void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
     const auto first = static_cast<std::ptrdiff_t>(out.size());
-    edges_.for_each_near(c.head<2>(), reach, [&](const SegmentTree::Segment& edge) {
-      const double d = edge.offset(c.head<2>()).norm();
+    tree_.for_each_near(c.head<2>(), reach, [&](std::uint32_t id) {
+      const double d = edges_[id].offset(c.head<2>()).norm();
       if (!(d < reach)) return;
       Facet facet;
       facet.kind = Facet::Kind::triangle;
-      facet.id = edge.id;
-      facet.a.head<2>() = edge.a;
-      facet.b.head<2>() = edge.b;
+      facet.id = id;
+      facet.a.head<2>() = edges_[id].a;
+      facet.b.head<2>() = edges_[id].b;
       facet.c = facet.b;
       out.push_back({d, facet});
     });
@@ -75,10 +95,43 @@ class PolygonContainer final : public Container {
   }
 
  private:
+  using Node = BoxTree<2>::Node;
+
+  /// The distance of p from the nearest edge; any value of at least `reach` where none is nearer.
+  double distance_within(const Vector<2>& p, double reach) const {
+    double squared = reach * reach;
+    tree_.for_each_leaf([&](const Node& node) { return squared_distance(node.bounds, p) < squared; },
+                        [&](const Node& leaf) {
+                          for (std::uint32_t k = leaf.first; k < leaf.last; ++k)
+                            squared = std::min(squared, edges_[tree_.order()[k]].offset(p).squaredNorm());
+                        });
+    return std::sqrt(squared);
+  }
+
+  /// Whether the ray from p along the first axis crosses an odd number of edges.
+  bool encloses(const Vector<2>& p) const {
+    bool odd = false;
+    tree_.for_each_leaf(
+        [&](const Node& node) {
+          return node.bounds.lower[1] <= p[1] && p[1] <= node.bounds.upper[1] && p[0] <= node.bounds.upper[0];
+        },
+        [&](const Node& leaf) {
+          for (std::uint32_t k = leaf.first; k < leaf.last; ++k) {
+            const auto& [a, b] = edges_[tree_.order()[k]];
+            if ((a[1] > p[1]) == (b[1] > p[1])) continue;
+            const Vector<2> u = b - a, w = p - a;
+            const double side = u[0] * w[1] - u[1] * w[0];
+            odd ^= b[1] > a[1] ? side > 0 : side < 0;
+          }
+        });
+    return odd;
+  }
+
   Polygon shape_;
   Bounds<3> bounds_;
   double volume_;
-  SegmentTree edges_;
+  std::vector<Segment> edges_;
+  BoxTree<2> tree_;
 };
 
 }  // namespace

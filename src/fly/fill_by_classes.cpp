@@ -10,7 +10,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "core/event_clock.hpp"
 #include "core/made.hpp"
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/holes.hpp"
 

@@ -11,7 +11,7 @@
 #include "core/archive.hpp"
 #include "core/event_clock.hpp"
 #include "core/made.hpp"
-#include "neighbors/partial_grid.hpp"
+#include "near/partial_grid.hpp"
 #include "work/work.hpp"
 
 namespace bernal {

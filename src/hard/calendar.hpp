@@ -126,8 +126,11 @@ class Calendar {
   }
 
   void note(Day& day, Id id) {
+    if (day.free == 0 && noted_ > most_noted * events_.size() + ids_a_note * days_.size()) drop_what_fell();
+    append(day, id);
+  }
+  void append(Day& day, Id id) {
     if (day.free == 0) {
-      if (noted_ > most_noted * events_.size() + ids_a_note * days_.size()) drop_what_fell();
       std::uint32_t fresh = free_;
       if (fresh != none) {
         free_ = notes_[fresh].next;
@@ -181,7 +184,7 @@ class Calendar {
       });
       std::ranges::sort(standing);
       standing.erase(std::ranges::unique(standing).begin(), standing.end());
-      for (const Id id : standing) note(days_[day], id);
+      for (const Id id : standing) append(days_[day], id);
     }
   }
 

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "near/box_tree.hpp"
 
 namespace bernal {
 namespace {
@@ -23,79 +23,13 @@ Wall<3> plane(const Vector<3>& normal, const Vector<3>& point) {
   return {.along = normal, .extent = normal.dot(point)};
 }
 
-/// The corners of a mesh in a tree of boxes, to find those that a plane leaves outside.
-class CornerTree {
- public:
-  explicit CornerTree(const std::vector<Vector<3>>& corners) : corners_(corners), order_(corners.size()) {
-    std::iota(order_.begin(), order_.end(), 0u);
-    build(0, order_.size());
-  }
-
-  /// Calls visit(corner, normal·corner) for those where that is `level` or more.
-  template <class Visit>
-  void for_each_above(const Vector<3>& normal, double level, Visit visit) const {
-    const Vector<3> size = normal.cwiseAbs();
-    for (std::size_t n = 0; n < nodes_.size();) {
-      const Node& node = nodes_[n];
-      if (normal.dot(node.center) + size.dot(node.half) < level) {
-        n = node.next;
-        continue;
-      }
-      if (node.is_leaf)
-        for (std::size_t k = node.first; k < node.last; ++k)
-          if (const double height = normal.dot(corners_[order_[k]]); height >= level)
-            visit(order_[k], height);
-      ++n;
-    }
-  }
-
- private:
-  static constexpr std::size_t corners_a_leaf = 8;
-  /// In depth-first order; `next` is what follows when all below this one is left out.
-  struct Node {
-    Vector<3> center, half;
-    std::size_t first, last, next;
-    bool is_leaf;
-  };
-
-  void build(std::size_t first, std::size_t last) {
-    Vector<3> lower = corners_[order_[first]], upper = lower;
-    for (std::size_t k = first; k < last; ++k) {
-      lower = lower.cwiseMin(corners_[order_[k]]);
-      upper = upper.cwiseMax(corners_[order_[k]]);
-    }
-    // A little wider than the corners, as the centre is rounded.
-    const Vector<3> half =
-        (0.5 * (upper - lower)).array() + 1e-15 * upper.cwiseAbs().cwiseMax(lower.cwiseAbs()).sum();
-    const std::size_t at = nodes_.size();
-    nodes_.push_back({0.5 * (lower + upper), half, first, last, 0, last - first <= corners_a_leaf});
-    if (!nodes_[at].is_leaf) {
-      int axis;
-      half.maxCoeff(&axis);
-      const std::size_t middle = (first + last) / 2;
-      const auto begin = order_.begin();
-      std::nth_element(
-          begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(middle),
-          begin + static_cast<std::ptrdiff_t>(last),
-          [&](auto a, auto b) { return std::pair(corners_[a][axis], a) < std::pair(corners_[b][axis], b); });
-      build(first, middle);
-      build(middle, last);
-    }
-    nodes_[at].next = nodes_.size();
-  }
-
-  const std::vector<Vector<3>>& corners_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
-};
-
 /// Finds one plane after the other, each from the largest facet that has none yet.
 class Planes {
  public:
   Planes(const Mesh& mesh, double tolerance)
       : mesh_(mesh),
         tolerance_(tolerance),
-        tree_(mesh.vertices),
+        tree_(mesh.vertices, {}, 8),
         facets_at_(mesh.vertices.size()),
         covered_(mesh.triangles.size()),
         height_(mesh.vertices.size(), below) {
@@ -124,6 +58,25 @@ class Planes {
  private:
   static constexpr double below = -std::numeric_limits<double>::infinity();
 
+  /// Calls visit(corner, normal·corner) for those where that is `level` or more. No corner of a node is
+  /// higher than the corner of its bounds that is farthest along the normal, to the last bit, since products
+  /// and sums round in order.
+  template <class Visit>
+  void for_each_above(const Vector<3>& normal, double level, const Visit& visit) const {
+    tree_.for_each_leaf(
+        [&](const BoxTree<3>::Node& node) {
+          const Bounds<3>& bounds = node.bounds;
+          const Vector<3> highest = (normal.array() > 0).select(bounds.upper, bounds.lower);
+          return normal.dot(highest) >= level;
+        },
+        [&](const BoxTree<3>::Node& leaf) {
+          for (std::uint32_t k = leaf.first; k < leaf.last; ++k) {
+            const std::uint32_t v = tree_.order()[k];
+            if (const double height = normal.dot(mesh_.vertices[v]); height >= level) visit(v, height);
+          }
+        });
+  }
+
   Wall<3> wall_of(std::uint32_t facet, const Vector<3>& normal) {
     const Wall<3> best = plane_about(facet, normal);
     double highest = best.extent;
@@ -133,7 +86,7 @@ class Planes {
       height_[v] = height;
       highest = std::max(highest, height);
     };
-    tree_.for_each_above(best.along, best.extent - band * tolerance_, note);
+    for_each_above(best.along, best.extent - band * tolerance_, note);
     if (highest - best.extent > outside * tolerance_)
       throw Error(
           ErrorCode::bad_scene,
@@ -162,7 +115,7 @@ class Planes {
     std::size_t known = corners.size();
     for (int k = 0; k < most_fits; ++k) {
       std::vector<std::uint32_t> near;
-      tree_.for_each_above(best.along, best.extent - tolerance_, [&](std::uint32_t v, double height) {
+      for_each_above(best.along, best.extent - tolerance_, [&](std::uint32_t v, double height) {
         if (height <= best.extent + tolerance_) near.push_back(v);
       });
       if (near.size() <= known) break;
@@ -189,7 +142,7 @@ class Planes {
 
   const Mesh& mesh_;
   const double tolerance_;
-  const CornerTree tree_;
+  const BoxTree<3> tree_;                              // of the corners
   std::vector<std::vector<std::uint32_t>> facets_at_;  // of each corner
   std::vector<bool> covered_;
   std::vector<double> height_;  // over the plane at hand, of corners near it

@@ -20,6 +20,9 @@ namespace bernal {
 /// neighbours as often, when nothing of it is in the caches. For that it rounds them: places to 2^-16 of a
 /// cell's edge, reaches up to 2^-16 of the cells' largest.
 ///
+/// What it buys: to be filled and asked once for each point in no order takes 0.8 of the time of a `CellGrid`
+/// for 10^4 points in three dimensions, 0.6 for 10^5, 0.45 for 10^6 (tests/bench/near_bench.cpp).
+///
 /// Level l holds the points with reaches in (R_l / 2, R_l], R_l = R / 2^l, in cells of edge 2 R_l or more.
 /// Cost: `insert` and `move` O(1), a query the points of some 3^D cells a level. Memory: 64 bytes a cell, of
 /// which a level has at most half as many as points, and for each further line of a crowded one; 4 a point.
@@ -52,18 +55,17 @@ class HomeGrid {
     append(id, level_of(reach), home, reach);
   }
 
-  /// Appends every point whose distance, minimum image, is less than the sum of the two reaches, and none
-  /// that is farther by more than `coarseness` cells' edges.
-  void find_near(const Vector<D>& home, double reach, std::vector<Id>& found) const {
-    std::size_t count = found.size();
+  /// Calls visit(id) for every point whose distance, minimum image, is less than the sum of the two reaches,
+  /// and for none that is farther by more than `coarseness` cells' edges.
+  template <class Visit>
+  void for_each_near(const Vector<D>& home, double reach, Visit&& visit) const {
     for_each_cell_near(home, reach,
                        [&](const Level& level, std::size_t c, const auto& corner, bool all_around) {
                          if (all_around)
-                           find_in<true>(level, c, corner, reach, found, count);
+                           for_each_in<true>(level, c, corner, reach, visit);
                          else
-                           find_in<false>(level, c, corner, reach, found, count);
+                           for_each_in<false>(level, c, corner, reach, visit);
                        });
-    found.resize(count);
   }
   /// Asks the memory for all that such a query will look at.
   void prefetch_near(const Vector<D>& home, double reach) const {
@@ -216,11 +218,11 @@ class HomeGrid {
       }
     }
   }
-  /// Puts the near ones of a cell behind the `count` that are found. Without a branch for each point: about
-  /// half of them are near.
-  template <bool all_around>
-  void find_in(const Level& level, std::size_t c, const std::array<double, D>& corner, double reach,
-               std::vector<Id>& found, std::size_t& count) const {
+  /// The near ones of a cell. Those of a line are found without a branch for each point: about half of them
+  /// are near.
+  template <bool all_around, class Visit>
+  void for_each_in(const Level& level, std::size_t c, const std::array<double, D>& corner, double reach,
+                   Visit& visit) const {
     constexpr double shift = 0x1.8p52;  // rounds to the nearest whole number
     const double longer = reach + level.margin, reach_step = level.largest / reach_steps;
     std::array<double, D> step, from;  // from: the middle of the first step
@@ -229,7 +231,8 @@ class HomeGrid {
       from[k] = corner[k] + 0.5 * step[k];
     }
     for (const Line* line = &lines_[c];; line = &lines_[line->next]) {
-      if (found.size() < count + a_line) found.resize(2 * count + 64);
+      Id near[a_line];
+      std::uint32_t count = 0;
       for (std::uint32_t m = 0; m < line->count; ++m) {
         double squared = 0;
         for (int k = 0; k < D; ++k) {
@@ -237,10 +240,11 @@ class HomeGrid {
           if constexpr (all_around) d -= edges_[k] * ((d * inverse_edges_[k] + shift) - shift);
           squared += d * d;
         }
-        const double near = longer + line->reach[m] * reach_step;
-        found[count] = line->ids[m];
-        count += squared < near * near ? 1 : 0;
+        const double apart = longer + line->reach[m] * reach_step;
+        near[count] = line->ids[m];
+        count += squared < apart * apart ? 1 : 0;
       }
+      for (std::uint32_t n = 0; n < count; ++n) visit(near[n]);
       if (line->next == 0) break;
     }
   }

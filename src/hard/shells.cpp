@@ -34,7 +34,7 @@ void Shells<D>::build(const std::vector<Vector<D>>& homes, const std::vector<dou
   grid_.start(edges, reaches);
   for (Id i = 0; i < n; ++i) {
     after_.clear();
-    grid_.find_near(homes[i], shells_[i].reach, after_);
+    grid_.for_each_near(homes[i], shells_[i].reach, [&](Id j) { after_.push_back(j); });
     lists_.replace(shells_[i].list, after_);
     for (const Id j : after_) lists_.append(shells_[j].list, i);
     grid_.insert(i, homes[i], shells_[i].reach);
@@ -57,7 +57,7 @@ void Shells<D>::settle(Id i, const Vector<D>& home) {
   grid_.move(i, home, shell.reach);
   before_.assign(neighbors(i).begin(), neighbors(i).end());
   after_.clear();
-  grid_.find_near(home, shell.reach, after_);
+  grid_.for_each_near(home, shell.reach, [&](Id j) { after_.push_back(j); });
   std::ranges::sort(before_);
   std::ranges::sort(after_);
   after_.erase(std::ranges::lower_bound(after_, i));

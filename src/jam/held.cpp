@@ -7,7 +7,7 @@
 
 #include "bernal/core/text.hpp"
 #include "core/every_dimension.hpp"
-#include "neighbors/periodic_pairs.hpp"
+#include "near/periodic_pairs.hpp"
 #include "work/free_of_overlap.hpp"
 
 namespace bernal {

@@ -12,7 +12,7 @@
 #include "core/made.hpp"
 #include "jam/near_walls.hpp"
 #include "jam/trust_region.hpp"
-#include "neighbors/periodic_pairs.hpp"
+#include "near/periodic_pairs.hpp"
 
 namespace bernal {
 

@@ -9,7 +9,7 @@
 #include "bernal/core/dimension.hpp"
 #include "core/parallel.hpp"
 #include "measure/localised.hpp"
-#include "measure/size_levels.hpp"
+#include "near/size_levels.hpp"
 
 namespace bernal {
 namespace {
@@ -42,7 +42,7 @@ class Lookout {
     double reach = first * r;
     contacts = 0;
     gap = infinity;
-    for (const Level<D>& level : levels_)
+    for (const SizeLevel<D>& level : levels_)
       visit(level, i, c, std::max(reach_of_contact(r + level.largest), r + level.largest + reach),
             [&](double distance, double radii) {
               contacts += distance < reach_of_contact(radii) ? 1 : 0;
@@ -50,7 +50,7 @@ class Lookout {
             });
     while (gap > reach && (gap < infinity || reach <= farthest_)) {
       reach = gap < infinity ? gap : wider * reach;  // what is nearer than that, if anything, is within it
-      for (const Level<D>& level : levels_)
+      for (const SizeLevel<D>& level : levels_)
         visit(level, i, c, r + level.largest + reach,
               [&](double distance, double radii) { gap = std::min(gap, distance - radii); });
     }
@@ -62,7 +62,7 @@ class Lookout {
   double reach_of_contact(double radii) const { return (1 + contact_gap_) * (radii + gap_); }
 
   template <class Visit>
-  void visit(const Level<D>& level, std::uint32_t i, const Vector<D>& c, double reach,
+  void visit(const SizeLevel<D>& level, std::uint32_t i, const Vector<D>& c, double reach,
              const Visit& found) const {
     level.grid->for_each_near(c, reach, [&](std::uint32_t j, const Vector<D>& d) {
       const double squared = d.squaredNorm();
@@ -73,7 +73,7 @@ class Lookout {
 
   const Spheres<D>& spheres_;
   const Boundary<D> boundary_;
-  const std::vector<Level<D>> levels_;
+  const std::vector<SizeLevel<D>> levels_;
   double gap_, contact_gap_, farthest_;
 };
 

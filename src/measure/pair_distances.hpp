@@ -2,12 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
 #include "core/parallel.hpp"
-#include "neighbors/point_grid.hpp"
+#include "near/point_grid.hpp"
 
 namespace bernal {
 
@@ -20,7 +19,7 @@ class Surroundings {
       : boundary_(boundary),
         size_(size_of(spheres, boundary)),
         reach_(reach),
-        grid_(spheres, all(spheres.size()), boundary, cell_edge(spheres.size())) {
+        grid_(spheres, boundary, cell_edge(spheres.size())) {
     auto in_cells = static_cast<double>(spheres.size());
     for (int k = 0; k < D; ++k) in_cells *= (2 * reach + 2 * cell_edge(spheres.size())) / size_[k];
     by_cells_ = in_cells < static_cast<double>(spheres.size());
@@ -49,11 +48,6 @@ class Surroundings {
   }
 
  private:
-  static std::vector<std::uint32_t> all(std::size_t n) {
-    std::vector<std::uint32_t> ids(n);
-    std::iota(ids.begin(), ids.end(), 0u);
-    return ids;
-  }
   /// The periods, and along open axes what the spheres take up.
   static Vector<D> size_of(const Spheres<D>& spheres, const Boundary<D>& boundary) {
     Vector<D> size = boundary.edges;

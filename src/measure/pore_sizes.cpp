@@ -11,7 +11,7 @@
 #include "domain/places.hpp"
 #include "measure/even_points.hpp"
 #include "measure/localised.hpp"
-#include "measure/sphere_tree.hpp"
+#include "near/sphere_tree.hpp"
 
 namespace bernal {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "measure/sphere_tree.hpp"
+#include "near/sphere_tree.hpp"
 
 namespace bernal {
 namespace {

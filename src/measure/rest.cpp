@@ -16,7 +16,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "core/parallel.hpp"
 #include "measure/localised.hpp"
-#include "measure/sphere_tree.hpp"
+#include "near/sphere_tree.hpp"
 
 namespace bernal {
 namespace {

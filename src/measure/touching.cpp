@@ -15,7 +15,7 @@
 #include "core/parallel.hpp"
 #include "measure/localised.hpp"
 #include "measure/patch.hpp"
-#include "measure/size_levels.hpp"
+#include "near/size_levels.hpp"
 
 namespace bernal {
 namespace {
@@ -69,10 +69,10 @@ struct AsRanked {
 /// The pairs of sphere i, at `c`, with spheres of its own level and of larger ones: each pair is met from its
 /// smaller end, which need not look far.
 template <int D, class As>
-void append_pairs(const std::vector<double>& radii, std::span<const Level<D>> levels, std::uint32_t i,
+void append_pairs(const std::vector<double>& radii, std::span<const SizeLevel<D>> levels, std::uint32_t i,
                   const Vector<D>& c, const As& as, std::vector<typename As::Found>& out) {
   const double r = radii[i];
-  for (const Level<D>& level : levels) {
+  for (const SizeLevel<D>& level : levels) {
     const bool own = &level == &levels.back();
     const double reach = (1 + as.widest) * (r + level.largest);
     level.grid->for_each_near(c, reach, [&](std::uint32_t j, const Vector<D>& d) {
@@ -130,7 +130,7 @@ Parts<D, As> parts_among(Spheres<D> spheres, const Boundary<D>& boundary, const 
   constexpr std::size_t chunk = 4096;
   require_countable_images(spheres, boundary, as.widest);
   const std::size_t most = most_pairs<D>(spheres.size(), as.widest);
-  const std::vector<Level<D>> levels = levels_of(spheres, boundary, as.widest);
+  const std::vector<SizeLevel<D>> levels = levels_of(spheres, boundary, as.widest);
   spheres.x = {};  // the grids have them
   Parts<D, As> parts;
   std::size_t pairs = 0;

@@ -8,7 +8,7 @@
 namespace bernal {
 namespace {
 
-constexpr std::size_t walls_a_leaf = 4, few_walls = 12;
+constexpr std::size_t few_walls = 12;
 constexpr double rounding_of_reach = 1e-12;
 
 Vector<3> middle_of(std::span<const Vector<3>> points) {
@@ -55,33 +55,19 @@ void WallPolygons::add(std::initializer_list<Vector<3>> corners) {
 }
 
 void WallPolygons::build() {
-  const auto bounds_of_walls = [&](std::uint32_t first, std::uint32_t last) {
-    Bounds<3> bounds{walls_[first].corner[0], walls_[first].corner[0]};
-    for (std::uint32_t k = first; k < last; ++k)
-      for (int c = 0; c < walls_[k].corners; ++c) {
-        bounds.lower = bounds.lower.cwiseMin(walls_[k].corner[c]);
-        bounds.upper = bounds.upper.cwiseMax(walls_[k].corner[c]);
-      }
-    return bounds;
-  };
-  const auto count = static_cast<std::uint32_t>(walls_.size());
-  if (count > 0) nodes_.push_back({bounds_of_walls(0, count), 0, count});
-  for (std::size_t k = 0; k < nodes_.size(); ++k) {
-    const Node parent = nodes_[k];
-    if (parent.last - parent.first <= walls_a_leaf) continue;
-    int axis = 0;
-    parent.bounds.size().maxCoeff(&axis);
-    const std::uint32_t middle = parent.first + (parent.last - parent.first) / 2;
-    const auto begin = walls_.begin();
-    std::nth_element(begin + parent.first, begin + middle, begin + parent.last,
-                     [&](const Wall& a, const Wall& b) {
-                       return a.corner[0][axis] + a.corner[1][axis] + a.corner[2][axis] <
-                              b.corner[0][axis] + b.corner[1][axis] + b.corner[2][axis];
-                     });
-    nodes_[k].children = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.push_back({bounds_of_walls(parent.first, middle), parent.first, middle});
-    nodes_.push_back({bounds_of_walls(middle, parent.last), middle, parent.last});
+  std::vector<Bounds<3>> boxes;
+  for (const Wall& wall : walls_) {
+    Bounds<3> box{wall.corner[0], wall.corner[0]};
+    for (int c = 1; c < wall.corners; ++c) {
+      box.lower = box.lower.cwiseMin(wall.corner[c]);
+      box.upper = box.upper.cwiseMax(wall.corner[c]);
+    }
+    boxes.push_back(box);
   }
+  tree_ = BoxTree<3>(boxes, 4);
+  std::vector<Wall> sorted;
+  for (const std::uint32_t k : tree_.order()) sorted.push_back(walls_[k]);
+  walls_.swap(sorted);
 }
 
 /// What of a piece lies below a plane; nothing where it lies in the plane.
@@ -113,22 +99,15 @@ WallPolygons::Piece WallPolygons::below(const Piece& piece, const Vector<3>& nor
 std::vector<WallPolygons::Piece> WallPolygons::pieces_in(const ConvexCell& cell, const Vector<3>& center,
                                                          double rounding) const {
   std::vector<Piece> pieces;
-  if (nodes_.empty()) return pieces;
   const std::vector<ConvexCell::Plane> planes = cell.planes();
-  std::vector<std::uint32_t> waiting = {0};
-  while (!waiting.empty()) {
-    const Node& node = nodes_[waiting.back()];
-    waiting.pop_back();
+  const auto may_be_inside = [&](const BoxTree<3>::Node& node) {
     const Vector<3> middle = node.bounds.center() - center, half = 0.5 * node.bounds.size();
-    const bool outside = std::ranges::any_of(planes, [&](const ConvexCell::Plane& plane) {
+    return std::ranges::none_of(planes, [&](const ConvexCell::Plane& plane) {
       return plane.normal.dot(middle) - plane.normal.cwiseAbs().dot(half) > plane.offset;
     });
-    if (outside) continue;
-    if (node.children != 0) {
-      waiting.insert(waiting.end(), {node.children + 1, node.children});
-      continue;
-    }
-    for (std::uint32_t k = node.first; k < node.last; ++k) {
+  };
+  tree_.for_each_leaf(may_be_inside, [&](const BoxTree<3>::Node& leaf) {
+    for (std::uint32_t k = leaf.first; k < leaf.last; ++k) {
       const Wall& wall = walls_[k];
       Piece piece{{}, wall.normal};
       for (int c = 0; c < wall.corners; ++c) piece.loop.push_back(wall.corner[c] - center);
@@ -137,7 +116,7 @@ std::vector<WallPolygons::Piece> WallPolygons::pieces_in(const ConvexCell& cell,
         if (!piece.loop.empty()) piece = below(piece, plane.normal, plane.offset, rounding);
       if (!piece.loop.empty()) pieces.push_back(std::move(piece));
     }
-  }
+  });
   return pieces;
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "bernal/domain/container.hpp"
 #include "measure/convex_cell.hpp"
+#include "near/box_tree.hpp"
 
 namespace bernal {
 
@@ -30,11 +30,6 @@ class WallPolygons {
     int corners;
     Vector<3> normal;
   };
-  struct Node {
-    Bounds<3> bounds;
-    std::uint32_t first, last;
-    std::uint32_t children = 0;
-  };
   /// A part of a wall in a cell, in coordinates about its centre.
   struct Piece {
     std::vector<Vector<3>> loop;
@@ -49,8 +44,8 @@ class WallPolygons {
   static Piece below(const Piece&, const Vector<3>& normal, double offset, double rounding);
 
   const Container& container_;
-  std::vector<Wall> walls_;  ///< in the order of the nodes
-  std::vector<Node> nodes_;
+  std::vector<Wall> walls_;  ///< in the order of the tree
+  BoxTree<3> tree_;
 };
 
 }  // namespace bernal

@@ -6,7 +6,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "bernal/domain/boundary.hpp"
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 #include "run/stages.hpp"
 #include "run/start.hpp"
 #include "work/free_of_overlap.hpp"

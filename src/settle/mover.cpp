@@ -196,7 +196,7 @@ double Mover::first_contact_with(const Facet& facet, const Vector<3>& u, double 
 }
 
 std::span<const NearFacet> Mover::walls() const {
-  const std::uint32_t first = bed_.first_facet_[i_];
+  const std::size_t first = bed_.first_facet_[i_];
   return {bed_.facets_.data() + first, bed_.first_facet_[i_ + 1] - first};
 }
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include "bernal/domain/boundary.hpp"
 #include "domain/nearest_first.hpp"
+#include "near/cell_layout.hpp"
 #include "soft/below_level.hpp"
 
 namespace bernal {
@@ -17,7 +17,8 @@ namespace {
 /// Normals of planes have components in so many steps of their length.
 constexpr double directions = 8;
 
-/// Columns by the cells that they reach into, of a grid across `up`; those that end highest come first.
+/// Columns by the cells across `up` that their spheres are in; in a cell those that end highest come first,
+/// so that a search leaves it at the first that ends too low.
 class Columns {
  public:
   struct Column {
@@ -27,30 +28,14 @@ class Columns {
   };
 
   Columns(const Spheres<3>& spheres, const Boundary<3>& boundary, const Vector<3>& up)
-      : boundary_(boundary), up_(up), a_(up.unitOrthogonal()), b_(up.cross(a_)) {
-    edge_ = 2 * std::ranges::max(spheres.r);
-    double low_a = std::numeric_limits<double>::infinity(), low_b = low_a, high_a = -low_a, high_b = -low_a;
-    // Of periods a column stands in the images next to its own, too.
-    std::vector<Vector<3>> shifts = {Vector<3>::Zero()};
-    for (int k = 0; k < 3; ++k) {
-      if (!(boundary.edges[k] > 0)) continue;
-      const std::size_t n = shifts.size();
-      for (std::size_t i = 0; i < n; ++i)
-        for (const double side : {-1.0, 1.0})
-          shifts.push_back(shifts[i] + side * boundary.edges[k] * Vector<3>::Unit(k));
-    }
-    for (const Vector<3>& shift : shifts)
-      for (std::size_t i = 0; i < spheres.size(); ++i) {
-        const Vector<3> c = spheres.center(i) + shift;
-        columns_.push_back({c, spheres.r[i], up.dot(c) + spheres.r[i]});
-        low_a = std::min(low_a, a_.dot(c)), high_a = std::max(high_a, a_.dot(c));
-        low_b = std::min(low_b, b_.dot(c)), high_b = std::max(high_b, b_.dot(c));
-      }
-    low_a_ = low_a, low_b_ = low_b;
-    across_ = 1 + static_cast<int>((high_a - low_a) / edge_);
-    along_ = 1 + static_cast<int>((high_b - low_b) / edge_);
-    cells_.resize(static_cast<std::size_t>(across_) * static_cast<std::size_t>(along_));
-    for (std::uint32_t k = 0; k < columns_.size(); ++k) cells_[cell_of(columns_[k].end)].push_back(k);
+      : up_(up),
+        a_(up.unitOrthogonal()),
+        b_(up.cross(a_)),
+        columns_(columns_of(spheres, boundary, up)),
+        layout_(bounds(), {}, std::ranges::max(spheres.r), std::ranges::max(spheres.r), columns_.size()),
+        cells_(layout_.cell_count()) {
+    for (std::uint32_t k = 0; k < columns_.size(); ++k)
+      cells_[layout_.cell_of(layout_.levels()[0], across(columns_[k].end))].push_back(k);
     for (auto& cell : cells_)
       std::ranges::sort(cell, std::greater<>(), [this](std::uint32_t k) { return columns_[k].top; });
   }
@@ -59,17 +44,16 @@ class Columns {
   template <class Visit>
   void for_each_near(const Vector<3>& p, double reach, Visit&& visit) const {
     const double height = up_.dot(p);
-    // A column is as wide as half an edge, at most, on either side.
-    const int cells = 1 + static_cast<int>(std::max(0.0, reach) / edge_ + 0.5);
-    const int i = static_cast<int>(std::floor((a_.dot(p) - low_a_) / edge_)),
-              j = static_cast<int>(std::floor((b_.dot(p) - low_b_) / edge_));
-    for (int u = std::max(0, i - cells); u <= std::min(across_ - 1, i + cells); ++u)
-      for (int v = std::max(0, j - cells); v <= std::min(along_ - 1, j + cells); ++v)
-        for (const std::uint32_t k : cells_[static_cast<std::size_t>(u) * static_cast<std::size_t>(along_) +
-                                            static_cast<std::size_t>(v)]) {
+    const auto& level = layout_.levels()[0];
+    const auto block = layout_.block_around(level, across(p), reach + level.largest_radius);
+    CellLayout<2>::any_run(level, block, [&](std::size_t first, std::size_t end) {
+      for (std::size_t cell = first; cell < end; ++cell)
+        for (const std::uint32_t k : cells_[cell]) {
           if (columns_[k].top + reach < height) break;
-          if (visit(columns_[k])) return;
+          if (visit(columns_[k])) return true;
         }
+      return false;
+    });
   }
 
   /// A plane that touches the column about where it is nearest to p: of few directions, so that many spheres
@@ -96,17 +80,38 @@ class Columns {
   }
 
  private:
-  std::size_t cell_of(const Vector<3>& p) const {
-    const int i = std::clamp(static_cast<int>((a_.dot(p) - low_a_) / edge_), 0, across_ - 1),
-              j = std::clamp(static_cast<int>((b_.dot(p) - low_b_) / edge_), 0, along_ - 1);
-    return static_cast<std::size_t>(i) * static_cast<std::size_t>(along_) + static_cast<std::size_t>(j);
+  /// Along periods a column stands in the images next to its own, too.
+  static std::vector<Column> columns_of(const Spheres<3>& spheres, const Boundary<3>& boundary,
+                                        const Vector<3>& up) {
+    std::vector<Vector<3>> shifts = {Vector<3>::Zero()};
+    for (int k = 0; k < 3; ++k) {
+      if (!boundary.repeats(k)) continue;
+      const std::size_t n = shifts.size();
+      for (std::size_t i = 0; i < n; ++i)
+        for (const double side : {-1.0, 1.0})
+          shifts.push_back(shifts[i] + side * boundary.edges[k] * Vector<3>::Unit(k));
+    }
+    std::vector<Column> columns;
+    for (const Vector<3>& shift : shifts)
+      for (std::size_t i = 0; i < spheres.size(); ++i) {
+        const Vector<3> c = spheres.center(i) + shift;
+        columns.push_back({c, spheres.r[i], up.dot(c) + spheres.r[i]});
+      }
+    return columns;
+  }
+  Vector<2> across(const Vector<3>& p) const { return {b_.dot(p), a_.dot(p)}; }
+  Bounds<2> bounds() const {
+    Bounds<2> all{across(columns_[0].end), across(columns_[0].end)};
+    for (const Column& column : columns_) {
+      all.lower = all.lower.cwiseMin(across(column.end));
+      all.upper = all.upper.cwiseMax(across(column.end));
+    }
+    return all;
   }
 
-  Boundary<3> boundary_;
   Vector<3> up_, a_, b_;
-  double edge_ = 1, low_a_ = 0, low_b_ = 0;
-  int across_ = 1, along_ = 1;
   std::vector<Column> columns_;
+  CellLayout<2> layout_;
   std::vector<std::vector<std::uint32_t>> cells_;
 };
 

@@ -17,7 +17,7 @@ namespace bernal {
 
 /// The cells of a periodic box, no narrower than neighbours may be apart, an even number along each axis. The
 /// first axis is the fastest. Cells of one colour, every second one along each axis, have no neighbours in
-/// each other.
+/// each other. Plain numbers and arithmetic, since they are used on GPUs, too.
 struct ColouredCells {
   std::uint32_t across[3];
 

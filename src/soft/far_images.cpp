@@ -4,42 +4,31 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
-#include "soft/fixed_point_grid.hpp"
+#include "near/point_grid.hpp"
 
 namespace bernal {
 namespace {
 
-/// For each sphere those within `reach` of it, in a time that does not grow with the box along axes that are
-/// not narrow.
-class Vicinity {
- public:
-  Vicinity(const std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges, double reach)
-      : at_(spheres.size()) {
-    places_.reserve(spheres.size());
-    const auto fixed = [](std::int32_t x) { return static_cast<std::uint32_t>(x); };
-    for (const SoftSphere& s : spheres)
-      places_.push_back(FixedPlace<3>{{fixed(s.x[0]), fixed(s.x[1]), fixed(s.x[2]), 0}});
-    const std::vector<std::uint32_t> rank =
-        grid_.sort(Vector<3>(edges[0], edges[1], edges[2]), reach, places_, places_.size());
-    for (std::uint32_t p = 0; p < rank.size(); ++p) at_[rank[p]] = p;
-  }
+Vector<3> center_of(const SoftSphere& sphere, const std::array<double, 3>& edges) {
+  Vector<3> c;
+  for (std::size_t k = 0; k < 3; ++k)
+    c[static_cast<int>(k)] = static_cast<std::uint32_t>(sphere.x[k]) * (edges[k] * 0x1p-32);
+  return c;
+}
 
-  /// And some more; ascending.
-  const std::vector<std::uint32_t>& of(std::uint32_t sphere) {
-    grid_.rows_near(places_[sphere], rows_);
-    found_.clear();
-    for (const auto& row : rows_)
-      found_.insert(found_.end(), at_.begin() + row.first, at_.begin() + row.last);
-    std::ranges::sort(found_);
-    return found_;
+/// The centres of the spheres of a box, in which axes beyond the dimension are open.
+PointGrid<3> grid_of(const std::vector<SoftSphere>& spheres, const std::array<double, 3>& edges,
+                     int dimension, double reach) {
+  Boundary<3> box;
+  for (int k = 0; k < dimension; ++k) box.edges[k] = edges[static_cast<std::size_t>(k)];
+  Spheres<3> centers;
+  std::vector<std::uint32_t> ids;
+  for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+    centers.push_back(center_of(spheres[i], edges), spheres[i].r);
+    if (spheres[i].r > 0) ids.push_back(i);
   }
-
- private:
-  FixedPointGrid<3> grid_;
-  std::vector<FixedPlace<3>> places_;
-  std::vector<std::uint32_t> at_, found_;  // in the order of the grid
-  std::vector<FixedPointGrid<3>::Row> rows_;
-};
+  return PointGrid<3>(centers, ids, box, reach);
+}
 
 /// Calls visit(displacement, distance) for the images of `other` but the nearest whose centres are less than
 /// `reach` from `me`, as displacements from them.
@@ -76,11 +65,18 @@ void FarImages::build(const std::vector<SoftSphere>& spheres, const std::array<d
                          [&](const auto&, double) { near = true; });
     return near;
   };
-  Vicinity vicinity(spheres, edges, 2 * (largest + skin));
+  const double farthest = 2 * (largest + skin);
+  const PointGrid<3> grid = grid_of(spheres, edges, dimension, farthest);
+  std::vector<std::uint32_t> near;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     if (!(2 * (spheres[a].r + skin) > half)) continue;
     throw_if_interrupted();
-    for (const std::uint32_t b : vicinity.of(a)) {
+    near.clear();
+    grid.for_each_near(center_of(spheres[a], edges), farthest,
+                       [&](std::uint32_t b, const Vector<3>&) { near.push_back(b); });
+    std::ranges::sort(near);
+    near.erase(std::ranges::unique(near).begin(), near.end());
+    for (const std::uint32_t b : near) {
       const bool both_large = 2 * (spheres[b].r + skin) > half;
       if (a == b || (both_large && b < a) || !is_near(a, b)) continue;
       others[a].push_back(b);

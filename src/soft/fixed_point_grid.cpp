@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "core/every_dimension.hpp"
-#include "neighbors/counting_sort.hpp"
+#include "near/counting_sort.hpp"
 
 namespace bernal {
 namespace {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/archive.hpp"
-#include "neighbors/cell_grid.hpp"
-#include "neighbors/counting_sort.hpp"
+#include "near/cell_grid.hpp"
+#include "near/counting_sort.hpp"
 #include "work/free_of_overlap.hpp"
 
 namespace bernal {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 #include "soft/growing_box.hpp"
 #include "soft/relax.hpp"
 #include "soft/soft_packing.hpp"

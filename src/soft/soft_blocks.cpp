@@ -7,7 +7,7 @@
 
 #include "core/large_pages.hpp"
 #include "core/parallel.hpp"
-#include "neighbors/counting_sort.hpp"
+#include "near/counting_sort.hpp"
 
 namespace bernal {
 namespace {

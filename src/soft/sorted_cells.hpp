@@ -17,6 +17,9 @@ namespace bernal {
 /// bit: with each sphere goes the cell that it is in, and when it came there. Only what has changed its cell
 /// since the last sort can be out of order.
 ///
+/// What it buys: sweeps of the published loop on linked lists take 1.03 to 1.2 of the time from 10^3 to 10^5
+/// equal spheres, 0.9 for 10^6 (data/results/lists.md).
+///
 /// Cost: sorting O(N), about 50 ns a sphere. Memory: 60 bytes a sphere in three dimensions, twice that while
 /// it is sorted, and 4 a cell.
 template <int D>

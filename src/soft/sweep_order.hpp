@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "neighbors/counting_sort.hpp"
+#include "near/counting_sort.hpp"
 #include "soft/soft_kernels.hpp"
 
 namespace bernal {

@@ -5,7 +5,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "measure/touching.hpp"
-#include "neighbors/point_grid.hpp"
+#include "near/point_grid.hpp"
 
 namespace bernal {
 namespace {
@@ -121,14 +121,12 @@ void spread(std::vector<NarrowPlace>& places) {
   if (places.empty()) return;
   std::ranges::stable_sort(places, {}, &NarrowPlace::size);
   Spheres<3> points;
-  std::vector<std::uint32_t> ids;
   double largest = 0;
   for (const NarrowPlace& place : places) {
     largest = std::max(largest, 1.5 * place.reach);
-    ids.push_back(static_cast<std::uint32_t>(ids.size()));
     points.push_back(place.point, 1.5 * place.reach);
   }
-  const PointGrid<3> grid(points, ids, Boundary<3>{}, 2 * largest);
+  const PointGrid<3> grid(points, Boundary<3>{}, 2 * largest);
   for (std::uint32_t i = 0; i < places.size(); ++i) {
     std::array<bool, NarrowPlace::most_layers> taken{};
     grid.for_each_near(places[i].point, points.r[i] + largest, [&](std::uint32_t j, const Vector<3>& d) {

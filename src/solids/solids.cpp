@@ -11,7 +11,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "measure/touching.hpp"
-#include "neighbors/point_grid.hpp"
+#include "near/point_grid.hpp"
 #include "verify/exact.hpp"
 #include "voxels/ball_in_cells.hpp"
 
@@ -220,9 +220,7 @@ std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& doma
   const Spheres<3> spheres = given.in<3>();
   const Boundary<3> boundary = boundary_of<3>(domain);
   const double largest = spheres.empty() ? 0 : std::ranges::max(spheres.r);
-  std::vector<std::uint32_t> ids(spheres.size());
-  for (std::uint32_t i = 0; i < ids.size(); ++i) ids[i] = i;
-  const PointGrid<3> grid(spheres, ids, boundary, std::max(2 * largest, 1e-300));
+  const PointGrid<3> grid(spheres, boundary, std::max(2 * largest, 1e-300));
 
   std::vector<Bridge> bridges;
   std::vector<std::vector<Circle>> circles(spheres.size());

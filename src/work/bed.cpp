@@ -11,6 +11,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "core/parallel.hpp"
+#include "near/end_to_end.hpp"
 #include "work/holes.hpp"
 
 namespace bernal {
@@ -24,20 +25,6 @@ void permute(std::vector<T>& values, const std::vector<Bed::Id>& order) {
   sorted.reserve(values.size());
   for (const Bed::Id i : order) sorted.push_back(values[i]);
   values.swap(sorted);
-}
-
-/// Concatenates one list a sphere, built in blocks, into `all`, with `first[i]` the start of sphere i's.
-template <class T>
-void concatenate(const std::vector<std::vector<T>>& blocks, std::vector<std::uint32_t>& first,
-                 std::vector<T>& all) {
-  // first[i + 1] holds the length of list i.
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  all.resize(first.back());
-  std::size_t at = 0;
-  for (const auto& block : blocks) {
-    std::copy(block.begin(), block.end(), all.begin() + static_cast<std::ptrdiff_t>(at));
-    at += block.size();
-  }
 }
 
 }  // namespace
@@ -238,7 +225,7 @@ double Bed::enclose(double buffer) {
         near_spheres[block].push_back(j);
         if (repeats_ && apart != other.center - ball.center) meets_images_[i] = 1;
       });
-      first_neighbor_[i + 1] = static_cast<std::uint32_t>(near_spheres[block].size() - before);
+      first_neighbor_[i + 1] = near_spheres[block].size() - before;
 
       // The clearance is 1-Lipschitz: a wall that was far when last asked is still far after a small move.
       const double reach = ball.r + std::numbers::sqrt3 * buffer + 2 * skin_;
@@ -255,8 +242,8 @@ double Bed::enclose(double buffer) {
       }
     }
   });
-  concatenate(near_spheres, first_neighbor_, neighbors_);
-  concatenate(near_facets, first_facet_, facets_);
+  put_end_to_end(near_spheres, first_neighbor_, neighbors_);
+  put_end_to_end(near_facets, first_facet_, facets_);
   return buffer;
 }
 

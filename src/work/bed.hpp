@@ -8,7 +8,7 @@
 #include "bernal/domain/container.hpp"
 #include "core/archive.hpp"
 #include "domain/places.hpp"
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 #include "work/effect_log.hpp"
 #include "work/room.hpp"
 
@@ -167,10 +167,10 @@ class Bed {
 
   double buffer_ = 0;
   std::vector<Vector<3>> box_centers_;
-  std::vector<std::uint32_t> first_neighbor_;  // CSR: neighbours of i start here
+  std::vector<std::size_t> first_neighbor_;  // CSR: neighbours of i start here
   std::vector<Id> neighbors_;
-  std::vector<char> meets_images_;          // of its neighbours, where they are not themselves the nearest
-  std::vector<std::uint32_t> first_facet_;  // CSR: walls near i start here, nearest first
+  std::vector<char> meets_images_;        // of its neighbours, where they are not themselves the nearest
+  std::vector<std::size_t> first_facet_;  // CSR: walls near i start here, nearest first
   std::vector<NearFacet> facets_;
   std::vector<double>
       far_from_wall_;  // clearance of the centre is at least this much, less what it moved since

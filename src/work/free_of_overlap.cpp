@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
-#include <optional>
-#include <span>
 
 #include "bernal/core/tolerance.hpp"
 #include "bernal/domain/boundary.hpp"
 #include "core/every_dimension.hpp"
 #include "core/parallel.hpp"
 #include "domain/dyadic.hpp"
-#include "neighbors/cell_grid.hpp"
-#include "work/blocks.hpp"
+#include "near/cell_grid.hpp"
+#include "near/size_levels.hpp"
 #include "work/random_insertion.hpp"
 
 namespace bernal {
@@ -49,74 +47,56 @@ void for_each_pair(const Spheres<D>& spheres, const Vector<D>& edges, Reach&& re
   }
 }
 
-/// Of more spheres the cache holds only some, and blocks are looked at one by one.
-constexpr std::size_t enough_for_blocks = 50'000, spheres_a_block = 1 << 13;
+/// Of more spheres the linked lists of a `CellGrid` are no longer in the cache.
+constexpr std::size_t enough_for_threads = 50'000;
 
-/// The contact factor of a block's own spheres, the first of those in it and around it, above one that is
-/// known; `of_all` is the metric, which only those are held against that are as near by their places here.
+/// The contact factor, above one that is known, where grids of few axes find who is near, in threads: each
+/// pair is met from its smaller sphere, and the largest of the ratios does not depend on the order.
 template <int D>
-double contact_factor_in(const typename Blocks<D>::Local& here, std::size_t own, const Spheres<D>& spheres,
-                         const Bounds<D>& bounds, const Boundary<D>& local, const Boundary<D>& of_all,
-                         double largest, double factor) {
-  const auto& [ids, places] = here;
-  std::vector<double> radii;  // beside each other, as the places are
-  radii.reserve(ids.size());
-  for (const std::uint32_t i : ids) radii.push_back(spheres.r[i]);
-  // The larger first, of equal ones those around: so each own one finds all of these that are no smaller.
-  std::vector<std::uint32_t> order(ids.size());
-  std::iota(order.rbegin(), order.rend(), 0u);
-  std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t k) { return radii[k]; });
-  if (order.empty()) return factor;
-  CellGrid<D> grid(bounds, local, radii[order.back()], radii[order.front()], ids.size());
-  constexpr double rounding = 1e-9;  // of the places of images
-  for (const std::uint32_t k : order) {
-    const double r = radii[k];
-    const double reach = r / factor + largest * (std::max(0.0, 1 / factor - 1) + rounding);
-    if (k < own)
-      grid.for_each_near(places[k], reach, [&](std::uint32_t m) {
-        const double near = (r + radii[m]) / factor + largest * rounding;
-        if (ids[m] == ids[k] || local.minimum_image(places[k] - places[m]).squaredNorm() > near * near)
-          return;
-        const Vector<D> apart = of_all.minimum_image(spheres.center(ids[k]) - spheres.center(ids[m]));
-        factor = std::max(factor, (r + radii[m]) / apart.norm());
-      });
-    grid.insert(k, places[k], r);
-  }
-  return factor;
-}
-
-/// The same number as by looking at all at once: each pair is met in the block of the smaller, and the
-/// largest of the ratios does not depend on the order. Nothing where spheres reach too far for blocks.
-template <int D>
-std::optional<double> contact_factor_in_blocks(const Spheres<D>& spheres, const Vector<D>& edges) {
-  // Of the diameter: so far apart are the closest spheres at most, or others could matter, too.
-  constexpr double farthest = 1.25;
-  const double largest = std::ranges::max(spheres.r);
-  const Blocks<D> blocks(spheres, edges, farthest * 2 * largest, spheres_a_block);
-  if (blocks.size() == 1) return {};
-  const Boundary<D> of_all{edges};
-  Boundary<D> local = of_all;
-  for (int k = 0; k < D; ++k)
-    if (blocks.is_cut(k)) local.edges[k] = 0;
-  const auto factor_in = [&](std::size_t b, double known) {
-    return contact_factor_in<D>(blocks.local(b), blocks.own(b).size(), spheres, blocks.around(b), local,
-                                of_all, largest, known);
+double contact_factor_by_levels(const Spheres<D>& spheres, const Vector<D>& edges, double known) {
+  constexpr std::size_t chunk = 4096;
+  constexpr double rounding = 1 + 1e-9;
+  const Boundary<D> boundary{edges};
+  const auto ratio = [&](std::uint32_t i, const Vector<D>& from, std::uint32_t j, const Vector<D>& to) {
+    return (spheres.r[i] + spheres.r[j]) / boundary.minimum_image(from - to).norm();
   };
-  const double known = factor_in(0, 2 * largest / edges.minCoeff());
-  if (!(known * farthest >= 1) || !std::isfinite(known)) return {};
-  std::vector<double> factors(blocks.size(), known);
-  parallel_for(1, blocks.size(), [&](std::size_t b) { factors[b] = factor_in(b, known); });
-  return std::ranges::max(factors);
+  const std::vector<SizeLevel<D>> levels = levels_of(spheres, boundary, 0);
+  double largest = known;
+  for (std::size_t l = levels.size(); l-- > 0;) {
+    const PointGrid<D>& grid = *levels[l].grid;
+    const std::size_t count = grid.ids().size(), parts = (count + chunk - 1) / chunk;
+    std::vector<double> factors(parts, largest);
+    parallel_for(parts, [&](std::size_t part) {
+      const std::size_t first = part * chunk, last = std::min(count, first + chunk);
+      double factor = largest;
+      // Those that follow each other in the order of the cells are nearly as close as the closest.
+      for (std::size_t k = first + 1; k < last; ++k)
+        factor = std::max(factor, ratio(grid.ids()[k - 1], grid.point(k - 1), grid.ids()[k], grid.point(k)));
+      for (std::size_t k = first; k < last; ++k) {
+        const std::uint32_t i = grid.ids()[k];
+        const Vector<D> c = grid.point(k);
+        for (std::size_t m = 0; m <= l; ++m) {
+          const double reach = (spheres.r[i] + levels[m].largest) / factor, far = reach * reach * rounding;
+          levels[m].grid->for_each_near(c, reach, [&](std::uint32_t j, const Vector<D>& apart) {
+            if (apart.squaredNorm() < far && j != i)
+              factor = std::max(factor, ratio(i, c, j, boundary.wrap(spheres.center(j))));
+          });
+        }
+      }
+      factors[part] = factor;
+    });
+    largest = std::ranges::max(factors);
+  }
+  return largest;
 }
 
 }  // namespace
 
 template <int D>
 double contact_factor(const Spheres<D>& spheres, const Vector<D>& edges) {
-  if constexpr (D == 2 || D == 3)
-    if (spheres.size() >= enough_for_blocks)
-      if (const auto factor = contact_factor_in_blocks<D>(spheres, edges)) return *factor;
   double factor = 2 * std::ranges::max(spheres.r) / edges.minCoeff();
+  if constexpr (D == 2 || D == 3)
+    if (spheres.size() >= enough_for_threads) return contact_factor_by_levels<D>(spheres, edges, factor);
   for_each_pair<D>(
       spheres, edges,
       [&](double r, double largest) {  // d < (r + rj) / factor, less rj, for the rj that makes it the most

@@ -9,7 +9,7 @@
 #include "bernal/domain/boundary.hpp"
 #include "core/every_dimension.hpp"
 #include "core/parallel.hpp"
-#include "neighbors/counting_sort.hpp"
+#include "near/counting_sort.hpp"
 
 namespace bernal {
 namespace {

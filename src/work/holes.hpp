@@ -9,7 +9,7 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/container.hpp"
 #include "domain/places.hpp"
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 
 namespace bernal {
 

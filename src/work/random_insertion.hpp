@@ -8,7 +8,7 @@
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/boundary.hpp"
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 
 namespace bernal {
 

@@ -51,7 +51,7 @@ TEST(Layering, PlantedViolationsAreFound) {
       {"src/domain/a.cpp", "#include \"cad/tree.hpp\""},
       {"src/verify/a.cpp", "#include \"bernal/domain/container.hpp\""},
       {"src/verify/a.cpp", "#include \"kernels/first_contact.hpp\""},
-      {"src/verify/a.cpp", "#include \"neighbors/cell_grid.hpp\""},
+      {"src/verify/a.cpp", "#include \"near/cell_grid.hpp\""},
       {"src/settle/a.cpp", "#include \"bernal/run/run.hpp\""},
       {"src/run/a.cpp", "#include \"bernal/verify/certificate.hpp\""},
       {"src/predict/a.cpp", "#include \"bernal/domain/domain.hpp\""},

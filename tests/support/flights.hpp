@@ -5,7 +5,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/domain/boundary.hpp"
 #include "hard/hard_spheres.hpp"
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 
 namespace bernal::testing {
 

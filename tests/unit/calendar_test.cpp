@@ -82,6 +82,26 @@ TEST(Calendar, KeepsWhatStandsAmongMuchThatFell) {
   EXPECT_EQ(came_up.size(), count);
 }
 
+/// Where the calendar drops what fell to note one more event, and this leaves room in a note of that day,
+/// what stood in the note before is gone: each event that is scheduled once is foreseen once.
+TEST(Calendar, ForeseesNothingTwiceAfterItDroppedWhatFell) {
+  constexpr Calendar::Id count = 16, fallen = 10;  // the others have been noted last
+  for (int turns = 0; turns < 500; ++turns) {
+    Calendar calendar;
+    calendar.start_period(count, 1, 48);
+    for (Calendar::Id id = 1; id < count; ++id) calendar.schedule(id, 0.6 + 0.001 * id, id);
+    for (Calendar::Id id = 1; id <= fallen; ++id) calendar.schedule(id, Calendar::never, id);
+    for (int k = 0; k < turns; ++k) calendar.schedule(0, 0.6 + 1e-5 * k, 0);
+    ASSERT_NE(calendar.next(), Calendar::none);
+    std::multiset<Calendar::Id> foreseen;
+    for (std::size_t k = calendar.over(); calendar.of_today(k) != Calendar::none; ++k)
+      foreseen.insert(calendar.of_today(k));
+    for (Calendar::Id id = 1; id < count; ++id)
+      ASSERT_EQ(foreseen.count(id), id > fallen ? 1u : 0u)
+          << "event " << id << " after " << turns << " turns";
+  }
+}
+
 /// The same within the day at hand, of which there is one.
 TEST(Calendar, KeepsWhatStandsAmongMuchThatFellToday) {
   Random random(8, stream(Stream::test));

@@ -1,4 +1,4 @@
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,10 +35,6 @@ class Watched {
   void insert(Id id, const Vector<D>& c, double r) {
     grid_.insert(id, c, r);
     spheres_[id] = {c, r};
-  }
-  void remove(Id id) {
-    grid_.remove(id);
-    spheres_.erase(id);
   }
   void move(Id id, const Vector<D>& c) {
     grid_.move(id, c);
@@ -77,7 +73,7 @@ struct Case {
   std::size_t expected;
 };
 
-/// Inserts, removes and moves at random; `place` makes the centres.
+/// Inserts and moves at random; `place` makes the centres.
 template <int D, class Place>
 void expect_complete_throughout(const Bounds<D>& bounds, const Case& tested, Place place) {
   Watched<D> watched(bounds, tested.r_min, tested.r_max, tested.expected);
@@ -91,8 +87,6 @@ void expect_complete_throughout(const Bounds<D>& bounds, const Case& tested, Pla
     const auto id = static_cast<std::uint32_t>(random.uniform() * ids);
     if (!watched.holds(id)) {
       watched.insert(id, place(random), radius());
-    } else if (random.uniform() < 0.3) {
-      watched.remove(id);
     } else {
       watched.move(id, place(random));
     }

@@ -222,8 +222,8 @@ struct Lattice {
   }
 };
 
-// Of so many spheres the box is looked at in blocks: the same number to the bit, wherever the worst pair is.
-TEST(FreeOfOverlapInBlocks, IsThatOfAllPairs) {
+// So many spheres are looked at in threads: the same number to the bit, wherever the worst pair is.
+TEST(FreeOfOverlapInThreads, IsThatOfAllPairs) {
   for (const double smallest : {0.5, 0.1}) {
     Lattice<3> lattice(70, 0.05, smallest, 1);
     const Vector<3> edges = Vector<3>::Constant(70);
@@ -241,14 +241,14 @@ TEST(FreeOfOverlapInBlocks, IsThatOfAllPairs) {
             discs.contact_factor_of_neighbours());
 }
 
-TEST(FreeOfOverlapInBlocks, KnowsSpheresThatAreFarApart) {
+TEST(FreeOfOverlapInThreads, KnowsSpheresThatAreFarApart) {
   Lattice<3> lattice(70, 0.01, 0.5, 3);
   for (double& r : lattice.spheres.r) r *= 0.2;
   EXPECT_EQ(contact_factor(lattice.spheres, Vector<3>(Vector<3>::Constant(70))),
             lattice.contact_factor_of_neighbours());
 }
 
-TEST(FreeOfOverlapInBlocks, KnowsCentresThatCoincide) {
+TEST(FreeOfOverlapInThreads, KnowsCentresThatCoincide) {
   Lattice<3> lattice(70, 0.01, 0.5, 4);
   lattice.spheres.set_center(1000, lattice.spheres.center(200'000));
   EXPECT_EQ(contact_factor(lattice.spheres, Vector<3>(Vector<3>::Constant(70))),

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "bernal/core/random.hpp"
-#include "neighbors/partial_grid.hpp"
+#include "near/partial_grid.hpp"
 
 // The grid over the first few axes against a look at every sphere, on every number of axes, with and without
 // images.

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "bernal/core/random.hpp"
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 
 // The grid of a region that repeats itself along all axes, or along some, against a search of all images of
 // all spheres.

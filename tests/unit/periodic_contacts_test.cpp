@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bernal/measure/contacts.hpp"
-#include "neighbors/point_grid.hpp"
+#include "near/point_grid.hpp"
 #include "support/measured.hpp"
 #include "support/periodic.hpp"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "bernal/core/random.hpp"
-#include "measure/sphere_tree.hpp"
+#include "near/sphere_tree.hpp"
 #include "support/packings.hpp"
 #include "support/periodic.hpp"
 

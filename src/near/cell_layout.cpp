@@ -1,4 +1,4 @@
-#include "neighbors/cell_layout.hpp"
+#include "near/cell_layout.hpp"
 
 #include <algorithm>
 

@@ -9,7 +9,7 @@
 
 #include "bernal/domain/boundary.hpp"
 #include "core/archive.hpp"
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 
 namespace bernal {
 

@@ -7,13 +7,13 @@
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/boundary.hpp"
-#include "neighbors/point_grid.hpp"
+#include "near/point_grid.hpp"
 
 namespace bernal {
 
 /// Spheres whose radii differ by at most a factor of two, so that one grid serves them all.
 template <int D>
-struct Level {
+struct SizeLevel {
   double largest = 0;
   std::vector<std::uint32_t> members;  ///< until they are in the grid
   std::unique_ptr<PointGrid<D>> grid;
@@ -22,18 +22,19 @@ struct Level {
 /// By size, largest first; levels without spheres are left out. The grids are for pairs up to a gap ratio of
 /// `widest_gap`. Precondition: there are spheres.
 template <int D>
-std::vector<Level<D>> levels_of(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
+std::vector<SizeLevel<D>> levels_of(const Spheres<D>& spheres, const Boundary<D>& boundary,
+                                    double widest_gap) {
   constexpr std::size_t most_levels = 1100;  // from the largest double to the smallest
   const double largest = *std::max_element(spheres.r.begin(), spheres.r.end());
-  std::vector<Level<D>> by_octave(most_levels);
+  std::vector<SizeLevel<D>> by_octave(most_levels);
   for (std::uint32_t i = 0; i < spheres.size(); ++i) {
     const double octave = std::floor(std::log2(largest / spheres.r[i]));
-    Level<D>& level = by_octave[std::min(most_levels - 1, static_cast<std::size_t>(octave))];
+    SizeLevel<D>& level = by_octave[std::min(most_levels - 1, static_cast<std::size_t>(octave))];
     level.largest = std::max(level.largest, spheres.r[i]);
     level.members.push_back(i);
   }
-  std::erase_if(by_octave, [](const Level<D>& level) { return level.members.empty(); });
-  for (Level<D>& level : by_octave) {
+  std::erase_if(by_octave, [](const SizeLevel<D>& level) { return level.members.empty(); });
+  for (SizeLevel<D>& level : by_octave) {
     level.grid = std::make_unique<PointGrid<D>>(spheres, level.members, boundary,
                                                 2 * (1 + widest_gap) * level.largest);
     level.members = {};

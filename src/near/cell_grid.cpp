@@ -1,4 +1,4 @@
-#include "neighbors/cell_grid.hpp"
+#include "near/cell_grid.hpp"
 
 #include "core/every_dimension.hpp"
 
@@ -17,12 +17,6 @@ void CellGrid<D>::insert(Id id, const Vector<D>& center, double r) {
   const std::size_t level = layout_.level_of(r);
   ++spheres_on_[level];
   link(id, layout_.cell_of(layout_.levels()[level], center), static_cast<std::uint8_t>(level));
-}
-
-template <int D>
-void CellGrid<D>::remove(Id id) {
-  --spheres_on_[links_[id].level];
-  unlink(id);
 }
 
 template <int D>

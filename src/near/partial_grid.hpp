@@ -23,6 +23,10 @@ namespace bernal {
 ///
 /// The dimension is known when the program runs: the inner loops run over spheres, not over axes.
 ///
+/// What it buys: to be filled and asked once for each of 10^3 spheres takes a sixth of the time of a
+/// `CellGrid` in five dimensions, a fifth in seven, as long as that in three; of 10^4 in five dimensions a
+/// quarter (tests/bench/near_bench.cpp).
+///
 /// Cost: sort O(N); a query about 3^k cells and N (3 reach / edge)^k spheres for k axes; k is that of the
 /// least `cost_of` if it is left to the grid. Memory: 8 D + 12 bytes a sphere.
 class PartialGrid {

@@ -9,7 +9,7 @@
 #include "bernal/core/vector.hpp"
 #include "bernal/domain/boundary.hpp"
 #include "core/archive.hpp"
-#include "neighbors/cell_layout.hpp"
+#include "near/cell_layout.hpp"
 
 namespace bernal {
 
@@ -20,7 +20,7 @@ namespace bernal {
 /// The grid stores ids, not coordinates. Invariant: sphere id is in exactly one list, that of the cell
 /// that holds its centre on the level of its radius; who came last stands first.
 ///
-/// Cost: insert, remove, move O(1); a query O(levels + spheres met). Memory: 16 bytes a sphere, 4 a cell.
+/// Cost: insert and move O(1); a query O(levels + spheres met). Memory: 16 bytes a sphere, 4 a cell.
 /// Source: Zhao, Li & Liu 2007, figure 7 (one level).
 template <int D>
 class CellGrid {
@@ -45,9 +45,6 @@ class CellGrid {
 
   /// Precondition: `id` is not in the grid, r in [r_min, r_max].
   void insert(Id id, const Vector<D>& center, double r);
-
-  /// Precondition: `id` is in the grid.
-  void remove(Id id);
 
   /// Tells the grid where sphere `id` is now. Precondition: it is in the grid.
   void move(Id id, const Vector<D>& center) {

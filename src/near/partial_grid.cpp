@@ -1,10 +1,10 @@
-#include "neighbors/partial_grid.hpp"
+#include "near/partial_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "neighbors/counting_sort.hpp"
+#include "near/counting_sort.hpp"
 
 namespace bernal {
 namespace {
