@@ -9,9 +9,6 @@ namespace bernal::cad {
 
 inline constexpr std::uint32_t none = 0xFFFFFFFF;
 
-/// Of a triangle, by their numbers.
-using FaceCorners = std::array<std::uint32_t, 3>;
-
 /// How the triangles of a mesh hang together, by vertex indices alone; edge k of a triangle runs from its
 /// corner k to its corner k + 1 (mod 3).
 ///
