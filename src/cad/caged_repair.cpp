@@ -7,7 +7,7 @@
 
 #include "bernal/core/text.hpp"
 #include "cad/cage.hpp"
-#include "cad/diagnose_mesh.hpp"
+#include "geometry/measures.hpp"
 
 namespace bernal::cad {
 

@@ -18,13 +18,15 @@
 #include "cad/interior.hpp"
 #include "cad/make_triangles.hpp"
 #include "cad/mesh_distance.hpp"
-#include "cad/mesh_topology.hpp"
 #include "cad/obstacles.hpp"
 #include "cad/read_soup.hpp"
 #include "cad/repair_crossings.hpp"
 #include "cad/repair_holes.hpp"
 #include "cad/self_intersections.hpp"
 #include "cad/wrap.hpp"
+#include "geometry/changes.hpp"
+#include "geometry/measures.hpp"
+#include "geometry/topology.hpp"
 
 namespace bernal {
 namespace {
@@ -95,11 +97,11 @@ void keep_chosen(cad::PolygonSoup& soup, const MeshFile& options) {
 
 /// The same where it does not: the pieces that hang together, in the order of their first faces.
 void keep_pieces(Mesh& mesh, const MeshFile& options) {
-  const cad::MeshTopology topology = cad::topology_of(mesh);
+  const MeshTopology topology = topology_of(mesh);
   const std::vector<bool> chosen = chosen_parts(options, std::vector<std::string>(topology.components));
   std::vector<bool> kept(mesh.triangles.size());
   for (std::size_t t = 0; t < kept.size(); ++t) kept[t] = chosen[topology.component[t]];
-  cad::keep_only(mesh, kept);
+  keep_only(mesh, kept);
 }
 
 /// Turns the axis that points up to z, without mirroring: as Collada's conventions lead into each other.
@@ -112,12 +114,12 @@ void turn_up(Mesh& mesh, Up up) {
 
 /// Closes seams, unless that makes nothing better.
 void close_seams_of(cad::Triangles& triangles, double tolerance, std::vector<std::string>& done) {
-  const cad::MeshTopology before = cad::topology_of(triangles.mesh);
+  const MeshTopology before = topology_of(triangles.mesh);
   if (before.closed() && cad::count_degenerate(triangles.mesh) == 0) return;
   Mesh tried = triangles.mesh;
   const cad::Seams seams = cad::close_seams(tried, tolerance);
   if (!seams.any() || tried.triangles.empty()) return;
-  const cad::MeshTopology after = cad::topology_of(tried);
+  const MeshTopology after = topology_of(tried);
   if (after.open_edges + after.non_manifold_edges > before.open_edges + before.non_manifold_edges) return;
   triangles.mesh = std::move(tried);
   for (std::string& words : seams.in_words()) done.push_back(std::move(words));
@@ -177,7 +179,7 @@ struct Repairs {
 
   void apply(Repair repair) {
     if (std::ranges::find(wanted, repair) == wanted.end() || mesh.triangles.empty()) return;
-    if (repair == Repair::wrap && cad::topology_of(mesh).closed() && !cad::intersects_itself(mesh))
+    if (repair == Repair::wrap && topology_of(mesh).closed() && !cad::intersects_itself(mesh))
       return;  // it is a wall
     cad::Mended mended = cad::mend_in_cage(mesh, seconds, [&] {
       return repair == Repair::holes  ? cad::close_holes(mesh, largest_hole)
@@ -188,7 +190,7 @@ struct Repairs {
     if (mended.mesh.triangles == mesh.triangles && mended.mesh.vertices == mesh.vertices) return;
     any = true;
     if (mended.mesh.triangles.empty()) return;
-    const cad::Closeness closeness{1e-4 * cad::bounds_of_vertices(mesh).diagonal(), 0.02};
+    const cad::Closeness closeness{1e-4 * bounds_of(mesh).diagonal(), 0.02};
     const double made_up = cad::farthest(mended.mesh, mesh, closeness).at_most;
     const double lost = cad::farthest(mesh, mended.mesh, closeness).at_most;
     done.push_back(

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "cad/mesh_topology.hpp"
+#include "geometry/topology.hpp"
 #include "cad/triangle_tree.hpp"
 
 namespace bernal::cad {

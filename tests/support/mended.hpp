@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cad/mended.hpp"
-#include "cad/mesh_topology.hpp"
+#include "geometry/topology.hpp"
 #include "cad/self_intersections.hpp"
 #include "support/meshes.hpp"
 
@@ -28,7 +28,7 @@ inline bool says(const cad::Mended& mended, std::string_view words) {
 
 /// Closed, two-sided as it is oriented, and meeting itself nowhere.
 inline void expect_sound(const cad::Mended& mended) {
-  const cad::MeshTopology topology = cad::topology_of(mended.mesh);
+  const MeshTopology topology = topology_of(mended.mesh);
   EXPECT_TRUE(topology.closed()) << mended.done;
   EXPECT_EQ(topology.misoriented_edges, 0U) << mended.done;
   EXPECT_EQ(cad::count_degenerate(mended.mesh), 0U) << mended.done;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "cad/body_union.hpp"
+#include "cad/cgal_surfaces.hpp"
 #include "support/broken_meshes.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"
