@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "core/parallel.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -37,6 +38,8 @@ constexpr double gibi = 1024.0 * 1024 * 1024;
 constexpr double slower = 20;
 /// Between looks at whether the user wants to stop.
 constexpr int look_every_ms = 50;
+/// Of the message of an exception; a pipe holds it, though nobody reads it yet.
+constexpr std::size_t most_of_message = 1000;
 /// Stands at the end of what is whole.
 constexpr std::uint64_t end_mark = 0x6265726E616C2121;
 
@@ -72,8 +75,10 @@ void set_limit(int resource, double most) {
   setrlimit(static_cast<__rlimit_resource>(resource), &bound);
 }
 
-/// What the child does.
-[[noreturn]] void work_as_child(const CageLimits& limits, int result, std::uint64_t addresses,
+enum ExitCode : int { done, out_of_memory, failed };
+
+/// What the child does. The message of an exception goes into the pipe.
+[[noreturn]] void work_as_child(const CageLimits& limits, int result, int pipe, std::uint64_t addresses,
                                 const std::function<void(PlainWriter&)>& work) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGXFSZ, SIGTERM, SIGPIPE})
@@ -90,21 +95,33 @@ void set_limit(int resource, double most) {
   static_cast<void>(addresses);
 #endif
   stay_in_this_thread();
-  int code = 0;
+  const auto fail = [&](std::string_view message) {
+    message = message.substr(0, most_of_message);
+    _exit(write(pipe, message.data(), message.size()) < 0 ? out_of_memory : failed);
+  };
   try {
     PlainWriter out(result);
     work(out);
     out.number(end_mark);
+  } catch (const std::bad_alloc&) {
+    _exit(out_of_memory);
+  } catch (const std::exception& error) {
+    fail(error.what());
   } catch (...) {
-    code = 1;
+    fail("an exception without a message");
   }
-  _exit(code);
+  _exit(done);
 }
 
-std::string what_befell(std::string_view who, const CageLimits& limits, int status) {
+std::string what_befell(std::string_view who, const CageLimits& limits, int status, int pipe) {
   const auto too_long = [&] {
     return fmt::format("{} takes longer than {:.0f} s over it", who, limits.seconds);
   };
+  if (WIFEXITED(status) && WEXITSTATUS(status) == failed) {
+    std::string message(most_of_message, '\0');
+    message.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read(pipe, message.data(), message.size()))));
+    return message.empty() ? fmt::format("{} gives it up", who) : plain_text(message);
+  }
   if (!WIFSIGNALED(status)) return memory_taken(who, limits);
   if (WTERMSIG(status) == SIGXCPU) return too_long();
   if (WTERMSIG(status) == SIGXFSZ) return memory_taken(who, limits);
@@ -139,7 +156,7 @@ std::string run_in_cage(std::string_view who, const CageLimits& limits,
   const std::uint64_t addresses = addresses_in_use();
   const pid_t child = fork();
   if (child < 0) refuse("fork failed");
-  if (child == 0) work_as_child(limits, result.number(), addresses, work);
+  if (child == 0) work_as_child(limits, result.number(), there.number(), addresses, work);
   there.close();
 
   // The pipe closes when the child ends.
@@ -168,7 +185,7 @@ std::string run_in_cage(std::string_view who, const CageLimits& limits,
     if (in.number() == end_mark) return {};
   } catch (const PlainReader::Cut&) {
   }
-  return what_befell(who, limits, status);
+  return what_befell(who, limits, status, here.number());
 }
 
 }  // namespace bernal::cad

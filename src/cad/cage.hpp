@@ -16,7 +16,7 @@ struct CageLimits {
 
 /// Lets `work` run in a child process, so that what crashes, loops or takes all memory costs no more than a
 /// line, and `take` read what it wrote. Returns what befell the child, "assimp crashes on it (Aborted)" for
-/// instance, or nothing. In the child standard streams are closed, and one thread runs. Throws Cancelled
+/// instance, or the message of an exception that `work` threw, or nothing. In the child standard streams are closed, and one thread runs. Throws Cancelled
 /// where an Interruptible says so, and whatever keeps the child from starting as Error{bad_mesh}. Cost beside
 /// `work`: a few milliseconds, and a copy of what is handed over.
 std::string run_in_cage(std::string_view who, const CageLimits& limits,

@@ -91,22 +91,16 @@ CageLimits cage_limits(std::uint64_t file_size) {
 
 ReadAttempt read_in_cage(std::string_view reader, const CageLimits& limits,
                          const std::function<ReadAttempt()>& read) {
-  const auto attempt_of = [&]() -> ReadAttempt {
-    try {
-      ReadAttempt attempt = read();
-      if (attempt.failure.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
-      return attempt;
-    } catch (const std::bad_alloc&) {
-      return {{}, memory_taken(reader, limits), {}};
-    } catch (const std::exception& error) {
-      return {{}, error.what(), {}};
-    }
+  const auto attempt_of = [&] {
+    ReadAttempt made = read();
+    if (made.failure.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+    return made;
   };
   ReadAttempt attempt;
   std::string befell = run_in_cage(
       reader, limits, [&](PlainWriter& out) { put(out, attempt_of()); },
       [&](PlainReader& in) { attempt = read_attempt(in); });
-  if (!befell.empty()) return {{}, std::move(befell), {}};
+  if (!befell.empty()) return {.failure = std::move(befell)};
   return attempt;
 }
 

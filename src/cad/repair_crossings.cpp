@@ -275,7 +275,7 @@ void unite_with_themselves(Mesh& mesh, const Monitor& monitor, Told& told) {
 
 }  // namespace
 
-Mended cut_out_crossings(Mesh mesh, const Monitor& monitor) {
+RepairedMesh cut_out_crossings(Mesh mesh, const Monitor& monitor) {
   const Pairs pairs = self_intersecting_pairs(mesh);
   if (pairs.empty()) return {std::move(mesh), "nothing crosses"};
   if (pairs.size() >= most_self_intersections(mesh)) {

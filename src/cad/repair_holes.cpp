@@ -55,7 +55,7 @@ void find_crossings(const Mesh& mesh, const std::vector<HoleLoop>& holes, const 
 
 }  // namespace
 
-Mended close_holes(Mesh mesh, double widest) {
+RepairedMesh close_holes(Mesh mesh, double widest) {
   const MeshTopology before = topology_of(mesh);
   if (before.open_edges == 0) return {std::move(mesh), "no holes to close"};
   if (orient_consistently(mesh, before) == no_index)

@@ -170,7 +170,7 @@ constexpr std::string_view close_first = "close its openings by \"cap\" or repai
 
 }  // namespace
 
-Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
+RepairedMesh wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
   if (!(alpha >= 0) || !(offset >= 0) || !std::isfinite(alpha) || !std::isfinite(offset))
     throw Error(ErrorCode::bad_argument, "alpha and offset of a wrap are lengths, or 0 for the default");
   if (mesh.triangles.empty()) return {std::move(mesh), "not wrapped: it has no faces"};
@@ -235,7 +235,7 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
   }
 }
 
-Mended wrap_for_spheres(const Mesh& mesh, double radius, const Monitor& monitor) {
+RepairedMesh wrap_for_spheres(const Mesh& mesh, double radius, const Monitor& monitor) {
   if (mesh.triangles.empty() || !(radius > 0)) return wrap(mesh, 0, 0, monitor);
   const double coarsest = alpha_over_diagonal * bounds_of_faces(mesh).diagonal();
   const double wanted = alpha_for(radius);
@@ -243,18 +243,18 @@ Mended wrap_for_spheres(const Mesh& mesh, double radius, const Monitor& monitor)
   std::string_view why = wanted < finest ? "would have more than a million faces" : "";
   for (double alpha = std::max(wanted, finest);; alpha *= 2) {
     alpha = std::min(alpha, coarsest);
-    Mended mended = wrap(mesh, alpha, 0, monitor);
-    const bool is_done = mended.done.starts_with(from_inside);
+    RepairedMesh repaired = wrap(mesh, alpha, 0, monitor);
+    const bool is_done = repaired.done.starts_with(from_inside);
     if (!is_done && alpha < coarsest && !monitor.stop()) {
       why = "leaves the part through its gaps";
       continue;
     }
     if (is_done && alpha > wanted && !why.empty())
-      mended.done += fmt::format(
+      repaired.done += fmt::format(
           "; a finer one {}, so places are lost where only spheres of a radius below "
           "{:.3g} fit",
           why, alpha / wanted * radius);
-    return mended;
+    return repaired;
   }
 }
 
