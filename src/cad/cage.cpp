@@ -75,11 +75,40 @@ void set_limit(int resource, double most) {
   setrlimit(static_cast<__rlimit_resource>(resource), &bound);
 }
 
+/// Throws std::bad_alloc where the file takes no more.
+void write_all(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) throw std::bad_alloc();
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+/// Whether all of it is there.
+bool read_all(int file, const std::function<void(Archive&)>& values) {
+  const off_t size = lseek(file, 0, SEEK_END);
+  if (size <= 0) return false;
+  void* const mapped = mmap(nullptr, static_cast<std::size_t>(size), PROT_READ, MAP_PRIVATE, file, 0);
+  if (mapped == MAP_FAILED) throw std::bad_alloc();
+  bool whole = false;
+  try {
+    ArchiveFromBytes archive({static_cast<const char*>(mapped), static_cast<std::size_t>(size)});
+    values(archive);
+    std::uint64_t mark = 0;
+    archive(mark);
+    whole = mark == end_mark;
+  } catch (const Error&) {  // it breaks off
+  }
+  munmap(mapped, static_cast<std::size_t>(size));
+  return whole;
+}
+
 enum ExitCode : int { done, out_of_memory, failed };
 
 /// What the child does. The message of an exception goes into the pipe.
 [[noreturn]] void work_as_child(const CageLimits& limits, int result, int pipe, std::uint64_t addresses,
-                                const std::function<void(PlainWriter&)>& work) {
+                                const std::function<void()>& work, const std::function<void(Archive&)>& values) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGXFSZ, SIGTERM, SIGPIPE})
     ::signal(signal, SIG_DFL);
@@ -100,9 +129,13 @@ enum ExitCode : int { done, out_of_memory, failed };
     _exit(write(pipe, message.data(), message.size()) < 0 ? out_of_memory : failed);
   };
   try {
-    PlainWriter out(result);
-    work(out);
-    out.number(end_mark);
+    work();
+    std::string bytes;
+    ArchiveToBytes archive(bytes);
+    values(archive);
+    std::uint64_t mark = end_mark;
+    archive(mark);
+    write_all(result, bytes);
   } catch (const std::bad_alloc&) {
     _exit(out_of_memory);
   } catch (const std::exception& error) {
@@ -143,8 +176,7 @@ std::string memory_taken(std::string_view who, const CageLimits& limits) {
 }
 
 std::string run_in_cage(std::string_view who, const CageLimits& limits,
-                        const std::function<void(PlainWriter&)>& work,
-                        const std::function<void(PlainReader&)>& take) {
+                        const std::function<void()>& work, const std::function<void(Archive&)>& values) {
   const auto refuse = [&](std::string_view what) {
     throw Error(ErrorCode::bad_mesh, fmt::format("no process for {}: {} ({})", who, what, strerror(errno)));
   };
@@ -156,7 +188,7 @@ std::string run_in_cage(std::string_view who, const CageLimits& limits,
   const std::uint64_t addresses = addresses_in_use();
   const pid_t child = fork();
   if (child < 0) refuse("fork failed");
-  if (child == 0) work_as_child(limits, result.number(), there.number(), addresses, work);
+  if (child == 0) work_as_child(limits, result.number(), there.number(), addresses, work, values);
   there.close();
 
   // The pipe closes when the child ends.
@@ -179,12 +211,7 @@ std::string run_in_cage(std::string_view who, const CageLimits& limits,
   if (late) kill(child, SIGKILL);
   const int status = status_at_end_of(child);
   if (late) return fmt::format("{} takes longer than {:.0f} s over it", who, slower * limits.seconds);
-  try {
-    PlainReader in(result.number());
-    take(in);
-    if (in.number() == end_mark) return {};
-  } catch (const PlainReader::Cut&) {
-  }
+  if (read_all(result.number(), values)) return {};
   return what_befell(who, limits, status, here.number());
 }
 

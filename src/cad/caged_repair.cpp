@@ -7,21 +7,12 @@
 
 namespace bernal::cad {
 
-RepairedMesh repair_in_cage(const Mesh& mesh, double seconds, const std::function<RepairedMesh()>& mend) {
+RepairedMesh repair_in_cage(const Mesh& mesh, double seconds, const std::function<RepairedMesh()>& repair) {
   const CageLimits limits{(std::uint64_t{4} << 30U) + 20'000 * mesh.triangles.size(), seconds};
   RepairedMesh repaired;
-  const auto work = [&](PlainWriter& out) {
-    const RepairedMesh made = mend();
-    out.text(made.done);
-    out.points(made.mesh.vertices);
-    out.array(std::span(made.mesh.triangles));
-  };
-  const auto take = [&](PlainReader& in) {
-    repaired.done = in.text();
-    repaired.mesh.vertices = in.points();
-    repaired.mesh.triangles = in.array<decltype(repaired.mesh.triangles)>();
-  };
-  const std::string befell = run_in_cage("CGAL", limits, work, take);
+  const std::string befell = run_in_cage(
+      "CGAL", limits, [&] { repaired = repair(); },
+      [&](Archive& a) { a(repaired.done, repaired.mesh.vertices, repaired.mesh.triangles); });
   if (befell.empty()) return repaired;
   return {mesh, fmt::format("not repaired: {}", befell)};
 }
