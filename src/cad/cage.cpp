@@ -108,7 +108,8 @@ enum ExitCode : int { done, out_of_memory, failed };
 
 /// What the child does. The message of an exception goes into the pipe.
 [[noreturn]] void work_as_child(const CageLimits& limits, int result, int pipe, std::uint64_t addresses,
-                                const std::function<void()>& work, const std::function<void(Archive&)>& values) {
+                                const std::function<void()>& work,
+                                const std::function<void(Archive&)>& values) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGXFSZ, SIGTERM, SIGPIPE})
     ::signal(signal, SIG_DFL);
@@ -152,7 +153,8 @@ std::string what_befell(std::string_view who, const CageLimits& limits, int stat
   };
   if (WIFEXITED(status) && WEXITSTATUS(status) == failed) {
     std::string message(most_of_message, '\0');
-    message.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read(pipe, message.data(), message.size()))));
+    message.resize(
+        static_cast<std::size_t>(std::max<ssize_t>(0, read(pipe, message.data(), message.size()))));
     return message.empty() ? fmt::format("{} gives it up", who) : plain_text(message);
   }
   if (!WIFSIGNALED(status)) return memory_taken(who, limits);
@@ -175,8 +177,8 @@ std::string memory_taken(std::string_view who, const CageLimits& limits) {
                      static_cast<double>(limits.memory) / gibi);
 }
 
-std::string run_in_cage(std::string_view who, const CageLimits& limits,
-                        const std::function<void()>& work, const std::function<void(Archive&)>& values) {
+std::string run_in_cage(std::string_view who, const CageLimits& limits, const std::function<void()>& work,
+                        const std::function<void(Archive&)>& values) {
   const auto refuse = [&](std::string_view what) {
     throw Error(ErrorCode::bad_mesh, fmt::format("no process for {}: {} ({})", who, what, strerror(errno)));
   };

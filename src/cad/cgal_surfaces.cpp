@@ -62,8 +62,8 @@ bool is_outer_wall(const Mesh& mesh, const TriangleTree& tree, std::uint32_t fac
   const Vector<3> normal = doubled_area(mesh, mesh.triangles[face]);
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
-  const std::optional<int> beyond =
-      tree.winding(middle_of(mesh, mesh.triangles[face]), axis, [&](std::uint32_t other) { return other == face; });
+  const std::optional<int> beyond = tree.winding(middle_of(mesh, mesh.triangles[face]), axis,
+                                                 [&](std::uint32_t other) { return other == face; });
   return beyond && *beyond == (normal[axis] > 0 ? 0 : 1);
 }
 

@@ -177,8 +177,7 @@ class Sides {
       return t[(std::ranges::find(t, v) - t.begin() + 1) % 3];
     };
     const std::uint32_t corner = faces.front()[0];
-    if (ahead_of(walls.triangles.front(), corner) != ahead_of(faces.front(), corner))
-      turn_inside_out(walls);
+    if (ahead_of(walls.triangles.front(), corner) != ahead_of(faces.front(), corner)) turn_inside_out(walls);
     hollow.volume = signed_volume(walls);  // below 0 where what they enclose is the solid
     constexpr double crevice = 1e-6;
     if (!(hollow.volume > crevice * bounds_of(mesh_).volume())) return std::nullopt;
@@ -196,7 +195,8 @@ class Sides {
     constexpr std::size_t asked = 400;
     double all = 0, folded = 0;
     for (std::size_t k = 0; k < faces.size(); k += 1 + faces.size() / asked) {
-      const Vector<3> inward = doubled_area(mesh_, faces[k]);  // of them: as they are turned here, into the solid
+      const Vector<3> inward =
+          doubled_area(mesh_, faces[k]);  // of them: as they are turned here, into the solid
       const Vector<3> direction = inward.stableNormalized();
       const Vector<3> from = middle_of(mesh_, faces[k]);
       const double ahead = way_free(from, direction, diagonal_), close = 1e-8 * diagonal_;
@@ -210,11 +210,11 @@ class Sides {
   /// Asked at the middle of its largest face.
   bool lies_outside(const Mesh& walls, const Lid& lid) const {
     const auto first = walls.triangles.begin();
-    const FaceCorners& largest =
-        *std::max_element(first + std::ptrdiff_t(lid.first), first + std::ptrdiff_t(lid.last),
-                          [&](const FaceCorners& s, const FaceCorners& t) {
-                            return doubled_area(walls, s).squaredNorm() < doubled_area(walls, t).squaredNorm();
-                          });
+    const FaceCorners& largest = *std::max_element(
+        first + std::ptrdiff_t(lid.first), first + std::ptrdiff_t(lid.last),
+        [&](const FaceCorners& s, const FaceCorners& t) {
+          return doubled_area(walls, s).squaredNorm() < doubled_area(walls, t).squaredNorm();
+        });
     return tree_.crossing(middle_of(walls, largest), 0, endless) == Crossing::even;
   }
 

@@ -351,7 +351,8 @@ ChosenInterior choose_interior(const Mesh& surface, const InteriorRequest& reque
     ChosenInterior inside = enclosed(surface, request.planes, tolerance);
     if (is_closed(inside.mesh)) {
       const SurfacePieces pieces(inside.mesh);
-      if (const std::uint32_t piece = pieces.around(*point); piece != no_index && pieces.depth(piece) % 2 == 0) {
+      if (const std::uint32_t piece = pieces.around(*point);
+          piece != no_index && pieces.depth(piece) % 2 == 0) {
         std::vector<bool> outermost(pieces.count(), false);
         outermost[piece] = true;
         inside.notes.push_back(fmt::format("the space around {}", text_of(*point)));

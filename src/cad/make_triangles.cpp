@@ -26,8 +26,7 @@ FaceCorners smallest_first(FaceCorners t) {
 /// Where every triangle is there in both orientations, as programs export that draw both sides of a face,
 /// leaves the first of each two. `there` are all of them, smallest corner first. Returns how many went. Cost:
 /// O(1) mostly, for the first that has no back tells.
-std::uint64_t drop_back_sides(std::vector<FaceCorners>& triangles,
-                              boost::unordered_set<FaceCorners>& there) {
+std::uint64_t drop_back_sides(std::vector<FaceCorners>& triangles, boost::unordered_set<FaceCorners>& there) {
   const auto turned = [](const auto& t) { return smallest_first({t[0], t[2], t[1]}); };
   if (!std::ranges::all_of(triangles, [&](const auto& t) { return there.count(turned(t)) > 0; })) return 0;
   return std::erase_if(triangles, [&](const auto& t) {

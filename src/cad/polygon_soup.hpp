@@ -65,8 +65,8 @@ ReadAttempt read_3mf(const std::filesystem::path& file);
 /// as they stand, a solid a volume. Materials are passed over. In a child process.
 ReadAttempt read_amf(const std::filesystem::path& file);
 
-/// STL, text or binary, which may begin with the word "solid", so that the size decides first: 84 bytes and 50
-/// a triangle. Throws Error{bad_mesh} with the line (text) or the sizes (binary) where it is malformed or
+/// STL, text or binary, which may begin with the word "solid", so that the size decides first: 84 bytes and
+/// 50 a triangle. Throws Error{bad_mesh} with the line (text) or the sizes (binary) where it is malformed or
 /// truncated.
 ///
 /// Text grammar, in any case, white space free: {"solid" [name] {"facet normal" 3 words "outer loop" 3 ×
@@ -77,14 +77,15 @@ ReadAttempt read_amf(const std::filesystem::path& file);
 /// A binary file may go on behind its last triangle, as long as no triangle would fit there exactly.
 ReadAttempt read_stl(const std::filesystem::path& file);
 
-/// OBJ: vertices and faces, a solid an object, or a group where there are no objects. All else is passed over.
+/// OBJ: vertices and faces, a solid an object, or a group where there are no objects. All else is passed
+/// over.
 ReadAttempt read_obj(const std::filesystem::path& file);
 
 /// OFF and PLY, through CGAL, in a child process, after a look at what CGAL takes on trust.
 ReadAttempt read_with_cgal(const std::filesystem::path& file);
 
-/// glTF, Collada, FBX: what assimp knows, transforms of nodes applied in double. Coordinates have been through
-/// single precision. In a child process.
+/// glTF, Collada, FBX: what assimp knows, transforms of nodes applied in double. Coordinates have been
+/// through single precision. In a child process.
 ReadAttempt read_with_assimp(const std::filesystem::path& file);
 
 /// Whether the file holds surfaces and solids, not triangles: STEP, IGES, BREP.

@@ -293,8 +293,9 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
                                   options.file.filename().string()));
   const double deflection = options.deflection.value_or(deflection_over_radius * purpose.smallest_radius);
   const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
-  cad::ReadAttempt read = cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
-                                     assumed ? metres_per(*assumed) : 0);
+  cad::ReadAttempt read =
+      cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
+                     assumed ? metres_per(*assumed) : 0);
   const Ratio ratio = ratio_of(options, read.facts, purpose.unit);
   const double factor = ratio.nearest();
 

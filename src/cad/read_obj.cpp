@@ -80,8 +80,8 @@ class ObjText {
   }
 
   void refuse(std::string_view what, std::string_view word, std::string_view why) {
-    read_.failure = fmt::format("a {} is \"{:.40}{}\", {} (line {})", what, word, word.size() > 40 ? "..." : "",
-                                why, line_);
+    read_.failure = fmt::format("a {} is \"{:.40}{}\", {} (line {})", what, word,
+                                word.size() > 40 ? "..." : "", why, line_);
   }
 
   /// Those parts that hold a face, and the faces before the first as one without a name.

@@ -153,7 +153,8 @@ class StlText {
   std::string_view text_;
   std::string file_, word_;
   std::size_t at_ = 0, end_ = 0;  ///< of what belongs to the format
-  std::size_t passed_over_ = 0;   ///< words behind a statement in its line, a number behind endfacet for instance
+  std::size_t passed_over_ =
+      0;  ///< words behind a statement in its line, a number behind endfacet for instance
   int line_ = 1;
   ReadAttempt read_{.reader = "bernal, double precision"};
   PointNumbers<Vector<3>> points_;

@@ -220,8 +220,8 @@ ReadAttempt read_here(const std::filesystem::path& file) {
 }  // namespace
 
 ReadAttempt read_with_assimp(const std::filesystem::path& file) {
-  ReadAttempt result = read_in_cage("assimp", cage_limits(std::filesystem::file_size(file)),
-                                    [&] { return read_here(file); });
+  ReadAttempt result =
+      read_in_cage("assimp", cage_limits(std::filesystem::file_size(file)), [&] { return read_here(file); });
   result.reader = "assimp, single precision";
   return result;
 }

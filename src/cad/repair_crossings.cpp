@@ -182,13 +182,13 @@ Bodies bodies_of(const Mesh& mesh) {
   return result;
 }
 
-struct Told {
+struct Counts {
   std::size_t with_itself = 0, united = 0, made = 0, taken_out = 0, failed = 0, too_large = 0;
 };
 
 /// Unites the bodies two by two, so that each face takes part in few unions; those with which it does not
 /// work stay as they are.
-std::vector<Mesh> unite_all(std::vector<Mesh> bodies, const Monitor& monitor, Told& told) {
+std::vector<Mesh> unite_all(std::vector<Mesh> bodies, const Monitor& monitor, Counts& counts) {
   std::vector<Mesh> failed;
   while (bodies.size() > 1 && !monitor.stop()) {
     std::vector<Mesh> next;
@@ -198,7 +198,7 @@ std::vector<Mesh> unite_all(std::vector<Mesh> bodies, const Monitor& monitor, To
       } else if (std::optional<Mesh> both = combine(bodies[i], bodies[i + 1], Combine::unite)) {
         next.push_back(std::move(*both));
       } else {
-        ++told.failed;
+        ++counts.failed;
         next.push_back(std::move(bodies[i]));
         failed.push_back(std::move(bodies[i + 1]));
       }
@@ -209,31 +209,31 @@ std::vector<Mesh> unite_all(std::vector<Mesh> bodies, const Monitor& monitor, To
   return bodies;
 }
 
-void combine_bodies(Mesh& mesh, const Monitor& monitor, Told& told) {
+void combine_bodies(Mesh& mesh, const Monitor& monitor, Counts& counts) {
   Bodies bodies = bodies_of(mesh);
   if (bodies.groups.empty()) return;
   mesh = std::move(bodies.others);
   for (Group& own : bodies.groups) {
     if (own.faces > most_faces || monitor.stop()) {
-      told.too_large += own.faces > most_faces;
+      counts.too_large += own.faces > most_faces;
       for (Mesh& body : own.inward) turn_inside_out(body);
       for (const auto* side : {&own.outward, &own.inward})
         for (const Mesh& body : *side) append(mesh, body);
       continue;
     }
-    const std::size_t failed_before = told.failed, count = own.outward.size();
-    std::vector<Mesh> united = unite_all(std::move(own.outward), monitor, told);
-    if (const std::size_t made_of = count - (told.failed - failed_before); made_of > 1) {
-      told.united += made_of;
-      ++told.made;
+    const std::size_t failed_before = counts.failed, count = own.outward.size();
+    std::vector<Mesh> united = unite_all(std::move(own.outward), monitor, counts);
+    if (const std::size_t made_of = count - (counts.failed - failed_before); made_of > 1) {
+      counts.united += made_of;
+      ++counts.made;
     }
     for (Mesh& hole : own.inward) {
       std::optional<Mesh> rest = combine(united.front(), hole, Combine::take_out);
       if (rest) {
-        ++told.taken_out;
+        ++counts.taken_out;
         united.front() = std::move(*rest);
       } else {
-        ++told.failed;
+        ++counts.failed;
         turn_inside_out(hole);
         united.push_back(std::move(hole));
       }
@@ -244,7 +244,7 @@ void combine_bodies(Mesh& mesh, const Monitor& monitor, Told& told) {
 }
 
 /// Closed components that cross themselves become the outer walls of what they wind around.
-void unite_with_themselves(Mesh& mesh, const Monitor& monitor, Told& told) {
+void unite_with_themselves(Mesh& mesh, const Monitor& monitor, Counts& counts) {
   const MeshTopology topology = topology_of(mesh);
   const std::vector<bool> is_closed = topology.closed_components();
   std::vector<bool> crosses(topology.components, false);
@@ -270,7 +270,7 @@ void unite_with_themselves(Mesh& mesh, const Monitor& monitor, Told& told) {
   keep_only(mesh, kept);
   for (const Mesh& walls : united) append(mesh, walls);
   weld_equal_points(mesh);
-  told.with_itself = united.size();
+  counts.with_itself = united.size();
 }
 
 }  // namespace
@@ -287,37 +287,37 @@ RepairedMesh cut_out_crossings(Mesh mesh, const Monitor& monitor) {
   if (orient_consistently(mesh, topology) == no_index)
     return {std::move(mesh), "crossings stay: the surface is one-sided and has no inside"};
 
-  Told told;
+  Counts counts;
   const std::size_t before = pairs.size();
-  unite_with_themselves(mesh, monitor, told);
+  unite_with_themselves(mesh, monitor, counts);
   const std::size_t own_before = within_components(self_intersecting_pairs(mesh), topology_of(mesh)).size();
   const std::size_t own_after = own_before > 0 ? cut_within_components(mesh, monitor) : 0;
-  combine_bodies(mesh, monitor, told);
+  combine_bodies(mesh, monitor, counts);
   cut_within_components(mesh, monitor);  // what rounding the corners of the unions has left
 
   std::vector<std::string> said;
-  if (told.with_itself > 0)
+  if (counts.with_itself > 0)
     said.push_back(
         fmt::format("of {} itself the outer walls are kept",
-                    counted(told.with_itself, "part that crosses", "parts of which each crosses")));
+                    counted(counts.with_itself, "part that crosses", "parts of which each crosses")));
   if (own_after < own_before)
     said.push_back(
         fmt::format("cut out {} where a part crosses itself, and patched over them: some room may "
                     "be lost there",
                     counted(own_before - own_after, "crossing", "crossings")));
-  if (told.made > 0)
-    said.push_back(fmt::format("united {} that cross{}", counted(told.united, "body", "bodies"),
-                               told.made > 1 ? fmt::format(" into {}", told.made) : ""));
-  if (told.taken_out > 0)
+  if (counts.made > 0)
+    said.push_back(fmt::format("united {} that cross{}", counted(counts.united, "body", "bodies"),
+                               counts.made > 1 ? fmt::format(" into {}", counts.made) : ""));
+  if (counts.taken_out > 0)
     said.push_back(fmt::format("took {} that {} oriented inward out of {} surroundings",
-                               counted(told.taken_out, "body", "bodies"), told.taken_out == 1 ? "is" : "are",
-                               told.taken_out == 1 ? "its" : "their"));
-  if (told.failed > 0)
+                               counted(counts.taken_out, "body", "bodies"), counts.taken_out == 1 ? "is" : "are",
+                               counts.taken_out == 1 ? "its" : "their"));
+  if (counts.failed > 0)
     said.push_back(fmt::format("{} could not be united: the result would touch itself along an edge",
-                               counted(told.failed, "body", "bodies")));
-  if (told.too_large > 0)
+                               counted(counts.failed, "body", "bodies")));
+  if (counts.too_large > 0)
     said.push_back(fmt::format("left {} of crossing bodies with more than {} faces",
-                               counted(told.too_large, "group", "groups"), most_faces));
+                               counted(counts.too_large, "group", "groups"), most_faces));
   const std::size_t after = self_intersecting_pairs(mesh).size();
   if (after > 0) {
     said.push_back(fmt::format("{} of {} remain", after, counted(before, "crossing", "crossings")));

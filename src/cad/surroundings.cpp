@@ -10,18 +10,10 @@
 
 namespace bernal::cad {
 
-Surroundings::Surroundings(const Mesh& solid)
-    : walls_(solid), box_(bounds_of(solid)), tree_of_solid_(solid) {
+Surroundings::Surroundings(const Mesh& solid) : walls_(solid), box_(bounds_of(solid)), tree_of_solid_(solid) {
   const Vector<3> margin = Vector<3>::Constant(0.1 * box_.diagonal());
   box_ = {box_.lower - margin, box_.upper + margin};
-  const auto first = static_cast<std::uint32_t>(walls_.vertices.size());
-  for (unsigned corner = 0; corner < 8; ++corner)
-    walls_.vertices.emplace_back(corner & 1 ? box_.upper[0] : box_.lower[0],
-                                 corner & 2 ? box_.upper[1] : box_.lower[1],
-                                 corner & 4 ? box_.upper[2] : box_.lower[2]);
-  constexpr std::uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                                          {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  for (const auto& [a, b, c] : faces) walls_.triangles.push_back({first + a, first + b, first + c});
+  append(walls_, mesh_of_box(box_));
 }
 
 bool Surroundings::is_on_box(const Vector<3>& p) const {

@@ -224,10 +224,12 @@ RepairedMesh wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor
   } catch (StoppedWrap reason) {
     const std::string_view because =
         reason == StoppedWrap::by_monitor ? "it was cancelled"
-        : reason == StoppedWrap::too_many ? "the result would have more than a million faces; take a larger alpha"
-                                      : "the inside is open to the outside through gaps wider than alpha";
-    return {std::move(mesh), fmt::format("not wrapped ({}): {}{}", how, because,
-                                         reason == StoppedWrap::outside ? fmt::format("; {}", close_first) : "")};
+        : reason == StoppedWrap::too_many
+            ? "the result would have more than a million faces; take a larger alpha"
+            : "the inside is open to the outside through gaps wider than alpha";
+    return {std::move(mesh),
+            fmt::format("not wrapped ({}): {}{}", how, because,
+                        reason == StoppedWrap::outside ? fmt::format("; {}", close_first) : "")};
   } catch (const std::exception& error) {
     std::string said = error.what();
     std::replace(said.begin(), said.end(), '\n', ' ');

@@ -17,9 +17,8 @@ WrittenShapes write_with_opencascade(const SolidShapes& shapes, SolidFormat form
         if (void* function = opencascade_function("bernal_write_shapes"))
           reinterpret_cast<decltype(&bernal_write_shapes)>(function)(shapes, format, file, made);
         else
-          made.failure =
-              "this bernal runs without OpenCASCADE, which writes STEP and BREP; " + opencascade_remedy() +
-              ", or export gmsh";
+          made.failure = "this bernal runs without OpenCASCADE, which writes STEP and BREP; " +
+                         opencascade_remedy() + ", or export gmsh";
       },
       [&](Archive& a) { a(made.failure, made.solids, made.volume, made.has_container); });
   if (const std::string& failure = befell.empty() ? made.failure : befell; !failure.empty())

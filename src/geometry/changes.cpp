@@ -7,6 +7,16 @@
 
 namespace bernal {
 
+Mesh mesh_of_box(const Bounds<3>& box) {
+  Mesh mesh;
+  for (unsigned k = 0; k < 8; ++k)
+    mesh.vertices.emplace_back(k & 1 ? box.upper[0] : box.lower[0], k & 2 ? box.upper[1] : box.lower[1],
+                               k & 4 ? box.upper[2] : box.lower[2]);
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
 void keep_only(Mesh& mesh, const std::vector<bool>& kept) {
   std::size_t count = 0;
   for (std::size_t t = 0; t < kept.size(); ++t)

@@ -12,6 +12,9 @@ void move_vertices(Mesh& mesh, const To& to) {
   mesh.exact = nullptr;
 }
 
+/// The surface of a box: corner k is upper along x, y, z where bits 0, 1, 2 of k are set.
+Mesh mesh_of_box(const Bounds<3>&);
+
 /// Drops the triangles that are not kept.
 void keep_only(Mesh&, const std::vector<bool>& kept);
 

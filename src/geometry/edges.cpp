@@ -14,7 +14,8 @@ MeshEdges::MeshEdges(std::span<const FaceCorners> triangles) {
       const std::uint32_t a = triangles[t][k], b = triangles[t][(k + 1U) % 3];
       uses_.push_back({std::min(a, b), std::max(a, b), t, k, a < b});
     }
-  std::ranges::sort(uses_, {}, [](const EdgeUse& u) { return std::tuple(u.low, u.high, u.triangle, u.side); });
+  std::ranges::sort(uses_, {},
+                    [](const EdgeUse& u) { return std::tuple(u.low, u.high, u.triangle, u.side); });
 }
 
 std::size_t MeshEdges::triangles_at(std::uint32_t a, std::uint32_t b) const {
@@ -54,9 +55,8 @@ SharpEdges sharp_edges(const Mesh& mesh, std::size_t most,
   });
   if (edges.size() <= most) return edges;
   std::ranges::nth_element(
-      edges, edges.begin() + static_cast<std::ptrdiff_t>(most), std::greater<>(), [&](const auto& edge) {
-        return (mesh.vertices[edge[1]] - mesh.vertices[edge[0]]).squaredNorm();
-      });
+      edges, edges.begin() + static_cast<std::ptrdiff_t>(most), std::greater<>(),
+      [&](const auto& edge) { return (mesh.vertices[edge[1]] - mesh.vertices[edge[0]]).squaredNorm(); });
   edges.resize(most);
   return edges;
 }

@@ -53,8 +53,8 @@ std::vector<EdgeUse> open_edges(std::span<const FaceCorners> triangles);
 using SharpEdges = std::vector<std::array<std::uint32_t, 2>>;
 
 /// The edges by which a shape is recognised, in the order of their ends: those with other than two triangles,
-/// those that bend by more than 30 degrees, and those for whose unit normals `also` holds; of more than `most`
-/// the longest. A triangle without area bends nothing. Cost: O(T log T).
+/// those that bend by more than 30 degrees, and those for whose unit normals `also` holds; of more than
+/// `most` the longest. A triangle without area bends nothing. Cost: O(T log T).
 SharpEdges sharp_edges(const Mesh&, std::size_t most,
                        const std::function<bool(const Vector<3>&, const Vector<3>&)>& also = {});
 

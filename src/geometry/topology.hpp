@@ -10,9 +10,9 @@ namespace bernal {
 /// How the triangles of a mesh hang together, by vertex numbers alone; side k of a triangle runs from its
 /// corner k to its corner k + 1 (mod 3).
 ///
-/// Only an edge with exactly two triangles joins them. So a vertex where several fans of triangles meet counts
-/// once for each fan in `fans`, and chi = fans - edges + triangles is that of the surface with its pinched
-/// vertices pulled apart.
+/// Only an edge with exactly two triangles joins them. So a vertex where several fans of triangles meet
+/// counts once for each fan in `fans`, and chi = fans - edges + triangles is that of the surface with its
+/// pinched vertices pulled apart.
 struct MeshTopology {
   std::uint64_t edges = 0;
   std::uint64_t open_edges = 0;          ///< with one triangle

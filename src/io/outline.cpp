@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "bernal/core/error.hpp"
+#include "geometry/changes.hpp"
 #include "geometry/edges.hpp"
 
 namespace bernal {
@@ -32,14 +33,8 @@ std::vector<Vector<3>> ring(const Vector<3>& center, const Vector<3>& axis, doub
 }
 
 Mesh drawable(const Box& box) {
-  Mesh mesh;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vector<3> side(corner & 1, corner >> 1 & 1, corner >> 2);
-    mesh.vertices.push_back(box.corner + side.cwiseProduct(Vector<3>(box.size)));
-  }
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
+  const Vector<3> corner = box.corner;
+  return mesh_of_box({corner, corner + Vector<3>(box.size)});
 }
 
 Mesh drawable(const Cylinder& cylinder) {

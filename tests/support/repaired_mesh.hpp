@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cad/repaired_mesh.hpp"
-#include "geometry/topology.hpp"
 #include "cad/self_intersections.hpp"
+#include "geometry/topology.hpp"
 #include "support/meshes.hpp"
 
 // What repairs are tried on, and what is asked of what they return.

@@ -64,9 +64,11 @@ TEST(Cage, HandsBackAllThatWasRead) {
 
 TEST(Cage, SaysWhatBefellTheReader) {
   EXPECT_EQ(failure_of([] { throw std::runtime_error("line 3: no number"); }), "line 3: no number");
-  EXPECT_EQ(failure_of([] { throw std::length_error("basic_string::_M_create"); }), "basic_string::_M_create");
+  EXPECT_EQ(failure_of([] { throw std::length_error("basic_string::_M_create"); }),
+            "basic_string::_M_create");
   EXPECT_EQ(failure_of([] { throw 7; }), "an exception without a message");
-  EXPECT_EQ(failure_of([] { throw std::bad_alloc(); }), "the reader wants more than 0.25 GiB of memory for it");
+  EXPECT_EQ(failure_of([] { throw std::bad_alloc(); }),
+            "the reader wants more than 0.25 GiB of memory for it");
   EXPECT_EQ(failure_of([] { std::abort(); }), "the reader crashes on it (Aborted)");
   EXPECT_EQ(failure_of([] { std::raise(SIGSEGV); }), "the reader crashes on it (Segmentation fault)");
   EXPECT_EQ(failure_of([] { std::raise(SIGKILL); }), "the reader was killed over it");

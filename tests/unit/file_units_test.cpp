@@ -291,8 +291,9 @@ TEST_F(FileUnits, ObjObjectsAndGroupsAreParts) {
 
 TEST_F(FileUnits, AnObjGoesOnInTheNextLineAndCountsBackwards) {
   const ReadAttempt obj =
-      cad::read_obj(folder.write("o.obj", "v 0 0 0\nv 1 0 \\\n0\n  v 0 2 0 1\nv 0 0 3 0.5 0.5 0.5\nvn 0 0 1\n# f 1\n"
-                                          "f 1/1 2/2/2 \\\n4//7 -2\nl 1 2\nf 1 2\n"));
+      cad::read_obj(folder.write("o.obj",
+                                 "v 0 0 0\nv 1 0 \\\n0\n  v 0 2 0 1\nv 0 0 3 0.5 0.5 0.5\nvn 0 0 1\n# f 1\n"
+                                 "f 1/1 2/2/2 \\\n4//7 -2\nl 1 2\nf 1 2\n"));
   ASSERT_TRUE(obj.ok()) << obj.failure;
   EXPECT_EQ(obj.soup.points, (std::vector<Vector<3>>{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}}));
   EXPECT_EQ(obj.soup.polygons, (std::vector<std::vector<std::uint32_t>>{{0, 1, 3, 2}}));

@@ -92,7 +92,8 @@ TEST(RepairHoles, ClosesManyHolesOfACurvedSurface) {
   EXPECT_LT(off.at_most, 0.05);
 
   int n = 0;
-  const RepairedMesh sieve = close_holes(without_faces(whole, [&](const auto&) { return n++ % 4 == 3; }), infinity);
+  const RepairedMesh sieve =
+      close_holes(without_faces(whole, [&](const auto&) { return n++ % 4 == 3; }), infinity);
   expect_sound(sieve);
   EXPECT_NEAR(volume(sieve.mesh), volume(whole), 1e-12) << "single faces come back as they were";
 }
@@ -174,7 +175,8 @@ TEST(RepairCrossings, BodiesThatCrossBecomeTheirUnion) {
   expect_sound(pierced);
   EXPECT_NEAR(volume(pierced.mesh), 8 + volume(cylinder) / 2, 1e-13);
 
-  const RepairedMesh baffle = cut_out_crossings(joined(unit_box, box_mesh({0.49, 0.3, -0.2}, {0.02, 0.4, 0.7})));
+  const RepairedMesh baffle =
+      cut_out_crossings(joined(unit_box, box_mesh({0.49, 0.3, -0.2}, {0.02, 0.4, 0.7})));
   expect_sound(baffle);
   EXPECT_NEAR(volume(baffle.mesh), 1 + 0.02 * 0.4 * 0.2, 1e-14);
 }
@@ -185,7 +187,8 @@ TEST(RepairCrossings, BodiesThatTouchAreUnitedWhereThatIsASurface) {
   EXPECT_DOUBLE_EQ(volume(face.mesh), 2);
   EXPECT_EQ(topology_of(face.mesh).components, 1U);
 
-  const RepairedMesh shifted = cut_out_crossings(joined(unit_box, translated(unit_box, {1e-13, 2e-13, 1e-13})));
+  const RepairedMesh shifted =
+      cut_out_crossings(joined(unit_box, translated(unit_box, {1e-13, 2e-13, 1e-13})));
   expect_sound(shifted);
   EXPECT_NEAR(volume(shifted.mesh), 1, 1e-12);
 
@@ -215,7 +218,8 @@ TEST(RepairCrossings, UnitesAChainOfManyAndLeavesOthers) {
   EXPECT_EQ(repaired.done, "united 9 bodies that cross");
   const double sphere = volume(icosphere_mesh(1, 2));
   EXPECT_LT(volume(repaired.mesh), 1 + 9 * sphere);
-  EXPECT_GT(volume(repaired.mesh), 1 + 8 * sphere * 0.84375 + sphere - 0.2);  // caps of true spheres: 5/32 each
+  EXPECT_GT(volume(repaired.mesh),
+            1 + 8 * sphere * 0.84375 + sphere - 0.2);  // caps of true spheres: 5/32 each
 }
 
 TEST(RepairCrossings, OfAPartThatCrossesItselfAllStaysThatItWindsAround) {
