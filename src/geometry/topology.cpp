@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/disjoint_sets.hpp"
+#include "geometry/measures.hpp"
 
 namespace bernal {
 
@@ -96,6 +97,20 @@ std::uint32_t orient_consistently(Mesh& mesh, const MeshTopology& topology) {
   for (std::uint32_t t = 0; t < count; ++t)
     if (state[t] == turned) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
   return total;
+}
+
+bool is_convex(const Mesh& mesh) {
+  constexpr double rounding = 1e-12;
+  const MeshTopology topology = topology_of(mesh);
+  if (topology.components != 1 || !topology.closed()) return false;
+  const double size = bounds_of(mesh).size().maxCoeff();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vector<3> normal = doubled_area(mesh, mesh.triangles[t]), &on = mesh.vertices[mesh.triangles[t][0]];
+    for (const std::uint32_t beside : topology.neighbor[t])
+      for (const std::uint32_t v : mesh.triangles[beside])
+        if (normal.dot(mesh.vertices[v] - on) > rounding * size * normal.norm()) return false;
+  }
+  return true;
 }
 
 }  // namespace bernal

@@ -39,4 +39,8 @@ MeshTopology topology_of(const Mesh&);
 /// numbering of components, but its members by side and corner no longer hold.
 std::uint32_t orient_consistently(Mesh&, const MeshTopology&);
 
+/// Whether a closed mesh, which does not cross itself, is convex, to rounding: in one piece, and no triangle
+/// rises above a neighbour's plane. Cost: O(T log T).
+bool is_convex(const Mesh&);
+
 }  // namespace bernal
