@@ -84,7 +84,7 @@ TEST(Cage, TellsAnExceptionAsItself) {
   EXPECT_EQ(made, 7u);
   EXPECT_EQ(befell([] { throw std::out_of_range("no such\nface"); }), "no such face");
   const std::string long_one = befell([] { throw std::runtime_error(std::string(100'000, 'x')); });
-  EXPECT_EQ(long_one.substr(0, 400), std::string(400, 'x'));
+  EXPECT_EQ(long_one.substr(0, 200), std::string(200, 'x'));
   EXPECT_LE(long_one.size(), 1000u);
   EXPECT_EQ(befell([] { throw std::bad_alloc(); }), "the writer wants more than 0.25 GiB of memory for it");
 }
