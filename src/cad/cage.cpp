@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "core/parallel.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -37,6 +38,8 @@ constexpr double gibi = 1024.0 * 1024 * 1024;
 constexpr double slower = 20;
 /// Between looks at whether the user wants to stop.
 constexpr int look_every_ms = 50;
+/// Of the message of an exception; a pipe holds it, though nobody reads it yet.
+constexpr std::size_t most_of_message = 1000;
 /// Stands at the end of what is whole.
 constexpr std::uint64_t end_mark = 0x6265726E616C2121;
 
@@ -72,9 +75,41 @@ void set_limit(int resource, double most) {
   setrlimit(static_cast<__rlimit_resource>(resource), &bound);
 }
 
-/// What the child does.
-[[noreturn]] void work_as_child(const CageLimits& limits, int result, std::uint64_t addresses,
-                                const std::function<void(PlainWriter&)>& work) {
+/// Throws std::bad_alloc where the file takes no more.
+void write_all(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) throw std::bad_alloc();
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+/// Whether all of it is there.
+bool read_all(int file, const std::function<void(Archive&)>& values) {
+  const off_t size = lseek(file, 0, SEEK_END);
+  if (size <= 0) return false;
+  void* const mapped = mmap(nullptr, static_cast<std::size_t>(size), PROT_READ, MAP_PRIVATE, file, 0);
+  if (mapped == MAP_FAILED) throw std::bad_alloc();
+  bool whole = false;
+  try {
+    ArchiveFromBytes archive({static_cast<const char*>(mapped), static_cast<std::size_t>(size)});
+    values(archive);
+    std::uint64_t mark = 0;
+    archive(mark);
+    whole = mark == end_mark;
+  } catch (const Error&) {  // it breaks off
+  }
+  munmap(mapped, static_cast<std::size_t>(size));
+  return whole;
+}
+
+enum ExitCode : int { done, out_of_memory, failed };
+
+/// What the child does. The message of an exception goes into the pipe.
+[[noreturn]] void work_as_child(const CageLimits& limits, int result, int pipe, std::uint64_t addresses,
+                                const std::function<void()>& work,
+                                const std::function<void(Archive&)>& values) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGXFSZ, SIGTERM, SIGPIPE})
     ::signal(signal, SIG_DFL);
@@ -90,21 +125,38 @@ void set_limit(int resource, double most) {
   static_cast<void>(addresses);
 #endif
   stay_in_this_thread();
-  int code = 0;
+  const auto fail = [&](std::string_view message) {
+    message = message.substr(0, most_of_message);
+    _exit(write(pipe, message.data(), message.size()) < 0 ? out_of_memory : failed);
+  };
   try {
-    PlainWriter out(result);
-    work(out);
-    out.number(end_mark);
+    work();
+    std::string bytes;
+    ArchiveToBytes archive(bytes);
+    values(archive);
+    std::uint64_t mark = end_mark;
+    archive(mark);
+    write_all(result, bytes);
+  } catch (const std::bad_alloc&) {
+    _exit(out_of_memory);
+  } catch (const std::exception& error) {
+    fail(error.what());
   } catch (...) {
-    code = 1;
+    fail("an exception without a message");
   }
-  _exit(code);
+  _exit(done);
 }
 
-std::string what_befell(std::string_view who, const CageLimits& limits, int status) {
+std::string what_befell(std::string_view who, const CageLimits& limits, int status, int pipe) {
   const auto too_long = [&] {
     return fmt::format("{} takes longer than {:.0f} s over it", who, limits.seconds);
   };
+  if (WIFEXITED(status) && WEXITSTATUS(status) == failed) {
+    std::string message(most_of_message, '\0');
+    message.resize(
+        static_cast<std::size_t>(std::max<ssize_t>(0, read(pipe, message.data(), message.size()))));
+    return message.empty() ? fmt::format("{} gives it up", who) : plain_text(message);
+  }
   if (!WIFSIGNALED(status)) return memory_taken(who, limits);
   if (WTERMSIG(status) == SIGXCPU) return too_long();
   if (WTERMSIG(status) == SIGXFSZ) return memory_taken(who, limits);
@@ -125,9 +177,8 @@ std::string memory_taken(std::string_view who, const CageLimits& limits) {
                      static_cast<double>(limits.memory) / gibi);
 }
 
-std::string run_in_cage(std::string_view who, const CageLimits& limits,
-                        const std::function<void(PlainWriter&)>& work,
-                        const std::function<void(PlainReader&)>& take) {
+std::string run_in_cage(std::string_view who, const CageLimits& limits, const std::function<void()>& work,
+                        const std::function<void(Archive&)>& values) {
   const auto refuse = [&](std::string_view what) {
     throw Error(ErrorCode::bad_mesh, fmt::format("no process for {}: {} ({})", who, what, strerror(errno)));
   };
@@ -139,7 +190,7 @@ std::string run_in_cage(std::string_view who, const CageLimits& limits,
   const std::uint64_t addresses = addresses_in_use();
   const pid_t child = fork();
   if (child < 0) refuse("fork failed");
-  if (child == 0) work_as_child(limits, result.number(), addresses, work);
+  if (child == 0) work_as_child(limits, result.number(), there.number(), addresses, work, values);
   there.close();
 
   // The pipe closes when the child ends.
@@ -162,13 +213,8 @@ std::string run_in_cage(std::string_view who, const CageLimits& limits,
   if (late) kill(child, SIGKILL);
   const int status = status_at_end_of(child);
   if (late) return fmt::format("{} takes longer than {:.0f} s over it", who, slower * limits.seconds);
-  try {
-    PlainReader in(result.number());
-    take(in);
-    if (in.number() == end_mark) return {};
-  } catch (const PlainReader::Cut&) {
-  }
-  return what_befell(who, limits, status);
+  if (read_all(result.number(), values)) return {};
+  return what_befell(who, limits, status, here.number());
 }
 
 }  // namespace bernal::cad

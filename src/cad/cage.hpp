@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "cad/plain_file.hpp"
+#include "core/archive.hpp"
 
 namespace bernal::cad {
 
@@ -15,13 +15,13 @@ struct CageLimits {
 };
 
 /// Lets `work` run in a child process, so that what crashes, loops or takes all memory costs no more than a
-/// line, and `take` read what it wrote. Returns what befell the child, "assimp crashes on it (Aborted)" for
-/// instance, or nothing. In the child standard streams are closed, and one thread runs. Throws Cancelled
-/// where an Interruptible says so, and whatever keeps the child from starting as Error{bad_mesh}. Cost beside
-/// `work`: a few milliseconds, and a copy of what is handed over.
-std::string run_in_cage(std::string_view who, const CageLimits& limits,
-                        const std::function<void(PlainWriter&)>& work,
-                        const std::function<void(PlainReader&)>& take);
+/// line, and brings back what it made: `values` archives that, keeping it in the child and setting it here.
+/// Returns what befell the child, "assimp crashes on it (Aborted)" for instance, or the message of an
+/// exception that `work` threw, or nothing. In the child standard streams are closed, and one thread runs.
+/// Throws Cancelled where an Interruptible says so, and whatever keeps the child from starting as
+/// Error{bad_mesh}. Cost beside `work`: a few milliseconds, and two copies of what is handed over.
+std::string run_in_cage(std::string_view who, const CageLimits& limits, const std::function<void()>& work,
+                        const std::function<void(Archive&)>& values);
 
 /// "assimp wants more than 1 GiB of memory for it"
 std::string memory_taken(std::string_view who, const CageLimits& limits);

@@ -4,16 +4,16 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/functional/hash.hpp>
-#include <boost/unordered/unordered_map.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 
-#include "cad/diagnose_mesh.hpp"
-#include "cad/mesh_topology.hpp"
+#include "cad/counted.hpp"
 #include "cad/point_cubes.hpp"
 #include "cad/self_intersections.hpp"
+#include "geometry/changes.hpp"
+#include "geometry/point_numbers.hpp"
+#include "geometry/topology.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -24,46 +24,17 @@ PointCubes in_cubes(const Mesh& mesh, const std::vector<std::uint32_t>& corners,
   return cubes;
 }
 
-struct OpenEdge {
-  std::uint32_t triangle;
-  std::uint8_t edge;
-};
-
-std::vector<OpenEdge> open_edges(const Mesh& mesh) {
-  const MeshTopology topology = topology_of(mesh);
-  std::vector<OpenEdge> open;
-  if (topology.open_edges == 0) return open;
-  boost::unordered_map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
-  const auto key = [&](std::uint32_t t, std::uint8_t k) {
-    const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-    return std::pair(std::min(a, b), std::max(a, b));
-  };
-  const auto each = [&](const auto& see) {
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-      for (std::uint8_t k = 0; k < 3; ++k)
-        if (topology.neighbor[t][k] == none) see(t, k);
-  };
-  each([&](std::uint32_t t, std::uint8_t k) { ++uses[key(t, k)]; });
-  each([&](std::uint32_t t, std::uint8_t k) {
-    if (uses[key(t, k)] == 1) open.push_back({t, k});
-  });
-  return open;
-}
-
-std::vector<std::uint32_t> corners_of(const Mesh& mesh, const std::vector<OpenEdge>& edges) {
+std::vector<std::uint32_t> ends_of(const std::vector<EdgeUse>& edges) {
   std::vector<std::uint32_t> corners;
-  for (const auto& [t, k] : edges) {
-    corners.push_back(mesh.triangles[t][k]);
-    corners.push_back(mesh.triangles[t][(k + 1) % 3]);
-  }
+  for (const EdgeUse& edge : edges) corners.insert(corners.end(), {edge.low, edge.high});
   std::ranges::sort(corners);
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   return corners;
 }
 
-/// FaceCorners of open edges that are nearer than the tolerance become the one with the smallest number.
+/// Corners of open edges that are nearer than the tolerance become the one with the smallest number.
 void weld(Mesh& mesh, double tolerance, Seams& seams) {
-  const std::vector<std::uint32_t> corners = corners_of(mesh, open_edges(mesh));
+  const std::vector<std::uint32_t> corners = ends_of(open_edges(mesh.triangles));
   if (corners.empty()) return;
   const PointCubes cubes = in_cubes(mesh, corners, 2 * tolerance);
   std::vector<std::uint32_t> same(mesh.vertices.size());
@@ -80,8 +51,7 @@ void weld(Mesh& mesh, double tolerance, Seams& seams) {
       seams.widest = std::max(seams.widest, d);
     });
   }
-  for (FaceCorners& t : mesh.triangles)
-    for (std::uint32_t& v : t) v = same[v];
+  renumber(mesh.triangles, [&](std::uint32_t v) { return same[v]; });
   std::erase_if(mesh.triangles,
                 [](const FaceCorners& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
 }
@@ -107,17 +77,17 @@ std::vector<std::uint32_t> corners_within(const Mesh& mesh, const PointCubes& cu
 /// Gives open edges the corners that lie within them, one edge of a triangle at a time. Returns whether there
 /// were any.
 bool split_edges(Mesh& mesh, double tolerance, Seams& seams) {
-  const std::vector<OpenEdge> edges = open_edges(mesh);
+  const std::vector<EdgeUse> edges = open_edges(mesh.triangles);
   if (edges.empty()) return false;
-  const std::vector<std::uint32_t> corners = corners_of(mesh, edges);
+  const std::vector<std::uint32_t> corners = ends_of(edges);
   double length = 0;
-  for (const auto& [t, k] : edges)
-    length += (mesh.vertices[mesh.triangles[t][k]] - mesh.vertices[mesh.triangles[t][(k + 1) % 3]]).norm();
+  for (const EdgeUse& edge : edges) length += (mesh.vertices[edge.low] - mesh.vertices[edge.high]).norm();
   const PointCubes cubes =
       in_cubes(mesh, corners, std::max(2 * tolerance, length / static_cast<double>(edges.size())));
-  std::uint32_t last = none;
+  std::uint32_t last = no_index;
   bool any = false;
-  for (const auto& [t, k] : edges) {
+  for (const EdgeUse& edge : edges) {
+    const auto [t, k] = std::pair(edge.triangle, edge.side);
     if (t == last) continue;
     const FaceCorners old = mesh.triangles[t];
     const std::uint32_t a = old[k], b = old[(k + 1) % 3], apex = old[(k + 2) % 3];
@@ -138,26 +108,23 @@ bool split_edges(Mesh& mesh, double tolerance, Seams& seams) {
 /// Of two faces with the same corners that are turned against each other one goes, where every one of their
 /// edges has a single other face: the surface needs one there.
 void drop_doubled(Mesh& mesh, Seams& seams) {
-  boost::unordered_map<FaceCorners, std::vector<std::uint32_t>> faces;
-  boost::unordered_map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
-  const auto edge = [](const FaceCorners& t, std::size_t k) {
-    return std::pair(std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3]));
-  };
+  const MeshEdges edges(mesh.triangles);
+  std::vector<std::pair<FaceCorners, std::uint32_t>> faces;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    FaceCorners sorted = mesh.triangles[t];
-    for (std::size_t k = 0; k < 3; ++k) ++uses[edge(sorted, k)];
-    std::ranges::sort(sorted);
-    faces[sorted].push_back(t);
+    faces.emplace_back(mesh.triangles[t], t);
+    std::ranges::sort(faces.back().first);
   }
+  std::ranges::sort(faces);
   std::vector<bool> kept(mesh.triangles.size(), true);
-  for (const auto& [corners, same] : faces) {
-    if (same.size() != 2) continue;
-    const FaceCorners& t = mesh.triangles[same[0]];
-    bool needed = true;
-    for (std::size_t k = 0; k < 3; ++k) needed = needed && uses[edge(t, k)] == 3;
-    if (!needed) continue;
-    kept[same[1]] = false;
-    ++seams.doubled;
+  for (auto first = faces.begin(); first != faces.end();) {
+    const FaceCorners& t = first->first;
+    const auto last = std::find_if(first, faces.end(), [&](const auto& face) { return face.first != t; });
+    if (last - first == 2 && edges.triangles_at(t[0], t[1]) == 3 && edges.triangles_at(t[1], t[2]) == 3 &&
+        edges.triangles_at(t[0], t[2]) == 3) {
+      kept[first[1].second] = false;
+      ++seams.doubled;
+    }
+    first = last;
   }
   if (seams.doubled == 0) return;
   keep_only(mesh, kept);

@@ -1,38 +1,16 @@
 #include "cad/defects.hpp"
 
 #include <algorithm>
-#include <boost/functional/hash.hpp>
-#include <boost/unordered/unordered_map.hpp>
+#include <tuple>
+#include <utility>
 
-#include "cad/mesh_topology.hpp"
 #include "cad/self_intersections.hpp"
+#include "core/disjoint_sets.hpp"
+#include "geometry/edges.hpp"
+#include "geometry/measures.hpp"
 
 namespace bernal::cad {
 namespace {
-
-using EdgeEnds = std::array<std::uint32_t, 2>;
-
-/// Every edge, with the number of faces at it.
-boost::unordered_map<EdgeEnds, std::uint32_t> faces_at_edges(const Mesh& mesh) {
-  boost::unordered_map<EdgeEnds, std::uint32_t> edges;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
-      ++edges[{a, b}];
-    }
-  return edges;
-}
-
-void stretch(Bounds<3>& bounds, const Vector<3>& p) {
-  bounds.lower = bounds.lower.cwiseMin(p);
-  bounds.upper = bounds.upper.cwiseMax(p);
-}
-
-Bounds<3> bounds_of_edge(const Mesh& mesh, const EdgeEnds& edge) {
-  Bounds<3> bounds{mesh.vertices[edge[0]], mesh.vertices[edge[0]]};
-  stretch(bounds, mesh.vertices[edge[1]]);
-  return bounds;
-}
 
 /// The widest first; those of one width in the order of their places.
 void keep_widest(std::vector<Defect>& defects) {
@@ -47,29 +25,21 @@ void keep_widest(std::vector<Defect>& defects) {
 }  // namespace
 
 std::vector<OpenRim> open_rims(const Mesh& mesh) {
-  std::vector<EdgeEnds> open;
-  for (const auto& [edge, faces] : faces_at_edges(mesh))
-    if (faces == 1) open.push_back(edge);
-  std::ranges::sort(open);
-
-  boost::unordered_map<std::uint32_t, std::uint32_t> parent;
-  const auto root = [&](std::uint32_t v) {
-    while (parent.try_emplace(v, v).first->second != v) v = parent[v];
-    return v;
-  };
-  for (const EdgeEnds& edge : open) {
-    const auto [low, high] = std::minmax({root(edge[0]), root(edge[1])});
-    parent[high] = low;
-  }
+  std::vector<EdgeUse> open = open_edges(mesh.triangles);
+  std::ranges::sort(open, {}, [](const EdgeUse& edge) { return std::pair(edge.low, edge.high); });
+  DisjointSets parts(mesh.vertices.size());
+  for (const EdgeUse& edge : open) parts.unite(edge.low, edge.high);
   std::vector<OpenRim> rims;
-  boost::unordered_map<std::uint32_t, std::size_t> rim_of;
-  for (const EdgeEnds& edge : open) {
-    const auto [entry, is_new] = rim_of.try_emplace(root(edge[0]), rims.size());
-    if (is_new) rims.push_back({bounds_of_edge(mesh, edge), {}});
-    OpenRim& rim = rims[entry->second];
-    for (const std::uint32_t v : edge) {
-      stretch(rim.bounds, mesh.vertices[v]);
-      rim.ends.push_back(mesh.vertices[v]);
+  std::vector<std::uint32_t> rim_of(mesh.vertices.size(), no_index);
+  for (const EdgeUse& edge : open) {
+    std::uint32_t& number = rim_of[parts.find(edge.low)];
+    if (number == no_index) {
+      number = static_cast<std::uint32_t>(rims.size());
+      rims.push_back({Bounds<3>::of_nothing(), {}});
+    }
+    for (const std::uint32_t v : {edge.low, edge.high}) {
+      rims[number].bounds.add(mesh.vertices[v]);
+      rims[number].ends.push_back(mesh.vertices[v]);
     }
   }
   std::ranges::stable_sort(
@@ -81,18 +51,14 @@ std::vector<Defect> defects_of(const Mesh& mesh) {
   std::vector<Defect> holes, branches, crossings;
   for (const OpenRim& rim : open_rims(mesh))
     holes.push_back({"hole", rim.bounds.center(), rim.bounds.diagonal()});
-  for (const auto& [edge, faces] : faces_at_edges(mesh)) {
-    const Bounds<3> bounds = bounds_of_edge(mesh, edge);
-    if (faces > 2) branches.push_back({"edge with more than two faces", bounds.center(), bounds.diagonal()});
-  }
-  const auto bounds_of_triangle = [&](std::uint32_t t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    Bounds<3> bounds = bounds_of_edge(mesh, {a, b});
-    stretch(bounds, mesh.vertices[c]);
-    return bounds;
-  };
+  MeshEdges(mesh.triangles).for_each([&](std::span<const EdgeUse> uses) {
+    if (uses.size() <= 2) return;
+    const Vector<3> ends[] = {mesh.vertices[uses.front().low], mesh.vertices[uses.front().high]};
+    const Bounds<3> bounds = bounds_of(ends);
+    branches.push_back({"edge with more than two faces", bounds.center(), bounds.diagonal()});
+  });
   for (const auto& [s, t] : self_intersecting_pairs(mesh)) {
-    const Bounds<3> one = bounds_of_triangle(s), other = bounds_of_triangle(t);
+    const Bounds<3> one = bounds_of(mesh, mesh.triangles[s]), other = bounds_of(mesh, mesh.triangles[t]);
     const Bounds<3> both{one.lower.cwiseMax(other.lower), one.upper.cwiseMin(other.upper)};
     crossings.push_back({"crossing", both.center(), both.diagonal()});
   }
@@ -106,22 +72,17 @@ std::vector<Defect> defects_of(const Mesh& mesh) {
 
 DefectiveFaces defective_faces(const Mesh& mesh) {
   DefectiveFaces faces;
-  const auto edges = faces_at_edges(mesh);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    bool open = false, branching = false;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
-      const std::uint32_t count = edges.at({a, b});
-      open = open || count == 1;
-      branching = branching || count > 2;
-    }
-    if (open) faces.at_open_edges.push_back(t);
-    if (branching) faces.at_branching_edges.push_back(t);
-  }
+  MeshEdges(mesh.triangles).for_each([&](std::span<const EdgeUse> uses) {
+    if (uses.size() == 2) return;
+    std::vector<std::uint32_t>& kind = uses.size() == 1 ? faces.at_open_edges : faces.at_branching_edges;
+    for (const EdgeUse& use : uses) kind.push_back(use.triangle);
+  });
   for (const auto& pair : self_intersecting_pairs(mesh))
     faces.crossing.insert(faces.crossing.end(), pair.begin(), pair.end());
-  std::ranges::sort(faces.crossing);
-  faces.crossing.erase(std::unique(faces.crossing.begin(), faces.crossing.end()), faces.crossing.end());
+  for (auto* kind : {&faces.at_open_edges, &faces.at_branching_edges, &faces.crossing}) {
+    std::ranges::sort(*kind);
+    kind->erase(std::unique(kind->begin(), kind->end()), kind->end());
+  }
   return faces;
 }
 

@@ -6,39 +6,15 @@
 #include <cmath>
 #include <limits>
 
-#include "cad/mesh_topology.hpp"
 #include "cad/self_intersections.hpp"
 #include "cad/triangle_tree.hpp"
 #include "core/parallel.hpp"
+#include "geometry/measures.hpp"
+#include "geometry/topology.hpp"
 
 namespace bernal::cad {
 
-Vector<3> cross_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
-  const Vector<3>& a = mesh.vertices[t[0]];
-  return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
-}
-
-double six_signed_volumes(const Mesh& mesh, const std::array<std::uint32_t, 3>& t, const Vector<3>& point) {
-  const Vector<3> a = mesh.vertices[t[0]] - point;
-  const Vector<3> b = mesh.vertices[t[1]] - point;
-  const Vector<3> c = mesh.vertices[t[2]] - point;
-  return a.dot(b.cross(c));
-}
-
-double signed_volume(const Mesh& mesh) {
-  const Vector<3> center = bounds_of_vertices(mesh).center();
-  double six_volumes = 0;
-  for (const auto& t : mesh.triangles) six_volumes += six_signed_volumes(mesh, t, center);
-  return six_volumes / 6;
-}
-
 namespace {
-
-double area_of_mesh(const Mesh& mesh) {
-  double two_areas = 0;
-  for (const auto& t : mesh.triangles) two_areas += cross_of(mesh, t).norm();
-  return two_areas / 2;
-}
 
 /// Of each component, whether it lies inside an odd number of others. A corner that touches another one does
 /// not tell; where all do, the middle of a triangle does, which meets none.
@@ -46,7 +22,7 @@ std::vector<Crossing> nesting(const Mesh& mesh, const MeshTopology& topology) {
   std::vector<Crossing> nested(topology.components, Crossing::starts_on_wall);
   if (nested.size() == 1) return {Crossing::even};
   const TriangleTree tree(mesh);
-  const Bounds<3> bounds = bounds_of_vertices(mesh);
+  const Bounds<3> bounds = bounds_of(mesh);
   const auto look_from = [&](const Vector<3>& p, std::uint32_t own) {
     if (nested[own] != Crossing::starts_on_wall) return;
     throw_if_interrupted();
@@ -60,10 +36,8 @@ std::vector<Crossing> nesting(const Mesh& mesh, const MeshTopology& topology) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t corner : mesh.triangles[t])
       look_from(mesh.vertices[corner], topology.component[t]);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [i, j, k] = mesh.triangles[t];
-    look_from((mesh.vertices[i] + mesh.vertices[j] + mesh.vertices[k]) / 3, topology.component[t]);
-  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    look_from(middle_of(mesh, mesh.triangles[t]), topology.component[t]);
   return nested;
 }
 
@@ -106,15 +80,13 @@ std::size_t count_turned(const Mesh& mesh, const Mesh& reference) {
 /// Precondition: closed, no degenerate triangles, no self-intersections.
 void orient(Mesh& mesh, const MeshTopology& topology, MeshReport& report) {
   const Mesh original = mesh;
-  if (orient_consistently(mesh, topology) == none) {
+  if (orient_consistently(mesh, topology) == no_index) {
     report.orientation = "mixed";
     report.problems.emplace_back("one-sided surface: inside and outside are the same");
     return;
   }
-  const Vector<3> center = report.bounds.center();
-  const std::uint64_t made_voids = orient_components(mesh, topology, center);
-  for (const auto& t : mesh.triangles) report.volume += six_signed_volumes(mesh, t, center);
-  report.volume /= 6;
+  const std::uint64_t made_voids = orient_components(mesh, topology, report.bounds.center());
+  report.volume = signed_volume(mesh);
   if (!(report.volume > 0) || !std::isfinite(report.volume)) {
     report.volume = 0;
     report.problems.emplace_back("it encloses no volume that double precision can hold");
@@ -134,26 +106,6 @@ void orient(Mesh& mesh, const MeshTopology& topology, MeshReport& report) {
 
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
-Bounds<3> bounds_of_vertices(const Mesh& mesh) {
-  Bounds<3> bounds{mesh.vertices.front(), mesh.vertices.front()};
-  for (const Vector<3>& v : mesh.vertices) {
-    bounds.lower = bounds.lower.cwiseMin(v);
-    bounds.upper = bounds.upper.cwiseMax(v);
-  }
-  return bounds;
-}
-
-Bounds<3> bounds_of_faces(const Mesh& mesh) {
-  Bounds<3> bounds{Vector<3>::Constant(std::numeric_limits<double>::infinity()),
-                   Vector<3>::Constant(-std::numeric_limits<double>::infinity())};
-  for (const auto& t : mesh.triangles)
-    for (const std::uint32_t i : t) {
-      bounds.lower = bounds.lower.cwiseMin(mesh.vertices[i]);
-      bounds.upper = bounds.upper.cwiseMax(mesh.vertices[i]);
-    }
-  return bounds;
 }
 
 MeshReport diagnose_mesh(Triangles& triangles) {
@@ -177,8 +129,8 @@ MeshReport diagnose_mesh(Triangles& triangles) {
     report.problems.emplace_back("no faces with an area");
     return report;
   }
-  report.bounds = bounds_of_vertices(mesh);
-  report.area = area_of_mesh(mesh);
+  report.bounds = bounds_of(mesh);
+  report.area = area_of(mesh);
 
   const MeshTopology topology = topology_of(mesh);
   report.open_edges = topology.open_edges;

@@ -14,17 +14,4 @@ namespace bernal::cad {
 /// self-intersections.
 MeshReport diagnose_mesh(Triangles& triangles);
 
-/// Twice the area of a triangle, along its normal.
-Vector<3> cross_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle);
-/// Of the signed tetrahedron between a triangle and a point; least cancels where that is the middle of all.
-double six_signed_volumes(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle,
-                          const Vector<3>& point);
-/// What a closed, consistently oriented surface encloses: above 0 where it is turned outward.
-double signed_volume(const Mesh& mesh);
-
-/// Of all vertices, used or not. Precondition: there are any.
-Bounds<3> bounds_of_vertices(const Mesh& mesh);
-/// Of those that faces use.
-Bounds<3> bounds_of_faces(const Mesh& mesh);
-
 }  // namespace bernal::cad

@@ -10,9 +10,8 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "cad/diagnose_mesh.hpp"
-#include "cad/mesh_topology.hpp"
 #include "core/parallel.hpp"
+#include "geometry/measures.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -24,7 +23,7 @@ std::vector<Vector<3>> directions_of(const Mesh& solid) {
   std::vector<std::pair<double, Vector<3>>> by_area;
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const FaceCorners& t : solid.triangles) {
-    const Vector<3> areas = cross_of(solid, t);
+    const Vector<3> areas = doubled_area(solid, t);
     const double area = areas.norm();
     if (!(area > 0)) continue;
     const Vector<3> normal = areas / area;
@@ -94,7 +93,7 @@ void add_levels(const Mesh& solid, const Vector<3>& direction, double tolerance,
   for (const std::uint32_t v : peaks_and_passes(solid, level)) ++all[level[v]].corners;
   for (const FaceCorners& t : solid.triangles) {
     if (level[t[0]] != level[t[1]] || level[t[0]] != level[t[2]]) continue;
-    all[level[t[0]]].area += std::abs(cross_of(solid, t).dot(direction)) / 2;
+    all[level[t[0]]].area += std::abs(doubled_area(solid, t).dot(direction)) / 2;
   }
   all.erase(all.begin());  // nothing is below it
   std::erase_if(all, [](const Level& one) { return one.corners == 0 && !(one.area > 0); });
@@ -120,7 +119,7 @@ double openness_of(const Space& space, const CutPlane& brim, double tolerance) {
   for (const FaceCorners& t : space.walls.triangles) {
     const bool is_lid = std::ranges::all_of(
         t, [&](std::uint32_t v) { return std::abs(brim.height(space.walls.vertices[v])) <= tolerance; });
-    (is_lid ? lid : rest) += cross_of(space.walls, t).norm();
+    (is_lid ? lid : rest) += doubled_area(space.walls, t).norm();
   }
   return lid / rest;
 }
@@ -162,11 +161,10 @@ class Largest {
 
 std::optional<Vector<3>> point_within(const Mesh& walls, const TriangleTree& tree) {
   const FaceCorners& largest = *std::ranges::max_element(
-      walls.triangles, {}, [&](const FaceCorners& t) { return cross_of(walls, t).squaredNorm(); });
-  const Vector<3> normal = cross_of(walls, largest).stableNormalized();
-  const Vector<3> middle =
-      (walls.vertices[largest[0]] + walls.vertices[largest[1]] + walls.vertices[largest[2]]) / 3;
-  const double diagonal = bounds_of_vertices(walls).diagonal(), aside = 1e-6 * diagonal;
+      walls.triangles, {}, [&](const FaceCorners& t) { return doubled_area(walls, t).squaredNorm(); });
+  const Vector<3> normal = doubled_area(walls, largest).stableNormalized();
+  const Vector<3> middle = middle_of(walls, largest);
+  const double diagonal = bounds_of(walls).diagonal(), aside = 1e-6 * diagonal;
   for (const double side : {-1.0, 1.0}) {
     const Vector<3> from = middle + side * aside * normal;
     if (tree.crossing(from, 0, endless) != Crossing::odd) continue;
@@ -179,7 +177,7 @@ std::optional<Vector<3>> point_within(const Mesh& walls, const TriangleTree& tre
 std::vector<Flood> floods_of(const Mesh& solid, double tolerance) {
   const Surroundings around(solid);
   std::vector<Level> levels;
-  const double apart = std::max(tolerance, 1e-5 * bounds_of_vertices(solid).diagonal());
+  const double apart = std::max(tolerance, 1e-5 * bounds_of(solid).diagonal());
   for (const Vector<3>& direction : directions_of(solid))
     for (const double sign : {1.0, -1.0}) add_levels(solid, sign * direction, apart, levels);
   std::ranges::stable_sort(levels, std::greater<>(), &Level::area);

@@ -1,60 +1,28 @@
 #include "cad/hollows.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Surface_mesh.h>
-#include <CGAL/convex_hull_3.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "bernal/core/error.hpp"
-#include "cad/diagnose_mesh.hpp"
+#include "cad/cgal_surfaces.hpp"
 #include "cad/lids.hpp"
 #include "cad/self_intersections.hpp"
 #include "cad/surface_pieces.hpp"
 #include "core/parallel.hpp"
+#include "geometry/changes.hpp"
+#include "geometry/measures.hpp"
 
 namespace bernal::cad {
 namespace {
 
-Vector<3> center_of(const Mesh& mesh, const FaceCorners& t) {
-  return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
-}
-
-double area_of(const Mesh& mesh, const std::vector<FaceCorners>& faces) {
-  double area = 0;
-  for (const FaceCorners& t : faces) area += cross_of(mesh, t).norm() / 2;
-  return area;
-}
-
 /// Of the corners of the faces; nothing if they lie in a plane.
-std::optional<Mesh> convex_hull_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {
-  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-  using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
-  std::vector<Kernel::Point_3> points;
+std::optional<Mesh> hull_of_faces(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {
+  std::vector<Vector<3>> points;
   for (const std::uint32_t t : faces)
-    for (const std::uint32_t v : mesh.triangles[t]) {
-      const Vector<3>& p = mesh.vertices[v];
-      points.emplace_back(p[0], p[1], p[2]);
-    }
-  Surface surface;
-  CGAL::convex_hull_3(points.begin(), points.end(), surface);
-  Mesh hull;
-  for (const auto v : surface.vertices()) {
-    const auto& p = surface.point(v);
-    hull.vertices.emplace_back(p.x(), p.y(), p.z());
-  }
-  for (const auto face : surface.faces()) {
-    FaceCorners triangle;
-    std::size_t k = 0;
-    for (const auto v : surface.vertices_around_face(surface.halfedge(face)))
-      if (k < 3) triangle[k++] = static_cast<std::uint32_t>(v.idx());
-    if (k == 3) hull.triangles.push_back(triangle);
-  }
-  if (hull.triangles.size() < 4) return std::nullopt;
-  return hull;
+    for (const std::uint32_t v : mesh.triangles[t]) points.push_back(mesh.vertices[v]);
+  return convex_hull_of(points);
 }
 
 /// A solid whose pieces are turned outward, and the sides of them.
@@ -67,11 +35,11 @@ class Sides {
         tree_(mesh_),
         tolerance_(tolerance),
         widest_(widest),
-        diagonal_(bounds_of_vertices(mesh).diagonal()) {
+        diagonal_(bounds_of(mesh).diagonal()) {
     faces_.resize(pieces_.count());
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) faces_[pieces_.piece_of(t)].push_back(t);
-    is_two_sided_ = orient_consistently(mesh_, topology_) != none;
-    const Vector<3> center = bounds_of_vertices(mesh_).center();
+    is_two_sided_ = orient_consistently(mesh_, topology_) != no_index;
+    const Vector<3> center = bounds_of(mesh_).center();
     for (const std::vector<std::uint32_t>& piece : faces_) {
       double six_volumes = 0;
       for (const std::uint32_t t : piece)
@@ -95,7 +63,7 @@ class Sides {
   }
 
  private:
-  static constexpr std::uint32_t looks_out = none - 1;
+  static constexpr std::uint32_t looks_out = no_index - 1;
   /// Up to this part of a diagonal nothing but a crevice is between a face and the hull.
   static constexpr double even = 1e-3;
 
@@ -107,10 +75,10 @@ class Sides {
 
   /// With the least reach that will do.
   std::vector<Hollow> hollows_of_piece(std::uint32_t piece, double least) const {
-    const std::optional<Mesh> hull = convex_hull_of(mesh_, faces_[piece]);
+    const std::optional<Mesh> hull = hull_of_faces(mesh_, faces_[piece]);
     if (!hull) return {};
     const TriangleTree tree(*hull);
-    const double diagonal = bounds_of_vertices(*hull).diagonal();
+    const double diagonal = bounds_of(*hull).diagonal();
     const double own = pieces_.volumes()[piece], air = std::abs(signed_volume(*hull)) - own;
     if (air < least * own) return {};
     std::vector<std::vector<Hollow>> found;  // by reach, the heaviest first
@@ -146,16 +114,16 @@ class Sides {
     parallel_ranges(own.size(), 256, [&](std::size_t first, std::size_t last) {
       for (std::size_t k = first; k < last; ++k) {
         const FaceCorners& face = mesh_.triangles[own[k]];
-        const Vector<3> normal = cross_of(mesh_, face).stableNormalized(), from = center_of(mesh_, face);
+        const Vector<3> normal = doubled_area(mesh_, face).stableNormalized(), from = middle_of(mesh_, face);
         const bool leaves = hull.crossing(from + reach * normal, 0, endless) == Crossing::even;
-        if (!leaves || (sees_solid && way_free(from, normal, reach) < reach)) side[own[k]] = none;
+        if (!leaves || (sees_solid && way_free(from, normal, reach) < reach)) side[own[k]] = no_index;
       }
     });
     double own_area = 0;
     std::vector<std::pair<double, std::vector<FaceCorners>>> sides;
     for (const std::uint32_t t : own) {
-      own_area += cross_of(mesh_, mesh_.triangles[t]).norm() / 2;
-      if (side[t] != none) continue;
+      own_area += doubled_area(mesh_, mesh_.triangles[t]).norm() / 2;
+      if (side[t] != no_index) continue;
       std::vector<FaceCorners> faces = faces_of_side(t, side);
       const double area = area_of(mesh_, faces);
       sides.emplace_back(area, std::move(faces));
@@ -182,7 +150,7 @@ class Sides {
       const auto& [a, b, c] = mesh_.triangles[t];
       faces.push_back({a, c, b});
       for (const std::uint32_t next : topology_.neighbor[t])
-        if (next != none && side[next] == none) {
+        if (next != no_index && side[next] == no_index) {
           side[next] = from;
           open.push_back(next);
         }
@@ -204,16 +172,15 @@ class Sides {
     hollow.openness = area_of(walls, lids) / area;
     if (!(hollow.openness > 0 && hollow.openness < widest_)) return std::nullopt;
 
-    if (orient_consistently(walls, topology_of(walls)) == none) return std::nullopt;
+    if (orient_consistently(walls, topology_of(walls)) == no_index) return std::nullopt;
     const auto ahead_of = [](const FaceCorners& t, std::uint32_t v) {
       return t[(std::ranges::find(t, v) - t.begin() + 1) % 3];
     };
     const std::uint32_t corner = faces.front()[0];
-    if (ahead_of(walls.triangles.front(), corner) != ahead_of(faces.front(), corner))
-      for (FaceCorners& t : walls.triangles) std::swap(t[1], t[2]);
+    if (ahead_of(walls.triangles.front(), corner) != ahead_of(faces.front(), corner)) turn_inside_out(walls);
     hollow.volume = signed_volume(walls);  // below 0 where what they enclose is the solid
     constexpr double crevice = 1e-6;
-    if (!(hollow.volume > crevice * bounds_of_vertices(mesh_).volume())) return std::nullopt;
+    if (!(hollow.volume > crevice * bounds_of(mesh_).volume())) return std::nullopt;
     const bool lie_outside =
         std::ranges::all_of(put, [&](const Lid& lid) { return lies_outside(walls, lid); });
     if (!lie_outside || crosses_solid(walls, lids, put)) return std::nullopt;
@@ -228,9 +195,10 @@ class Sides {
     constexpr std::size_t asked = 400;
     double all = 0, folded = 0;
     for (std::size_t k = 0; k < faces.size(); k += 1 + faces.size() / asked) {
-      const Vector<3> inward = cross_of(mesh_, faces[k]);  // of them: as they are turned here, into the solid
+      const Vector<3> inward =
+          doubled_area(mesh_, faces[k]);  // of them: as they are turned here, into the solid
       const Vector<3> direction = inward.stableNormalized();
-      const Vector<3> from = center_of(mesh_, faces[k]);
+      const Vector<3> from = middle_of(mesh_, faces[k]);
       const double ahead = way_free(from, direction, diagonal_), close = 1e-8 * diagonal_;
       all += inward.norm();
       if (ahead < diagonal_ && tree.distance(from + ahead * direction, close) < close)
@@ -242,20 +210,20 @@ class Sides {
   /// Asked at the middle of its largest face.
   bool lies_outside(const Mesh& walls, const Lid& lid) const {
     const auto first = walls.triangles.begin();
-    const FaceCorners& largest =
-        *std::max_element(first + std::ptrdiff_t(lid.first), first + std::ptrdiff_t(lid.last),
-                          [&](const FaceCorners& s, const FaceCorners& t) {
-                            return cross_of(walls, s).squaredNorm() < cross_of(walls, t).squaredNorm();
-                          });
-    return tree_.crossing(center_of(walls, largest), 0, endless) == Crossing::even;
+    const FaceCorners& largest = *std::max_element(
+        first + std::ptrdiff_t(lid.first), first + std::ptrdiff_t(lid.last),
+        [&](const FaceCorners& s, const FaceCorners& t) {
+          return doubled_area(walls, s).squaredNorm() < doubled_area(walls, t).squaredNorm();
+        });
+    return tree_.crossing(middle_of(walls, largest), 0, endless) == Crossing::even;
   }
 
   bool crosses_solid(const Mesh& walls, const std::vector<FaceCorners>& lids,
                      const std::vector<Lid>& put) const {
     Mesh near{walls.vertices, {}};  // lids share corners with the solid by number
     for (const FaceCorners& t : mesh_.triangles) {
-      const LidBox own = box_of(mesh_, t);
-      if (std::ranges::any_of(put, [&](const Lid& lid) { return lid.box.meets(own); }))
+      const Bounds<3> own = bounds_of(mesh_, t);
+      if (std::ranges::any_of(put, [&](const Lid& lid) { return lid.bounds.meets(own); }))
         near.triangles.push_back(t);
     }
     const std::size_t faces = near.triangles.size();

@@ -14,12 +14,13 @@
 
 #include "bernal/core/error.hpp"
 #include "cad/counted.hpp"
-#include "cad/diagnose_mesh.hpp"
 #include "cad/floods.hpp"
 #include "cad/hollows.hpp"
-#include "cad/mesh_topology.hpp"
 #include "cad/surface_pieces.hpp"
 #include "cad/surroundings.hpp"
+#include "geometry/changes.hpp"
+#include "geometry/measures.hpp"
+#include "geometry/topology.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -80,7 +81,7 @@ std::string told(const Planes& planes) {
 /// as will do.
 std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Mesh& solid,
                                             const Planes& planes, double tolerance, const Vector<3>* point) {
-  const Bounds<3> bounds = bounds_of_vertices(solid);
+  const Bounds<3> bounds = bounds_of(solid);
   Planes sides;
   for (int axis = 0; axis < 3; ++axis) {
     sides.push_back(across(axis, bounds.lower[axis], true));
@@ -214,7 +215,7 @@ std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, 
   std::vector<Candidate> open = open_hollows(solid, tolerance);
   if (point) {
     for (Candidate& one : open)
-      if (SurfacePieces(one.walls).around(*point) != none)
+      if (SurfacePieces(one.walls).around(*point) != no_index)
         return ChosenInterior{std::move(one.walls),
                               {"the hollow, " + one.words},
                               one.is_flat ? std::vector<std::string>() : std::vector{caution_of_lids(one)}};
@@ -262,7 +263,7 @@ std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, 
 /// A hollow beside which there is much more that is free within the part's bounds is rather a bolt hole.
 void tell_if_little(const Mesh& solid, ChosenInterior& chosen) {
   constexpr double little = 0.01;
-  const double free = bounds_of_vertices(solid).volume() - std::abs(signed_volume(solid));
+  const double free = bounds_of(solid).volume() - std::abs(signed_volume(solid));
   const std::vector<double> volumes = SurfacePieces(chosen.mesh).volumes();
   const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   if (volume < little * free)
@@ -350,7 +351,8 @@ ChosenInterior choose_interior(const Mesh& surface, const InteriorRequest& reque
     ChosenInterior inside = enclosed(surface, request.planes, tolerance);
     if (is_closed(inside.mesh)) {
       const SurfacePieces pieces(inside.mesh);
-      if (const std::uint32_t piece = pieces.around(*point); piece != none && pieces.depth(piece) % 2 == 0) {
+      if (const std::uint32_t piece = pieces.around(*point);
+          piece != no_index && pieces.depth(piece) % 2 == 0) {
         std::vector<bool> outermost(pieces.count(), false);
         outermost[piece] = true;
         inside.notes.push_back(fmt::format("the space around {}", text_of(*point)));

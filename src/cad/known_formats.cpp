@@ -4,7 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <string_view>
 
@@ -87,6 +90,19 @@ constexpr Beginning beginnings[] = {
 };
 
 }  // namespace
+
+std::optional<double> finite_number(std::string_view text) {
+  constexpr std::size_t most_digits = 1000;  // longer words are no numbers
+  std::string_view digits = trimmed(text);
+  if (digits.starts_with('+')) digits.remove_prefix(1);
+  if (digits.empty() || digits.size() > most_digits) return {};
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::result_out_of_range)  // zero, if it is too small, else infinite
+    value = std::strtod(std::string(digits).c_str(), nullptr);
+  const bool whole = error != std::errc::invalid_argument && end == digits.data() + digits.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
 
 std::string extension_of(const std::filesystem::path& file) {
   return in_lower_case(file.extension().string());

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,10 @@ inline std::string_view trimmed(std::string_view text) {
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
+
+/// The finite number that a text is, and nothing else, but for a sign + and blanks around it: what is too
+/// small for a double is 0. Nothing where it is none, or longer than a number needs.
+std::optional<double> finite_number(std::string_view text);
 
 /// ".stl" of "Part.STL".
 std::string extension_of(const std::filesystem::path& file);

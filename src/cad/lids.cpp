@@ -4,18 +4,11 @@
 #include <cmath>
 #include <functional>
 
-#include "cad/diagnose_mesh.hpp"
 #include "cad/patch.hpp"
 #include "cad/self_intersections.hpp"
 #include "cad/triangulate.hpp"
 
 namespace bernal::cad {
-
-LidBox box_of(const Mesh& mesh, const FaceCorners& t) {
-  LidBox box;
-  for (const std::uint32_t v : t) box.add(mesh.vertices[v]);
-  return box;
-}
 
 namespace {
 
@@ -90,7 +83,7 @@ std::vector<Lid> put_lids(Mesh& walls) {
     std::vector<std::size_t> together;
     for (std::size_t j = i; j < openings.size(); ++j)
       if (!is_closed[j] && (j == i || share_a_plane(openings[i], openings[j]))) together.push_back(j);
-    Lid lid{{}, openings[i].middle, true, walls.triangles.size(), 0};
+    Lid lid{Bounds<3>::of_nothing(), openings[i].middle, true, walls.triangles.size(), 0};
     if (!lay_flat_lid(walls, openings, together)) {
       together = {i};
       if (!patcher.fill(*openings[i].loop)) return {};
@@ -100,7 +93,7 @@ std::vector<Lid> put_lids(Mesh& walls) {
       lid.is_flat = lid.is_flat && lies_in_plane_of(walls, *openings[j].loop, openings[i], in_one_plane);
     lid.last = walls.triangles.size();
     for (std::size_t t = lid.first; t < lid.last; ++t)
-      for (const std::uint32_t v : walls.triangles[t]) lid.box.add(walls.vertices[v]);
+      for (const std::uint32_t v : walls.triangles[t]) lid.bounds.add(walls.vertices[v]);
     for (const std::size_t j : together) is_closed[j] = true;
     lids.push_back(lid);
   }

@@ -1,32 +1,13 @@
 #pragma once
-#include <limits>
 #include <vector>
 
 #include "bernal/domain/domain.hpp"
-#include "cad/mesh_topology.hpp"
 
 namespace bernal::cad {
 
-/// The bounds of a lid, or of a face.
-struct LidBox {
-  Bounds<3> bounds{Vector<3>::Constant(std::numeric_limits<double>::infinity()),
-                   Vector<3>::Constant(-std::numeric_limits<double>::infinity())};
-
-  void add(const Vector<3>& p) {
-    bounds.lower = bounds.lower.cwiseMin(p);
-    bounds.upper = bounds.upper.cwiseMax(p);
-  }
-  bool meets(const LidBox& other) const {
-    return (bounds.lower.array() <= other.bounds.upper.array()).all() &&
-           (other.bounds.lower.array() <= bounds.upper.array()).all();
-  }
-};
-
-LidBox box_of(const Mesh&, const FaceCorners&);
-
 /// One on the edge of a hole, or on several that lie in one plane.
 struct Lid {
-  LidBox box;
+  Bounds<3> bounds = Bounds<3>::of_nothing();
   Vector<3> middle;         ///< of the widest edge
   bool is_flat;             ///< it lies in a plane
   std::size_t first, last;  ///< of the triangles that are its faces

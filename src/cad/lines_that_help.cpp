@@ -209,7 +209,7 @@ constexpr double seconds_to_try = 4, seconds_for_all = 8;
 std::string wrap_that_helps(const Mesh& mesh, double smallest_radius, double diagonal) {
   constexpr double coarse = 0.05;
   for (const bool coarsely : {false, true}) {
-    const cad::Mended tried = cad::mend_in_cage(mesh, seconds_to_try, [&] {
+    const cad::RepairedMesh tried = cad::repair_in_cage(mesh, seconds_to_try, [&] {
       return coarsely ? cad::wrap(mesh, coarse * diagonal) : cad::wrap_for_spheres(mesh, smallest_radius);
     });
     if (!tried.done.starts_with("wrapped from inside")) continue;

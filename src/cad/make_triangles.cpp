@@ -2,40 +2,23 @@
 
 #include <algorithm>
 #include <boost/functional/hash.hpp>
-#include <boost/unordered/unordered_map.hpp>
 #include <boost/unordered/unordered_set.hpp>
 #include <utility>
 
 #include "cad/triangulate.hpp"
+#include "geometry/point_numbers.hpp"
 
 namespace bernal::cad {
 namespace {
 
 using Polygon = std::vector<std::uint32_t>;
 
-/// Numbers points by value, in the order in which they are first asked for.
-class Welder {
- public:
-  explicit Welder(std::vector<Vector<3>>& points) : points_(points) {}
-
-  std::uint32_t index_of(const Vector<3>& p) {
-    const std::array<double, 3> key = {p[0] + 0.0, p[1] + 0.0, p[2] + 0.0};  // -0.0 + 0.0 is +0.0
-    const auto [entry, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(points_.size()));
-    if (is_new) points_.emplace_back(key[0], key[1], key[2]);
-    return entry->second;
-  }
-
- private:
-  std::vector<Vector<3>>& points_;
-  boost::unordered_map<std::array<double, 3>, std::uint32_t> index_;
-};
-
 void drop_consecutive_equals(Polygon& polygon) {
   polygon.erase(std::unique(polygon.begin(), polygon.end()), polygon.end());
   while (polygon.size() > 1 && polygon.front() == polygon.back()) polygon.pop_back();
 }
 
-std::array<std::uint32_t, 3> smallest_first(std::array<std::uint32_t, 3> t) {
+FaceCorners smallest_first(FaceCorners t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
 }
@@ -43,8 +26,7 @@ std::array<std::uint32_t, 3> smallest_first(std::array<std::uint32_t, 3> t) {
 /// Where every triangle is there in both orientations, as programs export that draw both sides of a face,
 /// leaves the first of each two. `there` are all of them, smallest corner first. Returns how many went. Cost:
 /// O(1) mostly, for the first that has no back tells.
-std::uint64_t drop_back_sides(std::vector<std::array<std::uint32_t, 3>>& triangles,
-                              boost::unordered_set<std::array<std::uint32_t, 3>>& there) {
+std::uint64_t drop_back_sides(std::vector<FaceCorners>& triangles, boost::unordered_set<FaceCorners>& there) {
   const auto turned = [](const auto& t) { return smallest_first({t[0], t[2], t[1]}); };
   if (!std::ranges::all_of(triangles, [&](const auto& t) { return there.count(turned(t)) > 0; })) return 0;
   return std::erase_if(triangles, [&](const auto& t) {
@@ -58,15 +40,15 @@ std::uint64_t drop_back_sides(std::vector<std::array<std::uint32_t, 3>>& triangl
 
 Triangles make_triangles(const PolygonSoup& soup) {
   Triangles result;
-  Welder welder(result.mesh.vertices);
+  PointNumbers<Vector<3>> numbers;
   std::vector<Polygon> larger;
   std::vector<bool> used(soup.points.size(), false);
 
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<FaceCorners> triangles;
   for (const Polygon& polygon : soup.polygons) {
     Polygon corners;
     for (const std::uint32_t i : polygon) {
-      corners.push_back(welder.index_of(soup.points[i]));
+      corners.push_back(numbers.of((soup.points[i].array() + 0.0).matrix()));  // -0 is 0
       used[i] = true;
     }
     drop_consecutive_equals(corners);
@@ -79,8 +61,9 @@ Triangles make_triangles(const PolygonSoup& soup) {
       larger.push_back(std::move(corners));
     }
   }
+  result.mesh.vertices = std::move(numbers.points);
   // One triangle of each polygon, then the others: packings depend on the order in their last bits.
-  std::vector<std::array<std::uint32_t, 3>> others;
+  std::vector<FaceCorners> others;
   for (const Polygon& polygon : larger) {
     const auto pieces = triangulate(result.mesh.vertices, polygon);
     triangles.push_back(pieces.front());
@@ -90,7 +73,7 @@ Triangles make_triangles(const PolygonSoup& soup) {
   result.welded =
       static_cast<std::uint64_t>(std::count(used.begin(), used.end(), true)) - result.mesh.vertices.size();
 
-  boost::unordered_set<std::array<std::uint32_t, 3>> seen;
+  boost::unordered_set<FaceCorners> seen;
   seen.reserve(triangles.size());
   for (const auto& t : triangles) {
     if (seen.insert(smallest_first(t)).second) {

@@ -3,20 +3,13 @@
 #include <limits>
 #include <optional>
 
-#include "cad/body_union.hpp"
+#include "cad/cgal_surfaces.hpp"
 #include "cad/self_intersections.hpp"
 #include "cad/triangle_tree.hpp"
+#include "geometry/changes.hpp"
 
 namespace bernal::cad {
 namespace {
-
-/// Both surfaces, the second turned: its inside is outside.
-Mesh with_turned(Mesh mesh, const Mesh& other) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({first + a, first + c, first + b});
-  return mesh;
-}
 
 bool encloses_a_corner_of(const Mesh& mesh, const Mesh& other) {
   return TriangleTree(mesh).crossing(other.vertices.front(), 0, std::numeric_limits<double>::infinity()) ==
@@ -26,7 +19,9 @@ bool encloses_a_corner_of(const Mesh& mesh, const Mesh& other) {
 }  // namespace
 
 TakenOut take_out(Mesh& container, const Mesh& obstacle) {
-  Mesh both = with_turned(container, obstacle);
+  Mesh both = container, turned = obstacle;
+  turn_inside_out(turned);
+  append(both, turned);
   if (!intersects_itself(both)) {
     if (encloses_a_corner_of(container, obstacle)) {
       container = std::move(both);

@@ -5,8 +5,10 @@
 #include <limits>
 #include <numbers>
 #include <unordered_map>
+#include <utility>
 
 #include "cad/triangulate.hpp"
+#include "geometry/measures.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -21,34 +23,30 @@ constexpr double flat_enough = 0.01;
 /// end there.
 class Rims {
  public:
-  Rims(const Mesh& mesh, const MeshTopology& topology) : mesh_(mesh) {
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-      for (int k = 0; k < 3; ++k)
-        if (topology.neighbor[t][k] == none) {
-          const auto r = static_cast<std::uint32_t>(rims_.size());
-          rims_.push_back({t, k});
-          beginning_[corner(r, 0)].push_back(r);
-          ++uses_[key(r)];
-        }
+  explicit Rims(const Mesh& mesh) : mesh_(mesh) {
+    MeshEdges(mesh.triangles).for_each([&](std::span<const EdgeUse> uses) {
+      if (uses.size() == 2) return;
+      for (const EdgeUse& use : uses) rims_.push_back({use.triangle, use.side, uses.size() > 2});
+    });
+    std::ranges::sort(rims_, {}, [](const Rim& rim) { return std::pair(rim.triangle, rim.side); });
+    for (std::uint32_t r = 0; r < rims_.size(); ++r) beginning_[corner(r, 0)].push_back(r);
     for (const auto& [corner, rims] : beginning_)
       if (rims.size() > 1) normal_[corner] = Vector<3>::Zero();
     if (normal_.empty()) return;
-    for (const auto& t : mesh.triangles) {
-      const Vector<3>&a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    for (const FaceCorners& t : mesh.triangles)
       for (const std::uint32_t i : t)
         if (const auto found = normal_.find(i); found != normal_.end())
-          found->second += (b - a).cross(c - a).stableNormalized();
-    }
+          found->second += doubled_area(mesh, t).stableNormalized();
   }
 
   std::size_t count() const { return rims_.size(); }
   std::uint32_t triangle(std::uint32_t r) const { return rims_[r].triangle; }
   /// 0 where it begins, 1 where it ends, 2 the face's third corner.
   std::uint32_t corner(std::uint32_t r, int ahead) const {
-    return mesh_.triangles[rims_[r].triangle][(rims_[r].edge + ahead) % 3];
+    return mesh_.triangles[rims_[r].triangle][(rims_[r].side + ahead) % 3];
   }
   /// Three or more faces meet there.
-  bool branched(std::uint32_t r) const { return uses_.at(key(r)) > 1; }
+  bool branched(std::uint32_t r) const { return rims_[r].branched; }
 
   /// The rim that goes on around the hole; none if all that begin there are walked. Where several begin, it
   /// is the first counterclockwise from the way back, as the faces around the corner are seen from outside:
@@ -56,20 +54,20 @@ class Rims {
   std::uint32_t next(std::uint32_t r, const std::vector<bool>& walked) const {
     const std::uint32_t here = corner(r, 1);
     const auto found = beginning_.find(here);
-    if (found == beginning_.end()) return none;
-    if (found->second.size() == 1) return walked[found->second.front()] ? none : found->second.front();
+    if (found == beginning_.end()) return no_index;
+    if (found->second.size() == 1) return walked[found->second.front()] ? no_index : found->second.front();
     const Vector<3>&at = mesh_.vertices[here], &normal = normal_.at(here);
     const Vector<3> back = mesh_.vertices[corner(r, 0)] - at;
     const Vector<3> first = back - back.dot(normal) / normal.squaredNorm() * normal;
     const Vector<3> second = normal.stableNormalized().cross(first);
-    std::uint32_t best = none;
+    std::uint32_t best = no_index;
     double least = std::numeric_limits<double>::infinity();
     for (const std::uint32_t other : found->second) {
       if (walked[other]) continue;
       const Vector<3> ahead = mesh_.vertices[corner(other, 1)] - at;
       double turn = std::atan2(ahead.dot(second), ahead.dot(first));
       if (turn <= 0) turn += 2 * std::numbers::pi;
-      if (best == none || turn < least) best = other, least = turn;
+      if (best == no_index || turn < least) best = other, least = turn;
     }
     return best;
   }
@@ -77,33 +75,26 @@ class Rims {
  private:
   struct Rim {
     std::uint32_t triangle;
-    int edge;
+    int side;
+    bool branched;
   };
-  std::uint64_t key(std::uint32_t r) const {
-    const std::uint32_t a = corner(r, 0), b = corner(r, 1);
-    return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
-  }
 
   const Mesh& mesh_;
   std::vector<Rim> rims_;
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> beginning_;  ///< by corner
-  std::unordered_map<std::uint64_t, int> uses_;
   std::unordered_map<std::uint32_t, Vector<3>> normal_;  ///< of the corners where several begin
 };
 
 double width_of(const Mesh& mesh, const std::vector<std::uint32_t>& corners) {
-  Vector<3> lower = mesh.vertices[corners.front()], upper = lower;
-  for (const std::uint32_t i : corners) {
-    lower = lower.cwiseMin(mesh.vertices[i]);
-    upper = upper.cwiseMax(mesh.vertices[i]);
-  }
-  return (upper - lower).norm();
+  auto bounds = Bounds<3>::of_nothing();
+  for (const std::uint32_t v : corners) bounds.add(mesh.vertices[v]);
+  return bounds.diagonal();
 }
 
 }  // namespace
 
 std::vector<HoleLoop> hole_loops(const Mesh& mesh, const MeshTopology& topology) {
-  const Rims rims(mesh, topology);
+  const Rims rims(mesh);
   std::vector<HoleLoop> loops;
   using Path = std::vector<std::uint32_t>;
   const auto emit = [&](Path::const_iterator first, Path::const_iterator last) {
@@ -123,7 +114,7 @@ std::vector<HoleLoop> hole_loops(const Mesh& mesh, const MeshTopology& topology)
     Path path;
     std::unordered_map<std::uint32_t, std::size_t>
         position;  // in the path, of the rim that begins at a corner
-    for (std::uint32_t r = start; r != none && !walked[r]; r = rims.next(r, walked)) {
+    for (std::uint32_t r = start; r != no_index && !walked[r]; r = rims.next(r, walked)) {
       walked[r] = true;
       position[rims.corner(r, 0)] = path.size();
       path.push_back(r);
@@ -150,7 +141,7 @@ std::uint64_t Patcher::key(std::uint32_t a, std::uint32_t b) {
 }
 
 Vector<3> Patcher::across(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
-  return (mesh_.vertices[b] - mesh_.vertices[a]).cross(mesh_.vertices[c] - mesh_.vertices[a]);
+  return doubled_area(mesh_, {a, b, c});
 }
 
 /// Too thin to tell a normal.

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bernal/domain/domain.hpp"
-#include "cad/mesh_topology.hpp"
+#include "geometry/topology.hpp"
 
 namespace bernal::cad {
 
@@ -35,7 +35,7 @@ class Patcher {
   bool fill(const HoleLoop& loop);
 
  private:
-  using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+  using Triangles = std::vector<FaceCorners>;
   static std::uint64_t key(std::uint32_t a, std::uint32_t b);
 
   Vector<3> across(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;

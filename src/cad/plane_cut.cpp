@@ -9,8 +9,9 @@
 #include <cmath>
 
 #include "bernal/core/error.hpp"
-#include "cad/mesh_topology.hpp"
 #include "cad/triangulate.hpp"
+#include "geometry/changes.hpp"
+#include "geometry/topology.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -121,18 +122,9 @@ class Cutter {
 
 /// The open edges that lie in the plane.
 std::vector<Edge> rim_of(const Cutter& cutter) {
-  boost::unordered_map<Edge, int> uses;
   std::vector<Edge> rim;
-  const auto each = [&](const auto& see) {
-    for (const FaceCorners& t : cutter.result.triangles)
-      for (std::size_t k = 0; k < 3; ++k)
-        if (cutter.is_on_plane(t[k]) && cutter.is_on_plane(t[(k + 1) % 3]))
-          see(Edge(std::minmax(t[k], t[(k + 1) % 3])));
-  };
-  each([&](const Edge& edge) { ++uses[edge]; });
-  each([&](const Edge& edge) {
-    if (uses[edge] == 1) rim.push_back(edge);
-  });
+  for (const EdgeUse& edge : open_edges(cutter.result.triangles))
+    if (cutter.is_on_plane(edge.low) && cutter.is_on_plane(edge.high)) rim.emplace_back(edge.low, edge.high);
   return rim;
 }
 

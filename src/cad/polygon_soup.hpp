@@ -49,9 +49,10 @@ struct FileFacts {
 /// What one reader made of a file: a soup, or why there is none. Coordinates are those of the file: neither
 /// scaled to another unit nor turned.
 struct ReadAttempt {
-  PolygonSoup soup;
-  std::string failure;  ///< one line; empty if the soup is good
+  PolygonSoup soup = {};
+  std::string failure = {};  ///< one line; empty if the soup is good
   FileFacts facts = {};
+  std::string reader = {};  ///< who read it, and in which precision: one phrase
 
   bool ok() const { return failure.empty(); }
 };
@@ -64,12 +65,28 @@ ReadAttempt read_3mf(const std::filesystem::path& file);
 /// as they stand, a solid a volume. Materials are passed over. In a child process.
 ReadAttempt read_amf(const std::filesystem::path& file);
 
-/// The general door: every format that assimp knows, node transforms applied in double. Coordinates have
-/// been through single precision.
-ReadAttempt read_with_assimp(const std::filesystem::path& file);
+/// STL, text or binary, which may begin with the word "solid", so that the size decides first: 84 bytes and
+/// 50 a triangle. Throws Error{bad_mesh} with the line (text) or the sizes (binary) where it is malformed or
+/// truncated.
+///
+/// Text grammar, in any case, white space free: {"solid" [name] {"facet normal" 3 words "outer loop" 3 ×
+/// ("vertex" 3 numbers) "endloop" "endfacet"} "endsolid" [name]}, names up to the end of their line. What
+/// stands behind a normal, "loop", "endloop" or "endfacet" in the same line is passed over, which a note
+/// says, and so are comments, from # or // at the start of a statement on.
+///
+/// A binary file may go on behind its last triangle, as long as no triangle would fit there exactly.
+ReadAttempt read_stl(const std::filesystem::path& file);
 
-/// The same for an STL that stands in memory.
-ReadAttempt read_stl_with_assimp(const std::string& content);
+/// OBJ: vertices and faces, a solid an object, or a group where there are no objects. All else is passed
+/// over.
+ReadAttempt read_obj(const std::filesystem::path& file);
+
+/// OFF and PLY, through CGAL, in a child process, after a look at what CGAL takes on trust.
+ReadAttempt read_with_cgal(const std::filesystem::path& file);
+
+/// glTF, Collada, FBX: what assimp knows, transforms of nodes applied in double. Coordinates have been
+/// through single precision. In a child process.
+ReadAttempt read_with_assimp(const std::filesystem::path& file);
 
 /// Whether the file holds surfaces and solids, not triangles: STEP, IGES, BREP.
 bool opencascade_reads(const std::filesystem::path& file);
@@ -79,14 +96,5 @@ bool opencascade_reads(const std::filesystem::path& file);
 /// `deflection` is in these (a BREP has no unit). Solids stand where the assembly puts them; surfaces that
 /// belong to no solid are sewn. In a child process.
 ReadAttempt read_with_opencascade(const std::filesystem::path& file, double deflection);
-
-/// Whether CGAL reads the doubles of this format: OFF, OBJ, PLY (STL goes through `read_stl_with_cgal`).
-bool cgal_reads(const std::filesystem::path& file);
-ReadAttempt read_with_cgal(const std::filesystem::path& file);
-/// The first line of an OBJ with a coordinate that is no finite number, or a corner of a face that is as long as
-/// no number is, and what is wrong with it; empty if none is. CGAL refuses it without its line, assimp makes
-/// numbers of it, or loops over its digits in a time that grows as their square.
-std::string wrong_number_of_obj(const std::filesystem::path& file);
-ReadAttempt read_stl_with_cgal(const std::string& content);
 
 }  // namespace bernal::cad

@@ -302,8 +302,10 @@ class ThreeMf {
 }  // namespace
 
 ReadAttempt read_3mf(const std::filesystem::path& file) {
-  return read_in_cage("pugixml", cage_limits(std::filesystem::file_size(file)),
-                      [&] { return ThreeMf(file).read(); });
+  ReadAttempt result = read_in_cage("pugixml", cage_limits(std::filesystem::file_size(file)),
+                                    [&] { return ThreeMf(file).read(); });
+  result.reader = "pugixml, double precision";
+  return result;
 }
 
 }  // namespace bernal::cad

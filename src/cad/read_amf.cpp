@@ -212,8 +212,10 @@ Amf opened(const std::filesystem::path& file) {
 }  // namespace
 
 ReadAttempt read_amf(const std::filesystem::path& file) {
-  return read_in_cage("pugixml", cage_limits(std::filesystem::file_size(file)),
-                      [&] { return opened(file).read(); });
+  ReadAttempt result = read_in_cage("pugixml", cage_limits(std::filesystem::file_size(file)),
+                                    [&] { return opened(file).read(); });
+  result.reader = "pugixml, double precision";
+  return result;
 }
 
 }  // namespace bernal::cad

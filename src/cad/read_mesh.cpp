@@ -18,18 +18,19 @@
 #include "cad/interior.hpp"
 #include "cad/make_triangles.hpp"
 #include "cad/mesh_distance.hpp"
-#include "cad/mesh_topology.hpp"
 #include "cad/obstacles.hpp"
 #include "cad/read_soup.hpp"
 #include "cad/repair_crossings.hpp"
 #include "cad/repair_holes.hpp"
 #include "cad/self_intersections.hpp"
 #include "cad/wrap.hpp"
+#include "geometry/changes.hpp"
+#include "geometry/measures.hpp"
+#include "geometry/topology.hpp"
 
 namespace bernal {
 namespace {
 
-using cad::ChosenSoup;
 using cad::FileFacts;
 
 /// A true surface is tessellated to within this part of the smallest sphere's radius.
@@ -95,29 +96,29 @@ void keep_chosen(cad::PolygonSoup& soup, const MeshFile& options) {
 
 /// The same where it does not: the pieces that hang together, in the order of their first faces.
 void keep_pieces(Mesh& mesh, const MeshFile& options) {
-  const cad::MeshTopology topology = cad::topology_of(mesh);
+  const MeshTopology topology = topology_of(mesh);
   const std::vector<bool> chosen = chosen_parts(options, std::vector<std::string>(topology.components));
   std::vector<bool> kept(mesh.triangles.size());
   for (std::size_t t = 0; t < kept.size(); ++t) kept[t] = chosen[topology.component[t]];
-  cad::keep_only(mesh, kept);
+  keep_only(mesh, kept);
 }
 
 /// Turns the axis that points up to z, without mirroring: as Collada's conventions lead into each other.
 void turn_up(Mesh& mesh, Up up) {
-  for (Vector<3>& v : mesh.vertices) {
-    if (up == Up::x) v = {-v[1], -v[2], v[0]};
-    if (up == Up::y) v = {v[0], -v[2], v[1]};
-  }
+  move_vertices(mesh, [&](const Vector<3>& v) -> Vector<3> {
+    if (up == Up::x) return {-v[1], -v[2], v[0]};
+    return up == Up::y ? Vector<3>(v[0], -v[2], v[1]) : v;
+  });
 }
 
 /// Closes seams, unless that makes nothing better.
 void close_seams_of(cad::Triangles& triangles, double tolerance, std::vector<std::string>& done) {
-  const cad::MeshTopology before = cad::topology_of(triangles.mesh);
+  const MeshTopology before = topology_of(triangles.mesh);
   if (before.closed() && cad::count_degenerate(triangles.mesh) == 0) return;
   Mesh tried = triangles.mesh;
   const cad::Seams seams = cad::close_seams(tried, tolerance);
   if (!seams.any() || tried.triangles.empty()) return;
-  const cad::MeshTopology after = cad::topology_of(tried);
+  const MeshTopology after = topology_of(tried);
   if (after.open_edges + after.non_manifold_edges > before.open_edges + before.non_manifold_edges) return;
   triangles.mesh = std::move(tried);
   for (std::string& words : seams.in_words()) done.push_back(std::move(words));
@@ -177,31 +178,31 @@ struct Repairs {
 
   void apply(Repair repair) {
     if (std::ranges::find(wanted, repair) == wanted.end() || mesh.triangles.empty()) return;
-    if (repair == Repair::wrap && cad::topology_of(mesh).closed() && !cad::intersects_itself(mesh))
+    if (repair == Repair::wrap && topology_of(mesh).closed() && !cad::intersects_itself(mesh))
       return;  // it is a wall
-    cad::Mended mended = cad::mend_in_cage(mesh, seconds, [&] {
+    cad::RepairedMesh repaired = cad::repair_in_cage(mesh, seconds, [&] {
       return repair == Repair::holes  ? cad::close_holes(mesh, largest_hole)
              : repair == Repair::wrap ? cad::wrap_for_spheres(mesh, smallest_radius)
                                       : cad::cut_out_crossings(mesh);
     });
-    done.push_back(mended.done);
-    if (mended.mesh.triangles == mesh.triangles && mended.mesh.vertices == mesh.vertices) return;
+    done.push_back(repaired.done);
+    if (repaired.mesh.triangles == mesh.triangles && repaired.mesh.vertices == mesh.vertices) return;
     any = true;
-    if (mended.mesh.triangles.empty()) return;
-    const cad::Closeness closeness{1e-4 * cad::bounds_of_vertices(mesh).diagonal(), 0.02};
-    const double made_up = cad::farthest(mended.mesh, mesh, closeness).at_most;
-    const double lost = cad::farthest(mesh, mended.mesh, closeness).at_most;
+    if (repaired.mesh.triangles.empty()) return;
+    const cad::Closeness closeness{1e-4 * bounds_of(mesh).diagonal(), 0.02};
+    const double made_up = cad::farthest(repaired.mesh, mesh, closeness).at_most;
+    const double lost = cad::farthest(mesh, repaired.mesh, closeness).at_most;
     done.push_back(
         fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
                     "{:.3g} from it",
                     cad::not_less(made_up), cad::not_less(lost)));
-    if (const std::string left = cad::what_is_left(mesh, mended.mesh); !left.empty())
+    if (const std::string left = cad::what_is_left(mesh, repaired.mesh); !left.empty())
       cautions.push_back(fmt::format(
           "repair = [\"{}\"] lost a part: {}{}", name_of(repair), left,
           repair == Repair::wrap ? "; what is narrower than its alpha is lost, and smaller spheres make that "
                                    "smaller; \"self-intersections\" before it unites bodies"
                                  : ""));
-    mesh = std::move(mended.mesh);
+    mesh = std::move(repaired.mesh);
   }
 
   const std::vector<Repair>& wanted;
@@ -292,29 +293,29 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
                                   options.file.filename().string()));
   const double deflection = options.deflection.value_or(deflection_over_radius * purpose.smallest_radius);
   const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
-  ChosenSoup chosen = cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
-                                     assumed ? metres_per(*assumed) : 0);
-  const Ratio ratio = ratio_of(options, chosen.facts, purpose.unit);
+  cad::ReadAttempt read =
+      cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
+                     assumed ? metres_per(*assumed) : 0);
+  const Ratio ratio = ratio_of(options, read.facts, purpose.unit);
   const double factor = ratio.nearest();
 
   ImportedMesh result;
   std::vector<std::string> done;
   // A file of one part says no more than that it is whole.
-  const auto& parts = chosen.soup.solids;
+  const auto& parts = read.soup.solids;
   const bool is_whole = parts.size() == 1 && options.solids == std::vector{parts.front().name};
   const bool by_piece = parts.size() < 2 && !is_whole;
   for (const cad::Solid& solid : parts)
     if (parts.size() > 1 || !(solid.name.empty() || solid.name.starts_with('<')))
       result.report.solids.push_back(solid.name);
-  if (!options.solids.empty() && !by_piece) keep_chosen(chosen.soup, options);
-  cad::Triangles triangles = cad::make_triangles(chosen.soup);
-  chosen.soup = {};
+  if (!options.solids.empty() && !by_piece) keep_chosen(read.soup, options);
+  cad::Triangles triangles = cad::make_triangles(read.soup);
+  read.soup = {};
   Mesh& mesh = triangles.mesh;
   const double rounding = factor * cad::rounding_of_coordinates(mesh);
   turn_up(mesh, options.up);
   const std::vector<Vector<3>> as_written = factor != 1 ? mesh.vertices : std::vector<Vector<3>>();
-  if (factor != 1)
-    for (Vector<3>& v : mesh.vertices) v *= factor;
+  if (factor != 1) move_vertices(mesh, [&](const Vector<3>& v) -> Vector<3> { return factor * v; });
   close_seams_of(triangles, options.weld.value_or(rounding), done);
   if (!options.solids.empty() && by_piece) keep_pieces(mesh, options);
   if (options.largest_hole && std::ranges::find(options.repair, Repair::holes) == options.repair.end())
@@ -336,14 +337,14 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   if (report.usable() && !cuts && options.obstacles.empty() &&
       options.interior == std::variant<Interior, Vector<3>>(Interior::solid))
     tell_shell(mesh, options.weld.value_or(rounding), report);
-  report.reader = std::move(chosen.reader);
-  if (chosen.facts.unit) {
-    report.unit = chosen.facts.written_in ? chosen.facts.written_in->name : chosen.facts.unit->name;
-    report.metres = chosen.facts.unit->metres;
+  report.reader = std::move(read.reader);
+  if (read.facts.unit) {
+    report.unit = read.facts.written_in ? read.facts.written_in->name : read.facts.unit->name;
+    report.metres = read.facts.unit->metres;
   }
-  if (chosen.facts.deflection) report.deflection = factor * *chosen.facts.deflection;
-  report.up = chosen.facts.up;
-  report.notes = std::move(chosen.facts.notes);
+  if (read.facts.deflection) report.deflection = factor * *read.facts.deflection;
+  report.up = read.facts.up;
+  report.notes = std::move(read.facts.notes);
   report.solids = std::move(result.report.solids);
   if (!report.usable()) report.defects = cad::defects_of(mesh);
   report.repairs.insert(report.repairs.begin(), done.begin(), done.end());

@@ -210,13 +210,7 @@ ReadAttempt read_here(const std::filesystem::path& file) {
   keep_importers_of(extension, importer);
   importer.SetIOHandler(new FilesBeside(file));  // which is the importer's from now on
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else they are ids
-  const aiScene* scene = nullptr;
-  if (cgal_reads(file)) {  // text that assimp refuses with the mark of UTF-8 in front
-    const std::string text = text_without_mark(file);
-    scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, extension.c_str());
-  } else {
-    scene = importer.ReadFile(file.string(), 0);
-  }
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
   ReadAttempt result = attempt(importer, scene);
   if (result.ok()) add_facts(file, *scene, result);
   drop_single_nameless(result.soup.solids);
@@ -226,19 +220,10 @@ ReadAttempt read_here(const std::filesystem::path& file) {
 }  // namespace
 
 ReadAttempt read_with_assimp(const std::filesystem::path& file) {
-  return read_in_cage("assimp", cage_limits(std::filesystem::file_size(file)),
-                      [&] { return read_here(file); });
-}
-
-ReadAttempt read_stl_with_assimp(const std::string& content) {
-  return read_in_cage("assimp", cage_limits(content.size()), [&] {
-    Assimp::Importer importer;
-    keep_importers_of("stl", importer);
-    ReadAttempt result =
-        attempt(importer, importer.ReadFileFromMemory(content.data(), content.size(), 0, "stl"));
-    result.soup.solids.clear();  // whose names are not as written
-    return result;
-  });
+  ReadAttempt result =
+      read_in_cage("assimp", cage_limits(std::filesystem::file_size(file)), [&] { return read_here(file); });
+  result.reader = "assimp, single precision";
+  return result;
 }
 
 }  // namespace bernal::cad

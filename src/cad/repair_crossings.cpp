@@ -5,14 +5,15 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 
-#include "cad/body_union.hpp"
+#include "cad/cgal_surfaces.hpp"
 #include "cad/counted.hpp"
-#include "cad/diagnose_mesh.hpp"
-#include "cad/mesh_topology.hpp"
 #include "cad/patch.hpp"
 #include "cad/self_intersections.hpp"
+#include "core/disjoint_sets.hpp"
+#include "geometry/changes.hpp"
+#include "geometry/measures.hpp"
+#include "geometry/topology.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -28,12 +29,6 @@ constexpr double most_cut = 0.5;
 constexpr double small_piece = 0.05;
 /// CGAL cannot be interrupted; so many faces take it a few minutes.
 constexpr std::size_t most_faces = 2'000'000;
-
-double two_areas(const Mesh& mesh, std::size_t t) {
-  const auto& [i, j, k] = mesh.triangles[t];
-  const Vector<3> ij = mesh.vertices[j] - mesh.vertices[i], ik = mesh.vertices[k] - mesh.vertices[i];
-  return ij.cross(ik).norm();
-}
 
 Pairs within_components(const Pairs& pairs, const MeshTopology& topology) {
   Pairs own;
@@ -67,9 +62,9 @@ void judge_pieces(const Mesh& mesh, const MeshTopology& topology, std::vector<bo
   std::vector<double> of_component(topology.components, 0), left(topology.components, 0),
       of_piece(pieces.components, 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    of_component[topology.component[t]] += two_areas(mesh, t);
+    of_component[topology.component[t]] += doubled_area(mesh, mesh.triangles[t]).norm();
   for (std::size_t t = 0; t < old.size(); ++t) {
-    const double area = two_areas(rest, t);
+    const double area = doubled_area(rest, rest.triangles[t]).norm();
     of_piece[pieces.component[t]] += area;
     left[topology.component[old[t]]] += area;
   }
@@ -88,11 +83,12 @@ std::optional<Mesh> cut_once(const Mesh& mesh, const MeshTopology& topology, con
   judge_pieces(mesh, topology, marked);
   if (std::find(marked.begin(), marked.end(), true) == marked.end()) return std::nullopt;
 
-  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> was_open;  // edges of faces as they run
+  std::vector<std::array<std::uint32_t, 2>> was_open;  // sides of triangles as they run
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k)
-      if (!marked[t] && topology.neighbor[t][k] == none)
-        was_open[{mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}] = true;
+      if (!marked[t] && topology.neighbor[t][k] == no_index)
+        was_open.push_back({mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]});
+  std::ranges::sort(was_open);
   Mesh result = mesh;
   marked.flip();
   keep_only(result, marked);
@@ -100,7 +96,8 @@ std::optional<Mesh> cut_once(const Mesh& mesh, const MeshTopology& topology, con
   for (const HoleLoop& hole : hole_loops(result, topology_of(result))) {
     std::size_t old_edges = 0;
     for (std::size_t k = 0; k < hole.corners.size(); ++k)
-      old_edges += was_open.count({hole.corners[(k + 1) % hole.corners.size()], hole.corners[k]});
+      old_edges += std::ranges::binary_search(
+          was_open, std::array{hole.corners[(k + 1) % hole.corners.size()], hole.corners[k]});
     if (old_edges == hole.corners.size()) continue;
     if (old_edges > 0 || hole.branched || !patcher.fill(hole)) return std::nullopt;
   }
@@ -129,10 +126,6 @@ std::size_t cut_within_components(Mesh& mesh, const Monitor& monitor) {
   return own.size();
 }
 
-void turn_body(Mesh& mesh) {
-  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
-}
-
 /// Closed components of which each crosses another one of them.
 struct Group {
   std::vector<Mesh> outward, inward;
@@ -148,17 +141,9 @@ struct Bodies {
 Bodies bodies_of(const Mesh& mesh) {
   const MeshTopology topology = topology_of(mesh);
   const Pairs pairs = self_intersecting_pairs(mesh);
-  std::vector<bool> is_body(topology.components, true);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::uint32_t neighbor : topology.neighbor[t])
-      if (neighbor == none) is_body[topology.component[t]] = false;
+  std::vector<bool> is_body = topology.closed_components();
   for (const auto& [s, t] : within_components(pairs, topology)) is_body[topology.component[s]] = false;
-  std::vector<std::uint32_t> joined_to(topology.components);
-  std::iota(joined_to.begin(), joined_to.end(), 0U);
-  const auto root = [&](std::uint32_t c) {
-    while (joined_to[c] != c) c = joined_to[c] = joined_to[joined_to[c]];
-    return c;
-  };
+  DisjointSets joined(topology.components);
   std::vector<bool> grouped(topology.components, false);
   Bodies result;
   std::vector<std::array<std::uint32_t, 2>> apart;
@@ -166,7 +151,7 @@ Bodies bodies_of(const Mesh& mesh) {
     const std::uint32_t a = topology.component[s], b = topology.component[t];
     if (a == b) continue;
     if (is_body[a] && is_body[b]) {
-      joined_to[root(std::max(a, b))] = root(std::min(a, b));
+      joined.unite(a, b);
       grouped[a] = grouped[b] = true;
     } else {
       apart.push_back({std::min(a, b), std::max(a, b)});
@@ -175,33 +160,13 @@ Bodies bodies_of(const Mesh& mesh) {
   std::sort(apart.begin(), apart.end());
   result.apart = static_cast<std::size_t>(std::unique(apart.begin(), apart.end()) - apart.begin());
 
-  std::vector<Mesh> bodies(topology.components);
-  std::vector<std::uint32_t> number(mesh.vertices.size(), none);
-  std::vector<std::vector<std::uint32_t>> faces(topology.components);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) faces[topology.component[t]].push_back(t);
-  result.others.vertices = mesh.vertices;
-  for (std::uint32_t c = 0; c < topology.components; ++c) {
-    if (!grouped[c]) {
-      for (const std::uint32_t t : faces[c]) result.others.triangles.push_back(mesh.triangles[t]);
-      continue;
-    }
-    for (const std::uint32_t t : faces[c]) {
-      std::array<std::uint32_t, 3> triangle = mesh.triangles[t];
-      for (std::uint32_t& i : triangle) {
-        if (number[i] == none || number[i] >= bodies[c].vertices.size() ||
-            bodies[c].vertices[number[i]] != mesh.vertices[i]) {
-          number[i] = static_cast<std::uint32_t>(bodies[c].vertices.size());
-          bodies[c].vertices.push_back(mesh.vertices[i]);
-        }
-        i = number[i];
-      }
-      bodies[c].triangles.push_back(triangle);
-    }
-  }
+  std::vector<Mesh> bodies = split(mesh, topology.component, topology.components);
+  for (std::uint32_t c = 0; c < topology.components; ++c)
+    if (!grouped[c]) append(result.others, bodies[c]);
 
   std::map<std::uint32_t, std::vector<std::uint32_t>> members;
   for (std::uint32_t c = 0; c < topology.components; ++c)
-    if (grouped[c]) members[root(c)].push_back(c);
+    if (grouped[c]) members[joined.find(c)].push_back(c);
   for (const auto& [first, components] : members) {
     double largest = 0;
     for (const std::uint32_t c : components)
@@ -210,26 +175,20 @@ Bodies bodies_of(const Mesh& mesh) {
     for (const std::uint32_t c : components) {
       const double volume = signed_volume(bodies[c]);
       made.faces += bodies[c].triangles.size();
-      if (volume < 0) turn_body(bodies[c]);
+      if (volume < 0) turn_inside_out(bodies[c]);
       ((volume < 0) == (largest < 0) ? made.outward : made.inward).push_back(std::move(bodies[c]));
     }
   }
   return result;
 }
 
-void append_body(Mesh& mesh, const Mesh& part) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-  for (const auto& [i, j, k] : part.triangles) mesh.triangles.push_back({first + i, first + j, first + k});
-}
-
-struct Told {
+struct Counts {
   std::size_t with_itself = 0, united = 0, made = 0, taken_out = 0, failed = 0, too_large = 0;
 };
 
 /// Unites the bodies two by two, so that each face takes part in few unions; those with which it does not
 /// work stay as they are.
-std::vector<Mesh> unite_all(std::vector<Mesh> bodies, const Monitor& monitor, Told& told) {
+std::vector<Mesh> unite_all(std::vector<Mesh> bodies, const Monitor& monitor, Counts& counts) {
   std::vector<Mesh> failed;
   while (bodies.size() > 1 && !monitor.stop()) {
     std::vector<Mesh> next;
@@ -239,7 +198,7 @@ std::vector<Mesh> unite_all(std::vector<Mesh> bodies, const Monitor& monitor, To
       } else if (std::optional<Mesh> both = combine(bodies[i], bodies[i + 1], Combine::unite)) {
         next.push_back(std::move(*both));
       } else {
-        ++told.failed;
+        ++counts.failed;
         next.push_back(std::move(bodies[i]));
         failed.push_back(std::move(bodies[i + 1]));
       }
@@ -250,64 +209,58 @@ std::vector<Mesh> unite_all(std::vector<Mesh> bodies, const Monitor& monitor, To
   return bodies;
 }
 
-void combine_bodies(Mesh& mesh, const Monitor& monitor, Told& told) {
+void combine_bodies(Mesh& mesh, const Monitor& monitor, Counts& counts) {
   Bodies bodies = bodies_of(mesh);
   if (bodies.groups.empty()) return;
   mesh = std::move(bodies.others);
   for (Group& own : bodies.groups) {
     if (own.faces > most_faces || monitor.stop()) {
-      told.too_large += own.faces > most_faces;
-      for (Mesh& body : own.inward) turn_body(body);
+      counts.too_large += own.faces > most_faces;
+      for (Mesh& body : own.inward) turn_inside_out(body);
       for (const auto* side : {&own.outward, &own.inward})
-        for (const Mesh& body : *side) append_body(mesh, body);
+        for (const Mesh& body : *side) append(mesh, body);
       continue;
     }
-    const std::size_t failed_before = told.failed, count = own.outward.size();
-    std::vector<Mesh> united = unite_all(std::move(own.outward), monitor, told);
-    if (const std::size_t made_of = count - (told.failed - failed_before); made_of > 1) {
-      told.united += made_of;
-      ++told.made;
+    const std::size_t failed_before = counts.failed, count = own.outward.size();
+    std::vector<Mesh> united = unite_all(std::move(own.outward), monitor, counts);
+    if (const std::size_t made_of = count - (counts.failed - failed_before); made_of > 1) {
+      counts.united += made_of;
+      ++counts.made;
     }
     for (Mesh& hole : own.inward) {
       std::optional<Mesh> rest = combine(united.front(), hole, Combine::take_out);
       if (rest) {
-        ++told.taken_out;
+        ++counts.taken_out;
         united.front() = std::move(*rest);
       } else {
-        ++told.failed;
-        turn_body(hole);
+        ++counts.failed;
+        turn_inside_out(hole);
         united.push_back(std::move(hole));
       }
     }
-    for (const Mesh& body : united) append_body(mesh, body);
+    for (const Mesh& body : united) append(mesh, body);
   }
   weld_equal_points(mesh);
 }
 
 /// Closed components that cross themselves become the outer walls of what they wind around.
-void unite_with_themselves(Mesh& mesh, const Monitor& monitor, Told& told) {
+void unite_with_themselves(Mesh& mesh, const Monitor& monitor, Counts& counts) {
   const MeshTopology topology = topology_of(mesh);
-  std::vector<bool> crosses(topology.components, false), is_open(topology.components, false);
+  const std::vector<bool> is_closed = topology.closed_components();
+  std::vector<bool> crosses(topology.components, false);
   for (const auto& [s, t] : within_components(self_intersecting_pairs(mesh), topology))
     crosses[topology.component[s]] = true;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::uint32_t neighbor : topology.neighbor[t])
-      if (neighbor == none) is_open[topology.component[t]] = true;
-  std::vector<Mesh> united;
+  std::vector<Mesh> bodies = split(mesh, topology.component, topology.components), united;
   std::vector<bool> stays(topology.components, true);
   for (std::uint32_t c = 0; c < topology.components; ++c) {
-    if (!crosses[c] || is_open[c] || monitor.stop()) continue;
-    std::vector<bool> own;
-    for (const std::uint32_t component : topology.component) own.push_back(component == c);
-    Mesh body = mesh;
-    keep_only(body, own);
-    drop_unused_vertices(body);
+    if (!crosses[c] || !is_closed[c] || monitor.stop()) continue;
+    Mesh& body = bodies[c];
     if (body.triangles.size() > most_faces) continue;
     const bool is_void = signed_volume(body) < 0;
-    if (is_void) turn_body(body);
+    if (is_void) turn_inside_out(body);
     std::optional<Mesh> walls = unite_with_itself(body);
     if (!walls) continue;
-    if (is_void) turn_body(*walls);
+    if (is_void) turn_inside_out(*walls);
     united.push_back(std::move(*walls));
     stays[c] = false;
   }
@@ -315,14 +268,14 @@ void unite_with_themselves(Mesh& mesh, const Monitor& monitor, Told& told) {
   std::vector<bool> kept;
   for (const std::uint32_t component : topology.component) kept.push_back(stays[component]);
   keep_only(mesh, kept);
-  for (const Mesh& walls : united) append_body(mesh, walls);
+  for (const Mesh& walls : united) append(mesh, walls);
   weld_equal_points(mesh);
-  told.with_itself = united.size();
+  counts.with_itself = united.size();
 }
 
 }  // namespace
 
-Mended cut_out_crossings(Mesh mesh, const Monitor& monitor) {
+RepairedMesh cut_out_crossings(Mesh mesh, const Monitor& monitor) {
   const Pairs pairs = self_intersecting_pairs(mesh);
   if (pairs.empty()) return {std::move(mesh), "nothing crosses"};
   if (pairs.size() >= most_self_intersections(mesh)) {
@@ -331,40 +284,40 @@ Mended cut_out_crossings(Mesh mesh, const Monitor& monitor) {
     return {std::move(mesh), std::move(why)};
   }
   const MeshTopology topology = topology_of(mesh);
-  if (orient_consistently(mesh, topology) == none)
+  if (orient_consistently(mesh, topology) == no_index)
     return {std::move(mesh), "crossings stay: the surface is one-sided and has no inside"};
 
-  Told told;
+  Counts counts;
   const std::size_t before = pairs.size();
-  unite_with_themselves(mesh, monitor, told);
+  unite_with_themselves(mesh, monitor, counts);
   const std::size_t own_before = within_components(self_intersecting_pairs(mesh), topology_of(mesh)).size();
   const std::size_t own_after = own_before > 0 ? cut_within_components(mesh, monitor) : 0;
-  combine_bodies(mesh, monitor, told);
+  combine_bodies(mesh, monitor, counts);
   cut_within_components(mesh, monitor);  // what rounding the corners of the unions has left
 
   std::vector<std::string> said;
-  if (told.with_itself > 0)
+  if (counts.with_itself > 0)
     said.push_back(
         fmt::format("of {} itself the outer walls are kept",
-                    counted(told.with_itself, "part that crosses", "parts of which each crosses")));
+                    counted(counts.with_itself, "part that crosses", "parts of which each crosses")));
   if (own_after < own_before)
     said.push_back(
         fmt::format("cut out {} where a part crosses itself, and patched over them: some room may "
                     "be lost there",
                     counted(own_before - own_after, "crossing", "crossings")));
-  if (told.made > 0)
-    said.push_back(fmt::format("united {} that cross{}", counted(told.united, "body", "bodies"),
-                               told.made > 1 ? fmt::format(" into {}", told.made) : ""));
-  if (told.taken_out > 0)
+  if (counts.made > 0)
+    said.push_back(fmt::format("united {} that cross{}", counted(counts.united, "body", "bodies"),
+                               counts.made > 1 ? fmt::format(" into {}", counts.made) : ""));
+  if (counts.taken_out > 0)
     said.push_back(fmt::format("took {} that {} oriented inward out of {} surroundings",
-                               counted(told.taken_out, "body", "bodies"), told.taken_out == 1 ? "is" : "are",
-                               told.taken_out == 1 ? "its" : "their"));
-  if (told.failed > 0)
+                               counted(counts.taken_out, "body", "bodies"), counts.taken_out == 1 ? "is" : "are",
+                               counts.taken_out == 1 ? "its" : "their"));
+  if (counts.failed > 0)
     said.push_back(fmt::format("{} could not be united: the result would touch itself along an edge",
-                               counted(told.failed, "body", "bodies")));
-  if (told.too_large > 0)
+                               counted(counts.failed, "body", "bodies")));
+  if (counts.too_large > 0)
     said.push_back(fmt::format("left {} of crossing bodies with more than {} faces",
-                               counted(told.too_large, "group", "groups"), most_faces));
+                               counted(counts.too_large, "group", "groups"), most_faces));
   const std::size_t after = self_intersecting_pairs(mesh).size();
   if (after > 0) {
     said.push_back(fmt::format("{} of {} remain", after, counted(before, "crossing", "crossings")));

@@ -1,6 +1,6 @@
 #pragma once
 #include "bernal/core/monitor.hpp"
-#include "cad/mended.hpp"
+#include "cad/repaired_mesh.hpp"
 
 namespace bernal::cad {
 
@@ -16,6 +16,6 @@ namespace bernal::cad {
 /// components that cross bodies stay: they enclose nothing and have no union with them.
 /// Precondition: no degenerate faces. Cost: O(T log² T) for each of up to twenty rounds, and 50 µs a face of
 /// bodies that cross; the monitor is heard between rounds and bodies.
-Mended cut_out_crossings(Mesh mesh, const Monitor& monitor = {});
+RepairedMesh cut_out_crossings(Mesh mesh, const Monitor& monitor = {});
 
 }  // namespace bernal::cad

@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "cad/counted.hpp"
-#include "cad/mesh_topology.hpp"
 #include "cad/patch.hpp"
 #include "cad/self_intersections.hpp"
+#include "core/disjoint_sets.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -19,28 +17,15 @@ namespace {
 /// Of each component the extent of the part that it belongs to: the diagonal of the bounds of all components
 /// that hang together by corners.
 std::vector<double> extents_of(const Mesh& mesh, const MeshTopology& topology) {
-  std::vector<std::uint32_t> part(mesh.vertices.size());
-  std::iota(part.begin(), part.end(), 0U);
-  const auto root = [&](std::uint32_t i) {
-    while (part[i] != i) i = part[i] = part[part[i]];
-    return i;
-  };
-  for (const auto& t : mesh.triangles)
-    for (const std::uint32_t i : t) part[root(i)] = root(t[0]);
-
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::vector<Bounds<3>> bounds(mesh.vertices.size(),
-                                {Vector<3>::Constant(infinity), Vector<3>::Constant(-infinity)});
-  for (const auto& t : mesh.triangles) {
-    Bounds<3>& own = bounds[root(t[0])];
-    for (const std::uint32_t i : t) {
-      own.lower = own.lower.cwiseMin(mesh.vertices[i]);
-      own.upper = own.upper.cwiseMax(mesh.vertices[i]);
-    }
-  }
+  DisjointSets parts(mesh.vertices.size());
+  for (const FaceCorners& t : mesh.triangles)
+    for (const std::uint32_t v : t) parts.unite(t[0], v);
+  std::vector<Bounds<3>> bounds(mesh.vertices.size(), Bounds<3>::of_nothing());
+  for (const FaceCorners& t : mesh.triangles)
+    for (const std::uint32_t v : t) bounds[parts.find(v)].add(mesh.vertices[v]);
   std::vector<double> extents(topology.components);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    extents[topology.component[t]] = bounds[root(mesh.triangles[t][0])].diagonal();
+    extents[topology.component[t]] = bounds[parts.find(mesh.triangles[t][0])].diagonal();
   return extents;
 }
 
@@ -70,10 +55,10 @@ void find_crossings(const Mesh& mesh, const std::vector<HoleLoop>& holes, const 
 
 }  // namespace
 
-Mended close_holes(Mesh mesh, double widest) {
+RepairedMesh close_holes(Mesh mesh, double widest) {
   const MeshTopology before = topology_of(mesh);
   if (before.open_edges == 0) return {std::move(mesh), "no holes to close"};
-  if (orient_consistently(mesh, before) == none)
+  if (orient_consistently(mesh, before) == no_index)
     return {std::move(mesh), "holes stay open: the surface is one-sided and has no inside"};
   const MeshTopology topology = topology_of(mesh);
   const std::vector<HoleLoop> holes = hole_loops(mesh, topology);
@@ -103,7 +88,7 @@ Mended close_holes(Mesh mesh, double widest) {
 
   if (!patches.empty()) {
     find_crossings(mesh, holes, topology, patches);
-    std::vector<std::array<std::uint32_t, 3>> kept(
+    std::vector<FaceCorners> kept(
         mesh.triangles.begin(), mesh.triangles.begin() + static_cast<std::ptrdiff_t>(patches.front().first));
     for (const Patch& patch : patches) {
       if (patch.crosses_itself) {

@@ -1,5 +1,5 @@
 #pragma once
-#include "cad/mended.hpp"
+#include "cad/repaired_mesh.hpp"
 
 namespace bernal::cad {
 
@@ -8,6 +8,6 @@ namespace bernal::cad {
 /// stays; so do holes at whose rim three or more faces meet, and those whose patch would cross the component
 /// itself. Faces are turned until neighbours agree; a one-sided surface is left as it is.
 /// The first faces are those given. Cost: O(T log² T), and for holes see Patcher::fill.
-Mended close_holes(Mesh mesh, double widest);
+RepairedMesh close_holes(Mesh mesh, double widest);
 
 }  // namespace bernal::cad

@@ -10,7 +10,6 @@
 #include <span>
 #include <vector>
 
-#include "cad/mesh_topology.hpp"
 #include "cad/separation.hpp"
 #include "core/parallel.hpp"
 

@@ -6,12 +6,13 @@
 #include <limits>
 
 #include "bernal/core/error.hpp"
-#include "cad/diagnose_mesh.hpp"
+#include "geometry/changes.hpp"
+#include "geometry/measures.hpp"
 
 namespace bernal::cad {
 
 SurfacePieces::SurfacePieces(const Mesh& mesh)
-    : mesh_(mesh), topology_(topology_of(mesh)), tree_(mesh), corner_(count(), none), depth_(count(), 0) {
+    : mesh_(mesh), topology_(topology_of(mesh)), tree_(mesh), corner_(count(), no_index), depth_(count(), 0) {
   constexpr std::uint32_t most = 2000;
   if (count() > most)
     throw Error(ErrorCode::bad_mesh,
@@ -25,7 +26,7 @@ SurfacePieces::SurfacePieces(const Mesh& mesh)
 
 std::vector<double> SurfacePieces::volumes() const {
   std::vector<double> volumes(count(), 0);
-  const Vector<3> center = bounds_of_vertices(mesh_).center();
+  const Vector<3> center = bounds_of(mesh_).center();
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
     volumes[piece_of(t)] += six_signed_volumes(mesh_, mesh_.triangles[t], center);
   for (double& volume : volumes) volume = std::abs(volume) / 6;
@@ -38,9 +39,9 @@ bool SurfacePieces::encloses(std::uint32_t piece, const Vector<3>& p) const {
 }
 
 std::uint32_t SurfacePieces::around(const Vector<3>& p) const {
-  std::uint32_t found = none;
+  std::uint32_t found = no_index;
   for (std::uint32_t c = 0; c < count(); ++c)
-    if (encloses(c, p) && (found == none || depth_[c] > depth_[found])) found = c;
+    if (encloses(c, p) && (found == no_index || depth_[c] > depth_[found])) found = c;
   return found;
 }
 
@@ -49,8 +50,7 @@ Mesh SurfacePieces::walls_of(const std::vector<bool>& outermost) const {
   for (std::uint32_t c = 0; c < count(); ++c)
     for (std::uint32_t other = 0; other < count(); ++other)
       if (outermost[other] && depth_[c] == depth_[other] + 1 && encloses(other, c)) kept[c] = true;
-  Mesh result;
-  result.vertices = mesh_.vertices;
+  Mesh result{mesh_.vertices, {}};
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
     if (kept[piece_of(t)]) result.triangles.push_back(mesh_.triangles[t]);
   drop_unused_vertices(result);

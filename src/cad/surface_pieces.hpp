@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "cad/mesh_topology.hpp"
 #include "cad/triangle_tree.hpp"
+#include "geometry/topology.hpp"
 
 namespace bernal::cad {
 

@@ -3,25 +3,17 @@
 #include <algorithm>
 #include <limits>
 
-#include "cad/diagnose_mesh.hpp"
-#include "cad/mesh_topology.hpp"
 #include "cad/self_intersections.hpp"
 #include "cad/surface_pieces.hpp"
+#include "geometry/changes.hpp"
+#include "geometry/measures.hpp"
 
 namespace bernal::cad {
 
-Surroundings::Surroundings(const Mesh& solid)
-    : walls_(solid), box_(bounds_of_vertices(solid)), tree_of_solid_(solid) {
+Surroundings::Surroundings(const Mesh& solid) : walls_(solid), box_(bounds_of(solid)), tree_of_solid_(solid) {
   const Vector<3> margin = Vector<3>::Constant(0.1 * box_.diagonal());
   box_ = {box_.lower - margin, box_.upper + margin};
-  const auto first = static_cast<std::uint32_t>(walls_.vertices.size());
-  for (unsigned corner = 0; corner < 8; ++corner)
-    walls_.vertices.emplace_back(corner & 1 ? box_.upper[0] : box_.lower[0],
-                                 corner & 2 ? box_.upper[1] : box_.lower[1],
-                                 corner & 4 ? box_.upper[2] : box_.lower[2]);
-  constexpr std::uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                                          {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  for (const auto& [a, b, c] : faces) walls_.triangles.push_back({first + a, first + b, first + c});
+  append(walls_, mesh_of_box(box_));
 }
 
 bool Surroundings::is_on_box(const Vector<3>& p) const {
@@ -34,11 +26,10 @@ bool Surroundings::is_solid(const SurfacePieces& pieces, std::uint32_t piece, co
   Vector<3> middle = Vector<3>::Zero(), normal = Vector<3>::Zero();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (pieces.piece_of(t) != piece) continue;
-    const auto& [a, b, c] = mesh.triangles[t];
-    const Vector<3> along = cross_of(mesh, mesh.triangles[t]);
+    const Vector<3> along = doubled_area(mesh, mesh.triangles[t]);
     if (along.squaredNorm() <= normal.squaredNorm()) continue;
     normal = along;
-    middle = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+    middle = middle_of(mesh, mesh.triangles[t]);
   }
   const Vector<3> aside = 1e-6 * box_.diagonal() * normal.stableNormalized();
   for (const Vector<3>& p : {Vector<3>(middle + aside), Vector<3>(middle - aside)})
@@ -51,7 +42,7 @@ std::vector<Space> Surroundings::closed_off(const std::vector<CutPlane>& planes,
   Mesh mesh = walls_;
   for (const CutPlane& plane : planes) mesh = cut(mesh, plane, tolerance);
   const MeshTopology topology = topology_of(mesh);
-  if (!topology.closed() || orient_consistently(mesh, topology) == none) return {};
+  if (!topology.closed() || orient_consistently(mesh, topology) == no_index) return {};
   const SurfacePieces pieces(mesh);
   std::vector<bool> hollow(pieces.count());
   for (std::uint32_t c = 0; c < pieces.count(); ++c) hollow[c] = pieces.depth(c) % 2 == 0;
@@ -59,7 +50,7 @@ std::vector<Space> Surroundings::closed_off(const std::vector<CutPlane>& planes,
     for (const std::uint32_t v : mesh.triangles[t])
       if (is_on_box(mesh.vertices[v])) hollow[pieces.piece_of(t)] = false;
   const std::vector<double> volumes = pieces.volumes();
-  const std::uint32_t one = point ? pieces.around(*point) : none;
+  const std::uint32_t one = point ? pieces.around(*point) : no_index;
   std::vector<Space> spaces;
   for (std::uint32_t c = 0; c < pieces.count(); ++c) {
     if (!hollow[c] || (point && c != one) || !(volumes[c] > least) || is_solid(pieces, c, mesh)) continue;

@@ -10,7 +10,7 @@
 #include <memory>
 #include <unordered_map>
 
-#include "cad/mesh_topology.hpp"
+#include "bernal/geometry/mesh.hpp"
 
 namespace bernal::cad {
 namespace {

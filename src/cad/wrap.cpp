@@ -1,8 +1,5 @@
 #include "cad/wrap.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Surface_mesh.h>
-#include <CGAL/alpha_wrap_3.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,16 +10,13 @@
 #include <utility>
 
 #include "bernal/core/error.hpp"
-#include "cad/diagnose_mesh.hpp"
+#include "cad/cgal_surfaces.hpp"
 #include "cad/triangle_tree.hpp"
 #include "core/parallel.hpp"
+#include "geometry/measures.hpp"
 
 namespace bernal::cad {
 namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
-using Surface = CGAL::Surface_mesh<Point>;
 
 constexpr std::size_t most_points = 500'000;
 constexpr double offset_over_alpha = 1.0 / 30, alpha_over_diagonal = 1.0 / 100;
@@ -34,47 +28,6 @@ constexpr int looks_along_edge = 32;
 /// And how often below the faces, at most.
 constexpr double most_looks_below = 50'000;
 constexpr std::size_t most_seeds = 64, most_seeds_in_nooks = 1000;
-
-enum class Stopped { by_monitor, too_many, outside };
-
-/// CGAL's door for a look at the work while it goes on. What has come from inside to beyond `bounds` is out,
-/// and would go around the whole part if it were not stopped: the largest gates come first, and so soon those
-/// to the corners of the box that CGAL begins with.
-struct Watch {
-  const Monitor& monitor;
-  std::optional<Bounds<3>> bounds = {};
-  std::size_t points = 0;
-
-  template <class Wrapper>
-  void on_alpha_wrapping_begin(const Wrapper&) {}
-  template <class Wrapper>
-  void on_flood_fill_begin(const Wrapper&) {}
-  template <class Wrapper, class Gate>
-  void before_facet_treatment(const Wrapper&, const Gate& gate) {
-    if (!bounds) return;
-    const auto reached = gate.facet().first;  // on the side from which it is looked at
-    for (int corner = 0; corner < 4; ++corner) {
-      const Point& p = reached->vertex(corner)->point();
-      for (int k = 0; k < 3; ++k)
-        if (p[k] < bounds->lower[k] || p[k] > bounds->upper[k]) throw Stopped::outside;
-    }
-  }
-  template <class Wrapper, class Place>
-  void before_Steiner_point_insertion(const Wrapper&, const Place&) {}
-  template <class Wrapper, class Vertex>
-  void after_Steiner_point_insertion(const Wrapper&, Vertex) {
-    if (++points > most_points) throw Stopped::too_many;
-    if (points % 256 == 0 && monitor.stop()) throw Stopped::by_monitor;
-  }
-  template <class Wrapper>
-  bool go_further(const Wrapper&) {  // CGAL 6 asks
-    return true;
-  }
-  template <class Wrapper>
-  void on_flood_fill_end(const Wrapper&) {}
-  template <class Wrapper>
-  void on_alpha_wrapping_end(const Wrapper&) {}
-};
 
 /// Whether at least five of the six ways along the axes leave the surface by an odd number of crossings.
 bool is_inside(const TriangleTree& tree, const Vector<3>& p) {
@@ -110,16 +63,10 @@ std::vector<Vector<3>> grid_of_places(const Bounds<3>& bounds) {
 /// And places below the faces, on both sides, as deep as a seed has to be, which find what is thin.
 std::vector<Vector<3>> places_below_faces(const Mesh& mesh, double depth) {
   std::vector<Vector<3>> places;
-  const auto across = [&](const std::array<std::uint32_t, 3>& t) -> Vector<3> {
-    const Vector<3>& a = mesh.vertices[t[0]];
-    return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
-  };
-  double area = 0;
-  for (const auto& t : mesh.triangles) area += across(t).norm() / 2;
-  const double apart = std::max(2 * depth, std::sqrt(area / most_looks_below));
+  const double apart = std::max(2 * depth, std::sqrt(area_of(mesh) / most_looks_below));
   double owed = 0;  // of a look, by the faces so far: small ones share it
   for (const auto& t : mesh.triangles) {
-    const Vector<3> normal = across(t);
+    const Vector<3> normal = doubled_area(mesh, t);
     owed += normal.norm() / 2 / (apart * apart);
     const int looks = static_cast<int>(owed);
     owed -= looks;
@@ -165,45 +112,12 @@ std::vector<Seed> scattered(const std::vector<Seed>& all, std::size_t most) {
   return seeds;
 }
 
-Point wrap_point(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
-
-/// Wrapped from these points, or from outside if there are none. Throws Stopped.
-Surface wrapped(const Mesh& mesh, double alpha, double offset, const std::vector<Seed>& seeds,
-                const Monitor& monitor) {
-  std::vector<Point> points, from;
-  for (const Vector<3>& v : mesh.vertices) points.push_back(wrap_point(v));
-  for (const Seed& seed : seeds) from.push_back(wrap_point(seed.place));
-  Watch watch{monitor};
-  if (!seeds.empty()) {  // corners are no farther than the offset from the surface
-    constexpr double more = 2;
-    watch.bounds = bounds_of_faces(mesh);
-    watch.bounds->lower.array() -= more * offset;
-    watch.bounds->upper.array() += more * offset;
-  }
-  Surface surface;
-  // CGAL 5 looks for both among the last parameters, CGAL 6 for the one among the first.
-  const auto seeds_and_watch = CGAL::parameters::seed_points(std::ref(from)).visitor(std::ref(watch));
-  CGAL::alpha_wrap_3(points, mesh.triangles, alpha, offset, surface, seeds_and_watch, seeds_and_watch);
-  return surface;
-}
-
-/// Oriented outwards.
-Mesh outward_mesh_of(const Surface& surface) {
-  Mesh mesh;
-  for (const auto v : surface.vertices()) {
-    const Point& p = surface.point(v);
-    mesh.vertices.emplace_back(p.x(), p.y(), p.z());
-  }
-  for (const auto face : surface.faces()) {
-    std::array<std::uint32_t, 3> triangle;
-    int k = 0;
-    for (const auto v : surface.vertices_around_face(surface.halfedge(face)))
-      triangle[k++] = static_cast<std::uint32_t>(v.idx());
-    mesh.triangles.push_back(triangle);
-  }
-  if (!mesh.triangles.empty() && volume_of(Domain(mesh)) < 0)
-    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
+/// Wrapped from these points, or from outside if there are none. Throws StoppedWrap.
+Mesh wrapped(const Mesh& mesh, double alpha, double offset, const std::vector<Seed>& seeds,
+             const Monitor& monitor) {
+  std::vector<Vector<3>> from;
+  for (const Seed& seed : seeds) from.push_back(seed.place);
+  return alpha_wrap(mesh, alpha, offset, from, most_points, monitor);
 }
 
 /// Of these points those that a wrap has not reached: they lie in chambers of their own.
@@ -225,8 +139,8 @@ std::vector<Seed> that_stay_inside(const std::vector<Seed>& seeds, const WrapFro
   try {
     wrap_from(seeds);
     return seeds;
-  } catch (Stopped reason) {
-    if (reason != Stopped::outside) throw;
+  } catch (StoppedWrap reason) {
+    if (reason != StoppedWrap::outside) throw;
     if (seeds.size() == 1) return {};
   }
   const auto middle = seeds.begin() + std::ssize(seeds) / 2;
@@ -238,11 +152,8 @@ std::vector<Seed> that_stay_inside(const std::vector<Seed>& seeds, const WrapFro
 
 /// Whether a wrapped surface holds next to nothing but the offset from a sheet, on both of its sides.
 bool is_but_a_skin(const Mesh& mesh, double offset) {
-  double area = 0;
-  for (const auto& [i, j, k] : mesh.triangles)
-    area += 0.5 * (mesh.vertices[j] - mesh.vertices[i]).cross(mesh.vertices[k] - mesh.vertices[i]).norm();
   constexpr double more = 1.5;  // at its rim, and where it bends
-  return volume_of(Domain(mesh)) < more * area * offset;
+  return signed_volume(mesh) < more * area_of(mesh) * offset;
 }
 
 bool lies_within(const Mesh& mesh, const Bounds<3>& bounds) {
@@ -259,7 +170,7 @@ constexpr std::string_view close_first = "close its openings by \"cap\" or repai
 
 }  // namespace
 
-Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
+RepairedMesh wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
   if (!(alpha >= 0) || !(offset >= 0) || !std::isfinite(alpha) || !std::isfinite(offset))
     throw Error(ErrorCode::bad_argument, "alpha and offset of a wrap are lengths, or 0 for the default");
   if (mesh.triangles.empty()) return {std::move(mesh), "not wrapped: it has no faces"};
@@ -274,7 +185,7 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
     std::vector<Seed> inside = points_inside(mesh, grid_of_places(bounds), offset, monitor);
     std::vector<Seed> in_nooks =
         points_inside(mesh, places_below_faces(mesh, look_below * deep), deep, monitor);
-    if (monitor.stop()) throw Stopped::by_monitor;
+    if (monitor.stop()) throw StoppedWrap::by_monitor;
     if (inside.empty() || !(inside.front().distance > deep)) {
       if (!in_nooks.empty()) inside = std::exchange(in_nooks, {});
     } else {
@@ -285,8 +196,8 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
     std::string why = "no inside was found";
     if (!seeds.empty()) {
       const auto wrap_from = [&](const std::vector<Seed>& some) {
-        Mesh made = outward_mesh_of(wrapped(mesh, alpha, offset, some, monitor));
-        if (!lies_within(made, bounds)) throw Stopped::outside;
+        Mesh made = wrapped(mesh, alpha, offset, some, monitor);
+        if (!lies_within(made, bounds)) throw StoppedWrap::outside;
         return made;
       };
       Mesh inner = wrap_from(seeds);
@@ -300,7 +211,7 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
                 fmt::format("{} ({}): the result lies within the surface", from_inside, how)};
       why = "the inside is too narrow for alpha";
     }
-    Mesh outer = outward_mesh_of(wrapped(mesh, alpha, offset, {}, monitor));
+    Mesh outer = wrapped(mesh, alpha, offset, {}, monitor);
     if (outer.triangles.empty())
       return {std::move(mesh), fmt::format("not wrapped ({}): nothing came out", how)};
     if (is_but_a_skin(outer, offset))
@@ -310,13 +221,15 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
     return {
         std::move(outer),
         fmt::format("wrapped from outside ({}) because {}: the surface lies within the result", how, why)};
-  } catch (Stopped reason) {
+  } catch (StoppedWrap reason) {
     const std::string_view because =
-        reason == Stopped::by_monitor ? "it was cancelled"
-        : reason == Stopped::too_many ? "the result would have more than a million faces; take a larger alpha"
-                                      : "the inside is open to the outside through gaps wider than alpha";
-    return {std::move(mesh), fmt::format("not wrapped ({}): {}{}", how, because,
-                                         reason == Stopped::outside ? fmt::format("; {}", close_first) : "")};
+        reason == StoppedWrap::by_monitor ? "it was cancelled"
+        : reason == StoppedWrap::too_many
+            ? "the result would have more than a million faces; take a larger alpha"
+            : "the inside is open to the outside through gaps wider than alpha";
+    return {std::move(mesh),
+            fmt::format("not wrapped ({}): {}{}", how, because,
+                        reason == StoppedWrap::outside ? fmt::format("; {}", close_first) : "")};
   } catch (const std::exception& error) {
     std::string said = error.what();
     std::replace(said.begin(), said.end(), '\n', ' ');
@@ -324,29 +237,26 @@ Mended wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
   }
 }
 
-Mended wrap_for_spheres(const Mesh& mesh, double radius, const Monitor& monitor) {
+RepairedMesh wrap_for_spheres(const Mesh& mesh, double radius, const Monitor& monitor) {
   if (mesh.triangles.empty() || !(radius > 0)) return wrap(mesh, 0, 0, monitor);
   const double coarsest = alpha_over_diagonal * bounds_of_faces(mesh).diagonal();
-  double area = 0;
-  for (const auto& [i, j, k] : mesh.triangles)
-    area += 0.5 * (mesh.vertices[j] - mesh.vertices[i]).cross(mesh.vertices[k] - mesh.vertices[i]).norm();
   const double wanted = alpha_for(radius);
-  const double finest = std::sqrt(3 * area / static_cast<double>(most_points));
+  const double finest = std::sqrt(3 * area_of(mesh) / static_cast<double>(most_points));
   std::string_view why = wanted < finest ? "would have more than a million faces" : "";
   for (double alpha = std::max(wanted, finest);; alpha *= 2) {
     alpha = std::min(alpha, coarsest);
-    Mended mended = wrap(mesh, alpha, 0, monitor);
-    const bool is_done = mended.done.starts_with(from_inside);
+    RepairedMesh repaired = wrap(mesh, alpha, 0, monitor);
+    const bool is_done = repaired.done.starts_with(from_inside);
     if (!is_done && alpha < coarsest && !monitor.stop()) {
       why = "leaves the part through its gaps";
       continue;
     }
     if (is_done && alpha > wanted && !why.empty())
-      mended.done += fmt::format(
+      repaired.done += fmt::format(
           "; a finer one {}, so places are lost where only spheres of a radius below "
           "{:.3g} fit",
           why, alpha / wanted * radius);
-    return mended;
+    return repaired;
   }
 }
 

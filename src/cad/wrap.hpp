@@ -1,6 +1,6 @@
 #pragma once
 #include "bernal/core/monitor.hpp"
-#include "cad/mended.hpp"
+#include "cad/repaired_mesh.hpp"
 
 namespace bernal::cad {
 
@@ -18,12 +18,12 @@ namespace bernal::cad {
 /// alpha or offset 0: the diagonal of the bounds / 100, and alpha / 30. Cost: some 200 µs for each of about
 /// 3 A / alpha² faces that the result has for a surface of area A; it ends with the mesh as it was when these
 /// become more than a million or the monitor stops it, and soon where it gets out of the inside.
-Mended wrap(Mesh mesh, double alpha = 0, double offset = 0, const Monitor& monitor = {});
+RepairedMesh wrap(Mesh mesh, double alpha = 0, double offset = 0, const Monitor& monitor = {});
 
 /// The same with the default offset and an alpha so small that no place is lost where a sphere of that radius
 /// fits, or the default alpha if that is smaller. Where the result would have more than a million faces, or
 /// leaves the part through gaps that wide, alpha is as small as it can be to a factor of 2, and `done` says
 /// for which spheres that is too wide. Radius 0: the default.
-Mended wrap_for_spheres(const Mesh& mesh, double radius, const Monitor& monitor = {});
+RepairedMesh wrap_for_spheres(const Mesh& mesh, double radius, const Monitor& monitor = {});
 
 }  // namespace bernal::cad

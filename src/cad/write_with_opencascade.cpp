@@ -13,25 +13,14 @@ WrittenShapes write_with_opencascade(const SolidShapes& shapes, SolidFormat form
   WrittenShapes made;
   const std::string befell = run_in_cage(
       "OpenCASCADE", limits,
-      [&](PlainWriter& out) {
-        WrittenShapes result;
+      [&] {
         if (void* function = opencascade_function("bernal_write_shapes"))
-          reinterpret_cast<decltype(&bernal_write_shapes)>(function)(shapes, format, file, result);
+          reinterpret_cast<decltype(&bernal_write_shapes)>(function)(shapes, format, file, made);
         else
-          result.failure =
-              "this bernal runs without OpenCASCADE, which writes STEP and BREP; " + opencascade_remedy() +
-              ", or export gmsh";
-        out.text(result.failure);
-        out.number(result.solids);
-        out.real(result.volume);
-        out.number(result.has_container);
+          made.failure = "this bernal runs without OpenCASCADE, which writes STEP and BREP; " +
+                         opencascade_remedy() + ", or export gmsh";
       },
-      [&](PlainReader& in) {
-        made.failure = in.text();
-        made.solids = in.number();
-        made.volume = in.real();
-        made.has_container = in.number() != 0;
-      });
+      [&](Archive& a) { a(made.failure, made.solids, made.volume, made.has_container); });
   if (const std::string& failure = befell.empty() ? made.failure : befell; !failure.empty())
     throw Error(ErrorCode::cannot_write, failure, {file.filename().string()});
   return made;

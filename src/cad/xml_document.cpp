@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstdlib>
 #include <new>
 #include <utility>
 #include <vector>
@@ -16,9 +13,6 @@
 
 namespace bernal::cad {
 namespace {
-
-/// Longer words are no numbers.
-constexpr std::size_t most_digits = 1000;
 
 /// As it stands in a phrase.
 std::string quoted(std::string_view text) {
@@ -150,18 +144,6 @@ void XmlDocument::refuse_at(std::size_t offset, const std::string& what) const {
 
 void XmlDocument::refuse(pugi::xml_node at, const std::string& what) const {
   refuse_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(at.offset_debug(), 0)), what);
-}
-
-std::optional<double> XmlDocument::number_in(std::string_view text) {
-  std::string_view digits = trimmed(text);
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  if (digits.empty() || digits.size() > most_digits) return {};
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range)  // zero, if it is too small, else infinite
-    value = std::strtod(std::string(digits).c_str(), nullptr);
-  const bool whole = error != std::errc::invalid_argument && end == digits.data() + digits.size();
-  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 void XmlDocument::refuse_number(std::string_view text, pugi::xml_node at, const std::string& what) const {

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "cad/known_formats.hpp"
+
 namespace bernal::cad {
 
 /// An XML document in memory, whatever its encoding; entities are those of XML, never a document's own. What
@@ -37,13 +39,13 @@ class XmlDocument {
   /// Text as a finite number; `name()` is what to call it: "x of vertex 7".
   template <class Name>
   double number(std::string_view text, pugi::xml_node at, const Name& name) const {
-    if (const std::optional<double> value = number_in(text)) return *value;
+    if (const std::optional<double> value = finite_number(text)) return *value;
     refuse_number(text, at, name());
   }
   /// Text as the index of one of so many vertices; `name()` is what it stands in: "triangle 7".
   template <class Name>
   std::uint32_t index(std::string_view text, std::size_t count, pugi::xml_node at, const Name& name) const {
-    const std::optional<double> value = number_in(text);
+    const std::optional<double> value = finite_number(text);
     if (value && *value >= 0 && *value < double(count) && *value == std::floor(*value))
       return static_cast<std::uint32_t>(*value);
     refuse_index(text, count, at, name());
@@ -52,7 +54,6 @@ class XmlDocument {
   [[noreturn]] void refuse(pugi::xml_node at, const std::string& what) const;
 
  private:
-  static std::optional<double> number_in(std::string_view text);
   [[noreturn]] void refuse_number(std::string_view text, pugi::xml_node at, const std::string& what) const;
   [[noreturn]] void refuse_index(std::string_view text, std::size_t count, pugi::xml_node at,
                                  const std::string& what) const;

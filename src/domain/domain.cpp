@@ -11,6 +11,8 @@
 #include "bernal/core/error.hpp"
 #include "core/every_dimension.hpp"
 #include "domain/share_of_area.hpp"
+#include "geometry/changes.hpp"
+#include "geometry/measures.hpp"
 
 namespace bernal {
 namespace {
@@ -27,16 +29,6 @@ Bounds<3> bounds_of_sphere(const Sphere& s) {
   return {s.center - half, s.center + half};
 }
 
-Bounds<3> bounds_of_points(const std::vector<Vector<3>>& points) {
-  if (points.empty()) return {};
-  Bounds<3> bounds{points.front(), points.front()};
-  for (const Vector<3>& p : points) {
-    bounds.lower = bounds.lower.cwiseMin(p);
-    bounds.upper = bounds.upper.cwiseMax(p);
-  }
-  return bounds;
-}
-
 /// The two discs' bounds: a disc of radius R with the unit normal a has the half extents R·sqrt(1 - a_k²),
 /// written as the sum of the two other squares, which does not cancel.
 Bounds<3> bounds_of_cylinder(const Cylinder& s) {
@@ -47,26 +39,6 @@ Bounds<3> bounds_of_cylinder(const Cylinder& s) {
   return {s.base.cwiseMin(top) - half, s.base.cwiseMax(top) + half};
 }
 
-double volume_of_mesh(const Mesh& mesh) {
-  const Vector<3> origin = bounds_of_points(mesh.vertices).center();
-  double six_volumes = 0;
-  for (const auto& [i, j, k] : mesh.triangles) {
-    const Vector<3> a = mesh.vertices[i] - origin, b = mesh.vertices[j] - origin,
-                    c = mesh.vertices[k] - origin;
-    six_volumes += a.dot(b.cross(c));
-  }
-  return six_volumes / 6;
-}
-
-double area_of_mesh(const Mesh& mesh) {
-  double twice_area = 0;
-  for (const auto& [i, j, k] : mesh.triangles) {
-    const Vector<3>& a = mesh.vertices[i];
-    twice_area += (mesh.vertices[j] - a).cross(mesh.vertices[k] - a).norm();
-  }
-  return twice_area / 2;
-}
-
 /// The points of a domain of two dimensions in the plane z = 0.
 Vector<3> in_space(const Vector<dynamic>& p) {
   Vector<3> q = Vector<3>::Zero();
@@ -75,15 +47,10 @@ Vector<3> in_space(const Vector<dynamic>& p) {
 }
 
 Bounds<2> bounds_of_polygon(const Polygon& s) {
-  Bounds<2> bounds;
-  bool first = true;
-  for (const auto& loop : s.loops) {
-    for (const Vector<2>& p : loop) {
-      if (std::exchange(first, false)) bounds = {p, p};
-      bounds = {bounds.lower.cwiseMin(p), bounds.upper.cwiseMax(p)};
-    }
-  }
-  return bounds;
+  auto bounds = Bounds<2>::of_nothing();
+  for (const auto& loop : s.loops)
+    for (const Vector<2>& p : loop) bounds.add(p);
+  return s.loops.empty() ? Bounds<2>() : bounds;
 }
 
 /// Twice, about the first corner; positive where it runs counter-clockwise.
@@ -226,7 +193,7 @@ Bounds<D> bounds_of(const Domain& domain) {
                                  else if constexpr (std::is_same_v<decltype(s), const Sphere&>)
                                    bounds = bounds_of_sphere(s);
                                  else
-                                   bounds = bounds_of_points(s.vertices);
+                                   bounds = bounds_of(s);
                                  return Bounds<D>{bounds.lower, bounds.upper};
                                }},
                     domain);
@@ -242,7 +209,7 @@ double volume_of(const Domain& domain) {
                  },
                  [](const Cylinder& s) { return pi * s.radius * s.radius * s.height; },
                  [](const Sphere& s) { return ball_volume(3, s.radius); },
-                 [](const Mesh& s) { return volume_within(volume_of_mesh(s), area_of_mesh(s), s.inset); },
+                 [](const Mesh& s) { return volume_within(signed_volume(s), area_of(s), s.inset); },
                  [](const Polygon& s) { return volume_within(area_of_polygon(s), length_of(s), s.inset); }},
       domain);
 }
@@ -261,7 +228,7 @@ double area_of(const Domain& domain) {
           },
           [](const Cylinder& s) { return 2 * pi * s.radius * ((s.periodic ? 0 : s.radius) + s.height); },
           [](const Sphere& s) { return 4 * pi * s.radius * s.radius; },
-          [](const Mesh& s) { return area_of_mesh(s); }, [](const Polygon& s) { return length_of(s); }},
+          [](const Mesh& s) { return area_of(s); }, [](const Polygon& s) { return length_of(s); }},
       domain);
 }
 
@@ -338,8 +305,7 @@ Domain to_local(const Domain& shape, const Frame& frame) {
                                  return s;
                                },
                                [&](Mesh s) -> Domain {
-                                 for (Vector<3>& v : s.vertices) v = frame.to_local(v);
-                                 s.exact = nullptr;
+                                 move_vertices(s, [&](const Vector<3>& v) { return frame.to_local(v); });
                                  s.inset /= frame.scale;
                                  return s;
                                },

@@ -7,18 +7,14 @@
 #include <numbers>
 
 #include "bernal/core/error.hpp"
+#include "geometry/changes.hpp"
+#include "geometry/edges.hpp"
 
 namespace bernal {
 namespace {
 
 constexpr std::uint32_t rim_points = 180;
 constexpr std::size_t most_edges = 20'000;  // beyond, the shortest add bytes and no information
-constexpr double bend = 30 * std::numbers::pi / 180;
-
-struct Edge {
-  std::uint32_t from, to;  // from < to
-  std::uint32_t triangle;
-};
 
 /// Two unit vectors that complete `axis` to an orthogonal frame.
 std::array<Vector<3>, 2> across(const Vector<3>& axis) {
@@ -37,14 +33,8 @@ std::vector<Vector<3>> ring(const Vector<3>& center, const Vector<3>& axis, doub
 }
 
 Mesh drawable(const Box& box) {
-  Mesh mesh;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vector<3> side(corner & 1, corner >> 1 & 1, corner >> 2);
-    mesh.vertices.push_back(box.corner + side.cwiseProduct(Vector<3>(box.size)));
-  }
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
+  const Vector<3> corner = box.corner;
+  return mesh_of_box({corner, corner + Vector<3>(box.size)});
 }
 
 Mesh drawable(const Cylinder& cylinder) {
@@ -85,46 +75,11 @@ Mesh drawable(const Polygon&) {
   throw Error(ErrorCode::bad_argument, "a polygon lies in the plane and has no surface");
 }
 
-Vector<3> normal_of(const Mesh& mesh, std::uint32_t triangle) {
-  const auto& [a, b, c] = mesh.triangles[triangle];
-  const Vector<3> n = (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
-  return n.normalized();
-}
-
-/// The edges worth drawing, once each.
-std::vector<Edge> marked_edges(const Mesh& mesh) {
-  std::vector<Edge> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), t});
-    }
-  }
-  const auto key = [](const Edge& e) { return std::tie(e.from, e.to, e.triangle); };
-  std::sort(sides.begin(), sides.end(), [&](const Edge& a, const Edge& b) { return key(a) < key(b); });
-
-  std::vector<Edge> marked;
-  for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
-    for (j = i; j < sides.size() && sides[j].from == sides[i].from && sides[j].to == sides[i].to; ++j) {
-    }
-    bool draw = j - i != 2;
-    if (!draw) {
-      const Vector<3> n = normal_of(mesh, sides[i].triangle), m = normal_of(mesh, sides[i + 1].triangle);
-      const bool silhouette = (n.dot(View::towards_eye()) > 0) != (m.dot(View::towards_eye()) > 0);
-      draw = silhouette || n.dot(m) < std::cos(bend);
-    }
-    if (draw) marked.push_back(sides[i]);
-  }
-  if (marked.size() > most_edges) {
-    const auto length = [&](const Edge& e) {
-      return (mesh.vertices[e.to] - mesh.vertices[e.from]).squaredNorm();
-    };
-    std::nth_element(marked.begin(), marked.begin() + most_edges, marked.end(),
-                     [&](const Edge& a, const Edge& b) { return length(a) > length(b); });
-    marked.resize(most_edges);
-  }
-  return marked;
+/// Those by which the shape is recognised, and where it turns away from the eye.
+SharpEdges marked_edges(const Mesh& mesh) {
+  return sharp_edges(mesh, most_edges, [](const Vector<3>& n, const Vector<3>& m) {
+    return (n.dot(View::towards_eye()) > 0) != (m.dot(View::towards_eye()) > 0);
+  });
 }
 
 /// Cuts one edge where it goes behind the surface or comes out.
@@ -169,9 +124,8 @@ std::vector<Stroke> outline_of(const Mesh& mesh, const View& view) {
   // An edge lies on the surface that must not hide it; the raster knows that surface to about a pixel.
   const double bias = 3;
   std::vector<Stroke> strokes;
-  for (const Edge& edge : marked_edges(mesh)) {
-    split_where_hidden(points[edge.from], points[edge.to], surface, bias, strokes);
-  }
+  for (const auto& [from, to] : marked_edges(mesh))
+    split_where_hidden(points[from], points[to], surface, bias, strokes);
   return strokes;
 }
 

@@ -10,11 +10,12 @@
 
 #include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
+#include "geometry/edges.hpp"
+#include "geometry/simplified.hpp"
 #include "io/base64.hpp"
 #include "io/palette.hpp"
 #include "io/view.hpp"
 #include "io/viewer_columns.hpp"
-#include "io/viewer_walls.hpp"
 #include "measure/neighbourhoods.hpp"
 
 namespace bernal {
@@ -176,8 +177,8 @@ struct WallsJson {
     for (const auto& triangle : shown.triangles)
       corners.insert(corners.end(), triangle.begin(), triangle.end());
     std::vector<Vector<3>> ends;
-    for (const auto& edge : sharp_edges(mesh, most_sharp_edges))
-      ends.insert(ends.end(), edge.begin(), edge.end());
+    for (const auto& [a, b] : sharp_edges(mesh, most_sharp_edges))
+      ends.insert(ends.end(), {mesh.vertices[a], mesh.vertices[b]});
     return fmt::format(",\"triangle_count\":{},\"vertices\":\"{}\",\"triangles\":\"{}\",\"edges\":\"{}\"",
                        mesh.triangles.size(), base64_of<float>(placed_all(shown.vertices, frame)),
                        base64_of<std::uint32_t>(corners), base64_of<float>(placed_all(ends, frame)));

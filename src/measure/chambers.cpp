@@ -10,7 +10,7 @@
 #include "core/disjoint_sets.hpp"
 #include "core/parallel.hpp"
 #include "domain/places.hpp"
-#include "measure/convex.hpp"
+#include "geometry/topology.hpp"
 #include "measure/even_points.hpp"
 #include "measure/free_cells.hpp"
 #include "measure/localised.hpp"

@@ -12,6 +12,7 @@
 
 #include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
+#include "geometry/point_numbers.hpp"
 #include "surfaces/cut_ball.hpp"
 #include "verify/bounded.hpp"
 #include "verify/exact.hpp"
@@ -39,19 +40,14 @@ FloatPoint rounded(const Vector<3>& p) {
 
 /// Corners that rounding has made one become one, and triangles that lose one go.
 void weld(FloatSurface& surface) {
-  std::map<FloatPoint, std::uint32_t> known;
+  PointNumbers<FloatPoint> numbers;
   std::vector<std::uint32_t> number;
-  std::vector<FloatPoint> vertices;
-  for (const FloatPoint& p : surface.vertices) {
-    const auto [at, is_new] = known.try_emplace(p, static_cast<std::uint32_t>(vertices.size()));
-    if (is_new) vertices.push_back(p);
-    number.push_back(at->second);
-  }
-  surface.vertices = std::move(vertices);
+  for (const FloatPoint& p : surface.vertices) number.push_back(numbers.of(p));
+  surface.vertices = std::move(numbers.points);
+  renumber(surface.triangles, [&](std::uint32_t v) { return number[v]; });
   std::size_t kept = 0;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    Triangle triangle = surface.triangles[t];
-    for (std::uint32_t& v : triangle) v = number[v];
+    const Triangle triangle = surface.triangles[t];
     if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
     surface.faces[kept] = surface.faces[t];
     surface.triangles[kept++] = triangle;

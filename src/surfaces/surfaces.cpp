@@ -10,6 +10,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/verify/certificate.hpp"
+#include "geometry/point_numbers.hpp"
 
 namespace bernal {
 namespace {
@@ -140,22 +141,14 @@ void Surfaces::make_container(bool overlaps) {
     });
   }
   container_ = walls_.walls;
-  std::map<FloatPoint, std::uint32_t> known;
-  for (std::uint32_t v = 0; v < container_.vertices.size(); ++v) known.emplace(container_.vertices[v], v);
-  const auto add = [&](const FloatSurface& end) {
-    for (std::size_t t = 0; t < end.triangles.size(); ++t) {
-      Triangle triangle = end.triangles[t];
-      for (std::uint32_t& v : triangle) {
-        const FloatPoint& p = end.vertices[v];
-        const auto [at, is_new] =
-            known.try_emplace(p, static_cast<std::uint32_t>(container_.vertices.size()));
-        if (is_new) container_.vertices.push_back(p);
-        rim_.emplace(p, at->second);
-        v = at->second;
-      }
-      container_.triangles.push_back(triangle);
-      container_.faces.push_back(end.faces[t]);
-    }
+  PointNumbers<FloatPoint> numbers;  // the walls are joined: each of their points is another one
+  for (const FloatPoint& p : container_.vertices) numbers.of(p);
+  const auto add = [&](FloatSurface end) {
+    renumber(end.triangles, [&](std::uint32_t v) {
+      return rim_.emplace(end.vertices[v], numbers.of(end.vertices[v])).first->second;
+    });
+    container_.triangles.insert(container_.triangles.end(), end.triangles.begin(), end.triangles.end());
+    container_.faces.insert(container_.faces.end(), end.faces.begin(), end.faces.end());
   };
   for (const WallSurface::End& end : walls_.ends) {
     if (end.is_upper()) continue;
@@ -171,6 +164,7 @@ void Surfaces::make_container(bool overlaps) {
     add(*lower);
     add(moved_to(*opposite, *lower));
   }
+  container_.vertices = std::move(numbers.points);
 }
 
 void Surfaces::visit_spheres(const std::vector<std::uint32_t>* order, const Visit& visit) const {

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <set>
 #include <stdexcept>
@@ -12,6 +11,8 @@
 
 #include "bernal/core/error.hpp"
 #include "cad/triangulate.hpp"
+#include "geometry/edges.hpp"
+#include "geometry/point_numbers.hpp"
 #include "surfaces/icosphere.hpp"
 
 namespace bernal {
@@ -31,20 +32,9 @@ void append(FloatSurface& to, const FloatSurface& more) {
 
 /// Equal vertices become one.
 void join(FloatSurface& surface) {
-  std::map<FloatPoint, std::uint32_t> known;
-  FloatSurface made;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    Triangle triangle = surface.triangles[t];
-    for (std::uint32_t& v : triangle) {
-      const FloatPoint& p = surface.vertices[v];
-      const auto [at, is_new] = known.try_emplace(p, static_cast<std::uint32_t>(made.vertices.size()));
-      if (is_new) made.vertices.push_back(p);
-      v = at->second;
-    }
-    made.triangles.push_back(triangle);
-    made.faces.push_back(surface.faces[t]);
-  }
-  surface = std::move(made);
+  PointNumbers<FloatPoint> numbers;
+  renumber(surface.triangles, [&](std::uint32_t v) { return numbers.of(surface.vertices[v]); });
+  surface.vertices = std::move(numbers.points);
 }
 
 FloatSurface convex_face(const std::vector<FloatPoint>& outline, int face) {
@@ -205,19 +195,15 @@ std::optional<FloatSurface> end_between(const WallSurface::End& end,
                                         const std::vector<std::array<FloatPoint, 3>>& covered,
                                         const std::vector<FloatPoint>& on_outline) {
   // Of what is covered the outline: edges that only one triangle has.
-  std::map<FloatEdge, int> times;
-  for (const auto& [a, b, c] : covered) {
-    ++times[edge_between(a, b)];
-    ++times[edge_between(b, c)];
-    ++times[edge_between(c, a)];
-  }
+  PointNumbers<FloatPoint> corners;
+  std::vector<FaceCorners> triangles;
+  for (const auto& [a, b, c] : covered) triangles.push_back({corners.of(a), corners.of(b), corners.of(c)});
   std::set<FloatEdge> edges;
   std::set<FloatPoint> rim;
-  for (const auto& [edge, n] : times) {
-    if (n != 1) continue;
-    edges.insert(edge);
-    rim.insert(edge.first);
-    rim.insert(edge.second);
+  for (const EdgeUse& edge : open_edges(triangles)) {
+    const FloatPoint &from = corners.points[edge.low], &to = corners.points[edge.high];
+    edges.insert(edge_between(from, to));
+    rim.insert({from, to});
   }
   rim.insert(on_outline.begin(), on_outline.end());
   // The end's own outline, divided where spheres cross it; an edge that both have bounds nothing.
@@ -241,22 +227,16 @@ std::optional<FloatSurface> end_between(const WallSurface::End& end,
     }
   }
   FloatSurface made;
-  std::vector<Vector<3>> points;
-  std::map<FloatPoint, std::uint32_t> known;
-  const auto number_of = [&](const FloatPoint& p) {
-    const auto [at, is_new] = known.try_emplace(p, static_cast<std::uint32_t>(points.size()));
-    if (is_new) {
-      points.push_back(double_point(p));
-      made.vertices.push_back(p);
-    }
-    return at->second;
-  };
+  PointNumbers<FloatPoint> numbers;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> lines;
   for (const auto& [a, b] : edges) {
-    const std::uint32_t first = number_of(a);
-    lines.emplace_back(first, number_of(b));
+    const std::uint32_t first = numbers.of(a);
+    lines.emplace_back(first, numbers.of(b));
   }
   if (lines.empty()) return made;
+  made.vertices = std::move(numbers.points);
+  std::vector<Vector<3>> points;
+  for (const FloatPoint& p : made.vertices) points.push_back(double_point(p));
   const auto filled =
       cad::triangulate_regions(points, lines, (end.is_upper() ? 1.0 : -1.0) * Vector<3>::Unit(end.axis()));
   if (!filled) return std::nullopt;

@@ -8,7 +8,7 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
-#include "cad/body_union.hpp"
+#include "cad/cgal_surfaces.hpp"
 #include "cad/hollows.hpp"
 #include "support/broken_meshes.hpp"
 #include "support/folder.hpp"

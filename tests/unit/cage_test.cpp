@@ -64,21 +64,40 @@ TEST(Cage, HandsBackAllThatWasRead) {
 
 TEST(Cage, SaysWhatBefellTheReader) {
   EXPECT_EQ(failure_of([] { throw std::runtime_error("line 3: no number"); }), "line 3: no number");
+  EXPECT_EQ(failure_of([] { throw std::length_error("basic_string::_M_create"); }),
+            "basic_string::_M_create");
+  EXPECT_EQ(failure_of([] { throw 7; }), "an exception without a message");
+  EXPECT_EQ(failure_of([] { throw std::bad_alloc(); }),
+            "the reader wants more than 0.25 GiB of memory for it");
   EXPECT_EQ(failure_of([] { std::abort(); }), "the reader crashes on it (Aborted)");
   EXPECT_EQ(failure_of([] { std::raise(SIGSEGV); }), "the reader crashes on it (Segmentation fault)");
   EXPECT_EQ(failure_of([] { std::raise(SIGKILL); }), "the reader was killed over it");
   EXPECT_NE(failure_of([] { _exit(0); }), "");
 }
 
+TEST(Cage, TellsAnExceptionAsItself) {
+  std::uint64_t made = 0;
+  const auto befell = [&](const std::function<void()>& work) {
+    return cad::run_in_cage("the writer", narrow, work, [&](Archive& a) { a(made); });
+  };
+  EXPECT_EQ(befell([&] { made = 7; }), "");
+  EXPECT_EQ(made, 7u);
+  EXPECT_EQ(befell([] { throw std::out_of_range("no such\nface"); }), "no such face");
+  const std::string long_one = befell([] { throw std::runtime_error(std::string(100'000, 'x')); });
+  EXPECT_EQ(long_one.substr(0, 200), std::string(200, 'x'));
+  EXPECT_LE(long_one.size(), 1000u);
+  EXPECT_EQ(befell([] { throw std::bad_alloc(); }), "the writer wants more than 0.25 GiB of memory for it");
+}
+
 TEST(Cage, SaysWhatBefellARepair) {
   const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   const auto said_of = [&](const std::function<void()>& act) {
-    const cad::Mended mended = cad::mend_in_cage(mesh, 1, [&] {
+    const cad::RepairedMesh repaired = cad::repair_in_cage(mesh, 1, [&] {
       act();
-      return cad::Mended{{}, "mended"};
+      return cad::RepairedMesh{{}, "mended"};
     });
-    EXPECT_EQ(mended.mesh.triangles.size(), mended.done == "mended" ? 0u : 1u);
-    return mended.done;
+    EXPECT_EQ(repaired.mesh.triangles.size(), repaired.done == "mended" ? 0u : 1u);
+    return repaired.done;
   };
   EXPECT_EQ(said_of([] {}), "mended");
   EXPECT_EQ(said_of([] { throw std::runtime_error("precondition violation!\nLine: 7"); }),

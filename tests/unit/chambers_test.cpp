@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "measure/convex.hpp"
+#include "geometry/topology.hpp"
 #include "support/measured.hpp"
 #include "support/meshes.hpp"
 #include "support/packings.hpp"

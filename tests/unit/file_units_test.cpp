@@ -9,7 +9,6 @@
 #include "bernal/core/error.hpp"
 #include "cad/file_facts.hpp"
 #include "cad/polygon_soup.hpp"
-#include "cad/stl_file.hpp"
 #include "support/cad_formats.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"
@@ -53,6 +52,8 @@ class FileUnits : public ::testing::Test {
     const auto file = folder.write(name, content);
     return name.ends_with(".3mf")   ? cad::read_3mf(file)
            : name.ends_with(".amf") ? cad::read_amf(file)
+           : name.ends_with(".obj") ? cad::read_obj(file)
+           : name.ends_with(".off") ? cad::read_with_cgal(file)
                                     : cad::read_with_assimp(file);
   }
 
@@ -229,6 +230,16 @@ TEST_F(FileUnits, AmfSaysItsUnit) {
   EXPECT_EQ(part_read.facts.unit->metres, 0.0254);
 }
 
+TEST_F(FileUnits, AGreaterSignInAnAttributeEndsNoTag) {
+  std::string model = model_3mf(box_mesh({0, 0, 0}, {1, 2, 3}), "inch");
+  const std::string_view start = R"(<model unit="inch" xml:lang="en-US")";
+  ASSERT_NE(model.find(start), std::string::npos);
+  model.replace(model.find(start), start.size(), R"(<model xml:lang="2 > 1" unit="inch")");
+  const ReadAttempt part_read = read("part.3mf", archived_3mf(model));
+  ASSERT_TRUE(part_read.facts.unit.has_value()) << part_read.failure;
+  EXPECT_EQ(part_read.facts.unit->metres, 0.0254);
+}
+
 TEST_F(FileUnits, GltfIsInMetres) {
   const std::string gltf =
       R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"name":"left"},)"
@@ -257,29 +268,43 @@ TEST_F(FileUnits, FormatsWithoutUnitsSayNothing) {
 TEST_F(FileUnits, StlKeepsTheNamesOfItsSolids) {
   const Mesh box = box_mesh({0, 0, 0}, {1, 2, 3});
   std::string text = as_text_stl(box, "Inlet Pipe") + as_text_stl(translated(box, {5, 0, 0}), "OUTLET");
-  const cad::StlFile stl = cad::read_stl_file(folder.write("two.stl", text));
-  for (ReadAttempt attempt : {cad::read_stl_with_assimp(stl.content), cad::read_stl_with_cgal(stl.content)}) {
-    cad::tell_parts(stl, attempt);
-    EXPECT_EQ(names_of(attempt), (Names{"Inlet Pipe", "OUTLET"}));
-    ASSERT_EQ(attempt.soup.solids.size(), 2U);
-    EXPECT_EQ(attempt.soup.solids[1].first, 12U);
-    const auto& second = attempt.soup.polygons[12];
-    for (const std::uint32_t i : second) EXPECT_GE(attempt.soup.points[i][0], 5);
-  }
-  EXPECT_TRUE(cad::read_stl_file(folder.write("none.stl", as_text_stl(box, ""))).solids.empty());
+  const ReadAttempt two = cad::read_stl(folder.write("two.stl", text));
+  EXPECT_EQ(names_of(two), (Names{"Inlet Pipe", "OUTLET"}));
+  ASSERT_EQ(two.soup.solids.size(), 2U);
+  EXPECT_EQ(two.soup.solids[1].first, 12U);
+  for (const std::uint32_t i : two.soup.polygons[12]) EXPECT_GE(two.soup.points[i][0], 5);
+  EXPECT_TRUE(cad::read_stl(folder.write("none.stl", as_text_stl(box, ""))).soup.solids.empty());
 }
 
 TEST_F(FileUnits, ObjObjectsAndGroupsAreParts) {
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n";
   const std::string objects =
       corners + "o first one\ng a\nf 1 3 2\ng b\nf 1 2 4\no empty\no Second\r\nf 1 4 3\nf 2 3 4\n";
-  ReadAttempt cgal = cad::read_with_cgal(folder.write("o.obj", objects));
-  EXPECT_EQ(names_of(cgal), (Names{"first one", "Second"}));
-  ASSERT_EQ(cgal.soup.solids.size(), 2U);
-  EXPECT_EQ(cgal.soup.solids[1].first, 2U);
-  cgal = cad::read_with_cgal(folder.write("g.obj", corners + "f 1 3 2\ng lid\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"));
-  EXPECT_EQ(names_of(cgal), (Names{"", "lid"}));
-  EXPECT_TRUE(cad::read_with_cgal(folder.write("n.obj", corners + "f 1 3 2\n")).soup.solids.empty());
+  ReadAttempt obj = cad::read_obj(folder.write("o.obj", objects));
+  EXPECT_EQ(names_of(obj), (Names{"first one", "Second"}));
+  ASSERT_EQ(obj.soup.solids.size(), 2U);
+  EXPECT_EQ(obj.soup.solids[1].first, 2U);
+  obj = cad::read_obj(folder.write("g.obj", corners + "f 1 3 2\ng lid\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"));
+  EXPECT_EQ(names_of(obj), (Names{"", "lid"}));
+  EXPECT_TRUE(cad::read_obj(folder.write("n.obj", corners + "f 1 3 2\n")).soup.solids.empty());
+}
+
+TEST_F(FileUnits, AnObjGoesOnInTheNextLineAndCountsBackwards) {
+  const ReadAttempt obj =
+      cad::read_obj(folder.write("o.obj",
+                                 "v 0 0 0\nv 1 0 \\\n0\n  v 0 2 0 1\nv 0 0 3 0.5 0.5 0.5\nvn 0 0 1\n# f 1\n"
+                                 "f 1/1 2/2/2 \\\n4//7 -2\nl 1 2\nf 1 2\n"));
+  ASSERT_TRUE(obj.ok()) << obj.failure;
+  EXPECT_EQ(obj.soup.points, (std::vector<Vector<3>>{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}}));
+  EXPECT_EQ(obj.soup.polygons, (std::vector<std::vector<std::uint32_t>>{{0, 1, 3, 2}}));
+  EXPECT_EQ(cad::read_obj(folder.write("zero.obj", "v 0 0 0\nf 1 1 0\n")).failure,
+            "a corner of a face is \"0\", no vertex that exists (line 2)");
+  EXPECT_EQ(cad::read_obj(folder.write("back.obj", "v 0 0 0\nf 1 1 -2\n")).failure,
+            "a corner of a face is \"-2\", no vertex that exists (line 2)");
+  EXPECT_EQ(cad::read_obj(folder.write("far.obj", "v 0 0 0\nf 1 1 2\n")).failure,
+            "a face names a vertex that does not exist");
+  EXPECT_EQ(cad::read_obj(folder.write("short.obj", "v 0 0\n")).failure,
+            "a coordinate is \"\", no finite number (line 1)");
 }
 
 TEST_F(FileUnits, AMarkOfUtf8InFrontIsNoMatter) {
@@ -302,9 +327,9 @@ TEST_F(FileUnits, AMarkOfUtf8InFrontIsNoMatter) {
 
 TEST_F(FileUnits, BytesBehindABinaryStlAreIgnoredAndSaid) {
   const std::string whole = as_binary_stl(box_mesh({0, 0, 0}, {1, 2, 3}));
-  const cad::StlFile stl = cad::read_stl_file(folder.write("long.stl", whole + "twelve bytes"));
-  EXPECT_TRUE(stl.binary);
-  EXPECT_EQ(stl.notes, Names{"12 bytes after the last triangle are ignored"});
+  const ReadAttempt stl = cad::read_stl(folder.write("long.stl", whole + "twelve bytes"));
+  EXPECT_NE(stl.reader.find("binary"), std::string::npos);
+  EXPECT_EQ(stl.facts.notes, Names{"12 bytes after the last triangle are ignored"});
   EXPECT_NEAR(read_mesh({.file = folder / "long.stl"}).report.volume, 6, 1e-12);
   // Where whole triangles would fit, the header is what is wrong.
   EXPECT_NE(refusal("more.stl", whole + std::string(100, ' ')).find("malformed binary STL"),
@@ -317,10 +342,10 @@ TEST_F(FileUnits, WhatFollowsTheLastSolidOfATextStlIsIgnoredAndSaid) {
   for (const std::string& text : {whole, small}) {
     for (const std::string& rest :
          {std::string(37, '\0'), std::string("\x1A"), std::string("signed by hand\n")}) {
-      const cad::StlFile stl = cad::read_stl_file(folder.write("long.stl", text + rest));
-      EXPECT_FALSE(stl.binary);
-      ASSERT_EQ(stl.notes.size(), 1U);
-      EXPECT_NE(stl.notes[0].find("after the last solid are ignored"), std::string::npos);
+      const ReadAttempt stl = cad::read_stl(folder.write("long.stl", text + rest));
+      EXPECT_EQ(stl.reader.find("binary"), std::string::npos);
+      ASSERT_EQ(stl.facts.notes.size(), 1U);
+      EXPECT_NE(stl.facts.notes[0].find("after the last solid are ignored"), std::string::npos);
     }
   }
   EXPECT_NEAR(read_mesh({.file = folder.write("long.stl", whole + std::string(37, '\0'))}).report.volume, 6,

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "cad/body_union.hpp"
+#include "cad/cgal_surfaces.hpp"
 #include "support/broken_meshes.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"
@@ -203,7 +203,8 @@ TEST(HollowsOf, WhatStandsInAHollowIsAWallOfIt) {
 
 TEST(HollowOfShell, IsThatOfWallsAndNotOfParts) {
   for (const Vessel& vessel : vessels())
-    if (vessel.volume > 1.1 * volume_of(Domain(vessel.wall)) && vessel.name != "Bowl" && vessel.name != "Tee") {
+    if (vessel.volume > 1.1 * volume_of(Domain(vessel.wall)) && vessel.name != "Bowl" &&
+        vessel.name != "Tee") {
       const auto hollow = cad::hollow_of_shell(vessel.wall, 1e-7);
       ASSERT_TRUE(hollow.has_value()) << vessel.name;
       EXPECT_NEAR(hollow->volume, vessel.volume, 2 * vessel.to_within * vessel.volume) << vessel.name;

@@ -9,7 +9,7 @@
 
 #include "bernal/core/error.hpp"
 #include "cad/triangle_tree.hpp"
-#include "support/mended.hpp"
+#include "support/repaired_mesh.hpp"
 
 namespace bernal {
 namespace mesh_distance_test {

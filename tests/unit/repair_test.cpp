@@ -14,7 +14,7 @@
 #include "cad/repair_crossings.hpp"
 #include "cad/repair_holes.hpp"
 #include "support/broken_meshes.hpp"
-#include "support/mended.hpp"
+#include "support/repaired_mesh.hpp"
 
 namespace bernal {
 namespace repair_test {
@@ -34,18 +34,18 @@ bool same(const Mesh& a, const Mesh& b) { return a.vertices == b.vertices && a.t
 
 TEST(RepairHoles, ClosesMissingFacesOfABox) {
   const auto lid = [](const Vector<3>& p) { return p[2] == 1; };
-  const Mended one = close_holes(without_faces(unit_box, lid), 1.5);
+  const RepairedMesh one = close_holes(without_faces(unit_box, lid), 1.5);
   expect_sound(one);
   EXPECT_DOUBLE_EQ(volume(one.mesh), 1);
   EXPECT_EQ(one.done, "closed 1 hole, 1.414 across");
 
-  const Mended two =
+  const RepairedMesh two =
       close_holes(without_faces(unit_box, [](const auto& p) { return p[2] == 1 || p[0] == 0; }), 2);
   expect_sound(two);  // one rim around both, not flat
   EXPECT_NEAR(volume(two.mesh), 1, 0.51);
   EXPECT_TRUE(says(two, "closed 1 hole")) << two.done;
 
-  const Mended ends = close_holes(
+  const RepairedMesh ends = close_holes(
       without_faces(divided(unit_box, 2), [](const auto& p) { return p[2] == 1 || p[2] == 0; }), 2);
   expect_sound(ends);
   EXPECT_DOUBLE_EQ(volume(ends.mesh), 1);
@@ -56,19 +56,19 @@ TEST(RepairHoles, AnOpenTopIsNoHoleUnlessAskedFor) {
   const Mesh open = without_faces(divided(unit_box, 3), [](const Vector<3>& p) {
     return p[2] == 1 || (p[0] == 0 && std::abs(p[1] - 0.5) < 0.1 && std::abs(p[2] - 0.5) < 0.1);
   });
-  const Mended all = close_holes(open, infinity);
+  const RepairedMesh all = close_holes(open, infinity);
   EXPECT_TRUE(says(all, "closed 1 hole")) << all.done;
   EXPECT_TRUE(says(all, "an open top rather than a hole")) << all.done;
   EXPECT_EQ(topology_of(all.mesh).open_edges, 32U);
 
-  const Mended none = close_holes(open, 0.01);
+  const RepairedMesh none = close_holes(open, 0.01);
   EXPECT_TRUE(same(none.mesh, open));
   EXPECT_EQ(none.done, "left 2 holes open: wider than 0.01 (up to 1.414 across)");
   EXPECT_EQ(close_holes(unit_box, infinity).done, "no holes to close");
 }
 
 TEST(RepairHoles, FillsAConcaveRimInItsPlane) {
-  const Mended lid =
+  const RepairedMesh lid =
       close_holes(without_faces(l_shape_mesh(), [](const Vector<3>& p) { return p[2] == 1; }), 5);
   expect_sound(lid);
   EXPECT_DOUBLE_EQ(volume(lid.mesh), 3);
@@ -83,16 +83,17 @@ TEST(RepairHoles, ClosesManyHolesOfACurvedSurface) {
       if ((p - corner).norm() < 0.16) return true;
     return false;
   };
-  const Mended mended = close_holes(without_faces(whole, near_corner), infinity);
-  expect_sound(mended);
-  EXPECT_TRUE(says(mended, "closed 12 holes, the widest")) << mended.done;
-  EXPECT_LT(volume(mended.mesh), volume(whole));
-  EXPECT_GT(volume(mended.mesh), 0.97 * volume(whole));
-  const Deviation off = farthest(mended.mesh, whole, {1e-3});
+  const RepairedMesh repaired = close_holes(without_faces(whole, near_corner), infinity);
+  expect_sound(repaired);
+  EXPECT_TRUE(says(repaired, "closed 12 holes, the widest")) << repaired.done;
+  EXPECT_LT(volume(repaired.mesh), volume(whole));
+  EXPECT_GT(volume(repaired.mesh), 0.97 * volume(whole));
+  const Deviation off = farthest(repaired.mesh, whole, {1e-3});
   EXPECT_LT(off.at_most, 0.05);
 
   int n = 0;
-  const Mended sieve = close_holes(without_faces(whole, [&](const auto&) { return n++ % 4 == 3; }), infinity);
+  const RepairedMesh sieve =
+      close_holes(without_faces(whole, [&](const auto&) { return n++ % 4 == 3; }), infinity);
   expect_sound(sieve);
   EXPECT_NEAR(volume(sieve.mesh), volume(whole), 1e-12) << "single faces come back as they were";
 }
@@ -102,9 +103,9 @@ TEST(RepairHoles, DoesNotUseAnEdgeASecondTime) {
                    {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
   const double whole = volume(tetrahedron);
   tetrahedron.triangles.resize(2);  // the rim is a quadrangle, one of whose diagonals is the edge left within
-  const Mended mended = close_holes(tetrahedron, infinity);
-  EXPECT_TRUE(says(mended, "an open top")) << mended.done;
-  const Mended closed = close_holes(tetrahedron, 2);
+  const RepairedMesh repaired = close_holes(tetrahedron, infinity);
+  EXPECT_TRUE(says(repaired, "an open top")) << repaired.done;
+  const RepairedMesh closed = close_holes(tetrahedron, 2);
   expect_sound(closed);
   EXPECT_DOUBLE_EQ(volume(closed.mesh), whole);
 }
@@ -113,9 +114,9 @@ TEST(RepairHoles, TurnsFacesThatDisagree) {
   Mesh open = without_faces(divided(unit_box, 2), [](const Vector<3>& p) { return p[2] == 1; });
   for (std::size_t t = 0; t < open.triangles.size(); t += 3)
     std::swap(open.triangles[t][1], open.triangles[t][2]);
-  const Mended mended = close_holes(open, 2);
-  expect_sound(mended);
-  EXPECT_DOUBLE_EQ(volume(mended.mesh), 1);
+  const RepairedMesh repaired = close_holes(open, 2);
+  expect_sound(repaired);
+  EXPECT_DOUBLE_EQ(volume(repaired.mesh), 1);
 }
 
 TEST(RepairHoles, SaysWhereItCannot) {
@@ -132,7 +133,7 @@ TEST(RepairHoles, SaysWhereItCannot) {
     band.triangles.push_back({a, c, b});
     band.triangles.push_back({b, c, d});
   }
-  const Mended moebius = close_holes(band, infinity);
+  const RepairedMesh moebius = close_holes(band, infinity);
   EXPECT_TRUE(says(moebius, "one-sided")) << moebius.done;
   EXPECT_TRUE(same(moebius.mesh, band));
 
@@ -141,11 +142,11 @@ TEST(RepairHoles, SaysWhereItCannot) {
   finned.vertices.emplace_back(2, 2, 1);
   finned.triangles.push_back({2, 8, 9});
   finned.triangles.push_back({2, 9, 6});
-  const Mended fin = close_holes(finned, 5);
+  const RepairedMesh fin = close_holes(finned, 5);
   EXPECT_TRUE(says(fin, "three or more faces meet at the rim")) << fin.done;
 
   const Mesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
-  const Mended flat = close_holes(sheet, 5);
+  const RepairedMesh flat = close_holes(sheet, 5);
   EXPECT_TRUE(same(flat.mesh, sheet) || topology_of(flat.mesh).open_edges == 4) << flat.done;
   EXPECT_TRUE(says(flat, "left 1 hole open")) << flat.done;
 }
@@ -154,42 +155,44 @@ TEST(RepairHoles, SaysWhereItCannot) {
 
 TEST(RepairCrossings, LeavesWhatDoesNotCross) {
   const Mesh two = joined(unit_box, translated(unit_box, {3, 0, 0}));
-  const Mended mended = cut_out_crossings(two);
-  EXPECT_TRUE(same(mended.mesh, two));
-  EXPECT_EQ(mended.done, "nothing crosses");
+  const RepairedMesh repaired = cut_out_crossings(two);
+  EXPECT_TRUE(same(repaired.mesh, two));
+  EXPECT_EQ(repaired.done, "nothing crosses");
 }
 
 TEST(RepairCrossings, BodiesThatCrossBecomeTheirUnion) {
-  const Mended corner = cut_out_crossings(joined(unit_box, translated(unit_box, {0.5, 0.5, 0.5})));
+  const RepairedMesh corner = cut_out_crossings(joined(unit_box, translated(unit_box, {0.5, 0.5, 0.5})));
   expect_sound(corner);
   EXPECT_NEAR(volume(corner.mesh), 1.875, 1e-14);
   EXPECT_EQ(corner.done, "united 2 bodies that cross");
 
-  const Mended in_line = cut_out_crossings(joined(unit_box, translated(unit_box, {0.5, 0, 0})));
+  const RepairedMesh in_line = cut_out_crossings(joined(unit_box, translated(unit_box, {0.5, 0, 0})));
   expect_sound(in_line);  // four pairs of faces lie in common planes
   EXPECT_NEAR(volume(in_line.mesh), 1.5, 1e-14);
 
   const Mesh cylinder = prism_mesh(24, 0.3, 4);
-  const Mended pierced = cut_out_crossings(joined(box_mesh({-1, -1, 1}, {2, 2, 2}), cylinder));
+  const RepairedMesh pierced = cut_out_crossings(joined(box_mesh({-1, -1, 1}, {2, 2, 2}), cylinder));
   expect_sound(pierced);
   EXPECT_NEAR(volume(pierced.mesh), 8 + volume(cylinder) / 2, 1e-13);
 
-  const Mended baffle = cut_out_crossings(joined(unit_box, box_mesh({0.49, 0.3, -0.2}, {0.02, 0.4, 0.7})));
+  const RepairedMesh baffle =
+      cut_out_crossings(joined(unit_box, box_mesh({0.49, 0.3, -0.2}, {0.02, 0.4, 0.7})));
   expect_sound(baffle);
   EXPECT_NEAR(volume(baffle.mesh), 1 + 0.02 * 0.4 * 0.2, 1e-14);
 }
 
 TEST(RepairCrossings, BodiesThatTouchAreUnitedWhereThatIsASurface) {
-  const Mended face = cut_out_crossings(joined(unit_box, translated(unit_box, {1, 0.5, 0})));
+  const RepairedMesh face = cut_out_crossings(joined(unit_box, translated(unit_box, {1, 0.5, 0})));
   expect_sound(face);
   EXPECT_DOUBLE_EQ(volume(face.mesh), 2);
   EXPECT_EQ(topology_of(face.mesh).components, 1U);
 
-  const Mended shifted = cut_out_crossings(joined(unit_box, translated(unit_box, {1e-13, 2e-13, 1e-13})));
+  const RepairedMesh shifted =
+      cut_out_crossings(joined(unit_box, translated(unit_box, {1e-13, 2e-13, 1e-13})));
   expect_sound(shifted);
   EXPECT_NEAR(volume(shifted.mesh), 1, 1e-12);
 
-  const Mended edge = cut_out_crossings(joined(unit_box, translated(unit_box, {1, 1, 0})));
+  const RepairedMesh edge = cut_out_crossings(joined(unit_box, translated(unit_box, {1, 1, 0})));
   EXPECT_TRUE(says(edge, "1 body could not be united")) << edge.done;
   EXPECT_FALSE(says(edge, "united 1")) << edge.done;
   EXPECT_DOUBLE_EQ(volume(edge.mesh), 2);
@@ -197,25 +200,26 @@ TEST(RepairCrossings, BodiesThatTouchAreUnitedWhereThatIsASurface) {
 
 TEST(RepairCrossings, WhatIsOrientedInwardIsTakenOut) {
   const Mesh hole = inverted(translated(unit_box, {0.5, 0.5, 0.5}));
-  const Mended mended = cut_out_crossings(joined(unit_box, hole));
-  expect_sound(mended);
-  EXPECT_NEAR(volume(mended.mesh), 0.875, 1e-14);
-  EXPECT_TRUE(says(mended, "took 1 body that is oriented inward out of its surroundings")) << mended.done;
+  const RepairedMesh repaired = cut_out_crossings(joined(unit_box, hole));
+  expect_sound(repaired);
+  EXPECT_NEAR(volume(repaired.mesh), 0.875, 1e-14);
+  EXPECT_TRUE(says(repaired, "took 1 body that is oriented inward out of its surroundings")) << repaired.done;
 
-  const Mended all_inward = cut_out_crossings(joined(inverted(unit_box), hole));
+  const RepairedMesh all_inward = cut_out_crossings(joined(inverted(unit_box), hole));
   EXPECT_NEAR(volume(all_inward.mesh), 1.875, 1e-14) << all_inward.done;
 }
 
 TEST(RepairCrossings, UnitesAChainOfManyAndLeavesOthers) {
   Mesh chain = translated(unit_box, {0, 50, 0});
   for (int i = 0; i < 9; ++i) chain = joined(chain, translated(icosphere_mesh(1, 2), {1.5 * i, 0.1 * i, 0}));
-  const Mended mended = cut_out_crossings(chain);
-  expect_sound(mended);
-  EXPECT_EQ(topology_of(mended.mesh).components, 2U);
-  EXPECT_EQ(mended.done, "united 9 bodies that cross");
+  const RepairedMesh repaired = cut_out_crossings(chain);
+  expect_sound(repaired);
+  EXPECT_EQ(topology_of(repaired.mesh).components, 2U);
+  EXPECT_EQ(repaired.done, "united 9 bodies that cross");
   const double sphere = volume(icosphere_mesh(1, 2));
-  EXPECT_LT(volume(mended.mesh), 1 + 9 * sphere);
-  EXPECT_GT(volume(mended.mesh), 1 + 8 * sphere * 0.84375 + sphere - 0.2);  // caps of true spheres: 5/32 each
+  EXPECT_LT(volume(repaired.mesh), 1 + 9 * sphere);
+  EXPECT_GT(volume(repaired.mesh),
+            1 + 8 * sphere * 0.84375 + sphere - 0.2);  // caps of true spheres: 5/32 each
 }
 
 TEST(RepairCrossings, OfAPartThatCrossesItselfAllStaysThatItWindsAround) {
@@ -223,12 +227,12 @@ TEST(RepairCrossings, OfAPartThatCrossesItselfAllStaysThatItWindsAround) {
   Mesh inward = eight;
   for (auto& t : inward.triangles) std::swap(t[1], t[2]);
   for (const Mesh& mesh : {eight, inward, joined(eight, box_mesh({10, 0, 0}, {1, 1, 1}))}) {
-    const Mended mended = cut_out_crossings(mesh);
-    expect_sound(mended);
-    EXPECT_TRUE(says(mended, "outer walls are kept")) << mended.done;
+    const RepairedMesh repaired = cut_out_crossings(mesh);
+    expect_sound(repaired);
+    EXPECT_TRUE(says(repaired, "outer walls are kept")) << repaired.done;
     const double rest = mesh.triangles.size() > eight.triangles.size() ? 1 : 0;
-    EXPECT_NEAR(std::abs(volume(mended.mesh)), figure_of_eight_volume() + rest, 1e-9) << mended.done;
-    EXPECT_LT(farthest(mended.mesh, mesh, {1e-6}).at_most, 1e-6);  // it has no walls of its own
+    EXPECT_NEAR(std::abs(volume(repaired.mesh)), figure_of_eight_volume() + rest, 1e-9) << repaired.done;
+    EXPECT_LT(farthest(repaired.mesh, mesh, {1e-6}).at_most, 1e-6);  // it has no walls of its own
   }
 }
 
@@ -236,25 +240,25 @@ TEST(RepairCrossings, CutsOutWhereAPartCrossesItself) {
   Mesh spiked = icosphere_mesh(1, 3);  // one corner is pushed in through the opposite side
   spiked.vertices[0] *= -1.2;
   ASSERT_GT(count_self_intersections(spiked), 0U);
-  const Mended mended = cut_out_crossings(spiked);
-  expect_sound(mended);
-  EXPECT_TRUE(says(mended, "crosses itself")) << mended.done;
-  EXPECT_NEAR(volume(mended.mesh), volume(icosphere_mesh(1, 3)), 0.2);
+  const RepairedMesh repaired = cut_out_crossings(spiked);
+  expect_sound(repaired);
+  EXPECT_TRUE(says(repaired, "crosses itself")) << repaired.done;
+  EXPECT_NEAR(volume(repaired.mesh), volume(icosphere_mesh(1, 3)), 0.2);
 }
 
 TEST(RepairCrossings, SaysWhereRoomMayBeLost) {
-  const Mended mended = cut_out_crossings(divided(figure_of_eight_mesh(0), 3));  // faces coincide
-  expect_sound(mended);
-  EXPECT_TRUE(says(mended, "some room may be lost")) << mended.done;
+  const RepairedMesh repaired = cut_out_crossings(divided(figure_of_eight_mesh(0), 3));  // faces coincide
+  expect_sound(repaired);
+  EXPECT_TRUE(says(repaired, "some room may be lost")) << repaired.done;
 }
 
 TEST(RepairCrossings, RepairsAPartOfSomebodyElse) {
   const Mesh part = read_mesh({.file = BERNAL_DATA "/meshes/openscad_bad_tardis.stl"}).mesh;
   ASSERT_EQ(count_self_intersections(part), 6U);
-  const Mended mended = cut_out_crossings(part);
-  expect_sound(mended);
-  EXPECT_NEAR(volume(mended.mesh), volume(part), 1e-4 * volume(part));
-  EXPECT_LT(farthest(mended.mesh, part, {1e-3}).at_most, 0.01);
+  const RepairedMesh repaired = cut_out_crossings(part);
+  expect_sound(repaired);
+  EXPECT_NEAR(volume(repaired.mesh), volume(part), 1e-4 * volume(part));
+  EXPECT_LT(farthest(repaired.mesh, part, {1e-3}).at_most, 0.01);
 }
 
 TEST(RepairCrossings, WhatRemainsIsCounted) {
@@ -263,22 +267,22 @@ TEST(RepairCrossings, WhatRemainsIsCounted) {
     v += 0.2 * Vector<3>(std::sin(91 * v[0] + 7 * v[1]), std::sin(53 * v[1] + 3 * v[2]),
                          std::sin(71 * v[2] + 5 * v[0]));
   const std::size_t before = count_self_intersections(crumpled);
-  const Mended mended = cut_out_crossings(crumpled);
-  const std::size_t after = count_self_intersections(mended.mesh);
+  const RepairedMesh repaired = cut_out_crossings(crumpled);
+  const std::size_t after = count_self_intersections(repaired.mesh);
   EXPECT_LE(after, before);
-  EXPECT_TRUE(topology_of(mended.mesh).closed());
+  EXPECT_TRUE(topology_of(repaired.mesh).closed());
   if (after > 0) {
-    EXPECT_TRUE(says(mended, std::to_string(after) + " of " + std::to_string(before) + " crossings remain"))
-        << mended.done;
+    EXPECT_TRUE(says(repaired, std::to_string(after) + " of " + std::to_string(before) + " crossings remain"))
+        << repaired.done;
   }
 }
 
 TEST(RepairCrossings, AnOpenSheetStaysAndIsSaid) {
   const Mesh sheet{{{0.5, -1, -1}, {0.5, 2, -1}, {0.5, 2, 2}, {0.5, -1, 2}}, {{0, 1, 2}, {0, 2, 3}}};
-  const Mended mended = cut_out_crossings(joined(unit_box, sheet));
-  EXPECT_GT(count_self_intersections(mended.mesh), 0U);
-  EXPECT_TRUE(says(mended, "remain")) << mended.done;
-  EXPECT_TRUE(says(mended, "an open sheet")) << mended.done;
+  const RepairedMesh repaired = cut_out_crossings(joined(unit_box, sheet));
+  EXPECT_GT(count_self_intersections(repaired.mesh), 0U);
+  EXPECT_TRUE(says(repaired, "remain")) << repaired.done;
+  EXPECT_TRUE(says(repaired, "an open sheet")) << repaired.done;
 }
 
 }  // namespace repair_test

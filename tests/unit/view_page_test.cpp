@@ -14,10 +14,11 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/io/write_packing.hpp"
+#include "geometry/edges.hpp"
+#include "geometry/simplified.hpp"
 #include "io/base64.hpp"
 #include "io/viewer_data.hpp"
 #include "io/viewer_files.hpp"
-#include "io/viewer_walls.hpp"
 #include "support/packings.hpp"
 #include "support/refusals.hpp"
 #include "support/written_files.hpp"
@@ -339,7 +340,7 @@ TEST(SharpEdges, AreThoseThatBend) {
                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   const auto edges = sharp_edges(box, 100);
   EXPECT_EQ(edges.size(), 12u) << "no diagonal of a face";
-  for (const auto& [a, b] : edges) EXPECT_NEAR((b - a).norm(), 1, 1e-15);
+  for (const auto& [a, b] : edges) EXPECT_NEAR((box.vertices[b] - box.vertices[a]).norm(), 1, 1e-15);
   EXPECT_EQ(sharp_edges(box, 5).size(), 5u);
   EXPECT_EQ(sharp_edges(ball(60), 100).size(), 0u);
 }

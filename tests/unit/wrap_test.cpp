@@ -9,7 +9,7 @@
 #include "cad/caged_repair.hpp"
 #include "cad/mesh_distance.hpp"
 #include "cad/triangle_tree.hpp"
-#include "support/mended.hpp"
+#include "support/repaired_mesh.hpp"
 
 namespace bernal {
 namespace wrap_test {
@@ -42,34 +42,34 @@ Mesh shaken_soup(const Mesh& mesh, double by, unsigned seed) {
 TEST(Wrap, LiesWithinABoxOfShakenFaces) {
   const double shake = 0.002, alpha = 0.06, offset = 0.005;
   const Mesh soup = shaken_soup(divided(unit_box, 3), shake, 7);
-  const Mended mended = wrap(soup, alpha, offset);
-  expect_sound(mended);
-  EXPECT_TRUE(says(mended, "wrapped from inside (alpha 0.06, offset 0.005)")) << mended.done;
-  for (const Vector<3>& v : mended.mesh.vertices) {
+  const RepairedMesh repaired = wrap(soup, alpha, offset);
+  expect_sound(repaired);
+  EXPECT_TRUE(says(repaired, "wrapped from inside (alpha 0.06, offset 0.005)")) << repaired.done;
+  for (const Vector<3>& v : repaired.mesh.vertices) {
     EXPECT_GT(v.minCoeff(), 0);
     EXPECT_LT(v.maxCoeff(), 1);
   }
   // It crosses the soup nowhere.
-  const Mesh both = joined(mended.mesh, soup);
+  const Mesh both = joined(repaired.mesh, soup);
   for (const auto& [s, t] : self_intersecting_pairs(both))
-    EXPECT_EQ(s < mended.mesh.triangles.size(), t < mended.mesh.triangles.size());
+    EXPECT_EQ(s < repaired.mesh.triangles.size(), t < repaired.mesh.triangles.size());
   // All but a layer of the offset and the shaking; and a chord of 2 alpha may cut the edges off.
   const double layer = offset + 2 * shake, edges = 12 * alpha * alpha;
-  EXPECT_LT(volume(mended.mesh), 1);
-  EXPECT_GT(volume(mended.mesh), std::pow(1 - 2 * layer, 3) - edges);
-  EXPECT_LT(farthest(mended.mesh, unit_box, {1e-3}).at_most, alpha);
+  EXPECT_LT(volume(repaired.mesh), 1);
+  EXPECT_GT(volume(repaired.mesh), std::pow(1 - 2 * layer, 3) - edges);
+  EXPECT_LT(farthest(repaired.mesh, unit_box, {1e-3}).at_most, alpha);
 }
 
 TEST(Wrap, KeepsObstaclesAndChambersApart) {
   const Mesh part = joined(joined(divided(unit_box, 2), box_mesh({0.4, 0.4, 0.4}, {0.2, 0.2, 0.2})),
                            translated(divided(unit_box, 2), {2, 0, 0}));
   const double shake = 1e-4, alpha = 0.07, offset = 0.002;
-  const Mended mended = wrap(shaken_soup(part, shake, 3), alpha, offset);
-  expect_sound(mended);
-  EXPECT_EQ(topology_of(mended.mesh).components, 3U) << mended.done;
+  const RepairedMesh repaired = wrap(shaken_soup(part, shake, 3), alpha, offset);
+  expect_sound(repaired);
+  EXPECT_EQ(topology_of(repaired.mesh).components, 3U) << repaired.done;
   const double exact = 2 - 0.008, area = 12 + 0.24;
-  EXPECT_LT(volume(mended.mesh), exact);
-  EXPECT_GT(volume(mended.mesh), exact - area * (offset + 2 * shake) - 24 * alpha * alpha);
+  EXPECT_LT(volume(repaired.mesh), exact);
+  EXPECT_GT(volume(repaired.mesh), exact - area * (offset + 2 * shake) - 24 * alpha * alpha);
 }
 
 TEST(Wrap, LosesNoPlaceWhereASphereFits) {
@@ -83,22 +83,22 @@ TEST(Wrap, LosesNoPlaceWhereASphereFits) {
     test::append(part, divided(box_mesh(lower, upper - lower), 3));
   }
   const Mesh soup = shaken_soup(part, 1e-5, 3);
-  const Mended mended = wrap_for_spheres(soup, 0.9 * half);
-  expect_sound(mended);
-  const TriangleTree tree(mended.mesh);
+  const RepairedMesh repaired = wrap_for_spheres(soup, 0.9 * half);
+  expect_sound(repaired);
+  const TriangleTree tree(repaired.mesh);
   for (const Vector<3>& out : {Vector<3>(1, 0, 0), {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}})
     for (const double along : {0.55, 0.75, 1.1, 1.36})
       EXPECT_EQ(tree.crossing(Vector<3>::Constant(0.5) + along * out, 2, 1e9), Crossing::odd)
-          << along << ": " << mended.done;
-  EXPECT_EQ(what_is_left(soup, mended.mesh), "");
+          << along << ": " << repaired.done;
+  EXPECT_EQ(what_is_left(soup, repaired.mesh), "");
   // Spheres that fit into no leg do not need them, and it is said that they went.
-  const Mended coarse = wrap_for_spheres(soup, 0.3);
+  const RepairedMesh coarse = wrap_for_spheres(soup, 0.3);
   EXPECT_NE(what_is_left(soup, coarse.mesh), "") << coarse.done;
 }
 
 TEST(Wrap, SaysWhenItLiesOutside) {
   const Mesh plate = box_mesh({0, 0, 0}, {1, 1, 0.08});
-  const Mended outside = wrap(plate, 0.1, 0.01);
+  const RepairedMesh outside = wrap(plate, 0.1, 0.01);
   expect_sound(outside);
   EXPECT_TRUE(says(outside, "wrapped from outside")) << outside.done;
   EXPECT_TRUE(says(outside, "too narrow for alpha")) << outside.done;
@@ -109,7 +109,7 @@ TEST(Wrap, DoesNotTakeTheSkinOfASheetForAContainer) {
   const Mesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.1}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
   const Mesh open = without_faces(divided(unit_box, 2), [](const Vector<3>& p) { return p[2] == 1; });
   for (const auto& [mesh, why] : {std::pair(sheet, "no inside was found"), {open, "gaps wider than alpha"}}) {
-    const Mended none = wrap(mesh, 0.1, 0.01);
+    const RepairedMesh none = wrap(mesh, 0.1, 0.01);
     EXPECT_TRUE(says(none, "not wrapped") && says(none, why) && says(none, "close its openings"))
         << none.done;
     EXPECT_TRUE(same(none.mesh, mesh));
@@ -121,13 +121,13 @@ TEST(Wrap, EndsSoonWhereItGetsOut) {
   // Around both sides of the walls it would ask some three hundred times, once in 256 points; to look for the
   // inside takes some twenty.
   int asked = 0;
-  const Mended none = wrap(open, 0.02, 0.001, {{}, [&] { return ++asked < 0; }});
+  const RepairedMesh none = wrap(open, 0.02, 0.001, {{}, [&] { return ++asked < 0; }});
   EXPECT_TRUE(says(none, "gaps wider than alpha")) << none.done;
   EXPECT_LT(asked, 60);
 }
 
 TEST(Wrap, ListensAndRefuses) {
-  const Mended cancelled = wrap(unit_box, 0.02, 0.001, {{}, [] { return true; }});
+  const RepairedMesh cancelled = wrap(unit_box, 0.02, 0.001, {{}, [] { return true; }});
   EXPECT_TRUE(says(cancelled, "cancelled")) << cancelled.done;
   EXPECT_TRUE(same(cancelled.mesh, unit_box));
   EXPECT_THROW(wrap(unit_box, -1, 0), Error);

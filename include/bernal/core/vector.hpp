@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>  // cross products
 #include <algorithm>
 #include <initializer_list>
+#include <limits>
 
 namespace bernal {
 
@@ -26,7 +27,7 @@ struct Coordinates : Vector<dynamic> {
   using Vector<dynamic>::operator=;
 };
 
-/// Axis-aligned bounds, `lower <= upper` in every component.
+/// Axis-aligned bounds, `lower <= upper` in every component, unless they are `of_nothing`.
 template <int D>
 struct Bounds {
   Vector<D> lower = Vector<D>::Zero();
@@ -36,6 +37,20 @@ struct Bounds {
   Vector<D> center() const { return lower + 0.5 * (upper - lower); }
   double diagonal() const { return size().norm(); }
   double volume() const { return size().prod(); }
+
+  /// Bounds to which points are then added.
+  static Bounds of_nothing() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return {Vector<D>::Constant(infinity), Vector<D>::Constant(-infinity)};
+  }
+  void add(const Vector<D>& p) {
+    lower = lower.cwiseMin(p);
+    upper = upper.cwiseMax(p);
+  }
+  /// Whether they have a point in common.
+  bool meets(const Bounds& other) const {
+    return (lower.array() <= other.upper.array()).all() && (other.lower.array() <= upper.array()).all();
+  }
 };
 
 }  // namespace bernal

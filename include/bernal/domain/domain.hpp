@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -11,6 +10,7 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
 #include "bernal/domain/boundary.hpp"
+#include "bernal/geometry/mesh.hpp"
 
 namespace bernal {
 
@@ -56,26 +56,6 @@ struct Cylinder {
 struct Sphere {
   Vector<3> center = Vector<3>::Zero();
   double radius = 1;
-};
-
-/// Corners that need not be doubles, as those of a part in another unit: corner k is exactly
-/// (high[k] + low[k]) / scale, where `high` is the double nearest to the sum and `scale` a positive integer.
-struct ExactCorners {
-  double scale = 1;
-  std::vector<Vector<3>> high, low;
-};
-
-/// A closed triangle mesh with outward orientation that does not intersect itself.
-struct Mesh {
-  std::vector<Vector<3>> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  /// The walls stand so far inside of the triangles, or behind them where that is negative: what is nearer to
-  /// a triangle is not of the domain. Its bounds and its area are those of the triangles all the same.
-  double inset = 0;
-  /// Where the corners are not doubles, what they are; `vertices` are within two roundoffs of them then. The
-  /// certificate decides on these, and what has to stay inside keeps off the others by more than that. None
-  /// is left where vertices are moved.
-  std::shared_ptr<const ExactCorners> exact = {};
 };
 
 /// The points of the plane from which a ray crosses closed lines an odd number of times: of an outline and

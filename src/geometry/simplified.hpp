@@ -1,9 +1,7 @@
 #pragma once
-#include <array>
 #include <cstddef>
-#include <vector>
 
-#include "bernal/domain/domain.hpp"
+#include "bernal/geometry/mesh.hpp"
 
 namespace bernal {
 
@@ -11,9 +9,5 @@ namespace bernal {
 /// in the cells of a grid, as coarse as it takes, and what becomes of no area is left out. Not for packing.
 /// Cost: O(T) a grid, some of them.
 Mesh simplified(const Mesh& mesh, std::size_t most);
-
-/// The edges by which a shape is recognised: those that bend by more than 30 degrees, and open ones; of more
-/// than `most` the longest. Cost: O(T log T).
-std::vector<std::array<Vector<3>, 2>> sharp_edges(const Mesh& mesh, std::size_t most);
 
 }  // namespace bernal

@@ -1,10 +1,8 @@
-#include "cad/stl_file.hpp"
+#include "cad/polygon_soup.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstring>
 #include <initializer_list>
 #include <string_view>
@@ -14,78 +12,76 @@
 #include "cad/counted.hpp"
 #include "cad/file_facts.hpp"
 #include "cad/known_formats.hpp"
+#include "core/parallel.hpp"
+#include "geometry/point_numbers.hpp"
 
 namespace bernal::cad {
 namespace {
 
 constexpr std::size_t binary_header = 84;
 constexpr std::size_t binary_triangle = 50;
-/// Longer words are no numbers.
-constexpr std::size_t most_digits = 1000;
+constexpr std::size_t facets_between_looks = 1 << 16;  // at whether the user wants to stop
 
 bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 
 std::string lower(std::string_view text) { return in_lower_case(std::string(text)); }
 
-/// Walks through the words of a text STL, stops at the first that does not belong, and writes those that do
-/// anew.
-class StlGrammar {
+/// Walks through the words of a text STL and stops at the first that does not belong.
+class StlText {
  public:
-  StlGrammar(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
-    plain_.reserve(text.size());
+  StlText(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
+
+  ReadAttempt read() && {
+    read_solids();
+    if (passed_over_ > 0)
+      read_.facts.notes.push_back(
+          fmt::format("{} behind statements of the format, of no meaning there, are ignored",
+                      counted(passed_over_, "word", "words")));
+    if (const std::size_t behind = text_.size() - end_; behind > 0)
+      read_.facts.notes.push_back(fmt::format("{} bytes after the last solid are ignored", behind));
+    read_.soup.points = std::move(points_.points);
+    if (read_.soup.solids.size() == 1 && read_.soup.solids.front().name.empty()) read_.soup.solids.clear();
+    return std::move(read_);
   }
 
-  void check() {
+ private:
+  void read_solids() {
     for (std::string_view word = next(); !word.empty(); word = next()) {
       if (skipped_comment(word)) continue;
       if (word != "solid") {
         // Padding, a signature, a remark; not a solid whose first line is spoilt.
-        if (solids_.empty() || lower(text_.substr(end_)).find("facet") != std::string::npos)
+        if (read_.soup.solids.empty() || lower(text_.substr(end_)).find("facet") != std::string::npos)
           fail("\"solid\"", word);
         return;
       }
-      solids_.push_back({name(), facets_});
-      plain_ += "solid\n";
-      check_solid();
+      std::string own = name();
+      read_.soup.solids.push_back({std::move(own), read_.soup.polygons.size()});
+      read_facets();
       end_ = at_;
     }
     end_ = text_.size();
   }
 
-  std::size_t facets() const { return facets_; }
-  /// Of what belongs to the format.
-  std::size_t end() const { return end_; }
-  /// Words that stand behind a statement in its line, a number behind endfacet for instance.
-  std::size_t passed_over() const { return passed_over_; }
-  std::vector<Solid>& solids() { return solids_; }
-  /// As readers know it: in lower case, without names, normals and what is passed over.
-  std::string& plain() { return plain_; }
-
- private:
-  void check_solid() {
+  void read_facets() {
     for (;;) {
       const std::string_view word = statement({"facet", "endsolid"});
-      if (word == "endsolid") {
-        plain_ += "endsolid\n";
-        return skip_line();
-      }
+      if (word == "endsolid") return skip_line();
       if (word != "facet") fail("\"facet\" or \"endsolid\"", word);
       expect("normal");
       for (int k = 0; k < 3; ++k)
         if (next().empty()) fail("a number", {});
       expect_statement("outer");
       expect("loop");
-      plain_ += "facet normal 0 0 0\nouter loop\n";
-      for (int k = 0; k < 3; ++k) {
+      std::vector<std::uint32_t>& corners = read_.soup.polygons.emplace_back(3);
+      for (std::size_t k = 0; k < 3; ++k) {
         k == 0 ? expect_statement("vertex") : expect("vertex");
-        plain_ += "vertex";
-        for (int axis = 0; axis < 3; ++axis) expect_number();
-        plain_ += '\n';
+        Vector<3> p;
+        for (double& coordinate : p) coordinate = expect_number();
+        corners[k] = points_.of(p);
       }
       expect("endloop");
       expect_statement("endfacet");
-      plain_ += "endloop\nendfacet\n";
-      ++facets_;
+      if (read_.soup.polygons.size() % facets_between_looks == 0) throw_if_interrupted();
     }
   }
 
@@ -138,19 +134,13 @@ class StlGrammar {
     if (word != wanted) fail(fmt::format("\"{}\"", wanted), word);
   }
 
-  void expect_number() {
+  double expect_number() {
     next();
     const std::string whole = word_;
     std::ranges::replace(word_, 'd', 'e');  // as Fortran writes exponents
-    std::string_view word = word_;
-    if (word.starts_with('+')) word.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool parsed = error == std::errc() || error == std::errc::result_out_of_range;
-    if (!parsed || end != word.data() + word.size() || !std::isfinite(value) || word.size() > most_digits)
-      fail("a finite number", whole);
-    plain_ += ' ';
-    plain_ += word;
+    const std::optional<double> number = finite_number(word_);
+    if (!number) fail("a finite number", whole);
+    return *number;
   }
 
   [[noreturn]] void fail(std::string_view wanted, std::string_view found) {
@@ -161,11 +151,13 @@ class StlGrammar {
   }
 
   std::string_view text_;
-  std::string file_, word_, plain_;
-  std::size_t at_ = 0, end_ = 0;
-  std::size_t facets_ = 0, passed_over_ = 0;
-  std::vector<Solid> solids_;
+  std::string file_, word_;
+  std::size_t at_ = 0, end_ = 0;  ///< of what belongs to the format
+  std::size_t passed_over_ =
+      0;  ///< words behind a statement in its line, a number behind endfacet for instance
   int line_ = 1;
+  ReadAttempt read_{.reader = "bernal, double precision"};
+  PointNumbers<Vector<3>> points_;
 };
 
 /// Whether it is text: comments, then the word.
@@ -179,37 +171,40 @@ bool begins_as_text(std::string_view content) {
   return zero == std::string::npos || head.find("endsolid") < zero;  // padding, behind a small part
 }
 
-StlFile checked_text(const std::string& written, const std::string& file) {
-  StlGrammar grammar(written, file);
-  grammar.check();
-  StlFile stl{false, std::move(grammar.plain()), grammar.facets(), std::move(grammar.solids())};
-  if (grammar.passed_over() > 0)
-    stl.notes.push_back(fmt::format("{} behind statements of the format, of no meaning there, are ignored",
-                                    counted(grammar.passed_over(), "word", "words")));
-  if (const std::size_t behind = written.size() - grammar.end(); behind > 0)
-    stl.notes.push_back(fmt::format("{} bytes after the last solid are ignored", behind));
-  if (stl.solids.size() == 1 && stl.solids.front().name.empty()) stl.solids.clear();
-  return stl;
+ReadAttempt read_binary(std::string_view content, std::size_t triangles) {
+  ReadAttempt read{.reader = "bernal (binary STL holds single precision)"};
+  read.soup.points.reserve(3 * triangles);
+  read.soup.polygons.reserve(triangles);
+  for (std::size_t t = 0; t < triangles; ++t) {
+    if (t % facets_between_looks == 0) throw_if_interrupted();
+    float numbers[12];  // the normal, and the corners
+    std::memcpy(numbers, content.data() + binary_header + t * binary_triangle, sizeof numbers);
+    const auto first = static_cast<std::uint32_t>(read.soup.points.size());
+    for (int k = 3; k < 12; k += 3) {
+      read.soup.points.emplace_back(numbers[k], numbers[k + 1], numbers[k + 2]);
+      if (!read.soup.points.back().allFinite()) read.failure = "a coordinate is not finite";
+    }
+    read.soup.polygons.push_back({first, first + 1, first + 2});
+  }
+  return read;
 }
 
 }  // namespace
 
-StlFile read_stl_file(const std::filesystem::path& file) {
-  StlFile stl{true, text_without_mark(file)};
-
+ReadAttempt read_stl(const std::filesystem::path& file) {
+  const std::string content = text_without_mark(file);
   std::uint32_t triangles = 0;
-  const std::size_t size = stl.content.size();
-  if (size >= binary_header) std::memcpy(&triangles, stl.content.data() + binary_header - 4, 4);
+  const std::size_t size = content.size();
+  if (size >= binary_header) std::memcpy(&triangles, content.data() + binary_header - 4, 4);
   const std::size_t promised = binary_header + binary_triangle * std::size_t{triangles};
-  stl.facets = triangles;
-  if (size >= binary_header && size == promised) return stl;
-  if (begins_as_text(stl.content)) return checked_text(stl.content, file.string());
+  if (size >= binary_header && size == promised) return read_binary(content, triangles);
+  if (begins_as_text(content)) return StlText(content, file.string()).read();
 
   const std::size_t behind = size > promised ? size - promised : 0;
   if (size >= binary_header && triangles > 0 && behind % binary_triangle != 0) {
-    stl.content.resize(promised);
-    stl.notes.push_back(fmt::format("{} bytes after the last triangle are ignored", behind));
-    return stl;
+    ReadAttempt read = read_binary(content, triangles);
+    read.facts.notes.push_back(fmt::format("{} bytes after the last triangle are ignored", behind));
+    return read;
   }
   const std::string message =
       size < binary_header
@@ -219,13 +214,6 @@ StlFile read_stl_file(const std::filesystem::path& file) {
                 "export the file again",
                 size < promised ? "truncated" : "malformed", triangles, promised, size);
   throw Error(ErrorCode::bad_mesh, message, {file.string()});
-}
-
-void tell_parts(const StlFile& stl, ReadAttempt& attempt) {
-  if (!attempt.ok()) return;
-  attempt.facts.notes.insert(attempt.facts.notes.end(), stl.notes.begin(), stl.notes.end());
-  attempt.soup.solids.clear();
-  if (attempt.soup.polygons.size() == stl.facets) attempt.soup.solids = stl.solids;
 }
 
 }  // namespace bernal::cad

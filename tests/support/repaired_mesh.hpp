@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "cad/mended.hpp"
-#include "cad/mesh_topology.hpp"
+#include "cad/repaired_mesh.hpp"
 #include "cad/self_intersections.hpp"
+#include "geometry/topology.hpp"
 #include "support/meshes.hpp"
 
 // What repairs are tried on, and what is asked of what they return.
@@ -22,17 +22,17 @@ Mesh without_faces(Mesh mesh, const Gone& gone) {
   return mesh;
 }
 
-inline bool says(const cad::Mended& mended, std::string_view words) {
-  return mended.done.find(words) != std::string::npos && mended.done.find('\n') == std::string::npos;
+inline bool says(const cad::RepairedMesh& repaired, std::string_view words) {
+  return repaired.done.find(words) != std::string::npos && repaired.done.find('\n') == std::string::npos;
 }
 
 /// Closed, two-sided as it is oriented, and meeting itself nowhere.
-inline void expect_sound(const cad::Mended& mended) {
-  const cad::MeshTopology topology = cad::topology_of(mended.mesh);
-  EXPECT_TRUE(topology.closed()) << mended.done;
-  EXPECT_EQ(topology.misoriented_edges, 0U) << mended.done;
-  EXPECT_EQ(cad::count_degenerate(mended.mesh), 0U) << mended.done;
-  EXPECT_EQ(cad::count_self_intersections(mended.mesh), 0U) << mended.done;
+inline void expect_sound(const cad::RepairedMesh& repaired) {
+  const MeshTopology topology = topology_of(repaired.mesh);
+  EXPECT_TRUE(topology.closed()) << repaired.done;
+  EXPECT_EQ(topology.misoriented_edges, 0U) << repaired.done;
+  EXPECT_EQ(cad::count_degenerate(repaired.mesh), 0U) << repaired.done;
+  EXPECT_EQ(cad::count_self_intersections(repaired.mesh), 0U) << repaired.done;
 }
 
 }  // namespace bernal::test

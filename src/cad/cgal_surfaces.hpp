@@ -1,7 +1,12 @@
 #pragma once
+#include <cstddef>
 #include <optional>
+#include <span>
 
-#include "bernal/domain/domain.hpp"
+#include "bernal/core/monitor.hpp"
+#include "bernal/geometry/mesh.hpp"
+
+// What CGAL does with whole surfaces; its heaviest headers are compiled for these alone.
 
 namespace bernal::cad {
 
@@ -17,5 +22,16 @@ std::optional<Mesh> combine(const Mesh& one, const Mesh& other, Combine how);
 /// corners of patches are welded. Nothing where it enclosed nothing so, does not close up, or CGAL gives up.
 /// Precondition: closed, oriented so that its volume is positive, without degenerate faces.
 std::optional<Mesh> unite_with_itself(const Mesh&);
+
+/// Of points; nothing if they lie in a plane.
+std::optional<Mesh> convex_hull_of(std::span<const Vector<3>>);
+
+/// Why a wrap came to nothing: it would have more points than are allowed, or what began inside went out.
+enum class StoppedWrap { by_monitor, too_many, outside };
+
+/// CGAL's alpha wrap of a surface, turned outward: from these points inside of it, or from outside if there
+/// are none. Throws StoppedWrap.
+Mesh alpha_wrap(const Mesh&, double alpha, double offset, std::span<const Vector<3>> seeds,
+                std::size_t most_points, const Monitor&);
 
 }  // namespace bernal::cad
