@@ -13,13 +13,43 @@
 
 namespace bernal {
 
+/// A register of several numbers, by the compiler's vector extension.
+template <class T>
+inline constexpr bool is_register =
+    !std::is_scalar_v<T> && !std::is_class_v<T> && !std::is_union_v<T> && !std::is_array_v<T>;
+
+/// A struct that says of itself, `using ArchivedAsBytes = void;`, that its bytes are its value: it has no
+/// addresses, so no pointer, no span, no view.
+template <class T>
+concept SaysItIsBytes = requires {
+  typename T::ArchivedAsBytes;
+};
+
+/// Whether the bytes of a type are its value: of numbers, of registers, of such structs, and of fixed arrays
+/// and pairs of these.
+template <class T>
+inline constexpr bool is_archived_as_bytes =
+    std::is_arithmetic_v<T> || std::is_enum_v<T> || is_register<T> || SaysItIsBytes<T>;
+template <class Scalar, int Rows, int Columns, int Options, int MostRows, int MostColumns>
+inline constexpr bool
+    is_archived_as_bytes<Eigen::Matrix<Scalar, Rows, Columns, Options, MostRows, MostColumns>> =
+        Rows >= 0 && Columns >= 0 && is_archived_as_bytes<Scalar>;
+template <class T, std::size_t N>
+inline constexpr bool is_archived_as_bytes<std::array<T, N>> = is_archived_as_bytes<T>;
+template <class T, std::size_t N>
+inline constexpr bool is_archived_as_bytes<T[N]> = is_archived_as_bytes<T>;
+template <class A, class B>
+inline constexpr bool is_archived_as_bytes<std::pair<A, B>> =
+    is_archived_as_bytes<A>&& is_archived_as_bytes<B>;
+
 /// Bytes that stand for values: those of something that is to go on later, in another process. One function
 /// says what belongs to it, and both writes and reads, so that the two cannot drift apart:
 ///
 ///   void archive(Archive& a) { a(count_, places_, radii_); }
 ///
-/// Plain values go as their bytes, for machines of one kind; vectors with their lengths; whatever has a
-/// member `archive`, or a function archive(Archive&, T&), by that. What holds addresses has to have one.
+/// Numbers, and structs that say it of themselves, go as their bytes, for machines of one kind; vectors with
+/// their lengths; whatever has a member `archive`, or a function archive(Archive&, T&), by that. Nothing else
+/// compiles.
 /// Order and types of what is read must be those of what was written, which nothing checks but the number of
 /// bytes: whoever reads has made sure before that the bytes are those, of the same program. Cost: that of
 /// copying.
@@ -47,11 +77,6 @@ class Archive {
   [[noreturn]] static void fail();
 
  private:
-  /// Has no address of anything, as far as a type can tell. Fixed vectors of Eigen are copied by functions of
-  /// their own, but have nothing else.
-  template <class T>
-  static constexpr bool is_plain = std::is_trivially_destructible_v<T> && !std::is_pointer_v<T>;
-
   template <class T>
   void take(T& value) {
     static_assert(!std::is_const_v<T>);
@@ -59,7 +84,7 @@ class Archive {
       value.archive(*this);
     else if constexpr (requires { archive(*this, value); })
       archive(*this, value);
-    else if constexpr (is_plain<T>)
+    else if constexpr (is_archived_as_bytes<T>)
       bytes(static_cast<void*>(&value), sizeof value);
     else
       take_parts(value);
@@ -77,7 +102,7 @@ class Archive {
   void take_parts(std::vector<T, Allocator>& values) {
     constexpr bool own = requires(T & value) { value.archive(*this); }
     || requires(T & value) { archive(*this, value); };
-    constexpr bool plain = is_plain<T> && !own;
+    constexpr bool plain = is_archived_as_bytes<T> && !own;
     const std::size_t n = length(values.size(), plain ? sizeof(T) : 1);
     if (reads()) values.resize(n);
     if constexpr (plain) {

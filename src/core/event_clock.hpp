@@ -15,6 +15,7 @@ namespace bernal {
 /// about 25 ns of the clock, which is taken off. Cost: 1 ns an event.
 class EventClock {
  public:
+  using ArchivedAsBytes = void;
   using Clock = std::chrono::steady_clock;
 
   static constexpr std::uint64_t first = 64;

@@ -30,6 +30,7 @@ class FlyingSpheres {
   using Id = std::uint32_t;
   using Columns = Eigen::Array<double, Eigen::Dynamic, D>;
   struct Pair {
+    using ArchivedAsBytes = void;
     Id first, second;
   };
 

@@ -16,6 +16,7 @@ namespace bernal {
 /// Error: rounding of x0 and of v t, 2.2e-16 of each.
 template <int D>
 struct alignas(D == 3 ? 64 : 16) FlyingSphere {
+  using ArchivedAsBytes = void;
   double x0[D];
   double v[D];
   double r = 0;

@@ -20,6 +20,7 @@ namespace bernal {
 
 /// What happened in a period of `HardSpheres`.
 struct FlightPeriod {
+  using ArchivedAsBytes = void;
   double time = 0;                ///< the caller's length over the thermal speed
   std::uint64_t collisions = 0;   ///< of pairs
   std::uint64_t reflections = 0;  ///< of spheres from walls
@@ -39,6 +40,7 @@ struct FlightPeriod {
 
 /// What the events of all periods took: those of collisions with what they let look again.
 struct FlightTimes {
+  using ArchivedAsBytes = void;
   EventClock collisions, reflections, departures;
   double builds = 0;  ///< seconds
 };

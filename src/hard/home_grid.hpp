@@ -84,6 +84,7 @@ class HomeGrid {
   /// Points of a cell. More than it has room for stand in further lines, all of them full, that are chained
   /// to the cell's own.
   struct alignas(64) Line {
+    using ArchivedAsBytes = void;
     std::uint32_t count : 3 = 0, next : 29 = 0;  // next: 0 if none
     Id ids[a_line] = {};
     std::uint16_t x[a_line][D] = {};
@@ -92,6 +93,7 @@ class HomeGrid {
   static_assert(sizeof(Line) == 64);
 
   struct Level {
+    using ArchivedAsBytes = void;
     double largest;
     std::size_t points = 0;
     std::array<int, D> cells = {};

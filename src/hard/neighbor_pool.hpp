@@ -17,6 +17,7 @@ class NeighborPool {
  public:
   using Id = std::uint32_t;
   struct List {
+    using ArchivedAsBytes = void;
     std::size_t begin = 0;
     std::uint32_t count = 0, room = 0;
   };
@@ -67,6 +68,7 @@ class NeighborPool {
  private:
   static constexpr std::size_t a_line = 16;
   struct alignas(64) Line {
+    using ArchivedAsBytes = void;
     Id ids[a_line];
   };
 

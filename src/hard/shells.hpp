@@ -51,6 +51,7 @@ class Shells {
 
  private:
   struct alignas(D == 3 ? 64 : 16) Shell {
+    using ArchivedAsBytes = void;
     Vector<D> home;
     double freedom, reach;  // reach: radius and freedom
     NeighborPool::List list;

@@ -46,6 +46,7 @@ template <int D>
 class JammingEnergy final : public SmoothFunction {
  public:
   struct Contact {
+    using ArchivedAsBytes = void;
     Vector<D> normal;  // from the second to the first
     double stiffness;  // f'(o)
     double tension;    // f / d

@@ -11,6 +11,7 @@ namespace bernal {
 /// A piece of wall near a sphere.
 template <int D>
 struct NearPiece {
+  using ArchivedAsBytes = void;
   WallPiece<D> piece;
   double distance;    ///< of the centre, when it was found
   double weight = 1;  ///< how many pieces touch in that place

@@ -89,6 +89,7 @@ class CellGrid {
 
  private:
   struct Link {
+    using ArchivedAsBytes = void;
     Id next = none;
     Id previous = none;
     std::uint32_t cell = 0;

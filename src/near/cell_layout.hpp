@@ -26,6 +26,7 @@ template <int D>
 class CellLayout {
  public:
   struct Level {
+    using ArchivedAsBytes = void;
     double largest_radius = 0;
     Vector<D> inverse_edge = Vector<D>::Zero();
     std::array<int, D> cells{};

@@ -22,6 +22,7 @@ template <int D>
 class PeriodicPairs {
  public:
   struct Pair {
+    using ArchivedAsBytes = void;
     std::uint32_t first, second;
     std::uint32_t image;  // in images()
   };

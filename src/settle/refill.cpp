@@ -10,6 +10,7 @@ namespace {
 
 /// A random place, its clearance from the wall, and the radius of the largest sphere that fits there now.
 struct Probe {
+  using ArchivedAsBytes = void;
   Vector<3> place;
   double clearance;
   double room;

@@ -104,6 +104,7 @@ class Crowd {
  private:
   /// How far `settle` has come.
   struct Settling {
+    using ArchivedAsBytes = void;
     int slow = 0;    // looks in a row that found them hardly freer
     int sweeps = 0;  // since the last look
     double least_squeeze = 1e300;

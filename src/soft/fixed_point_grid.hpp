@@ -33,6 +33,7 @@ using RegistersFor = Registers<D <= 4 ? 4 : 8>;
 /// the shortest image by themselves.
 template <int D>
 struct FixedPlace {
+  using ArchivedAsBytes = void;
   typename RegistersFor<D>::Whole x;
 };
 

@@ -58,6 +58,7 @@ struct GrowingBox {
 
 /// How far `grow_apart` has come.
 struct BoxGrowth {
+  using ArchivedAsBytes = void;
   double molr = 1;  ///< the largest overlap ratio
   double last_molr = 0, least_molr = 1;
   double growth = 0;

@@ -12,6 +12,7 @@ namespace bernal {
 /// What is read together lies together.
 template <int D>
 struct PlacedSphere {
+  using ArchivedAsBytes = void;
   Vector<D> center;
   double r;
 };

@@ -12,6 +12,7 @@ namespace bernal {
 /// Resolution: 2^-33 of the edge, 1e-8 radii in a box of 10,000 spheres. A radius of NaN stands for no
 /// sphere: it touches nothing.
 struct alignas(16) SoftSphere {
+  using ArchivedAsBytes = void;
   std::int32_t x[3];
   float r;
 };

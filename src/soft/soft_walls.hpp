@@ -86,10 +86,12 @@ class SoftWalls {
   /// Where a sphere stood when it looked for the wall, and how far from it, or a lower bound of that: all
   /// that most spheres look at when lists are built.
   struct Stand {
+    using ArchivedAsBytes = void;
     Vector<3> at = Vector<3>::Zero();
     double clearance = 0;
   };
   struct Piece {
+    using ArchivedAsBytes = void;
     double distance;  // from Stand::at
     FacetTable::Number facet;
   };
@@ -102,12 +104,14 @@ class SoftWalls {
   };
   /// One that a sphere may meet, and no nearer to its centre than `until` less NearSphere::way.
   struct NearPiece {
+    using ArchivedAsBytes = void;
     float until;
     FacetTable::Number facet;
   };
   /// A sphere that may meet a wall until lists are built anew: what a sweep touches, in its order. The first
   /// four members are all that most sweeps look at.
   struct NearSphere {
+    using ArchivedAsBytes = void;
     std::array<std::int32_t, 3> seen_from{};  // where it was when facets were looked at last
     float seen_to = 0;                        // the planes of all nearer than that are known; 0: of none
     float free = 0;                           // no wall is nearer, from there
@@ -122,6 +126,7 @@ class SoftWalls {
   };
   /// What a sphere may touch, as seen from there. Those of one patch come one after the other.
   struct Plane {
+    using ArchivedAsBytes = void;
     std::array<float, 3> normal;
     float distance;
     std::uint32_t patch;

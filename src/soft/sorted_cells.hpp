@@ -107,6 +107,7 @@ class SortedCells : public Slots<D> {
 
   using Level = typename CellLayout<D>::Level;
   struct Tag {
+    using ArchivedAsBytes = void;
     std::uint64_t came;    // when, to its cell
     std::uint32_t cell;    // that it is in
     std::uint32_t number;  // of the sphere
@@ -116,6 +117,7 @@ class SortedCells : public Slots<D> {
   /// On a level, since the array was sorted: the most that any sphere can have moved along an axis before
   /// this sweep, and the longest step in this sweep, in which each sphere moves once.
   struct Motion {
+    using ArchivedAsBytes = void;
     double moved = 0, step = 0;
     std::size_t spheres = 0;
   };

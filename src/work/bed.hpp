@@ -47,6 +47,7 @@ class Bed {
   using Id = std::uint32_t;
 
   struct Ball {
+    using ArchivedAsBytes = void;
     Vector<3> center;
     double r;
   };
@@ -128,6 +129,7 @@ class Bed {
 
   /// What it was made for.
   struct Sizes {
+    using ArchivedAsBytes = void;
     double r_min, r_max;
     std::size_t expected;
   };

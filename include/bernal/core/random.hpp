@@ -16,6 +16,7 @@ namespace bernal {
 /// a number.
 class Random {
  public:
+  using ArchivedAsBytes = void;
   using result_type = std::uint64_t;
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }

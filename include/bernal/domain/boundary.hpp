@@ -9,6 +9,7 @@ namespace bernal {
 /// that is 0.
 template <int D>
 struct Boundary {
+  using ArchivedAsBytes = void;
   Vector<D> edges = Vector<D>::Zero();
   Vector<D> origin = Vector<D>::Zero();  ///< the lowest corner of the period that centres are wrapped into
 

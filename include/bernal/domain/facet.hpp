@@ -18,6 +18,7 @@ namespace bernal {
 /// A triangle without area, two of whose vertices are one, is a segment: an edge of a polygon. Its R is how
 /// far inside of it the wall stands, see `Mesh::inset`; 0 for most, and negative where it stands behind.
 struct Facet {
+  using ArchivedAsBytes = void;
   enum class Kind : std::uint8_t { plane, cylinder, sphere, triangle };
   Kind kind = Kind::plane;
   std::uint32_t id = 0;  ///< which facet of its container
