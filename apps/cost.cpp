@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bernal/core/text.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"

@@ -9,7 +9,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "commands.hpp"
 

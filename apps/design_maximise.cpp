@@ -9,8 +9,8 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/predict/design.hpp"
-#include "bernal/run/run.hpp"
 #include "commands.hpp"
 #include "design.hpp"
 #include "progress_bar.hpp"

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "bernal/io/describe.hpp"
-#include "bernal/io/json.hpp"
+#include "bernal/report/describe.hpp"
+#include "bernal/report/json.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/slabs/pack_in_slabs.hpp"

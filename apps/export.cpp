@@ -12,7 +12,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/io/read_packing.hpp"
+#include "bernal/result/read_packing.hpp"
 #include "bernal/scene/scene_reference.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"

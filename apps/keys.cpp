@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "bernal/io/json.hpp"
+#include "bernal/report/json.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/scene/scene_reference.hpp"
 #include "commands.hpp"

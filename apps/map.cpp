@@ -7,7 +7,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/map/map.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"

@@ -13,8 +13,8 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/io/describe.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/report/describe.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/slabs/pack_in_slabs.hpp"

@@ -11,7 +11,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/map/check_prediction.hpp"
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "commands.hpp"
 #include "design.hpp"

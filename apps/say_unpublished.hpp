@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "bernal/core/text.hpp"
-#include "bernal/io/read_packing.hpp"
+#include "bernal/result/read_packing.hpp"
 #include "say.hpp"
 
 /// Says so where a result is read from where a run left it that was killed.

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "bernal/measure/measure.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 
 namespace bernal {
 

@@ -7,7 +7,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "cad/known_formats.hpp"
-#include "core/file_kind.hpp"
+#include "files/file_kind.hpp"
 
 namespace bernal::cad {
 

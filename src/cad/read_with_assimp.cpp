@@ -13,8 +13,8 @@
 #include <sstream>
 
 #include "cad/caged_reader.hpp"
-#include "cad/file_digest.hpp"
 #include "cad/file_facts.hpp"
+#include "cad/files_of_part.hpp"
 #include "cad/known_formats.hpp"
 #include "cad/polygon_soup.hpp"
 

@@ -8,13 +8,13 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "cad/file_digest.hpp"
 #include "cost/cost_folder.hpp"
 #include "cost/search.hpp"
 #include "cost/verdict.hpp"
 #include "cost/write_cost.hpp"
-#include "io/put_in_place.hpp"
-#include "io/staged_folder.hpp"
+#include "files/put_in_place.hpp"
+#include "files/sha256.hpp"
+#include "files/staged_folder.hpp"
 
 namespace bernal {
 

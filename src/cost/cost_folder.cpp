@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "bernal/core/error.hpp"
-#include "cad/file_digest.hpp"
-#include "core/input_file.hpp"
-#include "io/output_file.hpp"
-#include "io/staged_folder.hpp"
+#include "files/input_file.hpp"
+#include "files/output_file.hpp"
+#include "files/sha256.hpp"
+#include "files/staged_folder.hpp"
 
 namespace fs = std::filesystem;
 

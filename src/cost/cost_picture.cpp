@@ -3,8 +3,8 @@
 #include <map>
 
 #include "cost/write_cost.hpp"
-#include "io/html_text.hpp"
 #include "map/drawing.hpp"
+#include "report/html_text.hpp"
 
 namespace bernal::cost {
 namespace {

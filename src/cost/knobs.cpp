@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "cost/cost_folder.hpp"
 #include "cost/faceted.hpp"
-#include "io/write_off.hpp"
+#include "result/write_off.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 

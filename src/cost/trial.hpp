@@ -7,7 +7,7 @@
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/domain/domain.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "bernal/scene/scene.hpp"
 
 namespace bernal::cost {

@@ -12,9 +12,9 @@
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/version.hpp"
 #include "core/fnv.hpp"
-#include "core/input_file.hpp"
 #include "cost/rounds.hpp"
-#include "io/staged_folder.hpp"
+#include "files/input_file.hpp"
+#include "files/staged_folder.hpp"
 
 namespace bernal::cost {
 namespace {

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/predict/predict.hpp"
-#include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "cost/cost_row.hpp"
 #include "cost/front.hpp"

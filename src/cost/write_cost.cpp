@@ -8,9 +8,9 @@
 #include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
 #include "cost/verdict.hpp"
-#include "io/html_text.hpp"
-#include "io/page.hpp"
-#include "io/report_style.hpp"
+#include "report/html_text.hpp"
+#include "report/page.hpp"
+#include "report/report_style.hpp"
 
 namespace bernal::cost {
 namespace {

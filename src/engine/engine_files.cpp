@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "io/output_file.hpp"
+#include "files/output_file.hpp"
 
 namespace bernal::engine {
 namespace {

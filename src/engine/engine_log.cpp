@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
-#include "core/input_file.hpp"
 #include "engine/script_parts.hpp"
+#include "files/input_file.hpp"
 
 namespace bernal::engine {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 #include "bernal/domain/domain.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "bernal/scene/scene.hpp"
 
 namespace bernal::engine {

@@ -12,7 +12,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/engine/engine_error.hpp"
-#include "core/input_file.hpp"
+#include "files/input_file.hpp"
 
 namespace bernal::engine {
 namespace {

@@ -13,13 +13,13 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/engine/engine_error.hpp"
-#include "core/bytes_of_file.hpp"
 #include "core/fnv.hpp"
 #include "engine/child.hpp"
 #include "engine/engine_command.hpp"
 #include "engine/engine_files.hpp"
 #include "engine/engine_log.hpp"
 #include "engine/script_parts.hpp"
+#include "files/bytes_of_file.hpp"
 
 namespace bernal::engine {
 namespace {

@@ -10,10 +10,10 @@
 
 #include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
+#include "files/output_file.hpp"
 #include "formats/surface_file.hpp"
 #include "formats/templates.hpp"
-#include "io/output_file.hpp"
-#include "io/palette.hpp"
+#include "report/palette.hpp"
 
 namespace bernal {
 namespace {

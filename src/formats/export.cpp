@@ -9,11 +9,11 @@
 #include "bernal/core/text.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "core/parallel.hpp"
+#include "files/seal.hpp"
 #include "formats/format.hpp"
 #include "formats/text_file.hpp"
-#include "io/result_folder.hpp"
-#include "io/seal.hpp"
-#include "io/write_output.hpp"
+#include "result/result_folder.hpp"
+#include "result/write_output.hpp"
 #include "scene/scene_sources.hpp"
 
 namespace fs = std::filesystem;

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "core/csv_headings.hpp"
+#include "files/csv_headings.hpp"
 
 namespace bernal {
 

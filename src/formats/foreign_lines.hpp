@@ -10,7 +10,7 @@
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/spheres.hpp"
-#include "core/csv_lines.hpp"
+#include "files/csv_lines.hpp"
 #include "formats/format.hpp"
 
 namespace bernal {

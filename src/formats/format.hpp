@@ -15,8 +15,8 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/unit.hpp"
 #include "bernal/formats/import.hpp"
-#include "bernal/run/packing.hpp"
-#include "io/staged_folder.hpp"
+#include "bernal/scene/packing.hpp"
+#include "files/staged_folder.hpp"
 #include "scene/output_table.hpp"
 #include "solids/solids.hpp"
 

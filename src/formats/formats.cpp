@@ -7,7 +7,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/formats/export.hpp"
-#include "core/csv_headings.hpp"
+#include "files/csv_headings.hpp"
 #include "formats/format.hpp"
 
 namespace bernal {

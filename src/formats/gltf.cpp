@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "formats/surface_file.hpp"
-#include "io/legend.hpp"
-#include "io/palette.hpp"
+#include "report/legend.hpp"
+#include "report/palette.hpp"
 #include "surfaces/icosphere.hpp"
 
 namespace bernal {

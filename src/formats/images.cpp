@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "formats/format.hpp"
-#include "io/write_image.hpp"
+#include "report/write_image.hpp"
 
 namespace bernal {
 namespace {

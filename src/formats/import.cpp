@@ -12,10 +12,10 @@
 #include "bernal/domain/domain.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/version.hpp"
-#include "core/csv_lines.hpp"
-#include "core/file_kind.hpp"
+#include "files/csv_lines.hpp"
+#include "files/file_kind.hpp"
 #include "formats/import_domain.hpp"
-#include "io/result_folder.hpp"
+#include "result/result_folder.hpp"
 
 namespace bernal {
 namespace {

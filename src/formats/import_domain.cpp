@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
 
 namespace bernal {

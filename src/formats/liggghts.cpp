@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "files/seal.hpp"
 #include "formats/lammps.hpp"
 #include "formats/templates.hpp"
-#include "io/seal.hpp"
 #include "scene/toml_text.hpp"
 #include "surfaces/wall_surface.hpp"
 

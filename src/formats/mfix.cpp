@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/csv_lines.hpp"
+#include "files/csv_lines.hpp"
 #include "formats/foreign_lines.hpp"
 #include "formats/templates.hpp"
 #include "formats/text_file.hpp"

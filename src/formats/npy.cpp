@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "core/csv_lines.hpp"
-#include "core/file_kind.hpp"
-#include "core/npy_file.hpp"
 #include "core/parallel.hpp"
+#include "files/csv_lines.hpp"
+#include "files/file_kind.hpp"
+#include "files/npy_file.hpp"
 #include "formats/foreign_lines.hpp"
 #include "formats/text_file.hpp"
 

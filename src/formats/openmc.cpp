@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include "core/file_kind.hpp"
+#include "files/file_kind.hpp"
+#include "files/seal.hpp"
 #include "formats/npy.hpp"
 #include "formats/templates.hpp"
-#include "io/seal.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {

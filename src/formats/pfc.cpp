@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/csv_lines.hpp"
+#include "files/csv_lines.hpp"
 #include "formats/foreign_lines.hpp"
 #include "formats/text_file.hpp"
 

@@ -7,8 +7,8 @@
 #include "formats/foreign_lines.hpp"
 #include "formats/templates.hpp"
 #include "formats/text_file.hpp"
-#include "io/legend.hpp"
-#include "io/palette.hpp"
+#include "report/legend.hpp"
+#include "report/palette.hpp"
 
 namespace bernal {
 namespace {

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/dimension.hpp"
-#include "core/csv_headings.hpp"
+#include "files/csv_headings.hpp"
 #include "formats/foreign_lines.hpp"
 
 namespace bernal {

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "core/csv_headings.hpp"
+#include "files/csv_headings.hpp"
 #include "formats/foreign_lines.hpp"
 
 namespace bernal {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "core/parallel.hpp"
-#include "io/output_file.hpp"
+#include "files/output_file.hpp"
 
 namespace bernal {
 

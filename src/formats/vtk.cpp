@@ -9,8 +9,8 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/error.hpp"
-#include "core/bytes_of_file.hpp"
-#include "core/csv_lines.hpp"
+#include "files/bytes_of_file.hpp"
+#include "files/csv_lines.hpp"
 #include "formats/foreign_lines.hpp"
 
 namespace bernal {

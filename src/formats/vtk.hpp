@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/raw_numbers.hpp"
+#include "files/raw_numbers.hpp"
 
 namespace bernal {
 

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "core/csv_headings.hpp"
-#include "core/csv_lines.hpp"
+#include "files/csv_headings.hpp"
+#include "files/csv_lines.hpp"
 #include "formats/foreign_lines.hpp"
 #include "formats/vtk.hpp"
 

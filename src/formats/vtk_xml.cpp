@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "core/csv_headings.hpp"
-#include "core/csv_lines.hpp"
+#include "files/csv_headings.hpp"
+#include "files/csv_lines.hpp"
 #include "formats/foreign_lines.hpp"
 #include "formats/vtk.hpp"
-#include "io/base64.hpp"
+#include "viewer/base64.hpp"
 
 namespace bernal {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "io/palette.hpp"
+#include "report/palette.hpp"
 
 namespace bernal::drawing {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "io/plot.hpp"
+#include "report/plot.hpp"
 
 namespace bernal::drawing {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "io/html_text.hpp"
+#include "report/html_text.hpp"
 
 namespace bernal::drawing {
 namespace {

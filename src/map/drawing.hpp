@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/plot.hpp"
+#include "report/plot.hpp"
 
 // What the pictures of maps, costs and sweeps have in common.
 namespace bernal::drawing {

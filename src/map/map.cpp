@@ -11,10 +11,10 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/predict/mixtures.hpp"
-#include "core/input_file.hpp"
 #include "core/parallel.hpp"
-#include "io/output_file.hpp"
-#include "io/staged_folder.hpp"
+#include "files/input_file.hpp"
+#include "files/output_file.hpp"
+#include "files/staged_folder.hpp"
 #include "map/contours.hpp"
 #include "map/drawing.hpp"
 

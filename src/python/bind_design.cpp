@@ -7,9 +7,9 @@
 #include <pybind11/stl.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/predict/design.hpp"
 #include "bernal/predict/predict.hpp"
-#include "bernal/run/run.hpp"
 #include "python/bindings.hpp"
 #include "python/job.hpp"
 #include "python/lock.hpp"

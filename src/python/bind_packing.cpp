@@ -4,10 +4,10 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include "bernal/io/picture.hpp"
-#include "bernal/io/section.hpp"
-#include "bernal/io/view_page.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/report/picture.hpp"
+#include "bernal/report/section.hpp"
+#include "bernal/viewer/view_page.hpp"
 #include "python/bindings.hpp"
 #include "python/lock.hpp"
 

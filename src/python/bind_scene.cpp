@@ -7,7 +7,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "bernal/core/text.hpp"
-#include "bernal/io/json.hpp"
+#include "bernal/report/json.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "python/bindings.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 
 namespace bernal::python {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <thread>
 
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/version.hpp"
 
 namespace bernal {

@@ -7,11 +7,11 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/measure/rest.hpp"
-#include "run/caution.hpp"
-#include "run/estimate.hpp"
-#include "run/few_large.hpp"
-#include "run/room_for_gaps.hpp"
-#include "run/shortfall.hpp"
+#include "plan/caution.hpp"
+#include "plan/estimate.hpp"
+#include "plan/few_large.hpp"
+#include "plan/room_for_gaps.hpp"
+#include "plan/shortfall.hpp"
 
 namespace bernal {
 namespace {

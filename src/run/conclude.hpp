@@ -1,5 +1,5 @@
 #pragma once
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "run/last_pressed.hpp"
 #include "work/work.hpp"
 

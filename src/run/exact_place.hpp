@@ -4,8 +4,8 @@
 
 #include "bernal/core/vector.hpp"
 #include "bernal/domain/container.hpp"
-#include "bernal/run/run.hpp"
 #include "bernal/domain/domain.hpp"
+#include "bernal/plan/plan.hpp"
 
 namespace bernal {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "bernal/measure/measure.hpp"
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/settle/refill.hpp"
 #include "bernal/soft/settle.hpp"
 #include "settle/compress.hpp"

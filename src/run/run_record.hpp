@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "bernal/core/monitor.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "core/archive.hpp"
 #include "work/counted_container.hpp"
 #include "work/effect_log.hpp"

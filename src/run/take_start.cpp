@@ -7,8 +7,8 @@
 #include "bernal/core/tolerance.hpp"
 #include "bernal/domain/boundary.hpp"
 #include "near/cell_grid.hpp"
-#include "run/stages.hpp"
-#include "run/start.hpp"
+#include "plan/stages.hpp"
+#include "plan/start.hpp"
 #include "work/free_of_overlap.hpp"
 
 namespace bernal {

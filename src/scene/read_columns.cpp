@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "core/csv_headings.hpp"
-#include "core/csv_lines.hpp"
-#include "core/file_kind.hpp"
-#include "core/input_file.hpp"
-#include "core/next_line.hpp"
+#include "files/csv_headings.hpp"
+#include "files/csv_lines.hpp"
+#include "files/file_kind.hpp"
+#include "files/input_file.hpp"
+#include "files/next_line.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "core/npy_file.hpp"
+#include "files/npy_file.hpp"
 
 namespace bernal {
 namespace {

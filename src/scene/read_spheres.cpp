@@ -11,9 +11,9 @@
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
-#include "core/csv_headings.hpp"
-#include "core/csv_lines.hpp"
-#include "core/npy_file.hpp"
+#include "files/csv_headings.hpp"
+#include "files/csv_lines.hpp"
+#include "files/npy_file.hpp"
 #include "scene/read_npy_spheres.hpp"
 
 namespace bernal {

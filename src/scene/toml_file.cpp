@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "core/file_kind.hpp"
-#include "core/input_file.hpp"
+#include "files/file_kind.hpp"
+#include "files/input_file.hpp"
 
 namespace bernal {
 namespace {

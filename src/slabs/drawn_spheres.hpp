@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "engine/engine_task.hpp"
 
 namespace bernal {

@@ -1,7 +1,7 @@
 #pragma once
 #include <functional>
 
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "slabs/slab_store.hpp"
 
 namespace bernal {

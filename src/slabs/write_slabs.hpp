@@ -2,7 +2,7 @@
 #include <functional>
 
 #include "bernal/slabs/pack_in_slabs.hpp"
-#include "io/staged_folder.hpp"
+#include "files/staged_folder.hpp"
 #include "slabs/slab_store.hpp"
 
 namespace bernal {

@@ -9,10 +9,10 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "core/bytes_of_file.hpp"
-#include "core/input_file.hpp"
-#include "io/seal.hpp"
-#include "io/staged_folder.hpp"
+#include "files/bytes_of_file.hpp"
+#include "files/input_file.hpp"
+#include "files/seal.hpp"
+#include "files/staged_folder.hpp"
 #include "sweep/cell_folder.hpp"
 
 namespace fs = std::filesystem;

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "sweep/cell_folder.hpp"
 #include "sweep/claim.hpp"

@@ -13,7 +13,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/sweep/sweep.hpp"
 #include "core/parallel.hpp"
 #include "sweep/cell_folder.hpp"

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/sweep/sweep.hpp"
-#include "core/bytes_of_file.hpp"
-#include "io/seal.hpp"
-#include "io/staged_folder.hpp"
+#include "files/bytes_of_file.hpp"
+#include "files/seal.hpp"
+#include "files/staged_folder.hpp"
 #include "sweep/cell_folder.hpp"
 #include "sweep/check_cells.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "io/palette.hpp"
 #include "map/drawing.hpp"
+#include "report/palette.hpp"
 #include "scene/toml_text.hpp"
 #include "sweep/results.hpp"
 

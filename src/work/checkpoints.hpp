@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bernal/core/monitor.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "core/archive.hpp"
 #include "work/checkpoint_folder.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bernal/domain/container.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "core/event_clock.hpp"
 #include "core/made.hpp"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "core/archive.hpp"
 #include "core/made.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "scene/stage_table.hpp"
 #include "work/work.hpp"
 

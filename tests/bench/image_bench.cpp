@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "bernal/core/random.hpp"
-#include "io/write_image.hpp"
+#include "report/write_image.hpp"
 #include "support/folder.hpp"
 
 // What it costs to write an image of 512^3 voxels: of a million spheres, of eight thousand, of a hundred.

@@ -17,9 +17,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bernal/core/random.hpp"
-#include "bernal/io/write_packing.hpp"
 #include "bernal/measure/measure.hpp"
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
 

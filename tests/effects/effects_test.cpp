@@ -13,7 +13,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "core/made.hpp"
 #include "hard/calendar.hpp"
-#include "run/stages.hpp"
+#include "plan/stages.hpp"
 #include "support/plans.hpp"
 #include "support/scenes.hpp"
 #include "work/counted_container.hpp"

@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "bernal/core/error.hpp"
-#include "bernal/io/read_packing.hpp"
-#include "io/output_file.hpp"
-#include "io/write_csv.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "files/output_file.hpp"
+#include "result/write_csv.hpp"
 #include "scene/read_spheres.hpp"
 #include "support/folder.hpp"
 #include "support/fuzz.hpp"

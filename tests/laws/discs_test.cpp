@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "bernal/io/read_packing.hpp"
-#include "bernal/io/write_packing.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "support/folder.hpp"

@@ -10,9 +10,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What "(types only)" in the table stands for: the headers of plain data.
-const std::set<std::string> type_headers = {"packing.hpp"};
-
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t`/");
   if (first == std::string::npos) return "";
@@ -56,13 +53,10 @@ Rule parse_rule(const std::string& text, const std::set<std::string>& all_rooms)
     std::smatch match;
     if (!std::regex_match(part, match, item) || !all_rooms.contains(match[1]))
       throw std::runtime_error("src/README.md: cannot read \"" + part + "\" in the table of rooms");
-    if (!match[2].matched) {
-      rule.rooms.insert(match[1]);
-    } else if (match[2] == "types") {
-      rule.files[match[1]] = type_headers;
-    } else {
+    if (match[2].matched)
       rule.files[match[1]].insert(match[2]);
-    }
+    else
+      rule.rooms.insert(match[1]);
   }
   return rule;
 }

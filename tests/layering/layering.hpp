@@ -16,7 +16,7 @@ struct Rule {
 };
 
 /// One rule a room, read from the table in src/README.md; its third column says
-/// "nothing", "public headers", "all but A, B" or "A, B (file.hpp only), C (types only)".
+/// "nothing", "public headers", "all but A, B" or "A, B (file.hpp only)".
 std::map<std::string, Rule> read_rules(const std::filesystem::path& readme);
 
 /// Every include below src/, include/ and apps/ of `root` that the rules forbid, as "file:line: why".

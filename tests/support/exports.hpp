@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "support/folder.hpp"
 
 // Files of other programs as those read them: written after the programs' own descriptions, not after ours.

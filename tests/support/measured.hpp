@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bernal/measure/measure.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 
 // Measurements of a packing that the tests have as a whole.
 namespace bernal {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "bernal/core/random.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 
 namespace bernal::testing {

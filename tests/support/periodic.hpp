@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/random.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 
 namespace bernal::testing {
@@ -21,11 +21,11 @@ Packing periodic_packing(Spheres<D> spheres, const Vector<D>& edges,
   packing.spheres = std::move(spheres);
   packing.domain = bernal::periodic_box(edges);
   packing.volume = volume_of(packing.domain);
-  packing.scene = parse_scene(
-      fmt::format("unit = \"mm\"\n[container]\nkind = \"periodic\"\ndimension = {}\nsize = [{}]\n"
-                  "[spheres]\nfill = true\n{}\n",
-                  D, fmt::join(edges, ", "), sizes),
-      "test.toml");
+  packing.scene =
+      parse_scene(fmt::format("unit = \"mm\"\n[container]\nkind = \"periodic\"\ndimension = {}\nsize = [{}]\n"
+                              "[spheres]\nfill = true\n{}\n",
+                              D, fmt::join(edges, ", "), sizes),
+                  "test.toml");
   packing.version = "0.0.0";
   packing.reason = "made by hand";
   return packing;

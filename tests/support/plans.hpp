@@ -8,9 +8,9 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "run/estimate.hpp"
+#include "plan/estimate.hpp"
 
 // Plans that no scene file can state: of a given mesh, or of a scene that has been scaled and shifted.
 namespace bernal::testing {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/staged_folder.hpp"
+#include "files/staged_folder.hpp"
 #include "support/folder.hpp"
 
 // What the tests of folders that runs write into share.

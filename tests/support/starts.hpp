@@ -10,7 +10,7 @@
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
-#include "io/write_csv.hpp"
+#include "result/write_csv.hpp"
 #include "support/written_files.hpp"
 
 // What tests of packings that start from spheres share.

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bernal/core/error.hpp"
-#include "io/output_file.hpp"
+#include "files/output_file.hpp"
 #include "support/folder.hpp"
 #include "support/packings.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "bernal/io/read_packing.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "support/starts.hpp"
 
 namespace bernal {

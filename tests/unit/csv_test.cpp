@@ -1,4 +1,4 @@
-#include "io/write_csv.hpp"
+#include "result/write_csv.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "bernal/io/read_packing.hpp"
+#include "bernal/result/read_packing.hpp"
 #include "support/written_files.hpp"
 
 namespace bernal {

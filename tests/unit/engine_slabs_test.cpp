@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "bernal/engine/engine_error.hpp"
-#include "bernal/io/read_packing.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/result/read_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/slabs/pack_in_slabs.hpp"
 #include "support/folder.hpp"

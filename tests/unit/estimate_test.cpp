@@ -1,4 +1,4 @@
-#include "run/estimate.hpp"
+#include "plan/estimate.hpp"
 
 #include <gtest/gtest.h>
 

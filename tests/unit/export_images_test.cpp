@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "bernal/formats/export.hpp"
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "support/export_packings.hpp"
 #include "support/written_files.hpp"

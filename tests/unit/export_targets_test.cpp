@@ -3,9 +3,9 @@
 #include <sys/stat.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/io/read_packing.hpp"
-#include "bernal/io/write_packing.hpp"
-#include "io/seal.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_packing.hpp"
+#include "files/seal.hpp"
 #include "support/export_packings.hpp"
 #include "support/exports.hpp"
 #include "support/written_files.hpp"

@@ -4,7 +4,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/fly/fly.hpp"
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
 
 // What a scene with `fly` may ask for, and what its plan says.

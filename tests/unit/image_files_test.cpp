@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bernal/core/error.hpp"
-#include "io/write_image.hpp"
+#include "report/write_image.hpp"
 #include "support/polygons.hpp"
 #include "support/written_files.hpp"
 

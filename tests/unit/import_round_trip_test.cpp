@@ -6,7 +6,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/formats/import.hpp"
-#include "bernal/io/read_packing.hpp"
+#include "bernal/result/read_packing.hpp"
 #include "support/export_packings.hpp"
 #include "support/exports.hpp"
 

@@ -11,8 +11,8 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/formats/import.hpp"
-#include "io/base64.hpp"
 #include "support/foreign_files.hpp"
+#include "viewer/base64.hpp"
 
 namespace bernal {
 namespace import_vtk_test {

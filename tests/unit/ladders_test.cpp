@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "run/stages.hpp"
+#include "plan/stages.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"

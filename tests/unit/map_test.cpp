@@ -13,8 +13,8 @@
 #include "bernal/core/error.hpp"
 #include "bernal/map/check_prediction.hpp"
 #include "bernal/predict/mixtures.hpp"
-#include "io/plot.hpp"
 #include "map/contours.hpp"
+#include "report/plot.hpp"
 #include "support/folder.hpp"
 
 namespace bernal {

@@ -10,11 +10,11 @@
 #include <gtest/gtest.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/io/read_packing.hpp"
-#include "bernal/io/write_packing.hpp"
-#include "core/npy_file.hpp"
-#include "core/npy_rows.hpp"
-#include "io/write_spheres.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_packing.hpp"
+#include "files/npy_file.hpp"
+#include "files/npy_rows.hpp"
+#include "result/write_spheres.hpp"
 #include "scene/read_npy_spheres.hpp"
 #include "scene/read_spheres.hpp"
 #include "support/written_files.hpp"

@@ -3,8 +3,8 @@
 
 #include <set>
 
-#include "bernal/io/read_packing.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "support/exports.hpp"
 #include "support/scene_texts.hpp"

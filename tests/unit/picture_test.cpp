@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "io/outline.hpp"
-#include "io/view.hpp"
-#include "io/write_svg.hpp"
+#include "report/outline.hpp"
+#include "report/write_svg.hpp"
 #include "support/packings.hpp"
+#include "viewer/view.hpp"
 
 namespace bernal {
 namespace picture_test {

@@ -11,7 +11,7 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "cad/diagnose_mesh.hpp"
-#include "cad/file_digest.hpp"
+#include "cad/files_of_part.hpp"
 #include "cad/make_triangles.hpp"
 #include "cad/mesh_distance.hpp"
 #include "cad/polygon_soup.hpp"

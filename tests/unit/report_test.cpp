@@ -1,4 +1,4 @@
-#include "io/report.hpp"
+#include "report/report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bernal/io/json.hpp"
-#include "bernal/io/read_packing.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/report/json.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "support/written_files.hpp"
 
 namespace bernal {

@@ -4,11 +4,12 @@
 #include <set>
 #include <string>
 
-#include "bernal/io/read_packing.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "cad/file_digest.hpp"
+#include "cad/files_of_part.hpp"
+#include "files/sha256.hpp"
 #include "support/cad_formats.hpp"
 #include "support/meshes.hpp"
 #include "support/written_files.hpp"

@@ -6,11 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bernal/formats/export.hpp"
 #include "bernal/fly/fly.hpp"
+#include "bernal/formats/export.hpp"
 #include "bernal/hard/grow.hpp"
-#include "bernal/io/json.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/report/json.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/scene/scene_reference.hpp"

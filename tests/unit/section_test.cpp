@@ -1,4 +1,5 @@
-#include "bernal/io/section.hpp"
+#include "bernal/report/section.hpp"
+#include "bernal/result/write_section.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "support/containers.hpp"
 #include "support/folder.hpp"
 #include "support/packings.hpp"

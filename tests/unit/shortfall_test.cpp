@@ -1,5 +1,5 @@
 // What is less dense than random close packing of its sizes says so; what was not to be so dense does not.
-#include "run/shortfall.hpp"
+#include "plan/shortfall.hpp"
 
 #include <gtest/gtest.h>
 

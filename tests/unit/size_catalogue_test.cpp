@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "scene/scene_entries.hpp"
 

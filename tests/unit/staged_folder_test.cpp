@@ -1,4 +1,4 @@
-#include "io/staged_folder.hpp"
+#include "files/staged_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "io/output_file.hpp"
-#include "io/put_in_place.hpp"
+#include "files/output_file.hpp"
+#include "files/put_in_place.hpp"
 #include "support/staged_files.hpp"
 #include "support/written_files.hpp"
 

@@ -4,9 +4,9 @@
 #include <fstream>
 #include <string>
 
-#include "bernal/io/read_packing.hpp"
-#include "bernal/io/write_packing.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "support/starts.hpp"
 
 // What result folders know of the spheres that they started from.

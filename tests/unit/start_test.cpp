@@ -12,9 +12,9 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/dimension.hpp"
-#include "bernal/io/read_packing.hpp"
-#include "bernal/io/write_packing.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"

@@ -9,8 +9,8 @@
 #include "bernal/run/run.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 #include "bernal/verify/certificate.hpp"
-#include "run/estimate.hpp"
-#include "run/few_large.hpp"
+#include "plan/estimate.hpp"
+#include "plan/few_large.hpp"
 #include "support/plans.hpp"
 
 // Where walls are near everywhere, how many spheres fit is a guess, and both the plan and the result say so.

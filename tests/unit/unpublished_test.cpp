@@ -1,15 +1,15 @@
 // Results that a run was killed over putting in place, in folders of one's own and of somebody else.
-#include "io/unpublished.hpp"
+#include "result/unpublished.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <string>
 
-#include "bernal/io/read_packing.hpp"
-#include "bernal/io/write_packing.hpp"
-#include "core/input_file.hpp"
-#include "io/put_in_place.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_packing.hpp"
+#include "files/input_file.hpp"
+#include "files/put_in_place.hpp"
 #include "support/staged_files.hpp"
 #include "support/written_files.hpp"
 

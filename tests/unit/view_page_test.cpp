@@ -1,4 +1,4 @@
-#include "bernal/io/view_page.hpp"
+#include "bernal/viewer/view_page.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,15 +13,15 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "geometry/edges.hpp"
 #include "geometry/simplified.hpp"
-#include "io/base64.hpp"
-#include "io/viewer_data.hpp"
-#include "io/viewer_files.hpp"
 #include "support/packings.hpp"
 #include "support/refusals.hpp"
 #include "support/written_files.hpp"
+#include "viewer/base64.hpp"
+#include "viewer/viewer_data.hpp"
+#include "viewer/viewer_files.hpp"
 
 namespace bernal {
 namespace view_page_test {

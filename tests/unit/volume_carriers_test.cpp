@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "run/few_large.hpp"
+#include "plan/few_large.hpp"
 #include "support/size_cases.hpp"
 
 namespace bernal {

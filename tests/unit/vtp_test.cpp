@@ -1,4 +1,4 @@
-#include "io/write_vtp.hpp"
+#include "result/write_vtp.hpp"
 
 #include <gtest/gtest.h>
 

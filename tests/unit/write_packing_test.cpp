@@ -1,4 +1,4 @@
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bernal/io/read_packing.hpp"
+#include "bernal/result/read_packing.hpp"
 #include "support/written_files.hpp"
 
 namespace bernal {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bernal/core/monitor.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/scene/packing.hpp"
 #include "bernal/scene/scene.hpp"
 
 namespace bernal {

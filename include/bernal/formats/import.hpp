@@ -6,8 +6,8 @@
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/unit.hpp"
-#include "bernal/io/write_packing.hpp"
-#include "bernal/run/packing.hpp"
+#include "bernal/result/write_packing.hpp"
+#include "bernal/scene/packing.hpp"
 
 namespace bernal {
 

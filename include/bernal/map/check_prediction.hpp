@@ -2,8 +2,8 @@
 #include <cstdint>
 
 #include "bernal/core/monitor.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/predict/predict.hpp"
-#include "bernal/run/run.hpp"
 #include "bernal/soft/relax.hpp"
 
 namespace bernal {

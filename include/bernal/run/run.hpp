@@ -1,107 +1,13 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "bernal/core/monitor.hpp"
-#include "bernal/measure/measure.hpp"
-#include "bernal/run/packing.hpp"
-#include "bernal/sizes/radius_sequence.hpp"
-#include "bernal/sizes/size_distribution.hpp"
+#include "bernal/plan/plan.hpp"
+#include "bernal/scene/packing.hpp"
 
 namespace bernal {
-
-/// The spheres of a scene's start, in its unit.
-struct StartSpheres {
-  Spheres<dynamic> spheres = Spheres<dynamic>();
-  Vector<dynamic> edges = {};  ///< of the periodic box that they lie in; none in a container
-  std::string file = {};       ///< where they come from, and the line of the first
-  int first_line = 0;
-};
-
-/// A scene that has been checked as a whole, with everything it names made and nothing else.
-struct Plan {
-  Scene scene;
-  Domain domain;             ///< in the scene's unit
-  bool box_follows = false;  ///< a periodic box whose size is the result: `domain` is a guess
-  /// Of a domain that repeats itself nowhere, in its own frame, see `frame_of`: what preparing, running and
-  /// measuring ask about the walls. Null for others, whose walls cost nothing to make, and where walls are to
-  /// be decided in exact arithmetic, which estimates and measurements can do without; whoever replaces
-  /// `domain` sets it to null, and `run` makes another.
-  std::shared_ptr<const Container> container;
-  std::string container_notes;              ///< what the importer did: reader, welding, repairs; may be empty
-  StartSpheres start;                       ///< none where the scene names no start
-  std::unique_ptr<SizeDistribution> radii;  ///< that are drawn, in the scene's unit; else those of the start
-
-  /// What the stages are likely to reach, and what the result is likely to be: less, where less is asked for.
-  double attainable_packing_fraction = 0, expected_packing_fraction = 0;
-  double expected_count = 0;
-  /// Of a bed: how much of it is left free, up to its surface, and how high that lies above the lowest point
-  /// of the container; of a heap its tip. To a few per cent.
-  struct ExpectedBed {
-    double porosity, height;
-  };
-  std::optional<ExpectedBed> expected_bed = {};
-  /// Of the run alone, on one thread; the most that it holds at a time, and what the process takes anyway.
-  double expected_seconds = 0, expected_memory_bytes = 0;
-  /// What a reader should see before the run: where a periodic box that is to be packed closely holds too few
-  /// of its largest spheres for that, how many, and how many would do; where a CAD part may not be what is
-  /// meant, why; a sentence, or empty.
-  std::string caution;
-  bool places_expected = false;     ///< some stage ends with as many spheres as are expected to fit
-  std::vector<PlanItem> items;      ///< what would run, in order
-  std::vector<std::string> absent;  ///< effects that the scene does not call for and that are not built
-};
-
-/// Completes the scene and makes what it names. Throws Error (bad_scene, bad_mesh) where parts do not fit
-/// each other: a sphere larger than the container, a mesh that is no container. Cost: reading the mesh.
-Plan build(const Scene& scene);
-
-/// The container or the periodic box that a scene describes, in the scene's unit: what `build` and the
-/// certificate share. The size of a periodic box is taken as it
-/// stands, even where the packing is to decide how large it becomes and only its proportions matter to
-/// `build`; without a size it is the unit cube. Throws as `build`.
-Domain domain_of(const Scene& scene);
-/// The same, with what the importer did in `notes`, and in `caution` what may not be meant: see
-/// `MeshReport::cautions`; the scene then says itself what was left to the file.
-Domain domain_of(Scene& scene, std::string& notes, std::string& caution);
-
-/// The same for a packing that is there: throws Error{bad_scene} where the scene leaves it to the packing how
-/// large the periodic box becomes and does not say how large it became.
-Domain packed_domain_of(const Scene& scene);
-
-/// Down, of a bed: the unit vector along which the last stage that settles presses its spheres; where none
-/// does, against the last axis. Of two dimensions in the plane z = 0.
-Vector<3> down_in(const Scene& scene);
-
-/// Of its bed: down, and that there is one, where the last stage settles.
-BedOptions bed_options_of(const Scene& scene);
-
-/// The angle up to which friction may hold spheres of such a bed, in degrees: 0, but of one that is asked to
-/// be loose, or as porous as may need it.
-double friction_in(const BedTarget& bed);
-
-/// Those of the scene's CAD files that are no longer what the scene names by its `sha256`.
-std::vector<std::filesystem::path> changed_files(const Scene& scene);
-
-/// The size distribution of radii that a scene describes, in the scene's unit: what is drawn from, or that of
-/// its start where nothing is drawn. Throws as `build`.
-std::unique_ptr<SizeDistribution> radii_of(const Scene& scene);
-
-/// What the sizes of so many spheres of a scene are held against; nothing where its start has gone, for
-/// a result is not lost with that.
-struct SceneRadii {
-  std::unique_ptr<SizeDistribution> all, drawn;
-  std::vector<double> first;
-  AskedRadii asked;  ///< of these
-};
-SceneRadii asked_radii_of(const Scene& scene, std::size_t count);
-/// Of a packing, by its own seed; none where another program made it.
-SceneRadii asked_radii_of(const Packing& packing);
 
 struct RunOptions {
   std::optional<std::uint64_t> seed = {};  ///< the scene's own if absent

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bernal/core/monitor.hpp"
-#include "bernal/io/write_packing.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
 
 namespace bernal {

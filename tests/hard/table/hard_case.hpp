@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "bernal/run/run.hpp"
+#include "bernal/plan/plan.hpp"
 #include "bernal/verify/certificate.hpp"
 
 // The hard suite: one named case a row, why it is hard, and how it must end. The test asserts that it does;

@@ -1,0 +1,116 @@
+#include "plan/caution.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/text.hpp"
+#include "plan/estimate.hpp"
+#include "plan/few_large.hpp"
+#include "plan/fitting.hpp"
+#include "plan/room_for_gaps.hpp"
+#include "plan/stages.hpp"
+
+namespace bernal {
+namespace {
+
+/// Of what is attainable: a box that is filled to less has room to spare, whatever is in it.
+constexpr double closely = 0.9;
+/// Of the error of an expectation, what is asked for beyond it and might still be reached.
+constexpr double within_reach = 2;
+
+/// The largest packing fraction of equal spheres, proven for one to three and eight dimensions: Lagrange
+/// 1773, Thue 1892, Hales 2005, Viazovska 2017; for the others of the best arrangement that is known (Conway
+/// & Sloane, Sphere Packings, Lattices and Groups, table 1.2).
+double densest_of_equal(int dimension) {
+  using std::numbers::pi;
+  const double densest[] = {1,
+                            pi / std::sqrt(12.0),
+                            pi / std::sqrt(18.0),
+                            pi * pi / 16,
+                            pi * pi / (15 * std::sqrt(2.0)),
+                            pi * pi * pi / (48 * std::sqrt(3.0)),
+                            pi * pi * pi / 105,
+                            std::pow(pi, 4) / 384};
+  return densest[dimension - 1];
+}
+
+std::string caution_of_few(const Plan& plan) {
+  const Box* box = std::get_if<Box>(&plan.domain);
+  const bool packs_closely = plan.expected_packing_fraction > closely * plan.attainable_packing_fraction;
+  if (!box || box->has_walls() || any_in_bed(plan.scene) || !packs_closely) return {};
+  const Vector<dynamic> edges = box->size;
+  const std::optional<FewLarge> few = few_large(*plan.radii, plan.expected_count, edges);
+  if (!few) return {};
+  return fmt::format("{}: too few to pack at random; {}", in_words(*few),
+                     remedy_of(*few, plan.expected_count, plan.scene, edges));
+}
+
+/// Of what is asked for beyond what the stages are likely to reach.
+std::string caution_of_target(const Plan& plan) {
+  const Scene& scene = plan.scene;
+  if (scene.target.predicted || plan.start.spheres.size() > 0) return {};
+  const bool is_counted = scene.target.count && !plan.box_follows;
+  if (!scene.target.packing_fraction && !is_counted) return {};
+  const int dimension = scene.dimension();
+  const double overlapping =
+      std::pow(1 - scene.overlap, dimension);  // what is left of spheres that may overlap
+  const double asked = fill_task_of(plan).packing_fraction * overlapping;
+  const double attainable = plan.attainable_packing_fraction;
+  if (!(asked >
+        attainable + within_reach * error_of_expectation(scene, plan.domain, *plan.radii, attainable)))
+    return {};
+  std::string text =
+      fmt::format("a packing fraction of {:.3g} is asked for{}, and these sizes are expected to reach {:.3f}",
+                  asked, is_counted ? " by the count" : "", attainable);
+  const bool are_equal = plan.radii->min() == plan.radii->max();
+  if (const double densest = densest_of_equal(dimension); are_equal && asked > densest)
+    text += fmt::format("; no arrangement of equal {} that is known has more than {:.4f}",
+                        dimension == 2 ? "discs" : "spheres", densest);
+  return text;
+}
+
+std::string caution_of_guess(const Plan& plan) {
+  const std::optional<std::uint64_t> error = give_or_take(plan);
+  if (!error) return {};
+  return fmt::format(
+      "walls are near everywhere: that {} fit is known to give or take {}; fill = true in "
+      "[spheres] places as many as can be made to fit",
+      grouped(static_cast<std::uint64_t>(std::llround(plan.expected_count))), grouped(*error));
+}
+
+std::string caution_of_size(const Plan& plan) {
+  if (!is_faceted(plan.domain) || !(plan.radii->min() > 0)) return {};
+  const double thickness = volume_of(plan.domain) / area_of(plan.domain);
+  if (plan.radii->min() < 0.5 * thickness) return {};
+  if (plan.radii->min() <= largest_known_radius(plan.domain, plan.container, plan.radii->min())) return {};
+  return "no place is known for spheres of these sizes: " + largest_in_words(plan, coat_of(plan.scene));
+}
+
+}  // namespace
+
+std::string caution_of(const Plan& plan) {
+  std::vector<std::string> all;
+  for (std::string caution :
+       {caution_of_few(plan), caution_of_target(plan), caution_of_guess(plan), caution_of_size(plan)})
+    if (!caution.empty()) all.push_back(std::move(caution));
+  return fmt::format("{}", fmt::join(all, "; "));
+}
+
+std::string largest_in_words(const Plan& plan, double around) {
+  const Scene& scene = plan.scene;
+  const double largest =
+      std::max(0.0, largest_known_radius(plan.domain, plan.container, plan.radii->min()) - around);
+  return fmt::format("the largest sphere that is known to fit has the {} {:.6g} {}",
+                     scene.sizes_are_diameters ? "diameter" : "radius",
+                     (scene.sizes_are_diameters ? 2 : 1) * largest, name_of(scene.unit));
+}
+
+}  // namespace bernal

@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bernal/cad/read_mesh.hpp"
+#include "bernal/plan/plan.hpp"
+#include "bernal/sizes/size_distribution.hpp"
+#include "cad/files_of_part.hpp"
+#include "cad/known_formats.hpp"
+
+namespace bernal {
+namespace {
+
+/// The rarest size that a true surface is tessellated for.
+constexpr double rare = 1e-2;
+
+/// What the import found, for people.
+std::string in_words(const MeshReport& report, const MeshFile& mesh, Unit unit) {
+  std::string of_file(name_of(mesh.unit.value_or(unit)));
+  if (!report.unit.empty() && !mesh.ignore_unit_of_file) of_file = report.unit + ", as the file says";
+  std::string text = fmt::format("{} faces; {}; coordinates are {}", report.faces, report.reader, of_file);
+  if (report.up != 0 && report.up != 'z' && mesh.up == Up::as_in_file)
+    text += fmt::format("; the file says that {0} is up, which up = \"{0}\" turns to z", report.up);
+  for (const auto* list : {&report.notes, &report.repairs})
+    if (!list->empty()) text += fmt::format("; {}", fmt::join(*list, ", "));
+  if (report.is_repaired) text += "; the walls are those of the repaired surface, not the file's";
+  return text;
+}
+
+std::vector<std::filesystem::path> files_of(const MeshFile& mesh) {
+  std::vector<std::filesystem::path> files{mesh.file};
+  files.insert(files.end(), mesh.obstacles.begin(), mesh.obstacles.end());
+  return files;
+}
+
+/// What a change of a file changes.
+using Stamp = std::pair<std::uintmax_t, std::filesystem::file_time_type>;
+std::vector<Stamp> stamps_of(const std::vector<std::filesystem::path>& files) {
+  std::vector<Stamp> stamps;
+  std::error_code unknown;
+  for (const std::filesystem::path& file : files)
+    stamps.emplace_back(std::filesystem::file_size(file, unknown),
+                        std::filesystem::last_write_time(file, unknown));
+  return stamps;
+}
+
+/// Those beside the parts included.
+std::vector<std::filesystem::path> all_files_of(const MeshFile& mesh) {
+  std::vector<std::filesystem::path> all;
+  for (const std::filesystem::path& part : files_of(mesh))
+    for (std::filesystem::path& file : files_of_part(part)) all.push_back(std::move(file));
+  return all;
+}
+
+/// Notes the digests, or holds the files to those that stand there.
+void pin_files(MeshFile& mesh) {
+  std::vector<std::string> digests;
+  for (const std::filesystem::path& file : files_of(mesh)) {
+    const std::string digest = sha256_of_part(file);
+    const std::size_t k = digests.size();
+    if (k < mesh.sha256.size() && cad::in_lower_case(mesh.sha256[k]) != digest)
+      throw OptionError("sha256", fmt::format("{} is not the file that is meant: its SHA-256 is {}; leave "
+                                              "\"sha256\" out to take it as it is",
+                                              file.string(), digest));
+    digests.push_back(digest);
+  }
+  mesh.sha256 = std::move(digests);
+}
+
+struct MakeDomain {
+  Scene& scene;
+  std::string& notes;
+  std::string& caution;
+
+  Domain operator()(const Box& box) const { return box; }
+  Domain operator()(const Cylinder& cylinder) const { return cylinder; }
+  Domain operator()(const Sphere& sphere) const { return sphere; }
+  Domain operator()(const Polygon& polygon) const { return polygon; }
+  Domain operator()(MeshFile& mesh) const {
+    const Unit unit = scene.unit;
+    try {
+      const double smallest = scene.draws() || scene.start.file ? radii_of(scene)->quantile(rare)
+                                                                : 0;  // what is certified is there
+      const std::vector<std::filesystem::path> files = all_files_of(mesh);
+      const std::vector<Stamp> before = stamps_of(files);
+      ImportedMesh imported = read_container_mesh(mesh, {unit, smallest});
+      pin_files(mesh);
+      if (stamps_of(files) != before)
+        throw Error(ErrorCode::bad_mesh, "has changed while it was read", {mesh.file.string()});
+      notes = in_words(imported.report, mesh, unit);
+      caution = fmt::format("{}", fmt::join(imported.report.cautions, "; "));
+      if (imported.report.deflection > 0) mesh.deflection = imported.report.deflection;
+      if (imported.report.unit.empty() && !mesh.unit) mesh.unit = unit;
+      return std::move(imported.mesh);
+    } catch (const OptionError& error) {
+      const Location at = scene.container.locations.of(error.option);
+      throw Error(error.code(), error.what(), at.file.empty() ? Location{mesh.file.string()} : at);
+    }
+  }
+  /// The unit cube where the scene gives no size.
+  Domain operator()(const PeriodicBox& box) const {
+    Vector<dynamic> edges = Vector<dynamic>::Constant(box.dimension, box.edge.value_or(1.0));
+    if (!box.size.empty()) edges = Eigen::Map<const Eigen::VectorXd>(box.size.data(), box.dimension);
+    std::vector<bool> walls(static_cast<std::size_t>(box.dimension), false);
+    for (const int axis : box.walls) walls.at(static_cast<std::size_t>(axis)) = true;
+    return periodic_box(edges, walls);
+  }
+};
+
+}  // namespace
+
+Domain domain_of(Scene& scene, std::string& notes, std::string& caution) {
+  return std::visit(MakeDomain{scene, notes, caution}, scene.container);
+}
+
+Domain domain_of(const Scene& scene) {
+  Scene copy = scene;
+  std::string notes, caution;
+  return domain_of(copy, notes, caution);
+}
+
+Domain packed_domain_of(const Scene& scene) {
+  const auto* box = std::get_if<PeriodicBox>(&scene.container);
+  if (box && box->size.empty() && !box->edge)
+    throw Error(
+        ErrorCode::bad_scene,
+        "does not say how large the periodic box is; give its \"size\", as the scene.toml that bernal "
+        "pack writes beside the spheres does",
+        scene.container.locations.whole);
+  Scene copy = scene;  // the spheres are certified in the walls as they are now
+  if (auto* mesh = std::get_if<MeshFile>(&copy.container)) mesh->sha256.clear();
+  copy.start = {};  // which may have gone
+  return domain_of(copy);
+}
+
+std::vector<std::filesystem::path> changed_files(const Scene& scene) {
+  const auto* mesh = std::get_if<MeshFile>(&scene.container);
+  std::vector<std::filesystem::path> changed;
+  if (!mesh) return changed;
+  const std::vector<std::filesystem::path> files = files_of(*mesh);
+  for (std::size_t k = 0; k < std::min(files.size(), mesh->sha256.size()); ++k)
+    if (sha256_of_part(files[k]) != cad::in_lower_case(mesh->sha256[k])) changed.push_back(files[k]);
+  return changed;
+}
+
+}  // namespace bernal

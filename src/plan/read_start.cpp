@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bernal/core/text.hpp"
+#include "cad/known_formats.hpp"
+#include "files/sha256.hpp"
+#include "plan/start.hpp"
+#include "result/unpublished.hpp"
+#include "scene/read_spheres.hpp"
+#include "scene/stage_table.hpp"
+#include "sizes/volume_carriers.hpp"
+
+namespace bernal {
+namespace {
+
+[[noreturn]] void refuse(const Scene& scene, std::string_view key, const std::string& why) {
+  throw Error(ErrorCode::bad_scene, why, scene.locations.of(key));
+}
+
+std::vector<double> edges_of(const PeriodicBox& box) {
+  if (!box.edge) return box.size;
+  return std::vector<double>(static_cast<std::size_t>(box.dimension), *box.edge);
+}
+
+/// Of a folder that holds a result its spheres are meant, and the box that they lie in.
+void look_into_folder(Scene& scene) {
+  Start& start = scene.start;
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(*start.file, unknown)) return;
+  const Scene there = scene_in(*start.file);
+  const double in_our_unit = conversion_factor(there.unit, scene.unit);
+  if (const auto* box = std::get_if<PeriodicBox>(&there.container); box && start.box.empty())
+    for (const double edge : edges_of(*box)) start.box.push_back(in_our_unit * edge);
+  if (!start.unit) start.unit = there.unit;
+  *start.file = only_spheres_file_in(*start.file);
+}
+
+/// The box that the spheres lie in, where it repeats itself.
+void complete_box(Scene& scene) {
+  auto* box = std::get_if<PeriodicBox>(&scene.container);
+  std::vector<double>& edges = scene.start.box;
+  if (!box) {
+    edges.clear();
+    return;
+  }
+  if (edges.empty()) edges = edges_of(*box);
+  if (edges.empty())
+    refuse(scene, "start",
+           "the start does not say how large its periodic box is: give \"start_box\" in [spheres], or the "
+           "\"size\" of the container with scalable = true");
+  if (static_cast<int>(edges.size()) != box->dimension)
+    refuse(scene, "start",
+           fmt::format("the box of the start has {} dimension{}, but the scene has {}", edges.size(),
+                       edges.size() == 1 ? "" : "s", box->dimension));
+  if (box->scalable) {
+    box->size = edges;
+    box->edge.reset();
+  } else if (table_of(scene.stages.front()).traits.stands_in_bed(scene) && edges != edges_of(*box)) {
+    refuse(scene, scene.locations.keys.contains("start_box") ? "start_box" : "start",
+           fmt::format("the box of the start, {} {}, is not the container, {}, whose walls stay where they "
+                       "are: give the container that size",
+                       fmt::format("{:.10g}", fmt::join(edges, " x ")), name_of(scene.unit),
+                       fmt::format("{:.10g}", fmt::join(edges_of(*box), " x "))));
+  }
+}
+
+void pin_digest(Scene& scene, const std::string& digest) {
+  Start& start = scene.start;
+  if (!start.sha256.empty() && cad::in_lower_case(start.sha256.front()) != digest)
+    refuse(scene, "start_sha256",
+           fmt::format("{} is not the file that is meant: its SHA-256 is {}; leave \"start_sha256\" out to "
+                       "take it as it is",
+                       start.file->string(), digest));
+  start.sha256 = {digest};
+}
+
+void complete_count(Scene& scene, std::size_t there) {
+  std::optional<std::int64_t>& count = scene.target.count;
+  const auto n = static_cast<std::int64_t>(there);
+  if (!count && !scene.draws()) count = n;
+  if (!count || *count == n) return;
+  if (*count < n)
+    refuse(scene, "count",
+           fmt::format("the start has {} spheres, and \"count\", which is of all, says {}", grouped(there),
+                       grouped(static_cast<std::uint64_t>(*count))));
+  if (!scene.draws())
+    refuse(scene, "count",
+           fmt::format("the start has only {} spheres, and there are no sizes to draw others from: give "
+                       "\"diameter\" or \"radius\" in [spheres] too",
+                       grouped(there)));
+}
+
+}  // namespace
+
+StartSpheres read_start(Scene& scene) {
+  if (!scene.start.file) return {};
+  std::error_code unknown;
+  if (!std::filesystem::exists(*scene.start.file, unknown))
+    refuse(scene, "start",
+           fmt::format("there is no file or folder {}; its name is relative to the scene's file",
+                       scene.start.file->string()));
+  look_into_folder(scene);
+  Start& start = scene.start;
+  Sha256 digest;  // of the very bytes that the spheres come from
+  NamedColumns read =
+      read_spheres(where_it_stands(*start.file), [&](std::string_view bytes) { digest.add(bytes); });
+  const std::string file = start.file->string();
+  if (!read.unit.empty() && start.unit && read.unit != name_of(*start.unit))
+    refuse(scene, "start_unit",
+           fmt::format("{} says itself that it is in {}; leave \"start_unit\" out", file, read.unit));
+  if (!read.unit.empty()) start.unit = unit_named(read.unit);
+  const int dimension = read.spheres.dimension();
+  if (dimension != scene.dimension())
+    refuse(scene, "start",
+           fmt::format("the spheres of {} have {} dimension{}, but the scene has {}", file, dimension,
+                       dimension == 1 ? "" : "s", scene.dimension()));
+  if (read.spheres.empty()) throw Error(ErrorCode::bad_packing, "there are no spheres in it", {file});
+  pin_digest(scene, digest.digits());
+  complete_box(scene);
+  complete_count(scene, read.spheres.size());
+  if (!scene.draws()) scene.sizes.locations.whole = scene.locations.of("start");
+
+  const double factor = conversion_factor(start.unit.value_or(scene.unit), scene.unit);
+  StartSpheres made{std::move(read.spheres), {}, file, read.first_line};
+  if (factor != 1) {
+    for (auto& column : made.spheres.x)
+      for (double& x : column) x *= factor;
+    for (double& r : made.spheres.r) r *= factor;
+  }
+  start.unit = start.unit.value_or(scene.unit);
+  if (!start.box.empty()) made.edges = Eigen::Map<const Eigen::VectorXd>(start.box.data(), dimension);
+  return made;
+}
+
+std::unique_ptr<SizeDistribution> radii_there(const std::vector<double>& radii) {
+  std::map<double, double> counts;
+  for (const double r : radii) counts[r] += 1;
+  std::vector<double> sizes, shares;
+  for (const auto& [size, count] : counts) {
+    sizes.push_back(size);
+    shares.push_back(count);
+  }
+  if (sizes.size() == 1) return make_constant(sizes.front());
+  return make_classes(std::move(sizes), std::move(shares), Basis::number);
+}
+
+SceneRadii asked_radii_of(const Scene& scene, std::size_t count) {
+  SceneRadii made;
+  Scene copy = scene;
+  try {
+    made.first = read_start(copy).spheres.r;
+    if (scene.draws()) made.drawn = radii_of(scene);
+  } catch (const Error&) {
+    return {};
+  }
+  if (made.first.empty()) {
+    made.all = std::move(made.drawn);
+  } else if (made.drawn && count > made.first.size()) {
+    std::vector<std::unique_ptr<SizeDistribution>> parts;
+    parts.push_back(radii_there(made.first));
+    parts.push_back(radii_of(scene));
+    made.all =
+        make_mixture(std::move(parts),
+                     {static_cast<double>(made.first.size()), static_cast<double>(count - made.first.size())},
+                     Basis::number);
+  } else {
+    made.all = radii_there(made.first);
+  }
+  const SizeDistribution& drawn = made.drawn ? *made.drawn : *made.all;
+  const Draw draw = scene.draw.value_or(usual_draw(
+      drawn, static_cast<double>(count) - static_cast<double>(made.first.size()), scene.dimension()));
+  made.asked = {made.all.get(), scene.seed, draw, made.drawn.get(), made.first};
+  return made;
+}
+
+SceneRadii asked_radii_of(const Packing& packing) {
+  if (packing.outcome == Outcome::imported) return {};
+  SceneRadii made = asked_radii_of(packing.scene, packing.spheres.size());
+  made.asked.seed = packing.seed;
+  return made;
+}
+
+}  // namespace bernal

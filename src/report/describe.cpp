@@ -1,0 +1,77 @@
+#include "bernal/report/describe.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bernal/core/text.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "report/describe.hpp"
+
+namespace bernal {
+namespace {
+
+/// "cylinder of 2 x 2 x 2 m, volume 6.28319 m³".
+std::string describe_container(const Plan& plan) {
+  const std::string_view unit = name_of(plan.scene.unit);
+  const Vector<dynamic> size = bounds_of<dynamic>(plan.domain).size();
+  std::string text(is_periodic(plan.domain) && has_walls(plan.domain) ? name_of(plan.domain)
+                                                                      : std::string(kind_of(plan.domain)));
+  if (const auto* mesh = std::get_if<MeshFile>(&plan.scene.container))
+    text += fmt::format(" {}", plain_text(mesh->file.string()));
+  if (plan.box_follows) text += ", as large as the packing needs";
+  return fmt::format("{}{} {:.6g} {}, {} {:.6g} {}^{}", text, plan.box_follows ? ": about" : ",",
+                     fmt::join(size, " x "), unit, size.size() == 2 ? "area" : "volume",
+                     volume_of(plan.domain), unit, size.size());
+}
+
+/// "lammps.data, for lammps, in m"; precondition: it is complete.
+std::string describe_output(const Output& output) {
+  return fmt::format("{}, for {}, in {}", plain_text(output.file.string()), output.format,
+                     name_of(output.unit.value_or(Unit::m)));
+}
+
+}  // namespace
+
+std::string describe(const Plan& plan) {
+  std::string text = fmt::format("container  {}\n", describe_container(plan));
+  if (!plan.container_notes.empty()) text += fmt::format("           {}\n", plan.container_notes);
+  if (const std::size_t n = plan.start.spheres.size(); n > 0)
+    text += fmt::format("start      {} of {}; \"{}\" begins from {}\n",
+                        n == 1 ? "1 sphere" : grouped(n) + " spheres", plain_text(plan.start.file),
+                        plan.scene.stages.front().name(), n == 1 ? "it" : "them");
+  text += fmt::format("spheres    {}; {}\n", describe_target(plan), describe_sizes(plan.scene));
+  if (!plan.caution.empty()) text += fmt::format("caution    {}\n", plan.caution);
+  if (plan.scene.asks_for_gaps())
+    text += fmt::format(
+        "gaps       at least {:g} {} between spheres{}\n", plan.scene.gap, name_of(plan.scene.unit),
+        has_walls(plan.domain) ? fmt::format(" and {:g} from walls", plan.scene.wall_gap) : std::string());
+  for (const Output& output : plan.scene.outputs)
+    text += fmt::format("output     {}\n", describe_output(output));
+  return text;
+}
+
+std::string describe_sizes(const Scene& scene) {
+  if (!scene.draws()) return "the sizes are those of the start";
+  return fmt::format("{} in {}: {}{}", scene.sizes_are_diameters ? "diameter" : "radius", name_of(scene.unit),
+                     sizes_in_words(scene.sizes),
+                     scene.draw == Draw::quantiles ? "; drawn by quantiles" : "");
+}
+
+std::string describe_target(const Plan& plan) {
+  const Scene& scene = plan.scene;
+  std::string fraction;
+  if (scene.target.packing_fraction)
+    fraction = fmt::format("packing fraction {}{}", *scene.target.packing_fraction,
+                           scene.target.predicted ? ", the predicted one less its error" : "");
+  if (scene.target.count) {
+    const std::string count = grouped(static_cast<std::uint64_t>(*scene.target.count));
+    return fraction.empty() ? count : count + " at " + fraction;
+  }
+  if (!fraction.empty()) return "up to " + fraction;
+  if (scene.target.fill) return "as many as can be made to fit";
+  if (const BedTarget& bed = plan.scene.target.bed; bed.gives_height())
+    return fmt::format("as many as make a bed {:.6g} {} high", bed.above_ground, name_of(plan.scene.unit));
+  return plan.places_expected ? "as many as are expected to fit" : "as many as fit";
+}
+
+}  // namespace bernal

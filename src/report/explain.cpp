@@ -1,0 +1,107 @@
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bernal/report/describe.hpp"
+#include "bernal/scene/read_scene.hpp"
+
+namespace bernal {
+namespace {
+
+/// To two digits: what is expected is no better known.
+std::string duration_in_words(double seconds) {
+  const auto two_digits = [](double x, const char* unit) {
+    return x < 9.95 ? fmt::format("{:.1f} {}", x, unit)
+                    : fmt::format("{:.0f} {}", x < 99.5 ? x : 10 * std::round(x / 10), unit);
+  };
+  if (seconds < 1e-4) return "under 0.1 ms";
+  if (seconds < 0.995) return two_digits(1e3 * seconds, "ms");
+  if (seconds < 99.5) return two_digits(seconds, "s");
+  return seconds < 5970 ? two_digits(seconds / 60, "min") : two_digits(seconds / 3600, "h");
+}
+std::string bytes_in_words(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", std::ceil(bytes / 1e3));
+  if (bytes < 1e9) return fmt::format("{:.0f} MB", bytes / 1e6);
+  return fmt::format("{:.1f} GB", bytes / 1e9);
+}
+
+/// Words in lines of at most 100 columns, so many blanks before each.
+std::string in_lines(const std::string& words, std::size_t blanks) {
+  constexpr std::size_t longest = 100;
+  std::istringstream all(words);
+  std::string text, line(blanks, ' ');
+  for (std::string word; all >> word;) {
+    if (line.size() > blanks && line.size() + 1 + word.size() > longest) {
+      text += line + '\n';
+      line.assign(blanks, ' ');
+    }
+    line += (line.size() > blanks ? " " : "") + word;
+  }
+  return text + line + '\n';
+}
+
+/// Two lines an effect: its name and price; what it is. Times within others stand in brackets.
+std::string effects_in_words(const Plan& plan) {
+  std::string text =
+      fmt::format("What would run:\n  {:<16}  {:>10}  {:>7}  {}\n", "effect", "time", "memory", "cost");
+  bool any_part = false;
+  for (const PlanItem& item : plan.items) {
+    const bool takes_time = item.seconds > 0, is_part = item.part && takes_time;
+    const std::string time = takes_time ? duration_in_words(item.seconds) : item.if_needed ? "if needed" : "";
+    any_part = any_part || is_part;
+    std::string line =
+        fmt::format("  {:<16}  {:>10}  {:>7}  {}", item.name, is_part ? "(" + time + ")" : time,
+                    item.bytes > 0 ? bytes_in_words(item.bytes) : "", item.cost);
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += fmt::format("{}\n{}", line,
+                        in_lines((item.if_needed && takes_time ? "if needed: " : "") + item.what, 6));
+  }
+  text += fmt::format("  {:<16}  {:>10}  {:>7}  with what the program itself takes\n", "together",
+                      duration_in_words(plan.expected_seconds), bytes_in_words(plan.expected_memory_bytes));
+  if (any_part) text += "Times in brackets are parts of others.\n";
+  return text;
+}
+
+std::string_view density_in_words(const BedTarget& bed) {
+  if (bed.porosity) return "as asked,";
+  switch (bed.density.value_or(BedTarget::Density::poured)) {
+    case BedTarget::Density::vibrated:
+      return "vibrated,";
+    case BedTarget::Density::loose:
+      return "loose,";
+    case BedTarget::Density::poured:
+      break;
+  }
+  return "poured,";
+}
+
+}  // namespace
+
+std::string explain(const Plan& plan) {
+  const Scene& scene = plan.scene;
+  std::string text = describe(plan);
+  text += fmt::format("accuracy   walls {}, overlap {}\n", name_of(scene.walls), scene.overlap);
+  if (const auto& bed = plan.expected_bed)
+    text += fmt::format(
+        "bed        {} porosity about {:.3g}, its {} about {:.4g} {} above the lowest point\n",
+        density_in_words(scene.target.bed), bed->porosity,
+        scene.target.bed.top == BedTarget::Top::heap ? "tip" : "surface", bed->height, name_of(scene.unit));
+  text += fmt::format("expected   about {:.3g} spheres, packing fraction {:.3f}\n", plan.expected_count,
+                      plan.expected_packing_fraction);
+  text += fmt::format("           about {} to pack them on one core, {} of memory\n\n",
+                      duration_in_words(plan.expected_seconds), bytes_in_words(plan.expected_memory_bytes));
+
+  text += effects_in_words(plan);
+  if (!plan.absent.empty())
+    text += fmt::format("\nNot called for, not built:\n{}",
+                        in_lines(fmt::format("{}.", fmt::join(plan.absent, ", ")), 2));
+  if (scene.stages_are_default)
+    text += fmt::format("\nThe scene names no stages. This protocol runs; paste it to change it:\n\n{}",
+                        stages_as_toml(scene));
+  return text;
+}
+
+}  // namespace bernal

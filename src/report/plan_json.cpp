@@ -1,0 +1,63 @@
+#include <nlohmann/json.hpp>
+
+#include "bernal/core/text.hpp"
+#include "bernal/report/json.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "report/describe.hpp"
+
+namespace bernal {
+
+std::string plan_as_json(const Plan& plan) {
+  using nlohmann::ordered_json;
+  ordered_json container = {{"kind", kind_of(plan.domain)}, {"volume", volume_of(plan.domain)}};
+  if (!plan.scene.is_periodic()) {
+    const Bounds<3> bounds = bounds_of(plan.domain);
+    container["bounds"] = {bounds.lower, bounds.upper};
+  } else {
+    const Vector<dynamic> edges = bounds_of<dynamic>(plan.domain).size();
+    container["edges"] = std::vector<double>(edges.begin(), edges.end());
+    container["scalable"] = plan.box_follows;
+  }
+  container["notes"] = plan.container_notes;
+  ordered_json bed;
+  if (plan.expected_bed)
+    bed = {{"porosity", plan.expected_bed->porosity}, {"height", plan.expected_bed->height}};
+  ordered_json items = ordered_json::array();
+  for (const PlanItem& item : plan.items)
+    items.push_back({{"name", item.name},
+                     {"what", item.what},
+                     {"cost", item.cost},
+                     {"seconds", item.seconds},
+                     {"bytes", item.bytes},
+                     {"part", item.part},
+                     {"if_needed", item.if_needed}});
+  ordered_json outputs = ordered_json::array();
+  for (const Output& output : plan.scene.outputs)
+    outputs.push_back({{"format", output.format},
+                       {"file", plain_text(output.file.string())},
+                       {"unit", name_of(output.unit.value_or(Unit::m))}});
+  const ordered_json json = {
+      {"unit", name_of(plan.scene.unit)},
+      {"container", container},
+      {"spheres",
+       {{"target", describe_target(plan)},
+        {"sizes", describe_sizes(plan.scene)},
+        {"gap", plan.scene.gap},
+        {"wall_gap", plan.scene.wall_gap}}},
+      {"accuracy", {{"walls", name_of(plan.scene.walls)}, {"overlap", plan.scene.overlap}}},
+      {"expected",
+       {{"count", plan.expected_count},
+        {"packing_fraction", plan.expected_packing_fraction},
+        {"bed", bed},
+        {"seconds", plan.expected_seconds},
+        {"memory_bytes", plan.expected_memory_bytes}}},
+      {"caution", plan.caution.empty() ? ordered_json() : ordered_json(plan.caution)},
+      {"outputs", outputs},
+      {"items", items},
+      {"absent", plan.absent},
+      {"stages_are_default", plan.scene.stages_are_default},
+      {"stages", stages_as_toml(plan.scene)}};
+  return json.dump(2) + '\n';
+}
+
+}  // namespace bernal

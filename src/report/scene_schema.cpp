@@ -1,0 +1,234 @@
+// What `bernal keys --schema` prints, from the one table that scenes are read by.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "bernal/core/vector.hpp"
+#include "bernal/report/json.hpp"
+#include "bernal/scene/scene_reference.hpp"
+
+namespace bernal {
+namespace {
+
+using SceneSchema = nlohmann::ordered_json;
+
+SceneSchema refers_to(const std::string& definition) { return {{"$ref", "#/$defs/" + definition}}; }
+
+SceneSchema array_of(SceneSchema items, std::size_t least, std::size_t most = 0) {
+  SceneSchema made = {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}};
+  if (most > 0) made["maxItems"] = most;
+  return made;
+}
+
+/// The smallest and the largest length, as `schema::accepts` has them.
+SceneSchema basic_definitions() {
+  const SceneSchema length = {{"type", "number"}, {"minimum", 1e-30}, {"maximum", 1e30}};
+  const SceneSchema not_zero = {
+      {"anyOf", {SceneSchema{{"minimum", 1e-30}}, SceneSchema{{"maximum", -1e-30}}}}};
+  const SceneSchema file = {{"type", "string"}, {"pattern", R"(^[^\u0000]+$)"}};
+  SceneSchema direction = array_of(refers_to("coordinate"), 3, 3);
+  SceneSchema push = array_of(refers_to("coordinate"), 2, 3);
+  direction["contains"] = push["contains"] = not_zero;
+  SceneSchema axes = array_of({{"type", "integer"}, {"minimum", 0}, {"maximum", max_dimension - 1}}, 1);
+  axes["uniqueItems"] = true;
+  return {
+      {"length", length},
+      {"coordinate", {{"type", "number"}, {"minimum", -1e30}, {"maximum", 1e30}}},
+      {"file", file},
+      {"direction", direction},
+      {"push", push},
+      {"position", array_of(refers_to("coordinate"), 3, 3)},
+      {"name", {{"anyOf", {file, SceneSchema{{"type", "integer"}}}}}},
+      {"names", {{"anyOf", {refers_to("name"), array_of(refers_to("name"), 1)}}}},
+      {"corner", array_of(refers_to("coordinate"), 2, 3)},
+      {"extents", array_of(refers_to("length"), 2, 3)},
+      {"points", array_of(array_of(refers_to("coordinate"), 2, 2), 3)},
+      {"lines", array_of(refers_to("points"), 0)},
+      {"coordinates", array_of(refers_to("coordinate"), 1)},
+      {"lengths", array_of(refers_to("length"), 1)},
+      {"shares", array_of(refers_to("length"), 1)},
+      {"amounts", array_of({{"anyOf", {SceneSchema{{"const", 0}}, refers_to("length")}}}, 1)},
+      {"axes", axes},
+  };
+}
+
+SceneSchema one_of_words(const ReferenceKey& key) { return {{"type", "string"}, {"enum", key.words}}; }
+
+SceneSchema within_range(const ReferenceKey& key) {
+  const bool whole = key.type == "integer";
+  const auto limit = [whole](double v) {
+    return whole ? SceneSchema(static_cast<std::int64_t>(v)) : SceneSchema(v);
+  };
+  SceneSchema made = {{"type", key.type}};
+  if (std::isfinite(key.min)) made[key.above_min ? "exclusiveMinimum" : "minimum"] = limit(key.min);
+  // No larger whole number can be written in TOML; but 1e31, which JSON takes for one.
+  if (whole && key.max >= 0x1p63)
+    made["maximum"] = std::numeric_limits<std::int64_t>::max();
+  else if (std::isfinite(key.max))
+    made[key.below_max ? "exclusiveMaximum" : "maximum"] = limit(key.max);
+  return made;
+}
+
+/// What the value of a key must be; `sizes` is "radius" or "diameter", where distributions stand in it.
+SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
+  if (key.type == "flag")
+    return key.min > 0 ? SceneSchema{{"const", true}} : SceneSchema{{"type", "boolean"}};
+  if (key.type == "word") return one_of_words(key);
+  if (key.type == "distribution") return refers_to(key.name);
+  if (key.type == "parts") return array_of(refers_to(sizes), 1);
+  SceneSchema value = key.type == "number" || key.type == "integer" ? within_range(key) : refers_to(key.type);
+  if (key.words.empty()) return value;
+  const SceneSchema word = one_of_words(key);
+  if (key.type == "names") return {{"anyOf", {word, array_of(word, 1)}}};
+  return {{"anyOf", {word, std::move(value)}}};
+}
+
+std::string description_of(const ReferenceKey& key) {
+  std::string text = key.help;
+  if (key.acts == "in_bed") text += "; between fixed walls";
+  if (key.acts == "in_box") text += "; in periodic boxes";
+  if (key.type != "flag" && key.type != "word") text += ": " + key.expectation;
+  return text;
+}
+
+const ReferenceKey* find(const ReferenceTable& table, const std::string& name) {
+  const auto found = std::ranges::find(table.keys, name, &ReferenceKey::name);
+  return found == table.keys.end() ? nullptr : &*found;
+}
+
+/// Of a choice the keys in every set that must be there, and those that must not.
+SceneSchema schema_of_choice(const ReferenceTable& table, const std::vector<std::vector<std::string>>& sets) {
+  SceneSchema made = {{"anyOf", SceneSchema::array()}};
+  for (const auto& set : sets) {
+    SceneSchema needed = SceneSchema::array(), others = SceneSchema::object();
+    bool possible = true;
+    for (const std::string& name : set) {
+      const ReferenceKey* key = find(table, name);
+      if (!key) possible = false;
+      if (key && !key->otherwise) needed.push_back(name);
+    }
+    for (const auto& other : sets)
+      for (const std::string& name : other)
+        if (std::ranges::find(set, name) == set.end() && find(table, name)) others[name] = false;
+    if (!possible) continue;
+    SceneSchema one = SceneSchema::object();
+    if (!needed.empty()) one["required"] = needed;
+    if (!others.empty()) one["properties"] = others;
+    made["anyOf"].push_back(one);
+  }
+  return made;
+}
+
+/// A table that holds its keys and no others, and `selector` with its name.
+SceneSchema schema_of_table(const ReferenceTable& table, const std::string& selector,
+                            const std::string& sizes = {}) {
+  SceneSchema properties = SceneSchema::object(), required = SceneSchema::array();
+  std::set<std::string> chosen;
+  for (const auto& choice : table.choices)
+    for (const auto& set : choice) chosen.insert(set.begin(), set.end());
+  if (!selector.empty()) {
+    properties[selector] = {{"const", table.name}, {"description", table.help}};
+    required.push_back(selector);
+  }
+  for (const ReferenceKey& key : table.keys) {
+    SceneSchema value = value_of_key(key, sizes);
+    value["description"] = description_of(key);
+    if (key.otherwise) value["default"] = SceneSchema::parse(*key.otherwise);
+    properties[key.name] = std::move(value);
+    if (key.required && !chosen.contains(key.name)) required.push_back(key.name);
+  }
+  SceneSchema made = {{"description", table.help},
+                      {"type", "object"},
+                      {"properties", properties},
+                      {"additionalProperties", false}};
+  if (!required.empty()) made["required"] = required;
+  for (const auto& choice : table.choices) made["allOf"].push_back(schema_of_choice(table, choice));
+  return made;
+}
+
+/// The table where lengths are radii: without what is a diameter by its name. Nothing where it cannot do
+/// without.
+std::optional<ReferenceTable> as_radii(ReferenceTable table) {
+  std::erase_if(table.keys, [](const ReferenceKey& key) { return key.is_diameter; });
+  const auto has_all = [&](const std::vector<std::string>& set) {
+    return std::ranges::all_of(set, [&](const std::string& name) { return find(table, name); });
+  };
+  for (const auto& choice : table.choices)
+    if (std::ranges::none_of(choice, has_all)) return std::nullopt;
+  return table;
+}
+
+/// Adds one definition a table of the group, and `name`, one of them.
+void define_group(const ReferenceGroup& group, const std::string& name, SceneSchema& definitions) {
+  const bool is_size = group.name == "diameter";
+  SceneSchema choice = SceneSchema::array();
+  if (is_size) choice.push_back(refers_to("length"));
+  for (const ReferenceTable& given : group.tables) {
+    std::optional<ReferenceTable> table = given;
+    const bool needed = std::ranges::any_of(
+        given.keys, [](const ReferenceKey& key) { return key.is_diameter && key.required; });
+    const bool in_choice = !given.choices.empty();
+    if (name == "radius") table = needed && !in_choice ? std::nullopt : as_radii(given);
+    if (!table) continue;
+    const bool depends = std::ranges::any_of(
+        given.keys, [](const ReferenceKey& key) { return key.is_diameter || key.type == "parts"; });
+    const std::string of = (is_size && !depends ? "size" : name) + "_" + table->name;
+    if (!definitions.contains(of)) definitions[of] = schema_of_table(*table, group.selector, name);
+    choice.push_back(refers_to(of));
+  }
+  definitions[name] = {{"oneOf", choice}};
+}
+
+}  // namespace
+
+std::string scene_schema_as_json() {
+  SceneSchema definitions = basic_definitions();
+  SceneSchema scene;
+  SceneSchema tables = SceneSchema::object();
+  for (const ReferenceGroup& group : scene_reference()) {
+    if (!group.selector.empty()) {
+      if (group.name == "diameter") define_group(group, "radius", definitions);
+      define_group(group, group.name, definitions);
+      continue;
+    }
+    for (const ReferenceTable& table : group.tables) {
+      if (table.name == "scene")
+        scene = schema_of_table(table, "");
+      else
+        tables[table.name] = schema_of_table(table, "");
+    }
+  }
+  // Sizes may be left out where spheres are there to begin with.
+  SceneSchema& sizes = tables.at("spheres").at("allOf").back();
+  sizes.at("anyOf").push_back(
+      {{"required", {"start"}}, {"properties", {{"radius", false}, {"diameter", false}}}});
+  SceneSchema& properties = scene.at("properties");
+  properties["container"] = refers_to("container");
+  properties["container"]["description"] = "what the spheres lie in";
+  properties.update(tables);
+  properties["engine"] = refers_to("engine");
+  properties["engine"]["description"] = "another program that finds the places the first stage begins with";
+  properties["stage"] = array_of(refers_to("stage"), 1);
+  properties["stage"]["description"] = "what is done, in this order; if absent what bernal explain prints";
+  properties["output"] = array_of(refers_to("output"), 1);
+  properties["output"]["description"] = "files for other programs, written with the result";
+  SceneSchema made = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                      {"title", "A scene of bernal"},
+                      {"description", "What is packed into what, and how."}};
+  scene.erase("description");
+  made.update(scene);
+  made["required"] = {"container", "spheres"};
+  made["if"] = {{"properties", {{"container", {{"properties", {{"kind", {{"const", "mesh"}}}}}}}}}};
+  made["then"] = {{"required", {"unit"}}};
+  made["$defs"] = definitions;
+  return made.dump(2) + '\n';
+}
+
+}  // namespace bernal

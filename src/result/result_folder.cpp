@@ -1,0 +1,202 @@
+#include "result/result_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_packing.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "cad/files_of_part.hpp"
+#include "cad/known_formats.hpp"
+#include "files/bytes_of_file.hpp"
+#include "files/sha256.hpp"
+#include "report/report.hpp"
+#include "result/unpublished.hpp"
+#include "scene/output_table.hpp"
+
+namespace fs = std::filesystem;
+
+namespace bernal {
+namespace {
+
+/// Of the digest, in the names of copies.
+constexpr std::size_t digits_in_name = 8;
+
+/// "part-1f3870be.stl" of "part.stl".
+fs::path name_of_copy(const fs::path& file, const std::string& sha256) {
+  return fmt::format("{}-{}{}", file.stem().string(), std::string_view(sha256).substr(0, digits_in_name),
+                     file.extension().string());
+}
+
+bool is_regular(const fs::path& file) {
+  std::error_code unknown;
+  return fs::is_regular_file(fs::symlink_status(file, unknown));
+}
+
+bool stands_in(const fs::path& file, const fs::path& folder) {
+  std::error_code unknown;
+  return fs::equivalent(fs::weakly_canonical(fs::absolute(file), unknown).parent_path(), folder, unknown);
+}
+
+/// Whether nothing is lost where bernal writes that scene again: whoever wrote it by hand left out defaults,
+/// or put in comments.
+bool is_as_written(const fs::path& scene) {
+  if (!is_regular(scene)) return false;
+  try {
+    return scene_as_toml(read_scene(scene), scene.parent_path()) == bytes_of_file(scene);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// A file that a scene names, and its digest, once the scene has been run.
+struct NamedFile {
+  fs::path& file;
+  std::string sha256;
+};
+std::vector<NamedFile> files_named_in(Scene& scene) {
+  std::vector<NamedFile> files;
+  if (auto* mesh = std::get_if<MeshFile>(&scene.container)) {
+    const auto digest = [&](std::size_t k) {
+      return k < mesh->sha256.size() ? mesh->sha256[k] : std::string();
+    };
+    files.push_back({mesh->file, digest(0)});
+    for (fs::path& obstacle : mesh->obstacles) files.push_back({obstacle, digest(files.size())});
+  }
+  if (Start& start = scene.start; start.file)
+    files.push_back({*start.file, start.sha256.empty() ? std::string() : start.sha256.front()});
+  return files;
+}
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& why) {
+  throw Error(ErrorCode::cannot_write, why, {file.string()});
+}
+
+/// Whether all files below are those of an earlier result in the folder, and there are any.
+bool holds_only(const fs::path& below, const fs::path& folder, const std::vector<std::string>& earlier) {
+  std::size_t found = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(below)) {
+    if (!entry.is_symlink() && entry.is_directory()) continue;
+    const std::string name = entry.path().lexically_relative(folder).generic_string();
+    if (std::ranges::find(earlier, name) == earlier.end()) return false;
+    ++found;
+  }
+  return found > 0;
+}
+
+}  // namespace
+
+Manifest manifest_of(const fs::path& folder) {
+  const fs::path report = where_it_stands(folder / "report.json");
+  return is_regular(report) ? manifest_in(bytes_of_file(report)) : Manifest();
+}
+
+std::vector<std::string> sources_of_result(const fs::path& folder) {
+  const fs::path report = where_it_stands(folder / "report.json");
+  return is_regular(report) ? sources_in(bytes_of_file(report)) : std::vector<std::string>();
+}
+
+std::vector<fs::path> files_of_part_beside(const fs::path& part) { return files_of_part(part); }
+
+std::vector<std::string> files_of_earlier_result(const fs::path& folder) {
+  std::vector<std::string> files;
+  for (const auto& [name, sha256] : manifest_of(folder)) {
+    const fs::path file = folder / name;
+    if (is_name_in(folder, name) && is_regular(file) && (sha256.empty() || sha256_of(file) == sha256))
+      files.push_back(name);
+  }
+  return files;
+}
+
+Scene scene_as_run(const Packing& packing, StagedFolder& staged, const fs::path& folder, bool with_mesh,
+                   Manifest& manifest) {
+  Scene scene = packing.scene;
+  scene.seed = packing.seed;
+  const Manifest earlier = manifest_of(folder);
+  for (auto& [file, sha256] : files_named_in(scene)) {
+    if (stands_in(file, folder)) {
+      const auto copy = earlier.find(file.filename().string());
+      if (copy != earlier.end() && copy->second == sha256) manifest.insert(*copy);
+      continue;
+    }
+    if (!with_mesh) continue;
+    const std::string name = name_of_copy(file, sha256).string();
+    if (!manifest.contains(name)) {
+      const fs::path there = staged.add(name);
+      std::error_code problem;
+      fs::copy_file(where_it_stands(file), there, problem);
+      if (problem) refuse(file, "cannot be copied: " + problem.message());
+      if (sha256_of(there) != sha256) refuse(file, "has changed while it was packed into");
+      manifest[name] = sha256;
+    }
+    file = fs::absolute(folder) / name;
+  }
+  return scene;
+}
+
+bool is_in_place_of_result(const fs::path& file, const fs::path& folder) {
+  std::error_code unknown;
+  const std::string name = fs::weakly_canonical(fs::absolute(file), unknown).filename().string();
+  return std::ranges::find(names_of_result, name) != std::end(names_of_result) && stands_in(file, folder);
+}
+
+void check_writable(const fs::path& folder) {
+  StagedFolder staged(folder);
+  staged.write("spheres.csv", "x,y,z,r\n");
+}
+
+void check_writable(const fs::path& folder, const Scene& scene, const WriteOptions& options) {
+  Scene packed = scene;
+  const std::vector<NamedFile> files = files_named_in(packed);
+  if (options.with_mesh && files.empty())
+    throw Error(ErrorCode::bad_argument, "--with-mesh copies a CAD file, and this container is none");
+  for (const auto& [file, sha256] : files) {
+    if (!is_utf8(file.string()))
+      refuse(file, "has a name that is not UTF-8, which scene.toml has to be; rename it");
+    if (options.with_mesh && files_of_part(file).size() > 1)
+      refuse(file, "names other files, which are not copied with it; export GLB, which holds all of them");
+    constexpr std::size_t longest_name = 255 - 1 - digits_in_name;
+    if (options.with_mesh && file.filename().string().size() > longest_name)
+      refuse(file, "has too long a name for a copy, which ends in its digest; rename it");
+  }
+  std::vector<std::string> names(names_of_result.begin(), names_of_result.end());
+  for (Output& output : packed.outputs) {
+    complete_output(output, packed);
+    std::ranges::move(files_of(output), std::back_inserter(names));
+  }
+  for (const auto& [named, sha256] : files) {
+    const bool is_start = packed.start.file && &named == &*packed.start.file;
+    std::error_code unknown;  // of a link that leads to itself
+    const fs::path file = fs::is_directory(named, unknown) ? spheres_file_in(named) : named;
+    const fs::path meant = fs::weakly_canonical(fs::absolute(file), unknown);
+    if (std::ranges::find(names, meant.filename().string()) == names.end() || !stands_in(meant, folder))
+      continue;
+    refuse(file, fmt::format("is {}{}, and the result would take its place; give another folder with -o",
+                             is_start ? "what the scene starts from" : "the part that the scene packs",
+                             file.filename() == meant.filename() ? "" : ", by a link"));
+  }
+  check_writable(folder);
+  const std::vector<std::string> earlier = files_of_earlier_result(folder);
+  for (const std::string& name : names) {
+    const fs::path there = folder / name;
+    std::error_code unknown;
+    if (!stands(there) || std::ranges::find(earlier, name) != earlier.end()) continue;
+    if (fs::is_directory(there, unknown)) {
+      if (holds_only(there, folder, earlier)) continue;
+      refuse(there,
+             "is a folder with more in it than bernal wrote, or changed since, and the result would take its "
+             "place; give another folder with -o, or move it away");
+    }
+    if (name == "scene.toml" && is_as_written(there)) continue;
+    refuse(there,
+           "is no result of bernal's, or was changed since, and the result would take its place; give "
+           "another folder with -o, or remove it");
+  }
+}
+
+}  // namespace bernal

@@ -1,0 +1,161 @@
+#include "bernal/result/write_packing.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bernal/core/error.hpp"
+#include "bernal/measure/measure.hpp"
+#include "bernal/plan/plan.hpp"
+#include "bernal/report/section.hpp"
+#include "bernal/result/read_packing.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "core/parallel.hpp"
+#include "files/output_file.hpp"
+#include "files/sha256.hpp"
+#include "report/report.hpp"
+#include "report/write_svg.hpp"
+#include "result/result_folder.hpp"
+#include "result/write_off.hpp"
+#include "result/write_output.hpp"
+#include "result/write_spheres.hpp"
+#include "result/write_vtp.hpp"
+#include "scene/scene_sources.hpp"
+#include "scene/spheres_file.hpp"
+#include "viewer/viewer_data.hpp"
+
+namespace bernal {
+namespace {
+
+/// Enough for curves that are smooth to the eye; `bernal measure` takes more.
+constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5;
+constexpr std::uint32_t points_for_a_report = 4000, pore_points_for_a_report = 10000;
+constexpr double waves_for_a_report = 2.5e7, wave_bins_for_a_report = 0.4;
+/// Of more spheres, cells and waves would take longer than many a packing; all cells of fewer already would,
+/// of which a sample says nearly as much.
+constexpr std::size_t most_for_a_report = 100'000, all_cells_for_a_report = 10'000, cells_for_a_report = 4000;
+/// Of more spheres the search for pores would take as much memory as all the rest.
+constexpr std::size_t most_for_pores = 20'000'000;
+
+bool writes_array(const Packing& packing, const WriteOptions& options) {
+  return options.as_array || packing.spheres.size() > options.most_as_text;
+}
+
+/// Certifies what stands in the file: that is what stands in memory, to the bit.
+Certificate certify_written(const std::filesystem::path& file, const Packing& packing,
+                            const WriteOptions& options) {
+  require_written(file, packing.spheres, name_of(packing.scene.unit), writes_array(packing, options));
+  return certify(packing.spheres, packing.domain,
+                 {.allowed_overlap = packing.scene.overlap,
+                  .gap = packing.scene.gap,
+                  .wall_gap = packing.scene.wall_gap,
+                  .list = options.list});
+}
+
+/// Scripts are written to be changed, and then are their user's. What is larger nobody changes by hand, and
+/// it would take seconds to read.
+void add_changeable(const std::string& name, const std::filesystem::path& file, Manifest& manifest) {
+  constexpr std::uintmax_t largest = 64 << 20;
+  if (std::filesystem::file_size(file) <= largest) manifest[name] = sha256_of(file);
+}
+
+/// Empty in other dimensions than three, and where a container is too thin for a plane to have an area in it.
+std::string middle_section(const Packing& packing) {
+  if (packing.spheres.dimension() != 3) return {};
+  try {
+    return section_svg(section_of(packing.spheres, packing.domain, middle_plane(packing.domain)),
+                       packing.spheres, name_of(packing.scene.unit));
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+std::string spheres_file_of(const Packing& packing, const WriteOptions& options) {
+  return std::string(writes_array(packing, options) ? spheres_as_array : spheres_as_text);
+}
+
+WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
+                             const WriteOptions& options) {
+  const auto go_on = [&] {
+    if (options.all_or_nothing && options.monitor.stop()) throw Cancelled();
+  };
+  std::optional<Interruptible> interruptible;
+  if (options.all_or_nothing) interruptible.emplace(options.monitor);
+  go_on();
+  StagedFolder staged(folder);
+  const bool as_array = writes_array(packing, options);
+  const std::filesystem::path spheres = staged.add(spheres_file_of(packing, options));
+  write_spheres(spheres, packing.spheres, name_of(packing.scene.unit), as_array);
+  if (!as_array) {
+    OutputFile file(staged.add("spheres.vtp"));
+    write_vtp(file, packing.spheres, name_of(packing.scene.unit));
+    file.close();
+  }
+  Certificate certificate = certify_written(spheres, packing, options);
+  certificate.statement += certified_walls(packing.scene);
+  go_on();
+  const std::size_t n = packing.spheres.size();
+  const SceneRadii radii = asked_radii_of(packing);
+  const Measurements measured =
+      measure(packing.spheres, packing.domain, radii.asked,
+              {.gap = packing.scene.gap,
+               .wall_gap = packing.scene.wall_gap,
+               .radial = {.work = distances_for_a_report},
+               .size_correlation = {.work = distances_for_a_report},
+               .chambers = {.points = points_for_a_report},
+               .bed = bed_options_of(packing.scene),
+               .walls = {.work = wall_distances_for_a_report},
+               .local = {.most_spheres = most_for_a_report,
+                         .all_of = all_cells_for_a_report,
+                         .looked_at = cells_for_a_report},
+               .structure = {.bin = wave_bins_for_a_report,
+                             .work = waves_for_a_report,
+                             .most_spheres = most_for_a_report},
+               .pores = {.points = n > most_for_pores ? 0 : pore_points_for_a_report},
+               .container = packing.container,
+               .monitor = options.monitor});
+  go_on();
+  Manifest manifest;
+  const std::string scene =
+      scene_as_toml(scene_as_run(packing, staged, folder, options.with_mesh, manifest), folder);
+  const std::string picture = svg_of(packing.spheres, packing.domain, name_of(packing.scene.unit));
+  staged.write("scene.toml", scene);
+  manifest["scene.toml"] = sha256_of(staged.written("scene.toml"));
+  if (!picture.empty()) staged.write("packing.svg", picture);
+  const std::string section = middle_section(packing);
+  if (!section.empty()) staged.write("section.svg", section);
+  if (const auto* walls = std::get_if<Mesh>(&packing.domain); walls && walls_are_made(packing.scene))
+    staged.write("container.off", as_off_file(*walls));
+  std::vector<std::string> notes;
+  const Monitor bar{options.monitor.on_progress, {}};  // what a cancelled run has is written whole
+  const std::size_t own = staged.names().size();
+  for (const Output& output : packing.scene.outputs)
+    notes.push_back(write_output(packing, output, staged, bar));
+  for (std::size_t k = own; k < staged.names().size(); ++k)
+    add_changeable(staged.names()[k], staged.written(staged.names()[k]), manifest);
+  for (const std::string& name : staged.names()) manifest.try_emplace(name);
+  for (const char* name : {"report.json", "report.html"}) manifest[name];
+  std::vector<std::string> sources;
+  for (const std::filesystem::path& source : sources_of_scene(packing.scene.file))
+    sources.push_back(std::filesystem::proximate(source, folder).string());
+  const Report report{packing,  certificate, measured,    radii.all.get(), hash_of(packing.spheres),
+                      manifest, sources,     options.cell};
+  staged.write("report.json", json_of(report));
+  const std::string view =
+      options.view && has_view(packing.spheres.dimension()) ? view_data(packing, &measured) : std::string();
+  staged.write("report.html", html_of(report, {picture, section, view}, scene));
+
+  // What the scene names stays where it is.
+  std::vector<std::string> replaced = files_of_earlier_result(folder);
+  std::erase_if(replaced, [&](const std::string& name) {
+    return manifest.contains(name) && std::ranges::find(staged.names(), name) == staged.names().end();
+  });
+  go_on();
+  return {staged.publish(replaced), certificate, notes};
+}
+
+}  // namespace bernal

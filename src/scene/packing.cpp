@@ -1,0 +1,18 @@
+#include "bernal/scene/packing.hpp"
+
+#include "bernal/core/dimension.hpp"
+
+namespace bernal {
+
+std::string_view name_of(Outcome outcome) {
+  constexpr std::string_view names[] = {"converged", "loose", "full", "hit_limit", "cancelled", "imported"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+double Packing::packing_fraction() const {
+  double sum = 0;
+  for (const double r : spheres.r) sum += ball_volume(spheres.dimension(), r);
+  return volume > 0 ? sum / volume : 0;
+}
+
+}  // namespace bernal
