@@ -95,11 +95,11 @@ class TooSlow(Exception):
 
 
 def run_trial(scene, seed, limit=math.inf, measured=False):
-    """Packs and certifies; what takes longer than the limit, on the wall, is cut off."""
-    began, before = time.monotonic(), time.process_time()
+    """Packs and certifies; what takes the processor longer than the limit is cut off."""
+    before = time.process_time()
 
     def watch(*_):
-        if time.monotonic() - began > limit:
+        if time.process_time() - before > limit:
             raise TooSlow
 
     try:

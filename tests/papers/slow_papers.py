@@ -3,6 +3,7 @@
 half each, is left to apps/reproduce; tests/validation/relax_table2_test.cpp has it with 1,000."""
 
 import math
+import shutil
 import unittest
 
 from support import Paper
@@ -36,6 +37,13 @@ class Farr2013(Paper):
         for line in lines:
             self.assertGreater(float(line["phi_grown"]), float(line["phi_kts"]) - 0.003)
             self.assertLess(float(line["phi_grown"]), float(line["phi_kts"]) + 0.012)
+
+    @unittest.skipUnless(shutil.which("lmp"), "LAMMPS is not installed")
+    def test_soft_particles(self):
+        self.made("farr2013", "--only", "fig2soft", "--soft", 200, page="fig2soft")
+        for line in self.lines("fig2soft.csv"):
+            # 200 spheres, which wide sizes fill unevenly, end within 0.03 of the rod model of theirs.
+            self.assertAlmostEqual(float(line["phi"]), float(line["phi_rods_of_them"]), delta=0.03, msg=line)
 
     def test_three_sizes_pack_as_densely_as_the_rod_model_says(self):
         """Figure 6 claims what no packing was made for. Four of its points are packed, one with all three sizes."""
