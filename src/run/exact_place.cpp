@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "bernal/cad/mesh_container.hpp"
+
 namespace bernal {
 
 std::optional<Vector<3>> ExactPlace::near(const Vector<3>& place, double r) {
