@@ -199,10 +199,9 @@ ends {min(denser):+.4f} to {max(denser):+.4f} from them.
 # Figure 6
 
 LARGEST_RATIO = 10
-# Where packings are made: D2 / D1, D3 / D2, alpha, spheres. At the first three `relax` comes within the error of the
-# model, 0.01: with this alpha it reaches 0.6932 at D3 / D1 = 2.25, where the model says 0.6948, and 0.729 of 0.738 at
-# 3.2; at 4 it stays at 0.748 of 0.767. There two of the three sizes are densest. Three are from D3 / D1 of about 6 on:
-# the last point, where 20,000 spheres reach 0.792, 0.809 and 0.813 of 0.834 with alpha 17, 200 and 600.
+# Where packings are made: D2 / D1, D3 / D2, alpha, spheres. At the first three two of the three sizes are densest, and
+# `relax` comes within the error of the model, 0.01; wider ones need more sweeps for that. Three sizes are densest from
+# D3 / D1 of about 6 on: the last point.
 PACKED_POINTS = [(1.8, 1.25, 60, 10_000), (1.3, 2.1, 60, 10_000), (2.2, 1.35, 60, 10_000), (3, 3, 200, 20_000)]
 
 
