@@ -201,7 +201,7 @@ std::string write_3mf_file(const Exported& file, StagedFolder& staged) {
 Format threemf_format() {
   Format made = surface_format("3mf", "triangles for printers, an object a type of spheres", "spheres.3mf",
                                write_3mf_file, {"types"});
-  made.writer->table.unit = Unit::mm;
+  made.unit = Unit::mm;
   return made;
 }
 

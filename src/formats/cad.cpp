@@ -82,10 +82,13 @@ std::string write_cad(const Exported& file, StagedFolder& staged) {
 template <cad::SolidFormat format>
 Format cad_format(std::string_view name, std::string_view help, std::string_view file,
                   const std::vector<std::string_view>& keys) {
-  return {
-      .writer = PackingWriter{
-          .table = {.keys = output_entry(name, help, keys), .file = file, .sizes = "solids", .solids = true},
-          .write_and_tell = write_cad<format>}};
+  return {.name = name,
+          .writes = help,
+          .keys = keys,
+          .file = file,
+          .sizes = "solids",
+          .solids = true,
+          .write_and_tell = write_cad<format>};
 }
 
 }  // namespace
@@ -96,7 +99,7 @@ Format step_format() {
       "STEP, in millimetres: spheres as true spheres, cut at the ends of periods, products by type, and the "
       "container as a solid",
       "spheres.step", {"types", "bridge_radius"});
-  made.writer->table.unit = Unit::mm;
+  made.unit = Unit::mm;
   return made;
 }
 

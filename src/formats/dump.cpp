@@ -187,14 +187,15 @@ FileContents read_dump(const Reading& reading) {
 }  // namespace
 
 Format dump_format() {
-  return {.reader = PackingReader{
-              .about = {"dump",
-                        "LAMMPS and LIGGGHTS dumps, text: x y z, xu yu zu or xs ys zs, radius or "
-                        "diameter, sorted by id; the last frame",
-                        "ITEM: UNITS, or --unit",
-                        {"columns", "frame"}},
-              .recognises = [](const FileBeginning& file) { return file.begins(item); },
-              .read = read_dump}};
+  return {
+      .name = "dump",
+      .reads =
+          "LAMMPS and LIGGGHTS dumps, text: x y z, xu yu zu or xs ys zs, radius or diameter, sorted by id; "
+          "the last frame",
+      .unit_from = "ITEM: UNITS, or --unit",
+      .options = {"columns", "frame"},
+      .recognises = [](const FileBeginning& file) { return file.begins(item); },
+      .read = read_dump};
 }
 
 }  // namespace bernal

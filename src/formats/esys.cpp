@@ -96,18 +96,16 @@ FileContents read_esys(const Reading& reading) {
 }  // namespace
 
 Format esys_format() {
-  return {
-      .writer = PackingWriter{.table = {.keys = output_entry("esys",
-                                                             "ESyS-Particle geometry, LSMGeometry 1.2, for "
-                                                             "readGeometry",
-                                                             {"unit", "types"}),
-                                        .file = "esys.geo",
-                                        .least_dimension = 2},
-                              .write_text = write_esys},
-      .reader =
-          PackingReader{.about = {"esys", "ESyS-Particle and GenGeo geometry, LSMGeometry", "--unit", {}},
-                        .recognises = [](const FileBeginning& file) { return file.begins("LSMGeometry"); },
-                        .read = read_esys}};
+  return {.name = "esys",
+          .writes = "ESyS-Particle geometry, LSMGeometry 1.2, for readGeometry",
+          .keys = {"unit", "types"},
+          .file = "esys.geo",
+          .least_dimension = 2,
+          .write_text = write_esys,
+          .reads = "ESyS-Particle and GenGeo geometry, LSMGeometry",
+          .unit_from = "--unit",
+          .recognises = [](const FileBeginning& file) { return file.begins("LSMGeometry"); },
+          .read = read_esys};
 }
 
 }  // namespace bernal

@@ -130,9 +130,9 @@ std::string words_on_overlap(const Packing& packing, double overlap) {
 }
 
 /// What solids and surfaces cannot be right with. Walls matter where they are made too.
-void take_faults(Exported& file, const PackingWriter& format, const Monitor& monitor) {
+void take_faults(Exported& file, const Format& format, const Monitor& monitor) {
   const Packing& packing = file.packing;
-  const bool with_walls = format.table.sizes == "solids" || format.table.sizes == "triangles";
+  const bool with_walls = format.sizes == "solids" || format.sizes == "triangles";
   const Certificate certificate = certify(
       packing.spheres, with_walls ? packing.domain : without_walls(packing.domain), {.monitor = monitor});
   if (certificate.cancelled) throw Cancelled();
@@ -155,7 +155,7 @@ std::string words_on_faults(const Exported& file) {
 }
 
 /// Whether its numbers are others than those of the packing.
-bool is_rounded(const Exported& file, const PackingWriter& format) {
+bool is_rounded(const Exported& file, const Format& format) {
   return format.precision == Precision::as_float || file.unit() != file.packing.scene.unit || file.wrapped;
 }
 
@@ -163,7 +163,7 @@ bool is_rounded(const Exported& file, const PackingWriter& format) {
 /// is converted, moved to the middle and put into the period, by half an epsilon of the farthest c there is,
 /// and so is the period: the distance of two loses up to 4 sqrt(3) epsilon c, of which the radii are at least
 /// 2 r.
-double most_by_rounding(const Packing& packing, const PackingWriter& format) {
+double most_by_rounding(const Packing& packing, const Format& format) {
   const double epsilon = format.precision == Precision::as_float ? std::numeric_limits<float>::epsilon()
                                                                  : std::numeric_limits<double>::epsilon();
   if (packing.spheres.empty()) return 0;
@@ -174,7 +174,7 @@ double most_by_rounding(const Packing& packing, const PackingWriter& format) {
 }
 
 /// What rounding did, in words; what the packing overlaps itself is not put down to it.
-std::string words_on_rounding(const Exported& file, const PackingWriter& format, const Monitor& monitor) {
+std::string words_on_rounding(const Exported& file, const Format& format, const Monitor& monitor) {
   if (!is_rounded(file, format)) {
     const std::string itself =
         words_on_overlap(file.packing, largest_overlap(file.packing.spheres, file.packing.domain, monitor));
@@ -195,7 +195,7 @@ std::string words_on_rounding(const Exported& file, const PackingWriter& format,
   std::string remedy;
   if (format.precision == Precision::as_float)
     remedy = "; extxyz and npy round nothing";
-  else if (format.table.keys.find("unit"))
+  else if (table_of(file.output).keys.find("unit"))
     remedy = fmt::format("; the unit {} rounds nothing", name_of(file.packing.scene.unit));
   return fmt::format("largest overlap after rounding to {}: {:.2g} of the sum of two radii{}", to, overlap,
                      remedy);
@@ -207,7 +207,7 @@ std::string spheres_in(const Exported& file) {
 }
 
 /// `told` by whoever wrote the file; or empty.
-std::string note_of(const Exported& file, const PackingWriter& format, const std::string& told,
+std::string note_of(const Exported& file, const Format& format, const std::string& told,
                     const Monitor& monitor) {
   const std::string remark = format.remark ? format.remark(file) : "";
   const std::string contacts =
@@ -215,7 +215,7 @@ std::string note_of(const Exported& file, const PackingWriter& format, const std
   if (format.note || !told.empty())
     return fmt::format("{}, {}{}{}{}", spheres_in(file), format.note ? format.note(file) : told, contacts,
                        words_on_faults(file), remark);
-  const OutputTable& table = format.table;
+  const OutputTable& table = table_of(file.output);
   std::string note =
       fmt::format("{}, {}", spheres_in(file), table.sizes == "diameter" ? "diameters" : "radii");
   if (table.keys.find("density")) note += fmt::format(", density {} kg/m3", file.output.density);
@@ -229,7 +229,7 @@ std::string note_of(const Exported& file, const PackingWriter& format, const std
 std::string write_output(const Packing& packing, const Output& output, StagedFolder& staged,
                          const Monitor& monitor) {
   const Interruptible interruptible(monitor);
-  const PackingWriter& format = writer_of(output);
+  const Format& format = format_of(output);
   Exported file = exported(packing, output, monitor);
   if (format.note || format.write_and_tell) take_faults(file, format, monitor);
   std::string told;

@@ -73,9 +73,9 @@ void wrap_into_periods(Exported& made, bool centred) {
 }
 
 /// What the output asks for about contacts, of the numbers that the file will hold.
-void treat_contacts(Exported& made, const PackingWriter& format, const Monitor& monitor) {
+void treat_contacts(Exported& made, const Format& format, const Monitor& monitor) {
   const Output& output = made.output;
-  if (format.table.solids) {
+  if (format.solids) {
     made.solids = solids_of(
         made.spheres, made.domain,
         {.contact = output.contact, .gap = output.contact_gap, .bridge_radius = output.bridge_radius},
@@ -130,7 +130,7 @@ void Mapping::map(Spheres<dynamic>& spheres) const {
 Domain Mapping::of(const Domain& domain) const { return std::visit(MappedDomain{*this}, domain); }
 
 Exported exported(const Packing& packing, const Output& output, const Monitor& monitor) {
-  const PackingWriter& format = writer_of(output);
+  const Format& format = format_of(output);
   const auto converted = unit_conversion(packing.scene.unit, *output.unit);
   const auto rounded = [is_single = format.precision == Precision::as_float](double value) {
     return is_single ? static_cast<double>(static_cast<float>(value)) : value;

@@ -214,18 +214,19 @@ bool is_extxyz(const FileBeginning& file) {
 }  // namespace
 
 Format extxyz_format() {
-  return {.writer = PackingWriter{.table = {.keys = output_entry("extxyz", "extended XYZ, for OVITO and ASE",
-                                                                 {"unit", "types"}),
-                                            .file = "extxyz.xyz",
-                                            .least_dimension = 2},
-                                  .write_text = write_extxyz},
-          .reader = PackingReader{.about = {"extxyz",
-                                            "extended XYZ of OVITO and ASE: Lattice, pbc, Properties with "
-                                            "radius or diameter; the last frame",
-                                            "unit=mm among its keys, or --unit",
-                                            {"frame"}},
-                                  .recognises = is_extxyz,
-                                  .read = read_extxyz}};
+  return {
+      .name = "extxyz",
+      .writes = "extended XYZ, for OVITO and ASE",
+      .keys = {"unit", "types"},
+      .file = "extxyz.xyz",
+      .least_dimension = 2,
+      .write_text = write_extxyz,
+      .reads =
+          "extended XYZ of OVITO and ASE: Lattice, pbc, Properties with radius or diameter; the last frame",
+      .unit_from = "unit=mm among its keys, or --unit",
+      .options = {"frame"},
+      .recognises = is_extxyz,
+      .read = read_extxyz};
 }
 
 }  // namespace bernal

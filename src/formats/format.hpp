@@ -87,24 +87,6 @@ std::string periods_in_python(const Exported&);
 /// What numbers of a format are kept in.
 enum class Precision { as_double, as_float };
 
-/// How a format is written.
-struct PackingWriter {
-  OutputTable table;  ///< what a scene knows of it
-  Precision precision = Precision::as_double;
-  bool centred = false;  ///< the origin is in the middle of the domain
-  bool wraps = true;     ///< centres of another hand outside the period are put into it
-  /// Writes the file of the output's name, where that is text and the only one.
-  void (*write_text)(const Exported&, TextFile&) = nullptr;
-  /// Or that file and those beside it.
-  void (*write)(const Exported&, StagedFolder&) = nullptr;
-  /// What a file holds that has no numbers of spheres, in words.
-  std::string (*note)(const Exported&) = nullptr;
-  /// What its user has to know besides; nothing, or "; …".
-  std::string (*remark)(const Exported&) = nullptr;
-  /// Or them, and says what they hold, where only whoever writes them knows.
-  std::string (*write_and_tell)(const Exported&, StagedFolder&) = nullptr;
-};
-
 /// How an axis of a file's box ends: `wrapped` where the box is only as long as its centres reach, `unsaid`
 /// where the format does not tell.
 enum class AxisEnd : std::uint8_t { period, wall, wrapped, unsaid };
@@ -149,24 +131,47 @@ struct FileBeginning {
   bool begins(std::string_view text) const { return bytes.starts_with(text); }
 };
 
-/// How a format is read.
-struct PackingReader {
-  ImportFormat about;
+/// What other programs read, write, or both: all that is known of it.
+struct Format {
+  std::string_view name;
+
+  // How it is written. `writes` is empty where it is not.
+  std::string_view writes = {};             ///< for which program, and what of it
+  std::vector<std::string_view> keys = {};  ///< what it can be told, besides what all can
+  std::string_view file = {};               ///< this and the next seven are those of an OutputTable
+  std::vector<std::string_view> endings = {};
+  int least_dimension = 3, most_dimensions = 3;
+  std::optional<Unit> unit = {};
+  std::string_view sizes = "radius";
+  bool solids = false, is_folder = false;
+  std::vector<schema::Choice> choices = {};
+  std::function<void(const void*, const schema::Section&)> rule = {};
+  Precision precision = Precision::as_double;
+  bool centred = false;  ///< the origin is in the middle of the domain
+  bool wraps = true;     ///< centres of another hand outside the period are put into it
+  /// Writes the file of the output's name, where that is text and the only one.
+  void (*write_text)(const Exported&, TextFile&) = nullptr;
+  /// Or that file and those beside it.
+  void (*write)(const Exported&, StagedFolder&) = nullptr;
+  /// What a file holds that has no numbers of spheres, in words.
+  std::string (*note)(const Exported&) = nullptr;
+  /// What its user has to know besides; nothing, or "; …".
+  std::string (*remark)(const Exported&) = nullptr;
+  /// Or them, and says what they hold, where only whoever writes them knows.
+  std::string (*write_and_tell)(const Exported&, StagedFolder&) = nullptr;
+
+  // How it is read. `reads` is empty where it is not; the next two are those of an ImportFormat.
+  std::string_view reads = {}, unit_from = {};
+  std::vector<std::string> options = {};
   bool (*recognises)(const FileBeginning&) = nullptr;
   FileContents (*read)(const Reading&) = nullptr;
 };
 
-/// What other programs read, write, or both.
-struct Format {
-  std::optional<PackingWriter> writer = {};
-  std::optional<PackingReader> reader = {};
-};
-
 /// Throws Error{bad_scene} where there is no such format.
-const PackingWriter& writer_of(const Output&);
+const Format& format_of(const Output&);
 /// That of the options, or of the file. Throws Error{bad_argument} for an unknown one and for options that it
 /// has not.
-const PackingReader& reader_of(const std::filesystem::path& file, const ImportOptions& options);
+const Format& format_of(const std::filesystem::path& file, const ImportOptions& options);
 
 /// The packing as a file of that output has it. Precondition: the output is complete. Throws
 /// Error{bad_argument} where contacts cannot be treated as asked, Cancelled.

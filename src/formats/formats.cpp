@@ -53,17 +53,30 @@ const std::vector<Format>& formats() {
   return all;
 }
 
-template <class Part>
-std::vector<const Part*> all_with(std::optional<Part> Format::*part) {
-  std::vector<const Part*> all;
-  for (const Format& format : formats())
-    if (format.*part) all.push_back(&*(format.*part));
+/// Those that are read, in the order in which files are held against them.
+const std::vector<const Format*>& readers() {
+  static const auto all = [] {
+    std::vector<const Format*> made;
+    for (const Format& format : formats())
+      if (format.read) made.push_back(&format);
+    return made;
+  }();
   return all;
 }
 
-const std::vector<const PackingReader*>& readers() {
-  static const std::vector<const PackingReader*> all = all_with(&Format::reader);
-  return all;
+OutputTable table_for(const Format& format) {
+  OutputTable made{.keys = output_entry(format.name, format.writes, format.keys),
+                   .file = format.file,
+                   .endings = format.endings,
+                   .least_dimension = format.least_dimension,
+                   .most_dimensions = format.most_dimensions,
+                   .unit = format.unit,
+                   .sizes = format.sizes,
+                   .solids = format.solids,
+                   .is_folder = format.is_folder};
+  made.keys.choices = format.choices;
+  made.keys.rule = format.rule;
+  return made;
 }
 
 /// Of a word of a command line; nothing where it is none of that type.
@@ -89,13 +102,13 @@ std::optional<schema::Value> value_of_word(const schema::Key& key, const std::st
 
 [[noreturn]] void refuse_word(const std::string& what) { throw Error(ErrorCode::bad_argument, what); }
 
-/// Of `all`, that whose `name_of` is the name.
-template <class Part, class Name>
-const Part& named(const std::vector<const Part*>& all, std::string_view name, Name name_of) {
+/// Of a list of formats or tables, that of the name.
+template <class List, class Name>
+const auto& named(const List& all, std::string_view name, const Name& name_of) {
   std::vector<std::string_view> names;
-  for (const Part* part : all) {
-    if (name_of(*part) == name) return *part;
-    names.push_back(name_of(*part));
+  for (const auto* one : all) {
+    if (name_of(*one) == name) return *one;
+    names.push_back(name_of(*one));
   }
   refuse_word(fmt::format("unknown format \"{}\"{}", plain_text(name), remedy(name, names)));
 }
@@ -164,9 +177,9 @@ void require_text(const FileBeginning& file) {
         "'\\n'");
 }
 
-const PackingReader& reader_for(const FileBeginning& file) {
-  const PackingReader* const reader =
-      *std::ranges::find_if(readers(), [&](const PackingReader* one) { return one->recognises(file); });
+const Format& reader_for(const FileBeginning& file) {
+  const Format* const reader =
+      *std::ranges::find_if(readers(), [&](const Format* one) { return one->recognises(file); });
   if (reader != readers().back()) return *reader;
   if (has_zero_byte(file))
     throw Error(
@@ -178,34 +191,38 @@ const PackingReader& reader_for(const FileBeginning& file) {
   return *reader;
 }
 
-void require_option(const PackingReader& reader, const std::string& option) {
-  const auto has = [&](const PackingReader* of) {
-    return std::ranges::find(of->about.options, option) != of->about.options.end();
+void require_option(const Format& reader, const std::string& option) {
+  const auto has = [&](const Format* of) {
+    return std::ranges::find(of->options, option) != of->options.end();
   };
   if (has(&reader)) return;
   std::vector<std::string_view> others;
-  for (const PackingReader* other : readers())
-    if (has(other)) others.emplace_back(other->about.name);
+  for (const Format* other : readers())
+    if (has(other)) others.emplace_back(other->name);
   refuse_word(fmt::format("the format {} takes no --{}; these do: {}; --from says which the file is",
-                          reader.about.name, option, fmt::join(others, ", ")));
+                          reader.name, option, fmt::join(others, ", ")));
 }
 
 }  // namespace
 
 std::span<const OutputTable* const> output_tables() {
   static const auto tables = [] {
-    std::vector<const OutputTable*> made;
-    for (const PackingWriter* writer : all_with(&Format::writer)) made.push_back(&writer->table);
+    std::vector<OutputTable> made;
+    for (const Format& format : formats())
+      if (!format.writes.empty()) made.push_back(table_for(format));
     return made;
   }();
-  return tables;
+  static const auto pointers = [] {
+    std::vector<const OutputTable*> made;
+    for (const OutputTable& table : tables) made.push_back(&table);
+    return made;
+  }();
+  return pointers;
 }
 
-const PackingWriter& writer_of(const Output& output) {
-  const OutputTable& table = table_of(output);
-  for (const PackingWriter* writer : all_with(&Format::writer))
-    if (&writer->table == &table) return *writer;
-  throw Error(ErrorCode::bad_scene, "this is the format of no file", output.locations.whole);
+const Format& format_of(const Output& output) {
+  const std::string_view name = table_of(output).name();
+  return *std::ranges::find(formats(), name, &Format::name);
 }
 
 std::vector<ExportFormat> export_formats() {
@@ -234,8 +251,8 @@ std::vector<ExportKey> export_keys() {
 }
 
 Output output_of(std::string_view format, const std::map<std::string, std::string>& words) {
-  const OutputTable& table = named(std::vector(output_tables().begin(), output_tables().end()), format,
-                                   [](const OutputTable& one) { return one.name(); });
+  const OutputTable& table =
+      named(output_tables(), format, [](const OutputTable& one) { return one.name(); });
   Output output{.format = std::string(format)};
   for (const auto& [name, word] : words) {
     const schema::Key* key = name == "file" ? nullptr : table.keys.find(name);
@@ -261,19 +278,19 @@ Output output_of(std::string_view format, const std::map<std::string, std::strin
 
 std::vector<ImportFormat> import_formats() {
   std::vector<ImportFormat> all;
-  for (const PackingReader* reader : readers()) all.push_back(reader->about);
+  for (const Format* format : readers())
+    all.push_back({std::string(format->name), std::string(format->reads), std::string(format->unit_from),
+                   format->options});
   return all;
 }
 
-const PackingReader& reader_of(const std::filesystem::path& file, const ImportOptions& options) {
+const Format& format_of(const std::filesystem::path& file, const ImportOptions& options) {
   const FileBeginning beginning = beginning_of(file);
   refuse_wrapped(beginning, wrappings);
   require_text(beginning);
-  const PackingReader& reader = options.format.empty()
-                                    ? reader_for(beginning)
-                                    : named(readers(), options.format, [](const PackingReader& one) {
-                                        return std::string_view(one.about.name);
-                                      });
+  const Format& reader = options.format.empty()
+                             ? reader_for(beginning)
+                             : named(readers(), options.format, [](const Format& one) { return one.name; });
   if (!options.columns.empty()) require_option(reader, "columns");
   if (options.frame) require_option(reader, "frame");
   if (options.radii) require_option(reader, "radii");

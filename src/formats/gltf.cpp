@@ -243,9 +243,8 @@ Format gltf_format() {
       "gltf",
       "scene for viewers and Blender, binary, coloured by size; an icosphere that nodes scale and move",
       "spheres.glb", write_gltf_file);
-  OutputTable& table = made.writer->table;
-  std::erase_if(table.keys.keys, [](const schema::Key& key) { return key.name == "unit"; });
-  table.unit = Unit::m;
+  std::erase(made.keys, "unit");
+  made.unit = Unit::m;
   return made;
 }
 

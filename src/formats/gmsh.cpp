@@ -261,22 +261,19 @@ void require_python_ending(const void* options, const schema::Section& section) 
 }  // namespace
 
 Format gmsh_format() {
-  PackingWriter writer{
-      .table =
-          {.keys = output_entry(
-               "gmsh",
-               "Gmsh 4.8 and later: a Python script that makes conforming tetrahedra of matrix and spheres "
-               "with equal nodes at opposite ends of periods. The walls of a CAD part are its triangles, "
-               "joined "
-               "to polygons where they lie in one plane",
-               {"unit", "types", "bridge_radius", "mesh_size", "mesh_gap", "mesh_order"}),
-           .file = "packing.py",
-           .sizes = "solids",
-           .solids = true},
+  return {
+      .name = "gmsh",
+      .writes =
+          "Gmsh 4.8 and later: a Python script that makes conforming tetrahedra of matrix and spheres with "
+          "equal nodes at opposite ends of periods. The walls of a CAD part are its triangles, joined to "
+          "polygons where they lie in one plane",
+      .keys = {"unit", "types", "bridge_radius", "mesh_size", "mesh_gap", "mesh_order"},
+      .file = "packing.py",
+      .sizes = "solids",
+      .solids = true,
+      .rule = require_python_ending,
       .write = write_gmsh,
       .note = note_of_gmsh};
-  writer.table.keys.rule = require_python_ending;
-  return {.writer = std::move(writer)};
 }
 
 }  // namespace bernal

@@ -294,27 +294,22 @@ FileContents read_gsd(const Reading& reading) {
 
 Format gsd_format() {
   return {
-      .writer =
-          PackingWriter{.table = {.keys = output_entry("gsd",
-                                                       "GSD, HOOMD schema, for HOOMD-blue and OVITO: single "
-                                                       "precision, origin in the middle",
-                                                       {"unit", "types"}),
-                                  .file = "gsd.gsd",
-                                  .least_dimension = 2,
-                                  .sizes = "diameter"},
-                        .precision = Precision::as_float,
-                        .centred = true,
-                        .write = write_gsd},
-      .reader = PackingReader{
-          .about = {"gsd",
-                    "GSD of the HOOMD schema: HOOMD-blue, OVITO; positions, diameters and the box, whose "
-                    "middle is "
-                    "the origin; the last frame",
-                    "\"lengths in mm\" in its header, or --unit",
-                    {"frame"}},
-          .recognises =
-              [](const FileBeginning& file) { return file.begins("\xDF\x65\xDF\x65\xDF\x65\xDF\x65"); },
-          .read = read_gsd}};
+      .name = "gsd",
+      .writes = "GSD, HOOMD schema, for HOOMD-blue and OVITO: single precision, origin in the middle",
+      .keys = {"unit", "types"},
+      .file = "gsd.gsd",
+      .least_dimension = 2,
+      .sizes = "diameter",
+      .precision = Precision::as_float,
+      .centred = true,
+      .write = write_gsd,
+      .reads =
+          "GSD of the HOOMD schema: HOOMD-blue, OVITO; positions, diameters and the box, whose middle is the "
+          "origin; the last frame",
+      .unit_from = "\"lengths in mm\" in its header, or --unit",
+      .options = {"frame"},
+      .recognises = [](const FileBeginning& file) { return file.begins("\xDF\x65\xDF\x65\xDF\x65\xDF\x65"); },
+      .read = read_gsd};
 }
 
 }  // namespace bernal

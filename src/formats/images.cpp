@@ -54,15 +54,16 @@ std::string remark_on_scale(const Exported& file) {
 
 Format image_format(std::string_view name, std::string_view help, std::string_view file,
                     void (*write)(const Exported&, StagedFolder&)) {
-  schema::Entry keys = output_entry(name, help, {"unit", "voxel", "resolution", "values"});
-  keys.choices = {{{"voxel"}, {"resolution"}, {}}};
-  return {.writer = PackingWriter{.table = {.keys = std::move(keys),
-                                            .file = file,
-                                            .least_dimension = 2,
-                                            .most_dimensions = 3,
-                                            .sizes = "voxels"},
-                                  .write = write,
-                                  .note = note_of_image}};
+  return {.name = name,
+          .writes = help,
+          .keys = {"unit", "voxel", "resolution", "values"},
+          .file = file,
+          .least_dimension = 2,
+          .most_dimensions = 3,
+          .sizes = "voxels",
+          .choices = {{{"voxel"}, {"resolution"}, {}}},
+          .write = write,
+          .note = note_of_image};
 }
 
 }  // namespace
@@ -80,14 +81,14 @@ Format vti_format() {
 Format tiff_format() {
   Format made = image_format("tiff", "stack of images for ImageJ, PoreSpy and lattice Boltzmann codes",
                              "voxels.tiff", write_image<write_tiff>);
-  made.writer->remark = remark_on_scale;
+  made.remark = remark_on_scale;
   return made;
 }
 
 Format raw_format() {
   Format made = image_format("raw", "bare voxels, and a header in JSON beside them", "voxels.raw",
                              write_raw_and_header);
-  made.writer->table.endings = {".json"};
+  made.endings = {".json"};
   return made;
 }
 

@@ -148,8 +148,8 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
   check_options(options);
   require_file(file);
   const Reading reading{file, options, monitor};
-  const PackingReader& reader = reader_of(file, options);
-  FileContents contents = reader.read(reading);
+  const Format& format = format_of(file, options);
+  FileContents contents = format.read(reading);
   if (monitor.stop()) throw Cancelled();
   if (contents.size() == 0) refuse_file(file, "there are no spheres in it");
   flatten(contents, reading);
@@ -174,12 +174,11 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
   packing.reason =
       fmt::format("{} read from {}, {}",
                   packing.spheres.size() == 1 ? "1 sphere" : grouped(packing.spheres.size()) + " spheres",
-                  plain_text(file.filename().string()), reader.about.name);
+                  plain_text(file.filename().string()), format.name);
   require_sensible(packing, file);
   if (monitor.stop()) throw Cancelled();
-  made.notes.push_back({"format", contents.note.empty()
-                                      ? reader.about.name
-                                      : fmt::format("{}: {}", reader.about.name, contents.note)});
+  made.notes.push_back(
+      {"format", std::string(format.name) + (contents.note.empty() ? std::string() : ": " + contents.note)});
   made.notes.push_back(
       {"spheres",
        fmt::format("{}, {} {}, packing fraction {:.4f}{}", grouped(packing.spheres.size()),

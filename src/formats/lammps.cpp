@@ -303,23 +303,20 @@ void write_atoms(TextFile& out, const Exported& file, double density, std::strin
 }
 
 Format lammps_format() {
-  return {.writer = PackingWriter{.table = {.keys = output_entry(
-                                                "lammps", "LAMMPS data file for read_data, atom_style sphere",
-                                                {"unit", "density", "types"}),
-                                            .file = "lammps.data",
-                                            .least_dimension = 2,
-                                            .unit = Unit::m,
-                                            .sizes = "diameter"},
-                                  .write_text = write_lammps},
-          .reader = PackingReader{
-              .about = {"lammps",
-                        "LAMMPS and LIGGGHTS data files, atom_style sphere or granular, or another "
-                        "with --diameter; an upright box, periodic unless a remark says "
-                        "\"boundary p p f\"",
-                        "remarks \"units = si\", \"lengths in mm\", or --unit",
-                        {}},
-              .recognises = counts_atoms,
-              .read = read_lammps_data}};
+  return {.name = "lammps",
+          .writes = "LAMMPS data file for read_data, atom_style sphere",
+          .keys = {"unit", "density", "types"},
+          .file = "lammps.data",
+          .least_dimension = 2,
+          .unit = Unit::m,
+          .sizes = "diameter",
+          .write_text = write_lammps,
+          .reads =
+              "LAMMPS and LIGGGHTS data files, atom_style sphere or granular, or another with --diameter; an "
+              "upright box, periodic unless a remark says \"boundary p p f\"",
+          .unit_from = "remarks \"units = si\", \"lengths in mm\", or --unit",
+          .recognises = counts_atoms,
+          .read = read_lammps_data};
 }
 
 }  // namespace bernal

@@ -175,20 +175,17 @@ std::string remark_on_script(const Exported& file) {
 }  // namespace
 
 Format liggghts_format() {
-  PackingWriter writer{
-      .table = {.keys = output_entry("liggghts",
-                                     "LIGGGHTS data file, atom_style granular, with a script that runs "
-                                     "it and CAD walls",
-                                     {"density", "types"}),
-                .file = "liggghts.data",
-                .endings = {script_ending, walls_ending},
-                .least_dimension = 2,
-                .unit = Unit::m,
-                .sizes = "diameter"},
-      .write = write_liggghts,
-      .remark = remark_on_script};
-  writer.table.keys.rule = require_script_word;
-  return {.writer = std::move(writer)};
+  return {.name = "liggghts",
+          .writes = "LIGGGHTS data file, atom_style granular, with a script that runs it and CAD walls",
+          .keys = {"density", "types"},
+          .file = "liggghts.data",
+          .endings = {script_ending, walls_ending},
+          .least_dimension = 2,
+          .unit = Unit::m,
+          .sizes = "diameter",
+          .rule = require_script_word,
+          .write = write_liggghts,
+          .remark = remark_on_script};
 }
 
 }  // namespace bernal

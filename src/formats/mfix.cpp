@@ -126,21 +126,21 @@ FileContents read_mfix(const Reading& reading) {
 }  // namespace
 
 Format mfix_format() {
-  return {.writer =
-              PackingWriter{.table = {.keys = output_entry("mfix", "MFiX-DEM particle_input.dat, version 2.0",
-                                                           {"density", "types"}),
-                                      .file = "particle_input.dat",
-                                      .least_dimension = 2,
-                                      .unit = Unit::m,
-                                      .sizes = "diameter"},
-                            .write_text = write_mfix},
-          .reader = PackingReader{.about = {"mfix", "MFiX-DEM particle_input.dat, version 2.0", "m", {}},
-                                  .recognises =
-                                      [](const FileBeginning& file) {
-                                        return file.begins("Version 2.0") && file.has("\nParticles:") &&
-                                               file.has("\nCoordinates");
-                                      },
-                                  .read = read_mfix}};
+  return {.name = "mfix",
+          .writes = "MFiX-DEM particle_input.dat, version 2.0",
+          .keys = {"density", "types"},
+          .file = "particle_input.dat",
+          .least_dimension = 2,
+          .unit = Unit::m,
+          .sizes = "diameter",
+          .write_text = write_mfix,
+          .reads = "MFiX-DEM particle_input.dat, version 2.0",
+          .unit_from = "m",
+          .recognises =
+              [](const FileBeginning& file) {
+                return file.begins("Version 2.0") && file.has("\nParticles:") && file.has("\nCoordinates");
+              },
+          .read = read_mfix};
 }
 
 }  // namespace bernal

@@ -102,22 +102,19 @@ FileContents read_npy(const Reading& reading) {
 }
 
 Format npy_format() {
-  return {
-      .writer = PackingWriter{.table = {.keys = output_entry("npy",
-                                                             "NumPy array of doubles, a row x, y, z, r for "
-                                                             "each sphere",
-                                                             {"unit"}),
-                                        .file = "npy.npy",
-                                        .least_dimension = 1,
-                                        .most_dimensions = max_dimension},
-                              .wraps = false,
-                              .write = write_columns},
-      .reader = PackingReader{.about = {"npy",
-                                        "NumPy array, a row x, y, z, r for each sphere, or x, y, z",
-                                        "--unit",
-                                        {"columns", "radii"}},
-                              .recognises = is_npy,
-                              .read = read_npy}};
+  return {.name = "npy",
+          .writes = "NumPy array of doubles, a row x, y, z, r for each sphere",
+          .keys = {"unit"},
+          .file = "npy.npy",
+          .least_dimension = 1,
+          .most_dimensions = max_dimension,
+          .wraps = false,
+          .write = write_columns,
+          .reads = "NumPy array, a row x, y, z, r for each sphere, or x, y, z",
+          .unit_from = "--unit",
+          .options = {"columns", "radii"},
+          .recognises = is_npy,
+          .read = read_npy};
 }
 
 }  // namespace bernal

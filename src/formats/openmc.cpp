@@ -93,25 +93,20 @@ FileContents read_openmc(const Reading& reading) {
 }  // namespace
 
 Format openmc_format() {
-  return {.writer =
-              PackingWriter{.table = {.keys = output_entry("openmc",
-                                                           "OpenMC: centres (.npy), their radii and a Python "
-                                                           "module for TRISO particles",
-                                                           {}),
-                                      .file = "openmc.npy",
-                                      .endings = {radii_ending, script_ending_py},
-                                      .unit = Unit::cm},
-                            .write = write_openmc},
-          .reader = PackingReader{
-              .about = {"openmc",
-                        "OpenMC centres, .npy of N x 3, with FILE_radii.npy beside them, --radii or --radius",
-                        "cm",
-                        {"columns", "radii"}},
-              .recognises =
-                  [](const FileBeginning& file) {
-                    return is_npy(file) && kind_of_file(radii_beside(file.file)) == FileKind::regular;
-                  },
-              .read = read_openmc}};
+  return {.name = "openmc",
+          .writes = "OpenMC: centres (.npy), their radii and a Python module for TRISO particles",
+          .file = "openmc.npy",
+          .endings = {radii_ending, script_ending_py},
+          .unit = Unit::cm,
+          .write = write_openmc,
+          .reads = "OpenMC centres, .npy of N x 3, with FILE_radii.npy beside them, --radii or --radius",
+          .unit_from = "cm",
+          .options = {"columns", "radii"},
+          .recognises =
+              [](const FileBeginning& file) {
+                return is_npy(file) && kind_of_file(radii_beside(file.file)) == FileKind::regular;
+              },
+          .read = read_openmc};
 }
 
 }  // namespace bernal

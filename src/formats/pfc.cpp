@@ -107,23 +107,18 @@ FileContents read_pfc(const Reading& reading) {
 
 Format pfc_format() {
   return {
-      .writer = PackingWriter{.table = {.keys = output_entry("pfc",
-                                                             "Itasca PFC 6 or later, commands for program "
-                                                             "call",
-                                                             {"density", "types"}),
-                                        .file = "pfc.dat",
-                                        .least_dimension = 2,
-                                        .unit = Unit::m},
-                              .write_text = write_pfc},
-      .reader = PackingReader{.about = {"pfc",
-                                        "Itasca PFC: commands \"ball create\" and \"model domain\"",
-                                        "\"lengths in m\" in a comment, or --unit",
-                                        {}},
-                              .recognises =
-                                  [](const FileBeginning& file) {
-                                    return file.has("\nball create ") || file.begins("ball create ");
-                                  },
-                              .read = read_pfc}};
+      .name = "pfc",
+      .writes = "Itasca PFC 6 or later, commands for program call",
+      .keys = {"density", "types"},
+      .file = "pfc.dat",
+      .least_dimension = 2,
+      .unit = Unit::m,
+      .write_text = write_pfc,
+      .reads = "Itasca PFC: commands \"ball create\" and \"model domain\"",
+      .unit_from = "\"lengths in m\" in a comment, or --unit",
+      .recognises =
+          [](const FileBeginning& file) { return file.has("\nball create ") || file.begins("ball create "); },
+      .read = read_pfc};
 }
 
 }  // namespace bernal

@@ -149,18 +149,17 @@ FileContents read_povray(const Reading& reading) {
 
 Format povray_format() {
   return {
-      .writer = PackingWriter{.table = {.keys = output_entry("povray",
-                                                             "POV-Ray scene with camera and light, spheres "
-                                                             "coloured by size, the outline of the domain",
-                                                             {"unit"}),
-                                        .file = "povray.pov"},
-                              .write_text = write_povray,
-                              .note = note_of_picture},
-      .reader = PackingReader{
-          .about = {"povray", "POV-Ray scenes that bernal wrote", "\"lengths in mm\" in its first line", {}},
-          .recognises =
-              [](const FileBeginning& file) { return file.begins("// bernal ") && file.has(swap_mark); },
-          .read = read_povray}};
+      .name = "povray",
+      .writes = "POV-Ray scene with camera and light, spheres coloured by size, the outline of the domain",
+      .keys = {"unit"},
+      .file = "povray.pov",
+      .write_text = write_povray,
+      .note = note_of_picture,
+      .reads = "POV-Ray scenes that bernal wrote",
+      .unit_from = "\"lengths in mm\" in its first line",
+      .recognises =
+          [](const FileBeginning& file) { return file.begins("// bernal ") && file.has(swap_mark); },
+      .read = read_povray};
 }
 
 }  // namespace bernal

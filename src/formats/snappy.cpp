@@ -194,15 +194,14 @@ std::string write_case(const Exported& file, StagedFolder& staged) {
 }  // namespace
 
 Format snappy_format() {
-  return {.writer = PackingWriter{
-              .table = {.keys = output_entry(
-                            "snappy", "folder with a case for snappyHexMesh of OpenFOAM: a mesh of the pores",
-                            {"deflection", "contact", "contact_gap"}),
-                        .file = "snappy",
-                        .unit = Unit::m,
-                        .sizes = "triangles",
-                        .is_folder = true},
-              .write_and_tell = write_case}};
+  return {.name = "snappy",
+          .writes = "folder with a case for snappyHexMesh of OpenFOAM: a mesh of the pores",
+          .keys = {"deflection"},
+          .file = "snappy",
+          .unit = Unit::m,
+          .sizes = "triangles",
+          .is_folder = true,
+          .write_and_tell = write_case};
 }
 
 }  // namespace bernal

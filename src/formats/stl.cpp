@@ -39,9 +39,12 @@ Format surface_format(std::string_view name, std::string_view help, std::string_
                       const std::vector<std::string_view>& keys) {
   std::vector<std::string_view> all = {"unit", "surface", "deflection", "contact", "contact_gap"};
   all.insert(all.end(), keys.begin(), keys.end());
-  return {.writer = PackingWriter{
-              .table = {.keys = output_entry(name, help, all), .file = file, .sizes = "triangles"},
-              .write_and_tell = write}};
+  return {.name = name,
+          .writes = help,
+          .keys = std::move(all),
+          .file = file,
+          .sizes = "triangles",
+          .write_and_tell = write};
 }
 
 void write_stl(OutputFile& out, const Exported& file, const Surfaces& surfaces) {

@@ -164,15 +164,15 @@ FileContents read_table(const Reading& reading) {
 }  // namespace
 
 Format table_format() {
-  return {.reader = PackingReader{
-              .about = {"table",
-                        "a table of any program, spheres.csv among them: commas, semicolons, tabs "
-                        "or blanks between the columns, whose names its first line or --columns "
-                        "gives",
-                        "# unit: mm, x [mm], or --unit",
-                        {"columns"}},
-              .recognises = [](const FileBeginning&) { return true; },
-              .read = read_table}};
+  return {
+      .name = "table",
+      .reads =
+          "a table of any program, spheres.csv among them: commas, semicolons, tabs or blanks between the "
+          "columns, whose names its first line or --columns gives",
+      .unit_from = "# unit: mm, x [mm], or --unit",
+      .options = {"columns"},
+      .recognises = [](const FileBeginning&) { return true; },
+      .read = read_table};
 }
 
 }  // namespace bernal

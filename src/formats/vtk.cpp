@@ -104,16 +104,15 @@ std::string complaint_of_type(std::string_view type) {
 
 Format vtk_format() {
   return {
-      .reader = PackingReader{
-          .about = {"vtk",
-                    "VTK's points with radii, .vtk, .vtp and .vtu: ParaView, LIGGGHTS, YADE, MFiX, bernal's "
-                    "spheres.vtp; arrays called radius, radii or r, diameter or d, or another by --columns "
-                    "x,y,z,r=NAME",
-                    "\"lengths in mm\" in its title or a comment, or --unit",
-                    {"columns"}},
-          .recognises =
-              [](const FileBeginning& file) { return file.begins(legacy_mark) || file.has(xml_mark); },
-          .read = read_vtk}};
+      .name = "vtk",
+      .reads =
+          "VTK's points with radii, .vtk, .vtp and .vtu: ParaView, LIGGGHTS, YADE, MFiX, bernal's "
+          "spheres.vtp; "
+          "arrays called radius, radii or r, diameter or d, or another by --columns x,y,z,r=NAME",
+      .unit_from = "\"lengths in mm\" in its title or a comment, or --unit",
+      .options = {"columns"},
+      .recognises = [](const FileBeginning& file) { return file.begins(legacy_mark) || file.has(xml_mark); },
+      .read = read_vtk};
 }
 
 }  // namespace bernal

@@ -76,18 +76,16 @@ FileContents read_yade(const Reading& reading) {
 }  // namespace
 
 Format yade_format() {
-  return {
-      .writer = PackingWriter{.table = {.keys = output_entry("yade", "YADE, for ymport.textExt", {"unit"}),
-                                        .file = "yade.txt",
-                                        .unit = Unit::m},
-                              .write_text = write_yade},
-      .reader =
-          PackingReader{.about = {"yade",
-                                  "YADE, what export.textExt writes: #format x_y_z_r, or another with these",
-                                  "--unit",
-                                  {}},
-                        .recognises = [](const FileBeginning& file) { return file.begins(format_mark); },
-                        .read = read_yade}};
+  return {.name = "yade",
+          .writes = "YADE, for ymport.textExt",
+          .keys = {"unit"},
+          .file = "yade.txt",
+          .unit = Unit::m,
+          .write_text = write_yade,
+          .reads = "YADE, what export.textExt writes: #format x_y_z_r, or another with these",
+          .unit_from = "--unit",
+          .recognises = [](const FileBeginning& file) { return file.begins(format_mark); },
+          .read = read_yade};
 }
 
 }  // namespace bernal
