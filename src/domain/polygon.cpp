@@ -13,6 +13,7 @@ namespace {
 
 struct Segment {
   Vector<2> a, b;
+  std::uint32_t id;
 
   /// p minus the nearest point of the segment, as in kernels/closest_point.hpp.
   Vector<2> offset(const Vector<2>& p) const {
@@ -29,7 +30,7 @@ std::vector<Segment> edges_of(const Polygon& shape) {
   for (const auto& loop : shape.loops) {
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const Vector<2>&a = loop[k], &b = loop[(k + 1) % loop.size()];
-      if (a != b) edges.push_back({a, b});
+      if (a != b) edges.push_back({a, b, static_cast<std::uint32_t>(edges.size())});
     }
   }
   return edges;
@@ -50,7 +51,11 @@ class PolygonContainer final : public Container {
         bounds_(bounds_of(shape)),
         volume_(volume_of(Polygon{shape.loops})),
         edges_(edges_of(shape)),
-        tree_(tree_of(edges_)) {}
+        tree_(tree_of(edges_)) {
+    std::vector<Segment> in_order;
+    for (const std::uint32_t k : tree_.order()) in_order.push_back(edges_[k]);
+    edges_.swap(in_order);
+  }
 
   std::string_view kind() const override { return "polygon"; }
   Bounds<3> bounds() const override { return bounds_; }
@@ -78,14 +83,17 @@ class PolygonContainer final : public Container {
 
   void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {
     const auto first = static_cast<std::ptrdiff_t>(out.size());
-    tree_.for_each_near(c.head<2>(), reach, [&](std::uint32_t id) {
-      const double d = edges_[id].offset(c.head<2>()).norm();
+    const auto may_be_near = [&](const Bounds<2>& box) {
+      return squared_distance<2>(box, c.head<2>()) <= reach * reach;
+    };
+    for_each_edge(may_be_near, [&](const Segment& edge) {
+      const double d = edge.offset(c.head<2>()).norm();
       if (!(d < reach)) return;
       Facet facet;
       facet.kind = Facet::Kind::triangle;
-      facet.id = id;
-      facet.a.head<2>() = edges_[id].a;
-      facet.b.head<2>() = edges_[id].b;
+      facet.id = edge.id;
+      facet.a.head<2>() = edge.a;
+      facet.b.head<2>() = edge.b;
       facet.c = facet.b;
       out.push_back({d, facet});
     });
@@ -95,34 +103,35 @@ class PolygonContainer final : public Container {
   }
 
  private:
-  using Node = BoxTree<2>::Node;
+  /// Calls see(edge) for those in boxes that enter(box) is true of.
+  template <class Enter, class See>
+  void for_each_edge(const Enter& enter, const See& see) const {
+    tree_.for_each_leaf([&](const BoxTree<2>::Node& node) { return enter(node.bounds); },
+                        [&](const BoxTree<2>::Node& leaf) {
+                          for (std::uint32_t k = leaf.first; k < leaf.last; ++k) see(edges_[k]);
+                        });
+  }
 
   /// The distance of p from the nearest edge; any value of at least `reach` where none is nearer.
   double distance_within(const Vector<2>& p, double reach) const {
     double squared = reach * reach;
-    tree_.for_each_leaf([&](const Node& node) { return squared_distance(node.bounds, p) < squared; },
-                        [&](const Node& leaf) {
-                          for (std::uint32_t k = leaf.first; k < leaf.last; ++k)
-                            squared = std::min(squared, edges_[tree_.order()[k]].offset(p).squaredNorm());
-                        });
+    for_each_edge([&](const Bounds<2>& box) { return squared_distance(box, p) < squared; },
+                  [&](const Segment& s) { squared = std::min(squared, s.offset(p).squaredNorm()); });
     return std::sqrt(squared);
   }
 
   /// Whether the ray from p along the first axis crosses an odd number of edges.
   bool encloses(const Vector<2>& p) const {
     bool odd = false;
-    tree_.for_each_leaf(
-        [&](const Node& node) {
-          return node.bounds.lower[1] <= p[1] && p[1] <= node.bounds.upper[1] && p[0] <= node.bounds.upper[0];
+    for_each_edge(
+        [&](const Bounds<2>& box) {
+          return box.lower[1] <= p[1] && p[1] <= box.upper[1] && p[0] <= box.upper[0];
         },
-        [&](const Node& leaf) {
-          for (std::uint32_t k = leaf.first; k < leaf.last; ++k) {
-            const auto& [a, b] = edges_[tree_.order()[k]];
-            if ((a[1] > p[1]) == (b[1] > p[1])) continue;
-            const Vector<2> u = b - a, w = p - a;
-            const double side = u[0] * w[1] - u[1] * w[0];
-            odd ^= b[1] > a[1] ? side > 0 : side < 0;
-          }
+        [&](const Segment& s) {
+          if ((s.a[1] > p[1]) == (s.b[1] > p[1])) return;
+          const Vector<2> u = s.b - s.a, w = p - s.a;
+          const double side = u[0] * w[1] - u[1] * w[0];
+          odd ^= s.b[1] > s.a[1] ? side > 0 : side < 0;
         });
     return odd;
   }
@@ -130,7 +139,7 @@ class PolygonContainer final : public Container {
   Polygon shape_;
   Bounds<3> bounds_;
   double volume_;
-  std::vector<Segment> edges_;
+  std::vector<Segment> edges_;  ///< in the order of the tree
   BoxTree<2> tree_;
 };
 

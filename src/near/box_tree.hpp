@@ -90,26 +90,30 @@ class BoxTree {
                   });
   }
 
-  /// Calls visit(leaf) for the leaves of which least(node) is finite and at most `limit`, which `visit` may
-  /// lower: at every node the child of which less is said comes first. What is said of a node must not be
-  /// more than what is said of its children.
+  /// Calls visit(leaf) for the leaves of which least(node) is below `limit`, which `visit` may lower: at
+  /// every node the child of which less is said comes first. What is said of a node must not be more than
+  /// what is said of its children.
   template <class Least, class Visit>
-  void for_each_leaf_up_to(const double& limit, const Least& least, const Visit& visit) const {
+  void for_each_leaf_below(const double& limit, const Least& least, const Visit& visit) const {
+    struct Waiting {
+      std::uint32_t node;
+      double least;
+    };
     if (nodes_.empty()) return;
-    std::array<std::pair<std::uint32_t, double>, deepest> stack;
+    std::array<Waiting, deepest> stack;
     std::size_t waiting = 0;
     stack[waiting++] = {0, least(nodes_[0])};
     while (waiting > 0) {
-      const auto [at, said] = stack[--waiting];
-      if (!(said <= limit) || std::isinf(said)) continue;
-      const Node& node = nodes_[at];
+      const Waiting next = stack[--waiting];
+      if (!(next.least < limit)) continue;
+      const Node& node = nodes_[next.node];
       if (node.children == 0) {
         visit(node);
         continue;
       }
-      std::pair near(node.children, least(nodes_[node.children]));
-      std::pair far(node.children + 1, least(nodes_[node.children + 1]));
-      if (far.second < near.second) std::swap(near, far);
+      Waiting near{node.children, least(nodes_[node.children])};
+      Waiting far{node.children + 1, least(nodes_[node.children + 1])};
+      if (far.least < near.least) std::swap(near, far);
       stack[waiting++] = far;
       stack[waiting++] = near;
     }

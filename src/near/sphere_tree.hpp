@@ -63,7 +63,7 @@ class SphereTree {
     const Vector<D> in_period = boundary_.wrap(p);
     for (const Vector<D>& shift : shifts_) {
       const Vector<D> moved = in_period - shift;
-      tree_.for_each_leaf_up_to(
+      tree_.for_each_leaf_below(
           found.value,
           [&](const Node& node) { return Measure::of(squared_distance(node.bounds, moved), node.largest); },
           [&](const Node& node) {
@@ -104,17 +104,20 @@ class SphereTree {
     const Vector<D> in_period = boundary_.wrap(p), back = p - in_period;
     for (const Vector<D>& shift : shifts_) {
       const Vector<D> moved = in_period - shift;
-      tree_.for_each_leaf_up_to(
-          limit, [&](const Node& node) { return entry(node, moved, r, u, limit); },
+      double beyond = std::nextafter(limit, infinity);
+      tree_.for_each_leaf_below(
+          beyond, [&](const Node& node) { return entry(node, moved, r, u, limit); },
           [&](const Node& node) {
             for (std::uint32_t k = node.first; k < node.last; ++k)
               limit = visit(k, Vector<D>(centers_[k] + shift + back));
+            beyond = std::nextafter(limit, infinity);
           });
     }
   }
 
  private:
   static constexpr std::uint32_t leaf = 8;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// None first, as that is where most is found.
   static std::vector<Vector<D>> shifts_of(const Boundary<D>& boundary) {
@@ -139,14 +142,14 @@ class SphereTree {
       const double to_lower = node.bounds.lower[k] - reach - p[k],
                    to_upper = node.bounds.upper[k] + reach - p[k];
       if (u[k] == 0) {
-        if (to_lower > 0 || to_upper < 0) return std::numeric_limits<double>::infinity();
+        if (to_lower > 0 || to_upper < 0) return infinity;
         continue;
       }
       const auto [near, far] = std::minmax({to_lower / u[k], to_upper / u[k]});
       first = std::max(first, near);
       last = std::min(last, far);
     }
-    return first <= last ? first : std::numeric_limits<double>::infinity();
+    return first <= last ? first : infinity;
   }
 
   Boundary<D> boundary_;
