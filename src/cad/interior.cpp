@@ -14,8 +14,8 @@
 
 #include "bernal/core/error.hpp"
 #include "cad/counted.hpp"
-#include "cad/floods.hpp"
 #include "cad/hollows.hpp"
+#include "cad/plane_hollows.hpp"
 #include "cad/surface_pieces.hpp"
 #include "cad/surroundings.hpp"
 #include "geometry/changes.hpp"
@@ -142,13 +142,13 @@ Mesh without_voids(const Mesh& solid) {
 /// plane is one; another one may have been drawn up by what stands on the brim, or across a step of it: then
 /// that counts which one plane closes, unless it is much smaller.
 std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
-  std::vector<Candidate> floods, all;
-  for (Flood& flood : floods_of(without_voids(solid), tolerance))
-    floods.push_back(
-        {std::move(flood.space.walls), flood.space.volume, flood.openness, told({flood.brim}), flood.inside});
-  std::vector<bool> is_taken(floods.size(), false), is_chosen(floods.size(), false);
+  std::vector<Candidate> below_planes, all;
+  for (PlaneHollow& hollow : hollows_below_planes(without_voids(solid), tolerance))
+    below_planes.push_back({std::move(hollow.space.walls), hollow.space.volume, hollow.openness,
+                            told({hollow.brim}), hollow.inside});
+  std::vector<bool> is_taken(below_planes.size(), false), is_chosen(below_planes.size(), false);
   std::vector<Hollow> hollows = hollows_of(solid, tolerance);
-  if (hollows.empty() && floods.empty())
+  if (hollows.empty() && below_planes.empty())
     if (std::optional<Hollow> ring = hollow_of_shell(solid, tolerance)) hollows.push_back(std::move(*ring));
   for (Hollow& hollow : hollows) {
     const TriangleTree tree(hollow.walls);
@@ -158,16 +158,16 @@ std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
                   *inside};
     own.is_flat = hollow.is_flat;
     std::optional<std::size_t> same;  // the largest of those that overlap it
-    for (std::size_t k = 0; k < floods.size(); ++k) {
-      const bool overlap = tree.crossing(floods[k].inside, 0, endless) == Crossing::odd ||
-                           TriangleTree(floods[k].walls).crossing(*inside, 0, endless) == Crossing::odd;
+    for (std::size_t k = 0; k < below_planes.size(); ++k) {
+      const bool overlap = tree.crossing(below_planes[k].inside, 0, endless) == Crossing::odd ||
+                           TriangleTree(below_planes[k].walls).crossing(*inside, 0, endless) == Crossing::odd;
       if (overlap && !same) same = k;
       if (overlap) is_taken[k] = true;
     }
     constexpr double as_much = 0.5, hardly = 0.01;
     if (same && is_chosen[*same]) continue;
     if (same) {
-      Candidate& other = floods[*same];
+      Candidate& other = below_planes[*same];
       const bool is_larger = other.volume > (1 + hardly) * own.volume;
       const bool is_rather = other.volume >= as_much * own.volume || other.weight() >= own.weight();
       is_chosen[*same] = is_larger || (!own.is_flat && is_rather);
@@ -175,8 +175,8 @@ std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
     }
     all.push_back(std::move(own));
   }
-  for (std::size_t k = 0; k < floods.size(); ++k)
-    if (!is_taken[k]) all.push_back(std::move(floods[k]));
+  for (std::size_t k = 0; k < below_planes.size(); ++k)
+    if (!is_taken[k]) all.push_back(std::move(below_planes[k]));
   std::ranges::stable_sort(all, std::greater<>(), &Candidate::size);
   return all;
 }

@@ -24,7 +24,7 @@ struct ChosenInterior {
 /// largest counts, closed across its openings or up to its brim. Corners within `tolerance` of a plane lie on
 /// it. Throws Error{bad_mesh}, in one line, where there is no such space, and where none of several hollows
 /// is clearly the largest, with a point of each. Cost: O(n log n) a plane, with two choices of its side for
-/// each that leaves it open; that of `hollows_of` and `floods_of` for a hollow.
+/// each that leaves it open; that of `hollows_of` and `hollows_below_planes` for a hollow.
 ChosenInterior choose_interior(const Mesh& surface, const InteriorRequest& request, double tolerance);
 
 }  // namespace bernal::cad

@@ -309,9 +309,9 @@ RepairedMesh cut_out_crossings(Mesh mesh, const Monitor& monitor) {
     said.push_back(fmt::format("united {} that cross{}", counted(counts.united, "body", "bodies"),
                                counts.made > 1 ? fmt::format(" into {}", counts.made) : ""));
   if (counts.taken_out > 0)
-    said.push_back(fmt::format("took {} that {} oriented inward out of {} surroundings",
-                               counted(counts.taken_out, "body", "bodies"), counts.taken_out == 1 ? "is" : "are",
-                               counts.taken_out == 1 ? "its" : "their"));
+    said.push_back(fmt::format(
+        "took {} that {} oriented inward out of {} surroundings", counted(counts.taken_out, "body", "bodies"),
+        counts.taken_out == 1 ? "is" : "are", counts.taken_out == 1 ? "its" : "their"));
   if (counts.failed > 0)
     said.push_back(fmt::format("{} could not be united: the result would touch itself along an edge",
                                counted(counts.failed, "body", "bodies")));

@@ -74,9 +74,10 @@ using Node = CGAL::AABB_node<TreeTraits>;
 /// A CGAL tree of the triangles of a wall, with two additions of our own.
 ///
 /// CGAL halves the leaves of a node along the longest axis of its box; in a wall of long needles that cuts
-/// across all of them, where nothing tells them apart. Here they are halved on the axis on which their centres
-/// differ most. And beside the box of each node that a search may enter stands a box that is oriented, where
-/// that tells more. It is found by the node's place in CGAL's array of nodes, which has no public name.
+/// across all of them, where nothing tells them apart. Here they are halved on the axis on which their
+/// centres differ most. And beside the box of each node that a search may enter stands a box that is
+/// oriented, where that tells more. It is found by the node's place in CGAL's array of nodes, which has no
+/// public name.
 ///
 /// What that buys, in processor time of insert, compress, shake and refill in a round vessel: CGAL's halving
 /// takes 3.2 times as long where 3000 needles stand upright, and to do without oriented boxes takes 2.5 times

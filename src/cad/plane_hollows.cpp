@@ -1,4 +1,4 @@
-#include "cad/floods.hpp"
+#include "cad/plane_hollows.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -127,31 +127,32 @@ double openness_of(const Space& space, const CutPlane& brim, double tolerance) {
 /// The largest of those that overlap.
 class Largest {
  public:
-  void add(Flood flood) {
-    const TriangleTree tree(flood.space.walls);
-    const std::optional<Vector<3>> inside = point_within(flood.space.walls, tree);
+  void add(PlaneHollow hollow) {
+    const TriangleTree tree(hollow.space.walls);
+    const std::optional<Vector<3>> inside = point_within(hollow.space.walls, tree);
     if (!inside) return;
-    flood.inside = *inside;
+    hollow.inside = *inside;
     for (std::size_t k = 0; k < kept_.size(); ++k) {
       const bool overlap = kept_[k].tree->crossing(*inside, 0, endless) == Crossing::odd ||
-                           tree.crossing(kept_[k].flood.inside, 0, endless) == Crossing::odd;
+                           tree.crossing(kept_[k].hollow.inside, 0, endless) == Crossing::odd;
       if (!overlap) continue;
-      if (kept_[k].flood.space.volume >= flood.space.volume) return;
+      if (kept_[k].hollow.space.volume >= hollow.space.volume) return;
       kept_.erase(kept_.begin() + std::ptrdiff_t(k--));
     }
-    auto own = std::make_unique<TriangleTree>(flood.space.walls);
-    kept_.push_back({std::move(flood), std::move(own)});
+    auto own = std::make_unique<TriangleTree>(hollow.space.walls);
+    kept_.push_back({std::move(hollow), std::move(own)});
   }
-  std::vector<Flood> floods() && {
-    std::vector<Flood> all;
-    for (Kept& kept : kept_) all.push_back(std::move(kept.flood));
-    std::ranges::stable_sort(all, std::greater<>(), [](const Flood& flood) { return flood.space.volume; });
+  std::vector<PlaneHollow> hollows() && {
+    std::vector<PlaneHollow> all;
+    for (Kept& kept : kept_) all.push_back(std::move(kept.hollow));
+    std::ranges::stable_sort(all, std::greater<>(),
+                             [](const PlaneHollow& hollow) { return hollow.space.volume; });
     return all;
   }
 
  private:
   struct Kept {
-    Flood flood;
+    PlaneHollow hollow;
     std::unique_ptr<TriangleTree> tree;
   };
   std::vector<Kept> kept_;
@@ -174,7 +175,7 @@ std::optional<Vector<3>> point_within(const Mesh& walls, const TriangleTree& tre
   return std::nullopt;
 }
 
-std::vector<Flood> floods_of(const Mesh& solid, double tolerance) {
+std::vector<PlaneHollow> hollows_below_planes(const Mesh& solid, double tolerance) {
   const Surroundings around(solid);
   std::vector<Level> levels;
   const double apart = std::max(tolerance, 1e-5 * bounds_of(solid).diagonal());
@@ -203,7 +204,7 @@ std::vector<Flood> floods_of(const Mesh& solid, double tolerance) {
       }
     }
   }
-  return std::move(largest).floods();
+  return std::move(largest).hollows();
 }
 
 }  // namespace bernal::cad

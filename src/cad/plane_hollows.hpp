@@ -7,7 +7,7 @@
 namespace bernal::cad {
 
 /// A hollow that a plane closes, as a vessel is filled until it would spill.
-struct Flood {
+struct PlaneHollow {
   Space space;
   CutPlane brim;
   double openness = 0;  ///< area of the faces in the plane over that of the others
@@ -20,7 +20,7 @@ struct Flood {
 /// in the plane, or corners that are peaks or passes. Orientation does not matter; a hollow without such a
 /// brim is not found. Precondition: closed, without voids. Cost: a cut of the solid a plane, up to 100 of
 /// them, fewer for many faces.
-std::vector<Flood> floods_of(const Mesh& solid, double tolerance);
+std::vector<PlaneHollow> hollows_below_planes(const Mesh& solid, double tolerance);
 
 /// A point of the space that walls enclose, halfway between its largest face and what is opposite.
 std::optional<Vector<3>> point_within(const Mesh& walls, const TriangleTree& tree);
