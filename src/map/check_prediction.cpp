@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
 
