@@ -17,8 +17,8 @@ struct PlacedSphere {
   double r;
 };
 
-/// The spheres of a periodic box [0, edges) in slots: all that `LinkedCells` and `SortedCells` share. A
-/// sphere has a number, which it keeps, and a slot, where it is kept.
+/// The spheres of a periodic box [0, edges) in slots: all that is not the search. A sphere has a number,
+/// which it keeps, and a slot, where it is kept.
 template <int D>
 class Slots {
  public:

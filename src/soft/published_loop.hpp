@@ -12,8 +12,8 @@
 namespace bernal {
 
 /// A sweep of Zhao, Li & Liu (2007) over a periodic box, in double, the spheres in the order of their
-/// numbers. `Cells<D>`, LinkedCells or SortedCells, keeps and finds them; the packing is the same to the bit.
-template <int D, template <int> class Cells>
+/// numbers. `Cells<D>` keeps and finds them; whatever it is, the packing is the same to the bit.
+template <int D, template <int> class Cells = LinkedCells>
 class PublishedLoop {
  public:
   /// Preconditions: centres in [0, edges), every edge at least twice the largest radius. `settle` as of

@@ -175,11 +175,10 @@ std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook&
         wide && !outlook.placed ? "sizes are wide: the largest are relaxed first, the others come into what "
                                   "they leave; then all push while the box grows by the mean overlap"
         : wide                  ? "sizes are wide: the box grows by the mean overlap while they push"
-        : options.device == RelaxDevice::gpu  ? "spheres push each other apart on a GPU while the box grows"
-        : options.method == RelaxMethod::fast ? "spheres push each other apart while the box grows"
-        : options.method == RelaxMethod::reference
-            ? "the published loop while the box grows, on linked lists in cells"
-            : "the published loop while the box grows, on arrays sorted by cells");
+        : options.device == RelaxDevice::gpu ? "spheres push each other apart on a GPU while the box grows"
+        : options.method == RelaxMethod::fast
+            ? "spheres push each other apart while the box grows"
+            : "the published loop while the box grows, on linked lists in cells");
     if (options.method != RelaxMethod::fast)
       items.erase(items.begin());  // it looks into cells
     else if (outlook.placed)

@@ -82,8 +82,8 @@ const StageEntry& entry_of<Relax>() {
                                    {1e-12, 0.5})),
                         word(&Relax::method, "method",
                              "fast; reference: the published loop as it stands, on linked lists, a hundred "
-                             "times slower; reference-sorted: the same to the bit, on sorted arrays",
-                             {"fast", "reference", "reference-sorted"}),
+                             "times slower",
+                             {"fast", "reference"}),
                         unless("\"processor\"",
                                word(&Relax::device, "device",
                                     "where spheres push each other in a periodic box: "

@@ -4,14 +4,12 @@
 #include "core/every_dimension.hpp"
 #include "soft/published_loop.hpp"
 #include "soft/relax.hpp"
-#include "soft/sorted_cells.hpp"
 
 namespace bernal {
-namespace {
 
-template <int D, template <int> class Cells>
-StageEnd relax_on(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
-  PublishedLoop<D, Cells> loop(spheres, edges, options.settle, work.random(Stream::relax));
+template <int D>
+StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
+  PublishedLoop<D> loop(spheres, edges, options.settle, work.random(Stream::relax));
   const int sweeps = sweeps_a_cycle(options, spheres.size());
   double reported = 0, molr = 0;
   int sweep = 0;
@@ -39,15 +37,6 @@ StageEnd relax_on(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax
     work.edges = loop.edges();
     work.milestone("relax", std::clamp(done, 0.0, 0.99), molr);
   }
-}
-
-}  // namespace
-
-template <int D>
-StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
-  return options.method == RelaxMethod::reference_sorted
-             ? relax_on<D, SortedCells>(spheres, edges, work, options)
-             : relax_on<D, LinkedCells>(spheres, edges, work, options);
 }
 
 #define BERNAL_INSTANTIATE(D) \

@@ -13,7 +13,7 @@
 #include "core/parallel.hpp"
 #include "soft/published_loop.hpp"
 #include "soft/soft_packing.hpp"
-#include "soft/sorted_cells.hpp"
+#include "support/sorted_cells.hpp"
 #include "work/random_insertion.hpp"
 
 // What relaxation costs: a sweep and a list of the fast path, by instruction set, sizes and threads, on

@@ -128,8 +128,6 @@ std::vector<std::pair<std::string, Scene>> scenes() {
     all.emplace_back(name, parse_scene("[container]\nkind = \"periodic\"\n" + spheres + stage, "test.toml"));
   };
   add_periodic("published loop", "[[stage]]\ndo = \"relax\"\nmethod = \"reference\"\nstop = 0.01\n");
-  add_periodic("published loop on sorted arrays",
-               "[[stage]]\ndo = \"relax\"\nmethod = \"reference-sorted\"\nstop = 0.01\n");
   all.emplace_back("four in a periodic box",
                    parse_scene("[container]\nkind = \"periodic\"\n[spheres]\ncount = 4\nradius = 0.05\n"
                                "[[stage]]\ndo = \"relax\"\n",

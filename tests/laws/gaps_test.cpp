@@ -67,7 +67,7 @@ std::vector<Case> cases() {
       {"GrownInAColumn", column, equal, grown, 0.02},
       {"RelaxedWithoutWalls", periodic, "count = 100\n" + wide, relaxed, 0.02},
       {"RelaxedByTheBook", periodic, "count = 60\n" + wide,
-       stage("relax", "method = \"reference-sorted\"\nalpha = 3"), 0.02},
+       stage("relax", "method = \"reference\"\nalpha = 3"), 0.02},
       {"RelaxedToAPackingFraction", periodic, "count = 100\npacking_fraction = 0.35\n" + wide, relaxed, 0.02},
       {"PolishedWithoutWalls", periodic, "count = 60\n" + wide, stage("relax", "polish = 1e-10"), 0.02},
       {"GrownWithoutWalls", periodic, "count = 60\n" + wide, grown, 0.02},

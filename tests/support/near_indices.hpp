@@ -11,7 +11,7 @@
 #include "near/point_grid.hpp"
 #include "near/sphere_tree.hpp"
 #include "soft/fixed_point_grid.hpp"
-#include "soft/sorted_cells.hpp"
+#include "support/sorted_cells.hpp"
 
 // Every index of spheres in a box [0, edges) that repeats itself, asked in the same way: `near(c, visit)`
 // calls visit(number) at least once for each sphere with a surface nearer than `reach` to c, in any image.

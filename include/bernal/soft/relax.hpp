@@ -4,9 +4,8 @@
 namespace bernal {
 
 enum class RelaxMethod {
-  fast,              ///< on neighbour lists, with over-relaxed steps
-  reference,         ///< the published loop as it stands, a hundred times slower
-  reference_sorted,  ///< the same to the bit, on sorted arrays in place of linked lists
+  fast,       ///< on neighbour lists, with over-relaxed steps
+  reference,  ///< the published loop as it stands, a hundred times slower
 };
 
 /// Where spheres push each other.
