@@ -131,6 +131,19 @@ TEST(ImportMistakes, AxesAreNamedOnce) {
   EXPECT_EQ(imported({"a.csv", table, {.unit = Unit::mm, .dimension = 3}}).packing.spheres.dimension(), 3);
 }
 
+TEST(ImportMistakes, StructuresOfNumpyGoByTheNamesOfTheirMembers) {
+  const std::string header =
+      "{'descr': [('diameter', '<f8'), ('z', '<f8'), ('y', '<f8'), ('x', '<f8')], 'fortran_order': False, "
+      "'shape': (2,), }\n";
+  std::string bytes("\x93NUMPY\x01\0", 8);
+  bytes += {static_cast<char>(header.size()), '\0'};
+  const std::array<double, 8> rows = {1, 3, 2, 1, 0.5, 6, 5, 4};
+  bytes += header + std::string(reinterpret_cast<const char*>(rows.data()), sizeof rows);
+  const Packing packing = imported({"a.npy", bytes, {.unit = Unit::mm}}).packing;
+  EXPECT_EQ(packing.spheres.r, (std::vector<double>{0.5, 0.25}));
+  EXPECT_EQ(packing.spheres.x, (std::vector<std::vector<double>>{{1, 4}, {2, 5}, {3, 6}}));
+}
+
 TEST(ImportMistakes, ANumpyFileHoldsOneArray) {
   const std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 4), }\n";
   std::string bytes("\x93NUMPY\x01\0", 8);
