@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "bernal/run/run.hpp"
 #include "support/plans.hpp"
 
 namespace bernal::testing {

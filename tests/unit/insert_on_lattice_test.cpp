@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/plans.hpp"
 

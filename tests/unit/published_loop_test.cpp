@@ -1,4 +1,5 @@
 #include "soft/published_loop.hpp"
+#include "bernal/run/run.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "soft/relax.hpp"
 #include "support/plans.hpp"

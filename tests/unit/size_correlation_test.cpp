@@ -9,6 +9,7 @@
 
 #include "bernal/core/random.hpp"
 #include "bernal/measure/bond_order.hpp"
+#include "bernal/run/run.hpp"
 #include "support/packings.hpp"
 #include "support/periodic.hpp"
 #include "support/plans.hpp"

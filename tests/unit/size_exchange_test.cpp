@@ -1,4 +1,5 @@
 #include "soft/size_exchange.hpp"
+#include "bernal/run/run.hpp"
 
 #include <gtest/gtest.h>
 

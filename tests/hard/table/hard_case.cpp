@@ -1,4 +1,5 @@
 #include "hard/table/hard_case.hpp"
+#include "bernal/run/run.hpp"
 
 #include <chrono>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "hard/table/random_vessels.hpp"
+#include "bernal/run/run.hpp"
 
 #include <cmath>
 #include <numbers>
