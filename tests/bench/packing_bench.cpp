@@ -6,6 +6,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/random.hpp"
+#include "bernal/run/run.hpp"
 #include "settle/mover.hpp"
 #include "support/meshes.hpp"
 #include "support/plans.hpp"

@@ -12,6 +12,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "core/parallel.hpp"
 #include "domain/places.hpp"

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bernal/core/error.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/meshes.hpp"
 #include "support/plans.hpp"

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/folder.hpp"

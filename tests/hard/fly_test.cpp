@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "fly/fly.hpp"
 #include "fly/fly_events.hpp"

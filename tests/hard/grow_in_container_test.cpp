@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/run/run.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/meshes.hpp"

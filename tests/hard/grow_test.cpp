@@ -9,6 +9,7 @@
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
 #include "support/measured.hpp"
 #include "support/nearest_images.hpp"
 #include "support/plans.hpp"

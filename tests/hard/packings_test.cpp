@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/plans.hpp"
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
+#include "bernal/run/run.hpp"
 #include "soft/relax.hpp"
 #include "support/nearest_images.hpp"
 #include "support/plans.hpp"

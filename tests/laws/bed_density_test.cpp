@@ -1,4 +1,5 @@
 #include "soft/bed_density.hpp"
+#include "bernal/run/run.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 
 #include "bernal/core/random.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
 #include "support/scenes.hpp"
 #include "support/scenes_under_test.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
+#include "bernal/run/run.hpp"
 #include "support/starts.hpp"
 
 namespace bernal {

@@ -9,6 +9,7 @@
 #include "bernal/engine/engine_error.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/result/read_packing.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/slabs/pack_in_slabs.hpp"
 #include "support/folder.hpp"

@@ -1,4 +1,5 @@
 #include "plan/estimate.hpp"
+#include "bernal/run/run.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include <ostream>
 #include <string>
 
+#include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/meshes.hpp"
 #include "support/plans.hpp"

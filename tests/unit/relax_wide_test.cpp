@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
 #include "plan/stages.hpp"
 #include "soft/relax_wide.hpp"
 #include "soft/soft_packing.hpp"

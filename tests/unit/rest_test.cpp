@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bernal/cad/mesh_container.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/settle/compress.hpp"
 #include "support/meshes.hpp"
 #include "support/plans.hpp"

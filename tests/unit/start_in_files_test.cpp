@@ -7,6 +7,7 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
+#include "bernal/run/run.hpp"
 #include "support/starts.hpp"
 
 // What result folders know of the spheres that they started from.

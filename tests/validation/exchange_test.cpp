@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/plans.hpp"
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bernal/predict/predict.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/flights.hpp"
 #include "support/plans.hpp"

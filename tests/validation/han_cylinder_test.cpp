@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/meshes.hpp"
 #include "support/plans.hpp"

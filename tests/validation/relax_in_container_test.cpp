@@ -7,6 +7,7 @@
 
 #include "bernal/core/random.hpp"
 #include "bernal/measure/wall_profile.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/measured.hpp"
 #include "support/meshes.hpp"

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "bernal/measure/measure.hpp"
+#include "bernal/run/run.hpp"
 #include "support/measured.hpp"
 #include "support/plans.hpp"
 
