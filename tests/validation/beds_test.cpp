@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bernal/measure/rest.hpp"
+#include "bernal/run/run.hpp"
 #include "bernal/settle/compress.hpp"
 #include "support/plans.hpp"
 
