@@ -1,0 +1,285 @@
+#include "report/measured_json.hpp"
+
+#include <sstream>
+
+#include "bernal/core/text.hpp"
+#include "bernal/report/json.hpp"
+
+namespace bernal {
+
+static void to_json(Json& json, const BondOrder::Count& count) {
+  json = {{"spheres", count.spheres}, {"crystalline", count.crystalline}, {"fraction", count.fraction()}};
+}
+
+static void to_json(Json& json, const WallProfile::Segregation& segregation) {
+  json = {{"spheres", segregation.spheres},
+          {"mean_volume_ratio", segregation.volume_ratio},
+          {"error", segregation.error}};
+}
+
+BERNAL_KEYS(BedProfile::Core, from, to, porosity)
+BERNAL_KEYS(BedProfile::Layer, from, to, packing_fraction)
+BERNAL_KEYS(Bounds<3>, lower, upper)
+BERNAL_KEYS(BondOrder, all, mean_q6, q6_error, near_wall, core)
+BERNAL_KEYS(Chambers::Uncovered, radius, share, error)
+BERNAL_KEYS(DrawnComparison, missing, scale, largest_deviation, above_largest)
+BERNAL_KEYS(LocalPacking::Quantile, share, packing_fraction)
+BERNAL_KEYS(PoreSizes::Quantile, share, distance)
+BERNAL_KEYS(SizeCorrelation::Neighbours, correlation, error, pairs)
+BERNAL_KEYS(SizeComparison::Class, radius, asked_share, count)
+BERNAL_KEYS(SizeComparison::Share, above, up_to, asked_number, asked_volume, count, number, volume)
+BERNAL_KEYS(SizeComparison::Quantile, share, realised, asked)
+BERNAL_KEYS(WallProfile::Layer, from, to, share, porosity, error, segregation)
+
+static void to_json(Json& json, const SizeCorrelation& sizes) {
+  json = {{"mean_diameter", sizes.mean_diameter},
+          {"bin_width", sizes.bin_width},
+          {"references", sizes.references},
+          {"neighbours", sizes.neighbours},
+          {"means", Json::array()},
+          {"d", sizes.d},
+          {"c", sizes.c},
+          {"error", sizes.error}};
+  for (const auto& [from, to] : size_correlation_ranges)
+    if (const auto mean = sizes.mean_between(from, to))
+      json["means"].push_back({{"from", from}, {"to", to}, {"c", mean->c}, {"error", mean->error}});
+}
+
+/// What is only counted took a part of another effect's time.
+static void to_json(Json& json, const Contacts& contacts) {
+  json = {{"contact_gap", contacts.contact_gap},
+          {"coordination", contacts.coordination},
+          {"contacts", contacts.pairs},
+          {"wall_contacts", contacts.walls},
+          {"rattlers", contacts.rattlers},
+          {"backbone",
+           {{"spheres", contacts.backbone},
+            {"contacts", contacts.backbone_pairs},
+            {"wall_contacts", contacts.backbone_walls},
+            {"coordination", contacts.backbone_coordination},
+            {"isostatic_contacts", contacts.isostatic}}}};
+}
+
+/// A count of rattlers stands only where it says something.
+static Json contacts_json(const Measurements& measured, const Contacts& contacts) {
+  Json json = contacts;
+  if (!measured.holds(contacts)) json["rattlers"] = nullptr;
+  return json;
+}
+
+static void to_json(Json& json, const Chambers::Chamber& chamber) {
+  json = {{"n", chamber.spheres},
+          {"share", chamber.share},
+          {"share_error", chamber.share_error},
+          {"phi", chamber.packing_fraction},
+          {"position", chamber.position},
+          {"clearance", chamber.clearance}};
+}
+
+static void to_json(Json& json, const Chambers& found) {
+  json = {{"radius", found.radius},
+          {"resolution", found.resolution},
+          {"misplaced", found.misplaced},
+          {"uncovered", {{"smallest", found.by_smallest}, {"mean", found.by_mean}}},
+          {"list", found.chambers}};
+}
+
+/// Without its layers.
+static void to_json(Json& json, const BedProfile& bed) {
+  json = {{"direction", bed.direction},
+          {"mean_diameter", bed.mean_diameter},
+          {"height", bed.height},
+          {"highest", bed.highest},
+          {"roughness", bed.roughness},
+          {"covered", bed.covered},
+          {"porosity", bed.porosity},
+          {"porosity_error", bed.porosity_error},
+          {"core", bed.core},
+          {"level", bed.level},
+          {"unsettled", bed.rest.unsettled},
+          {"hanging", bed.rest.hanging},
+          {"farthest_fall", bed.rest.farthest},
+          {"held_by_friction", bed.rest.held_by_friction},
+          {"angle_of_friction", bed.rest.friction}};
+}
+
+/// Without its layers.
+static void to_json(Json& json, const WallProfile& profile) {
+  const auto& least = profile.first_minimum;
+  const auto& segregation = profile.segregation;
+  json = {{"mean_diameter", profile.mean_diameter},
+          {"mean_porosity", profile.mean_porosity},
+          {"near_wall_phi", profile.near_wall_packing_fraction},
+          {"core_phi", profile.core_packing_fraction},
+          {"core_phi_error", profile.core_packing_error},
+          {"core_from", profile.core_from},
+          {"has_core", profile.has_core},
+          {"first_minimum", least ? Json{{"z", least->z},
+                                         {"z_over_diameter", least->z / profile.mean_diameter},
+                                         {"porosity", least->porosity}}
+                                  : Json()},
+          {"segregation", segregation ? Json{{"spheres_near_wall", segregation->spheres},
+                                             {"mean_volume_ratio", segregation->volume_ratio},
+                                             {"error", segregation->error}}
+                                      : Json()}};
+}
+
+static void to_json(Json& json, const RadialDistribution& radial) {
+  Json peaks = Json::array();
+  for (const auto& peak : radial.peaks)
+    peaks.push_back({{"r", peak.r},
+                     {"r_over_diameter", peak.r / radial.mean_diameter},
+                     {"g", peak.g},
+                     {"error", peak.error}});
+  json = {{"mean_diameter", radial.mean_diameter},
+          {"radius_spread", radial.radius_spread},
+          {"bin_width", radial.bin_width},
+          {"references", radial.references},
+          {"peaks", peaks},
+          {"r", radial.r},
+          {"g", radial.g},
+          {"error", radial.error}};
+}
+
+/// Without what every single sphere has.
+static void to_json(Json& json, const LocalPacking& local) {
+  json = {{"mean", local.mean},
+          {"mean_error", local.mean_error},
+          {"deviation", local.deviation},
+          {"quantiles", local.quantiles},
+          {"mean_neighbours", local.mean_neighbours},
+          {"looked_at", local.cell_volume.size()},
+          {"empty_cells", local.empty},
+          {"volume", local.volume},
+          {"volume_error", local.volume_error}};  // null where it is no number
+}
+
+/// Without the values at all wave numbers.
+static void to_json(Json& json, const StructureFactor& factor) {
+  const auto value = [&](double k, double s, double error) {
+    return Json{{"k", k}, {"k_times_diameter", k * factor.mean_diameter}, {"s", s}, {"error", error}};
+  };
+  const auto peak = factor.peak();
+  json = {{"mean_diameter", factor.mean_diameter},
+          {"wave_vectors", factor.references},
+          {"peak", peak ? value(peak->k, peak->s, peak->error) : Json()},
+          {"smallest_k", value(factor.k.front(), factor.s.front(), factor.error.front())}};
+}
+
+/// Without the density.
+static void to_json(Json& json, const PoreSizes& pores) {
+  json = {{"points", pores.points},
+          {"in_pores", pores.in_pores},
+          {"porosity", pores.porosity},
+          {"porosity_error", pores.porosity_error},
+          {"mean", pores.mean},
+          {"mean_error", pores.mean_error},
+          {"second_moment", pores.second_moment},
+          {"second_moment_error", pores.second_moment_error},
+          {"largest", pores.largest},
+          {"quantiles", pores.quantiles}};
+}
+
+static void to_json(Json& json, const SizeComparison& sizes) {
+  json = {{"ks_statistic", sizes.ks_statistic},
+          {"ks_p_value", sizes.ks_p_value},
+          {"chi_squared", sizes.classes.empty() ? Json() : Json(sizes.chi_squared)},
+          {"chi_squared_p_value", sizes.chi_squared_p_value},
+          {"mean_radius", {{"realised", sizes.mean_radius}, {"asked", sizes.asked_mean_radius}}},
+          {"mean_volume_ratio", sizes.volume_ratio},
+          {"mean_volume_ratio_error", sizes.volume_ratio_error},
+          {"drawn", sizes.drawn},
+          {"shares", sizes.shares},
+          {"quantiles", sizes.quantiles},
+          {"classes", sizes.classes}};
+}
+
+namespace {
+
+/// The figures; the tables are in the answer of `bernal measure`.
+Json figures_of(const std::optional<SizeComparison>& sizes) {
+  if (!sizes) return {};
+  return {{"ks_statistic", sizes->ks_statistic},
+          {"ks_p_value", sizes->ks_p_value},
+          {"chi_squared_p_value", sizes->chi_squared_p_value},
+          {"mean_volume_ratio", sizes->volume_ratio},
+          {"shares", sizes->shares},
+          {"drawn", sizes->drawn}};
+}
+
+}  // namespace
+
+Json::object_t::value_type domain_json(const Domain& domain) {
+  const Box* box = std::get_if<Box>(&domain);
+  if (box && (box->repeats() || box->dimension() != 3)) {
+    std::vector<int> walls;
+    for (int k = 0; k < box->dimension(); ++k)
+      if (box->has_wall(k)) walls.push_back(k);
+    return {"box", {{"edges", box->size}, {"walls", walls}, {"volume", volume_of(domain)}}};
+  }
+  Json container = {{"kind", kind_of(domain)}, {"volume", volume_of(domain)}, {"bounds", bounds_of(domain)}};
+  if (is_periodic(domain)) container["periods"] = boundary_of<3>(domain).edges;
+  return {"container", container};
+}
+
+std::string text_of(const Json& json) {
+  std::istringstream lines(json.dump(2, ' ', false, Json::error_handler_t::replace));
+  std::string text;
+  for (std::string line; std::getline(lines, line);) text += with_escaped_controls(line) + '\n';
+  return text;
+}
+
+Json measured_figures(const Measurements& measured) {
+  Json json = contacts_json(measured, measured.contacts);
+  json.update({{"held_from_gap", measured.held_from},
+               {"crystalline", measured.order},
+               {"size_correlation", measured.size_correlation},
+               {"chambers", measured.chambers},
+               {"bed", measured.bed},
+               {"walls", measured.walls},
+               {"local_packing", measured.local},
+               {"structure_factor", measured.structure},
+               {"pores", measured.pores},
+               {"sizes", figures_of(measured.sizes)}});
+  return json;
+}
+
+std::string measurements_as_json(const Packing& packing, const Measurements& measured) {
+  Json json = {{"n", packing.spheres.size()},
+               {"dimension", packing.spheres.dimension()},
+               {"unit", name_of(packing.scene.unit)},
+               {"phi", measured.packing_fraction},
+               domain_json(packing.domain)};
+  json.update(contacts_json(measured, measured.contacts));
+  json["held_from_gap"] = measured.held_from;
+  json["by_gap"] = Json::array();
+  for (const Contacts& contacts : measured.by_gap)
+    json["by_gap"].push_back(contacts_json(measured, contacts));
+  json["g_r"] = measured.radial;
+  json["size_correlation"] = measured.size_correlation;
+  json["crystalline"] = measured.order;
+  json["chambers"] = measured.chambers;
+  json["bed"] = measured.bed;
+  if (measured.bed) json["bed"]["layers"] = measured.bed->layers;
+  json["walls"] = measured.walls;
+  if (measured.walls) json["walls"]["layers"] = measured.walls->layers;
+  json["local_packing"] = measured.local;
+  json["structure_factor"] = measured.structure;
+  if (const auto& factor = measured.structure)
+    json["structure_factor"].update({{"bin_width", factor->bin_width},
+                                     {"k", factor->k},
+                                     {"s", factor->s},
+                                     {"error", factor->error},
+                                     {"vectors", factor->vectors}});
+  json["pores"] = measured.pores;
+  if (const auto& pores = measured.pores)
+    json["pores"].update({{"bin_width", pores->bin_width},
+                          {"d", pores->d},
+                          {"density", pores->density},
+                          {"error", pores->error}});
+  json["sizes"] = measured.sizes;
+  json["hash"] = hash_of(packing.spheres);
+  return text_of(json);
+}
+
+}  // namespace bernal
