@@ -11,7 +11,8 @@ target_compile_options(bernal_compile_options INTERFACE
 
 # What no loop runs long in is optimised lightly.
 add_library(bernal_cold_options INTERFACE)
-target_compile_options(bernal_cold_options INTERFACE $<$<CONFIG:Release>:-O1>)
+target_compile_options(bernal_cold_options INTERFACE $<$<CONFIG:Release>:-O1>
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # which it then holds for possible where it is not
 
 set(BERNAL_SANITIZE "" CACHE STRING "Value of -fsanitize= for every target, empty for none")
 if(BERNAL_SANITIZE)
@@ -23,12 +24,15 @@ if(BERNAL_SANITIZE)
   target_link_options(bernal_compile_options INTERFACE -fsanitize=${BERNAL_SANITIZE})
 endif()
 
-# Where CMAKE_UNITY_BUILD is on, the files of a folder are compiled a few together: what the same headers and templates
-# cost is paid once for all of them. Names in a folder are different anyway. Kernels
-# stay alone: what they tell the compiler about instruction sets is theirs.
-set(BERNAL_FILES_TOGETHER 8)
-set(BERNAL_COLD_FILES_TOGETHER 16)
-function(bernal_compile_together folder most)
+# Where CMAKE_UNITY_BUILD is on, the files of a folder are compiled many together: what the same headers and templates
+# cost is paid once for all of them, a quarter of the whole beside eight together. Where eight take 2 GB, there are no
+# more. Names in a folder are different anyway. Kernels stay alone: what they tell the compiler about instruction sets is
+# theirs.
+function(bernal_compile_together folder)
+  set(most 16)
+  if(folder STREQUAL "cad" OR folder STREQUAL "soft")
+    set(most 8)
+  endif()
   set(sources ${ARGN})
   list(FILTER sources EXCLUDE REGEX "kernels[.]cpp$")
   list(LENGTH sources count)

@@ -16,8 +16,8 @@
 namespace bernal {
 namespace {
 
-constexpr double cell = 0.5;          // in mean diameters
-constexpr double least_empty = 0.02;  // of a container that is not full
+constexpr double width_of_cells = 0.5;  // in mean diameters
+constexpr double least_empty = 0.02;    // of a container that is not full
 constexpr double most_hanging = 0.5;
 constexpr double low_share = 0.05;  // of the surface, that is below the level
 constexpr double rounding_of_layers = 1e-6;
@@ -207,7 +207,7 @@ std::optional<BedProfile> bed_profile(const Spheres<dynamic>& packed, const Doma
       static_cast<double>(profile.rest.hanging) > most_hanging * static_cast<double>(packed.size()))
     return {};
   const double floor = below.lowest();
-  const BedSurface surface(spheres, *container, down, cell * diameter);
+  const BedSurface surface(spheres, *container, down, width_of_cells * diameter);
   const std::vector<BedSurface::Cell> cells = surface.cells(*container, floor);
   const MeanSurface mean = mean_surface(cells);
   if (!(mean.share > 0)) return {};

@@ -16,7 +16,7 @@ using Tree = SphereTree<3>;
 
 constexpr std::size_t cells_a_piece = 64;
 /// Of the way to the farthest corner: what a plane takes off by less is rounding.
-constexpr double rounding = 1e-12;
+constexpr double rounding_of_cuts = 1e-12;
 
 class Diagram {
  public:
@@ -137,7 +137,7 @@ class Diagram {
       *nearest = planes.back();
       planes.pop_back();
       if (!(plane.distance < reach)) break;
-      const double slack = rounding * reach * plane.normal.norm();
+      const double slack = rounding_of_cuts * reach * plane.normal.norm();
       if (piece.cell.cut(plane.normal, plane.offset, static_cast<ConvexCell::Label>(plane.place), slack))
         reach = reach_of(piece.cell);
     }

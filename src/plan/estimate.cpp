@@ -40,8 +40,8 @@ constexpr double share_relaxed = 0.975, wall_deficit_relaxed = 0.115;
 /// And where only a part of the container is wide enough for the larger spheres.
 constexpr double share_in_thin_parts = 0.80;
 /// Classes of equal volume that the sizes are looked at in, and the quantiles that these are made from.
-constexpr std::size_t classes = 5, quantiles = 500;
-constexpr std::size_t points = 5000;
+constexpr std::size_t volume_classes = 5, quantiles = 500;
+constexpr std::size_t sample_points = 5000;
 /// How much of itself a covering sphere may lack, as the wall's nearest point is known to rounding only.
 constexpr double slack = 0.02;
 constexpr int most_moves = 8;
@@ -81,7 +81,8 @@ std::vector<double> radii_by_volume(const SizeDistribution& radii, int dimension
   double sum = 0;
   for (const double r : all) {
     sum += std::pow(r, dimension);
-    while (middle.size() < classes && sum > volume * (static_cast<double>(middle.size()) + 0.5) / classes)
+    while (middle.size() < volume_classes &&
+           sum > volume * (static_cast<double>(middle.size()) + 0.5) / volume_classes)
       middle.push_back(r);
   }
   return middle;
@@ -206,7 +207,7 @@ double coverable_share(const Container& container, double r) {
   };
   std::size_t covered = 0;
   std::vector<NearFacet> facets;
-  const std::vector<Vector<3>> inside = points_inside(container, points, 1, even_point);
+  const std::vector<Vector<3>> inside = points_inside(container, sample_points, 1, even_point);
   if (inside.empty()) refuse_thin_container();
   for (const Vector<3>& p : inside)
     covered += is_coverable(container, p, container.clearance_within(p, r), r, facets);
