@@ -365,8 +365,7 @@ Command measure_command() {
            "was settled last: its height, roughness, porosity up to its surface and packing fraction over "
            "the height, and whether its spheres rest; walls and pores are those below its surface then."
            "\n\nIn three dimensions: the share of the spheres whose neighbours lie as in a crystal.\n\nIn "
-           "two "
-           "and three: the packing fraction of every sphere in "
+           "two and three: the packing fraction of every sphere in "
            "its cell of the power diagram. In periodic boxes: g(r) and the structure factor S(k). "
            "Everywhere: how far it is from points in the pores to the nearest solid.",
        .examples = {{"bernal measure out", "everything, for people"},

@@ -1,7 +1,7 @@
-# cmake -D FOLDER=src/viewer/page -D HEADER=viewer/viewer_files.hpp -D TO=viewer_files.cpp -P embed_viewer.cmake: the style sheet
-# and the program of the view as C++. The modules become one script, in the order below, in a scope of its own: their
-# imports and the word export go, for all names differ. Shaders become the strings that shaders.js asks for. Lines that
-# are comments are left out.
+# cmake -D FOLDER=src/viewer/page -D HEADER=viewer/viewer_files.hpp -D TO=viewer_files.cpp -P embed_viewer.cmake: the
+# style sheet and the program of the view as C++. The modules become one script, in the order below, in a scope of its
+# own: their imports and the word export go, for all names differ. Shaders become the strings that shaders.js asks for.
+# Lines that are comments are left out.
 include(${CMAKE_CURRENT_LIST_DIR}/embed_files.cmake)
 set(modules data colours camera shaders walls images renderer order pick labels panel controls view)
 

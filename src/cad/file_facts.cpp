@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cad/known_formats.hpp"
+#include "core/lower_case.hpp"
 
 namespace bernal::cad {
 namespace {

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "bernal/cad/read_mesh.hpp"
+#include "core/lower_case.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -140,7 +141,7 @@ std::string known_not_to_be_a_mesh(const std::filesystem::path& file) {
   if (text.starts_with("PK\x03\x04") && !zipped_format)
     return "is a zip archive; unpack it and name the file inside";
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-  const std::string words = in_lower_case(std::string(text.substr(0, 64)));
+  const std::string words = in_lower_case(text.substr(0, 64));
   if (words.starts_with("<!doctype html") || words.starts_with("<html"))
     return "is a web page, not a CAD file; download the file itself";
   if (words.starts_with("iso-10303-21") && extension != ".step" && extension != ".stp" && extension != ".ifc")

@@ -1,19 +1,10 @@
 #pragma once
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace bernal::cad {
-
-/// Of ASCII letters.
-inline std::string in_lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 /// Without blanks and ends of lines around it.
 inline std::string_view trimmed(std::string_view text) {

@@ -17,6 +17,7 @@
 #include "cad/slicer_parts.hpp"
 #include "cad/xml_document.hpp"
 #include "cad/zip_archive.hpp"
+#include "core/lower_case.hpp"
 
 namespace bernal::cad {
 namespace {

@@ -12,6 +12,7 @@
 #include "cad/counted.hpp"
 #include "cad/file_facts.hpp"
 #include "cad/known_formats.hpp"
+#include "core/lower_case.hpp"
 #include "core/parallel.hpp"
 #include "geometry/point_numbers.hpp"
 
@@ -23,8 +24,6 @@ constexpr std::size_t binary_triangle = 50;
 constexpr std::size_t facets_between_looks = 1 << 16;  // at whether the user wants to stop
 
 bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
-
-std::string lower(std::string_view text) { return in_lower_case(std::string(text)); }
 
 /// Walks through the words of a text STL and stops at the first that does not belong.
 class StlText {
@@ -50,7 +49,7 @@ class StlText {
       if (skipped_comment(word)) continue;
       if (word != "solid") {
         // Padding, a signature, a remark; not a solid whose first line is spoilt.
-        if (read_.soup.solids.empty() || lower(text_.substr(end_)).find("facet") != std::string::npos)
+        if (read_.soup.solids.empty() || in_lower_case(text_.substr(end_)).find("facet") != std::string::npos)
           fail("\"solid\"", word);
         return;
       }
@@ -90,7 +89,7 @@ class StlText {
     while (at_ < text_.size() && is_space(text_[at_])) line_ += text_[at_++] == '\n';
     const std::size_t begin = at_;
     while (at_ < text_.size() && !is_space(text_[at_])) ++at_;
-    word_ = lower(text_.substr(begin, at_ - begin));
+    word_ = in_lower_case(text_.substr(begin, at_ - begin));
     return word_;
   }
 
@@ -117,7 +116,7 @@ class StlText {
   std::string name() {
     const std::size_t begin = at_;
     skip_line();
-    const std::string rest = lower(text_.substr(begin, at_ - begin));
+    const std::string rest = in_lower_case(text_.substr(begin, at_ - begin));
     if (const std::size_t facet = rest.find(" facet normal "); facet != std::string::npos)
       at_ = begin + facet;
     return std::string(trimmed(text_.substr(begin, at_ - begin)));
@@ -162,7 +161,7 @@ class StlText {
 
 /// Whether it is text: comments, then the word.
 bool begins_as_text(std::string_view content) {
-  std::string head = lower(content.substr(0, 1024));
+  std::string head = in_lower_case(content.substr(0, 1024));
   std::size_t at = head.find_first_not_of(" \t\r\n");
   while (at != std::string::npos && head[at] == '#')
     at = head.find_first_not_of(" \t\r\n", std::min(head.find('\n', at), head.size()));

@@ -8,6 +8,7 @@
 #include "bernal/core/text.hpp"
 #include "cad/known_formats.hpp"
 #include "cad/xml_document.hpp"
+#include "core/lower_case.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -21,7 +22,7 @@ std::string value_of(pugi::xml_node node, std::string_view key) {
 
 }  // namespace
 
-bool is_negative(std::string_view type) { return in_lower_case(std::string(type)).starts_with("negative"); }
+bool is_negative(std::string_view type) { return in_lower_case(type).starts_with("negative"); }
 
 std::string complaint_about_negative(const std::string& name) {
   return fmt::format(

@@ -12,6 +12,7 @@
 
 #include "bernal/core/error.hpp"
 #include "cad/known_formats.hpp"
+#include "core/lower_case.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -32,7 +33,7 @@ bool is_as_it_says(const unz_file_info64& info) {
 }
 
 std::string comparable(std::string_view name) {
-  std::string plain = in_lower_case(std::string(name));
+  std::string plain = in_lower_case(name);
   std::ranges::replace(plain, '\\', '/');
   plain.erase(0, std::min(plain.find_first_not_of('/'), plain.size()));
   return plain;

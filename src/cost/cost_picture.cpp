@@ -3,7 +3,7 @@
 #include <map>
 
 #include "cost/write_cost.hpp"
-#include "map/drawing.hpp"
+#include "report/drawing.hpp"
 #include "report/html_text.hpp"
 
 namespace bernal::cost {

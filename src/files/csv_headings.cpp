@@ -1,18 +1,13 @@
 #include "files/csv_headings.hpp"
 
+#include "core/lower_case.hpp"
+
 namespace bernal {
 
 std::string_view stripped(std::string_view text, std::string_view of) {
   const auto first = text.find_first_not_of(of);
   if (first == text.npos) return {};
   return text.substr(first, text.find_last_not_of(of) - first + 1);
-}
-
-std::string in_lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
 }
 
 std::string_view unit_in_letters(std::string_view unit) {

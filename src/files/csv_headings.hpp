@@ -25,9 +25,6 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
 /// Text without these characters at its ends.
 std::string_view stripped(std::string_view text, std::string_view of);
 
-/// The letters A to Z as a to z.
-std::string in_lower_case(std::string_view text);
-
 /// "um" for "µm", with the micro sign or the Greek letter in UTF-8; any other text as it is.
 std::string_view unit_in_letters(std::string_view unit);
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "bernal/version.hpp"
+#include "core/lower_case.hpp"
 #include "files/csv_headings.hpp"
 #include "formats/foreign_lines.hpp"
 #include "formats/text_file.hpp"

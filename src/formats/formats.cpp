@@ -7,6 +7,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/formats/export.hpp"
+#include "core/lower_case.hpp"
 #include "files/csv_headings.hpp"
 #include "formats/format.hpp"
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/dimension.hpp"
+#include "core/lower_case.hpp"
 #include "files/csv_headings.hpp"
 #include "formats/foreign_lines.hpp"
 

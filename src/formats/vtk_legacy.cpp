@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "core/lower_case.hpp"
 #include "files/csv_headings.hpp"
 #include "files/csv_lines.hpp"
 #include "formats/foreign_lines.hpp"

@@ -16,7 +16,7 @@
 #include "files/output_file.hpp"
 #include "files/staged_folder.hpp"
 #include "map/contours.hpp"
-#include "map/drawing.hpp"
+#include "report/drawing.hpp"
 
 namespace bernal {
 namespace {

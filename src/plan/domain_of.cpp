@@ -12,6 +12,7 @@
 #include "bernal/sizes/size_distribution.hpp"
 #include "cad/files_of_part.hpp"
 #include "cad/known_formats.hpp"
+#include "core/lower_case.hpp"
 
 namespace bernal {
 namespace {
@@ -63,7 +64,7 @@ void pin_files(MeshFile& mesh) {
   for (const std::filesystem::path& file : files_of(mesh)) {
     const std::string digest = sha256_of_part(file);
     const std::size_t k = digests.size();
-    if (k < mesh.sha256.size() && cad::in_lower_case(mesh.sha256[k]) != digest)
+    if (k < mesh.sha256.size() && in_lower_case(mesh.sha256[k]) != digest)
       throw OptionError("sha256", fmt::format("{} is not the file that is meant: its SHA-256 is {}; leave "
                                               "\"sha256\" out to take it as it is",
                                               file.string(), digest));
@@ -144,7 +145,7 @@ std::vector<std::filesystem::path> changed_files(const Scene& scene) {
   if (!mesh) return changed;
   const std::vector<std::filesystem::path> files = files_of(*mesh);
   for (std::size_t k = 0; k < std::min(files.size(), mesh->sha256.size()); ++k)
-    if (sha256_of_part(files[k]) != cad::in_lower_case(mesh->sha256[k])) changed.push_back(files[k]);
+    if (sha256_of_part(files[k]) != in_lower_case(mesh->sha256[k])) changed.push_back(files[k]);
   return changed;
 }
 

@@ -8,6 +8,7 @@
 
 #include "bernal/core/text.hpp"
 #include "cad/known_formats.hpp"
+#include "core/lower_case.hpp"
 #include "files/sha256.hpp"
 #include "plan/start.hpp"
 #include "result/unpublished.hpp"
@@ -71,7 +72,7 @@ void complete_box(Scene& scene) {
 
 void pin_digest(Scene& scene, const std::string& digest) {
   Start& start = scene.start;
-  if (!start.sha256.empty() && cad::in_lower_case(start.sha256.front()) != digest)
+  if (!start.sha256.empty() && in_lower_case(start.sha256.front()) != digest)
     refuse(scene, "start_sha256",
            fmt::format("{} is not the file that is meant: its SHA-256 is {}; leave \"start_sha256\" out to "
                        "take it as it is",

@@ -15,6 +15,7 @@ BERNAL_KEYS(Certificate::Overlap, pair, ratio)
 BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
 
+/// What is only counted took a part of another effect's time.
 static void to_json(Json& json, const Effect& effect) {
   json = {{"name", effect.name}, {"calls", effect.calls}, {"seconds", effect.seconds}};
   if (effect.calls > 0 && effect.seconds == 0) json["seconds"] = nullptr;

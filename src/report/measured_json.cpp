@@ -45,7 +45,6 @@ static void to_json(Json& json, const SizeCorrelation& sizes) {
       json["means"].push_back({{"from", from}, {"to", to}, {"c", mean->c}, {"error", mean->error}});
 }
 
-/// What is only counted took a part of another effect's time.
 static void to_json(Json& json, const Contacts& contacts) {
   json = {{"contact_gap", contacts.contact_gap},
           {"coordination", contacts.coordination},

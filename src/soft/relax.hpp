@@ -42,7 +42,8 @@ int sweeps_a_cycle(const Relax& options, std::size_t spheres);
 StageEnd relax(Work& work, const Relax& options);
 
 /// The published loop as it stands, in double: the oracle of the fast path. Spheres are moved in place, in
-/// the order of their numbers, and found by the background grid and its doubly linked lists. Where the box has less than two diameters across, a sphere overlaps several
+/// the order of their numbers, and found by the background grid and its doubly linked lists. Where the box
+/// has less than two diameters across, a sphere overlaps several
 /// images of another, and all of them push. Readings of what the paper leaves open: lg is log10; T is rounded
 /// and at least 1; centres are scaled with the box; molr is the largest overlap that the last sweep met.
 ///

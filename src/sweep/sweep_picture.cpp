@@ -8,7 +8,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "map/drawing.hpp"
+#include "report/drawing.hpp"
 #include "report/palette.hpp"
 #include "scene/toml_text.hpp"
 #include "sweep/results.hpp"

@@ -27,6 +27,7 @@
 #include "cad/opencascade/read_shapes.hpp"
 #include "cad/opencascade/sewing.hpp"
 #include "cad/opencascade/tessellate.hpp"
+#include "core/lower_case.hpp"
 
 namespace bernal::cad {
 
@@ -116,7 +117,7 @@ void note_units(const std::vector<std::string>& names, FileFacts& facts) {
   facts.unit = FileFacts::Length{1e-3, "millimetre"};
   std::vector<std::string> said;
   for (std::string name : names) {
-    name = in_lower_case(std::move(name));
+    name = in_lower_case(name);
     for (const KnownUnit& known : known_units())
       if (name == known.step || name == known.iges) {
         name = known.length.name;

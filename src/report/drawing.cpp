@@ -1,4 +1,4 @@
-#include "map/drawing.hpp"
+#include "report/drawing.hpp"
 
 #include <array>
 
