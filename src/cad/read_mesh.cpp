@@ -8,22 +8,18 @@
 #include <cmath>
 #include <limits>
 
-#include "cad/caged_repair.hpp"
-#include "cad/close_seams.hpp"
-#include "cad/counted.hpp"
-#include "cad/defects.hpp"
-#include "cad/diagnose_mesh.hpp"
+#include "cad/diagnose/counted.hpp"
+#include "cad/diagnose/defects.hpp"
+#include "cad/diagnose/diagnose_mesh.hpp"
+#include "cad/diagnose/self_intersections.hpp"
 #include "cad/exact_corners.hpp"
-#include "cad/hollows.hpp"
-#include "cad/interior.hpp"
-#include "cad/make_triangles.hpp"
-#include "cad/mesh_distance.hpp"
-#include "cad/obstacles.hpp"
-#include "cad/read_soup.hpp"
-#include "cad/repair_crossings.hpp"
-#include "cad/repair_holes.hpp"
-#include "cad/self_intersections.hpp"
-#include "cad/wrap.hpp"
+#include "cad/read/make_triangles.hpp"
+#include "cad/read/read_soup.hpp"
+#include "cad/repair/close_seams.hpp"
+#include "cad/repair/hollows.hpp"
+#include "cad/repair/interior.hpp"
+#include "cad/repair/obstacles.hpp"
+#include "cad/repair/repairs.hpp"
 #include "geometry/changes.hpp"
 #include "geometry/measures.hpp"
 #include "geometry/topology.hpp"
@@ -166,53 +162,6 @@ std::string_view remedy(const MeshReport& report) {
   return "export a closed solid";
 }
 
-/// The repairs that are asked for, and what they did.
-struct Repairs {
-  Repairs(const MeshFile& options, const ImportFor& purpose, Mesh& surface, std::vector<std::string>& phrases)
-      : wanted(options.repair),
-        seconds(purpose.repair_seconds),
-        smallest_radius(purpose.smallest_radius),
-        largest_hole(options.largest_hole.value_or(std::numeric_limits<double>::infinity())),
-        mesh(surface),
-        done(phrases) {}
-
-  void apply(Repair repair) {
-    if (std::ranges::find(wanted, repair) == wanted.end() || mesh.triangles.empty()) return;
-    if (repair == Repair::wrap && topology_of(mesh).closed() && !cad::intersects_itself(mesh))
-      return;  // it is a wall
-    cad::RepairedMesh repaired = cad::repair_in_cage(mesh, seconds, [&] {
-      return repair == Repair::holes  ? cad::close_holes(mesh, largest_hole)
-             : repair == Repair::wrap ? cad::wrap_for_spheres(mesh, smallest_radius)
-                                      : cad::cut_out_crossings(mesh);
-    });
-    done.push_back(repaired.done);
-    if (repaired.mesh.triangles == mesh.triangles && repaired.mesh.vertices == mesh.vertices) return;
-    any = true;
-    if (repaired.mesh.triangles.empty()) return;
-    const cad::Closeness closeness{1e-4 * bounds_of(mesh).diagonal(), 0.02};
-    const double made_up = cad::farthest(repaired.mesh, mesh, closeness).at_most;
-    const double lost = cad::farthest(mesh, repaired.mesh, closeness).at_most;
-    done.push_back(
-        fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
-                    "{:.3g} from it",
-                    cad::not_less(made_up), cad::not_less(lost)));
-    if (const std::string left = cad::what_is_left(mesh, repaired.mesh); !left.empty())
-      cautions.push_back(fmt::format(
-          "repair = [\"{}\"] lost a part: {}{}", name_of(repair), left,
-          repair == Repair::wrap ? "; what is narrower than its alpha is lost, and smaller spheres make that "
-                                   "smaller; \"self-intersections\" before it unites bodies"
-                                 : ""));
-    mesh = std::move(repaired.mesh);
-  }
-
-  const std::vector<Repair>& wanted;
-  double seconds, smallest_radius, largest_hole;
-  Mesh& mesh;
-  std::vector<std::string>& done;
-  bool any = false;  ///< it is no longer the file's surface
-  std::vector<std::string> cautions;
-};
-
 /// An obstacle's surface; its own unit counts, where it says one, else that of the container's file.
 Mesh read_obstacle(const std::filesystem::path& file, const MeshFile& options, const ImportFor& purpose) {
   MeshFile obstacle{.file = file,
@@ -320,21 +269,16 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   if (!options.solids.empty() && by_piece) keep_pieces(mesh, options);
   if (options.largest_hole && std::ranges::find(options.repair, Repair::holes) == options.repair.end())
     throw OptionError("largest_hole", "needs repair = [\"holes\"] beside it, which closes them");
-  const bool cuts = !options.cap.empty() || options.fill_level;
-  Repairs repairs(options, purpose, mesh, done);
-  // An opening that a plane is to close is no hole.
-  if (!cuts) repairs.apply(Repair::holes);
-  repairs.apply(Repair::self_intersections);
-  if (!cuts) repairs.apply(Repair::wrap);
+  cad::Repairs repairs(options, purpose, mesh, done);
+  repairs.before_planes();
   take_interior(mesh, options, options.weld.value_or(rounding), done, repairs.cautions);
-  if (cuts) repairs.apply(Repair::holes);
-  if (cuts) repairs.apply(Repair::wrap);
+  repairs.after_planes();
   const std::vector<Mesh> taken_out = take_out_obstacles(mesh, options, purpose, done);
 
   MeshReport report = cad::diagnose_mesh(triangles);
   report.is_repaired = repairs.any;
   report.cautions = std::move(repairs.cautions);
-  if (report.usable() && !cuts && options.obstacles.empty() &&
+  if (report.usable() && !cad::has_planes(options) && options.obstacles.empty() &&
       options.interior == std::variant<Interior, Vector<3>>(Interior::solid))
     tell_shell(mesh, options.weld.value_or(rounding), report);
   report.reader = std::move(read.reader);

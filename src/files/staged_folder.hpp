@@ -20,7 +20,7 @@ bool is_name_in(const std::filesystem::path& folder, const std::filesystem::path
 /// `rename` is atomic. `publish` gives it the name of what is complete, moves the files of the earlier result
 /// out of the way and the new ones into their places, and takes that back if one of these fails. Whoever is
 /// killed before has changed nothing; whoever is killed after leaves what the next who writes there completes
-/// (`io/put_in_place.hpp`) and who reads there takes for the result (`io/unpublished.hpp`), never a new file
+/// (`files/put_in_place.hpp`) and who reads there takes for the result (`result/unpublished.hpp`), never a new file
 /// beside an old one. Whoever else publishes in the same folder meanwhile waits for its turn, which is a lock
 /// of the folder. A file of somebody else that stands in a place is kept under another name. Names may lead
 /// into folders below, "case/system/controlDict": those that are missing are made, no link is followed, and

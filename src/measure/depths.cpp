@@ -29,11 +29,9 @@ double inner_volume(const Cylinder& cylinder, double z) {
   return radius > 0 && height > 0 ? radius * radius * height : 0;
 }
 double inner_volume(const Sphere& sphere, double z) { return std::pow(std::max(0.0, sphere.radius - z), 3); }
-/// Those of facets are sampled.
-template <class Faceted>
-double inner_volume(const Faceted&, double) {
-  return 0;
-}
+/// Containers of facets are sampled.
+double inner_volume(const Mesh&, double) { return 0; }
+double inner_volume(const Polygon&, double) { return 0; }
 
 double deepest_of(const Box& box) {
   const Vector<3> size = bounds_of(box).size();
@@ -46,10 +44,8 @@ double deepest_of(const Cylinder& cylinder) {
   return cylinder.periodic ? cylinder.radius : std::min(cylinder.radius, 0.5 * cylinder.height);
 }
 double deepest_of(const Sphere& sphere) { return sphere.radius; }
-template <class Faceted>
-double deepest_of(const Faceted&) {
-  return 0;
-}
+double deepest_of(const Mesh&) { return 0; }
+double deepest_of(const Polygon&) { return 0; }
 
 /// How many cells a grid over the bounds has along each axis, so that there are about so many and they are
 /// about cubes; where the bounds are thinner than a cube, one layer of squares or one row.

@@ -10,8 +10,8 @@
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/sizes/size_distribution.hpp"
-#include "cad/files_of_part.hpp"
-#include "cad/known_formats.hpp"
+#include "cad/read/files_of_part.hpp"
+#include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
 
 namespace bernal {

@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
-#include "cad/known_formats.hpp"
+#include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
 #include "files/sha256.hpp"
 #include "plan/start.hpp"

@@ -9,7 +9,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "cad/plane_cut.hpp"
+#include "cad/repair/plane_cut.hpp"
 #include "files/csv_headings.hpp"
 #include "report/disc_picture.hpp"
 #include "report/section_outline.hpp"

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "cad/triangulate.hpp"
+#include "cad/read/triangulate.hpp"
 #include "geometry/edges.hpp"
 #include "geometry/point_numbers.hpp"
 #include "surfaces/icosphere.hpp"

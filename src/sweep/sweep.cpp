@@ -11,7 +11,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "cad/files_of_part.hpp"
+#include "cad/read/files_of_part.hpp"
 #include "files/sha256.hpp"
 #include "result/unpublished.hpp"
 #include "scene/read_value.hpp"

@@ -133,6 +133,8 @@ Walls<D> made(Wall wall) {
 
 }  // namespace
 
+static_assert(std::variant_size_v<Domain> == 5, "walls_of needs the walls of the new container");
+
 template <int D>
 Walls<D> walls_of(const Domain& domain) {
   if (const auto* box = std::get_if<bernal::Box>(&domain)) return made<D>(BoxWall<D>(*box));

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "bernal/core/monitor.hpp"
-#include "cad/caged_reader.hpp"
-#include "cad/caged_repair.hpp"
+#include "cad/read/caged_reader.hpp"
+#include "cad/repair/caged_repair.hpp"
 #include "core/parallel.hpp"
 
 namespace bernal {

@@ -12,7 +12,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
-#include "cad/self_intersections.hpp"
+#include "cad/diagnose/self_intersections.hpp"
 #include "surfaces/icosphere.hpp"
 #include "voxels/ball_in_cells.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bernal/core/vector.hpp"
-#include "cad/polygon_soup.hpp"
+#include "cad/read/polygon_soup.hpp"
 
 namespace bernal::cad {
 

@@ -22,11 +22,11 @@
 #include <algorithm>
 #include <fstream>
 
-#include "cad/counted.hpp"
-#include "cad/known_formats.hpp"
+#include "cad/diagnose/counted.hpp"
 #include "cad/opencascade/read_shapes.hpp"
 #include "cad/opencascade/sewing.hpp"
 #include "cad/opencascade/tessellate.hpp"
+#include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
 
 namespace bernal::cad {

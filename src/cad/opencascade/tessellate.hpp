@@ -1,5 +1,5 @@
 #pragma once
-#include "cad/polygon_soup.hpp"
+#include "cad/read/polygon_soup.hpp"
 
 class TopoDS_Shape;
 
