@@ -1,4 +1,4 @@
-#include "result/unpublished.hpp"
+#include "scene/unpublished.hpp"
 
 #include <algorithm>
 #include <string>
@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "files/bytes_of_file.hpp"
 #include "files/put_in_place.hpp"
@@ -22,8 +21,6 @@ namespace {
 fs::path folder_of(const fs::path& file) { return file.parent_path().empty() ? "." : file.parent_path(); }
 
 }  // namespace
-
-bool is_unpublished(const fs::path& folder) { return is_begun(FolderTree(folder)); }
 
 fs::path where_it_stands(const fs::path& file) {
   const FolderTree tree(folder_of(file));
