@@ -26,7 +26,7 @@ fs::path where_it_stands(const fs::path& file) {
   const FolderTree tree(folder_of(file));
   if (!is_begun(tree)) return file;
   {
-    const Turn turn(tree.path());  // a process that is at it is done within milliseconds
+    const Lock turn = turn_in(tree.path());  // a process that is at it is done within milliseconds
   }
   const std::string name = file.filename();
   for (const fs::path left : {complete_name, placing_name}) {
