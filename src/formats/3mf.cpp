@@ -13,7 +13,7 @@
 #include "files/output_file.hpp"
 #include "formats/surface_file.hpp"
 #include "formats/templates.hpp"
-#include "report/palette.hpp"
+#include "viewer/palette.hpp"
 
 namespace bernal {
 namespace {

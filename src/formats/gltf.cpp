@@ -6,8 +6,8 @@
 
 #include "formats/surface_file.hpp"
 #include "report/legend.hpp"
-#include "report/palette.hpp"
 #include "surfaces/icosphere.hpp"
+#include "viewer/palette.hpp"
 
 namespace bernal {
 namespace {

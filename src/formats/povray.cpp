@@ -8,7 +8,7 @@
 #include "formats/templates.hpp"
 #include "formats/text_file.hpp"
 #include "report/legend.hpp"
-#include "report/palette.hpp"
+#include "viewer/palette.hpp"
 
 namespace bernal {
 namespace {

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/spheres.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "core/parallel.hpp"
 
 namespace bernal {

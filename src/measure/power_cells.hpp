@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/spheres.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "measure/convex_cell.hpp"
 
 namespace bernal {

@@ -11,9 +11,9 @@
 #include "core/lower_case.hpp"
 #include "files/sha256.hpp"
 #include "plan/start.hpp"
-#include "result/unpublished.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/stage_table.hpp"
+#include "scene/unpublished.hpp"
 #include "sizes/volume_carriers.hpp"
 
 namespace bernal {

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "report/html_text.hpp"
 #include "report/plot.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "report/palette.hpp"
+#include "viewer/palette.hpp"
 
 namespace bernal {
 namespace {

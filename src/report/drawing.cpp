@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "report/html_text.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal::drawing {
 namespace {

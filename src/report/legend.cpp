@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "report/html_text.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "bernal/core/text.hpp"
-#include "report/html_text.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "bernal/core/text.hpp"
 #include "report/chart.hpp"
-#include "report/html_text.hpp"
 #include "report/page.hpp"
 #include "report/report.hpp"
 #include "report/report_style.hpp"
+#include "viewer/html.hpp"
 #include "viewer/viewer_files.hpp"
 #include "viewer/viewer_parts.hpp"
 

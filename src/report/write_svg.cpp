@@ -11,7 +11,7 @@
 #include "report/disc_picture.hpp"
 #include "report/legend.hpp"
 #include "report/outline.hpp"
-#include "report/palette.hpp"
+#include "viewer/palette.hpp"
 #include "viewer/view.hpp"
 
 namespace bernal {

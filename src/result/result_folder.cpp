@@ -16,8 +16,8 @@
 #include "files/bytes_of_file.hpp"
 #include "files/sha256.hpp"
 #include "report/report.hpp"
-#include "result/unpublished.hpp"
 #include "scene/output_table.hpp"
+#include "scene/unpublished.hpp"
 
 namespace fs = std::filesystem;
 

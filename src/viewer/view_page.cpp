@@ -4,7 +4,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "report/html_text.hpp"
+#include "viewer/html.hpp"
 #include "viewer/viewer_data.hpp"
 #include "viewer/viewer_files.hpp"
 #include "viewer/viewer_parts.hpp"

@@ -13,8 +13,8 @@
 #include "geometry/edges.hpp"
 #include "geometry/simplified.hpp"
 #include "measure/neighbourhoods.hpp"
-#include "report/palette.hpp"
 #include "viewer/base64.hpp"
+#include "viewer/palette.hpp"
 #include "viewer/view.hpp"
 #include "viewer/viewer_columns.hpp"
 

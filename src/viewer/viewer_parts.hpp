@@ -1,7 +1,7 @@
 #pragma once
 #include <string_view>
 
-#include "report/page.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal {
 

@@ -3,8 +3,8 @@
 #include <functional>
 #include <string_view>
 
-#include "cad/cage.hpp"
 #include "cad/read/polygon_soup.hpp"
+#include "process/cage.hpp"
 
 namespace bernal::cad {
 

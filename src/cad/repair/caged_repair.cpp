@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "cad/cage.hpp"
 #include "geometry/measures.hpp"
+#include "process/cage.hpp"
 
 namespace bernal::cad {
 

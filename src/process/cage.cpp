@@ -1,4 +1,4 @@
-#include "cad/cage.hpp"
+#include "process/cage.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -22,6 +22,8 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "core/parallel.hpp"
+#include "files/descriptor.hpp"
+#include "process/child.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define BERNAL_SHADOW_MEMORY 1  // terabytes of addresses, which no limit leaves room for
@@ -30,7 +32,7 @@
 #define BERNAL_TIMES_AS_SLOW 1
 #endif
 
-namespace bernal::cad {
+namespace bernal {
 namespace {
 
 constexpr double gibi = 1024.0 * 1024 * 1024;
@@ -42,22 +44,6 @@ constexpr int look_every_ms = 50;
 constexpr std::size_t most_of_message = 1000;
 /// Stands at the end of what is whole.
 constexpr std::uint64_t end_mark = 0x6265726E616C2121;
-
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number() const { return number_; }
-  void close() {
-    if (number_ >= 0) ::close(number_);
-    number_ = -1;
-  }
-
- private:
-  int number_;
-};
 
 /// Bytes of addresses that this process has already.
 std::uint64_t addresses_in_use() {
@@ -73,16 +59,6 @@ void set_limit(int resource, double most) {
   if (bound.rlim_cur != RLIM_INFINITY && bound.rlim_cur <= value) return;
   bound.rlim_cur = value;
   setrlimit(static_cast<__rlimit_resource>(resource), &bound);
-}
-
-/// Throws std::bad_alloc where the file takes no more.
-void write_all(int file, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = write(file, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) throw std::bad_alloc();
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
 }
 
 /// Whether all of it is there.
@@ -107,8 +83,8 @@ bool read_all(int file, const std::function<void(Archive&)>& values) {
 enum ExitCode : int { done, out_of_memory, failed };
 
 /// What the child does. The message of an exception goes into the pipe.
-[[noreturn]] void work_as_child(const CageLimits& limits, int result, int pipe, std::uint64_t addresses,
-                                const std::function<void()>& work,
+[[noreturn]] void work_as_child(const CageLimits& limits, const Descriptor& result, int pipe,
+                                std::uint64_t addresses, const std::function<void()>& work,
                                 const std::function<void(Archive&)>& values) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGXFSZ, SIGTERM, SIGPIPE})
@@ -136,7 +112,7 @@ enum ExitCode : int { done, out_of_memory, failed };
     values(archive);
     std::uint64_t mark = end_mark;
     archive(mark);
-    write_all(result, bytes);
+    if (!result.write(bytes)) throw std::bad_alloc();
   } catch (const std::bad_alloc&) {
     _exit(out_of_memory);
   } catch (const std::exception& error) {
@@ -147,50 +123,42 @@ enum ExitCode : int { done, out_of_memory, failed };
   _exit(done);
 }
 
-std::string what_befell(std::string_view who, const CageLimits& limits, int status, int pipe) {
-  const auto too_long = [&] {
-    return fmt::format("{} takes longer than {:.0f} s over it", who, limits.seconds);
-  };
-  if (WIFEXITED(status) && WEXITSTATUS(status) == failed) {
+std::string memory_taken(std::string_view who, const CageLimits& limits) {
+  return fmt::format("{} wants more than {:.3g} GiB of memory for it", who,
+                     static_cast<double>(limits.memory) / gibi);
+}
+
+std::string what_befell(std::string_view who, const CageLimits& limits, const ChildEnd& end, int pipe) {
+  if (end.signal == 0 && end.code == failed) {
     std::string message(most_of_message, '\0');
     message.resize(
         static_cast<std::size_t>(std::max<ssize_t>(0, read(pipe, message.data(), message.size()))));
     return message.empty() ? fmt::format("{} gives it up", who) : plain_text(message);
   }
-  if (!WIFSIGNALED(status)) return memory_taken(who, limits);
-  if (WTERMSIG(status) == SIGXCPU) return too_long();
-  if (WTERMSIG(status) == SIGXFSZ) return memory_taken(who, limits);
-  if (WTERMSIG(status) == SIGKILL) return fmt::format("{} was killed over it", who);
-  return fmt::format("{} crashes on it ({})", who, strsignal(WTERMSIG(status)));
-}
-
-int status_at_end_of(pid_t child) {
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-  return status;
+  if (end.signal == 0 || end.signal == SIGXFSZ) return memory_taken(who, limits);
+  if (end.signal == SIGXCPU) return fmt::format("{} takes longer than {:.0f} s over it", who, limits.seconds);
+  if (end.signal == SIGKILL) return fmt::format("{} was killed over it", who);
+  return fmt::format("{} crashes on it ({})", who, strsignal(end.signal));
 }
 
 }  // namespace
-
-std::string memory_taken(std::string_view who, const CageLimits& limits) {
-  return fmt::format("{} wants more than {:.3g} GiB of memory for it", who,
-                     static_cast<double>(limits.memory) / gibi);
-}
 
 std::string run_in_cage(std::string_view who, const CageLimits& limits, const std::function<void()>& work,
                         const std::function<void(Archive&)>& values) {
   const auto refuse = [&](std::string_view what) {
     throw Error(ErrorCode::bad_mesh, fmt::format("no process for {}: {} ({})", who, what, strerror(errno)));
   };
-  Descriptor result(memfd_create("bernal", MFD_CLOEXEC));
+  const Descriptor result(memfd_create("bernal", MFD_CLOEXEC));
   int ends[2];
-  if (result.number() < 0) refuse("no file in memory");
+  if (!result.is_open()) refuse("no file in memory");
   if (pipe2(ends, O_CLOEXEC) != 0) refuse("no pipe");
-  Descriptor here(ends[0]), there(ends[1]);
+  const Descriptor here(ends[0]);
+  Descriptor there(ends[1]);
   const std::uint64_t addresses = addresses_in_use();
-  const pid_t child = fork();
-  if (child < 0) refuse("fork failed");
-  if (child == 0) work_as_child(limits, result.number(), there.number(), addresses, work, values);
+  const pid_t number = fork();
+  if (number < 0) refuse("fork failed");
+  if (number == 0) work_as_child(limits, result, there.number(), addresses, work, values);
+  Child child(number);
   there.close();
 
   // The pipe closes when the child ends.
@@ -198,23 +166,17 @@ std::string run_in_cage(std::string_view who, const CageLimits& limits, const st
   const auto latest = Clock::now() + std::chrono::duration<double>(slower * limits.seconds);
   pollfd end{here.number(), POLLIN, 0};
   bool late = false;
-  try {
-    for (int ready = 0; ready == 0 && !late;) {
-      ready = poll(&end, 1, look_every_ms);
-      if (ready < 0 && errno == EINTR) ready = 0;
-      throw_if_interrupted();
-      late = ready == 0 && Clock::now() > latest;
-    }
-  } catch (...) {
-    kill(child, SIGKILL);
-    status_at_end_of(child);
-    throw;
+  for (int ready = 0; ready == 0 && !late;) {
+    ready = poll(&end, 1, look_every_ms);
+    if (ready < 0 && errno == EINTR) ready = 0;
+    throw_if_interrupted();
+    late = ready == 0 && Clock::now() > latest;
   }
-  if (late) kill(child, SIGKILL);
-  const int status = status_at_end_of(child);
+  if (late) child.signal(SIGKILL);
+  const ChildEnd ended = child.wait();
   if (late) return fmt::format("{} takes longer than {:.0f} s over it", who, slower * limits.seconds);
   if (read_all(result.number(), values)) return {};
-  return what_befell(who, limits, status, here.number());
+  return what_befell(who, limits, ended, here.number());
 }
 
-}  // namespace bernal::cad
+}  // namespace bernal

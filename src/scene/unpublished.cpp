@@ -1,4 +1,4 @@
-#include "result/unpublished.hpp"
+#include "scene/unpublished.hpp"
 
 #include <algorithm>
 #include <string>
@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "files/bytes_of_file.hpp"
 #include "files/put_in_place.hpp"
@@ -23,13 +22,11 @@ fs::path folder_of(const fs::path& file) { return file.parent_path().empty() ? "
 
 }  // namespace
 
-bool is_unpublished(const fs::path& folder) { return is_begun(FolderTree(folder)); }
-
 fs::path where_it_stands(const fs::path& file) {
   const FolderTree tree(folder_of(file));
   if (!is_begun(tree)) return file;
   {
-    const Turn turn(tree.path());  // a process that is at it is done within milliseconds
+    const Lock turn = turn_in(tree.path());  // a process that is at it is done within milliseconds
   }
   const std::string name = file.filename();
   for (const fs::path left : {complete_name, placing_name}) {

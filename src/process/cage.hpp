@@ -6,7 +6,7 @@
 
 #include "core/archive.hpp"
 
-namespace bernal::cad {
+namespace bernal {
 
 /// What a child process may take.
 struct CageLimits {
@@ -23,7 +23,4 @@ struct CageLimits {
 std::string run_in_cage(std::string_view who, const CageLimits& limits, const std::function<void()>& work,
                         const std::function<void(Archive&)>& values);
 
-/// "assimp wants more than 1 GiB of memory for it"
-std::string memory_taken(std::string_view who, const CageLimits& limits);
-
-}  // namespace bernal::cad
+}  // namespace bernal
