@@ -46,7 +46,7 @@ CutPlane across(int axis, double level, bool upper_stays) {
   return upper_stays ? plane.turned() : plane;
 }
 
-/// Every choice of the sides that the planes leave open, the one where all smaller values stay first.
+/// Every choice of the planes' open sides, the one with all smaller values first.
 std::vector<Planes> choices_of(const Planes& planes) {
   constexpr std::size_t most_open = 6;
   std::vector<std::size_t> open;
@@ -77,8 +77,8 @@ std::string told(const Planes& planes) {
   return fmt::format("closed at {}", fmt::join(all, ", "));
 }
 
-/// The largest hollow that is closed when the solid's surroundings end where it ends itself, on as few sides
-/// as will do.
+/// The largest hollow that is closed when the surroundings end at the solid's own bounds, on as few sides as
+/// possible.
 std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Mesh& solid,
                                             const Planes& planes, double tolerance, const Vector<3>* point) {
   const Bounds<3> bounds = bounds_of(solid);
@@ -90,7 +90,7 @@ std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Me
   std::vector<unsigned> subsets(1U << sides.size());
   std::iota(subsets.begin(), subsets.end(), 0U);
   std::ranges::stable_sort(subsets, {}, [](unsigned subset) { return std::popcount(subset); });
-  constexpr int most_sides = 4;  // what is left open on more is no hollow
+  constexpr int most_sides = 4;  // a hollow is open on fewer sides
   for (const unsigned subset : subsets) {
     if (std::popcount(subset) > most_sides) break;
     Planes all = planes;
@@ -100,21 +100,21 @@ std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Me
       auto spaces = around.closed_off(all, tolerance, point ? 0 : around.crevice(), point);
       if (!spaces.empty())
         return ChosenInterior{std::move(spaces.front().walls), {"the hollow, " + told(all)}};
-    } catch (const Error&) {  // one of the sides touches what others have cut
+    } catch (const Error&) {  // one of the sides touches an earlier cut
     }
   }
   return std::nullopt;
 }
 
-/// A hollow that may be meant.
+/// A candidate for the chosen hollow.
 struct Candidate {
   Mesh walls;
   double volume, openness;
   std::string words;  ///< how it is closed
-  Vector<3> inside;   ///< a point of it
+  Vector<3> inside;   ///< a point inside
   bool is_void = false, is_flat = true;
 
-  /// As one would fill it: less, where its opening is as wide as a dish's.
+  /// The volume that can be filled: less if its opening is as wide as a dish's.
   double size() const { return volume * std::clamp(1 / openness - 1, 0.01, 1.0); }
   double weight() const { return volume * (1 / openness - 1); }
 };
@@ -138,9 +138,9 @@ Mesh without_voids(const Mesh& solid) {
   return outside;
 }
 
-/// The open hollows of a solid, each once: closed across its openings, or by one plane. A lid that lies in a
-/// plane is one; another one may have been drawn up by what stands on the brim, or across a step of it: then
-/// that counts which one plane closes, unless it is much smaller.
+/// The open hollows of a solid, each once: closed across its openings, or by one plane. A planar lid is
+/// reliable; another may have been drawn up by what is on the brim, or across a step in it; then the hollow
+/// that one plane closes is taken, unless it is much smaller.
 std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
   std::vector<Candidate> below_planes, all;
   for (PlaneHollow& hollow : hollows_below_planes(without_voids(solid), tolerance))
@@ -181,7 +181,7 @@ std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
   return all;
 }
 
-/// One line with what may be meant, and how to say which.
+/// An error in one line that lists the candidates and how to choose each.
 [[noreturn]] void refuse_choice(const std::vector<Candidate>& all) {
   constexpr std::size_t most = 4;
   std::vector<std::string> words;
@@ -204,9 +204,9 @@ std::string left_out(std::size_t hollows) {
                      counted(hollows, "lesser hollow is", "lesser hollows are"));
 }
 
-/// Without planes: of the voids of a solid and its open hollows that which one would fill, the largest, those
-/// that are as large included. A void cannot be filled where there is a hollow beside which it is not much
-/// larger: it is that in a wall. Throws where another one is nearly as large.
+/// Without planes: the largest among the voids of a solid and its fillable open hollows, with any of equal
+/// size. A void beside a hollow that is not much smaller cannot be filled: it is a void in a wall. Throws if
+/// another candidate is nearly as large.
 std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, const Mesh& solid,
                                                     double tolerance, const Vector<3>* point) {
   constexpr double alike = 0.95, clearly = 0.5, dent = 0.02;
@@ -260,7 +260,7 @@ std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, 
   return chosen;
 }
 
-/// A hollow beside which there is much more that is free within the part's bounds is rather a bolt hole.
+/// A hollow much smaller than the free space within the part's bounds is probably a bolt hole.
 void tell_if_little(const Mesh& solid, ChosenInterior& chosen) {
   constexpr double little = 0.01;
   const double free = bounds_of(solid).volume() - std::abs(signed_volume(solid));
@@ -362,7 +362,7 @@ ChosenInterior choose_interior(const Mesh& surface, const InteriorRequest& reque
     if (sheet)
       refuse(fmt::format("the point {} of \"interior\" is not in what \"cap\" closes", text_of(*point)));
   }
-  // A sheet without thickness has no hollow beside what it goes round.
+  // A sheet without thickness has no hollow distinct from what it encloses.
   return sheet ? enclosed(surface, request.planes, tolerance)
                : hollow_of(surface, request.planes, tolerance, point);
 }

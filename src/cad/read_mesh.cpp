@@ -33,10 +33,10 @@ namespace {
 
 using cad::FileFacts;
 
-/// A true surface is tessellated to within this part of the smallest sphere's radius.
+/// A true surface is tessellated to within this share of the smallest sphere's radius.
 constexpr double deflection_over_radius = 0.02;
 
-/// From the file's unit to the one that is asked for.
+/// Ratio of the file's unit to the requested one.
 Ratio ratio_of(const MeshFile& options, const FileFacts& facts, std::optional<Unit> wanted) {
   const auto& of_file = facts.unit;
   const auto is_same = [&](Unit unit) { return std::abs(metres_per(unit) / of_file->metres - 1) < 1e-9; };
@@ -54,14 +54,14 @@ Ratio ratio_of(const MeshFile& options, const FileFacts& facts, std::optional<Un
   return {of_file->metres / metres_per(*wanted)};
 }
 
-/// The number, from 1, that a text is; 0 if it is none.
+/// A text as a number from 1 on; 0 if it is none.
 std::size_t number_in(const std::string& text) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size() ? number : 0;
 }
 
-/// Which of so many named or nameless parts the options choose.
+/// Marks the parts that the options choose.
 std::vector<bool> chosen_parts(const MeshFile& options, const std::vector<std::string>& names) {
   std::vector<bool> chosen(names.size(), false);
   for (const std::string& wanted : options.solids) {
@@ -87,14 +87,14 @@ std::vector<bool> chosen_parts(const MeshFile& options, const std::vector<std::s
   return chosen;
 }
 
-/// Leaves those of the file's parts that are asked for, if it tells parts apart.
+/// Keeps the chosen parts, if the file names parts.
 void keep_chosen(cad::PolygonSoup& soup, const MeshFile& options) {
   std::vector<std::string> names;
   for (const cad::Solid& solid : soup.solids) names.push_back(solid.name);
   cad::keep_solids(soup, chosen_parts(options, names));
 }
 
-/// The same where it does not: the pieces that hang together, in the order of their first faces.
+/// The same for a file without named parts: its connected pieces, in the order of their first faces.
 void keep_pieces(Mesh& mesh, const MeshFile& options) {
   const MeshTopology topology = topology_of(mesh);
   const std::vector<bool> chosen = chosen_parts(options, std::vector<std::string>(topology.components));
@@ -103,7 +103,7 @@ void keep_pieces(Mesh& mesh, const MeshFile& options) {
   keep_only(mesh, kept);
 }
 
-/// Turns the axis that points up to z, without mirroring: as Collada's conventions lead into each other.
+/// Rotates the upward axis to z, without mirroring, by the same convention as Collada.
 void turn_up(Mesh& mesh, Up up) {
   move_vertices(mesh, [&](const Vector<3>& v) -> Vector<3> {
     if (up == Up::x) return {-v[1], -v[2], v[0]};
@@ -111,7 +111,7 @@ void turn_up(Mesh& mesh, Up up) {
   });
 }
 
-/// Closes seams, unless that makes nothing better.
+/// Closes seams, unless that improves nothing.
 void close_seams_of(cad::Triangles& triangles, double tolerance, std::vector<std::string>& done) {
   const MeshTopology before = topology_of(triangles.mesh);
   if (before.closed() && cad::count_degenerate(triangles.mesh) == 0) return;
@@ -156,7 +156,7 @@ void take_interior(Mesh& mesh, const MeshFile& options, double tolerance, std::v
   }
 }
 
-/// What the user can do about the first of the report's problems, where no line was found that helps.
+/// The remedy for the first problem in the report, if no line was found that helps.
 std::string_view remedy(const MeshReport& report) {
   if (report.open_edges > 0) return "the surface has a hole or is a shell; close it in CAD";
   if (report.non_manifold_edges > 0)
@@ -166,7 +166,7 @@ std::string_view remedy(const MeshReport& report) {
   return "export a closed solid";
 }
 
-/// The repairs that are asked for, and what they did.
+/// The requested repairs, and their results.
 struct Repairs {
   Repairs(const MeshFile& options, const ImportFor& purpose, Mesh& surface, std::vector<std::string>& phrases)
       : wanted(options.repair),
@@ -179,7 +179,7 @@ struct Repairs {
   void apply(Repair repair) {
     if (std::ranges::find(wanted, repair) == wanted.end() || mesh.triangles.empty()) return;
     if (repair == Repair::wrap && topology_of(mesh).closed() && !cad::intersects_itself(mesh))
-      return;  // it is a wall
+      return;  // usable as it is
     cad::RepairedMesh repaired = cad::repair_in_cage(mesh, seconds, [&] {
       return repair == Repair::holes  ? cad::close_holes(mesh, largest_hole)
              : repair == Repair::wrap ? cad::wrap_for_spheres(mesh, smallest_radius)
@@ -209,11 +209,11 @@ struct Repairs {
   double seconds, smallest_radius, largest_hole;
   Mesh& mesh;
   std::vector<std::string>& done;
-  bool any = false;  ///< it is no longer the file's surface
+  bool any = false;  ///< it differs from the file's surface
   std::vector<std::string> cautions;
 };
 
-/// An obstacle's surface; its own unit counts, where it says one, else that of the container's file.
+/// Reads an obstacle; its unit is its own if stated, else that of the container's file.
 Mesh read_obstacle(const std::filesystem::path& file, const MeshFile& options, const ImportFor& purpose) {
   MeshFile obstacle{.file = file,
                     .unit = options.unit,
@@ -241,13 +241,13 @@ Mesh read_obstacle(const std::filesystem::path& file, const MeshFile& options, c
   throw OptionError("obstacles", fmt::format("{} {}", file.string(), why));
 }
 
-/// Closed surfaces are taken out of the container; returns them.
+/// Subtracts the obstacles from the container; returns their meshes.
 std::vector<Mesh> take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& purpose,
                                      std::vector<std::string>& done) {
   std::vector<Mesh> taken_out;
   if (options.obstacles.empty()) return taken_out;
   cad::Triangles container{.mesh = mesh};
-  if (!cad::diagnose_mesh(container).usable()) return taken_out;  // which the report tells
+  if (!cad::diagnose_mesh(container).usable()) return taken_out;  // the report says so
   mesh = std::move(container.mesh);                               // turned outward
   std::vector<std::filesystem::path> seen;
   for (const std::filesystem::path& file : options.obstacles) {
@@ -271,7 +271,7 @@ std::vector<Mesh> take_out_obstacles(Mesh& mesh, const MeshFile& options, const 
   return taken_out;
 }
 
-/// Cautions where the part is the wall of a vessel.
+/// Adds a caution if the part is the wall of a vessel.
 void tell_shell(const Mesh& mesh, double tolerance, MeshReport& report) {
   constexpr std::uint64_t most_faces = 500'000, most_pieces = 100;
   if (report.faces > most_faces || report.components > most_pieces) return;
@@ -301,7 +301,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
 
   ImportedMesh result;
   std::vector<std::string> done;
-  // A file of one part says no more than that it is whole.
+  // The only part of a file is the whole.
   const auto& parts = read.soup.solids;
   const bool is_whole = parts.size() == 1 && options.solids == std::vector{parts.front().name};
   const bool by_piece = parts.size() < 2 && !is_whole;
@@ -322,7 +322,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
     throw OptionError("largest_hole", "needs repair = [\"holes\"] beside it, which closes them");
   const bool cuts = !options.cap.empty() || options.fill_level;
   Repairs repairs(options, purpose, mesh, done);
-  // An opening that a plane is to close is no hole.
+  // An opening that a plane is to close is not a hole.
   if (!cuts) repairs.apply(Repair::holes);
   repairs.apply(Repair::self_intersections);
   if (!cuts) repairs.apply(Repair::wrap);

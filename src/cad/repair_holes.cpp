@@ -14,8 +14,8 @@
 namespace bernal::cad {
 namespace {
 
-/// Of each component the extent of the part that it belongs to: the diagonal of the bounds of all components
-/// that hang together by corners.
+/// For each component the extent of its part: the diagonal of the bounds of all components connected by
+/// corners.
 std::vector<double> extents_of(const Mesh& mesh, const MeshTopology& topology) {
   DisjointSets parts(mesh.vertices.size());
   for (const FaceCorners& t : mesh.triangles)
@@ -31,7 +31,7 @@ std::vector<double> extents_of(const Mesh& mesh, const MeshTopology& topology) {
 
 struct Patch {
   std::size_t hole, first, last;  ///< which hole, and its faces
-  bool crosses_itself = false;    ///< another face of its component
+  bool crosses_itself = false;    ///< crosses another face of its component
   bool crosses_another = false;
 };
 

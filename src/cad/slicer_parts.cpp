@@ -13,7 +13,7 @@
 namespace bernal::cad {
 namespace {
 
-/// Of the `metadata` with that key.
+/// The value of the `metadata` with that key.
 std::string value_of(pugi::xml_node node, std::string_view key) {
   for (const pugi::xml_node metadata : node.children("metadata"))
     if (metadata.attribute("key").value() == key) return metadata.attribute("value").value();
@@ -84,7 +84,7 @@ std::optional<std::size_t> SlicerParts::split(const std::string& id, PlacedMeshe
   const auto triangles = object.pieces.front().triangles;
   std::vector<PlacedMeshes::Piece> pieces;
   std::size_t end = 0, others = 0;
-  for (const Volume& volume : found->second) {  // one after the other, to the end, or it is of another model
+  for (const Volume& volume : found->second) {  // contiguous to the end, or it belongs to another mesh
     if (volume.first != end || volume.last < end || volume.last >= triangles.size()) return {};
     end = volume.last + 1;
     const auto at = triangles.begin();

@@ -34,19 +34,19 @@ namespace bernal::cad {
 namespace {
 
 constexpr double default_deflection = 1e-3;   // of the diagonal
-constexpr double smallest_deflection = 1e-5;  // of the diagonal: the mesher takes minutes then
+constexpr double smallest_deflection = 1e-5;  // of the diagonal; the mesher takes minutes at this
 
 struct NamedShape {
   TopoDS_Shape shape;
   std::string name;
 };
 
-/// What a file holds: solids, and the faces that belong to none.
+/// The solids of a file, and the faces outside solids.
 struct Parts {
   std::vector<NamedShape> solids;
   std::vector<TopoDS_Shape> faces;
   FileFacts facts;
-  std::vector<std::string> missing = {};  ///< files that it names, which are not there
+  std::vector<std::string> missing = {};  ///< named files that do not exist
 };
 
 std::string name_of(const TDF_Label& label) {
@@ -66,7 +66,7 @@ void split(const TopoDS_Shape& shape, const std::string& name, Parts& parts) {
     parts.faces.push_back(face.Current());
 }
 
-/// A part as it is placed by the assemblies above it, under the name of its product.
+/// A part placed by its assemblies, with the name of its product.
 void collect(const TDF_Label& label, const TopLoc_Location& placement, Parts& parts) {
   TDF_Label product = label;
   TopLoc_Location location = placement;
@@ -112,7 +112,7 @@ const std::vector<KnownUnit>& known_units() {
   return all;
 }
 
-/// "The file is in inch": what is converted to millimetres on the way.
+/// Notes the file's unit: OpenCASCADE converts it to millimetres.
 void note_units(const std::vector<std::string>& names, FileFacts& facts) {
   facts.unit = FileFacts::Length{1e-3, "millimetre"};
   std::vector<std::string> said;
@@ -137,7 +137,8 @@ void note_units(const std::vector<std::string>& names, FileFacts& facts) {
   }
 }
 
-/// Why a file cannot be parsed as STEP, which begins with the name of the standard and ends with END- of it.
+/// Why a file cannot be parsed as STEP, which begins with the name of the standard and ends with END- and
+/// that name.
 std::string unparsed_step(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(in), {});
@@ -165,7 +166,7 @@ std::string read_step(const std::filesystem::path& file, Parts& parts) {
   reader.SetGDTMode(false);
   reader.SetMatMode(false);
   reader.SetViewMode(false);
-  // Other files that it names are looked for beside it only where its path is absolute.
+  // It finds files that this one names only if the path is absolute.
   if (reader.ReadFile(std::filesystem::absolute(file).c_str()) != IFSelect_RetDone)
     return unparsed_step(file);
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
@@ -205,7 +206,7 @@ std::string read_brep(const std::filesystem::path& file, Parts& parts) {
   TopoDS_Shape shape;
   if (!BRepTools::Read(shape, file.c_str(), BRep_Builder()) || shape.IsNull())
     return "OpenCASCADE cannot parse it as BREP; export it again, or as STEP";
-  BRepTools::Clean(shape);  // of triangles with another deflection
+  BRepTools::Clean(shape);  // triangles of another deflection
   split(shape, {}, parts);
   return {};
 }
@@ -219,7 +220,7 @@ TopoDS_Compound together(const Parts& parts) {
   return all;
 }
 
-/// The first few of them.
+/// The first few names.
 std::string list_of(const std::vector<std::string>& files) {
   constexpr std::size_t most = 6;
   const auto end = files.begin() + std::ptrdiff_t(std::min(files.size(), most));
