@@ -13,7 +13,7 @@ namespace bernal::cad {
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 
 /// Rounded up to three digits, for stating an upper bound.
-inline double not_less(double bound) {
+inline double rounded_up(double bound) {
   if (!(bound > 0) || !std::isfinite(bound)) return bound;
   const int digits = 2 - static_cast<int>(std::floor(std::log10(bound)));
   const auto text = [&](double number) { return fmt::format("{:.3g}", number); };

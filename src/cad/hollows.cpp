@@ -68,7 +68,7 @@ class Sides {
   static constexpr double even = 1e-3;
 
   /// Distance from a face along a unit vector to the solid, at most the limit.
-  double way_free(const Vector<3>& from, const Vector<3>& direction, double limit) const {
+  double free_distance(const Vector<3>& from, const Vector<3>& direction, double limit) const {
     const double close = 1e-9 * diagonal_;
     return tree_.first_contact(from + 4 * close * direction, close, direction, limit, close);
   }
@@ -115,7 +115,7 @@ class Sides {
         const FaceCorners& face = mesh_.triangles[own[k]];
         const Vector<3> normal = doubled_area(mesh_, face).stableNormalized(), from = middle_of(mesh_, face);
         const bool leaves = hull.crossing(from + reach * normal, 0, endless) == Crossing::even;
-        if (!leaves || (sees_solid && way_free(from, normal, reach) < reach)) side[own[k]] = no_index;
+        if (!leaves || (sees_solid && free_distance(from, normal, reach) < reach)) side[own[k]] = no_index;
       }
     });
     double own_area = 0;
@@ -197,7 +197,7 @@ class Sides {
       const Vector<3> inward = doubled_area(mesh_, faces[k]);  // oriented as in `walls`, into the solid
       const Vector<3> direction = inward.stableNormalized();
       const Vector<3> from = middle_of(mesh_, faces[k]);
-      const double ahead = way_free(from, direction, diagonal_), close = 1e-8 * diagonal_;
+      const double ahead = free_distance(from, direction, diagonal_), close = 1e-8 * diagonal_;
       all += inward.norm();
       if (ahead < diagonal_ && tree.distance(from + ahead * direction, close) < close)
         folded += inward.norm();

@@ -64,7 +64,7 @@ std::vector<Planes> choices_of(const Planes& planes) {
   return choices;
 }
 
-std::string told(const Planes& planes) {
+std::string planes_text(const Planes& planes) {
   std::vector<std::string> all;
   for (const CutPlane& plane : planes) {
     std::string text = plane.text;
@@ -99,7 +99,7 @@ std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Me
     try {
       auto spaces = around.closed_off(all, tolerance, point ? 0 : around.crevice(), point);
       if (!spaces.empty())
-        return ChosenInterior{std::move(spaces.front().walls), {"the hollow, " + told(all)}};
+        return ChosenInterior{std::move(spaces.front().walls), {"the hollow, " + planes_text(all)}};
     } catch (const Error&) {  // one of the sides touches an earlier cut
     }
   }
@@ -120,13 +120,13 @@ struct Candidate {
 };
 
 std::string words_of_lids(std::vector<Vector<3>> lids) {
-  constexpr std::size_t most_told = 4;
+  constexpr std::size_t most_listed = 4;
   const std::size_t openings = lids.size();
   std::vector<std::string> places;
-  for (const Vector<3>& lid : lids | std::views::take(most_told)) places.push_back(text_of(lid));
+  for (const Vector<3>& lid : lids | std::views::take(most_listed)) places.push_back(text_of(lid));
   return fmt::format("closed across {} at {}{}",
                      openings == 1 ? "its opening" : counted(openings, "", "openings"),
-                     fmt::join(places, ", "), openings > most_told ? ", ..." : "");
+                     fmt::join(places, ", "), openings > most_listed ? ", ..." : "");
 }
 
 Mesh without_voids(const Mesh& solid) {
@@ -145,7 +145,7 @@ std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
   std::vector<Candidate> below_planes, all;
   for (PlaneHollow& hollow : hollows_below_planes(without_voids(solid), tolerance))
     below_planes.push_back({std::move(hollow.space.walls), hollow.space.volume, hollow.openness,
-                            told({hollow.brim}), hollow.inside});
+                            planes_text({hollow.brim}), hollow.inside});
   std::vector<bool> is_taken(below_planes.size(), false), is_chosen(below_planes.size(), false);
   std::vector<Hollow> hollows = hollows_of(solid, tolerance);
   if (hollows.empty() && below_planes.empty())
@@ -194,13 +194,13 @@ std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
 
 std::string caution_of_lids(const Candidate& one) {
   return fmt::format(
-      "the hollow is {}, and not all of that lies in planes: what stands on a brim, or a step in it, "
-      "may have drawn it up; if so, close it by \"cap\", a plane",
+      "the hollow is {}, and not all its lids are planar: something on a brim, or a step in it, may have "
+      "drawn them up; if so, close it by \"cap\", a plane",
       one.words);
 }
 
 std::string left_out(std::size_t hollows) {
-  return fmt::format("{} left out, which a point of \"interior\" chooses",
+  return fmt::format("{} left out; a point in \"interior\" chooses one",
                      counted(hollows, "lesser hollow is", "lesser hollows are"));
 }
 
@@ -249,27 +249,27 @@ std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, 
     words.push_back(one->words);
     if (!one->is_flat) chosen.cautions.push_back(caution_of_lids(*one));
   }
-  constexpr std::size_t most_told = 4;
+  constexpr std::size_t most_listed = 4;
   const std::size_t taken = words.size();
-  if (taken > most_told) words.resize(most_told);
+  if (taken > most_listed) words.resize(most_listed);
   chosen.notes.push_back(fmt::format("{}, {}{}", taken == 1 ? "the hollow" : counted(taken, "", "hollows"),
-                                     fmt::join(words, "; "), taken > most_told ? "; ..." : ""));
+                                     fmt::join(words, "; "), taken > most_listed ? "; ..." : ""));
   if (taken < open.size()) chosen.notes.push_back(left_out(open.size() - taken));
   if (in_voids > 0)
-    chosen.notes.emplace_back("the voids of the solid are left out, which a point of \"interior\" chooses");
+    chosen.notes.emplace_back("the voids of the solid are left out; a point in \"interior\" chooses one");
   return chosen;
 }
 
 /// A hollow much smaller than the free space within the part's bounds is probably a bolt hole.
-void tell_if_little(const Mesh& solid, ChosenInterior& chosen) {
+void caution_if_small(const Mesh& solid, ChosenInterior& chosen) {
   constexpr double little = 0.01;
   const double free = bounds_of(solid).volume() - std::abs(signed_volume(solid));
   const std::vector<double> volumes = SurfacePieces(chosen.mesh).volumes();
   const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   if (volume < little * free)
     chosen.cautions.push_back(fmt::format(
-        "the hollow is {:.2g} % of what is free within the part's bounds: if another one is meant, "
-        "choose it by a point of \"interior\", or by \"cap\", a plane",
+        "the hollow is {:.2g} % of the free volume within the part's bounds: if another one is meant, "
+        "choose it by a point in \"interior\", or by \"cap\", a plane",
         100 * volume / free));
 }
 
@@ -290,7 +290,7 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
   const auto by_planes = [&](const Planes& choice) -> std::optional<ChosenInterior> {
     const std::vector<Space> spaces = around.closed_off(choice, tolerance, 0, point);
     if (spaces.empty()) return std::nullopt;
-    return ChosenInterior{walls_of(spaces), {"the hollow, " + told(choice)}};
+    return ChosenInterior{walls_of(spaces), {"the hollow, " + planes_text(choice)}};
   };
   if (!planes.empty())
     if (auto made = first_of(by_planes)) return std::move(*made);
@@ -300,10 +300,10 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
   if (std::optional<ChosenInterior> made = hollow_without_planes(around, solid, tolerance, point)) {
     const auto cut_hollow = [&](const Planes& choice) -> std::optional<ChosenInterior> {
       ChosenInterior rest{cut_by(made->mesh, choice, tolerance), made->notes, {}};
-      rest.notes.push_back(told(choice));
+      rest.notes.push_back(planes_text(choice));
       return rest;
     };
-    if (planes.empty() && !point) tell_if_little(solid, *made);
+    if (planes.empty() && !point) caution_if_small(solid, *made);
     if (planes.empty()) return std::move(*made);
     if (auto rest = first_of(cut_hollow)) return std::move(*rest);
   }
@@ -314,9 +314,7 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
                     "plane, or move the point",
                     text_of(*point)));
   if (failure && !planes.empty()) throw *failure;
-  refuse(
-      "the solid has no void and no hollow that can be told from its wall; close the one that is meant by "
-      "\"cap\", a plane");
+  refuse("the solid has no void and no recognisable hollow; close the one that is meant by \"cap\", a plane");
 }
 
 /// What a surface encloses on the planes' sides: the first choice of sides that leaves it closed; else the
@@ -327,7 +325,7 @@ ChosenInterior enclosed(const Mesh& surface, const Planes& planes, double tolera
   std::optional<Error> failure;
   for (const Planes& choice : choices_of(planes)) {
     try {
-      ChosenInterior made{cut_by(surface, choice, tolerance), {told(choice)}};
+      ChosenInterior made{cut_by(surface, choice, tolerance), {planes_text(choice)}};
       if (is_closed(made.mesh)) return made;
       if (!open) open = std::move(made);
     } catch (const Error& error) {

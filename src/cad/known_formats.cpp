@@ -109,7 +109,7 @@ std::string extension_of(const std::filesystem::path& file) {
   return in_lower_case(file.extension().string());
 }
 
-std::string known_not_to_be_a_mesh(const std::filesystem::path& file) {
+std::string why_no_mesh(const std::filesystem::path& file) {
   std::string head(1024, '\0');
   std::ifstream in(file, std::ios::binary);
   in.read(head.data(), static_cast<std::streamsize>(head.size()));

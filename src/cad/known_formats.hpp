@@ -22,6 +22,6 @@ std::string extension_of(const std::filesystem::path& file);
 
 /// Why a file is not a mesh, and the remedy, by its name and its first bytes: native CAD formats, archives,
 /// web pages, git-lfs pointers, untested formats. Empty if a reader should try.
-std::string known_not_to_be_a_mesh(const std::filesystem::path& file);
+std::string why_no_mesh(const std::filesystem::path& file);
 
 }  // namespace bernal::cad

@@ -186,7 +186,7 @@ std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_
 }
 
 /// Closes a rim so wide that it could be an open top, but that no plane closes.
-std::vector<Line> to_close_the_widest(const MeshFile& options, const ImportedMesh& as_it_is) {
+std::vector<Line> lines_for_widest_hole(const MeshFile& options, const ImportedMesh& as_it_is) {
   const bool closes_holes = std::ranges::find(options.repair, Repair::holes) != options.repair.end();
   if (as_it_is.report.open_edges == 0 || options.largest_hole || !(options.repair.empty() || closes_holes))
     return {};
@@ -252,7 +252,7 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
     }
   };
   try_all(candidates(options, as_it_is));
-  if (lines.empty()) try_all(to_close_the_widest(options, as_it_is));
+  if (lines.empty()) try_all(lines_for_widest_hole(options, as_it_is));
   if (lines.empty() && effort == Effort::thorough && options.repair.empty())
     if (std::string line =
             wrap_that_helps(as_it_is.mesh, purpose.smallest_radius, as_it_is.report.bounds.diagonal());

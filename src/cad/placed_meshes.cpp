@@ -108,7 +108,7 @@ void append_placed(const PlacedMeshes& meshes, ReadAttempt& attempt) {
   for (const Vector<3>& p : attempt.soup.points)
     if (!p.allFinite()) refuse("a coordinate is not finite where it is placed");
   if (placer.flattened > 0)
-    attempt.facts.notes.push_back(fmt::format("{} left out, which the file's transforms flatten",
+    attempt.facts.notes.push_back(fmt::format("{} left out, flattened by the file's transforms",
                                               counted(placer.flattened, "object is", "objects are")));
   std::vector<Solid>& solids = attempt.soup.solids;
   if (solids.size() == 1 && solids.front().name.empty()) solids.clear();

@@ -240,7 +240,7 @@ class ThreeMf {
     const xml_node mesh = xml.only_child(node, "mesh"), components = xml.only_child(node, "components");
     if (!mesh.empty() && !components.empty())
       xml.refuse(node, fmt::format("{} has a mesh and components, and may have one of them", who));
-    if (const std::string complaint = slicer_.complaint_about(path == root_ ? id : ""); !complaint.empty())
+    if (const std::string complaint = slicer_.error_about(path == root_ ? id : ""); !complaint.empty())
       xml.refuse(node, fmt::format("of {} {}", who, complaint));
     if (!mesh.empty()) {
       read_mesh(xml, mesh, who, object);
@@ -281,14 +281,13 @@ class ThreeMf {
                           std::string_view why) {
       if (count > 0) facts.notes.push_back(fmt::format("{} left out, {}", counted(count, one, many), why));
     };
-    note(supports_, "object is", "objects are",
-         "which by the file support the part or change how it is printed");
-    note(unprinted_, "item is", "items are", "which by the file are not to be printed");
+    note(supports_, "object is", "objects are", "marked in the file as supports or modifiers");
+    note(unprinted_, "item is", "items are", "marked in the file as not to be printed");
     if (settings_of_others_ > 0)
       facts.notes.push_back(
           "what the slicer says of the parts of an object is of another mesh: all of it is taken as a part");
-    if (stand_ins_ > 0) facts.notes.push_back("its meshes stand in for slices, which are finer and not read");
-    note(lattices_, "lattice of beams is", "lattices of beams are", "which are no triangles");
+    if (stand_ins_ > 0) facts.notes.push_back("its meshes approximate finer slices, which are not read");
+    note(lattices_, "lattice of beams is", "lattices of beams are", "which have no triangles");
   }
 
   ZipArchive archive_;

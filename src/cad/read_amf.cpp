@@ -87,7 +87,7 @@ class Amf {
         if (!is_named(volume, "volume") && !is_named(volume, "region")) continue;
         if (is_negative(metadata_of(volume, "slic3r.volume_type")))
           xml_.refuse(volume,
-                      fmt::format("of {} {}", who, complaint_about_negative(metadata_of(volume, "name"))));
+                      fmt::format("of {} {}", who, error_about_negative(metadata_of(volume, "name"))));
         if (is_part(volume))
           add_volume(volume, first, who, object);
         else
@@ -183,11 +183,10 @@ class Amf {
 
   void note_left_out(FileFacts& facts) const {
     if (supports_ > 0)
-      facts.notes.push_back(
-          fmt::format("{} left out, which by the file support the part or change how it is printed",
-                      counted(supports_, "volume is", "volumes are")));
+      facts.notes.push_back(fmt::format("{} left out, marked in the file as supports or modifiers",
+                                        counted(supports_, "volume is", "volumes are")));
     if (unprinted_ > 0)
-      facts.notes.push_back(fmt::format("{} left out, which by the file are not to be printed",
+      facts.notes.push_back(fmt::format("{} left out, marked in the file as not to be printed",
                                         counted(unprinted_, "instance is", "instances are")));
     if (curved_) facts.notes.push_back("its curved triangles are taken as flat ones");
   }

@@ -195,7 +195,7 @@ struct Repairs {
     done.push_back(
         fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
                     "{:.3g} from it",
-                    cad::not_less(made_up), cad::not_less(lost)));
+                    cad::rounded_up(made_up), cad::rounded_up(lost)));
     if (const std::string left = cad::what_is_left(mesh, repaired.mesh); !left.empty())
       cautions.push_back(fmt::format(
           "repair = [\"{}\"] lost a part: {}{}", name_of(repair), left,
@@ -251,7 +251,7 @@ std::vector<Mesh> take_out_obstacles(Mesh& mesh, const MeshFile& options, const 
   mesh = std::move(container.mesh);                               // turned outward
   std::vector<std::filesystem::path> seen;
   for (const std::filesystem::path& file : options.obstacles) {
-    if (std::ranges::find(seen, file) != seen.end()) refuse_obstacle(file, "stands there twice");
+    if (std::ranges::find(seen, file) != seen.end()) refuse_obstacle(file, "is listed twice");
     seen.push_back(file);
     const Mesh& obstacle = taken_out.emplace_back(read_obstacle(file, options, purpose));
     switch (cad::take_out(mesh, obstacle)) {
@@ -272,7 +272,7 @@ std::vector<Mesh> take_out_obstacles(Mesh& mesh, const MeshFile& options, const 
 }
 
 /// Adds a caution if the part is the wall of a vessel.
-void tell_shell(const Mesh& mesh, double tolerance, MeshReport& report) {
+void caution_about_shell(const Mesh& mesh, double tolerance, MeshReport& report) {
   constexpr std::uint64_t most_faces = 500'000, most_pieces = 100;
   if (report.faces > most_faces || report.components > most_pieces) return;
   const std::optional<cad::Hollow> hollow = cad::hollow_of_shell(mesh, tolerance);
@@ -288,8 +288,8 @@ void tell_shell(const Mesh& mesh, double tolerance, MeshReport& report) {
 ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   if (options.deflection && !cad::opencascade_reads(options.file))
     throw OptionError("deflection",
-                      fmt::format("is of the surfaces of STEP, IGES and BREP, and {} holds triangles, "
-                                  "which stay as they are; take the key out",
+                      fmt::format("applies to the surfaces of STEP, IGES and BREP, but {} holds triangles; "
+                                  "take the key out",
                                   options.file.filename().string()));
   const double deflection = options.deflection.value_or(deflection_over_radius * purpose.smallest_radius);
   const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
@@ -336,7 +336,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   report.cautions = std::move(repairs.cautions);
   if (report.usable() && !cuts && options.obstacles.empty() &&
       options.interior == std::variant<Interior, Vector<3>>(Interior::solid))
-    tell_shell(mesh, options.weld.value_or(rounding), report);
+    caution_about_shell(mesh, options.weld.value_or(rounding), report);
   report.reader = std::move(read.reader);
   if (read.facts.unit) {
     report.unit = read.facts.written_in ? read.facts.written_in->name : read.facts.unit->name;

@@ -85,7 +85,7 @@ ReadAttempt read_soup(const std::filesystem::path& file, double deflection, doub
   if (kind == FileKind::other) refuse(file, "is a pipe or a device, not a regular file");
   std::error_code error;
   if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
-  if (const std::string other = known_not_to_be_a_mesh(file); !other.empty()) refuse(file, other);
+  if (const std::string other = why_no_mesh(file); !other.empty()) refuse(file, other);
   ReadAttempt read = read_by_extension(file, deflection, metres > 0 ? metres : 1);
   if (!read.ok()) refuse_unread(file, read.failure);
   if (read.soup.polygons.empty()) refuse(file, "holds no faces; export the surface, not points or curves");

@@ -49,7 +49,7 @@ void add_ring(const Mesh& mesh, std::vector<bool>& marked) {
 
 /// Also marks the small pieces into which a component falls without the marked faces; unmarks a component
 /// that would nearly disappear.
-void judge_pieces(const Mesh& mesh, const MeshTopology& topology, std::vector<bool>& marked) {
+void drop_small_pieces(const Mesh& mesh, const MeshTopology& topology, std::vector<bool>& marked) {
   Mesh rest = mesh;
   std::vector<bool> kept = marked;
   kept.flip();
@@ -80,7 +80,7 @@ std::optional<Mesh> cut_once(const Mesh& mesh, const MeshTopology& topology, con
   std::vector<bool> marked(mesh.triangles.size(), false);
   for (const auto& [s, t] : own) marked[s] = marked[t] = true;
   for (int ring = 0; ring < rings; ++ring) add_ring(mesh, marked);
-  judge_pieces(mesh, topology, marked);
+  drop_small_pieces(mesh, topology, marked);
   if (std::find(marked.begin(), marked.end(), true) == marked.end()) return std::nullopt;
 
   std::vector<std::array<std::uint32_t, 2>> was_open;  // directed sides of triangles
@@ -294,36 +294,36 @@ RepairedMesh cut_out_crossings(Mesh mesh, const Monitor& monitor) {
   combine_bodies(mesh, monitor, counts);
   cut_within_components(mesh, monitor);  // crossings from rounding the corners of the unions
 
-  std::vector<std::string> said;
+  std::vector<std::string> phrases;
   if (counts.with_itself > 0)
-    said.push_back(
+    phrases.push_back(
         fmt::format("of {} itself the outer walls are kept",
                     counted(counts.with_itself, "part that crosses", "parts of which each crosses")));
   if (own_after < own_before)
-    said.push_back(
+    phrases.push_back(
         fmt::format("cut out {} where a part crosses itself, and patched over them: some room may "
                     "be lost there",
                     counted(own_before - own_after, "crossing", "crossings")));
   if (counts.made > 0)
-    said.push_back(fmt::format("united {} that cross{}", counted(counts.united, "body", "bodies"),
-                               counts.made > 1 ? fmt::format(" into {}", counts.made) : ""));
+    phrases.push_back(fmt::format("united {} that cross{}", counted(counts.united, "body", "bodies"),
+                                  counts.made > 1 ? fmt::format(" into {}", counts.made) : ""));
   if (counts.taken_out > 0)
-    said.push_back(fmt::format(
+    phrases.push_back(fmt::format(
         "took {} that {} oriented inward out of {} surroundings", counted(counts.taken_out, "body", "bodies"),
         counts.taken_out == 1 ? "is" : "are", counts.taken_out == 1 ? "its" : "their"));
   if (counts.failed > 0)
-    said.push_back(fmt::format("{} could not be united: the result would touch itself along an edge",
-                               counted(counts.failed, "body", "bodies")));
+    phrases.push_back(fmt::format("{} could not be united: the result would touch itself along an edge",
+                                  counted(counts.failed, "body", "bodies")));
   if (counts.too_large > 0)
-    said.push_back(fmt::format("left {} of crossing bodies with more than {} faces",
-                               counted(counts.too_large, "group", "groups"), most_faces));
+    phrases.push_back(fmt::format("left {} of crossing bodies with more than {} faces",
+                                  counted(counts.too_large, "group", "groups"), most_faces));
   const std::size_t after = self_intersecting_pairs(mesh).size();
   if (after > 0) {
-    said.push_back(fmt::format("{} of {} remain", after, counted(before, "crossing", "crossings")));
+    phrases.push_back(fmt::format("{} of {} remain", after, counted(before, "crossing", "crossings")));
     if (bodies_of(mesh).apart > 0)
-      said.push_back("some of them with an open sheet, which encloses nothing: wrap keeps it as a wall");
+      phrases.push_back("some of them with an open sheet, which encloses nothing: wrap keeps it as a wall");
   }
-  return {std::move(mesh), fmt::format("{}", fmt::join(said, "; "))};
+  return {std::move(mesh), fmt::format("{}", fmt::join(phrases, "; "))};
 }
 
 }  // namespace bernal::cad

@@ -22,7 +22,7 @@ class SlicerParts {
 
   std::string name_of(const std::string& object) const;
   /// The error for an object with a negative part; empty if it has none.
-  std::string complaint_about(const std::string& object) const;
+  std::string error_about(const std::string& object) const;
   bool is_part(const std::string& object, const std::string& component) const;
   /// Splits the object's single piece into its parts; returns the number of modifiers dropped. Absent if the
   /// slicer's data belong to another mesh.
@@ -44,6 +44,6 @@ class SlicerParts {
 /// Whether the slicer subtracts a part of this type from the others.
 bool is_negative(std::string_view type);
 /// "its part "Hole" is negative, …"
-std::string complaint_about_negative(const std::string& name);
+std::string error_about_negative(const std::string& name);
 
 }  // namespace bernal::cad

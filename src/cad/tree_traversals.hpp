@@ -39,19 +39,19 @@ inline double distance(const Vector<3>& p, const WallTriangle& t) {
 // entered first.
 
 /// Skips no triangle.
-struct Everything {
-  static bool passes_over(const Vector<3>&, const Node&, const OrientedBox&) { return false; }
-  static bool passes_over(const Vector<3>&, const Leaf&) { return false; }
-  static bool passes_over(const WallContact&) { return false; }
+struct NoFilter {
+  static bool skips(const Vector<3>&, const Node&, const OrientedBox&) { return false; }
+  static bool skips(const Vector<3>&, const Leaf&) { return false; }
+  static bool skips(const WallContact&) { return false; }
 };
 
 /// Skips what the known contacts of a ball of radius r cover, nearly everything on a fine wall. The known
 /// contacts are nearer than all that is not skipped, to rounding.
-struct Unspoken {
+struct Uncovered {
   std::span<const WallContact> known;
   double r;
 
-  bool passes_over(const Vector<3>& c, const Node& node, const OrientedBox& oriented) const {
+  bool skips(const Vector<3>& c, const Node& node, const OrientedBox& oriented) const {
     if (known.empty()) return false;
     const CGAL::Bbox_3& box = node.bbox();
     const Bounds<3> bounds{{box.xmin(), box.ymin(), box.zmin()}, {box.xmax(), box.ymax(), box.zmax()}};
@@ -60,18 +60,18 @@ struct Unspoken {
              speaks_for_all(contact, bounds, c, r);
     });
   }
-  bool passes_over(const Vector<3>& c, const Leaf& leaf) const {
+  bool skips(const Vector<3>& c, const Leaf& leaf) const {
     return std::ranges::any_of(known, [&](const WallContact& contact) {
       return leaf.depth_along(contact.normal, c) > spoken_depth(contact, r);
     });
   }
-  bool passes_over(const WallContact& found) const {
+  bool skips(const WallContact& found) const {
     return !(found.distance > 0) || is_spoken_for(known, found, r);
   }
 };
 
 /// Finds the triangle nearest to p and nearer than the bound, among those that `Among` does not skip.
-template <class Among = Everything>
+template <class Among = NoFilter>
 class NearestTraversal {
  public:
   using Priority = double;
@@ -89,7 +89,7 @@ class NearestTraversal {
     if (squared >= squared_bound_) return {false, -squared};
     const OrientedBox& oriented = tree_.oriented(node);
     squared = std::max(squared, oriented.squared_distance(p));
-    return {squared < bound_ * bound_ && !among_.passes_over(p, node, oriented), -squared};
+    return {squared < bound_ * bound_ && !among_.skips(p, node, oriented), -squared};
   }
   template <typename Iterator>
   void traverse_group(const Vector<3>& p, Iterator first, Iterator last) {
@@ -100,13 +100,13 @@ class NearestTraversal {
     // smooth wall.
     const double enough = bound_ * (1 - 4 * tolerance::roundoff);
     if (leaf.depth_along(nearest_.normal, p) >= enough || leaf.depth_along_normal(p) >= enough) return;
-    if (among_.passes_over(p, leaf)) return;
+    if (among_.skips(p, leaf)) return;
     const WallTriangle& t = leaf.triangle();
     const Vector<3> offset = PreparedTriangle(t.a, t.b, t.c).offset(p);
     const double d = offset.norm();
     if (d >= bound_) return;
     const WallContact found{d > 0 ? Vector<3>(offset / d) : Vector<3>::Zero(), d};
-    if (among_.passes_over(found)) return;
+    if (among_.skips(found)) return;
     nearest_ = found;
     set_bound(d);
   }

@@ -131,7 +131,7 @@ bool TriangleTree::within(const Vector<3>& c, double reach, std::vector<NearFace
 void TriangleTree::contacts(const Vector<3>& c, double r, std::vector<WallContact>& out) const {
   const std::size_t before = out.size();
   for (;;) {
-    NearestTraversal traversal(*tree_, r, 0, Unspoken{std::span(out).subspan(before), r});
+    NearestTraversal traversal(*tree_, r, 0, Uncovered{std::span(out).subspan(before), r});
     tree_->search_nearest_first(c, traversal);
     if (!(traversal.nearest().distance > 0)) return;
     out.push_back(traversal.nearest());

@@ -134,7 +134,7 @@ std::vector<Seed> outside_of(const Mesh& wrap, const std::vector<Seed>& inside) 
 /// Removes seeds from which the wrap gets out, because they are not inside or their chamber has a gap; found
 /// by halving.
 template <class WrapFrom>
-std::vector<Seed> that_stay_inside(const std::vector<Seed>& seeds, const WrapFrom& wrap_from) {
+std::vector<Seed> keep_inside(const std::vector<Seed>& seeds, const WrapFrom& wrap_from) {
   if (seeds.empty()) return {};
   try {
     wrap_from(seeds);
@@ -144,14 +144,14 @@ std::vector<Seed> that_stay_inside(const std::vector<Seed>& seeds, const WrapFro
     if (seeds.size() == 1) return {};
   }
   const auto middle = seeds.begin() + std::ssize(seeds) / 2;
-  std::vector<Seed> stay = that_stay_inside({seeds.begin(), middle}, wrap_from);
-  const std::vector<Seed> others = that_stay_inside({middle, seeds.end()}, wrap_from);
+  std::vector<Seed> stay = keep_inside({seeds.begin(), middle}, wrap_from);
+  const std::vector<Seed> others = keep_inside({middle, seeds.end()}, wrap_from);
   stay.insert(stay.end(), others.begin(), others.end());
   return stay;
 }
 
 /// Whether a wrapped surface encloses hardly more than the offset on both sides of a sheet.
-bool is_but_a_skin(const Mesh& mesh, double offset) {
+bool is_only_a_skin(const Mesh& mesh, double offset) {
   constexpr double more = 1.5;  // at its rim, and where it bends
   return signed_volume(mesh) < more * area_of(mesh) * offset;
 }
@@ -201,7 +201,7 @@ RepairedMesh wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor
         return made;
       };
       Mesh inner = wrap_from(seeds);
-      const std::vector<Seed> nooks = that_stay_inside(outside_of(inner, in_nooks), wrap_from);
+      const std::vector<Seed> nooks = keep_inside(outside_of(inner, in_nooks), wrap_from);
       if (!nooks.empty()) {
         seeds.insert(seeds.end(), nooks.begin(), nooks.end());
         inner = wrap_from(seeds);
@@ -213,10 +213,10 @@ RepairedMesh wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor
     }
     Mesh outer = wrapped(mesh, alpha, offset, {}, monitor);
     if (outer.triangles.empty())
-      return {std::move(mesh), fmt::format("not wrapped ({}): nothing came out", how)};
-    if (is_but_a_skin(outer, offset))
+      return {std::move(mesh), fmt::format("not wrapped ({}): the result is empty", how)};
+    if (is_only_a_skin(outer, offset))
       return {std::move(mesh),
-              fmt::format("not wrapped ({}): {}, and from outside there is but the skin of a sheet; {}", how,
+              fmt::format("not wrapped ({}): {}, and from outside only the skin of a sheet results; {}", how,
                           why, close_first)};
     return {
         std::move(outer),
@@ -231,9 +231,9 @@ RepairedMesh wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor
             fmt::format("not wrapped ({}): {}{}", how, because,
                         reason == StoppedWrap::outside ? fmt::format("; {}", close_first) : "")};
   } catch (const std::exception& error) {
-    std::string said = error.what();
-    std::replace(said.begin(), said.end(), '\n', ' ');
-    return {std::move(mesh), fmt::format("not wrapped ({}): {}", how, said)};
+    std::string message = error.what();
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    return {std::move(mesh), fmt::format("not wrapped ({}): {}", how, message)};
   }
 }
 

@@ -25,7 +25,7 @@ constexpr std::uint64_t most_unpacked = std::uint64_t{4} << 30U;
 [[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::bad_mesh, why); }
 [[noreturn]] void refuse_cut() { refuse("a zip archive that is cut short or damaged"); }
 
-bool is_as_it_says(const unz_file_info64& info) {
+bool has_possible_size(const unz_file_info64& info) {
   constexpr std::uint64_t stored = 0, deflated = 8;
   const bool known = info.compression_method == stored || info.compression_method == deflated;
   return known && info.uncompressed_size <= most_unpacked &&
@@ -88,7 +88,7 @@ constexpr std::uint64_t elsewhere = 0xFFFFFFFF;  // in a 32-bit field: the numbe
 /// 64-bit field to an unknown one.
 void shorten_numbers(std::string& archive, std::size_t at) {
   constexpr std::size_t header = 46;
-  constexpr std::uint64_t signature = 0x02014b50, of_64_bits = 0x0001, of_nobody = 0x6e62;
+  constexpr std::uint64_t signature = 0x02014b50, of_64_bits = 0x0001, unknown = 0x6e62;
   Bytes bytes(archive);
   if (!bytes.hold(at, header) || bytes.number(at, 4) != signature) return;
   std::size_t extra = at + header + bytes.number(at + 28, 2);
@@ -105,7 +105,7 @@ void shorten_numbers(std::string& archive, std::size_t at) {
       if (number < elsewhere) bytes.put(field, 4, number);
       from += 8;
     }
-    bytes.put(extra, 2, of_nobody);
+    bytes.put(extra, 2, unknown);
   }
 }
 
@@ -170,7 +170,7 @@ std::string ZipArchive::read(const std::string& name) {
     refuse_cut();
   constexpr unsigned long encrypted = 1;
   if ((info.flag & encrypted) != 0) refuse(fmt::format("{} is encrypted; save it without a password", name));
-  if (!is_as_it_says(info)) refuse("an archive whose directory cannot be true");
+  if (!has_possible_size(info)) refuse("an archive whose directory cannot be true");
   unpacked_ += info.uncompressed_size;
   if (unpacked_ > most_unpacked) refuse("an archive of more than 4 GiB unpacked");
   if (unzOpenCurrentFile(zip_.get()) != UNZ_OK) refuse_cut();

@@ -115,7 +115,7 @@ const std::vector<KnownUnit>& known_units() {
 /// Notes the file's unit: OpenCASCADE converts it to millimetres.
 void note_units(const std::vector<std::string>& names, FileFacts& facts) {
   facts.unit = FileFacts::Length{1e-3, "millimetre"};
-  std::vector<std::string> said;
+  std::vector<std::string> phrases;
   for (std::string name : names) {
     name = in_lower_case(name);
     for (const KnownUnit& known : known_units())
@@ -123,15 +123,16 @@ void note_units(const std::vector<std::string>& names, FileFacts& facts) {
         name = known.length.name;
         facts.written_in = known.length;
       }
-    if (!name.empty() && std::find(said.begin(), said.end(), name) == said.end()) said.push_back(name);
+    if (!name.empty() && std::find(phrases.begin(), phrases.end(), name) == phrases.end())
+      phrases.push_back(name);
   }
-  if (said.size() != 1) facts.written_in.reset();
-  if (said.empty()) {
+  if (phrases.size() != 1) facts.written_in.reset();
+  if (phrases.empty()) {
     facts.unit.reset();
     facts.notes.push_back("the file names no unit of length; OpenCASCADE takes millimetre");
-  } else if (said.size() > 1 || said.front() != "millimetre") {
+  } else if (phrases.size() > 1 || phrases.front() != "millimetre") {
     facts.notes.push_back(
-        fmt::format("the file is in {}; OpenCASCADE converts to millimetre", fmt::join(said, " and ")));
+        fmt::format("the file is in {}; OpenCASCADE converts to millimetre", fmt::join(phrases, " and ")));
   } else {
     facts.written_in.reset();
   }
@@ -324,7 +325,7 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
     result.failure = fmt::format(
         "a deflection of {:.3g}{} is less than a hundred-thousandth of the part, which is {:.3g}{} across; "
         "choose at least {:.3g}{} (deflection in [container]; a fiftieth of the smallest radius if absent)",
-        deflection, unit, diagonal, unit, not_less(smallest_deflection * diagonal), unit);
+        deflection, unit, diagonal, unit, rounded_up(smallest_deflection * diagonal), unit);
     return result;
   }
   sew_faces(parts, diagonal);
@@ -345,7 +346,7 @@ void bernal_read_shapes(const std::filesystem::path& file, bernal::cad::ShapeFor
   try {
     result = bernal::cad::read(file, format, deflection);
   } catch (const Standard_Failure& failure) {
-    const std::string_view said = failure.GetMessageString();
-    result.failure = fmt::format("OpenCASCADE gives up: {}", said.empty() ? "no reason given" : said);
+    const std::string_view phrases = failure.GetMessageString();
+    result.failure = fmt::format("OpenCASCADE gives up: {}", phrases.empty() ? "no reason given" : phrases);
   }
 }

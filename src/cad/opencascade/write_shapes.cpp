@@ -234,7 +234,7 @@ void bernal_write_shapes(const bernal::cad::SolidShapes& shapes, bernal::cad::So
   } catch (const bernal::cad::Failed& failed) {
     result.failure = failed.what;
   } catch (const Standard_Failure& failure) {
-    const std::string_view said = failure.GetMessageString();
-    result.failure = fmt::format("OpenCASCADE gives up: {}", said.empty() ? "no reason given" : said);
+    const std::string_view phrases = failure.GetMessageString();
+    result.failure = fmt::format("OpenCASCADE gives up: {}", phrases.empty() ? "no reason given" : phrases);
   }
 }
