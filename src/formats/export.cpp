@@ -211,7 +211,7 @@ std::string note_of(const Exported& file, const Format& format, const std::strin
                     const Monitor& monitor) {
   const std::string remark = format.remark ? format.remark(file) : "";
   const std::string contacts =
-      file.contacts.treatment == ContactTreatment::none ? "" : "; " + words_on(file.contacts);
+      file.contacts.treatment == ContactTreatment::none ? "" : "; " + contact_text(file.contacts);
   if (format.note || !written.empty())
     return fmt::format("{}, {}{}{}{}", spheres_in(file), format.note ? format.note(file) : written, contacts,
                        faults_text(file), remark);

@@ -4,7 +4,7 @@
 
 namespace bernal {
 
-/// Text made safe inside HTML elements and quoted attributes.
+/// Escapes text for HTML elements and quoted attributes.
 inline std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
