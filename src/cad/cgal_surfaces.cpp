@@ -83,7 +83,7 @@ struct Watch {
   template <class Wrapper, class Gate>
   void before_facet_treatment(const Wrapper&, const Gate& gate) {
     if (!bounds) return;
-    const auto reached = gate.facet().first;  // on the side from which it is looked at
+    const auto reached = gate.facet().first;  // the cell in front of the gate
     for (int corner = 0; corner < 4; ++corner) {
       const Point& p = reached->vertex(corner)->point();
       for (int k = 0; k < 3; ++k)

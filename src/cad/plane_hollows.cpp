@@ -52,7 +52,7 @@ std::vector<Vector<3>> directions_of(const Mesh& solid) {
 /// A level at which a plane normal to the direction may be a brim.
 struct Level {
   Vector<3> direction;
-  /// Of the highest and lowest corner at this level, and of the next one below.
+  /// Heights of the highest and lowest corner at this level, and of the next one below.
   double height, bottom, lower;
   double area;  ///< of the faces in the plane
   std::size_t corners;

@@ -93,7 +93,7 @@ class StlText {
     return word_;
   }
 
-  /// The first word of the next statement, or what stands in its place; skips comments and the rest of the
+  /// The first word of the next statement, or what is in its place; skips comments and the rest of the
   /// previous statement's line.
   std::string_view statement(std::initializer_list<std::string_view> wanted) {
     const int before = line_;

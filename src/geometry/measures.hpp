@@ -19,16 +19,16 @@ double six_signed_volumes(const Mesh&, const FaceCorners&, const Vector<3>& poin
 
 /// The volume enclosed by a closed, consistently oriented surface: positive if it is oriented outwards.
 double signed_volume(const Mesh&);
-/// Of all triangles, or of some over the mesh's vertices.
+/// Area of all triangles, or of some over the mesh's vertices.
 double area_of(const Mesh&);
 double area_of(const Mesh&, std::span<const FaceCorners>);
 
 /// Zero if there are no points.
 Bounds<3> bounds_of(std::span<const Vector<3>>);
 Bounds<3> bounds_of(const Mesh&, const FaceCorners&);
-/// Of all vertices, used or not.
+/// Bounds of all vertices, used or not.
 Bounds<3> bounds_of(const Mesh&);
-/// Of the vertices that triangles use; `Bounds::of_nothing` if there are none.
+/// Bounds of the vertices that triangles use; `Bounds::of_nothing` if there are none.
 Bounds<3> bounds_of_faces(const Mesh&);
 
 }  // namespace bernal

@@ -89,12 +89,12 @@ class HardSpheres {
 
   std::size_t count() const { return spheres_.size(); }
   double size() const { return size_; }
-  /// Of all spheres, in units of m k T / m = 1.
+  /// Total over all spheres, in units of m k T / m = 1.
   double kinetic_energy() const;
   /// Centres in [0, edge), in the caller's order; radii do not change.
   void write_to(Spheres<D>& spheres) const;
 
-  /// Of a box, in largest diameters: so that no sphere meets two images of a neighbour.
+  /// Least edge of a box in largest diameters, so that no sphere meets two images of a neighbour.
   static constexpr double smallest_edge = 2.5;
   /// Its state between two periods, for an object made with the same number of spheres, radii and walls.
   void archive(Archive& a) {

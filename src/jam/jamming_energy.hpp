@@ -87,12 +87,13 @@ class JammingEnergy final : public SmoothFunction {
   double radius(std::size_t i) const { return radius_[i]; }
   Eigen::Index unknowns() const override { return static_cast<Eigen::Index>(D * size() + 1); }
   const Vector<D>& edges() const { return state_.edges; }
-  /// Of the box and its walls, in what they were at first.
+  /// Size of the box and its walls relative to the initial one.
   double scale() const { return state_.scale; }
   /// Those of pairs come first.
   const std::vector<Contact>& contacts() const { return now_.contacts; }
   const Eigen::VectorXd& gradient() const override { return now_.gradient; }
-  /// Of all springs, less what smoothing adds: a measure for changes of H. Above 0 where anything touches.
+  /// Energy of all springs without the part of smoothing: a scale for changes of H. Positive if anything
+  /// touches.
   double elastic_energy() const { return now_.elastic; }
   /// The largest o / s; 0 if nothing overlaps.
   double largest_overlap() const { return now_.largest_overlap; }

@@ -19,7 +19,7 @@ class Depths {
   Depths(const Domain&, const Container&, double reach, std::size_t points,
          const std::optional<LowerPart>& below = {});
 
-  /// Of the container, or of its part.
+  /// Volume of the container, or of its part.
   double volume() const { return volume_; }
 
   /// 1 for z <= 0, decreasing.

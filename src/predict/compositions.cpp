@@ -9,7 +9,7 @@
 namespace bernal::predict {
 namespace {
 
-/// Of the number of rods; a larger error does not count as density.
+/// Largest error from the number of rods that may count as density.
 constexpr double tolerated_error = 1e-4;
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace bernal {
 namespace {
 
 constexpr int steps = 32;
-/// Of the packing fraction: a bracket that does not close to this is a jump, not a root.
+/// Accuracy of the packing fraction: a bracket that does not close to this is a jump, not a root.
 constexpr double precision = 1e-7;
 
 struct Point {

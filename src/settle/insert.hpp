@@ -37,8 +37,8 @@ StageEnd insert_largest_first(Work& work, double densest_so_far = 0);
 /// After a stage that moves all spheres at once and could place no more: a few large spheres, with hardly any
 /// play between the walls, may have kept all others from coming free. If far fewer than the requested and
 /// likely number are placed, or if few are requested, insertion in an empty bed is tried as well; and if
-/// hardly any are left, these are inserted, skipping those without a position. Returns the end of the better
-/// result.
+/// hardly any are left, these are inserted, skipping those without a position. Returns how the last of these
+/// ended.
 StageEnd insert_what_else_fits(Work& work, StageEnd end);
 
 /// Its effects with their prices.

@@ -17,7 +17,7 @@ inline Draw usual_draw(const SizeDistribution& radii, double count, int dimensio
 
 /// The largest of many spheres, as far as they determine how the others pack.
 struct VolumeCarriers {
-  /// Of the number: the largest spheres that hold half of the volume, and others of their size.
+  /// Share of the number: the largest spheres that hold half of the volume, and others of their size.
   double share = 1;
   double radius = 0;  ///< larger spheres together hold less than a tenth of the volume
 };

@@ -13,7 +13,6 @@
 #include "measure/touching.hpp"
 #include "near/point_grid.hpp"
 #include "verify/exact.hpp"
-#include "voxels/ball_in_cells.hpp"
 
 namespace bernal {
 namespace {
@@ -261,17 +260,6 @@ double cap_volume(double radius, double height) {
   return std::numbers::pi / 3 * height * height * (3 * radius - height);
 }
 
-double volume_between_ends(const Piece& piece) {
-  Bounds<3> box{piece.center - Vector<3>::Constant(2 * piece.radius),
-                piece.center + Vector<3>::Constant(2 * piece.radius)};
-  for (const Cut& cut : piece.cuts) {
-    if (cut.face == Cut::contact) continue;
-    const int axis = cut.face / 2;
-    (cut.face % 2 == 0 ? box.lower : box.upper)[axis] = cut.keeps.normal[axis] * cut.keeps.offset;
-  }
-  return ball_in_box(piece.center, piece.radius, box);
-}
-
 Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const SolidsOptions& options,
                  const Monitor& monitor) {
   Solids made{.spheres = spheres, .domain = domain, .pieces = {}, .bridges = {}, .contacts = {}};
@@ -287,7 +275,7 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
   }
   const ClearEnds ends = with_clear_ends(made.spheres, domain, bridges);
   made.end_distance = ends.distance;
-  if (options.move_ends) made.domain = ends.domain;
+  made.domain = ends.domain;
   wrap(made.spheres, made.domain);
   made.pieces = pieces_of(made.spheres, made.domain);
   if (shrinks) {

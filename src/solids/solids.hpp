@@ -35,7 +35,6 @@ struct SolidsOptions {
   ContactTreatment contact = ContactTreatment::none;
   double gap = 0.01;
   double bridge_radius = 0.2;
-  bool move_ends = true;  ///< the periods may begin elsewhere
 };
 
 /// Prepares spheres for a mesher. Proven, in exact arithmetic on the given doubles: for gap and shrink what
@@ -60,9 +59,6 @@ struct ClearEnds {
 };
 ClearEnds with_clear_ends(const Spheres<dynamic>&, const Domain&, const std::vector<Bridge>& bridges = {});
 
-/// Volume of a ball between its cuts at the ends of periods, to some roundoffs of the ball's volume; cuts at
-/// contacts are ignored.
-double volume_between_ends(const Piece&);
 /// Volume of a spherical cap, π h² (3 r - h) / 3.
 double cap_volume(double radius, double height);
 

@@ -64,7 +64,7 @@ class SphereSurfaces {
   bool is_whole(std::size_t sphere) const;
   const Piece& first_piece(std::size_t sphere) const { return pieces_[first_piece_[sphere]]; }
   double radius(std::size_t sphere) const { return first_piece(sphere).radius; }
-  /// Of the icosphere for whole spheres.
+  /// Frequency of the icosphere for whole spheres.
   int frequency() const { return frequency_; }
   /// The difference between a sphere's radius and that of the ball that contains its surface.
   double inset() const { return 4 * shift_; }

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t most_sharp_edges = 8000;
 constexpr double farthest_placed =
-    1e9;  // in sizes of the domain; nobody sees more, and single precision holds it
+    1e9;  // in sizes of the domain; far beyond what is visible, and in range of float
 
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 

@@ -45,9 +45,4 @@ class BallInCells {
   std::vector<double> below_, above_;          // T on two layers of corners
 };
 
-/// Volume of the ball around `center` in the box; error: a few roundoffs of the ball's volume.
-double ball_in_box(const Vector<3>& center, double radius, const Bounds<3>& box);
-/// Area of the disc in the rectangle.
-double disc_in_rectangle(const Vector<2>& center, double radius, const Bounds<2>& rectangle);
-
 }  // namespace bernal
