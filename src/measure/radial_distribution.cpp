@@ -37,7 +37,7 @@ double shell_volume(int dimension, double from, double to) {
   return ball_volume(dimension, to) - ball_volume(dimension, from);
 }
 
-/// Each pair counts twice if both its centres are references; this corrects by the expected share.
+/// Pairs of two references count from both ends; the error is that of the expected number of distinct pairs.
 void normalise(const std::vector<std::uint64_t>& counts, const Spheres<dynamic>& spheres, double volume,
                RadialDistribution& radial) {
   const auto n = static_cast<double>(spheres.size());
