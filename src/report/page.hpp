@@ -14,10 +14,10 @@ void write_bed(Page&, const Report&);
 void write_walls(Page&, const Report&);
 void write_structure(Page&, const Report&);
 
-/// ", of the bed below 24.1 mm", where walls and pores are measured there.
+/// ", of the bed below 24.1 mm", if walls and pores are measured there.
 std::string below_level(const Report&);
 
 /// "every sphere rests".
-std::string rest_in_short(const Rest&);
+std::string short_rest_text(const Rest&);
 
 }  // namespace bernal

@@ -25,8 +25,8 @@ inline Colour mix(const Colour& a, const Colour& b, double share_of_b) {
   return {channel(a.red, b.red), channel(a.green, b.green), channel(a.blue, b.blue)};
 }
 
-/// Colours of sphere sizes, small to large: from mint over teal to indigo, with lightness falling all the
-/// way, so that the order can be read without colour vision too.
+/// Colours of sphere sizes, small to large: from mint over teal to indigo, with monotonically falling
+/// lightness, so that the order is readable without colour vision.
 inline Colour size_colour(double t) {
   constexpr std::array<Colour, 6> stops = {{{0.871, 0.961, 0.898},
                                             {0.545, 0.855, 0.698},

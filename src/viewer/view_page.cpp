@@ -14,7 +14,7 @@ namespace bernal {
 void write_view_frame(Page& page) {
   page.raw(
       "<section class=\"bernal-view\" aria-label=\"Interactive view\" hidden></section>\n"
-      "<script>if (window.WebGL2RenderingContext) "  // at once, so that nothing moves later
+      "<script>if (window.WebGL2RenderingContext) "  // immediately, so that nothing moves later
       "document.currentScript.previousElementSibling.hidden = false;</script>\n");
 }
 

@@ -12,8 +12,8 @@ namespace bernal::cad {
 /// "1 open edge", "72 open edges".
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 
-/// The next number of three digits that is at least as large: what may be said of a bound.
-inline double not_less(double bound) {
+/// Rounded up to three digits, for stating an upper bound.
+inline double rounded_up(double bound) {
   if (!(bound > 0) || !std::isfinite(bound)) return bound;
   const int digits = 2 - static_cast<int>(std::floor(std::log10(bound)));
   const auto text = [&](double number) { return fmt::format("{:.3g}", number); };

@@ -12,7 +12,7 @@
 namespace bernal::cad {
 namespace {
 
-/// The widest first; those of one width in the order of their places.
+/// The widest first, ties by position.
 void keep_widest(std::vector<Defect>& defects) {
   constexpr std::size_t most = 5;
   std::ranges::sort(defects, [](const Defect& a, const Defect& b) {

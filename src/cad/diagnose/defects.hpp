@@ -6,20 +6,19 @@
 
 namespace bernal::cad {
 
-/// Open edges that hang together: the rim of a hole, or of an opening.
+/// Connected open edges: the rim of a hole or of an opening.
 struct OpenRim {
   Bounds<3> bounds;
-  std::vector<Vector<3>> ends;  ///< of its edges, each twice
+  std::vector<Vector<3>> ends;  ///< endpoints of its edges, each twice
 };
 
-/// All of them, the widest first. Cost: O(T log T).
+/// All rims, the widest first. Cost: O(T log T).
 std::vector<OpenRim> open_rims(const Mesh& mesh);
 
 /// The widest few of each kind of defect.
 std::vector<Defect> defects_of(const Mesh& mesh);
 
-/// The faces that have to do with a defect: those with an open or a branching edge, and those that cross
-/// another one.
+/// The faces of defects: with an open edge, with an edge of more than two faces, and crossing another face.
 struct DefectiveFaces {
   std::vector<std::uint32_t> at_open_edges, at_branching_edges, crossing;
 };

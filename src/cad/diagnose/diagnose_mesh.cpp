@@ -16,8 +16,8 @@ namespace bernal::cad {
 
 namespace {
 
-/// Of each component, whether it lies inside an odd number of others. A corner that touches another one does
-/// not tell; where all do, the middle of a triangle does, which meets none.
+/// For each component, whether it lies inside an odd number of others. A corner on another component does not
+/// decide; if all are, the middle of a triangle does, which touches none.
 std::vector<Crossing> nesting(const Mesh& mesh, const MeshTopology& topology) {
   std::vector<Crossing> nested(topology.components, Crossing::starts_on_wall);
   if (nested.size() == 1) return {Crossing::even};
@@ -26,7 +26,7 @@ std::vector<Crossing> nesting(const Mesh& mesh, const MeshTopology& topology) {
   const auto look_from = [&](const Vector<3>& p, std::uint32_t own) {
     if (nested[own] != Crossing::starts_on_wall) return;
     throw_if_interrupted();
-    // The shortest way out: of solids in a row it meets none, where the way along the row meets them all.
+    // The shortest ray out: for solids in a row it meets none, while the ray along the row meets all.
     int down = 0, up = 0;
     const double below = (p - bounds.lower).minCoeff(&down), above = (bounds.upper - p).minCoeff(&up);
     constexpr double far = std::numeric_limits<double>::infinity();
@@ -41,9 +41,9 @@ std::vector<Crossing> nesting(const Mesh& mesh, const MeshTopology& topology) {
   return nested;
 }
 
-/// Turns whole components so that the mesh bounds a volume: the outermost outwards, those in them inwards,
-/// and so on. Returns how many in others looked outwards. Precondition: closed, consistently oriented, no
-/// self-intersections.
+/// Flips whole components so that the mesh bounds a volume: the outermost outwards, those inside them
+/// inwards, and so on. Returns how many nested ones were oriented outwards. Precondition: closed,
+/// consistently oriented, no self-intersections.
 std::uint64_t orient_components(Mesh& mesh, const MeshTopology& topology, const Vector<3>& center) {
   std::vector<double> six_volumes(topology.components, 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -68,7 +68,7 @@ bool same_orientation(std::array<std::uint32_t, 3> s, const std::array<std::uint
   return false;
 }
 
-/// How many of the triangles run against those of `reference`, which are the same otherwise.
+/// The number of triangles with opposite orientation to `reference`, which is equal otherwise.
 std::size_t count_turned(const Mesh& mesh, const Mesh& reference) {
   std::size_t turned = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -76,8 +76,8 @@ std::size_t count_turned(const Mesh& mesh, const Mesh& reference) {
   return turned;
 }
 
-/// Orients the mesh outwards; fills `volume`, `orientation` and what goes with them.
-/// Precondition: closed, no degenerate triangles, no self-intersections.
+/// Orients the mesh outwards; fills `volume`, `orientation` and related members. Precondition: closed, no
+/// degenerate triangles, no self-intersections.
 void orient(Mesh& mesh, const MeshTopology& topology, MeshReport& report) {
   const Mesh original = mesh;
   if (orient_consistently(mesh, topology) == no_index) {

@@ -19,23 +19,23 @@
 namespace bernal {
 namespace {
 
-/// A line of a scene and what it says.
+/// A line of a scene and its effect.
 struct Line {
   std::string text;
   std::function<void(MeshFile&)> say;
 };
 
-/// An opening is at least this wide, of the part's diagonal, and at most this deep, of its own width; what is
-/// smaller is a hole, and a plane closes it if it is flat.
+/// The least width of an opening, as a share of the part's diagonal, and its largest depth, as a share of its
+/// width. Smaller ones are holes; a plane closes a hole only if it is flat.
 constexpr double narrowest_opening = 0.2, deepest_opening = 0.25;
 
 struct Openings {
-  std::vector<std::string> planes;  ///< that close all of them
-  bool wide = false;                ///< and no hole
+  std::vector<std::string> planes;  ///< planes that close all openings
+  bool wide = false;                ///< at least one is wide, so no hole
 };
 
-/// The number with the fewest digits that is `value` to within the rounding, or lies a little on the way from
-/// it towards the middle of the part, where there is wall to cut.
+/// The number with the fewest digits equal to `value` within the rounding, or slightly moved towards the
+/// middle of the part, where there is wall to cut.
 std::string rounded(double value, double towards, double within) {
   if (std::abs(value) <= within) return "0";
   for (int digits = 1; digits < 17; ++digits) {
@@ -47,7 +47,7 @@ std::string rounded(double value, double towards, double within) {
   return fmt::format("{}", value);
 }
 
-/// The direction across which points lie flattest: an axis where one is as good as any.
+/// The direction in which the points extend least: an axis if that is as good.
 Vector<3> flattest(const std::vector<Vector<3>>& points, const Bounds<3>& bounds, double deepest) {
   int axis = 0;
   if (bounds.size().minCoeff(&axis) <= deepest) return Vector<3>::Unit(axis);
@@ -59,7 +59,7 @@ Vector<3> flattest(const std::vector<Vector<3>>& points, const Bounds<3>& bounds
   int longest = 0;
   across.cwiseAbs().maxCoeff(&longest);
   across /= across[longest];
-  constexpr double digits = 1e4;  // as many as one likes to read
+  constexpr double digits = 1e4;  // a readable number of digits
   return (digits * across).array().round().matrix() / digits;
 }
 
@@ -83,8 +83,7 @@ struct RimPlane {
   double beyond(const Vector<3>& p) const { return outward.dot(p) - level; }
 };
 
-/// Whether the plane cuts off what is none of its opening's business: another opening, or more of the part
-/// than a brim.
+/// Whether the plane cuts off more than its own opening: another opening, or more of the part than a brim.
 bool cuts_off_more(const RimPlane& plane, const cad::OpenRim& own, const std::vector<cad::OpenRim>& rims,
                    const Mesh& mesh, double brim, double rounding) {
   const auto is_beyond = [&](double by) {
@@ -95,7 +94,7 @@ bool cuts_off_more(const RimPlane& plane, const cad::OpenRim& own, const std::ve
   return std::ranges::any_of(mesh.vertices, is_beyond(brim + rounding));
 }
 
-/// A rim as flat as an opening's, or a hole's if it is no wider, and the plane that closes it.
+/// A rim as flat as an opening's (or a hole's, if it is no wider), and the plane that closes it.
 struct Closing {
   RimPlane plane;
   std::string text;  ///< "z = 1.1"
@@ -174,7 +173,7 @@ std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_
   }
   for (const auto* some : {caps_first ? &caps : &repairs, caps_first ? &repairs : &caps})
     lines.insert(lines.end(), some->begin(), some->end());
-  // Parts that touch: where they are told apart, one of them.
+  // Touching parts: one of them, if the file separates them.
   if (report.solids.size() > 1 && options.solids.empty() && report.open_edges == 0)
     lines.push_back({"solids = [\"1\"]", [](MeshFile& m) { m.solids = {"1"}; }});
   for (const Line& cap : caps)
@@ -186,8 +185,8 @@ std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_
   return lines;
 }
 
-/// To close what is so wide that it could be an open top, but that no plane closes.
-std::vector<Line> to_close_the_widest(const MeshFile& options, const ImportedMesh& as_it_is) {
+/// Closes a rim so wide that it could be an open top, but that no plane closes.
+std::vector<Line> lines_for_widest_hole(const MeshFile& options, const ImportedMesh& as_it_is) {
   const bool closes_holes = std::ranges::find(options.repair, Repair::holes) != options.repair.end();
   if (as_it_is.report.open_edges == 0 || options.largest_hole || !(options.repair.empty() || closes_holes))
     return {};
@@ -201,11 +200,11 @@ std::vector<Line> to_close_the_widest(const MeshFile& options, const ImportedMes
            }}};
 }
 
-/// Of processor time, that a repair may take to be offered; and of time, after which no more lines are tried.
+/// Processor time of a repair that is offered, and the time after which no more lines are tried.
 constexpr double seconds_to_try = 4, seconds_for_all = 8;
 
-/// The line that wraps the surface and what is known of that, or nothing if it has no inside that can be
-/// wrapped: tried as it would be done, or coarsely where that takes long.
+/// The line that wraps the surface, with remarks; empty if it has no inside to wrap. Tried as it would be
+/// done, or coarsely if that takes long.
 std::string wrap_that_helps(const Mesh& mesh, double smallest_radius, double diagonal) {
   constexpr double coarse = 0.05;
   for (const bool coarsely : {false, true}) {
@@ -246,14 +245,14 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
       const auto is_part = [&](const std::string& shorter) {
         return line.text.find(shorter) != std::string::npos;
       };
-      if (std::ranges::any_of(lines, is_part)) continue;  // less will do
+      if (std::ranges::any_of(lines, is_part)) continue;  // a smaller change suffices
       if (watch.seconds() > seconds_for_all) break;
       if (helps(line)) lines.push_back(line.text);
       if (lines.size() == enough) break;
     }
   };
   try_all(candidates(options, as_it_is));
-  if (lines.empty()) try_all(to_close_the_widest(options, as_it_is));
+  if (lines.empty()) try_all(lines_for_widest_hole(options, as_it_is));
   if (lines.empty() && effort == Effort::thorough && options.repair.empty())
     if (std::string line =
             wrap_that_helps(as_it_is.mesh, purpose.smallest_radius, as_it_is.report.bounds.diagonal());

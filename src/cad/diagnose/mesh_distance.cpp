@@ -26,7 +26,7 @@ Place3 places_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
   return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
 }
 
-/// The same for a triangle however it is turned.
+/// A key of a triangle, independent of its rotation.
 PlaceKey sorted_places(const Place3& corners) {
   PlaceKey key;
   for (std::size_t k = 0; k < 3; ++k)
@@ -37,12 +37,12 @@ PlaceKey sorted_places(const Place3& corners) {
 
 struct Piece {
   Place3 corners;
-  double farthest = 0;  ///< no point of it is farther
+  double farthest = 0;  ///< upper bound for its points
   bool operator<(const Piece& other) const { return farthest < other.farthest; }
 };
 
-/// The centre of the smallest ball that holds the triangle lies in the middle of the longest edge unless all
-/// angles are acute; the centroid then does nearly as well.
+/// The smallest enclosing ball of the triangle has its centre in the middle of the longest edge unless all
+/// angles are acute; then the centroid is nearly as good.
 Vector<3> middle_of(const Place3& c) {
   std::array<double, 3> squared;
   for (std::size_t k = 0; k < 3; ++k) squared[k] = (c[(k + 1) % 3] - c[k]).squaredNorm();
@@ -55,10 +55,10 @@ Vector<3> middle_of(const Place3& c) {
 
 class Measure {
  public:
-  /// Distances are off by up to `rounding`.
+  /// Distances have errors up to `rounding`.
   Measure(const Mesh& reference, double rounding) : tree_(reference), rounding_(rounding) {}
 
-  /// Bounds a part, and says where it is how far away.
+  /// Bounds of a part, and the position of its lower bound.
   Deviation look(const Place3& corners) const {
     const Vector<3> center = middle_of(corners);
     Deviation found;
@@ -84,8 +84,8 @@ class Measure {
     return found;
   }
 
-  /// A part that lies on a face of the reference and on its neighbours: cut along the edge beyond which it
-  /// reaches farthest. Else nothing.
+  /// Cuts a part that lies on a face of the reference and its neighbours along the edge beyond which it
+  /// extends farthest; empty otherwise.
   std::vector<Place3> cut_by_face(const Place3& corners) const {
     std::vector<NearFacet> near;
     tree_.within(middle_of(corners), rounding_, near);
@@ -110,7 +110,7 @@ class Measure {
   }
 
  private:
-  /// The parts where a linear function, given at the corners, is positive and where it is negative.
+  /// The parts where a linear function, given at the corners, is positive and negative.
   static std::vector<Place3> cut(const Place3& corners, const std::array<double, 3>& values) {
     std::vector<Place3> parts;
     for (const double sign : {1.0, -1.0}) {
@@ -161,7 +161,7 @@ Deviation farthest(const Mesh& surface, const Mesh& reference, Closeness closene
   }
   for (const auto& t : reference.triangles)
     for (const Vector<3>& p : places_of(reference, t)) extent = std::max(extent, p.cwiseAbs().maxCoeff());
-  // A distance in the tree is off by a few roundoffs of the coordinates; a middle of an edge by one.
+  // A distance in the tree has an error of a few roundoffs of the coordinates, the middle of an edge one.
   const double rounding = 64 * tolerance::roundoff * extent;
 
   Deviation result;

@@ -21,8 +21,8 @@ using Point = Kernel::Point_3;
 
 using ThreePoints = std::array<Vector<3>, 3>;
 
-/// Whether a plane along the triangle, or one across it along an edge of either, is proven to part it from a
-/// segment or another triangle: in a plane they all are, if any is.
+/// Whether a plane provably separates the triangle from a segment or another triangle: the triangle's own, or
+/// one normal to it along an edge of either. The latter suffices for coplanar ones.
 bool is_apart(const ThreePoints& triangle, std::span<const Vector<3>> other) {
   const Separation separation(triangle, other, triangle[0]);
   const Vector<3> normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
@@ -36,8 +36,8 @@ bool is_apart(const ThreePoints& triangle, std::span<const Vector<3>> other) {
           (parted_along_edge(other[1], other[2]) || parted_along_edge(other[2], other[0])));
 }
 
-/// Whether c and d are proven to lie on different sides of the line through a and b, as one sees them along
-/// an axis. With u = 2^-53 a sign is proven beyond 4u times the sum of the two products (Shewchuk 1997, ccw).
+/// Whether c and d provably lie on different sides of the line through a and b, projected along an axis. With
+/// u = 2^-53 a sign is proven beyond 4u times the sum of the two products (Shewchuk 1997, ccw).
 bool are_on_both_sides(const Vector<3>& a, const Vector<3>& b, const Vector<3>& c, const Vector<3>& d) {
   int axis = 0;
   (b - a).cross(c - a).cwiseAbs().maxCoeff(&axis);
@@ -51,7 +51,7 @@ bool are_on_both_sides(const Vector<3>& a, const Vector<3>& b, const Vector<3>& 
   return side(c) * side(d) < 0;
 }
 
-/// Exact answers about triangles; most pairs are told apart in double precision before.
+/// Exact predicates on triangles; most pairs are separated in double precision first.
 class TrianglePairs {
  public:
   explicit TrianglePairs(const Mesh& mesh) : mesh_(mesh) {}
@@ -85,14 +85,13 @@ class TrianglePairs {
   static Point exact(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
   static Kernel::Triangle_3 triangle(const ThreePoints& p) { return {exact(p[0]), exact(p[1]), exact(p[2])}; }
 
-  /// Whether the triangle meets the side of the other one, with which it shares its first corner, across from
-  /// that.
+  /// Whether the triangle meets the far side of the other one, opposite their common first corner.
   static bool meets_far_side(const ThreePoints& p, const ThreePoints& other) {
     return !is_apart(p, std::span(other).last<2>()) &&
            CGAL::do_intersect(triangle(p), Kernel::Segment_3(exact(other[1]), exact(other[2])));
   }
 
-  /// In the same order in both; the others keep theirs up to a turn. Returns how many there are.
+  /// In the same order in both; the rest is rotated. Returns the number of shared corners.
   static int move_shared_to_front(FaceCorners& s, FaceCorners& t) {
     int shared = 0;
     for (int i = 0; i < 3; ++i)
@@ -127,7 +126,7 @@ std::uint64_t count_degenerate(const Mesh& mesh) {
 
 namespace {
 
-/// Calls found(s, t) for each of the pairs, with their triangles, until it says that they are enough.
+/// Calls found(s, t) for each pair, with its triangles, until it returns that they are enough.
 template <class Found>
 void for_each_intersecting_pair(const Mesh& mesh, const Found& found) {
   using Box = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const FaceCorners*>;

@@ -8,14 +8,14 @@
 
 namespace bernal::cad {
 
-/// Whether some direction d is proven to part the points `a` from the points `b`: every d·a below every d·b,
-/// or above. Then their convex hulls have no point in common. No proof does not mean that they have.
+/// Whether a direction d provably separates the points `a` from the points `b`: every d·a below every d·b, or
+/// above. Then their convex hulls are disjoint. The converse does not hold.
 ///
-/// Proof in double precision. With u = 2^-53, differences from `origin` carry one rounding, products one,
-/// sums two, so that each computed d·(p - origin) is wrong by at most 4u / (1 - 4u) Σ_k |d_k| |p_k -
-/// origin_k|, and by less than the smallest normal number where products underflow. Twice that, from the
-/// largest |p_k - origin_k| of all points, is taken, which covers the rounding of the bound itself. The
-/// direction is what it is in double: it need not be across anything. Whatever overflows proves nothing.
+/// Proof in double precision, with u = 2^-53: differences from `origin` have one rounding, products one, sums
+/// two, so the error of a computed d·(p - origin) is at most 4u / (1 - 4u) Σ_k |d_k| |p_k - origin_k|, plus
+/// less than the smallest normal number if products underflow. The bound used is twice that, with the largest
+/// |p_k - origin_k| of all points, which covers its own rounding. The direction is exact as given and need
+/// not be normal to anything. Overflow proves nothing.
 class Separation {
  public:
   Separation(std::span<const Vector<3>> a, std::span<const Vector<3>> b, const Vector<3>& origin)

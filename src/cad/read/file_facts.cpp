@@ -24,11 +24,11 @@ constexpr std::pair<std::string_view, double> units_by_name[] = {
 void set_unit(pugi::xml_node root, FileFacts& facts) {
   const pugi::xml_attribute unit = root.attribute("unit");
   const std::string name = in_lower_case(unit.empty() ? "millimeter" : unit.value());
-  if (unit.empty()) facts.notes.push_back("the file names no unit, which means millimeter");
+  if (unit.empty()) facts.notes.push_back("the file names no unit; the default is millimeter");
   for (const auto& [known, metres] : units_by_name)
     if (name == known) facts.unit = FileFacts::Length{metres, name};
   if (!facts.unit)
-    facts.notes.push_back(fmt::format("the file's unit \"{}\" is none of its format", unit.value()));
+    facts.notes.push_back(fmt::format("the file's unit \"{}\" is unknown to its format", unit.value()));
 }
 
 FileFacts facts_of_collada(std::string text) {

@@ -7,14 +7,14 @@
 
 namespace bernal::cad {
 
-/// What the text of a Collada document says in its own `asset` (those of its parts do not count): without a
-/// unit it is metre by its specification; the axis stays open where it is not said.
+/// Unit and axis from the `asset` of a Collada document (not of its parts). The default unit is metre by the
+/// specification; the axis stays unknown if absent.
 FileFacts facts_of_collada(std::string xml);
 
-/// The unit that the root of a 3MF or AMF names: millimetre by their specifications where it names none.
+/// The unit in the root of a 3MF or AMF; millimetre by their specifications if absent.
 void set_unit(pugi::xml_node root, FileFacts&);
 
-/// The whole file, without the mark of UTF-8 that editors put in front.
+/// The whole file without a UTF-8 byte order mark.
 std::string text_without_mark(const std::filesystem::path& file);
 
 }  // namespace bernal::cad

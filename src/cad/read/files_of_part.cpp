@@ -29,7 +29,7 @@ std::string percent_decoded(std::string_view text) {
 
 namespace {
 
-/// The files that a STEP file names, as they stand in it: the first text of each DOCUMENT_FILE.
+/// The files that a STEP file names, as written: the first string of each DOCUMENT_FILE.
 std::vector<std::string> documents_in_step(const fs::path& file) {
   const std::string text = bytes_of_file(file);
   constexpr std::string_view entity = "DOCUMENT_FILE";
@@ -43,7 +43,7 @@ std::vector<std::string> documents_in_step(const fs::path& file) {
   return names;
 }
 
-/// With those beside it that they name, and so on.
+/// With the files beside it that they name, recursively.
 std::vector<fs::path> files_of_step(const fs::path& file) {
   std::vector<fs::path> files{file};
   for (std::size_t k = 0; k < files.size(); ++k)

@@ -17,7 +17,7 @@
 namespace bernal::cad {
 namespace {
 
-// Those that are tested.
+// The tested formats.
 constexpr std::string_view read_formats[] = {".stl",  ".obj", ".ply",  ".off", ".3mf",  ".amf",
                                              ".gltf", ".glb", ".dae",  ".fbx", ".step", ".stp",
                                              ".iges", ".igs", ".brep", ".brp"};
@@ -26,7 +26,7 @@ struct NativeFormat {
   std::string_view extension, what;
 };
 
-// Of those that no reader knows; what they hold are surfaces or a recipe, not triangles.
+// Formats that no reader knows: they hold surfaces or a recipe, not triangles.
 constexpr NativeFormat native_formats[] = {
     {".sldprt", "a SolidWorks part"},
     {".sldasm", "a SolidWorks assembly"},
@@ -67,7 +67,7 @@ struct Beginning {
   std::string_view bytes, what;
 };
 
-// Whatever the name says.
+// Whatever the name is.
 constexpr Beginning beginnings[] = {
     {"\x1f\x8b", "compressed by gzip; run gunzip on it first"},
     {"BZh", "compressed by bzip2; run bunzip2 on it first"},
@@ -99,7 +99,7 @@ std::optional<double> finite_number(std::string_view text) {
   if (digits.empty() || digits.size() > most_digits) return {};
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range)  // zero, if it is too small, else infinite
+  if (error == std::errc::result_out_of_range)  // underflow gives 0, overflow infinity
     value = std::strtod(std::string(digits).c_str(), nullptr);
   const bool whole = error != std::errc::invalid_argument && end == digits.data() + digits.size();
   return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
@@ -109,13 +109,13 @@ std::string extension_of(const std::filesystem::path& file) {
   return in_lower_case(file.extension().string());
 }
 
-std::string known_not_to_be_a_mesh(const std::filesystem::path& file) {
+std::string why_no_mesh(const std::filesystem::path& file) {
   std::string head(1024, '\0');
   std::ifstream in(file, std::ios::binary);
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(in.gcount()));
 
-  // A binary STL may begin with any words; its size tells it.
+  // A binary STL may begin with any words; its size identifies it.
   std::error_code unknown;
   const auto size = std::filesystem::file_size(file, unknown);
   if (extension_of(file) == ".stl" && head.size() >= 84) {
@@ -129,7 +129,7 @@ std::string known_not_to_be_a_mesh(const std::filesystem::path& file) {
     if (text.starts_with(beginning.bytes) && beginning.what.find("native") == std::string_view::npos)
       return fmt::format("is {}", beginning.what);
   std::string extension = extension_of(file);
-  // Creo numbers its versions: part.prt.12
+  // Creo appends version numbers: part.prt.12
   if (extension.find_first_not_of("0123456789", 1) == std::string::npos)
     extension = extension_of(file.stem());
   for (const NativeFormat& format : native_formats)

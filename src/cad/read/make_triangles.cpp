@@ -23,9 +23,9 @@ FaceCorners smallest_first(FaceCorners t) {
   return t;
 }
 
-/// Where every triangle is there in both orientations, as programs export that draw both sides of a face,
-/// leaves the first of each two. `there` are all of them, smallest corner first. Returns how many went. Cost:
-/// O(1) mostly, for the first that has no back tells.
+/// If every triangle occurs in both orientations, as exported by programs that draw both sides of a face,
+/// keeps the first of each two. `there` holds all of them, smallest corner first. Returns the number dropped.
+/// Cost: usually O(1), because the first triangle without a back decides.
 std::uint64_t drop_back_sides(std::vector<FaceCorners>& triangles, boost::unordered_set<FaceCorners>& there) {
   const auto turned = [](const auto& t) { return smallest_first({t[0], t[2], t[1]}); };
   if (!std::ranges::all_of(triangles, [&](const auto& t) { return there.count(turned(t)) > 0; })) return 0;
@@ -62,7 +62,7 @@ Triangles make_triangles(const PolygonSoup& soup) {
     }
   }
   result.mesh.vertices = std::move(numbers.points);
-  // One triangle of each polygon, then the others: packings depend on the order in their last bits.
+  // One triangle of each polygon, then the others: the last bits of packings depend on the order.
   std::vector<FaceCorners> others;
   for (const Polygon& polygon : larger) {
     const auto pieces = triangulate(result.mesh.vertices, polygon);

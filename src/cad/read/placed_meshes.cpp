@@ -16,7 +16,7 @@ constexpr double most_faces = 1e9, most_pieces = 1e7;
 
 [[noreturn]] void refuse(const char* why) { throw Error(ErrorCode::bad_mesh, why); }
 
-/// Counts before anything is made, each object once.
+/// Counts before anything is built, each object once.
 class Counter {
  public:
   struct Count {
@@ -24,7 +24,7 @@ class Counter {
     void operator+=(const Count& more) { faces += more.faces, pieces += more.pieces; }
   };
 
-  /// Of all objects, placed or not, it finds out whether one is a part of itself.
+  /// Checks all objects, placed or not, for containing themselves.
   explicit Counter(const PlacedMeshes& meshes) : meshes_(meshes) {
     for (const auto& [key, object] : meshes.objects) of(key, 0);
   }
@@ -44,7 +44,7 @@ class Counter {
       state.open = true;
       const PlacedMeshes::Object& object = meshes_.objects.at(key);
       Count count = of(object.components, level + 1);
-      count += {0, 1};  // what holds nothing takes time, too
+      count += {0, 1};  // empty objects take time, too
       for (const auto& piece : object.pieces) count += {double(piece.triangles.size()), 1};
       state = {count, false, true};
     }
@@ -56,7 +56,7 @@ class Counter {
     bool open = false, counted = false;
   };
   const PlacedMeshes& meshes_;
-  std::map<std::string, State> states_;  // whose references stay valid
+  std::map<std::string, State> states_;  // a map, because references to its values stay valid
 };
 
 class Placer {
@@ -108,7 +108,7 @@ void append_placed(const PlacedMeshes& meshes, ReadAttempt& attempt) {
   for (const Vector<3>& p : attempt.soup.points)
     if (!p.allFinite()) refuse("a coordinate is not finite where it is placed");
   if (placer.flattened > 0)
-    attempt.facts.notes.push_back(fmt::format("{} left out, which the file's transforms flatten",
+    attempt.facts.notes.push_back(fmt::format("{} left out, flattened by the file's transforms",
                                               counted(placer.flattened, "object is", "objects are")));
   std::vector<Solid>& solids = attempt.soup.solids;
   if (solids.size() == 1 && solids.front().name.empty()) solids.clear();

@@ -10,10 +10,9 @@
 
 namespace bernal::cad {
 
-/// Meshes that a file holds once, and where it places them, as often as it likes, one within the other: 3MF
-/// and AMF.
+/// Meshes stored once in a file with any number of placements, possibly nested: 3MF and AMF.
 struct PlacedMeshes {
-  /// Triangles of one part, in the points of its object.
+  /// Triangles of one part, indexing the points of its object.
   struct Piece {
     std::string name;
     std::vector<std::array<std::uint32_t, 3>> triangles = {};
@@ -29,14 +28,14 @@ struct PlacedMeshes {
     std::vector<Component> components = {};
   };
 
-  std::map<std::string, Object> objects;  ///< by key; all that are named are here
-  std::vector<Component> items;           ///< what is there in the end
+  std::map<std::string, Object> objects;  ///< by key; every referenced object is present
+  std::vector<Component> items;           ///< what the file builds
 };
 
-/// Appends all that the items place, a solid a piece, named after the piece, else the nearest object around
-/// it that has a name. A placement that mirrors turns faces round; what one flattens is left out, and said.
-/// Throws Error{bad_mesh} where an object is a part of itself or nested more than a thousand deep, or where
-/// all together are more than 1e9 faces or 1e7 pieces.
+/// Appends everything that the items place, one solid a piece, named after the piece or the nearest enclosing
+/// object with a name. Mirrored faces are flipped; flattened pieces are left out with a note. Throws
+/// Error{bad_mesh} if an object contains itself or is nested more than a thousand deep, or for more than 1e9
+/// faces or 1e7 pieces in all.
 void append_placed(const PlacedMeshes&, ReadAttempt&);
 
 }  // namespace bernal::cad

@@ -30,8 +30,8 @@ constexpr XmlDocument::Namespace production{"http://schemas.microsoft.com/3dmanu
     beams{"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02", "{beams}"},
     slice{"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07", "{slice}"};
 
-/// What follows from the namespace of an extension: meshes are read without its slices, materials and the
-/// like; what else a file may require changes what its meshes mean.
+/// By the namespace of an extension: slices, materials and the like are not needed to read meshes; any other
+/// required extension changes the meaning of the meshes.
 bool is_read_without(std::string_view uri) {
   constexpr std::string_view extensions = "http://schemas.microsoft.com/3dmanufacturing/";
   if (!uri.starts_with(extensions)) return false;
@@ -56,7 +56,7 @@ void require_known_extensions(const XmlDocument& part) {
   }
 }
 
-/// Of an item or a component.
+/// The transform of an item or a component.
 Eigen::Affine3d placement_of(const XmlDocument& part, xml_node node, const std::string& who) {
   Eigen::Affine3d placement = Eigen::Affine3d::Identity();
   const std::string_view text = trimmed(attribute_of(node, "transform"));
@@ -72,7 +72,7 @@ Eigen::Affine3d placement_of(const XmlDocument& part, xml_node node, const std::
   }
   if (numbers.size() != 12)
     part.refuse(node, fmt::format("the transform of {} has {} numbers, not 12", who, numbers.size()));
-  // A row is what becomes of an axis, the last one of the origin.
+  // A row is the image of an axis, the last one that of the origin.
   for (int row = 0; row < 4; ++row)
     for (int axis = 0; axis < 3; ++axis) placement(axis, row) = numbers[std::size_t(3 * row + axis)];
   return placement;
@@ -99,7 +99,7 @@ void read_mesh(const XmlDocument& part, xml_node mesh, const std::string& who, O
   }
 }
 
-/// The model in a package: its root part, and the others that this one names.
+/// The model in a package: its root part, and the parts that this one names.
 class ThreeMf {
  public:
   explicit ThreeMf(const std::filesystem::path& file) : archive_(file), root_(root_part()) {}
@@ -115,7 +115,7 @@ class ThreeMf {
     for (const xml_node item : root.only_child(root.root(), "build"))
       if (is_named(item, "item")) add_item(root, item, keys);
     if (meshes_.items.empty() && unprinted_ == 0 && supports_ == 0) take_all(keys, result.facts);
-    // Of the objects those that are built, and all that they hold.
+    // The built objects, and all that they contain.
     while (!keys.empty()) {
       const std::string key = keys.back();
       keys.pop_back();
@@ -132,7 +132,7 @@ class ThreeMf {
     std::map<std::string, xml_node, std::less<>> objects;
   };
 
-  /// By the relationships of the package; else where all programs put it, or the first there is.
+  /// By the relationships of the package; else at the usual path, or the first there is.
   std::string root_part() {
     if (const std::string* relationships = archive_.find("_rels/.rels")) {
       const XmlDocument rels(*relationships, archive_.read(*relationships));
@@ -146,7 +146,7 @@ class ThreeMf {
     throw Error(ErrorCode::bad_mesh, "an archive without an entry that ends in .model");
   }
 
-  /// As it is named in a part, percent-encoded perhaps, from the root of the package on.
+  /// An entry as named in a part, possibly percent-encoded, relative to the root of the package.
   const std::string* entry(std::string_view name) const {
     name = trimmed(name);
     if (name.starts_with("./")) name.remove_prefix(2);
@@ -170,8 +170,8 @@ class ThreeMf {
     return *found;
   }
 
-  /// What a component or an item names: the path of a part, or that which it stands in, and an id, apart by a
-  /// zero byte.
+  /// The key of a reference in a component or an item: the path of a part (by default the referring one) and
+  /// an id, separated by a zero byte.
   std::string key_of(const XmlDocument& where, xml_node node, const std::string& inside,
                      const std::string& who) {
     const std::string_view path = path_of(node);
@@ -199,7 +199,7 @@ class ThreeMf {
     meshes_.items.push_back({std::move(key), placement_of(root, item, who)});
   }
 
-  /// Where nothing is built: the objects that no other holds.
+  /// If nothing is built: the objects that no other contains.
   void take_all(std::vector<std::string>& keys, FileFacts& facts) {
     std::set<std::string, std::less<>> held;
     const Part& root = part(root_);
@@ -224,7 +224,7 @@ class ThreeMf {
     return path.empty() ? attribute_of(node, "path") : path;
   }
 
-  /// And not what holds it while it is printed, or changes how it is.
+  /// Whether it is a part, not a support or a modifier.
   static bool is_part(xml_node object) {
     const std::string_view type = attribute_of(object, "type");
     return !type.ends_with("support") && type != "other";
@@ -240,7 +240,7 @@ class ThreeMf {
     const xml_node mesh = xml.only_child(node, "mesh"), components = xml.only_child(node, "components");
     if (!mesh.empty() && !components.empty())
       xml.refuse(node, fmt::format("{} has a mesh and components, and may have one of them", who));
-    if (const std::string complaint = slicer_.complaint_about(path == root_ ? id : ""); !complaint.empty())
+    if (const std::string complaint = slicer_.error_about(path == root_ ? id : ""); !complaint.empty())
       xml.refuse(node, fmt::format("of {} {}", who, complaint));
     if (!mesh.empty()) {
       read_mesh(xml, mesh, who, object);
@@ -281,14 +281,13 @@ class ThreeMf {
                           std::string_view why) {
       if (count > 0) facts.notes.push_back(fmt::format("{} left out, {}", counted(count, one, many), why));
     };
-    note(supports_, "object is", "objects are",
-         "which by the file support the part or change how it is printed");
-    note(unprinted_, "item is", "items are", "which by the file are not to be printed");
+    note(supports_, "object is", "objects are", "marked in the file as supports or modifiers");
+    note(unprinted_, "item is", "items are", "marked in the file as not to be printed");
     if (settings_of_others_ > 0)
       facts.notes.push_back(
           "what the slicer says of the parts of an object is of another mesh: all of it is taken as a part");
-    if (stand_ins_ > 0) facts.notes.push_back("its meshes stand in for slices, which are finer and not read");
-    note(lattices_, "lattice of beams is", "lattices of beams are", "which are no triangles");
+    if (stand_ins_ > 0) facts.notes.push_back("its meshes approximate finer slices, which are not read");
+    note(lattices_, "lattice of beams is", "lattices of beams are", "which have no triangles");
   }
 
   ZipArchive archive_;

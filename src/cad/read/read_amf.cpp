@@ -31,7 +31,7 @@ std::string metadata_of(xml_node node, std::string_view type) {
   return {};
 }
 
-/// And not what holds it while it is printed, or, as PrusaSlicer says, changes how it is.
+/// Whether it is a part, not a support or (PrusaSlicer's) modifier.
 bool is_part(xml_node volume) {
   const std::string type = metadata_of(volume, "slic3r.volume_type");
   const bool changes = type.empty() ? metadata_of(volume, "slic3r.modifier") == "1" : type != "ModelPart";
@@ -67,13 +67,13 @@ class Amf {
  private:
   struct Nodes {
     std::vector<xml_node> nodes;
-    std::map<std::string, xml_node> by_id;  ///< the first of each
+    std::map<std::string, xml_node> by_id;  ///< the first with each id
   };
   static void add(Nodes& all, const std::string& id, xml_node node) {
     all.nodes.push_back(node);
     all.by_id.emplace(id, node);
   }
-  /// Ids are no keys: those of objects and constellations may be the same.
+  /// Ids are not unique: an object and a constellation may share one.
   static std::string key_of(xml_node node) { return fmt::format("{}", node.offset_debug()); }
 
   Object object_of(xml_node node) {
@@ -87,7 +87,7 @@ class Amf {
         if (!is_named(volume, "volume") && !is_named(volume, "region")) continue;
         if (is_negative(metadata_of(volume, "slic3r.volume_type")))
           xml_.refuse(volume,
-                      fmt::format("of {} {}", who, complaint_about_negative(metadata_of(volume, "name"))));
+                      fmt::format("of {} {}", who, error_about_negative(metadata_of(volume, "name"))));
         if (is_part(volume))
           add_volume(volume, first, who, object);
         else
@@ -148,7 +148,7 @@ class Amf {
     return object;
   }
 
-  /// Mirrored and scaled, which only slicers write, turned about x, then y, then z, and moved.
+  /// Mirrored and scaled (written by slicers only), rotated about x, then y, then z, and translated.
   Eigen::Affine3d placement_of(xml_node instance) const {
     const auto value = [&](const std::string& key, double otherwise) {
       const xml_node child = child_of(instance, key);
@@ -166,7 +166,7 @@ class Amf {
     return placement.pretranslate(moved);
   }
 
-  /// Exact for quarter turns, which leave coordinates as they are written.
+  /// Exact for quarter turns, so that coordinates keep their written values.
   Eigen::Matrix3d rotation(int axis, double angle) const {
     const double quarters = angle / (in_radians_ ? std::numbers::pi / 2 : 90);
     const double whole = std::round(quarters), rest = (quarters - whole) * std::numbers::pi / 2;
@@ -183,11 +183,10 @@ class Amf {
 
   void note_left_out(FileFacts& facts) const {
     if (supports_ > 0)
-      facts.notes.push_back(
-          fmt::format("{} left out, which by the file support the part or change how it is printed",
-                      counted(supports_, "volume is", "volumes are")));
+      facts.notes.push_back(fmt::format("{} left out, marked in the file as supports or modifiers",
+                                        counted(supports_, "volume is", "volumes are")));
     if (unprinted_ > 0)
-      facts.notes.push_back(fmt::format("{} left out, which by the file are not to be printed",
+      facts.notes.push_back(fmt::format("{} left out, marked in the file as not to be printed",
                                         counted(unprinted_, "instance is", "instances are")));
     if (curved_) facts.notes.push_back("its curved triangles are taken as flat ones");
   }

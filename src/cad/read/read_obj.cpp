@@ -84,7 +84,7 @@ class ObjText {
                                 word.size() > 40 ? "..." : "", why, line_);
   }
 
-  /// Those parts that hold a face, and the faces before the first as one without a name.
+  /// The parts with faces; faces before the first part form a part without a name.
   std::vector<Solid> filled(std::vector<Solid>& parts) const {
     if (parts.empty()) return {};
     if (parts.front().first > 0) parts.insert(parts.begin(), {"", 0});
@@ -99,7 +99,7 @@ class ObjText {
 
   ReadAttempt read_{.reader = "bernal, double precision"};
   std::size_t line_ = 0;
-  std::int64_t largest_ = -1;  ///< of the vertices that are named
+  std::int64_t largest_ = -1;  ///< largest vertex index used
   std::vector<Solid> objects_, groups_;
 };
 

@@ -13,10 +13,10 @@ namespace bernal::cad {
 
 namespace {
 
-/// Its triangles reach across each other's boxes, so that to look for crossings takes a time that grows as
-/// the square: 10 s for 20,000 corners, a minute for these.
+/// The triangles of a large polygon overlap each other's boxes, so that the search for crossings is
+/// quadratic: 10 s for 20,000 corners, a minute for this many.
 constexpr std::size_t most_corners_of_face = 50'000;
-/// Products of more are no numbers, which exact arithmetic does not forgive.
+/// Products of larger ones overflow, which exact arithmetic does not allow.
 constexpr double most_coordinate = 1e50;
 
 }  // namespace
@@ -43,7 +43,7 @@ double largest_coordinate(const PolygonSoup& soup) {
   return largest;
 }
 
-/// What a file says of itself goes to terminals and pages.
+/// Texts from the file are printed in terminals and pages.
 void make_plain(ReadAttempt& read) {
   constexpr std::size_t most = 200;
   for (Solid& solid : read.soup.solids) solid.name = plain_text(solid.name, most);
@@ -85,7 +85,7 @@ ReadAttempt read_soup(const std::filesystem::path& file, double deflection, doub
   if (kind == FileKind::other) refuse(file, "is a pipe or a device, not a regular file");
   std::error_code error;
   if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
-  if (const std::string other = known_not_to_be_a_mesh(file); !other.empty()) refuse(file, other);
+  if (const std::string other = why_no_mesh(file); !other.empty()) refuse(file, other);
   ReadAttempt read = read_by_extension(file, deflection, metres > 0 ? metres : 1);
   if (!read.ok()) refuse_unread(file, read.failure);
   if (read.soup.polygons.empty()) refuse(file, "holds no faces; export the surface, not points or curves");

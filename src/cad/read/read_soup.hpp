@@ -5,10 +5,10 @@
 
 namespace bernal::cad {
 
-/// Reads a file by the reader of its format. True surfaces, of STEP and the like, are tessellated to within
-/// `deflection`, in metres, where a file that does not say its unit has one of `metres`; 0 leaves it to the
-/// reader. The attempt is good. Throws Error{bad_mesh} where the file is missing, cannot be parsed, holds no
-/// faces or coordinates that are not finite.
+/// Reads a file with the reader of its format. True surfaces (STEP and the like) are tessellated to within
+/// `deflection`, in metres, with `metres` as the unit of a file that states none; 0 leaves it to the reader.
+/// The attempt succeeded. Throws Error{bad_mesh} if the file is missing, cannot be parsed, has no faces or
+/// has coordinates that are not finite.
 ReadAttempt read_soup(const std::filesystem::path& file, double deflection, double metres);
 
 }  // namespace bernal::cad

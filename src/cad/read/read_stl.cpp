@@ -21,11 +21,11 @@ namespace {
 
 constexpr std::size_t binary_header = 84;
 constexpr std::size_t binary_triangle = 50;
-constexpr std::size_t facets_between_looks = 1 << 16;  // at whether the user wants to stop
+constexpr std::size_t facets_between_looks = 1 << 16;  // between polls of the monitor
 
 bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 
-/// Walks through the words of a text STL and stops at the first that does not belong.
+/// Parses the words of a text STL and stops at the first that does not belong.
 class StlText {
  public:
   StlText(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
@@ -48,7 +48,7 @@ class StlText {
     for (std::string_view word = next(); !word.empty(); word = next()) {
       if (skipped_comment(word)) continue;
       if (word != "solid") {
-        // Padding, a signature, a remark; not a solid whose first line is spoilt.
+        // Trailing padding or a signature is ignored, but not a solid with a broken first line.
         if (read_.soup.solids.empty() || in_lower_case(text_.substr(end_)).find("facet") != std::string::npos)
           fail("\"solid\"", word);
         return;
@@ -84,7 +84,7 @@ class StlText {
     }
   }
 
-  /// The next word, in lower case, until the one after it is asked for.
+  /// The next word, in lower case, valid until the next call.
   std::string_view next() {
     while (at_ < text_.size() && is_space(text_[at_])) line_ += text_[at_++] == '\n';
     const std::size_t begin = at_;
@@ -93,8 +93,8 @@ class StlText {
     return word_;
   }
 
-  /// The word with which the next statement begins, or what stands in its place: what is left of the line of
-  /// the one before is passed over, and so are comments.
+  /// The first word of the next statement, or what is in its place; skips comments and the rest of the
+  /// previous statement's line.
   std::string_view statement(std::initializer_list<std::string_view> wanted) {
     const int before = line_;
     for (;;) {
@@ -112,7 +112,7 @@ class StlText {
     return true;
   }
 
-  /// What is left of the line, up to a facet that begins in it.
+  /// The rest of the line, up to a facet that begins in it.
   std::string name() {
     const std::size_t begin = at_;
     skip_line();
@@ -136,7 +136,7 @@ class StlText {
   double expect_number() {
     next();
     const std::string whole = word_;
-    std::ranges::replace(word_, 'd', 'e');  // as Fortran writes exponents
+    std::ranges::replace(word_, 'd', 'e');  // Fortran's exponents
     const std::optional<double> number = finite_number(word_);
     if (!number) fail("a finite number", whole);
     return *number;
@@ -151,7 +151,7 @@ class StlText {
 
   std::string_view text_;
   std::string file_, word_;
-  std::size_t at_ = 0, end_ = 0;  ///< of what belongs to the format
+  std::size_t at_ = 0, end_ = 0;  ///< position, and end of the last solid
   std::size_t passed_over_ =
       0;  ///< words behind a statement in its line, a number behind endfacet for instance
   int line_ = 1;
@@ -159,7 +159,7 @@ class StlText {
   PointNumbers<Vector<3>> points_;
 };
 
-/// Whether it is text: comments, then the word.
+/// Whether the file is text: comments, then the word "solid".
 bool begins_as_text(std::string_view content) {
   std::string head = in_lower_case(content.substr(0, 1024));
   std::size_t at = head.find_first_not_of(" \t\r\n");
@@ -167,7 +167,7 @@ bool begins_as_text(std::string_view content) {
     at = head.find_first_not_of(" \t\r\n", std::min(head.find('\n', at), head.size()));
   if (at == std::string::npos || head.compare(at, 5, "solid") != 0) return false;
   const std::size_t zero = head.find('\0');
-  return zero == std::string::npos || head.find("endsolid") < zero;  // padding, behind a small part
+  return zero == std::string::npos || head.find("endsolid") < zero;  // zero padding may follow a small part
 }
 
 ReadAttempt read_binary(std::string_view content, std::size_t triangles) {
@@ -176,7 +176,7 @@ ReadAttempt read_binary(std::string_view content, std::size_t triangles) {
   read.soup.polygons.reserve(triangles);
   for (std::size_t t = 0; t < triangles; ++t) {
     if (t % facets_between_looks == 0) throw_if_interrupted();
-    float numbers[12];  // the normal, and the corners
+    float numbers[12];  // the normal and the corners
     std::memcpy(numbers, content.data() + binary_header + t * binary_triangle, sizeof numbers);
     const auto first = static_cast<std::uint32_t>(read.soup.points.size());
     for (int k = 3; k < 12; k += 3) {

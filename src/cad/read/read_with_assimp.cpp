@@ -21,12 +21,11 @@
 namespace bernal::cad {
 namespace {
 
-/// Of one file: more would be a mistake, or an attack.
+/// Limits for one file: more indicates an error or an attack.
 constexpr std::size_t most_corners = 3'000'000'000U;
 constexpr int most_nested_nodes = 1000;
 
-/// Opens files to read them, if they are regular ones in the folder of the part or below; of a glTF only
-/// those that its digest covers.
+/// Opens only regular files in the part's folder or below, and for glTF only those that its digest covers.
 class FilesBeside : public Assimp::DefaultIOSystem {
  public:
   explicit FilesBeside(const std::filesystem::path& file)
@@ -46,7 +45,7 @@ class FilesBeside : public Assimp::DefaultIOSystem {
   }
 
  private:
-  /// The name, below the folder of the part, as an URI has it.
+  /// The name below the part's folder with its URI escapes decoded.
   std::string decoded(std::string_view name) const {
     if (!name.starts_with(beside_)) return std::string(name);
     return beside_ + percent_decoded(name.substr(beside_.size()));
@@ -62,10 +61,10 @@ class FilesBeside : public Assimp::DefaultIOSystem {
 
   std::string beside_;
   std::filesystem::path folder_;
-  std::vector<std::filesystem::path> only_;  ///< no matter, where it is empty
+  std::vector<std::filesystem::path> only_;  ///< empty: no restriction
 };
 
-/// What is wrong with a file as a whole.
+/// An error of the file as a whole.
 struct Refused {
   std::string_view why;
 };
@@ -89,7 +88,7 @@ void append_mesh(const aiMesh& mesh, const Eigen::Matrix4d& transform, PolygonSo
   const bool mirrored = transform.topLeftCorner<3, 3>().determinant() < 0;
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];
-    if (face.mNumIndices < 3) continue;  // a point or a line is no part of a wall
+    if (face.mNumIndices < 3) continue;  // points and lines are not walls
     std::vector<std::uint32_t>& polygon = soup.polygons.emplace_back();
     polygon.reserve(face.mNumIndices);
     for (unsigned k = 0; k < face.mNumIndices; ++k) {
@@ -100,8 +99,8 @@ void append_mesh(const aiMesh& mesh, const Eigen::Matrix4d& transform, PolygonSo
   }
 }
 
-/// `above` is the transform of the node itself too. One that flattens what it holds hides it, as exporters
-/// do.
+/// `above` includes the transform of the node itself. A transform that flattens a node hides it, which
+/// exporters do on purpose.
 void append_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& above, PolygonSoup& soup,
                  int level = 0) {
   if (level == most_nested_nodes) throw Refused{"its parts are nested more than a thousand deep"};
@@ -122,14 +121,14 @@ std::string format_of(const aiScene& scene) {
   return format.C_Str();
 }
 
-/// In centimetres by its specification, times the factor that the file gives.
+/// Centimetres by the specification, times the factor in the file.
 FileFacts facts_of_fbx(const aiScene& scene) {
   FileFacts facts;
   double factor = 0;
   float single = 0;
   if (!scene.mMetaData->Get("UnitScaleFactor", factor) && scene.mMetaData->Get("UnitScaleFactor", single))
     factor = double(single);
-  // The factor has been through single precision in most exporters.
+  // Most exporters store the factor in single precision.
   for (const auto& [exact, name] :
        {std::pair{0.1, "millimeter"}, {1.0, "centimeter"}, {100.0, "meter"}, {2.54, "inch"}, {30.48, "foot"}})
     if (std::abs(factor - exact) < 1e-6 * exact) facts.unit = FileFacts::Length{exact / 100, name};
@@ -140,7 +139,7 @@ FileFacts facts_of_fbx(const aiScene& scene) {
   return facts;
 }
 
-/// What the file says of its unit and axes.
+/// The unit and axes that the file states.
 void add_facts(const std::filesystem::path& file, const aiScene& scene, ReadAttempt& result) {
   const std::string format = format_of(scene);
   if (format.starts_with("Collada")) {
@@ -152,7 +151,7 @@ void add_facts(const std::filesystem::path& file, const aiScene& scene, ReadAtte
   }
 }
 
-/// Of one part without a name there is nothing to tell; and names that assimp makes up are none.
+/// Drops a single part without a name, and names that assimp made up.
 void drop_single_nameless(std::vector<Solid>& solids) {
   for (Solid& solid : solids)
     if (solid.name.starts_with("$ColladaAutoName$")) solid.name.clear();
@@ -171,8 +170,8 @@ ReadAttempt attempt(const Assimp::Importer& importer, const aiScene* scene) {
     result.failure = one_line(importer.GetErrorString());
     return result;
   }
-  // What assimp turns a Collada document by, so that y is up and a unit a metre, and since 5.3 an FBX too, is
-  // the transform of its root, which has none of its own.
+  // assimp puts its own rotation and scaling to y-up and metres into the root's transform, which has no other
+  // content: for Collada, and since 5.3 for FBX.
   const std::string format = format_of(*scene);
   const bool turned = format.starts_with("Collada") || format.starts_with("Autodesk FBX");
   const aiMatrix4x4 root = turned ? aiMatrix4x4() : scene->mRootNode->mTransformation;
@@ -187,8 +186,7 @@ ReadAttempt attempt(const Assimp::Importer& importer, const aiScene* scene) {
   return result;
 }
 
-/// Leaves those that know the extension: by its content a file may look like one of a format that nobody
-/// tests.
+/// Keeps only the importers of the extension: content alone may match an untested format.
 void keep_importers_of(const std::string& extension, Assimp::Importer& importer) {
   std::vector<Assimp::BaseImporter*> others;
   for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
@@ -208,8 +206,8 @@ ReadAttempt read_here(const std::filesystem::path& file) {
   const std::string extension = extension_of(file).substr(1);
   Assimp::Importer importer;
   keep_importers_of(extension, importer);
-  importer.SetIOHandler(new FilesBeside(file));  // which is the importer's from now on
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else they are ids
+  importer.SetIOHandler(new FilesBeside(file));                                // takes ownership
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // otherwise they are ids
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   ReadAttempt result = attempt(importer, scene);
   if (result.ok()) add_facts(file, *scene, result);

@@ -48,9 +48,9 @@ ReadAttempt attempt(const Read& read) {
   return result;
 }
 
-/// CGAL casts whatever stands in a face of an OFF text to indices, so that 1e300 may become the first vertex,
-/// and makes room for as many corners as the face claims. So the faces are looked through before; empty if
-/// they are good, or if CGAL will see by itself what is wrong.
+/// CGAL casts whatever is in a face of an OFF text to indices, so that 1e300 may become the first vertex, and
+/// allocates as many corners as the face claims. So the faces are checked first. Empty if they are good, or
+/// if CGAL will report the error itself.
 std::string wrong_face_of_off(const std::string& text) {
   std::istringstream in(text);
   CGAL::File_header_OFF header;
@@ -58,7 +58,7 @@ std::string wrong_face_of_off(const std::string& text) {
   if (!in || header.binary()) return {};
   const std::size_t vertices = header.size_of_vertices(), lines = vertices + header.size_of_facets();
   std::string line;
-  for (std::size_t k = 0; k < lines && std::getline(in, line);) {  // a vertex or face, or but a comment
+  for (std::size_t k = 0; k < lines && std::getline(in, line);) {  // a vertex or face, or only a comment
     const char *at = line.data(), *const end = at + std::min(line.find('#'), line.size());
     const auto skip_blanks = [&] {
       at = std::find_if(at, end, [](char c) { return c != ' ' && c != '\t' && c != '\r'; });
@@ -84,9 +84,9 @@ std::string wrong_face_of_off(const std::string& text) {
   return {};
 }
 
-/// CGAL reads the coordinates of a PLY file as float or double and the corners of its faces as int or uint,
-/// and loops as often as the header says. What else this one has them in, or that it cannot hold so many; or
-/// empty.
+/// CGAL reads the coordinates of a PLY file only as float or double and the corners of its faces only as int
+/// or uint, and loops as often as the header says. Returns the error for other types and impossible counts,
+/// else empty.
 std::string wrong_header_of_ply(const std::string& text) {
   const auto is_one_of = [](const std::string& type, std::initializer_list<std::string_view> known) {
     return std::ranges::find(known, type) != known.end();

@@ -6,8 +6,8 @@
 namespace bernal::cad {
 namespace {
 
-/// Surfaces take more than triangles, and a deflection that somebody chose for small spheres may take the
-/// mesher minutes; of its own choice it needs a second or two for the largest of our files, of 1.8 MB.
+/// Surfaces take more memory than triangles, and a deflection chosen for small spheres may take the mesher
+/// minutes; with its default it takes a second or two for the largest test file, of 1.8 MB.
 CageLimits limits_for_shapes(std::uint64_t file_size, bool deflection_chosen) {
   CageLimits limits = cage_limits(file_size);
   limits.memory = 10 * limits.memory;

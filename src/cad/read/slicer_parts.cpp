@@ -13,7 +13,7 @@
 namespace bernal::cad {
 namespace {
 
-/// Of the `metadata` with that key.
+/// The value of the `metadata` with that key.
 std::string value_of(pugi::xml_node node, std::string_view key) {
   for (const pugi::xml_node metadata : node.children("metadata"))
     if (metadata.attribute("key").value() == key) return metadata.attribute("value").value();
@@ -24,7 +24,7 @@ std::string value_of(pugi::xml_node node, std::string_view key) {
 
 bool is_negative(std::string_view type) { return in_lower_case(type).starts_with("negative"); }
 
-std::string complaint_about_negative(const std::string& name) {
+std::string error_about_negative(const std::string& name) {
   return fmt::format(
       "its part \"{}\" is negative: a slicer cuts it out of the others, which is not done here; cut it out "
       "there (mesh boolean), and export the result",
@@ -69,9 +69,9 @@ std::string SlicerParts::name_of(const std::string& object) const {
   return found == names_.end() ? "" : found->second;
 }
 
-std::string SlicerParts::complaint_about(const std::string& object) const {
+std::string SlicerParts::error_about(const std::string& object) const {
   const auto found = negative_.find(object);
-  return found == negative_.end() ? "" : complaint_about_negative(found->second);
+  return found == negative_.end() ? "" : error_about_negative(found->second);
 }
 
 bool SlicerParts::is_part(const std::string& object, const std::string& component) const {
@@ -84,7 +84,7 @@ std::optional<std::size_t> SlicerParts::split(const std::string& id, PlacedMeshe
   const auto triangles = object.pieces.front().triangles;
   std::vector<PlacedMeshes::Piece> pieces;
   std::size_t end = 0, others = 0;
-  for (const Volume& volume : found->second) {  // one after the other, to the end, or it is of another model
+  for (const Volume& volume : found->second) {  // contiguous to the end, or it belongs to another mesh
     if (volume.first != end || volume.last < end || volume.last >= triangles.size()) return {};
     end = volume.last + 1;
     const auto at = triangles.begin();

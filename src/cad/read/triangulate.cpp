@@ -26,7 +26,7 @@ using Delaunay = CGAL::Constrained_Delaunay_triangulation_2<
     Plane, CGAL::Triangulation_data_structure_2<PolygonVertex, PolygonFace>,
     CGAL::No_constraint_intersection_tag>;
 
-/// Across the polygon, of the length of twice its area.
+/// Normal to the polygon, with the length of twice its area.
 Vector<3> normal_of(const std::vector<Vector<3>>& points, const Polygon& polygon) {
   Vector<3> normal = Vector<3>::Zero();
   const Vector<3>& apex = points[polygon[0]];
@@ -42,7 +42,7 @@ Faces fan(const Polygon& polygon) {
   return triangles;
 }
 
-/// Across that diagonal for which the product of the two triangles' normals is larger.
+/// Splits at the diagonal for which the product of the two triangles' normals is larger.
 Faces halves(const std::vector<Vector<3>>& points, const Polygon& q) {
   const auto across = [&](int a, int b, int c) -> Vector<3> {
     return (points[q[b]] - points[q[a]]).cross(points[q[c]] - points[q[b]]);
@@ -52,8 +52,8 @@ Faces halves(const std::vector<Vector<3>>& points, const Polygon& q) {
   return {{q[2], q[3], q[0]}, {q[0], q[1], q[2]}};
 }
 
-/// Across how many of the constrained edges each face is reached from infinity, at least. Nothing if it is
-/// odd on one way and even on another: then the edges form no closed lines.
+/// The least number of constrained edges on a path from infinity to each face. Absent if the parity depends
+/// on the path: then the edges form no closed lines.
 std::optional<std::map<Delaunay::Face_handle, int>> depths_in(const Delaunay& plane) {
   std::map<Delaunay::Face_handle, int> depth;
   std::vector<Delaunay::Face_handle> here = {plane.infinite_face()}, next;
@@ -72,7 +72,7 @@ std::optional<std::map<Delaunay::Face_handle, int>> depths_in(const Delaunay& pl
   return depth;
 }
 
-/// The Delaunay triangulation with these edges in the plane across the normal; nothing if they cross or two
+/// The Delaunay triangulation with these edges in the plane normal to `normal`; null if they cross or two
 /// corners coincide in projection.
 template <class Edges>
 std::unique_ptr<Delaunay> constrained(const std::vector<Vector<3>>& points, const Edges& edges,
@@ -98,7 +98,7 @@ FaceCorners corners_of(Delaunay::Face_handle face) {
   return {face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()};
 }
 
-/// None if the polygon folds or touches itself in projection.
+/// Empty if the polygon folds or touches itself in projection.
 Faces delaunay(const std::vector<Vector<3>>& points, const Polygon& polygon, const Vector<3>& normal) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (std::size_t k = 0; k < polygon.size(); ++k)

@@ -14,7 +14,7 @@
 namespace bernal::cad {
 namespace {
 
-/// As it stands in a phrase.
+/// As quoted in errors.
 std::string quoted(std::string_view text) {
   constexpr std::size_t most = 40;
   return fmt::format("\"{}{}\"", text.substr(0, most), text.size() > most ? "..." : "");
@@ -22,13 +22,13 @@ std::string quoted(std::string_view text) {
 
 }  // namespace
 
-/// Gives what stands in a namespace the name that does not depend on prefixes.
+/// Replaces prefixed names by names that do not depend on prefixes.
 class XmlDocument::Names {
  public:
   Names(XmlDocument& document, std::initializer_list<Namespace> asked) : document_(document), asked_(asked) {
     declare(document.root(), 0);
     own_ = uri_of(prefix_of(document.root().name())).value_or("");
-    std::size_t depth = 0;  // in a loop, as documents may be nested deeper than a stack is
+    std::size_t depth = 0;  // iterative, because documents may be nested deeper than the stack allows
     for (xml_node node = document.root(); !node.empty();) {
       if (node.type() == pugi::node_element) rename(node, depth);
       if (!node.first_child().empty()) {
@@ -62,14 +62,14 @@ class XmlDocument::Names {
     }
   }
 
-  /// As the innermost declaration has it; nothing where there is none.
+  /// By the innermost declaration; absent if there is none.
   std::optional<std::string_view> uri_of(std::string_view prefix) const {
     for (std::size_t k = declared_.size(); k-- > 0;)
       if (declared_[k].prefix == prefix) return declared_[k].uri;
     return prefix.empty() ? std::optional<std::string_view>("") : std::nullopt;
   }
 
-  /// Empty where the name stays as it is.
+  /// Empty if the name does not change.
   std::string name_for(std::string_view written, xml_node at) {
     const std::string_view prefix = prefix_of(written);
     const std::string local(written.substr(prefix.empty() ? 0 : prefix.size() + 1));
@@ -133,7 +133,7 @@ pugi::xml_node XmlDocument::only_child(pugi::xml_node node, std::string_view nam
 
 void XmlDocument::refuse_at(std::size_t offset, const std::string& what) const {
   std::string place = name_;
-  // Of two bytes a character, offsets are not those of the text.
+  // In UTF-16, offsets are not those of the text.
   if (text_.find('\0') == text_.npos) {
     const auto end = text_.begin() + std::ptrdiff_t(std::min(offset, text_.size()));
     const auto line = 1 + std::count(text_.begin(), end, '\n');

@@ -18,14 +18,14 @@ namespace bernal::cad {
 namespace {
 
 constexpr std::size_t most_entries = 10'000;
-/// Deflate makes no more than 1,032 bytes of one.
+/// Deflate's largest ratio is 1,032.
 constexpr std::uint64_t most_of_a_byte = 1032, some_bytes = 64;
 constexpr std::uint64_t most_unpacked = std::uint64_t{4} << 30U;
 
 [[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::bad_mesh, why); }
 [[noreturn]] void refuse_cut() { refuse("a zip archive that is cut short or damaged"); }
 
-bool is_as_it_says(const unz_file_info64& info) {
+bool has_possible_size(const unz_file_info64& info) {
   constexpr std::uint64_t stored = 0, deflated = 8;
   const bool known = info.compression_method == stored || info.compression_method == deflated;
   return known && info.uncompressed_size <= most_unpacked &&
@@ -44,7 +44,7 @@ struct Visited {
   unz_file_info64 info;
 };
 
-/// Calls visit(name, info) with the archive standing at each of its entries in turn.
+/// Calls visit(name, info) with the archive positioned at each entry in turn.
 template <typename Visit>
 void for_each_entry(unzFile zip, const Visit& visit) {
   std::size_t count = 0;
@@ -61,7 +61,7 @@ void for_each_entry(unzFile zip, const Visit& visit) {
   if (next != UNZ_END_OF_LIST_OF_FILE) refuse_cut();
 }
 
-/// Bytes of an archive, as numbers with the lowest first.
+/// Bytes of an archive as little-endian numbers.
 class Bytes {
  public:
   explicit Bytes(std::string& bytes) : bytes_(bytes) {}
@@ -82,13 +82,13 @@ class Bytes {
   std::string& bytes_;
 };
 
-constexpr std::uint64_t elsewhere = 0xFFFFFFFF;  // what stands in a field of 32 bits whose number takes 64
+constexpr std::uint64_t elsewhere = 0xFFFFFFFF;  // in a 32-bit field: the number is in a 64-bit field
 
-/// Puts the numbers that an entry of the directory, at `at`, has in 64 bits into its fields of 32 bits, where
-/// they have room, and makes the field of 64 bits one that nobody knows.
+/// Moves the 64-bit numbers of a directory entry at `at` into its 32-bit fields, if they fit, and renames the
+/// 64-bit field to an unknown one.
 void shorten_numbers(std::string& archive, std::size_t at) {
   constexpr std::size_t header = 46;
-  constexpr std::uint64_t signature = 0x02014b50, of_64_bits = 0x0001, of_nobody = 0x6e62;
+  constexpr std::uint64_t signature = 0x02014b50, of_64_bits = 0x0001, unknown = 0x6e62;
   Bytes bytes(archive);
   if (!bytes.hold(at, header) || bytes.number(at, 4) != signature) return;
   std::size_t extra = at + header + bytes.number(at + 28, 2);
@@ -98,14 +98,14 @@ void shorten_numbers(std::string& archive, std::size_t at) {
     size = bytes.number(extra + 2, 2);
     if (bytes.number(extra, 2) != of_64_bits || extra + 4 + size > end) continue;
     std::size_t from = extra + 4;
-    for (const std::size_t field : {at + 24, at + 20, at + 42}) {  // unpacked, packed, offset: in this order
+    for (const std::size_t field : {at + 24, at + 20, at + 42}) {  // in this order: unpacked, packed, offset
       if (bytes.number(field, 4) != elsewhere) continue;
       if (from + 8 > extra + 4 + size) return;
       const std::uint64_t number = bytes.number(from, 8);
       if (number < elsewhere) bytes.put(field, 4, number);
       from += 8;
     }
-    bytes.put(extra, 2, of_nobody);
+    bytes.put(extra, 2, unknown);
   }
 }
 
@@ -113,8 +113,8 @@ using Handle = std::unique_ptr<void, int (*)(void*)>;
 
 Handle opened(const char* name) { return {unzOpen64(name), unzClose}; }
 
-/// minizip 1.1 compares fields of 32 bits with the largest number of 64 bits, so that it never looks for the
-/// numbers that stand elsewhere. Where there are any, it gets a copy with shorter ones.
+/// minizip 1.1 compares 32-bit fields with the largest 64-bit number, so that it never reads the 64-bit
+/// fields. If there are any, it gets a copy of the archive with 32-bit numbers.
 Handle open_archive(const std::filesystem::path& file) {
   Handle zip = opened(file.c_str());
   if (!zip) refuse_cut();
@@ -170,7 +170,7 @@ std::string ZipArchive::read(const std::string& name) {
     refuse_cut();
   constexpr unsigned long encrypted = 1;
   if ((info.flag & encrypted) != 0) refuse(fmt::format("{} is encrypted; save it without a password", name));
-  if (!is_as_it_says(info)) refuse("an archive whose directory cannot be true");
+  if (!has_possible_size(info)) refuse("an archive whose directory cannot be true");
   unpacked_ += info.uncompressed_size;
   if (unpacked_ > most_unpacked) refuse("an archive of more than 4 GiB unpacked");
   if (unzOpenCurrentFile(zip_.get()) != UNZ_OK) refuse_cut();

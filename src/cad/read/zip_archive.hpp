@@ -9,30 +9,29 @@
 
 namespace bernal::cad {
 
-/// By its first bytes.
+/// Decided by the first bytes.
 bool is_zip(const std::filesystem::path& file);
 
-/// A zip archive, with or without the fields of 64 bits. Names of entries are compared as those of packages
-/// are: whatever the case of ASCII letters, without a slash in front, slashes for backslashes. What is wrong
-/// with it is refused as Error{bad_mesh} in one phrase.
+/// A zip archive, with or without 64-bit fields. Entry names compare as in packages: ASCII case-insensitive,
+/// without a leading slash, with backslashes as slashes. Errors in it are thrown as Error{bad_mesh} in one
+/// phrase.
 class ZipArchive {
  public:
-  /// Throws where it is cut short or damaged, or holds more than 10,000 entries.
+  /// Throws if it is truncated or damaged, or has more than 10,000 entries.
   explicit ZipArchive(const std::filesystem::path& file);
 
-  /// In the order of the directory; folders and what macOS adds are left out.
+  /// In the order of the directory, without folders and macOS metadata.
   const std::vector<std::string>& names() const { return names_; }
-  /// As it stands in the archive; nullptr where there is none.
+  /// The name as stored; nullptr if there is none.
   const std::string* find(std::string_view name) const;
-  /// Unpacks one of the names. No more is read than the directory says, and it is held against its checksum.
-  /// Throws where its size is none that packing comes to, it is encrypted, or more than 4 GiB have been
-  /// unpacked.
+  /// Unpacks an entry. Reads no more than the directory states, and checks the checksum. Throws if its size
+  /// is impossible, if it is encrypted, or if more than 4 GiB have been unpacked.
   std::string read(const std::string& name);
 
  private:
   struct Entry {
-    std::size_t name;             ///< which of the names
-    std::uint64_t place, number;  ///< as minizip finds it again
+    std::size_t name;             ///< index into `names_`
+    std::uint64_t place, number;  ///< minizip's position of the entry
   };
 
   std::unique_ptr<void, int (*)(void*)> zip_;

@@ -21,7 +21,7 @@ using Surface = CGAL::Surface_mesh<Point>;
 
 Point to_point(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
 
-/// A corner for each fan, so that pinched corners are manifold. False if the faces do not fit together.
+/// One corner for each fan, so that pinched corners are manifold. False if the faces do not fit together.
 bool fill_surface(const Mesh& mesh, Surface& surface) {
   const MeshTopology topology = topology_of(mesh);
   std::vector<Surface::Vertex_index> corners(topology.fans);
@@ -56,8 +56,8 @@ Mesh mesh_of(const Surface& surface) {
   return mesh;
 }
 
-/// Whether a patch of a surface has nothing outside, and inside what the surface winds around: asked at its
-/// largest face, `face`. Winding numbers on its two sides differ by one.
+/// Whether a patch of a surface has nothing outside, and inside it what the surface winds around; tested at
+/// its largest face, `face`. The winding numbers on its two sides differ by one.
 bool is_outer_wall(const Mesh& mesh, const TriangleTree& tree, std::uint32_t face) {
   const Vector<3> normal = doubled_area(mesh, mesh.triangles[face]);
   int axis = 0;
@@ -67,9 +67,9 @@ bool is_outer_wall(const Mesh& mesh, const TriangleTree& tree, std::uint32_t fac
   return beyond && *beyond == (normal[axis] > 0 ? 0 : 1);
 }
 
-/// CGAL's door for a look at the work while it goes on. What has come from inside to beyond `bounds` is out,
-/// and would go around the whole part if it were not stopped: the largest gates come first, and so soon those
-/// to the corners of the box that CGAL begins with.
+/// CGAL's visitor, used to interrupt the work. A wrap from inside that reaches beyond `bounds` has got out
+/// and would wrap the whole part; it shows early, because the largest gates come first, and among them those
+/// to the corners of CGAL's initial box.
 struct Watch {
   const Monitor& monitor;
   std::size_t most_points;
@@ -83,7 +83,7 @@ struct Watch {
   template <class Wrapper, class Gate>
   void before_facet_treatment(const Wrapper&, const Gate& gate) {
     if (!bounds) return;
-    const auto reached = gate.facet().first;  // on the side from which it is looked at
+    const auto reached = gate.facet().first;  // the cell in front of the gate
     for (int corner = 0; corner < 4; ++corner) {
       const Point& p = reached->vertex(corner)->point();
       for (int k = 0; k < 3; ++k)

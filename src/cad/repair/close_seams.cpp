@@ -32,7 +32,7 @@ std::vector<std::uint32_t> ends_of(const std::vector<EdgeUse>& edges) {
   return corners;
 }
 
-/// Corners of open edges that are nearer than the tolerance become the one with the smallest number.
+/// Merges corners of open edges nearer than the tolerance into the one with the smallest number.
 void weld(Mesh& mesh, double tolerance, Seams& seams) {
   const std::vector<std::uint32_t> corners = ends_of(open_edges(mesh.triangles));
   if (corners.empty()) return;
@@ -74,8 +74,8 @@ std::vector<std::uint32_t> corners_within(const Mesh& mesh, const PointCubes& cu
   return corners;
 }
 
-/// Gives open edges the corners that lie within them, one edge of a triangle at a time. Returns whether there
-/// were any.
+/// Splits open edges at the corners within them, one edge of a triangle at a time. Returns whether there were
+/// any.
 bool split_edges(Mesh& mesh, double tolerance, Seams& seams) {
   const std::vector<EdgeUse> edges = open_edges(mesh.triangles);
   if (edges.empty()) return false;
@@ -105,8 +105,8 @@ bool split_edges(Mesh& mesh, double tolerance, Seams& seams) {
   return any;
 }
 
-/// Of two faces with the same corners that are turned against each other one goes, where every one of their
-/// edges has a single other face: the surface needs one there.
+/// Drops one of two faces with the same corners and opposite orientation, if every one of their edges has a
+/// single other face, so that the surface needs one there.
 void drop_doubled(Mesh& mesh, Seams& seams) {
   const MeshEdges edges(mesh.triangles);
   std::vector<std::pair<FaceCorners, std::uint32_t>> faces;
@@ -130,8 +130,8 @@ void drop_doubled(Mesh& mesh, Seams& seams) {
   keep_only(mesh, kept);
 }
 
-/// Half of the last of so many decimals as some coordinate needs, in the largest one; round numbers are taken
-/// to have six, as writers give them.
+/// Half a unit in the last decimal that some coordinate needs, at least of six digits, at the size of the
+/// largest.
 double decimal_rounding(const Mesh& mesh, double largest) {
   constexpr std::size_t most = 3000;
   constexpr int fewest = 6;
@@ -169,7 +169,7 @@ double rounding_of_coordinates(const Mesh& mesh) {
     for (int k = 0; k < 3; ++k) single = single && static_cast<double>(static_cast<float>(v[k])) == v[k];
   }
   if (largest == 0) return std::numeric_limits<double>::min();
-  // Some operations in that precision, such as a turn and a shift, stand between two readings of a corner.
+  // Two copies of a corner may differ by a few operations in that precision, such as a rotation and a shift.
   constexpr double operations = 8;
   const double in_double = std::numeric_limits<double>::epsilon() * largest;
   const double rounding =
@@ -186,7 +186,7 @@ Seams close_seams(Mesh& mesh, double tolerance) {
   }
   drop_doubled(mesh, seams);
   weld(mesh, tolerance, seams);
-  // Each round halves, at least, what is left of an edge; more rounds mean that it does not end.
+  // Each round at least halves the rest of an edge; more rounds mean that it does not converge.
   constexpr int most_rounds = 64;
   for (int round = 0; round < most_rounds && split_edges(mesh, tolerance, seams); ++round) {
   }

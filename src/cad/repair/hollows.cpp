@@ -17,7 +17,7 @@
 namespace bernal::cad {
 namespace {
 
-/// Of the corners of the faces; nothing if they lie in a plane.
+/// The convex hull of the faces' corners; absent if they are coplanar.
 std::optional<Mesh> hull_of_faces(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {
   std::vector<Vector<3>> points;
   for (const std::uint32_t t : faces)
@@ -25,7 +25,7 @@ std::optional<Mesh> hull_of_faces(const Mesh& mesh, const std::vector<std::uint3
   return convex_hull_of(points);
 }
 
-/// A solid whose pieces are turned outward, and the sides of them.
+/// A solid with its pieces oriented outwards, and their sides.
 class Sides {
  public:
   Sides(const Mesh& mesh, double tolerance, double widest)
@@ -64,16 +64,16 @@ class Sides {
 
  private:
   static constexpr std::uint32_t looks_out = no_index - 1;
-  /// Up to this part of a diagonal nothing but a crevice is between a face and the hull.
+  /// Up to this share of a diagonal there is only a crevice between a face and the hull.
   static constexpr double even = 1e-3;
 
-  /// From a face along a unit vector to the solid, or the limit.
-  double way_free(const Vector<3>& from, const Vector<3>& direction, double limit) const {
+  /// Distance from a face along a unit vector to the solid, at most the limit.
+  double free_distance(const Vector<3>& from, const Vector<3>& direction, double limit) const {
     const double close = 1e-9 * diagonal_;
     return tree_.first_contact(from + 4 * close * direction, close, direction, limit, close);
   }
 
-  /// With the least reach that will do.
+  /// Uses the smallest sufficient reach.
   std::vector<Hollow> hollows_of_piece(std::uint32_t piece, double least) const {
     const std::optional<Mesh> hull = hull_of_faces(mesh_, faces_[piece]);
     if (!hull) return {};
@@ -94,7 +94,7 @@ class Sides {
         largest = std::max(largest, some.front().volume);
         found.push_back(std::move(some));
       }
-      // Nothing else is as large.
+      // No other hollow is as large.
       if (!found.empty() && found.back().front().volume > air / 2 && found.back().front().folded < hardly)
         break;
     }
@@ -105,8 +105,7 @@ class Sides {
     return {};
   }
 
-  /// `sees_solid`: a face looks out only where nothing of the solid itself is in its way within the reach,
-  /// either.
+  /// `sees_solid`: a face looks out only if the solid itself is not in its way within the reach either.
   std::vector<Hollow> hollows_within(std::uint32_t piece, const TriangleTree& hull, double reach,
                                      bool sees_solid) const {
     const std::vector<std::uint32_t>& own = faces_[piece];
@@ -116,7 +115,7 @@ class Sides {
         const FaceCorners& face = mesh_.triangles[own[k]];
         const Vector<3> normal = doubled_area(mesh_, face).stableNormalized(), from = middle_of(mesh_, face);
         const bool leaves = hull.crossing(from + reach * normal, 0, endless) == Crossing::even;
-        if (!leaves || (sees_solid && way_free(from, normal, reach) < reach)) side[own[k]] = no_index;
+        if (!leaves || (sees_solid && free_distance(from, normal, reach) < reach)) side[own[k]] = no_index;
       }
     });
     double own_area = 0;
@@ -139,7 +138,7 @@ class Sides {
     return found;
   }
 
-  /// Those that hang together with it, turned to face what they enclose.
+  /// The faces connected with `from`, oriented towards what they enclose.
   std::vector<FaceCorners> faces_of_side(std::uint32_t from, std::vector<std::uint32_t>& side) const {
     std::vector<FaceCorners> faces;
     std::vector<std::uint32_t> open{from};
@@ -178,7 +177,7 @@ class Sides {
     };
     const std::uint32_t corner = faces.front()[0];
     if (ahead_of(walls.triangles.front(), corner) != ahead_of(faces.front(), corner)) turn_inside_out(walls);
-    hollow.volume = signed_volume(walls);  // below 0 where what they enclose is the solid
+    hollow.volume = signed_volume(walls);  // negative if they enclose the solid
     constexpr double crevice = 1e-6;
     if (!(hollow.volume > crevice * bounds_of(mesh_).volume())) return std::nullopt;
     const bool lie_outside =
@@ -189,17 +188,16 @@ class Sides {
     return hollow;
   }
 
-  /// How much of these faces has others of them on its back, across the solid.
+  /// Share of these faces with others of them on their back, across the solid.
   double folded_share(const Mesh& walls, const std::vector<FaceCorners>& faces) const {
     const TriangleTree tree(walls);
     constexpr std::size_t asked = 400;
     double all = 0, folded = 0;
     for (std::size_t k = 0; k < faces.size(); k += 1 + faces.size() / asked) {
-      const Vector<3> inward =
-          doubled_area(mesh_, faces[k]);  // of them: as they are turned here, into the solid
+      const Vector<3> inward = doubled_area(mesh_, faces[k]);  // oriented as in `walls`, into the solid
       const Vector<3> direction = inward.stableNormalized();
       const Vector<3> from = middle_of(mesh_, faces[k]);
-      const double ahead = way_free(from, direction, diagonal_), close = 1e-8 * diagonal_;
+      const double ahead = free_distance(from, direction, diagonal_), close = 1e-8 * diagonal_;
       all += inward.norm();
       if (ahead < diagonal_ && tree.distance(from + ahead * direction, close) < close)
         folded += inward.norm();
@@ -207,7 +205,7 @@ class Sides {
     return folded / all;
   }
 
-  /// Asked at the middle of its largest face.
+  /// Tested at the middle of its largest face.
   bool lies_outside(const Mesh& walls, const Lid& lid) const {
     const auto first = walls.triangles.begin();
     const FaceCorners& largest = *std::max_element(

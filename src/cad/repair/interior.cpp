@@ -46,7 +46,7 @@ CutPlane across(int axis, double level, bool upper_stays) {
   return upper_stays ? plane.turned() : plane;
 }
 
-/// Every choice of the sides that the planes leave open, the one where all smaller values stay first.
+/// Every choice of the planes' open sides, the one with all smaller values first.
 std::vector<Planes> choices_of(const Planes& planes) {
   constexpr std::size_t most_open = 6;
   std::vector<std::size_t> open;
@@ -64,7 +64,7 @@ std::vector<Planes> choices_of(const Planes& planes) {
   return choices;
 }
 
-std::string told(const Planes& planes) {
+std::string planes_text(const Planes& planes) {
   std::vector<std::string> all;
   for (const CutPlane& plane : planes) {
     std::string text = plane.text;
@@ -77,8 +77,8 @@ std::string told(const Planes& planes) {
   return fmt::format("closed at {}", fmt::join(all, ", "));
 }
 
-/// The largest hollow that is closed when the solid's surroundings end where it ends itself, on as few sides
-/// as will do.
+/// The largest hollow that is closed when the surroundings end at the solid's own bounds, on as few sides as
+/// possible.
 std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Mesh& solid,
                                             const Planes& planes, double tolerance, const Vector<3>* point) {
   const Bounds<3> bounds = bounds_of(solid);
@@ -90,7 +90,7 @@ std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Me
   std::vector<unsigned> subsets(1U << sides.size());
   std::iota(subsets.begin(), subsets.end(), 0U);
   std::ranges::stable_sort(subsets, {}, [](unsigned subset) { return std::popcount(subset); });
-  constexpr int most_sides = 4;  // what is left open on more is no hollow
+  constexpr int most_sides = 4;  // a hollow is open on fewer sides
   for (const unsigned subset : subsets) {
     if (std::popcount(subset) > most_sides) break;
     Planes all = planes;
@@ -99,34 +99,34 @@ std::optional<ChosenInterior> within_bounds(const Surroundings& around, const Me
     try {
       auto spaces = around.closed_off(all, tolerance, point ? 0 : around.crevice(), point);
       if (!spaces.empty())
-        return ChosenInterior{std::move(spaces.front().walls), {"the hollow, " + told(all)}};
-    } catch (const Error&) {  // one of the sides touches what others have cut
+        return ChosenInterior{std::move(spaces.front().walls), {"the hollow, " + planes_text(all)}};
+    } catch (const Error&) {  // one of the sides touches an earlier cut
     }
   }
   return std::nullopt;
 }
 
-/// A hollow that may be meant.
+/// A candidate for the chosen hollow.
 struct Candidate {
   Mesh walls;
   double volume, openness;
   std::string words;  ///< how it is closed
-  Vector<3> inside;   ///< a point of it
+  Vector<3> inside;   ///< a point inside
   bool is_void = false, is_flat = true;
 
-  /// As one would fill it: less, where its opening is as wide as a dish's.
+  /// The volume that can be filled: less if its opening is as wide as a dish's.
   double size() const { return volume * std::clamp(1 / openness - 1, 0.01, 1.0); }
   double weight() const { return volume * (1 / openness - 1); }
 };
 
 std::string words_of_lids(std::vector<Vector<3>> lids) {
-  constexpr std::size_t most_told = 4;
+  constexpr std::size_t most_listed = 4;
   const std::size_t openings = lids.size();
   std::vector<std::string> places;
-  for (const Vector<3>& lid : lids | std::views::take(most_told)) places.push_back(text_of(lid));
+  for (const Vector<3>& lid : lids | std::views::take(most_listed)) places.push_back(text_of(lid));
   return fmt::format("closed across {} at {}{}",
                      openings == 1 ? "its opening" : counted(openings, "", "openings"),
-                     fmt::join(places, ", "), openings > most_told ? ", ..." : "");
+                     fmt::join(places, ", "), openings > most_listed ? ", ..." : "");
 }
 
 Mesh without_voids(const Mesh& solid) {
@@ -138,14 +138,14 @@ Mesh without_voids(const Mesh& solid) {
   return outside;
 }
 
-/// The open hollows of a solid, each once: closed across its openings, or by one plane. A lid that lies in a
-/// plane is one; another one may have been drawn up by what stands on the brim, or across a step of it: then
-/// that counts which one plane closes, unless it is much smaller.
+/// The open hollows of a solid, each once: closed across its openings, or by one plane. A planar lid is
+/// reliable; another may have been drawn up by what is on the brim, or across a step in it; then the hollow
+/// that one plane closes is taken, unless it is much smaller.
 std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
   std::vector<Candidate> below_planes, all;
   for (PlaneHollow& hollow : hollows_below_planes(without_voids(solid), tolerance))
     below_planes.push_back({std::move(hollow.space.walls), hollow.space.volume, hollow.openness,
-                            told({hollow.brim}), hollow.inside});
+                            planes_text({hollow.brim}), hollow.inside});
   std::vector<bool> is_taken(below_planes.size(), false), is_chosen(below_planes.size(), false);
   std::vector<Hollow> hollows = hollows_of(solid, tolerance);
   if (hollows.empty() && below_planes.empty())
@@ -181,7 +181,7 @@ std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
   return all;
 }
 
-/// One line with what may be meant, and how to say which.
+/// An error in one line that lists the candidates and how to choose each.
 [[noreturn]] void refuse_choice(const std::vector<Candidate>& all) {
   constexpr std::size_t most = 4;
   std::vector<std::string> words;
@@ -194,19 +194,19 @@ std::vector<Candidate> open_hollows(const Mesh& solid, double tolerance) {
 
 std::string caution_of_lids(const Candidate& one) {
   return fmt::format(
-      "the hollow is {}, and not all of that lies in planes: what stands on a brim, or a step in it, "
-      "may have drawn it up; if so, close it by \"cap\", a plane",
+      "the hollow is {}, and not all its lids are planar: something on a brim, or a step in it, may have "
+      "drawn them up; if so, close it by \"cap\", a plane",
       one.words);
 }
 
 std::string left_out(std::size_t hollows) {
-  return fmt::format("{} left out, which a point of \"interior\" chooses",
+  return fmt::format("{} left out; a point in \"interior\" chooses one",
                      counted(hollows, "lesser hollow is", "lesser hollows are"));
 }
 
-/// Without planes: of the voids of a solid and its open hollows that which one would fill, the largest, those
-/// that are as large included. A void cannot be filled where there is a hollow beside which it is not much
-/// larger: it is that in a wall. Throws where another one is nearly as large.
+/// Without planes: the largest among the voids of a solid and its fillable open hollows, with any of equal
+/// size. A void beside a hollow that is not much smaller cannot be filled: it is a void in a wall. Throws if
+/// another candidate is nearly as large.
 std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, const Mesh& solid,
                                                     double tolerance, const Vector<3>* point) {
   constexpr double alike = 0.95, clearly = 0.5, dent = 0.02;
@@ -249,27 +249,27 @@ std::optional<ChosenInterior> hollow_without_planes(const Surroundings& around, 
     words.push_back(one->words);
     if (!one->is_flat) chosen.cautions.push_back(caution_of_lids(*one));
   }
-  constexpr std::size_t most_told = 4;
+  constexpr std::size_t most_listed = 4;
   const std::size_t taken = words.size();
-  if (taken > most_told) words.resize(most_told);
+  if (taken > most_listed) words.resize(most_listed);
   chosen.notes.push_back(fmt::format("{}, {}{}", taken == 1 ? "the hollow" : counted(taken, "", "hollows"),
-                                     fmt::join(words, "; "), taken > most_told ? "; ..." : ""));
+                                     fmt::join(words, "; "), taken > most_listed ? "; ..." : ""));
   if (taken < open.size()) chosen.notes.push_back(left_out(open.size() - taken));
   if (in_voids > 0)
-    chosen.notes.emplace_back("the voids of the solid are left out, which a point of \"interior\" chooses");
+    chosen.notes.emplace_back("the voids of the solid are left out; a point in \"interior\" chooses one");
   return chosen;
 }
 
-/// A hollow beside which there is much more that is free within the part's bounds is rather a bolt hole.
-void tell_if_little(const Mesh& solid, ChosenInterior& chosen) {
+/// A hollow much smaller than the free space within the part's bounds is probably a bolt hole.
+void caution_if_small(const Mesh& solid, ChosenInterior& chosen) {
   constexpr double little = 0.01;
   const double free = bounds_of(solid).volume() - std::abs(signed_volume(solid));
   const std::vector<double> volumes = SurfacePieces(chosen.mesh).volumes();
   const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   if (volume < little * free)
     chosen.cautions.push_back(fmt::format(
-        "the hollow is {:.2g} % of what is free within the part's bounds: if another one is meant, "
-        "choose it by a point of \"interior\", or by \"cap\", a plane",
+        "the hollow is {:.2g} % of the free volume within the part's bounds: if another one is meant, "
+        "choose it by a point in \"interior\", or by \"cap\", a plane",
         100 * volume / free));
 }
 
@@ -290,7 +290,7 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
   const auto by_planes = [&](const Planes& choice) -> std::optional<ChosenInterior> {
     const std::vector<Space> spaces = around.closed_off(choice, tolerance, 0, point);
     if (spaces.empty()) return std::nullopt;
-    return ChosenInterior{walls_of(spaces), {"the hollow, " + told(choice)}};
+    return ChosenInterior{walls_of(spaces), {"the hollow, " + planes_text(choice)}};
   };
   if (!planes.empty())
     if (auto made = first_of(by_planes)) return std::move(*made);
@@ -300,10 +300,10 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
   if (std::optional<ChosenInterior> made = hollow_without_planes(around, solid, tolerance, point)) {
     const auto cut_hollow = [&](const Planes& choice) -> std::optional<ChosenInterior> {
       ChosenInterior rest{cut_by(made->mesh, choice, tolerance), made->notes, {}};
-      rest.notes.push_back(told(choice));
+      rest.notes.push_back(planes_text(choice));
       return rest;
     };
-    if (planes.empty() && !point) tell_if_little(solid, *made);
+    if (planes.empty() && !point) caution_if_small(solid, *made);
     if (planes.empty()) return std::move(*made);
     if (auto rest = first_of(cut_hollow)) return std::move(*rest);
   }
@@ -314,9 +314,7 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
                     "plane, or move the point",
                     text_of(*point)));
   if (failure && !planes.empty()) throw *failure;
-  refuse(
-      "the solid has no void and no hollow that can be told from its wall; close the one that is meant by "
-      "\"cap\", a plane");
+  refuse("the solid has no void and no recognisable hollow; close the one that is meant by \"cap\", a plane");
 }
 
 /// What a surface encloses on the planes' sides: the first choice of sides that leaves it closed; else the
@@ -327,7 +325,7 @@ ChosenInterior enclosed(const Mesh& surface, const Planes& planes, double tolera
   std::optional<Error> failure;
   for (const Planes& choice : choices_of(planes)) {
     try {
-      ChosenInterior made{cut_by(surface, choice, tolerance), {told(choice)}};
+      ChosenInterior made{cut_by(surface, choice, tolerance), {planes_text(choice)}};
       if (is_closed(made.mesh)) return made;
       if (!open) open = std::move(made);
     } catch (const Error& error) {
@@ -362,7 +360,7 @@ ChosenInterior choose_interior(const Mesh& surface, const InteriorRequest& reque
     if (sheet)
       refuse(fmt::format("the point {} of \"interior\" is not in what \"cap\" closes", text_of(*point)));
   }
-  // A sheet without thickness has no hollow beside what it goes round.
+  // A sheet without thickness has no hollow distinct from what it encloses.
   return sheet ? enclosed(surface, request.planes, tolerance)
                : hollow_of(surface, request.planes, tolerance, point);
 }

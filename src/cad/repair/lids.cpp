@@ -12,14 +12,14 @@ namespace bernal::cad {
 
 namespace {
 
-/// A loop around an opening, and the plane that it lies in more or less.
+/// A loop around an opening, and its approximate plane.
 struct Opening {
   const HoleLoop* loop;
   Vector<3> middle, normal;
   bool is_flat;
 };
 
-/// Within a share of the opening's width.
+/// The tolerance is a share of the opening's width.
 bool lies_in_plane_of(const Mesh& mesh, const HoleLoop& loop, const Opening& opening, double share) {
   return std::ranges::all_of(loop.corners, [&](std::uint32_t v) {
     return std::abs(opening.normal.dot(mesh.vertices[v] - opening.middle)) <= share * opening.loop->width;
@@ -40,14 +40,14 @@ Opening opening_of(const Mesh& mesh, const HoleLoop& loop) {
   return opening;
 }
 
-/// Whether one lid may lie on both: that of a ring, or of two ends side by side.
+/// Whether one lid can close both: those of a ring, or of two ends side by side.
 bool share_a_plane(const Opening& wide, const Opening& other) {
   constexpr double parallel = 0.99, near = 0.1;
   return wide.is_flat && other.is_flat && std::abs(wide.normal.dot(other.normal)) > parallel &&
          std::abs(wide.normal.dot(other.middle - wide.middle)) <= near * other.loop->width;
 }
 
-/// One lid on all of these in the plane of the first; false, and nothing, if they have none.
+/// Puts one lid on all of these in the plane of the first; false, with nothing added, if that fails.
 bool lay_flat_lid(Mesh& walls, const std::vector<Opening>& openings,
                   const std::vector<std::size_t>& together) {
   const Opening& widest = openings[together.front()];

@@ -5,17 +5,16 @@
 
 namespace bernal::cad {
 
-/// One on the edge of a hole, or on several that lie in one plane.
+/// A lid on one hole, or on several in one plane.
 struct Lid {
   Bounds<3> bounds = Bounds<3>::of_nothing();
   Vector<3> middle;         ///< of the widest edge
-  bool is_flat;             ///< it lies in a plane
-  std::size_t first, last;  ///< of the triangles that are its faces
+  bool is_flat;             ///< planar
+  std::size_t first, last;  ///< range of its faces among the triangles
 };
 
-/// Closes every hole of a surface by a lid, in the plane of its edge where that has one; holes of which the
-/// edges lie in one plane share a lid, as those of a ring do. Appends their faces to `walls`. Returns nothing
-/// where an edge branches or has no lid.
+/// Closes every hole of a surface by a lid, in the plane of its rim if that is planar; holes in one plane
+/// share a lid, as in a ring. Appends their faces to `walls`. Empty if an edge branches or cannot be closed.
 std::vector<Lid> put_lids(Mesh& walls);
 
 }  // namespace bernal::cad

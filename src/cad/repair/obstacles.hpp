@@ -5,14 +5,14 @@ namespace bernal::cad {
 
 enum class TakenOut {
   done,
-  outside,   ///< it has nothing in common with the container
-  whole,     ///< nothing of the container is left
-  entangled  ///< what is left would hang together in edges only, or cannot be made out
+  outside,   ///< disjoint from the container
+  whole,     ///< nothing of the container remains
+  entangled  ///< the remainder would be joined in edges only, or cannot be computed
 };
 
-/// The walls of a container, of which an obstacle is taken out where both overlap; `container` stays as it is
-/// unless that is done. Precondition: both closed, oriented outwards, without self-intersections.
-/// Cost: that of one search for crossings, and, if there are any, 50 µs a face.
+/// Subtracts an obstacle from a container; `container` changes only on `done`. Precondition: both closed,
+/// oriented outwards, without self-intersections. Cost: one search for crossings, and 50 µs a face if there
+/// are any.
 TakenOut take_out(Mesh& container, const Mesh& obstacle);
 
 }  // namespace bernal::cad

@@ -13,14 +13,14 @@
 namespace bernal::cad {
 namespace {
 
-/// More corners than this take the cubic search longer than half a second.
+/// With more corners the cubic search takes longer than half a second.
 constexpr std::size_t most_searched = 400;
 
-/// A rim that leaves its plane by no more than this part of its width is filled in that plane.
+/// A rim within this share of its width of a plane is filled in that plane.
 constexpr double flat_enough = 0.01;
 
-/// The sides of faces across which there is no other. Faces agree, so as many of them begin at a corner as
-/// end there.
+/// The sides of faces without a neighbour. Faces are consistently oriented, so at each corner as many begin
+/// as end.
 class Rims {
  public:
   explicit Rims(const Mesh& mesh) : mesh_(mesh) {
@@ -41,16 +41,15 @@ class Rims {
 
   std::size_t count() const { return rims_.size(); }
   std::uint32_t triangle(std::uint32_t r) const { return rims_[r].triangle; }
-  /// 0 where it begins, 1 where it ends, 2 the face's third corner.
+  /// The corner where it begins (0), where it ends (1), or the face's third corner (2).
   std::uint32_t corner(std::uint32_t r, int ahead) const {
     return mesh_.triangles[rims_[r].triangle][(rims_[r].side + ahead) % 3];
   }
-  /// Three or more faces meet there.
+  /// Three or more faces meet at the edge.
   bool branched(std::uint32_t r) const { return rims_[r].branched; }
 
-  /// The rim that goes on around the hole; none if all that begin there are walked. Where several begin, it
-  /// is the first counterclockwise from the way back, as the faces around the corner are seen from outside:
-  /// the hole is on the right.
+  /// The next rim around the hole; none if all that begin there are used. If several begin, the first
+  /// counterclockwise from the way back, seen from outside: the hole is on the right.
   std::uint32_t next(std::uint32_t r, const std::vector<bool>& walked) const {
     const std::uint32_t here = corner(r, 1);
     const auto found = beginning_.find(here);
@@ -81,8 +80,8 @@ class Rims {
 
   const Mesh& mesh_;
   std::vector<Rim> rims_;
-  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> beginning_;  ///< by corner
-  std::unordered_map<std::uint32_t, Vector<3>> normal_;  ///< of the corners where several begin
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> beginning_;  ///< by their first corner
+  std::unordered_map<std::uint32_t, Vector<3>> normal_;  ///< for corners where several begin
 };
 
 double width_of(const Mesh& mesh, const std::vector<std::uint32_t>& corners) {
@@ -100,7 +99,7 @@ std::vector<HoleLoop> hole_loops(const Mesh& mesh, const MeshTopology& topology)
   const auto emit = [&](Path::const_iterator first, Path::const_iterator last) {
     HoleLoop loop;
     loop.component = topology.component[rims.triangle(*first)];
-    for (auto r = last; r != first;) {  // the patch runs against the faces around it
+    for (auto r = last; r != first;) {  // the patch runs against the surrounding faces
       --r;
       loop.corners.push_back(rims.corner(*r, 1));
       loop.beyond.push_back(rims.corner(*r, 2));
@@ -144,7 +143,7 @@ Vector<3> Patcher::across(std::uint32_t a, std::uint32_t b, std::uint32_t c) con
   return doubled_area(mesh_, {a, b, c});
 }
 
-/// Too thin to tell a normal.
+/// Too thin for a reliable normal.
 bool Patcher::is_thin(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
   const auto squared = [&](std::uint32_t i, std::uint32_t j) {
     return (mesh_.vertices[i] - mesh_.vertices[j]).squaredNorm();
@@ -152,7 +151,7 @@ bool Patcher::is_thin(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
   return across(a, b, c).norm() <= 1e-10 * std::max({squared(a, b), squared(b, c), squared(c, a)});
 }
 
-/// Whether no face is thin and no edge within the patch is one of the surface.
+/// Whether no face is thin and no inner edge of the patch is an edge of the surface.
 bool Patcher::is_allowed(const HoleLoop& loop, const Triangles& triangles) const {
   if (triangles.empty()) return false;
   std::unordered_set<std::uint64_t> rim;
@@ -195,7 +194,7 @@ Patcher::Triangles Patcher::least_bent(const HoleLoop& loop) const {
     std::size_t apex = 0;
     Vector<3> normal = Vector<3>::Zero();
   };
-  // The best triangulation of corners i..j, by i and j; that of two neighbours is the face beyond their edge.
+  // The best triangulation of corners i..j; for neighbours, the face beyond their edge.
   std::vector<Best> table(n * n);
   const auto best = [&](std::size_t i, std::size_t j) -> Best& { return table[i * n + j]; };
   const auto beyond = [&](std::size_t k) -> Vector<3> {
@@ -220,7 +219,7 @@ Patcher::Triangles Patcher::least_bent(const HoleLoop& loop) const {
             std::max({left.bend, right.bend, 1 - normal.dot(left.normal), 1 - normal.dot(right.normal)});
         if (whole) bend = std::max(bend, 1 - normal.dot(last));
         const double area = left.area + right.area + length;
-        // Angles that differ by rounding are the same, so that the area decides on a plane.
+        // Angles that differ only by rounding are equal, so that the area decides on a plane.
         if (bend < found.bend - 1e-9 || (bend < found.bend + 1e-9 && area < found.area))
           found = {bend, area, m, normal};
       }
@@ -258,7 +257,7 @@ bool Patcher::fill(const HoleLoop& loop) {
   Triangles triangles;
   if (loop.corners.size() == 3) {
     triangles = {{loop.corners[0], loop.corners[1], loop.corners[2]}};
-    // A single face without neighbours has no hole.
+    // A single face without neighbours is not a hole.
     if (loop.beyond == std::vector{loop.corners[2], loop.corners[0], loop.corners[1]}) return false;
   } else {
     triangles = seen_from_above(loop);

@@ -8,30 +8,30 @@
 
 namespace bernal::cad {
 
-/// Once around a hole of a surface, in the direction of the faces that would fill it. No corner occurs twice.
+/// A closed loop around a hole of a surface, in the direction of the faces that would fill it, each corner
+/// once.
 struct HoleLoop {
   std::vector<std::uint32_t> corners;
-  std::vector<std::uint32_t> beyond;  ///< the corner of the face across edge k, from corner k to the next
+  std::vector<std::uint32_t> beyond;  ///< corner of the face across edge k, from corner k to the next
   std::uint32_t component = 0;
-  bool branched = false;  ///< at some edges of it three or more faces meet
+  bool branched = false;  ///< three or more faces meet at one of its edges
   double width = 0;       ///< the diagonal of its bounds
 };
 
-/// The holes of a surface whose faces agree on their orientation. Where the holes meet in a corner they are
-/// told apart. Cost: O(T).
+/// The holes of a consistently oriented surface; holes that meet in a corner are separated. Cost: O(T).
 std::vector<HoleLoop> hole_loops(const Mesh& mesh, const MeshTopology& topology);
 
-/// Fills holes, and remembers which edges the surface has, because no patch may have one of them again.
+/// Fills holes, and keeps the surface's edges, because no patch may repeat one of them.
 class Patcher {
  public:
   explicit Patcher(Mesh& mesh);
 
-  /// Appends faces that fill the hole; false if there are none, and then nothing is changed. A hole whose
-  /// rim can be seen without folds along its normal gets the constrained Delaunay triangulation in that
-  /// direction if it is nearly flat or has many corners; another the triangulation with the smallest largest
-  /// angle between neighbouring faces, and of those that of the smallest area (Liepa 2003); if neither
-  /// exists, a fan around a new corner in its middle.
-  /// Precondition: not branched. Cost: O(n log n), or O(n³) for n corners up to 400.
+  /// Appends faces that fill the hole; false, with nothing changed, if there are none. A hole that projects
+  /// without folds along its normal gets the constrained Delaunay triangulation in that projection if it is
+  /// nearly flat or has many corners; other holes get the triangulation with the smallest largest angle
+  /// between neighbouring faces, ties by the smallest area (Liepa 2003); if neither exists, a fan around a
+  /// new corner in its middle. Precondition: not branched. Cost: O(n log n), or O(n³) for n corners up to
+  /// 400.
   bool fill(const HoleLoop& loop);
 
  private:

@@ -24,7 +24,7 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
       fmt::format("\"{:.60}\" is no plane; write \"z = 1.1\", \"x < 0.5\" or \"0.6 x + 0.8 z = 2\"", text));
 }
 
-/// Reads a sum of terms "2", "x", "-0.5 y", "3*z"; what stands alone goes to `constant`.
+/// Reads a sum of terms "2", "x", "-0.5 y", "3*z"; bare numbers are added to `constant`.
 void read_sum(std::string_view sum, std::string_view whole, Vector<3>& factors, double& constant) {
   std::size_t at = 0, terms = 0;
   const auto skip = [&] {
@@ -61,7 +61,7 @@ void read_sum(std::string_view sum, std::string_view whole, Vector<3>& factors, 
   if (terms == 0) refuse_text(whole);
 }
 
-/// The triangles on the plane's side, cut ones cut; corners on the plane stay where they are.
+/// The triangles on the plane's side, cut where needed; corners on the plane stay in place.
 class Cutter {
  public:
   Cutter(const Mesh& mesh, const CutPlane& plane, double tolerance) : plane_(plane) {
@@ -77,7 +77,7 @@ class Cutter {
   bool is_on_plane(std::uint32_t v) const { return side_[v] == 0; }
 
   Mesh result;
-  std::size_t removed = 0;  ///< triangles of which a part went
+  std::size_t removed = 0;  ///< triangles of which a part was removed
 
  private:
   void take(const FaceCorners& t) {
@@ -85,7 +85,7 @@ class Cutter {
       return std::ranges::count_if(t, [&](std::uint32_t v) { return side_[v] == side; });
     };
     if (count(1) > 0) ++removed;
-    if (count(-1) == 0) return;  // above the plane, or in it, where the cap comes
+    if (count(-1) == 0) return;  // above the plane, or in it, where the lid goes
     if (count(1) == 0) {
       result.triangles.push_back(t);
       return;
@@ -108,7 +108,7 @@ class Cutter {
     const Vector<3> p = result.vertices[edge.first], q = result.vertices[edge.second];
     const double hp = plane_.height(p), hq = plane_.height(q);
     Vector<3> x = p + hp / (hp - hq) * (q - p);
-    for (int k = 0; k < 3; ++k)  // in a plane across an axis exactly
+    for (int k = 0; k < 3; ++k)  // exact for a plane normal to an axis
       if (std::abs(plane_.normal[k]) == plane_.normal.norm()) x[k] = plane_.offset / plane_.normal[k];
     result.vertices.push_back(x);
     side_.push_back(0);
@@ -141,7 +141,7 @@ CutPlane plane_in(std::string_view text) {
   const std::size_t sign = text.find_first_of("=<>");
   if (sign == std::string_view::npos) refuse_text(text);
   std::size_t right = sign + 1;
-  if (text[sign] != '=' && right < text.size() && text[right] == '=') ++right;  // <= is < here
+  if (text[sign] != '=' && right < text.size() && text[right] == '=') ++right;  // <= means the same as <
   CutPlane plane;
   plane.text = text;
   plane.side_is_open = text[sign] == '=';
@@ -153,7 +153,7 @@ CutPlane plane_in(std::string_view text) {
   plane.normal -= on_the_right;
   plane.offset = right_constant - left_constant;
   if (plane.normal.isZero(0) || !plane.normal.allFinite() || !std::isfinite(plane.offset)) refuse_text(text);
-  // To unit length: neither that of 1e200 x + 1e200 y nor that of a tiny one is lost on the way.
+  // Scales to unit length without overflow or underflow, as for 1e200 x + 1e200 y.
   const double largest = plane.normal.cwiseAbs().maxCoeff();
   plane.normal /= largest;
   plane.offset /= largest;

@@ -7,16 +7,15 @@
 
 namespace bernal::cad {
 
-/// A plane normal · p = offset, and which side of it stays: that where normal · p is smaller, unless the text
-/// left it open.
+/// A plane normal · p = offset and the side that stays: normal · p <= offset, unless the side is open.
 struct CutPlane {
   Vector<3> normal = Vector<3>::UnitZ();
   double offset = 0;
-  bool side_is_open = false;  ///< "=": whichever side is closed by it
+  bool side_is_open = false;  ///< "=": the side that the plane closes
   std::string text;
 
   double height(const Vector<3>& p) const { return normal.dot(p) - offset; }
-  /// The same plane, of which the other side stays.
+  /// The same plane with the other side kept.
   CutPlane turned() const;
 };
 
@@ -24,10 +23,10 @@ struct CutPlane {
 /// Throws Error{bad_argument} for anything else.
 CutPlane plane_in(std::string_view text);
 
-/// The part of a surface on the plane's side, closed in the plane: corners within `tolerance` of the plane
-/// are taken to lie on it. Edges that are open elsewhere stay open. A closed surface that is all on
-/// that side stays as it is. Throws Error{bad_mesh} if nothing is on that side, if the plane cuts nothing of
-/// an open surface, or if the cut crosses itself. Cost: O(n log n).
+/// The part of a surface on the plane's side, closed in the plane. Corners within `tolerance` of the plane
+/// count as on it. Edges that are open elsewhere stay open. A closed surface entirely on that side is
+/// unchanged. Throws Error{bad_mesh} if nothing is on that side, if the plane cuts nothing of an open
+/// surface, or if the cut crosses itself. Cost: O(n log n).
 Mesh cut(const Mesh& mesh, const CutPlane& plane, double tolerance);
 
 }  // namespace bernal::cad

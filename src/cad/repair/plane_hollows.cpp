@@ -16,7 +16,7 @@
 namespace bernal::cad {
 namespace {
 
-/// Unit vectors of which none is another one's opposite.
+/// Unit vectors, no two of them opposite.
 std::vector<Vector<3>> directions_of(const Mesh& solid) {
   constexpr double same = 1 - 1e-7;
   constexpr std::size_t most_told_apart = 500, most_by_area = 4;
@@ -49,16 +49,17 @@ std::vector<Vector<3>> directions_of(const Mesh& solid) {
   return all;
 }
 
-/// Where a plane across a direction may be a brim.
+/// A level at which a plane normal to the direction may be a brim.
 struct Level {
   Vector<3> direction;
-  double height, bottom, lower;  ///< of the highest and lowest corner there, and of the next one below
-  double area;                   ///< of the faces in the plane
+  /// Heights of the highest and lowest corner at this level, and of the next one below.
+  double height, bottom, lower;
+  double area;  ///< of the faces in the plane
   std::size_t corners;
 };
 
-/// The corners around which no other one is higher, and those around which such and others take turns: the
-/// top of a round brim, and where a vessel would spill.
+/// The corners that no neighbour is above, and those whose neighbours alternate between higher and lower: the
+/// top of a round brim, and the spill point of a vessel.
 std::vector<std::uint32_t> peaks_and_passes(const Mesh& solid, const std::vector<std::size_t>& level) {
   std::vector<std::uint8_t> turns(level.size(), 0), is_higher(level.size(), 0);
   for (const FaceCorners& t : solid.triangles)
@@ -95,7 +96,7 @@ void add_levels(const Mesh& solid, const Vector<3>& direction, double tolerance,
     if (level[t[0]] != level[t[1]] || level[t[0]] != level[t[2]]) continue;
     all[level[t[0]]].area += std::abs(doubled_area(solid, t).dot(direction)) / 2;
   }
-  all.erase(all.begin());  // nothing is below it
+  all.erase(all.begin());  // nothing is below the lowest
   std::erase_if(all, [](const Level& one) { return one.corners == 0 && !(one.area > 0); });
   constexpr std::size_t most_by_area = 6, most_by_corners = 4;
   std::ranges::stable_sort(all, std::greater<>(), &Level::corners);
@@ -124,7 +125,7 @@ double openness_of(const Space& space, const CutPlane& brim, double tolerance) {
   return lid / rest;
 }
 
-/// The largest of those that overlap.
+/// Keeps the largest of those that overlap.
 class Largest {
  public:
   void add(PlaneHollow hollow) {
@@ -188,8 +189,8 @@ std::vector<PlaneHollow> hollows_below_planes(const Mesh& solid, double toleranc
   Largest largest;
   for (const Level& level : levels) {
     throw_if_interrupted();
-    // At the corners' own height for what has a flat brim, and just below for what has not.
-    constexpr double hardly_lower = 1e-4;  // of the way to the next corner
+    // At the corners' own height for a flat brim, and just below for others.
+    constexpr double hardly_lower = 1e-4;  // of the distance to the next corner
     for (const double height :
          {level.height, level.bottom - std::max(4 * apart, hardly_lower * (level.bottom - level.lower))}) {
       const CutPlane brim = plane_across(level.direction, height);

@@ -11,7 +11,7 @@
 
 namespace bernal::cad {
 
-/// Points by their numbers, in cubes of a given edge anywhere in space; only cubes with points are held.
+/// Points by number in a sparse grid of cubes of a given edge; only cubes with points are stored.
 class PointCubes {
  public:
   explicit PointCubes(double edge) : edge_(edge) {}
@@ -19,7 +19,7 @@ class PointCubes {
   void add(std::uint32_t number, const Vector<3>& p) { cubes_[cube_of(p)].push_back(number); }
 
   /// Calls see(number) for every point in the cubes that the bounds meet. Cost: the number of these cubes, or
-  /// of all that have points if those are fewer.
+  /// of all cubes with points if that is smaller.
   template <class See>
   void each_in(const Vector<3>& lower, const Vector<3>& upper, const See& see) const {
     const Cube from = cube_of(lower), to = cube_of(upper);
@@ -44,7 +44,7 @@ class PointCubes {
   }
 
  private:
-  using Cube = std::array<double, 3>;  // whole numbers, of any size
+  using Cube = std::array<double, 3>;  // integers of any size
 
   Cube cube_of(const Vector<3>& p) const {
     Cube c;

@@ -20,14 +20,14 @@ namespace {
 
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
-/// The cut grows by a ring of neighbours where a round has not helped much.
+/// The cut grows by a ring of neighbours if a round did not help much.
 constexpr int most_rings = 6;
 constexpr int most_rounds = 20;
-/// More than this part of a component is not cut out of it.
+/// No more than this share of a component is cut out.
 constexpr double most_cut = 0.5;
-/// A piece that the cut separates is dropped if it has no more than this part of the component's area.
+/// A piece separated by the cut is dropped if it has at most this share of the component's area.
 constexpr double small_piece = 0.05;
-/// CGAL cannot be interrupted; so many faces take it a few minutes.
+/// CGAL cannot be interrupted; this many faces take it a few minutes.
 constexpr std::size_t most_faces = 2'000'000;
 
 Pairs within_components(const Pairs& pairs, const MeshTopology& topology) {
@@ -37,7 +37,7 @@ Pairs within_components(const Pairs& pairs, const MeshTopology& topology) {
   return own;
 }
 
-/// Marks also the faces that have a corner with one of those marked.
+/// Also marks the faces that share a corner with a marked one.
 void add_ring(const Mesh& mesh, std::vector<bool>& marked) {
   std::vector<bool> corner(mesh.vertices.size(), false);
   for (std::size_t t = 0; t < marked.size(); ++t)
@@ -47,9 +47,9 @@ void add_ring(const Mesh& mesh, std::vector<bool>& marked) {
     for (const std::uint32_t i : mesh.triangles[t]) marked[t] = marked[t] || corner[i];
 }
 
-/// The small pieces into which a component falls without the marked faces are marked as well; and all of
-/// the component, if it is nearly gone, is spared.
-void judge_pieces(const Mesh& mesh, const MeshTopology& topology, std::vector<bool>& marked) {
+/// Also marks the small pieces into which a component falls without the marked faces; unmarks a component
+/// that would nearly disappear.
+void drop_small_pieces(const Mesh& mesh, const MeshTopology& topology, std::vector<bool>& marked) {
   Mesh rest = mesh;
   std::vector<bool> kept = marked;
   kept.flip();
@@ -75,15 +75,15 @@ void judge_pieces(const Mesh& mesh, const MeshTopology& topology, std::vector<bo
     if (left[topology.component[t]] < (1 - most_cut) * of_component[topology.component[t]]) marked[t] = false;
 }
 
-/// One round of cutting; nothing if no face could be cut or a hole could not be filled.
+/// One round of cutting; absent if no face could be cut or a hole could not be filled.
 std::optional<Mesh> cut_once(const Mesh& mesh, const MeshTopology& topology, const Pairs& own, int rings) {
   std::vector<bool> marked(mesh.triangles.size(), false);
   for (const auto& [s, t] : own) marked[s] = marked[t] = true;
   for (int ring = 0; ring < rings; ++ring) add_ring(mesh, marked);
-  judge_pieces(mesh, topology, marked);
+  drop_small_pieces(mesh, topology, marked);
   if (std::find(marked.begin(), marked.end(), true) == marked.end()) return std::nullopt;
 
-  std::vector<std::array<std::uint32_t, 2>> was_open;  // sides of triangles as they run
+  std::vector<std::array<std::uint32_t, 2>> was_open;  // directed sides of triangles
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k)
       if (!marked[t] && topology.neighbor[t][k] == no_index)
@@ -104,7 +104,7 @@ std::optional<Mesh> cut_once(const Mesh& mesh, const MeshTopology& topology, con
   return result;
 }
 
-/// Cuts until no component crosses itself, or in vain. Returns how many crossings within components are left.
+/// Cuts until no component crosses itself, or without further success. Returns the number of crossings left.
 std::size_t cut_within_components(Mesh& mesh, const Monitor& monitor) {
   MeshTopology topology = topology_of(mesh);
   Pairs own = within_components(self_intersecting_pairs(mesh), topology);
@@ -126,16 +126,16 @@ std::size_t cut_within_components(Mesh& mesh, const Monitor& monitor) {
   return own.size();
 }
 
-/// Closed components of which each crosses another one of them.
+/// Closed components, each crossing another of the group.
 struct Group {
   std::vector<Mesh> outward, inward;
   std::size_t faces = 0;
 };
 
 struct Bodies {
-  Mesh others;  ///< all faces in no group
+  Mesh others;  ///< faces outside all groups
   std::vector<Group> groups;
-  std::size_t apart = 0;  ///< pairs of components that cross, of which one is no body
+  std::size_t apart = 0;  ///< crossing pairs of components of which one is no body
 };
 
 Bodies bodies_of(const Mesh& mesh) {
@@ -186,8 +186,7 @@ struct Counts {
   std::size_t with_itself = 0, united = 0, made = 0, taken_out = 0, failed = 0, too_large = 0;
 };
 
-/// Unites the bodies two by two, so that each face takes part in few unions; those with which it does not
-/// work stay as they are.
+/// Unites the bodies pairwise, so that each face takes part in few unions; those that cannot be united stay.
 std::vector<Mesh> unite_all(std::vector<Mesh> bodies, const Monitor& monitor, Counts& counts) {
   std::vector<Mesh> failed;
   while (bodies.size() > 1 && !monitor.stop()) {
@@ -293,38 +292,38 @@ RepairedMesh cut_out_crossings(Mesh mesh, const Monitor& monitor) {
   const std::size_t own_before = within_components(self_intersecting_pairs(mesh), topology_of(mesh)).size();
   const std::size_t own_after = own_before > 0 ? cut_within_components(mesh, monitor) : 0;
   combine_bodies(mesh, monitor, counts);
-  cut_within_components(mesh, monitor);  // what rounding the corners of the unions has left
+  cut_within_components(mesh, monitor);  // crossings from rounding the corners of the unions
 
-  std::vector<std::string> said;
+  std::vector<std::string> phrases;
   if (counts.with_itself > 0)
-    said.push_back(
+    phrases.push_back(
         fmt::format("of {} itself the outer walls are kept",
                     counted(counts.with_itself, "part that crosses", "parts of which each crosses")));
   if (own_after < own_before)
-    said.push_back(
+    phrases.push_back(
         fmt::format("cut out {} where a part crosses itself, and patched over them: some room may "
                     "be lost there",
                     counted(own_before - own_after, "crossing", "crossings")));
   if (counts.made > 0)
-    said.push_back(fmt::format("united {} that cross{}", counted(counts.united, "body", "bodies"),
-                               counts.made > 1 ? fmt::format(" into {}", counts.made) : ""));
+    phrases.push_back(fmt::format("united {} that cross{}", counted(counts.united, "body", "bodies"),
+                                  counts.made > 1 ? fmt::format(" into {}", counts.made) : ""));
   if (counts.taken_out > 0)
-    said.push_back(fmt::format(
+    phrases.push_back(fmt::format(
         "took {} that {} oriented inward out of {} surroundings", counted(counts.taken_out, "body", "bodies"),
         counts.taken_out == 1 ? "is" : "are", counts.taken_out == 1 ? "its" : "their"));
   if (counts.failed > 0)
-    said.push_back(fmt::format("{} could not be united: the result would touch itself along an edge",
-                               counted(counts.failed, "body", "bodies")));
+    phrases.push_back(fmt::format("{} could not be united: the result would touch itself along an edge",
+                                  counted(counts.failed, "body", "bodies")));
   if (counts.too_large > 0)
-    said.push_back(fmt::format("left {} of crossing bodies with more than {} faces",
-                               counted(counts.too_large, "group", "groups"), most_faces));
+    phrases.push_back(fmt::format("left {} of crossing bodies with more than {} faces",
+                                  counted(counts.too_large, "group", "groups"), most_faces));
   const std::size_t after = self_intersecting_pairs(mesh).size();
   if (after > 0) {
-    said.push_back(fmt::format("{} of {} remain", after, counted(before, "crossing", "crossings")));
+    phrases.push_back(fmt::format("{} of {} remain", after, counted(before, "crossing", "crossings")));
     if (bodies_of(mesh).apart > 0)
-      said.push_back("some of them with an open sheet, which encloses nothing: wrap keeps it as a wall");
+      phrases.push_back("some of them with an open sheet, which encloses nothing: wrap keeps it as a wall");
   }
-  return {std::move(mesh), fmt::format("{}", fmt::join(said, "; "))};
+  return {std::move(mesh), fmt::format("{}", fmt::join(phrases, "; "))};
 }
 
 }  // namespace bernal::cad

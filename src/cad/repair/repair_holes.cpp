@@ -14,8 +14,8 @@
 namespace bernal::cad {
 namespace {
 
-/// Of each component the extent of the part that it belongs to: the diagonal of the bounds of all components
-/// that hang together by corners.
+/// For each component the extent of its part: the diagonal of the bounds of all components connected by
+/// corners.
 std::vector<double> extents_of(const Mesh& mesh, const MeshTopology& topology) {
   DisjointSets parts(mesh.vertices.size());
   for (const FaceCorners& t : mesh.triangles)
@@ -31,7 +31,7 @@ std::vector<double> extents_of(const Mesh& mesh, const MeshTopology& topology) {
 
 struct Patch {
   std::size_t hole, first, last;  ///< which hole, and its faces
-  bool crosses_itself = false;    ///< another face of its component
+  bool crosses_itself = false;    ///< crosses another face of its component
   bool crosses_another = false;
 };
 
@@ -102,15 +102,15 @@ RepairedMesh close_holes(Mesh mesh, double widest) {
     mesh.triangles = std::move(kept);
   }
 
-  std::vector<std::string> said;
+  std::vector<std::string> phrases;
   if (const std::size_t closed = patches.size() - crossing; closed > 0)
-    said.push_back(fmt::format("closed {}, {}{:.4g} across", counted(closed, "hole", "holes"),
-                               closed > 1 ? "the widest " : "", widest_closed));
+    phrases.push_back(fmt::format("closed {}, {}{:.4g} across", counted(closed, "hole", "holes"),
+                                  closed > 1 ? "the widest " : "", widest_closed));
   if (dented > 0)
-    said.push_back(fmt::format("{} of the patches cross{} another part of the surface", dented,
-                               dented == 1 ? "es" : ""));
+    phrases.push_back(fmt::format("{} of the patches cross{} another part of the surface", dented,
+                                  dented == 1 ? "es" : ""));
   const auto left = [&](std::size_t count, const std::string& why) {
-    if (count > 0) said.push_back(fmt::format("left {} open: {}", counted(count, "hole", "holes"), why));
+    if (count > 0) phrases.push_back(fmt::format("left {} open: {}", counted(count, "hole", "holes"), why));
   };
   left(tops,
        fmt::format("{:.4g} across is more than half of the part's {:.4g}, an open top rather than a hole",
@@ -119,7 +119,7 @@ RepairedMesh close_holes(Mesh mesh, double widest) {
   left(branched, "three or more faces meet at the rim");
   left(crossing, "a patch would cross the surface around it");
   left(unfilled, "no faces fill it");
-  return {std::move(mesh), fmt::format("{}", fmt::join(said, "; "))};
+  return {std::move(mesh), fmt::format("{}", fmt::join(phrases, "; "))};
 }
 
 }  // namespace bernal::cad

@@ -3,11 +3,11 @@
 
 namespace bernal::cad {
 
-/// Fills the holes that are at most `widest` wide, as the diagonal of the bounds of their rim. Without such a
-/// bound (infinity) a hole wider than half of the part that it is in is an open top, not a hole, and
-/// stays; so do holes at whose rim three or more faces meet, and those whose patch would cross the component
-/// itself. Faces are turned until neighbours agree; a one-sided surface is left as it is.
-/// The first faces are those given. Cost: O(T log² T), and for holes see Patcher::fill.
+/// Fills the holes up to `widest` wide (the diagonal of the bounds of the rim). With `widest` infinite, a
+/// hole wider than half of its part is an open top and stays. Holes with three or more faces at an edge of
+/// the rim, and holes whose patch would cross their component, stay too. Faces are flipped until neighbours
+/// agree; a one-sided surface does not change. The given faces come first in the result. Cost: O(T log² T),
+/// and for holes see Patcher::fill.
 RepairedMesh close_holes(Mesh mesh, double widest);
 
 }  // namespace bernal::cad

@@ -5,8 +5,8 @@
 
 namespace bernal::cad {
 
-/// A surface after a repair that somebody asked for. Repairs never throw for what a surface is like: `done`
-/// says in one phrase what was done and what was not, and the mesh is then as far as it got.
+/// A surface after a requested repair. Repairs never throw because of the surface: `done` says in one phrase
+/// what succeeded and what did not, and the mesh is the result so far.
 struct RepairedMesh {
   Mesh mesh;
   std::string done;

@@ -73,7 +73,7 @@ void Repairs::apply(const RepairEntry& entry) {
   done_.push_back(
       fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
                   "{:.3g} from it",
-                  not_less(added), not_less(lost)));
+                  rounded_up(added), rounded_up(lost)));
   if (const std::string left = what_is_left(mesh_, repaired.mesh); !left.empty())
     cautions.push_back(
         fmt::format("repair = [\"{}\"] lost a part: {}{}", name_of(entry.repair), left, entry.advice));

@@ -16,7 +16,7 @@ SurfacePieces::SurfacePieces(const Mesh& mesh)
   constexpr std::uint32_t most = 2000;
   if (count() > most)
     throw Error(ErrorCode::bad_mesh,
-                fmt::format("the surface has {} pieces, too many to ask each what it encloses; choose "
+                fmt::format("the surface has {} pieces, too many to test what each encloses; choose "
                             "\"solids\"",
                             count()));
   for (std::size_t t = mesh.triangles.size(); t-- > 0;) corner_[piece_of(t)] = mesh.triangles[t][0];

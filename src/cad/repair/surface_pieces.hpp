@@ -7,29 +7,30 @@
 
 namespace bernal::cad {
 
-/// The pieces of a closed surface, and which of them lie in which. The mesh has to outlive it.
+/// The pieces of a closed surface and their nesting. The mesh must outlive it.
 class SurfacePieces {
  public:
-  /// Throws Error{bad_mesh} where there are more than 2,000. Cost: a query in a tree for every two pieces.
+  /// Throws Error{bad_mesh} for more than 2,000 pieces. Cost: a tree query for every two pieces.
   explicit SurfacePieces(const Mesh& mesh);
 
   std::uint32_t count() const { return topology_.components; }
   std::uint32_t piece_of(std::size_t triangle) const { return topology_.component[triangle]; }
-  /// How many others enclose it: the walls of a space are one of even depth, and those next in it.
+  /// Number of pieces that enclose it: the walls of a space are a piece of even depth and those next inside
+  /// it.
   std::uint32_t depth(std::uint32_t piece) const { return depth_[piece]; }
   /// One corner of it.
   const Vector<3>& corner(std::uint32_t piece) const { return mesh_.vertices[corner_[piece]]; }
-  /// Of what each encloses.
+  /// Volume enclosed by each piece.
   std::vector<double> volumes() const;
 
   bool encloses(std::uint32_t piece, const Vector<3>& p) const;
   bool encloses(std::uint32_t piece, std::uint32_t other) const {
     return piece != other && encloses(piece, corner(other));
   }
-  /// The innermost piece around a point, or none.
+  /// The innermost piece around a point; no_index if none.
   std::uint32_t around(const Vector<3>& p) const;
 
-  /// The walls of the spaces of which these are the outermost pieces: they and the ones next in them.
+  /// The walls of the spaces with these outermost pieces: they and the pieces next inside them.
   Mesh walls_of(const std::vector<bool>& outermost) const;
 
  private:

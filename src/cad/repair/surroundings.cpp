@@ -20,8 +20,8 @@ bool Surroundings::is_on_box(const Vector<3>& p) const {
   return (p.array() == box_.lower.array()).any() || (p.array() == box_.upper.array()).any();
 }
 
-/// Whether a piece of what is left of it encloses the solid itself, as where a plane touches a brim and does
-/// not part what is on both sides of it: asked beside the middle of the piece's largest face.
+/// Whether a remaining piece encloses the solid itself, as when a plane touches a brim without separating
+/// both sides; tested beside the middle of the piece's largest face.
 bool Surroundings::is_solid(const SurfacePieces& pieces, std::uint32_t piece, const Mesh& mesh) const {
   Vector<3> middle = Vector<3>::Zero(), normal = Vector<3>::Zero();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -34,7 +34,7 @@ bool Surroundings::is_solid(const SurfacePieces& pieces, std::uint32_t piece, co
   const Vector<3> aside = 1e-6 * box_.diagonal() * normal.stableNormalized();
   for (const Vector<3>& p : {Vector<3>(middle + aside), Vector<3>(middle - aside)})
     if (pieces.encloses(piece, p)) return tree_of_solid_.crossing(p, 0, endless) == Crossing::odd;
-  return true;  // thinner than can be told
+  return true;  // thinner than can be decided
 }
 
 std::vector<Space> Surroundings::closed_off(const std::vector<CutPlane>& planes, double tolerance,

@@ -9,25 +9,25 @@ namespace bernal::cad {
 
 class SurfacePieces;
 
-/// A space that is closed, and free of the solid.
+/// A closed space outside the solid.
 struct Space {
-  Mesh walls;  ///< and those of what stands in it; not yet turned outward
+  Mesh walls;  ///< including those of what is inside it; not yet oriented outwards
   double volume = 0;
 };
 
-/// The space around a solid, in a box that is larger than it: what planes close off from that box is hollow.
+/// The space around a solid within a larger box: what planes close off from that box is hollow.
 class Surroundings {
  public:
   /// Precondition: closed. The solid is copied.
   explicit Surroundings(const Mesh& solid);
 
-  /// What the planes close off, the largest first; of that only what is around a point where there is one.
-  /// Planes that leave anything open close off nothing. `least`: what is smaller is passed over. Throws as
-  /// `cut`. Cost: that of cutting, of 2 queries in a tree for each piece, and looking for crossings.
+  /// The spaces that the planes close off, the largest first; with `point`, only the one around it. Planes
+  /// that leave anything open close off nothing. `least`: smaller spaces are skipped. Throws as `cut`. Cost:
+  /// that of cutting, 2 tree queries for each piece, and a search for crossings.
   std::vector<Space> closed_off(const std::vector<CutPlane>& planes, double tolerance, double least = 0,
                                 const Vector<3>* point = nullptr) const;
 
-  /// Below this volume it is a mere crevice.
+  /// Volumes below this are mere crevices.
   double crevice() const { return 1e-4 * box_.volume(); }
   const TriangleTree& solid() const { return tree_of_solid_; }
 

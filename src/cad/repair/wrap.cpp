@@ -20,16 +20,16 @@ namespace {
 
 constexpr std::size_t most_points = 500'000;
 constexpr double offset_over_alpha = 1.0 / 30, alpha_over_diagonal = 1.0 / 100;
-/// A seed begins with a ball of 1.65 alpha, which may reach into the surface, though better not: so far it
-/// should be from that; and how far below the faces to look for one, by that.
+/// A seed begins with a ball of 1.65 alpha, which should not reach into the surface: the required distance
+/// from it; and the depth below the faces at which to look for seeds, relative to that distance.
 constexpr double seed_over_alpha = 1.7 + offset_over_alpha, look_below = 1.02;
 /// Points along the longest edge of the bounds at which to look for the inside.
 constexpr int looks_along_edge = 32;
-/// And how often below the faces, at most.
+/// The largest number of points to try below the faces.
 constexpr double most_looks_below = 50'000;
 constexpr std::size_t most_seeds = 64, most_seeds_in_nooks = 1000;
 
-/// Whether at least five of the six ways along the axes leave the surface by an odd number of crossings.
+/// Whether at least five of the six rays along the axes cross the surface an odd number of times.
 bool is_inside(const TriangleTree& tree, const Vector<3>& p) {
   int odd = 0;
   for (int way = 0; way < 6 && odd + 6 - way >= 5; ++way)
@@ -44,7 +44,7 @@ struct Seed {
   Vector<3> place;
 };
 
-/// Where to look for the inside: a grid, which finds what is wide.
+/// Points at which to test for the inside: a grid, which finds wide spaces.
 std::vector<Vector<3>> grid_of_places(const Bounds<3>& bounds) {
   std::vector<Vector<3>> places;
   const double step = bounds.size().maxCoeff() / looks_along_edge;
@@ -54,17 +54,17 @@ std::vector<Vector<3>> grid_of_places(const Bounds<3>& bounds) {
   for (int z = 0; z < count[2]; ++z)
     for (int y = 0; y < count[1]; ++y)
       for (int x = 0; x < count[0]; ++x)
-        // Off the middle of the cells, because faces of parts stand at halves and thirds.
+        // Off the middle of the cells, because faces of parts are often at halves and thirds.
         places.push_back(bounds.lower +
                          (Vector<3>(x, y, z) + Vector<3>(0.4871, 0.5113, 0.4937)).cwiseProduct(cell));
   return places;
 }
 
-/// And places below the faces, on both sides, as deep as a seed has to be, which find what is thin.
+/// Points at the depth of a seed below the faces, on both sides, which find thin spaces.
 std::vector<Vector<3>> places_below_faces(const Mesh& mesh, double depth) {
   std::vector<Vector<3>> places;
   const double apart = std::max(2 * depth, std::sqrt(area_of(mesh) / most_looks_below));
-  double owed = 0;  // of a look, by the faces so far: small ones share it
+  double owed = 0;  // fraction of a point owed by the faces so far, so that small ones share one
   for (const auto& t : mesh.triangles) {
     const Vector<3> normal = doubled_area(mesh, t);
     owed += normal.norm() / 2 / (apart * apart);
@@ -82,7 +82,7 @@ std::vector<Vector<3>> places_below_faces(const Mesh& mesh, double depth) {
   return places;
 }
 
-/// Points inside that are farther than `least` from the surface, the farthest first.
+/// Points inside, farther than `least` from the surface, the farthest first.
 std::vector<Seed> points_inside(const Mesh& mesh, const std::vector<Vector<3>>& places, double least,
                                 const Monitor& monitor) {
   const TriangleTree tree(mesh);
@@ -99,7 +99,7 @@ std::vector<Seed> points_inside(const Mesh& mesh, const std::vector<Vector<3>>& 
   return all;
 }
 
-/// Those of which none is nearer to another than that is to the surface.
+/// Seeds none of which is nearer to another than to the surface.
 std::vector<Seed> scattered(const std::vector<Seed>& all, std::size_t most) {
   std::vector<Seed> seeds;
   for (const Seed& candidate : all) {
@@ -112,7 +112,7 @@ std::vector<Seed> scattered(const std::vector<Seed>& all, std::size_t most) {
   return seeds;
 }
 
-/// Wrapped from these points, or from outside if there are none. Throws StoppedWrap.
+/// Wrapped from these seeds, or from outside if there are none. Throws StoppedWrap.
 Mesh wrapped(const Mesh& mesh, double alpha, double offset, const std::vector<Seed>& seeds,
              const Monitor& monitor) {
   std::vector<Vector<3>> from;
@@ -120,7 +120,7 @@ Mesh wrapped(const Mesh& mesh, double alpha, double offset, const std::vector<Se
   return alpha_wrap(mesh, alpha, offset, from, most_points, monitor);
 }
 
-/// Of these points those that a wrap has not reached: they lie in chambers of their own.
+/// The seeds that a wrap has not reached: they lie in other chambers.
 std::vector<Seed> outside_of(const Mesh& wrap, const std::vector<Seed>& inside) {
   if (wrap.triangles.empty()) return {};
   const TriangleTree tree(wrap);
@@ -131,10 +131,10 @@ std::vector<Seed> outside_of(const Mesh& wrap, const std::vector<Seed>& inside) 
   return scattered(left, most_seeds_in_nooks);
 }
 
-/// Without those seeds from which the wrap gets out, be it that they are not inside or that their chamber has
-/// a gap: found by halving.
+/// Removes seeds from which the wrap gets out, because they are not inside or their chamber has a gap; found
+/// by halving.
 template <class WrapFrom>
-std::vector<Seed> that_stay_inside(const std::vector<Seed>& seeds, const WrapFrom& wrap_from) {
+std::vector<Seed> keep_inside(const std::vector<Seed>& seeds, const WrapFrom& wrap_from) {
   if (seeds.empty()) return {};
   try {
     wrap_from(seeds);
@@ -144,14 +144,14 @@ std::vector<Seed> that_stay_inside(const std::vector<Seed>& seeds, const WrapFro
     if (seeds.size() == 1) return {};
   }
   const auto middle = seeds.begin() + std::ssize(seeds) / 2;
-  std::vector<Seed> stay = that_stay_inside({seeds.begin(), middle}, wrap_from);
-  const std::vector<Seed> others = that_stay_inside({middle, seeds.end()}, wrap_from);
+  std::vector<Seed> stay = keep_inside({seeds.begin(), middle}, wrap_from);
+  const std::vector<Seed> others = keep_inside({middle, seeds.end()}, wrap_from);
   stay.insert(stay.end(), others.begin(), others.end());
   return stay;
 }
 
-/// Whether a wrapped surface holds next to nothing but the offset from a sheet, on both of its sides.
-bool is_but_a_skin(const Mesh& mesh, double offset) {
+/// Whether a wrapped surface encloses hardly more than the offset on both sides of a sheet.
+bool is_only_a_skin(const Mesh& mesh, double offset) {
   constexpr double more = 1.5;  // at its rim, and where it bends
   return signed_volume(mesh) < more * area_of(mesh) * offset;
 }
@@ -162,7 +162,7 @@ bool lies_within(const Mesh& mesh, const Bounds<3>& bounds) {
   });
 }
 
-/// The largest alpha with which a sphere of that radius is a seed wherever it fits, with the default offset.
+/// The largest alpha for which a sphere of that radius is a seed wherever it fits, with the default offset.
 double alpha_for(double radius) { return radius / look_below / seed_over_alpha; }
 
 constexpr std::string_view from_inside = "wrapped from inside";
@@ -201,7 +201,7 @@ RepairedMesh wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor
         return made;
       };
       Mesh inner = wrap_from(seeds);
-      const std::vector<Seed> nooks = that_stay_inside(outside_of(inner, in_nooks), wrap_from);
+      const std::vector<Seed> nooks = keep_inside(outside_of(inner, in_nooks), wrap_from);
       if (!nooks.empty()) {
         seeds.insert(seeds.end(), nooks.begin(), nooks.end());
         inner = wrap_from(seeds);
@@ -213,10 +213,10 @@ RepairedMesh wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor
     }
     Mesh outer = wrapped(mesh, alpha, offset, {}, monitor);
     if (outer.triangles.empty())
-      return {std::move(mesh), fmt::format("not wrapped ({}): nothing came out", how)};
-    if (is_but_a_skin(outer, offset))
+      return {std::move(mesh), fmt::format("not wrapped ({}): the result is empty", how)};
+    if (is_only_a_skin(outer, offset))
       return {std::move(mesh),
-              fmt::format("not wrapped ({}): {}, and from outside there is but the skin of a sheet; {}", how,
+              fmt::format("not wrapped ({}): {}, and from outside only the skin of a sheet results; {}", how,
                           why, close_first)};
     return {
         std::move(outer),
@@ -231,9 +231,9 @@ RepairedMesh wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor
             fmt::format("not wrapped ({}): {}{}", how, because,
                         reason == StoppedWrap::outside ? fmt::format("; {}", close_first) : "")};
   } catch (const std::exception& error) {
-    std::string said = error.what();
-    std::replace(said.begin(), said.end(), '\n', ' ');
-    return {std::move(mesh), fmt::format("not wrapped ({}): {}", how, said)};
+    std::string message = error.what();
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    return {std::move(mesh), fmt::format("not wrapped ({}): {}", how, message)};
   }
 }
 

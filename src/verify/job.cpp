@@ -1,4 +1,4 @@
-#include "verify/course.hpp"
+#include "verify/job.hpp"
 
 #include <algorithm>
 #include <mutex>
@@ -8,14 +8,13 @@
 namespace bernal::verify {
 namespace {
 
-/// That the work, or a slab of it, is cut into where somebody watches it.
+/// Number of parts of the work, or of a slab, if there is a monitor.
 constexpr std::size_t parts = 256;
 constexpr std::chrono::milliseconds between_reports{50};
 
 }  // namespace
 
-Tally Course::for_each(std::string_view activity, std::size_t n, std::size_t grain,
-                       const Judge& judge) const {
+Tally Job::for_each(std::string_view activity, std::size_t n, std::size_t grain, const Judge& judge) const {
   const bool watched = options_.monitor.on_progress || options_.monitor.cancelled;
   const std::size_t part = watched ? std::max(grain, n / parts) : n;
   Tally sum(options_.list);
@@ -33,7 +32,7 @@ Tally Course::for_each(std::string_view activity, std::size_t n, std::size_t gra
   return sum;
 }
 
-void Course::report(std::string_view activity, std::size_t done, std::size_t n) const {
+void Job::report(std::string_view activity, std::size_t done, std::size_t n) const {
   stopped_ = options_.monitor.stop();
   const auto now = std::chrono::steady_clock::now();
   if (now < next_report_) return;

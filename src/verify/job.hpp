@@ -9,24 +9,25 @@
 
 namespace bernal::verify {
 
-/// How a certificate is made: what its caller asked for, and whether he has stopped it.
-class Course {
+/// A certification in progress: its options, and whether the monitor has stopped it.
+class Job {
  public:
-  explicit Course(const CertifyOptions& options) : options_(options) {}
+  explicit Job(const CertifyOptions& options) : options_(options) {}
 
   const CertifyOptions& options() const { return options_; }
   bool stopped() const { return stopped_; }
 
-  /// What is judged from now on is part `at` of so many.
-  void goes_on(std::size_t at, std::size_t parts) const {
+  /// Tells the monitor that part `at` of `parts` follows.
+  void set_part(std::size_t at, std::size_t parts) const {
     at_ = at;
     parts_ = parts;
   }
 
   using Judge = std::function<void(std::size_t k, Tally& tally)>;
 
-  /// The sum of judge(k, tally) over k from 0 to n, `grain` or more of them to a task. A monitor is asked
-  /// between the parts that the work is cut into for it. Once it has answered true, the rest is left out.
+  /// The sum of judge(k, tally) over k from 0 to n, at least `grain` of them a task. With a monitor, the work
+  /// is divided into parts, and the monitor is polled between them; once it has returned true, the rest is
+  /// skipped.
   Tally for_each(std::string_view activity, std::size_t n, std::size_t grain, const Judge& judge) const;
 
  private:
