@@ -10,8 +10,8 @@ struct Settle {
   Coordinates direction = {0, 0, -1};
   /// What the bed is to be like, except its height. In a scene [spheres] says it.
   BedTarget bed = {};
-  /// A sphere is at rest if it can fall and roll by no more than this, in radii. If it is more than 1e-7, it is
-  /// only checked whether spheres hang.
+  /// A sphere is at rest if it can fall and roll by no more than this, in radii. If it is more than 1e-7, it
+  /// is only checked whether spheres hang.
   double rest = 1e-7;
 };
 
