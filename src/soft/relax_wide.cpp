@@ -174,15 +174,13 @@ GrowingBox box_of_wide(const Relax& options, std::size_t spheres, double stop) {
           .last_overlap = last_mean};
 }
 
-/// The spheres push each other apart while the box grows.
-template <int D, class Stop, class OnGrowth>
-StageEnd grow_by_means(SoftPacking& packing, const std::vector<double>& radii, const GrowingBox& box,
-                       BoxGrowth& growth, Stop&& stop, OnGrowth&& on_growth) {
-  const auto overlap_of = [&](int cycle, double largest, const std::vector<float>& squeeze) {
+/// The overlap by which the box grows, as `grow_apart` asks for it. The radii outlive it.
+template <int D>
+auto overlap_by_means(const std::vector<double>& radii) {
+  return [&radii](int cycle, double largest, const std::vector<float>& squeeze) {
     const double share = std::min(1.0, std::pow(cycle / cycles_of_means, power_of_cycles));
     return std::min(largest, std::max(mean_overlap<D>(squeeze, radii), share * largest));
   };
-  return grow_apart<D>(packing, box, growth, stop, overlap_of, on_growth);
 }
 
 /// Few spheres, in the densest of some packings of them, spread out or squeezed into the box.
@@ -201,8 +199,9 @@ StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, cons
     place_between(start, 0, box, random, work.monitor);
     SoftPacking packing(start, box, soft_kernels().front(), true);
     BoxGrowth growth;
-    end = grow_by_means<D>(
-        packing, start.r, growing, growth, [&] { return work.monitor.stop(); }, [](double, double) {});
+    end = grow_apart<D>(
+        packing, growing, growth, [&] { return work.monitor.stop(); }, overlap_by_means<D>(start.r),
+        [](double, double) {});
     teller.started(n + 1, starts, growth.molr);
     work.effects["neighbour lists"] += packing.lists_built();
     work.effects["relaxation"].calls += sweeps_of(growth, growing, end);
@@ -261,19 +260,8 @@ StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
                     double before) {
   SoftPacking packing(spheres, edges, soft_kernels().front(), true);
   const GrowingBox box = box_of_wide(options, spheres.size(), least_overlap(options, work.allowed_overlap));
-  BoxGrowth growth{.molr = overlap};
-  const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
-  GrowthTeller teller(work, box, growth, before);
-  const auto stops = [&] {
-    teller.swept();
-    return work.stop();
-  };
-  const StageEnd end = grow_by_means<D>(packing, spheres.r, box, growth, stops,
-                                        [&](double factor, double) { teller.grown(factor); });
-  work.effects["neighbour lists"] += packing.lists_built();
-  work.effects["relaxation"].calls += sweeps_of(growth, box, end);
-  packing.write_to(spheres, edges);
-  return end;
+  return let_box_grow<D>(packing, spheres, edges, work, box, {.molr = overlap}, before,
+                         overlap_by_means<D>(spheres.r));
 }
 
 #define BERNAL_INSTANTIATE(D)                                                               \
