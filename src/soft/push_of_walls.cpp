@@ -13,15 +13,15 @@ namespace bernal {
 namespace {
 
 constexpr std::size_t most_contacts = 32;
-/// A centre nearer to a facet than so many units of the coordinates does not approach it at all.
+/// A centre nearer to a facet than this number of units of the coordinates does not approach it.
 constexpr double units_kept = 64;
 /// In radii, see SoftWalls.
 constexpr double leeway = 0.02;
 
 }  // namespace
 
-/// Appends what is nearer than `reach` among the pieces of a sphere; returns a distance that no wall is
-/// nearer than.
+/// Appends the contacts nearer than `reach` among the pieces of a sphere. Returns a lower bound of the
+/// distance from all walls.
 double SoftWalls::look_through(const NearSphere& near, double reach, std::vector<WallContact>& contacts) {
   double free = near.beyond - near.way;
   for (std::uint32_t first = 0; first < near.count; first += run) {
@@ -31,7 +31,7 @@ double SoftWalls::look_through(const NearSphere& near, double reach, std::vector
       continue;
     }
     const std::uint32_t end = std::min(near.count, first + run);
-    // Of a fine mesh facets come from far away in memory: they are on their way before they are needed.
+    // The facets of a fine mesh are far apart in memory: they are prefetched.
     std::array<std::uint32_t, run> touchable;
     std::size_t count = 0;
     for (std::uint32_t k = near.first + first; k < near.first + end; ++k) {
@@ -57,8 +57,8 @@ double SoftWalls::look_through(const NearSphere& near, double reach, std::vector
   return free;
 }
 
-/// Makes planes of the contacts that were found within `reach`, patch by patch, and leaves those that push.
-/// Where there are too many there are none, and the sphere looks anew each time.
+/// Makes planes of the contacts within `reach`, patch by patch, and keeps the contacts that push. If there
+/// are too many for planes, the sphere computes distances in every sweep.
 void SoftWalls::take_for_planes(std::uint32_t n, double r, double reach, std::vector<WallContact>& contacts) {
   NearSphere& near = near_[n];
   near.seen_to = contacts.size() <= most_planes ? static_cast<float>(reach) : 0;
@@ -88,14 +88,14 @@ void SoftWalls::take_for_planes(std::uint32_t n, double r, double reach, std::ve
   leave_distinct(contacts, r);
 }
 
-/// Looks at facets. Appends the contacts of a sphere; returns a distance that no wall is nearer than.
+/// Appends the contacts of a sphere, from its facets. Returns a lower bound of the distance from all walls.
 double SoftWalls::touch(std::uint32_t n, double r, std::vector<WallContact>& contacts) {
   const double reach = (1 + leeway) * r, free = look_through(near_[n], reach, contacts);
   take_for_planes(n, r, reach, contacts);
   return free;
 }
 
-/// The same of a sphere at a fine wall, where the container knows.
+/// The same for a sphere at a fine wall, from the container.
 double SoftWalls::ask(NearSphere& near, double r, std::vector<WallContact>& contacts) const {
   if (near.beyond - near.way >= r) return near.beyond - near.way;
   container_.contacts(near.last, r - inset_, contacts);
@@ -122,8 +122,8 @@ void SoftWalls::push(std::size_t group, const SoftSphere* spheres, WallPush& out
     out = ahead_[group];
 }
 
-/// What a sphere touches that has not gone far since facets were looked at. Returns false, with nothing done,
-/// where that has to be done again.
+/// Adds the pushes on a sphere from its planes. Returns false, and does nothing, if it has moved too far for
+/// them.
 bool SoftWalls::push_by_planes(std::uint32_t n, const SoftSphere& sphere, WallPush& out) const {
   const NearSphere& near = near_[n];
   const auto r = static_cast<float>(radius_at_wall(sphere));
@@ -143,7 +143,7 @@ bool SoftWalls::push_by_planes(std::uint32_t n, const SoftSphere& sphere, WallPu
   };
   const Plane* plane = planes_.data() + most_planes * n;
   for (const Plane* const end = plane + near.planes; plane < end;) {
-    // The edge of a face is as deep as the face to the first order of the way, but pushes askew.
+    // To first order in the move, the edge of a face is as deep as the face, but pushes in another direction.
     const Plane* deepest = plane;
     const float as_deep = squared / plane->distance;
     float least = at(*plane);

@@ -9,10 +9,10 @@
 namespace bernal {
 namespace {
 
-/// A wall with more facets than these near a sphere is asked at each push: that costs no more than to look at
-/// those of so many that have come near.
+/// With more facets near a sphere, the container is asked for each push: this costs no more than the
+/// distances from so many facets.
 constexpr std::size_t most_pieces = 512;
-/// How far from the wall a sphere is told apart from one that is farther, in skins.
+/// Up to how far from the reach of a sphere its clearance is computed exactly, in skins.
 constexpr double far_reach = 3;
 constexpr std::size_t groups_a_task = 64;
 
@@ -59,7 +59,7 @@ void SoftWalls::stop_strays(std::vector<SoftSphere>& spheres, const std::vector<
 }
 
 void SoftWalls::stop_stray(SoftSphere& sphere, const SoftSphere& built_at, const Stand& stand) const {
-  // Then it was not near, and no farther than that it has not come through.
+  // It was not near a wall, so a move no longer than this has not passed one.
   constexpr double surely = 0.999;
   const auto near = static_cast<float>(surely * (radius_at_wall(built_at) + skin_));
   if (step(built_at.x, sphere.x).squared() < near * near) return;
@@ -72,7 +72,7 @@ void SoftWalls::stop_stray(SoftSphere& sphere, const SoftSphere& built_at, const
   if (free < length) shorten(sphere, built_at, (1 - kept) * free / length);
 }
 
-/// Whether a wall is nearer to the centre than r + skin; the view then knows all that is.
+/// Returns whether a wall is nearer to the centre than r + skin. If so, the view has all facets that near.
 bool SoftWalls::look(const Vector<3>& at, double r, double skin, std::uint32_t id) {
   Stand& stand = stands_[id];
   const double near = r + skin, moved = way(stand.at, at).norm();
@@ -114,7 +114,7 @@ void SoftWalls::build(const std::vector<SoftSphere>& spheres, const std::vector<
   join(found);
 }
 
-/// What the tasks of `build` have found, one after the other.
+/// Joins what the tasks of `build` have found.
 void SoftWalls::join(const std::vector<Found>& found) {
   std::vector<Found::Ends> before(1);
   has_fine_ = false;
